@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parallel loops. The only file that sees oneTBB.
+#pragma once
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
+#include <oneapi/tbb/parallel_reduce.h>
+
+#include <cstddef>
+#include <utility>
+
+namespace ovc {
+
+/// Calls body(first, last) on disjoint ranges that cover [0, count), of at least `grain` items where possible,
+/// from several threads. What body throws is thrown here.
+template <class Body>
+void parallel_for(size_t count, size_t grain, Body&& body) {
+    oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<size_t>(0, count, grain),
+                              [&](const auto& range) { body(range.begin(), range.end()); });
+}
+
+/// body(first, last, T) -> T over ranges that cover [0, count), joined by join(T, T) -> T. Both must be
+/// associative and commutative for the result to be the same on every run.
+template <class T, class Body, class Join>
+T parallel_reduce(size_t count, T identity, Body&& body, Join&& join) {
+    return oneapi::tbb::parallel_reduce(
+        oneapi::tbb::blocked_range<size_t>(0, count, 4096), std::move(identity),
+        [&](const auto& range, T value) {
+            return body(range.begin(), range.end(), std::move(value));
+        },
+        std::forward<Join>(join));
+}
+
+/// Runs both, perhaps at the same time.
+template <class A, class B>
+void parallel_invoke(A&& a, B&& b) {
+    oneapi::tbb::parallel_invoke(std::forward<A>(a), std::forward<B>(b));
+}
+
+} // namespace ovc

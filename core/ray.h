@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ray and Hit, in double: the records of the C ABI, byte for byte (plugin/plugin.cpp asserts it).
+#pragma once
+
+#include "core/vec.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace ovc {
+
+/// No mesh, no prim.
+inline constexpr uint32_t kNone = 0xffffffffu;
+
+/// The name of a triangle: which added mesh, which triangle in it. Ordered by mesh, then prim.
+struct TriangleId {
+    uint32_t mesh = kNone;
+    uint32_t prim = kNone;
+
+    auto operator<=>(const TriangleId&) const = default;
+};
+
+/// The points org + t dir, t_min <= t <= t_max. dir need not be of unit length; t counts in its lengths.
+struct Ray {
+    dvec3 org{0};
+    double t_min = 0;
+    dvec3 dir{0, 0, 1};
+    double t_max = std::numeric_limits<double>::infinity();
+
+    dvec3 at(double t) const { return org + t * dir; }
+
+    /// False for what no triangle can be asked about: NaN or infinity in org, dir or t_min, NaN in t_max,
+    /// a zero direction, t_min > t_max. Such a ray is a miss.
+    bool valid() const {
+        return is_finite(org) && is_finite(dir) && std::isfinite(t_min) && t_min <= t_max &&
+               dir != dvec3(0);
+    }
+};
+static_assert(sizeof(Ray) == 64 && offsetof(Ray, dir) == 32);
+
+/// A hit at org + t dir = (1 - u - v) a + u b + v c of triangle (a, b, c); a miss has mesh == prim == kNone.
+struct Hit {
+    double t = std::numeric_limits<double>::infinity();
+    double u = 0;
+    double v = 0;
+    TriangleId id;
+
+    bool is_hit() const { return id.mesh != kNone; }
+
+    /// The order in which hits of one ray win: smaller t, ties to the smaller (mesh, prim).
+    bool nearer_than(const Hit& other) const {
+        return t < other.t || (t == other.t && id < other.id);
+    }
+};
+static_assert(sizeof(Hit) == 32 && offsetof(Hit, id) == 24);
+
+} // namespace ovc

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Result: a value, or one sentence that says what was wrong with the input.
+#pragma once
+
+#include <cassert>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace ovc {
+
+/// One sentence: which file, line or argument, what was found, what was expected.
+struct Error {
+    std::string message;
+};
+
+template <class T>
+class [[nodiscard]] Result {
+public:
+    Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
+    Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
+
+    explicit operator bool() const { return state_.index() == 0; }
+
+    T& operator*() {
+        assert(*this);
+        return std::get<0>(state_);
+    }
+    const T& operator*() const {
+        assert(*this);
+        return std::get<0>(state_);
+    }
+    T* operator->() { return &**this; }
+    const T* operator->() const { return &**this; }
+
+    const Error& error() const {
+        assert(!*this);
+        return std::get<1>(state_);
+    }
+
+private:
+    std::variant<T, Error> state_;
+};
+
+/// The Result of something that has no value: Done{} or an Error.
+struct Done {};
+
+} // namespace ovc

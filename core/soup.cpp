@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Soup: ownership of chunks, and which triangles can be hit.
+#include "core/soup.h"
+
+#include "core/parallel.h"
+
+#include <cassert>
+#include <utility>
+
+namespace ovc {
+
+Chunk::Chunk(dvec3 origin, std::vector<vec3> owned, std::span<const vec3> corners)
+    : origin_(origin),
+      owned_(std::move(owned)),
+      corners_(corners) {
+    assert(corners_.size() % 3 == 0);
+    assert(corners_.size() / 3 < kNone);
+}
+
+Chunk Chunk::owning(dvec3 origin, std::vector<vec3> corners) {
+    const std::span<const vec3> view(corners);
+    return Chunk(origin, std::move(corners), view);
+}
+
+Chunk Chunk::borrowing(dvec3 origin, std::span<const vec3> corners) {
+    return Chunk(origin, {}, corners);
+}
+
+uint64_t Soup::triangle_count() const {
+    uint64_t count = 0;
+    for (const Chunk& chunk : chunks)
+        count += chunk.size();
+    return count;
+}
+
+TriangleFault triangle_fault(const Triangle& t) {
+    if (!is_finite(t[0]) || !is_finite(t[1]) || !is_finite(t[2]))
+        return TriangleFault::NotFinite;
+    const dvec3 ab = t[1] - t[0];
+    const dvec3 ac = t[2] - t[0];
+    // Two products compared instead of their difference with zero: nothing underflows away in between.
+    const bool on_a_line =
+        ab.y * ac.z == ab.z * ac.y && ab.z * ac.x == ab.x * ac.z && ab.x * ac.y == ab.y * ac.x;
+    return on_a_line ? TriangleFault::Degenerate : TriangleFault::None;
+}
+
+namespace {
+
+struct Survey {
+    Dropped dropped;
+    Box bounds;
+};
+
+Survey survey(const Chunk& chunk, uint32_t first, uint32_t last, std::vector<uint8_t>& kept) {
+    Survey found;
+    for (uint32_t prim = first; prim < last; ++prim) {
+        const Triangle triangle = chunk.triangle(prim);
+        const TriangleFault fault = triangle_fault(triangle);
+        kept[prim] = fault == TriangleFault::None;
+        found.dropped.not_finite += fault == TriangleFault::NotFinite;
+        found.dropped.degenerate += fault == TriangleFault::Degenerate;
+        if (fault == TriangleFault::None)
+            found.bounds.add(bounds_of(triangle));
+    }
+    return found;
+}
+
+} // namespace
+
+std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, Box* bounds) {
+    std::vector<TriangleId> ids;
+    ids.reserve(soup.triangle_count());
+    Survey total;
+    std::vector<uint8_t> kept;
+    for (uint32_t mesh = 0; mesh < soup.chunks.size(); ++mesh) {
+        const Chunk& chunk = soup.chunks[mesh];
+        kept.assign(chunk.size(), 0);
+        const Survey found = parallel_reduce(
+            chunk.size(), Survey{},
+            [&](size_t first, size_t last, Survey sum) {
+                const Survey part = survey(chunk, uint32_t(first), uint32_t(last), kept);
+                sum.dropped.not_finite += part.dropped.not_finite;
+                sum.dropped.degenerate += part.dropped.degenerate;
+                sum.bounds.add(part.bounds);
+                return sum;
+            },
+            [](Survey a, const Survey& b) {
+                a.dropped.not_finite += b.dropped.not_finite;
+                a.dropped.degenerate += b.dropped.degenerate;
+                a.bounds.add(b.bounds);
+                return a;
+            });
+        total.dropped.not_finite += found.dropped.not_finite;
+        total.dropped.degenerate += found.dropped.degenerate;
+        total.bounds.add(found.bounds);
+        for (uint32_t prim = 0; prim < chunk.size(); ++prim)
+            if (kept[prim])
+                ids.push_back({mesh, prim});
+    }
+    if (dropped)
+        *dropped = total.dropped;
+    if (bounds)
+        *bounds = total.bounds;
+    return ids;
+}
+
+} // namespace ovc

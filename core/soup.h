@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Soup: the scene as bare triangles, three positions each, in chunks of one mesh each.
+#pragma once
+
+#include "core/box.h"
+#include "core/ray.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+using Triangle = std::array<dvec3, 3>;
+
+/// The triangles of one mesh: corner i of triangle p lies at origin + corners[3 p + i], added in double.
+/// Move-only: the corners are owned, or borrowed from a caller who keeps them alive and unchanged.
+class Chunk {
+public:
+    static Chunk owning(dvec3 origin, std::vector<vec3> corners);
+    static Chunk borrowing(dvec3 origin, std::span<const vec3> corners);
+
+    Chunk(Chunk&&) = default;
+    Chunk& operator=(Chunk&&) = default;
+
+    const dvec3& origin() const { return origin_; }
+    /// 3 x size() offsets, 12 bytes each.
+    std::span<const vec3> corners() const { return corners_; }
+    uint32_t size() const { return uint32_t(corners_.size() / 3); }
+    uint64_t owned_bytes() const { return owned_.capacity() * sizeof(vec3); }
+
+    Triangle triangle(uint32_t prim) const {
+        const vec3* c = corners_.data() + size_t(prim) * 3;
+        return {origin_ + dvec3(c[0]), origin_ + dvec3(c[1]), origin_ + dvec3(c[2])};
+    }
+
+private:
+    Chunk(dvec3 origin, std::vector<vec3> owned, std::span<const vec3> corners);
+
+    dvec3 origin_;
+    std::vector<vec3> owned_; // its heap block survives a move, so corners_ may point into it
+    std::span<const vec3> corners_;
+};
+
+/// Chunk m holds the triangles (m, 0) … (m, size - 1).
+struct Soup {
+    std::vector<Chunk> chunks;
+
+    uint64_t triangle_count() const;
+    Triangle triangle(TriangleId id) const { return chunks[id.mesh].triangle(id.prim); }
+};
+
+/// Why a triangle can never be hit.
+enum class TriangleFault { None, NotFinite, Degenerate };
+
+/// NotFinite: a NaN or infinite corner. Degenerate: no area, the corners on one line (tested in double, without tolerance).
+TriangleFault triangle_fault(const Triangle& triangle);
+
+/// Triangles left out of a structure, by reason.
+struct Dropped {
+    uint64_t not_finite = 0;
+    uint64_t degenerate = 0;
+
+    uint64_t total() const { return not_finite + degenerate; }
+};
+
+/// The ids of all triangles that can be hit, in order, and the box of each is left to the caller.
+/// dropped, bounds: optional, receive what was left out and the box of what was kept.
+std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, Box* bounds);
+
+inline Box bounds_of(const Triangle& t) {
+    return {glm::min(glm::min(t[0], t[1]), t[2]), glm::max(glm::max(t[0], t[1]), t[2])};
+}
+
+} // namespace ovc

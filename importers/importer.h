@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Importers: a file in, a Scene out; and back, for `overcast convert`.
+#pragma once
+
+#include "core/log.h"
+#include "core/result.h"
+#include "core/scene.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ovc {
+
+struct ImportOptions {
+    LogSink log; // warnings: what a file asks for and Overcast leaves out, one per kind
+};
+
+/// Reads a scene. The reader is chosen by the extension, a trailing .gz taken off first; any case.
+/// Never throws on bad input: the Error is one sentence with file, line or byte, what was found, what was expected.
+/// Polygons are cut into triangles in file order; a degenerate or non-finite triangle is kept (it is counted and dropped
+/// when a structure is built), so that prim numbers follow the file.
+Result<Scene> load(const std::filesystem::path& path, const ImportOptions& options = {});
+
+/// Writes the soup of `scene` as .ply (binary little endian, double positions where float would move them) or .obj. A file that exists is replaced only once the
+/// new one is complete.
+Result<Done> save(const Scene& scene, const std::filesystem::path& path);
+
+/// The extensions load() reads with readers of ours, without the dot ("ply", "obj"); Assimp's are not listed.
+std::vector<std::string> own_extensions();
+
+} // namespace ovc
