@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Soup: who owns the corners, where they lie, and which triangles can be hit.
+#include "core/soup.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace ovc {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+std::vector<vec3> unit_triangle() {
+    return {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)};
+}
+
+TEST(Chunk, AddsItsOriginInDouble) {
+    const dvec3 origin(1e9 + 0.125, -1e9, 0.1);
+    const Chunk chunk = Chunk::owning(origin, unit_triangle());
+    ASSERT_EQ(chunk.size(), 1u);
+    const Triangle t = chunk.triangle(0);
+    EXPECT_EQ(t[0], origin);
+    EXPECT_EQ(t[1], origin + dvec3(1, 0, 0));
+    EXPECT_EQ(t[2], origin + dvec3(0, 1, 0));
+}
+
+TEST(Chunk, OwnedCornersSurviveMoves) {
+    Chunk first = Chunk::owning(dvec3(0), unit_triangle());
+    const vec3* corners = first.corners().data();
+    Chunk second = std::move(first);
+    std::vector<Chunk> many;
+    many.push_back(std::move(second));
+    for (int i = 0; i < 100; ++i) // the vector moves its chunks as it grows
+        many.push_back(Chunk::owning(dvec3(i), unit_triangle()));
+    EXPECT_EQ(many[0].corners().data(), corners);
+    EXPECT_EQ(many[0].triangle(0)[1], dvec3(1, 0, 0));
+}
+
+TEST(Chunk, BorrowedCornersAreTheCallers) {
+    const std::vector<vec3> corners = unit_triangle();
+    const Chunk chunk = Chunk::borrowing(dvec3(2), corners);
+    EXPECT_EQ(chunk.corners().data(), corners.data());
+    EXPECT_EQ(chunk.owned_bytes(), 0u);
+    EXPECT_EQ(chunk.triangle(0)[0], dvec3(2));
+}
+
+TEST(TriangleFault, NamesWhyATriangleCanNeverBeHit) {
+    const struct {
+        const char* name;
+        Triangle triangle;
+        TriangleFault fault;
+    } cases[] = {
+        {"plain", {dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0)}, TriangleFault::None},
+        {"plain, mirrored", {dvec3(0), dvec3(0, 1, 0), dvec3(1, 0, 0)}, TriangleFault::None},
+        {"tiny", {dvec3(0), dvec3(1e-60, 0, 0), dvec3(0, 1e-60, 0)}, TriangleFault::None},
+        {"smallest floats",
+         {dvec3(0), dvec3(0x1p-149, 0, 0), dvec3(0, 0x1p-149, 0)},
+         TriangleFault::None},
+        {"one ulp off a line",
+         {dvec3(0), dvec3(1, 1, 1), dvec3(2, 2, std::nextafter(2.0, 3.0))},
+         TriangleFault::None},
+        {"one point", {dvec3(3), dvec3(3), dvec3(3)}, TriangleFault::Degenerate},
+        {"a = b", {dvec3(1), dvec3(1), dvec3(0, 5, 0)}, TriangleFault::Degenerate},
+        {"b = c", {dvec3(0, 5, 0), dvec3(1), dvec3(1)}, TriangleFault::Degenerate},
+        {"a = c", {dvec3(1), dvec3(0, 5, 0), dvec3(1)}, TriangleFault::Degenerate},
+        {"on a slanted line",
+         {dvec3(0), dvec3(1, 2, 3), dvec3(2, 4, 6)},
+         TriangleFault::Degenerate},
+        {"back along its line",
+         {dvec3(0), dvec3(1, 2, 3), dvec3(-3, -6, -9)},
+         TriangleFault::Degenerate},
+        {"NaN", {dvec3(0), dvec3(1, kNan, 0), dvec3(0, 1, 0)}, TriangleFault::NotFinite},
+        {"infinite", {dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, -kInf)}, TriangleFault::NotFinite},
+        {"NaN and no area", {dvec3(kNan), dvec3(kNan), dvec3(kNan)}, TriangleFault::NotFinite},
+    };
+    for (const auto& c : cases)
+        EXPECT_EQ(triangle_fault(c.triangle), c.fault) << c.name;
+}
+
+TEST(TriangleFault, DoesNotDependOnTheOrderOfCorners) {
+    for (uint32_t seed = 0; seed < 2000; ++seed) {
+        std::mt19937 random(seed);
+        const auto coordinate = [&] { return double(random() % 3); }; // often on a line
+        const auto point = [&] { return dvec3(coordinate(), coordinate(), coordinate()); };
+        const dvec3 a = point(), b = point(), c = point();
+        const TriangleFault fault = triangle_fault({a, b, c});
+        EXPECT_EQ(triangle_fault({b, c, a}), fault) << seed;
+        EXPECT_EQ(triangle_fault({c, b, a}), fault) << seed;
+    }
+}
+
+TEST(HittableTriangles, OfAnEmptySoupAreNone) {
+    Soup soup;
+    soup.chunks.push_back(Chunk::owning(dvec3(0), {}));
+    Dropped dropped;
+    Box bounds;
+    EXPECT_TRUE(hittable_triangles(soup, &dropped, &bounds).empty());
+    EXPECT_EQ(dropped.total(), 0u);
+    EXPECT_TRUE(bounds.empty());
+    EXPECT_TRUE(hittable_triangles(soup, nullptr, nullptr).empty());
+}
+
+TEST(HittableTriangles, KeepOrderAndCountWhatTheyDrop) {
+    constexpr uint32_t kTriangles = 20000; // several ranges of the parallel loop
+    std::vector<vec3> corners;
+    for (uint32_t prim = 0; prim < kTriangles; ++prim) {
+        const vec3 at(float(prim % 7), 0, 0);
+        const float height = prim % 5 == 1 ? 0.0f : prim % 5 == 2 ? float(kNan) : 1.0f;
+        corners.insert(corners.end(), {at, at + vec3(1, 0, 0), at + vec3(0, height, 0)});
+    }
+    Soup soup;
+    soup.chunks.push_back(Chunk::owning(dvec3(0), unit_triangle()));
+    soup.chunks.push_back(Chunk::owning(dvec3(100), std::move(corners)));
+    EXPECT_EQ(soup.triangle_count(), kTriangles + 1);
+
+    Dropped dropped;
+    Box bounds;
+    const std::vector<TriangleId> ids = hittable_triangles(soup, &dropped, &bounds);
+    EXPECT_EQ(dropped.degenerate, kTriangles / 5);
+    EXPECT_EQ(dropped.not_finite, kTriangles / 5);
+    ASSERT_EQ(ids.size(), kTriangles / 5 * 3 + 1);
+    EXPECT_EQ(ids[0], (TriangleId{0, 0}));
+    for (size_t i = 1; i < ids.size(); ++i)
+        ASSERT_LT(ids[i - 1], ids[i]);
+    EXPECT_EQ(bounds.lo, dvec3(0));
+    EXPECT_EQ(bounds.hi, dvec3(107, 101, 100));
+}
+
+TEST(HittableTriangles, BoundsLeaveOutWhatIsDropped) {
+    std::vector<vec3> corners = unit_triangle();
+    corners.insert(corners.end(), {vec3(50), vec3(60), vec3(70)});                      // a line
+    corners.insert(corners.end(), {vec3(-90), vec3(float(kNan)), vec3(-90, -80, -90)}); // NaN
+    Soup soup;
+    soup.chunks.push_back(Chunk::owning(dvec3(0), std::move(corners)));
+    Box bounds;
+    EXPECT_EQ(hittable_triangles(soup, nullptr, &bounds).size(), 1u);
+    EXPECT_EQ(bounds.lo, dvec3(0));
+    EXPECT_EQ(bounds.hi, dvec3(1, 1, 0));
+}
+
+} // namespace
+} // namespace ovc
