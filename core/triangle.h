@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reference: rays against triangles and boxes in double. What it answers is what certified mode returns.
-// Based on: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", section 3; Ize 2013, "Robust BVH Ray
-// Traversal", section 3. Needs -ffp-contract=off: a fused multiply-add would break the antisymmetry of the edge functions.
+// The reference: rays against triangles and boxes in double. What it answers is what certified mode
+// returns. Based on: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", section
+// 3; Ize 2013, "Robust BVH Ray Traversal", section 3. Needs -ffp-contract=off: a fused multiply-add
+// would break the antisymmetry of the edge functions.
 #pragma once
 
 #include "core/box.h"
@@ -15,7 +16,8 @@
 
 namespace ovc {
 
-/// A ray made ready: the basis that maps it onto the z axis, and the margin that keeps box tests conservative.
+/// A ray made ready: the basis that maps it onto the z axis, and the margin that keeps box tests
+/// conservative.
 struct PreparedRay {
     Ray ray;
     int kx, ky, kz;    // kz: the major axis of dir
@@ -33,19 +35,18 @@ struct PreparedRay {
         inv_dir = dvec3(1.0) / r.dir;
     }
 
-    /// The absolute rounding error, amply, of positions computed along this ray within `bounds`.
+    /// More than the rounding error, in each coordinate, of positions along this ray within
+    /// `bounds`.
     double margin(const Box& bounds) const {
-        const dvec3 farthest =
-            glm::max(glm::abs(bounds.lo - ray.org), glm::abs(bounds.hi - ray.org));
-        const dvec3 largest = glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi));
-        return 0x1p-46 * std::max(max_component(farthest), max_component(largest));
+        return 0x1p-46 * max_component(glm::max(glm::abs(bounds.lo - ray.org),
+                                                glm::abs(bounds.hi - ray.org)));
     }
 };
 
-/// Where the ray meets the triangle, t_min <= t <= t_max; nothing where it does not. Edges and vertices belong to
-/// every triangle they bound, so a ray never slips between two triangles that share corners bit for bit: the two
-/// products of an edge function round monotonically, so its sign is right or zero, and zero counts as inside.
-/// A triangle seen exactly edge-on is not hit.
+/// Where the ray meets the triangle, t_min <= t <= t_max; nothing where it does not. Edges and
+/// vertices belong to every triangle they bound, so a ray never slips between two triangles that
+/// share corners bit for bit: the two products of an edge function round monotonically, so its sign
+/// is right or zero, and zero counts as inside. A triangle seen exactly edge-on is not hit.
 inline std::optional<Hit> intersect(const PreparedRay& p, const Triangle& triangle, TriangleId id) {
     double x[3], y[3], z[3];
     for (int i = 0; i < 3; ++i) {
@@ -78,8 +79,8 @@ struct Interval {
     bool empty() const { return !(enter <= exit); }
 };
 
-/// The part of [from, to] that the ray spends in `box`. May be a little too long, never too short, when the box was
-/// padded by PreparedRay::margin.
+/// The part of [from, to] that the ray spends in `box`. May be a little too long, never too short,
+/// when the box was padded by PreparedRay::margin.
 inline Interval clip(const PreparedRay& p, const Box& box, double from, double to) {
     for (int axis = 0; axis < 3; ++axis) {
         const double org = p.ray.org[axis];

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kd-restart on level 1.
+#include "kdtree/restart.h"
+
+#include <cmath>
+#include <limits>
+
+namespace ovc {
+namespace {
+
+struct CellVisit {
+    const KdNode* cell = nullptr;
+    double exit = 0; // of the ray from the cell
+};
+
+/// The cell that holds the ray just after t. Planes are met at times that are computed in one way
+/// only, so a restart at the exit of a cell always lands in the next: t grows with every cell, and
+/// no cell comes twice.
+CellVisit cell_after(const Level1& level1, const PreparedRay& p, double t) {
+    double exit = p.ray.t_max;
+    uint32_t node = 0;
+    while (!level1.nodes[node].is_leaf()) {
+        const KdNode& n = level1.nodes[node];
+        const int axis = n.axis();
+        const uint32_t below = node + 1;
+        const uint32_t above = n.above();
+        if (p.ray.dir[axis] == 0) {
+            node = p.ray.org[axis] <= n.split() ? below : above;
+            continue;
+        }
+        const double plane = (n.split() - p.ray.org[axis]) * p.inv_dir[axis];
+        const bool below_first = p.ray.dir[axis] > 0;
+        if (t < plane) {
+            exit = std::min(exit, plane);
+            node = below_first ? below : above;
+        } else {
+            node = below_first ? above : below;
+        }
+    }
+    return {&level1.nodes[node], exit};
+}
+
+} // namespace
+
+bool can_walk(const Level1& level1, const PreparedRay& p) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (p.ray.dir[axis] != 0 && !std::isfinite(p.inv_dir[axis]))
+            return false;
+    return level1.nodes.empty() || p.margin(level1.bounds) <= level1.smallest_padding;
+}
+
+Visit next_leaf(const Level1& level1, const PreparedRay& p, RayPosition& position) {
+    if (level1.nodes.empty())
+        return {};
+    if (position.t == p.ray.t_min && position.done == 0 &&
+        clip(p, level1.bounds.padded(level1.smallest_padding), p.ray.t_min, p.ray.t_max).empty())
+        return {};
+    while (position.t <= p.ray.t_max) {
+        const CellVisit visit = cell_after(level1, p, position.t);
+        while (position.done < visit.cell->count()) {
+            const uint32_t leaf = visit.cell->first() + position.done++;
+            const Interval inside = clip(p, level1.leaves[leaf].box, p.ray.t_min, p.ray.t_max);
+            if (!inside.empty())
+                return {leaf, inside};
+        }
+        if (visit.exit <= position.t || visit.exit >= p.ray.t_max)
+            break;
+        position = {visit.exit, 0};
+    }
+    position.t = std::numeric_limits<double>::infinity();
+    return {};
+}
+
+} // namespace ovc
