@@ -17,16 +17,18 @@ struct ImportOptions {
 };
 
 /// Reads a scene. The reader is chosen by the extension, a trailing .gz taken off first; any case.
-/// Never throws on bad input: the Error is one sentence with file, line or byte, what was found, what was expected.
-/// Polygons are cut into triangles in file order; a degenerate or non-finite triangle is kept (it is counted and dropped
-/// when a structure is built), so that prim numbers follow the file.
+/// Never throws on bad input: the Error is one sentence with file, line or byte, what was found,
+/// what was expected. Polygons are cut into triangles in file order; a degenerate or non-finite
+/// triangle is kept (it is counted and dropped when a structure is built), so that prim numbers
+/// follow the file.
 Result<Scene> load(const std::filesystem::path& path, const ImportOptions& options = {});
 
-/// Writes the soup of `scene` as .ply (binary little endian, double positions where float would move them) or .obj. A file that exists is replaced only once the
-/// new one is complete.
+/// Writes the soup of `scene` as .ply (binary little endian, double positions where float would
+/// move them) or .obj. A file that exists is replaced only once the new one is complete.
 Result<Done> save(const Scene& scene, const std::filesystem::path& path);
 
-/// The extensions load() reads with readers of ours, without the dot ("ply", "obj"); Assimp's are not listed.
+/// The extensions load() reads with readers of ours, without the dot ("ply", "obj"); Assimp's are
+/// not listed.
 std::vector<std::string> own_extensions();
 
 } // namespace ovc

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every other format, by Assimp; the only file that sees it. Never for .ply and .obj: there it
+// takes many times the memory of the file, and hangs or crashes on some that are damaged.
+#include "importers/readers.h"
+#include "importers/source.h"
+
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <exception>
+
+namespace ovc {
+
+namespace {
+
+// Not JoinIdenticalVertices: it merges by distance.
+constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_PreTransformVertices;
+
+vec3 from(const aiVector3D& v) {
+    return {v.x, v.y, v.z};
+}
+
+Material material_from(const aiMaterial& source) {
+    Material material;
+    material.name = source.GetName().C_Str();
+    aiColor3D color;
+    if (source.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS) {
+        const vec3 rgb(color.r, color.g, color.b);
+        if (is_finite(rgb))
+            material.color = glm::clamp(rgb, vec3(0), vec3(1));
+    }
+    return material;
+}
+
+bool is_triangle(const aiFace& face, const aiMesh& mesh) {
+    return face.mNumIndices == 3 && face.mIndices[0] < mesh.mNumVertices &&
+           face.mIndices[1] < mesh.mNumVertices && face.mIndices[2] < mesh.mNumVertices;
+}
+
+/// Empty where one is missing or not finite, and where all triangles are flat: those say nothing
+/// new.
+std::vector<vec3> normals_from(const aiMesh& mesh) {
+    std::vector<vec3> normals;
+    bool smooth = false;
+    for (unsigned f = 0; mesh.HasNormals() && f < mesh.mNumFaces; ++f) {
+        if (!is_triangle(mesh.mFaces[f], mesh))
+            continue;
+        for (int i = 0; i < 3; ++i) {
+            const vec3 normal = from(mesh.mNormals[mesh.mFaces[f].mIndices[i]]);
+            const float length = glm::length(normal);
+            if (!(length > 0) || !std::isfinite(length))
+                return {};
+            normals.push_back(normal / length);
+        }
+        smooth = smooth || normals.end()[-1] != normals.end()[-2] ||
+                 normals.end()[-2] != normals.end()[-3];
+    }
+    return smooth ? normals : std::vector<vec3>();
+}
+
+void add_mesh(Scene& scene, const aiMesh& mesh) {
+    std::vector<vec3> corners;
+    corners.reserve(size_t(mesh.mNumFaces) * 3);
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f)
+        if (is_triangle(mesh.mFaces[f], mesh))
+            for (int i = 0; i < 3; ++i)
+                corners.push_back(from(mesh.mVertices[mesh.mFaces[f].mIndices[i]]));
+    if (corners.empty())
+        return;
+    const uint32_t material =
+        mesh.mMaterialIndex < scene.materials.size() ? mesh.mMaterialIndex : 0;
+    scene.add_mesh(mesh.mName.length > 0 ? mesh.mName.C_Str() : scene.name, material,
+                   Chunk::owning(dvec3(0), std::move(corners)), normals_from(mesh));
+}
+
+/// The whole file, uncompressed.
+std::vector<unsigned char> contents(Source& source) {
+    constexpr size_t kBlock = size_t(1) << 16;
+    std::vector<unsigned char> all;
+    while (const unsigned char* block = source.bytes(kBlock))
+        all.insert(all.end(), block, block + kBlock);
+    while (const unsigned char* byte = source.bytes(1))
+        all.push_back(*byte);
+    return all;
+}
+
+/// Assimp opens a plain file itself, as that may name others beside it; a compressed one it gets
+/// from memory.
+const aiScene* read(Assimp::Importer& importer, Source& source, const std::filesystem::path& path) {
+    if (!source.is_compressed())
+        return importer.ReadFile(path.string(), kSteps);
+    const auto plain_name = path.extension() == ".gz" ? path.stem() : path;
+    const std::string extension = plain_name.extension().string();
+    const std::vector<unsigned char> all = contents(source);
+    return importer.ReadFileFromMemory(all.data(), all.size(), kSteps,
+                                       extension.empty() ? "" : extension.c_str() + 1);
+}
+
+} // namespace
+
+bool assimp_reads(std::string_view extension) {
+    return Assimp::Importer().IsExtensionSupported("." + std::string(extension));
+}
+
+Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions& options) try {
+    Result<Source> source = Source::open(path);
+    if (!source)
+        return source.error();
+    Assimp::Importer importer;
+    const aiScene* found = read(importer, *source, path);
+    if (!found || source->is_damaged())
+        return source->error(fmt::format("Assimp found: {}", importer.GetErrorString()));
+    Scene scene;
+    scene.name = path.stem().string();
+    for (unsigned m = 0; m < found->mNumMaterials; ++m)
+        scene.materials.push_back(material_from(*found->mMaterials[m]));
+    if (scene.materials.empty())
+        scene.materials.emplace_back();
+    for (unsigned m = 0; m < found->mNumMeshes; ++m)
+        add_mesh(scene, *found->mMeshes[m]);
+    if (scene.soup.triangle_count() == 0)
+        say(options.log, LogLevel::Warning, source->error("it has no triangles").message);
+    return scene;
+} catch (const std::exception& e) {
+    return Error{fmt::format("{}: Assimp failed: {}", path.string(), e.what())};
+}
+
+} // namespace ovc

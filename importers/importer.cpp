@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which reader, which writer: by the extension.
+#include "importers/importer.h"
+
+#include "importers/readers.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <new>
+#include <numeric>
+
+namespace ovc {
+
+namespace {
+
+struct Format {
+    std::string_view extension;
+    Result<Scene> (*read)(const std::filesystem::path&, const ImportOptions&);
+    Result<Done> (*write)(const Scene&, const std::filesystem::path&); // null: only read
+};
+
+constexpr Format kFormats[] = {{"obj", read_obj, write_obj}, {"ply", read_ply, write_ply}};
+
+const Format* format_of(std::string_view extension) {
+    for (const Format& format : kFormats)
+        if (format.extension == extension)
+            return &format;
+    return nullptr;
+}
+
+std::string lower_name(const std::filesystem::path& path) {
+    std::string name = path.filename().string();
+    for (char& c : name)
+        c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+    return name;
+}
+
+/// Without the dot: "ply".
+std::string extension_of(const std::string& name) {
+    const size_t dot = name.rfind('.');
+    return dot == name.npos ? "" : name.substr(dot + 1);
+}
+
+std::string without_gz(std::string name) {
+    if (name.ends_with(".gz"))
+        name.resize(name.size() - 3);
+    return name;
+}
+
+/// Letters to insert, remove or change to come from a to b.
+size_t distance(std::string_view a, std::string_view b) {
+    std::vector<size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), size_t(0));
+    for (size_t i = 0; i < a.size(); ++i) {
+        size_t diagonal = std::exchange(row[0], i + 1);
+        for (size_t j = 0; j < b.size(); ++j) {
+            const size_t change = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({change, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+Error unknown_extension(const std::filesystem::path& path, const std::string& extension,
+                        std::string_view also) {
+    std::string guess;
+    for (const Format& format : kFormats)
+        if (!extension.empty() && extension.size() <= 8 &&
+            distance(extension, format.extension) == 1)
+            guess = fmt::format("; did you mean .{}?", format.extension);
+    return {
+        fmt::format("{}: found {}, expected .{}{}{}", path.string(),
+                    extension.empty() ? "no extension" : fmt::format("extension .{}", extension),
+                    fmt::join(own_extensions(), ", ."), also, guess)};
+}
+
+} // namespace
+
+Result<Scene> load(const std::filesystem::path& path, const ImportOptions& options) try {
+    const std::string extension = extension_of(without_gz(lower_name(path)));
+    if (const Format* format = format_of(extension))
+        return format->read(path, options);
+    std::error_code ec;
+    if (!std::filesystem::exists(path, ec))
+        return Error{fmt::format("{}: no such file", path.string())};
+    if (!extension.empty() && assimp_reads(extension))
+        return read_assimp(path, options);
+    return unknown_extension(path, extension,
+                             " or one that Assimp reads, such as .stl, .off, .glb");
+} catch (const std::bad_alloc&) {
+    return Error{fmt::format("{}: found a model larger than the memory", path.string())};
+}
+
+Result<Done> save(const Scene& scene, const std::filesystem::path& path) {
+    const std::string extension = extension_of(lower_name(path));
+    const Format* format = format_of(extension);
+    if (!format || !format->write)
+        return unknown_extension(path, extension, "");
+    return format->write(scene, path);
+}
+
+std::vector<std::string> own_extensions() {
+    std::vector<std::string> extensions;
+    for (const Format& format : kFormats)
+        extensions.emplace_back(format.extension);
+    return extensions;
+}
+
+} // namespace ovc

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The origin of the chunks of one file, so that single-precision offsets lose as little as
+// possible.
+#pragma once
+
+#include "core/box.h"
+
+#include <cmath>
+
+namespace ovc {
+
+/// Per axis 0, or the middle of `bounds` where that is farther from 0 than `far` times the longest
+/// extent. The middle is rounded to 1/256 of the extent: coordinates that are themselves short
+/// binary fractions keep exact offsets, and reading what was written from these offsets finds the
+/// same origin. One origin serves a whole file: two would tear meshes that share corners apart.
+inline dvec3 chunk_origin(const Box& bounds, double far) {
+    const double extent = bounds.empty() ? 0 : max_component(bounds.extent());
+    if (!(extent < 1e300))
+        return dvec3(0);
+    const dvec3 middle = bounds.center();
+    const double grid =
+        std::ldexp(1.0, (extent > 0 ? std::ilogb(extent)
+                                    : std::ilogb(max_component(glm::abs(middle)) + 1e-300)) -
+                            8);
+    dvec3 origin(0);
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(middle[axis]) > far * extent)
+            origin[axis] = std::round(middle[axis] / grid) * grid;
+    return origin;
+}
+
+} // namespace ovc

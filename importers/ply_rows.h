@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rows of a PLY file's elements, value by value: AsciiRows and BinaryRows have the same face.
+#pragma once
+
+#include "importers/ply_header.h"
+#include "importers/text.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <concepts>
+#include <cstring>
+#include <limits>
+
+namespace ovc {
+
+/// Every call but error() returns false at an error, which error() then holds.
+/// An element's row is one line; blank lines between rows do not count.
+class AsciiRows {
+public:
+    explicit AsciiRows(Source& source) : source_(source) {}
+
+    bool begin_row() {
+        do {
+            const auto line = source_.line();
+            if (!line)
+                return fail("the end of the file", "another row");
+            rest_ = *line;
+            skip_blanks(rest_);
+        } while (rest_.empty());
+        return true;
+    }
+
+    bool end_row() {
+        skip_blanks(rest_);
+        return rest_.empty() || fail(quoted(next_word(rest_)), "the end of the line");
+    }
+
+    /// T: float or double. Integer types may be written with a point, too.
+    template <class T>
+    bool scalar(const PlyProperty& property, T& value) {
+        const std::string_view word = next_word(rest_);
+        std::optional<T> parsed;
+        if constexpr (std::same_as<T, float>)
+            parsed = parse_float(word);
+        else
+            parsed = parse_double(word);
+        if (!parsed)
+            return fail_word(word, fmt::format("a number for {}", property.name));
+        value = *parsed;
+        return true;
+    }
+
+    bool skip_scalar(const PlyProperty& property) {
+        const std::string_view word = next_word(rest_);
+        return !word.empty() || fail_word(word, fmt::format("a value for {}", property.name));
+    }
+
+    bool count(const PlyProperty& property, uint64_t& value) {
+        return integer("the length of", property, value);
+    }
+
+    bool index(const PlyProperty& property, int64_t& value) {
+        return integer("a whole number for", property, value);
+    }
+
+    bool skip_list(const PlyProperty& property) {
+        uint64_t left = 0;
+        if (!count(property, left))
+            return false;
+        for (; left > 0; --left)
+            if (!skip_scalar(property))
+                return false;
+        return true;
+    }
+
+    bool fail(std::string_view found, std::string_view expected) {
+        error_ = source_.error_at_line(fmt::format("found {}, expected {}", found, expected));
+        return false;
+    }
+
+    const Error& error() const { return error_; }
+
+private:
+    template <class T>
+    bool integer(std::string_view what, const PlyProperty& property, T& value) {
+        const std::string_view word = next_word(rest_);
+        const auto parsed = parse_number<T>(word);
+        if (!parsed)
+            return fail_word(word, fmt::format("{} {}", what, property.name));
+        value = *parsed;
+        return true;
+    }
+
+    bool fail_word(std::string_view word, std::string_view expected) {
+        return fail(word.empty() ? "the end of the line" : quoted(word), expected);
+    }
+
+    Source& source_;
+    std::string_view rest_; // of the row
+    Error error_;
+};
+
+template <std::endian kOrder>
+class BinaryRows {
+public:
+    explicit BinaryRows(Source& source) : source_(source) {}
+
+    bool begin_row() {
+        row_ = source_.offset();
+        return true;
+    }
+
+    bool end_row() { return true; }
+
+    template <class T>
+    bool scalar(const PlyProperty& property, T& value) {
+        return take(property.type, property, value);
+    }
+
+    bool skip_scalar(const PlyProperty& property) { return skip(size_of(property.type), property); }
+
+    bool count(const PlyProperty& property, uint64_t& value) {
+        int64_t length = 0;
+        if (!take(property.count_type, property, length))
+            return false;
+        value = uint64_t(length);
+        return length >= 0 ||
+               fail(fmt::format("{} of length {}", property.name, length), "a length of 0 or more");
+    }
+
+    bool index(const PlyProperty& property, int64_t& value) {
+        return take(property.type, property, value);
+    }
+
+    bool skip_list(const PlyProperty& property) {
+        uint64_t length = 0;
+        return count(property, length) && skip(length * size_of(property.type), property);
+    }
+
+    bool fail(std::string_view found, std::string_view expected) {
+        error_ = source_.error_at_byte(row_, fmt::format("found {}, expected {}", found, expected));
+        return false;
+    }
+
+    const Error& error() const { return error_; }
+
+private:
+    template <class Stored, class T>
+    bool take_as(const PlyProperty& property, T& value) {
+        const unsigned char* at = source_.bytes(sizeof(Stored));
+        if (!at)
+            return fail_end(property);
+        unsigned char raw[sizeof(Stored)];
+        for (size_t i = 0; i < sizeof(Stored); ++i)
+            raw[i] = at[kOrder == std::endian::native ? i : sizeof(Stored) - 1 - i];
+        value = T(std::bit_cast<Stored>(raw));
+        return true;
+    }
+
+    template <class T>
+    bool take(PlyType type, const PlyProperty& property, T& value) {
+        switch (type) {
+        case PlyType::Int8:
+            return take_as<int8_t>(property, value);
+        case PlyType::UInt8:
+            return take_as<uint8_t>(property, value);
+        case PlyType::Int16:
+            return take_as<int16_t>(property, value);
+        case PlyType::UInt16:
+            return take_as<uint16_t>(property, value);
+        case PlyType::Int32:
+            return take_as<int32_t>(property, value);
+        case PlyType::UInt32:
+            return take_as<uint32_t>(property, value);
+        case PlyType::Float32:
+            return take_as<float>(property, value);
+        case PlyType::Float64:
+            return take_as<double>(property, value);
+        }
+        return false;
+    }
+
+    bool skip(uint64_t bytes, const PlyProperty& property) {
+        return source_.skip(bytes) || fail_end(property);
+    }
+
+    bool fail_end(const PlyProperty& property) {
+        row_ = source_.offset();
+        return fail("the end of the file", property.name);
+    }
+
+    Source& source_;
+    uint64_t row_ = 0; // where the row begins, or the file ended
+    Error error_;
+};
+
+} // namespace ovc

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The readers that importer.cpp chooses from: one function a format, each as load() is documented.
+#pragma once
+
+#include "importers/importer.h"
+
+#include <string_view>
+
+namespace ovc {
+
+/// In one mesh: prims are numbered in 32 bits, and kNone is none.
+inline constexpr uint64_t kMostTriangles = 0xfffffffe;
+
+Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& options);
+Result<Scene> read_obj(const std::filesystem::path& path, const ImportOptions& options);
+Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions& options);
+
+/// Whether Assimp names this extension (without the dot, lower case) as one it reads.
+bool assimp_reads(std::string_view extension);
+
+Result<Done> write_ply(const Scene& scene, const std::filesystem::path& path);
+Result<Done> write_obj(const Scene& scene, const std::filesystem::path& path);
+
+} // namespace ovc

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Source: zlib reads both plain and compressed files; the only file that sees it.
+#include "importers/source.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace ovc {
+
+namespace {
+
+constexpr size_t kBlockBytes = size_t(1) << 18; // larger falls out of the second-level cache
+constexpr size_t kLongestLine = size_t(1) << 26;
+constexpr uint64_t kLikelyCompression = 12; // models as text reach 3 to 6
+
+} // namespace
+
+void Source::CloseFile::operator()(gzFile_s* file) const {
+    gzclose(file);
+}
+
+Result<Source> Source::open(const std::filesystem::path& path) {
+    Source source;
+    source.name_ = path.string();
+    std::error_code ec;
+    const auto status = std::filesystem::status(path, ec);
+    if (status.type() == std::filesystem::file_type::not_found)
+        return source.error("no such file");
+    if (std::filesystem::is_directory(status))
+        return source.error("found a directory, expected a file");
+    errno = 0;
+    source.file_.reset(gzopen(path.c_str(), "rb"));
+    if (!source.file_)
+        return source.error(fmt::format("cannot be opened: {}", std::strerror(errno)));
+    gzbuffer(source.file_.get(), kBlockBytes);
+    source.buffer_.resize(kBlockBytes);
+    if (!source.fill(1))
+        return source.error("the file is empty, expected a model");
+    source.is_compressed_ = gzdirect(source.file_.get()) == 0;
+    const auto size = std::filesystem::file_size(path, ec);
+    if (!ec)
+        source.likely_bytes_ = source.is_compressed_ ? size * kLikelyCompression : size;
+    source.find_line_end();
+    return source;
+}
+
+void Source::find_line_end() {
+    const auto* first = buffer_.data();
+    const auto* last = first + end_;
+    const auto* cr = std::find(first, last, '\r');
+    // A CR that ends the buffer says nothing about what follows.
+    if (last - cr > 1 && cr[1] != '\n' && std::find(first, cr, '\n') == cr)
+        line_end_ = '\r';
+}
+
+bool Source::fill(size_t count) {
+    if (begin_ > 0) {
+        std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+        dropped_ += begin_;
+        end_ -= begin_;
+        begin_ = 0;
+    }
+    while (end_ < count) {
+        // Doubling as the bytes arrive, never to what `count` claims.
+        if (end_ == buffer_.size())
+            buffer_.resize(2 * buffer_.size());
+        const auto room = unsigned(std::min(buffer_.size() - end_, kBlockBytes));
+        const int got = gzread(file_.get(), buffer_.data() + end_, room);
+        if (got > 0)
+            end_ += size_t(got);
+        if (got < int(room)) {
+            int code = Z_OK;
+            const char* reason = gzerror(file_.get(), &code);
+            if (code == Z_BUF_ERROR)
+                damage_ = "the compressed data ends early";
+            else if (code == Z_ERRNO)
+                damage_ = fmt::format("cannot be read: {}", std::strerror(errno));
+            else if (code != Z_OK && code != Z_STREAM_END)
+                damage_ = fmt::format("the compressed data is damaged: {}", reason);
+        }
+        if (got <= 0)
+            return end_ >= count;
+    }
+    return true;
+}
+
+std::optional<std::string_view> Source::line() {
+    size_t searched = 0;
+    const unsigned char* end = nullptr;
+    for (;;) {
+        const unsigned char* from = buffer_.data() + begin_;
+        const size_t available = end_ - begin_;
+        end = static_cast<const unsigned char*>(
+            std::memchr(from + searched, line_end_, available - searched));
+        if (end || available > kLongestLine)
+            break;
+        searched = available;
+        if (!fill(available + 1)) {
+            if (available == 0)
+                return std::nullopt;
+            break;
+        }
+    }
+    const char* text = reinterpret_cast<const char*>(buffer_.data() + begin_);
+    size_t length = end ? size_t(end - (buffer_.data() + begin_)) : end_ - begin_;
+    begin_ += length + (end ? 1 : 0);
+    ++line_number_;
+    if (length > 0 && text[length - 1] == '\r')
+        --length;
+    return std::string_view(text, length);
+}
+
+bool Source::skip(uint64_t count) {
+    while (count > 0) {
+        const auto step = size_t(std::min<uint64_t>(count, kBlockBytes));
+        if (!bytes(step))
+            return false;
+        count -= step;
+    }
+    return true;
+}
+
+Error Source::error(std::string_view sentence) const {
+    return {fmt::format("{}: {}", name_, damage_.empty() ? sentence : damage_)};
+}
+
+Error Source::error_at_line(std::string_view sentence) const {
+    if (!damage_.empty())
+        return error_at_byte(dropped_ + end_, damage_);
+    return {fmt::format("{}, line {}: {}", name_, line_number_, sentence)};
+}
+
+Error Source::error_at_byte(uint64_t byte, std::string_view sentence) const {
+    if (!damage_.empty())
+        return {fmt::format("{}, byte {}: {}", name_, dropped_ + end_, damage_)};
+    return {fmt::format("{}, byte {}: {}", name_, byte, sentence)};
+}
+
+} // namespace ovc

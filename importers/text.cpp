@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers by std::from_chars: exact, and blind to the locale.
+#include "importers/text.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace ovc {
+
+namespace {
+
+template <class T>
+std::optional<T> parse_real(std::string_view word) {
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-')
+        word.remove_prefix(1);
+    const char* last = word.data() + word.size();
+    T value{};
+    auto [end, ec] = std::from_chars(word.data(), last, value);
+    if (ec == std::errc::result_out_of_range) {
+        // Too large becomes infinity, too small zero; from_chars leaves that to us.
+        long double wide = 0;
+        const auto again = std::from_chars(word.data(), last, wide);
+        ec = again.ec;
+        end = again.ptr;
+        value = T(wide);
+    }
+    if (ec != std::errc() || end != last)
+        return std::nullopt;
+    return value;
+}
+
+/// Halfway between two floats, as one text in 2^29 comes out when rounded to double first.
+bool is_between_floats(double value) {
+    return (std::bit_cast<uint64_t>(value) & 0x1fffffff) == 0x10000000;
+}
+
+} // namespace
+
+std::optional<float> parse_float(std::string_view word) {
+    return parse_real<float>(word);
+}
+
+std::optional<double> parse_double(std::string_view word) {
+    const std::optional<double> value = parse_real<double>(word);
+    if (value && is_between_floats(*value))
+        if (const auto nearest = parse_real<float>(word); nearest && *nearest != float(*value))
+            return std::nextafter(*value, double(*nearest));
+    return value;
+}
+
+std::string quoted(std::string_view word) {
+    constexpr size_t kShown = 40;
+    std::string text = "'";
+    for (const char c : word.substr(0, kShown))
+        text += c >= ' ' && c <= '~' ? c : '?';
+    return text + (word.size() > kShown ? "…'" : "'");
+}
+
+} // namespace ovc

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Words and numbers out of a line of text.
+#pragma once
+
+#include <charconv>
+#include <concepts>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace ovc {
+
+inline bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+inline void skip_blanks(std::string_view& text) {
+    size_t n = 0;
+    while (n < text.size() && is_blank(text[n]))
+        ++n;
+    text.remove_prefix(n);
+}
+
+/// Takes the next word off `text`; empty at its end.
+inline std::string_view next_word(std::string_view& text) {
+    skip_blanks(text);
+    size_t n = 0;
+    while (n < text.size() && !is_blank(text[n]))
+        ++n;
+    const std::string_view word = text.substr(0, n);
+    text.remove_prefix(n);
+    return word;
+}
+
+inline std::string_view trimmed(std::string_view text) {
+    skip_blanks(text);
+    while (!text.empty() && is_blank(text.back()))
+        text.remove_suffix(1);
+    return text;
+}
+
+/// The whole word as a number; nan and inf are numbers. Nothing where it is none, or out of the
+/// range of T.
+template <std::integral T>
+std::optional<T> parse_number(std::string_view word) {
+    if (word.size() > 1 && word[0] == '+')
+        word.remove_prefix(1);
+    T value{};
+    const auto [end, ec] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (ec != std::errc() || end != word.data() + word.size())
+        return std::nullopt;
+    return value;
+}
+
+/// The nearest float or double. A double rounds to the float nearest to the text, not only to the
+/// one nearest to the double, so that a reader may keep doubles until it knows that floats suffice.
+std::optional<float> parse_float(std::string_view word);
+std::optional<double> parse_double(std::string_view word);
+
+/// The word as a message shows it: in quotes, cut short, unprintable bytes as '?'.
+std::string quoted(std::string_view word);
+
+} // namespace ovc
