@@ -65,7 +65,7 @@ inline std::optional<Hit> intersect(const PreparedRay& p, const Triangle& triang
         return std::nullopt;
     const double u = b / det;
     const double v = c / det;
-    const double t = ((a / det) * z[0] + u * z[1] + v * z[2]) * p.sz;
+    const double t = (a * z[0] + b * z[1] + c * z[2]) / det * p.sz;
     if (!(t >= p.ray.t_min && t <= p.ray.t_max) || id == p.skip)
         return std::nullopt;
     return Hit{t, u, v, id};

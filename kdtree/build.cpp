@@ -108,8 +108,6 @@ private:
         const Split split =
             fragments.size() > kBins ? best_binned(fragments, cell) : best_exact(fragments, cell);
         const double leaf_cost = options_.intersection_cost * double(fragments.size());
-        // Level 1 splits where the heuristic would not pay yet, but never where most triangles land
-        // on both sides: the references would double with every level.
         return split.cost < (stop ? 0.9 * leaf_cost + options_.traversal_cost : leaf_cost)
                    ? split
                    : Split{};
@@ -121,6 +119,10 @@ private:
         if (!(position > cell.lo[axis] && position < cell.hi[axis]))
             return;
         if (below >= total && above >= total)
+            return;
+        // Level 1 splits where the heuristic would not pay yet, but never where a quarter of the triangles
+        // land on both sides: the references would multiply with every level.
+        if (options_.max_leaf_triangles && below + above > total + total / 4)
             return;
         const dvec3 extent = cell.extent();
         const int a = (axis + 1) % 3;

@@ -129,12 +129,13 @@ Frame frame_of(const Box& box, double reach) {
     return {box.center(), size > 0 ? std::ldexp(1.0, -exponent) : 1.0};
 }
 
-Leaf make_leaf(const Soup& soup, const Box& padded, std::span<const TriangleId> triangles) {
+Leaf make_leaf(const Soup& soup, const Box& padded, double pad,
+               std::span<const TriangleId> triangles) {
     Leaf leaf;
     Box all;
     for (const TriangleId id : triangles)
         all.add(bounds_of(soup.triangle(id)));
-    leaf.box = all.intersection(padded);
+    leaf.box = all.padded(pad).intersection(padded);
     leaf.frame = frame_of(leaf.box, max_component(all.extent()));
     leaf.triangles.assign(triangles.begin(), triangles.end());
     return leaf;
@@ -175,7 +176,7 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
         const std::span<const TriangleId> inside = members[i];
         for (size_t at = 0; at < inside.size(); at += max_leaf_triangles)
             level1.leaves.push_back(make_leaf(
-                soup, cells[i].padded,
+                soup, cells[i].padded, padding(cells[i].box),
                 inside.subspan(at, std::min<size_t>(max_leaf_triangles, inside.size() - at))));
         tree.nodes[cells[i].node] = KdNode::leaf(first, uint32_t(level1.leaves.size()) - first);
     }

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the builder promises: completeness, the stop by count, bounded size on inputs that cannot be
+// cut.
+#include "kdtree/build.h"
+
+#include "kdtree/clip.h"
+#include "kdtree/test_soups.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace ovc {
+namespace {
+
+void check_cells(const Soup& soup, const KdTree& tree, const std::vector<TriangleId>& ids,
+                 uint32_t node, const Box& cell, const std::string& name) {
+    const KdNode& n = tree.nodes[node];
+    if (!n.is_leaf()) {
+        Box below = cell, above = cell;
+        below.hi[n.axis()] = above.lo[n.axis()] = n.split();
+        ASSERT_GT(n.split(), cell.lo[n.axis()]) << name;
+        ASSERT_LT(n.split(), cell.hi[n.axis()]) << name;
+        check_cells(soup, tree, ids, node + 1, below, name);
+        check_cells(soup, tree, ids, n.above(), above, name);
+        return;
+    }
+    const auto in_leaf = tree.triangles(n);
+    const std::set<TriangleId> listed(in_leaf.begin(), in_leaf.end());
+    ASSERT_EQ(listed.size(), in_leaf.size()) << name << ": a triangle twice in a leaf";
+    const Box inner = cell.padded(-1e-9 * max_component(tree.bounds.extent()));
+    for (const TriangleId id : ids)
+        if (!inner.empty() && !clipped_bounds(soup.triangle(id), inner).empty()) {
+            ASSERT_TRUE(listed.count(id)) << name << " prim " << id.prim;
+        }
+}
+
+TEST(KdTreeBuild, EveryTriangleIsInEveryLeafItTouches) {
+    for (const auto& [name, soup] : test::unpleasant_soups()) {
+        if (soup.triangle_count() > 1000)
+            continue; // leaves x triangles tests
+        Box bounds;
+        const auto ids = hittable_triangles(soup, nullptr, &bounds);
+        const KdTree tree = build_kd_tree(soup);
+        if (!tree.nodes.empty())
+            check_cells(soup, tree, ids, 0, tree.bounds, name);
+        EXPECT_EQ(tree.nodes.empty(), ids.empty()) << name;
+    }
+}
+
+TEST(KdTreeBuild, StoppedByCountLeavesNoMoreThanThat) {
+    const Soup soup = test::random_soup(4, 5000, 0.01);
+    for (const uint32_t most : {2000u, 500u, 100u}) {
+        KdBuildOptions options;
+        options.max_leaf_triangles = most;
+        const KdTree tree = build_kd_tree(soup, options);
+        for (const KdNode& node : tree.nodes)
+            if (node.is_leaf()) {
+                EXPECT_LE(node.count(), most);
+            }
+        EXPECT_LT(tree.references.size(), 2 * soup.triangle_count());
+    }
+}
+
+TEST(KdTreeBuild, ReferencesStayBoundedWhereNothingCanBeCut) {
+    for (const auto& [name, soup] : test::unpleasant_soups()) {
+        KdBuildOptions options;
+        options.max_leaf_triangles = 1;
+        EXPECT_LE(build_kd_tree(soup, options).references.size(), 100 * soup.triangle_count())
+            << name;
+    }
+}
+
+TEST(KdTreeBuild, IsTheSameOnEveryRun) {
+    const Soup soup = test::random_soup(6, 20000, 0.02);
+    const KdTree a = build_kd_tree(soup);
+    const KdTree b = build_kd_tree(soup);
+    ASSERT_EQ(a.nodes.size(), b.nodes.size());
+    EXPECT_EQ(a.references, b.references);
+}
+
+} // namespace
+} // namespace ovc

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CPU KDT answers, bit for bit, what testing every triangle answers.
+#include "kdtree/traverse.h"
+
+#include "kdtree/build.h"
+#include "kdtree/test_soups.h"
+
+#include <gtest/gtest.h>
+
+namespace ovc {
+namespace {
+
+TEST(KdTraverse, EqualsBruteForceBitForBit) {
+    for (const auto& [name, soup] : test::unpleasant_soups()) {
+        const KdTree tree = build_kd_tree(soup);
+        const auto ids = hittable_triangles(soup, nullptr, nullptr);
+        const auto rays = test::unpleasant_rays(soup, 7, 3000);
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const Hit expected = test::brute_force(soup, ids, rays[i]);
+            const Hit found = intersect(tree, soup, rays[i]);
+            ASSERT_TRUE(test::same(expected, found))
+                << name << " ray " << i << ": " << test::describe(expected) << " but found "
+                << test::describe(found);
+            ASSERT_EQ(expected.is_hit(), occluded(tree, soup, rays[i])) << name << " ray " << i;
+        }
+    }
+}
+
+TEST(KdTraverse, ManyRaysACallEqualOneByOne) {
+    const Soup soup = test::random_soup(5, 500, 0.1);
+    const KdTree tree = build_kd_tree(soup);
+    const auto rays = test::unpleasant_rays(soup, 9, 1000);
+    std::vector<Hit> hits(rays.size());
+    std::vector<uint8_t> shadows(rays.size());
+    intersect(tree, soup, rays, {}, hits);
+    occluded(tree, soup, rays, {}, shadows);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        EXPECT_TRUE(test::same(hits[i], intersect(tree, soup, rays[i])));
+        EXPECT_EQ(shadows[i] != 0, hits[i].is_hit());
+    }
+}
+
+TEST(KdTraverse, SkipsTheTriangleARayStartsOn) {
+    const Soup soup = test::closed_grid(16);
+    const KdTree tree = build_kd_tree(soup);
+    test::Random random(3);
+    for (uint32_t prim = 0; prim < soup.triangle_count(); ++prim) {
+        const Triangle t = soup.triangle({0, prim});
+        const dvec3 outward = glm::cross(t[1] - t[0], t[2] - t[0]);
+        const Ray ray{(t[0] + t[1] + t[2]) / 3.0, 0, outward + 0.1 * random.point(-1, 1) * 0.01};
+        EXPECT_NE(intersect(tree, soup, ray, {0, prim}).id, (TriangleId{0, prim}));
+    }
+}
+
+TEST(KdTraverse, TiesGoToTheSmallerId) {
+    std::vector<vec3> corners;
+    for (int i = 0; i < 50; ++i)
+        corners.insert(corners.end(), {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)});
+    const Soup soup = test::one_chunk(corners);
+    const Hit hit = intersect(build_kd_tree(soup), soup, Ray{{0.2, 0.2, 1}, 0, {0, 0, -1}});
+    EXPECT_EQ(hit.id, (TriangleId{0, 0}));
+    EXPECT_EQ(hit.t, 1);
+}
+
+} // namespace
+} // namespace ovc
