@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Test scenes as code: a name in, a Scene out. The same name gives the same triangles, bit for bit, on any machine.
+// Test scenes as code: a name in, a Scene out. The same name gives the same triangles, bit for bit,
+// on any machine.
 #pragma once
 
 #include "core/result.h"

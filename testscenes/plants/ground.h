@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ground and the water of the plants scene as triangles.
+#pragma once
+
+#include "testscenes/corners.h"
+
+#include <array>
+#include <cstdint>
+
+namespace ovc::plants {
+
+/// What covers a piece of ground; each is a mesh of its own.
+enum class Cover : uint8_t { Mud, Sand, Meadow, DryMeadow, ForestFloor, Stone, FarWood, FarRidge };
+inline constexpr size_t kCovers = 8;
+
+/// cells x cells squares of two triangles, finer towards the viewer, sorted by cover.
+std::array<Corners, kCovers> make_ground(uint32_t cells);
+
+/// The water, gently rippled: a fan of cells that look alike in size from where the viewer stands.
+Corners make_water(uint32_t cells);
+
+} // namespace ovc::plants
