@@ -36,7 +36,8 @@ void add_branch(Corners& out, dvec3 root, dvec3 outwards, double length, uint32_
                                 side * (hand * random.uniform(0.5, 1.0)) -
                                 dvec3(0, random.uniform(0.05, 0.45), 0);
             const dvec3 up = dvec3(0, 1, 0) + 0.5 * outwards + 0.4 * random.in_ball();
-            add_leaf(out, base, spray * 0.7 * glm::normalize(along), up, spray * 0.32);
+            add_leaf(out, base, spray * 0.7 * glm::normalize(along), up,
+                     spray * (0.32 + 0.5 / sprays));
         }
     }
     add_leaf(out, at(0.55), at(1.08) - at(0.55), dvec3(0, 1, 0) + 0.4 * outwards, 0.2 * length);
@@ -48,15 +49,15 @@ Prototype make_spruce(Random random, double detail) {
     Prototype tree;
     const double height = random.uniform(11, 17);
     const double reach = height * random.uniform(0.19, 0.25);
-    add_trunk(tree[Part::Wood], 0.97 * height, 0.017 * height, detail > 0.3 ? 7 : 3);
+    add_trunk(tree[Part::Wood], 0.93 * height, 0.017 * height, detail > 0.3 ? 7 : 3);
     const double shrink = std::sqrt(detail);
-    const uint32_t whorls = scaled(44, shrink, 7);
+    const uint32_t whorls = scaled(44, shrink, 9);
     const uint32_t branches = scaled(11, std::sqrt(shrink), 4);
-    const uint32_t sprays = scaled(13, std::sqrt(shrink), 1);
+    const uint32_t sprays = scaled(13, shrink, 1);
     for (uint32_t w = 0; w < whorls; ++w) {
         const double s = (w + random.uniform(0.0, 0.8)) / whorls; // 0 at the lowest branch
         const double y = height * (0.1 + 0.89 * s);
-        const double length = reach * (1 - s) * random.uniform(0.85, 1.1) + 0.03 * reach;
+        const double length = reach * (1 - s) * random.uniform(0.85, 1.1) + 0.05 * reach;
         const double turn = random.uniform();
         for (uint32_t b = 0; b < branches; ++b) {
             const dvec2 d = circle(turn + (b + random.uniform(-0.3, 0.3)) / branches);

@@ -16,7 +16,7 @@ namespace {
 /// Maps [-1, 1] onto [-kReach, kReach]; the slope in the middle is 1/40 of the mean.
 double spread(double s) {
     const double s2 = s * s;
-    return kReach * s * (0.025 + 0.275 * s2 + 0.7 * s2 * s2);
+    return kReach * s * (0.03 + 0.42 * s2 + 0.55 * s2 * s2);
 }
 
 Cover cover_at(dvec2 at, double height, double slope) {
@@ -29,7 +29,7 @@ Cover cover_at(dvec2 at, double height, double slope) {
         return Cover::Sand;
     if (slope > 0.95 + 0.15 * grain)
         return Cover::Stone;
-    const double distance = glm::length(at - kViewpoint) + 40 * grain;
+    const double distance = glm::length(at - kViewpoint) + 130 * fractal_noise(at / 70.0, 3, 44);
     if (distance > 900)
         return Cover::FarRidge;
     if (distance > 480)
@@ -74,7 +74,7 @@ std::array<Corners, kCovers> make_ground(uint32_t cells) {
         for (size_t row = first; row < last; ++row)
             for (uint32_t column = 0; column < width; ++column) {
                 const dvec2 at = kViewpoint + dvec2(spread(2.0 * column / cells - 1),
-                                                    spread(2.0 * double(row) / cells - 1) - 12);
+                                                    spread(1.4 * double(row) / cells - 1));
                 points[row * width + column] = {at.x, ground_height(at), at.y};
             }
     });

@@ -105,13 +105,13 @@ Prototype make_grass(Random random, double detail) {
 Prototype make_reed(Random random, double detail) {
     Prototype reed;
     add_tuft(reed[Part::Tinted], {22, 0.3, random.uniform(1.1, 1.7), 0.3, 0.03}, detail, random);
-    const uint32_t cattails = 1 + random.below(4);
+    const uint32_t cattails = random.below(3);
     for (uint32_t i = 0; i < cattails; ++i) {
         const dvec3 base = level(random.uniform()) * random.uniform(0.0, 0.25);
         const dvec3 lean = level(random.uniform()) * random.uniform(0.0, 0.12);
         const double tall = random.uniform(1.2, 1.8);
         add_blade(reed[Part::Tinted], base, tall + 0.3, lean, 0.018, 2);
-        add_cattail(reed[Part::Accent], base + lean * 0.7 + dvec3(0, tall, 0), 0.19, 0.02);
+        add_cattail(reed[Part::Accent], base + lean * 0.7 + dvec3(0, tall, 0), 0.15, 0.014);
     }
     return reed;
 }

@@ -8,7 +8,7 @@
 namespace ovc::plants {
 
 /// Where the viewer stands; vegetation is densest and most detailed around this point.
-inline constexpr dvec2 kViewpoint{2.5, 4.0}; // x, z
+inline constexpr dvec2 kViewpoint{0.0, 4.0}; // x, z
 
 /// The land reaches this far from the origin along x and z.
 inline constexpr double kReach = 1400;

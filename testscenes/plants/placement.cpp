@@ -42,12 +42,15 @@ double forest_share(const Site& site) {
     return smooth_step(-0.05, 0.2, patches) * smooth_step(8, 22, site.shore);
 }
 
-/// Kept free of trees: what would stand between the viewer and the water.
+/// Kept free of trees: what would stand between the viewer and the water, or all around shut out
+/// the sun.
 bool blocks_the_view(const Site& site) {
     const double ahead = kViewpoint.y - site.at.y;
     const double across = site.at.x - kViewpoint.x;
-    return ahead > -3 && site.distance < 46 && across < 0.36 * ahead + 2 &&
-           across > -0.95 * ahead - 5;
+    const bool between =
+        ahead > -3 && site.distance < 46 && across < 0.36 * ahead + 2 && across > -0.95 * ahead - 5;
+    const bool sunny = ahead < 9 && site.distance < 42 && across > -6;
+    return between || sunny;
 }
 
 std::optional<Choice> choose_tree(const Site& site, Random& random) {
@@ -66,6 +69,8 @@ std::optional<Choice> choose_tree(const Site& site, Random& random) {
         return std::nullopt;
     // Conifers take over on the right bank and uphill.
     const double conifers = smooth_step(4, 24, site.height + 6 * noise(site.at / 30.0, 52));
+    if (random.chance(0.45 * smooth_step(250, 420, site.distance)))
+        return std::nullopt;
     const double size = random.uniform(0.65, 1.25);
     if (random.chance(0.1 + 0.85 * conifers))
         return Choice{Kind::Spruce, size};
@@ -102,8 +107,8 @@ std::optional<Choice> choose_flower(const Site& site, Random& random) {
 }
 
 std::optional<Choice> choose_water_plant(const Site& site, Random& random) {
-    const double clump = noise(site.at / 6.0, 57) + 0.3 * noise(site.at / 1.5, 58);
-    if (site.shore > -2.2 && site.shore < 0.9 && clump > 0.12 && random.chance(0.8))
+    const double clump = noise(site.at / 7.0, 57) + 0.35 * noise(site.at / 1.5, 58);
+    if (site.shore > -2.2 && site.shore < 0.9 && clump > 0.3 && random.chance(0.75))
         return Choice{Kind::Reed, random.uniform(0.7, 1.1)};
     if (site.shore < -1.6 && site.shore > -6.5 && clump < -0.22 && random.chance(0.7))
         return Choice{Kind::Lily, random.uniform(0.8, 1.3)};
@@ -140,7 +145,7 @@ std::vector<Ring> rings_of(const Layer& layer) {
 
 /// Nothing grows far behind the viewer, where it could not even throw a shadow into the picture.
 bool worth_planting(dvec2 offset, double distance) {
-    return distance < 40 || -offset.y > 0.35 * distance;
+    return (distance < 40 && offset.y < 25) || -offset.y > 0.35 * distance;
 }
 
 Plant make_plant(const Choice& choice, dvec2 at, Random& random) {

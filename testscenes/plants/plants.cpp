@@ -18,7 +18,9 @@ namespace {
 
 using namespace plants;
 
-constexpr double kDetails[] = {1, 0.28, 0.07, 0.02};
+// Each for plants beyond kFarther times their fine distance.
+constexpr double kDetails[] = {1, 0.3, 0.09, 0.03, 0.008};
+constexpr double kFarther[] = {0, 1, 2.2, 5, 10};
 constexpr size_t kDetailLevels = std::size(kDetails);
 
 /// Prototypes of all species, variants and details.
@@ -45,7 +47,9 @@ public:
         const size_t kind = size_t(plant.kind);
         const double distance = glm::length(dvec2(plant.at.x, plant.at.z) - kViewpoint) /
                                 (species()[kind].fine_distance * std::max(0.7, plant.size));
-        const size_t level = distance < 1 ? 0 : distance < 2.4 ? 1 : distance < 5.5 ? 2 : 3;
+        size_t level = kDetailLevels - 1;
+        while (distance < kFarther[level])
+            --level;
         return prototypes_[first_[kind] + plant.variant * kDetailLevels + level];
     }
 
@@ -130,7 +134,7 @@ void add_land(Scene& scene, double detail) {
         {"far wood", {0.10f, 0.16f, 0.11f}},     {"far ridge", {0.20f, 0.27f, 0.32f}},
     };
     std::array<Corners, kCovers> ground =
-        make_ground(std::max(60u, uint32_t(620 * std::sqrt(detail))));
+        make_ground(std::max(60u, uint32_t(720 * std::sqrt(detail))));
     for (size_t cover = 0; cover < kCovers; ++cover)
         add_mesh(scene, kCoverLooks[cover].name, kCoverLooks[cover].color, 0,
                  std::move(ground[cover]));
@@ -151,11 +155,11 @@ Scene make_plants(uint32_t size) {
     for (const MeshPlan& mesh : plan_meshes(plants, nursery))
         add_mesh(scene, mesh.name, mesh.color, 0, expand(mesh));
 
-    scene.lights.push_back({dvec3(-7000, 4300, 2600), vec3(4.4f, 3.5f, 2.35f)});
-    const double eye_height = ground_height(kViewpoint) + 1.9;
+    scene.lights.push_back({dvec3(5600, 3500, 4600), vec3(4.6f, 3.6f, 2.4f)});
+    const double eye_height = ground_height(kViewpoint) + 2.3;
     scene.camera = Camera{dvec3(kViewpoint.x, eye_height, kViewpoint.y),
-                          dvec3(-4.5, eye_height - 0.6, -40), dvec3(0, 1, 0), 42};
-    scene.background = {vec3(0.95f, 0.80f, 0.62f), vec3(0.20f, 0.38f, 0.72f)};
+                          dvec3(-9, eye_height - 1.5, -40), dvec3(0, 1, 0), 42};
+    scene.background = {vec3(0.95f, 0.84f, 0.70f), vec3(0.10f, 0.29f, 0.74f)};
     return scene;
 }
 

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// terrain-N: a square of hills over N x N cells, two triangles each.
+#include "testscenes/corners.h"
+#include "testscenes/noise.h"
+#include "testscenes/scenes.h"
+
+#include "core/parallel.h"
+
+namespace ovc {
+
+Scene make_terrain(uint32_t cells) {
+    Corners corners(size_t(cells) * cells * 6);
+    const auto point = [&](size_t column, size_t row) {
+        const dvec2 at(double(column) / cells, double(row) / cells);
+        return vec3(float(at.x - 0.5), float(0.2 * fractal_noise(at * 4.0, 8, 71)),
+                    float(at.y - 0.5));
+    };
+    parallel_for(cells, 8, [&](size_t first, size_t last) {
+        for (size_t row = first; row < last; ++row) {
+            vec3* out = corners.data() + row * cells * 6;
+            for (size_t column = 0; column < cells; ++column) {
+                const vec3 a = point(column, row), b = point(column, row + 1);
+                const vec3 c = point(column + 1, row + 1), d = point(column + 1, row);
+                for (const vec3& corner : {a, b, c, a, c, d})
+                    *out++ = corner;
+            }
+        }
+    });
+    Scene scene;
+    scene.materials.push_back({"ground", vec3(0.42f, 0.38f, 0.28f), 0});
+    scene.add_mesh("ground", 0, Chunk::owning(dvec3(0), std::move(corners)));
+    scene.lights.push_back({dvec3(-4, 3, 1), vec3(4.0f, 3.5f, 2.8f)});
+    scene.camera = Camera{dvec3(0.1, 0.34, 0.85), dvec3(0, -0.04, 0), dvec3(0, 1, 0), 40};
+    return scene;
+}
+
+} // namespace ovc
