@@ -101,7 +101,7 @@ const aiScene* read(Assimp::Importer& importer, Source& source, const std::files
 } // namespace
 
 bool assimp_reads(std::string_view extension) {
-    return Assimp::Importer().IsExtensionSupported("." + std::string(extension));
+    return Assimp::Importer().IsExtensionSupported(fmt::format(".{}", extension));
 }
 
 Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions& options) try {

@@ -2,58 +2,74 @@
 // Blocks: an array that grows without ever holding its contents twice.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
+#include <cstring>
+#include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace ovc {
 
+/// Pages straight from the system: given back, they leave the process at once. What malloc gets
+/// back it may keep.
+struct UnmapPages {
+    size_t bytes = 0;
+
+    void operator()(void* pages) const;
+};
+using Pages = std::unique_ptr<void, UnmapPages>;
+
+/// Throws std::bad_alloc.
+Pages map_pages(size_t bytes);
+
 /// Append, then take() it as one vector of exactly that capacity. Nothing is copied where reserve()
-/// was told enough.
+/// was told the size; else no more than kBlock items exist twice.
 template <class T>
 class Blocks {
+    static_assert(std::is_trivially_copyable_v<T>);
+
 public:
-    void reserve(size_t count) {
-        if (blocks_.empty() && count > 0)
-            add_block(count);
-    }
+    /// Memory that is reserved and never used costs nothing: the system finds pages on first touch.
+    void reserve(size_t count) { first_.reserve(count); }
 
     void push_back(const T& value) {
-        if (blocks_.empty() || blocks_.back().size() == blocks_.back().capacity())
-            add_block(std::clamp(size_, kSmallest, kLargest));
-        blocks_.back().push_back(value);
-        ++size_;
+        if (first_.size() < first_.capacity() || first_.size() < kBlock)
+            return first_.push_back(value);
+        if (used_ == kBlock || later_.empty()) {
+            later_.push_back(map_pages(kBlock * sizeof(T)));
+            used_ = 0;
+        }
+        std::memcpy(static_cast<T*>(later_.back().get()) + used_++, &value, sizeof(T));
     }
 
-    size_t size() const { return size_; }
+    size_t size() const {
+        return first_.size() + (later_.empty() ? 0 : (later_.size() - 1) * kBlock + used_);
+    }
 
+    /// Leaves nothing behind.
     std::vector<T> take() {
-        if (blocks_.size() == 1 && blocks_[0].capacity() == size_)
-            return std::move(blocks_[0]);
+        if (first_.capacity() == size())
+            return std::move(first_);
         std::vector<T> whole;
-        whole.reserve(size_);
-        for (std::vector<T>& block : blocks_) {
-            whole.insert(whole.end(), block.begin(), block.end());
-            block = {};
+        whole.reserve(size());
+        whole.insert(whole.end(), first_.begin(), first_.end());
+        first_ = {};
+        for (size_t i = 0; i < later_.size(); ++i) {
+            const T* items = static_cast<const T*>(later_[i].get());
+            whole.insert(whole.end(), items, items + (i + 1 < later_.size() ? kBlock : used_));
+            later_[i].reset();
         }
-        blocks_.clear();
+        later_.clear();
         return whole;
     }
 
 private:
-    static constexpr size_t kSmallest = 96;
-    // glibc maps what is 32 MiB or more on its own, so that freeing it in take() gives it back at
-    // once.
-    static constexpr size_t kLargest = (size_t(33) << 20) / sizeof(T);
+    static constexpr size_t kBlock = (size_t(1) << 20) / sizeof(T);
 
-    void add_block(size_t capacity) {
-        blocks_.emplace_back();
-        blocks_.back().reserve(capacity);
-    }
-
-    std::vector<std::vector<T>> blocks_;
-    size_t size_ = 0;
+    std::vector<T> first_;
+    std::vector<Pages> later_; // of kBlock items each
+    size_t used_ = 0;          // items in the last of them
 };
 
 } // namespace ovc

@@ -1,2 +1,251 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
+// load() and save(): the choice of the reader, gz, Assimp's formats, round trips, what must not be
+// replaced.
+#include "importers/importer.h"
+
+#include "importers/readers.h"
+#include "importers/test_files.h"
+
+#include <sys/resource.h>
+#include <zlib.h>
+
+#include <bit>
+#include <csignal>
+#include <random>
+
+namespace ovc {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+constexpr const char* kOff = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+constexpr const char* kStl = "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                             "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
+const std::vector<Triangle> kOne = {{dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(0, 1, 0)}};
+
+std::string gzip(const std::string& text) {
+    std::string packed(compressBound(uLong(text.size())) + 32, '\0');
+    z_stream stream{};
+    EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+    stream.avail_in = uInt(text.size());
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+    stream.avail_out = uInt(packed.size());
+    EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+    packed.resize(stream.total_out);
+    deflateEnd(&stream);
+    return packed;
+}
+
+TEST(Importer, TheExtensionChoosesTheReader) {
+    const TestFolder folder;
+    const struct {
+        const char* name;
+        std::string contents;
+    } cases[] = {{"a.obj", kObj},
+                 {"a.OBJ", kObj},
+                 {"a.b.Obj", kObj},
+                 {"a.obj.gz", gzip(kObj)},
+                 {"a.OBJ.GZ", gzip(kObj)},
+                 {"packed.obj", gzip(kObj)},
+                 {"plain.obj.gz", kObj},
+                 {"two.obj.gz", gzip("v 0 0 0\nv 1 0 0\n") + gzip("v 0 1 0\nf 1 2 3\n")},
+                 {"a.off", kOff},
+                 {"a.off.gz", gzip(kOff)},
+                 {"a.stl", kStl},
+                 {"a.STL.gz", gzip(kStl)}};
+    for (const auto& test : cases)
+        EXPECT_EQ(triangles_of(load(folder.write(test.name, test.contents))), kOne) << test.name;
+    EXPECT_EQ(own_extensions(), (std::vector<std::string>{"obj", "ply"}));
+}
+
+TEST(Importer, ErrorsNameTheFileAndWhatWasExpected) {
+    const TestFolder folder;
+    fs::create_directories(folder / "folder.ply");
+    for (const char* name : {"a.plyx", "a.xyzw", "none", "a.gz", ".obj"})
+        folder.write(name, "x");
+    folder.write("empty.stl", "");
+    const std::string reads =
+        ", expected .obj, .ply or one that Assimp reads, such as .stl, .off, .glb";
+    EXPECT_EQ(folder.failure("gone.ply"), "gone.ply: no such file");
+    EXPECT_EQ(folder.failure("gone.plyx"), "gone.plyx: no such file");
+    EXPECT_EQ(folder.failure("gone"), "gone: no such file");
+    EXPECT_EQ(folder.failure("no folder/gone.ply"), "no folder/gone.ply: no such file");
+    EXPECT_EQ(folder.failure("a.obj/b.ply"), "a.obj/b.ply: no such file");
+    EXPECT_EQ(folder.failure("folder.ply"), "folder.ply: found a directory, expected a file");
+    EXPECT_EQ(folder.failure("a.plyx"),
+              "a.plyx: found extension .plyx" + reads + "; did you mean .ply?");
+    EXPECT_EQ(folder.failure("a.xyzw"), "a.xyzw: found extension .xyzw" + reads);
+    EXPECT_EQ(folder.failure("none"), "none: found no extension" + reads);
+    EXPECT_EQ(folder.failure("a.gz"), "a.gz: found no extension" + reads);
+    EXPECT_EQ(folder.failure("empty.stl"), "empty.stl: the file is empty, expected a model");
+}
+
+TEST(Importer, DamagedCompressionIsSaid) {
+    const TestFolder folder;
+    std::string text = kObj;
+    std::mt19937 random(1);
+    for (int i = 0; i < 3000; ++i)
+        text += "v " + std::to_string(random()) + " 0 0\n";
+    const std::string packed = gzip(text);
+    folder.write("cut.obj.gz", packed.substr(0, packed.size() / 2));
+    EXPECT_NE(folder.failure("cut.obj.gz").find("the compressed data ends early"),
+              std::string::npos)
+        << folder.failure("cut.obj.gz");
+    std::string flipped = packed;
+    flipped[packed.size() - 6] ^= 1; // in the checksum
+    folder.write("flipped.obj.gz", flipped);
+    EXPECT_NE(folder.failure("flipped.obj.gz").find("the compressed data is damaged"),
+              std::string::npos)
+        << folder.failure("flipped.obj.gz");
+}
+
+TEST(Importer, AssimpsFormatsSurviveDamage) {
+    const TestFolder folder;
+    folder.write("a.off", kOff);
+    folder.write("rubbish.stl", "solid\nfacet");
+    folder.write("rubbish.glb", "glTF");
+    for (const char* name : {"rubbish.stl", "rubbish.glb"}) {
+        const std::string message = folder.failure(name);
+        EXPECT_TRUE(message.find(std::string(name) + ": Assimp") == 0 || message == "0 triangles")
+            << message;
+    }
+}
+
+/// Triangles with corners out of a few, so that vertices are shared; among them NaN, infinity, -0,
+/// denormals.
+Scene awkward_scene(dvec3 origin) {
+    const float kValues[] = {0.f, -0.f, 1.f, 1e-45f, 3.4e38f, -0.1f, 16777217.f, 1 / 3.f};
+    std::mt19937 random(7);
+    Scene scene;
+    scene.materials.emplace_back();
+    for (int m = 0; m < 3; ++m) {
+        std::vector<vec3> corners;
+        for (int i = 0; i < 3 * (5 + m); ++i)
+            corners.emplace_back(kValues[random() % 8], kValues[random() % 8],
+                                 kValues[random() % 8]);
+        scene.add_mesh("mesh " + std::to_string(m), 0, Chunk::owning(origin, std::move(corners)));
+    }
+    return scene;
+}
+
+std::vector<uint64_t> bits_of(const std::vector<Triangle>& triangles) {
+    std::vector<uint64_t> bits;
+    for (const Triangle& t : triangles)
+        for (const dvec3& corner : t)
+            for (int axis = 0; axis < 3; ++axis)
+                bits.push_back(std::bit_cast<uint64_t>(
+                    corner[axis] + 0.0)); // 0.0: the chunk's origin takes the sign off -0
+    return bits;
+}
+
+TEST(Save, GivesBackEveryBit) {
+    const TestFolder folder;
+    const Result<Scene> scene = awkward_scene(dvec3(0));
+    for (const char* name : {"a.ply", "a.obj", "A.PLY"}) {
+        ASSERT_TRUE(save(*scene, folder / name));
+        const auto back = load(folder / name);
+        EXPECT_EQ(bits_of(triangles_of(back)), bits_of(triangles_of(scene))) << name;
+    }
+    const auto meshes = load(folder / "a.obj");
+    ASSERT_EQ(meshes->meshes.size(), 3u);
+    EXPECT_EQ(meshes->meshes[2].name, "mesh 2");
+}
+
+TEST(Save, KeepsWhatOnlyDoublesHold) {
+    const TestFolder folder;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    std::vector<vec3> corners;
+    for (int i = 0; i < 300; ++i)
+        corners.emplace_back(unit(random), unit(random), unit(random));
+    Scene made;
+    made.materials.emplace_back();
+    made.add_mesh("far", 0, Chunk::owning(dvec3(1e6, -3e5, 7e6), corners));
+    const Result<Scene> scene = std::move(made);
+    ASSERT_TRUE(save(*scene, folder / "far.ply"));
+    EXPECT_NE(folder.read("far.ply").find("property double x"), std::string::npos);
+    const auto first = load(folder / "far.ply");
+    EXPECT_EQ(triangles_of(first).size(), 100u);
+    // Offsets from the new origin are floats again: half a unit in their last place may go, once.
+    for (size_t i = 0; i < 100; ++i)
+        for (int c = 0; c < 3; ++c)
+            EXPECT_LT(glm::distance(triangles_of(first)[i][c], triangles_of(scene)[i][c]), 1.1e-7);
+    for (const char* name : {"again.ply", "again.obj"}) {
+        ASSERT_TRUE(save(*first, folder / name));
+        EXPECT_EQ(bits_of(triangles_of(load(folder / name))), bits_of(triangles_of(first))) << name;
+    }
+}
+
+TEST(Save, SharesVerticesThatAgreeInEveryBit) {
+    const TestFolder folder;
+    const Result<Scene> square =
+        load(folder.write("in.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"));
+    ASSERT_TRUE(save(*square, folder / "out.obj"));
+    EXPECT_EQ(folder.read("out.obj"),
+              "o in\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n");
+    ASSERT_TRUE(save(*square, folder / "out.ply"));
+    EXPECT_NE(folder.read("out.ply").find("element vertex 4\n"), std::string::npos);
+}
+
+TEST(Save, EmptyScenesComeBackEmpty) {
+    const TestFolder folder;
+    for (const char* name : {"e.ply", "e.obj"}) {
+        ASSERT_TRUE(save(Scene{}, folder / name));
+        if (fs::file_size(folder / name) > 0) {
+            EXPECT_TRUE(triangles_of(load(folder / name)).empty());
+        }
+    }
+}
+
+TEST(Save, ErrorsNameTheFileAndWhatWasExpected) {
+    const TestFolder folder;
+    fs::create_directories(folder / "folder.ply");
+    const auto failure = [&](const std::string& name) {
+        const auto done = save(Scene{}, folder / name);
+        return done ? "saved" : folder.plain(done.error().message);
+    };
+    EXPECT_EQ(failure("gone/a.ply"), "gone/a.ply: the folder does not exist");
+    EXPECT_EQ(failure("folder.ply"), "folder.ply: found a directory, expected a file to write");
+    EXPECT_EQ(failure("a.stl"), "a.stl: found extension .stl, expected .obj, .ply");
+    EXPECT_EQ(failure("a.ply.gz"), "a.ply.gz: found extension .gz, expected .obj, .ply");
+    EXPECT_EQ(failure("a"), "a: found no extension, expected .obj, .ply");
+}
+
+TEST(Save, AFailedWriteLeavesTheOldFileAndNothingElse) {
+    const TestFolder folder;
+    folder.write("kept.obj", kObj);
+    // A file of more than the limit cannot be written: what a full disk does, too.
+    std::vector<vec3> corners(300000, vec3(0.5f));
+    for (size_t i = 0; i < corners.size(); ++i)
+        corners[i].x = float(i);
+    Scene scene;
+    scene.materials.emplace_back();
+    scene.add_mesh("large", 0, Chunk::owning(dvec3(0), std::move(corners)));
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const rlimit limit{1 << 20, before.rlim_max};
+    std::signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &limit);
+    const auto done = save(scene, folder / "kept.obj");
+    setrlimit(RLIMIT_FSIZE, &before);
+    ASSERT_FALSE(done);
+    EXPECT_EQ(folder.plain(done.error().message), "kept.obj: cannot be written: File too large");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder / ""), fs::directory_iterator()), 1);
+    EXPECT_EQ(folder.read("kept.obj"), kObj);
+}
+
+TEST(Assimp, AgreesOnPlyAndObj) {
+    const TestFolder folder;
+    folder.write(
+        "a.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\nvn 0 0 1\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n");
+    const auto ours = load(folder / "a.obj");
+    ASSERT_TRUE(save(*ours, folder / "a.ply"));
+    EXPECT_EQ(triangles_of(read_assimp(folder / "a.obj", {})), triangles_of(ours));
+    EXPECT_EQ(triangles_of(read_assimp(folder / "a.ply", {})), triangles_of(ours));
+}
+
+} // namespace
+} // namespace ovc

@@ -107,7 +107,7 @@ private:
     }
 
     bool skip_row(const PlyElement& element) {
-        if (!rows_.begin_row())
+        if (!rows_.begin_row(element))
             return false;
         for (const PlyProperty& property : element.properties)
             if (!skip(property))
@@ -135,7 +135,7 @@ private:
         for (uint64_t i = 0; i < element.count; ++i) {
             V position(0);
             vec3 normal(0);
-            if (!rows_.begin_row())
+            if (!rows_.begin_row(element))
                 return false;
             for (const Column& column : layout.columns)
                 if (!read_column(column, position, normal))
@@ -196,7 +196,7 @@ private:
             corners_.reserve(
                 3 * plausible_rows(element, element.shortest_row(header_.format) + triangle_bytes));
         for (uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
-            if (!rows_.begin_row())
+            if (!rows_.begin_row(element))
                 return false;
             for (size_t p = 0; p < element.properties.size(); ++p) {
                 const PlyProperty& property = element.properties[p];

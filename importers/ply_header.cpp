@@ -33,6 +33,11 @@ std::optional<PlyType> type_named(std::string_view name) {
     return std::nullopt;
 }
 
+/// Blender 2.4 wrote its remark "Created by Blender3D" without the word comment.
+bool is_remark(std::string_view keyword) {
+    return keyword == "comment" || keyword == "obj_info" || keyword == "Created";
+}
+
 class HeaderReader {
 public:
     explicit HeaderReader(Source& source) : source_(source) {}
@@ -48,7 +53,7 @@ public:
             if (keyword == "end_header")
                 return format_seen ? Result<PlyHeader>(std::move(header_))
                                    : wrong("end_header", "a line format … before it");
-            if (keyword.empty() || keyword == "comment" || keyword == "obj_info")
+            if (keyword.empty() || is_remark(keyword))
                 continue;
             format_seen = format_seen || keyword == "format";
             if (auto error = read_line(keyword, rest))

@@ -20,11 +20,12 @@ class AsciiRows {
 public:
     explicit AsciiRows(Source& source) : source_(source) {}
 
-    bool begin_row() {
+    bool begin_row(const PlyElement& element) {
         do {
             const auto line = source_.line();
             if (!line)
-                return fail("the end of the file", "another row");
+                return fail("the end of the file",
+                            fmt::format("{} rows of {}", element.count, element.name));
             rest_ = *line;
             skip_blanks(rest_);
         } while (rest_.empty());
@@ -106,7 +107,8 @@ class BinaryRows {
 public:
     explicit BinaryRows(Source& source) : source_(source) {}
 
-    bool begin_row() {
+    bool begin_row(const PlyElement& element) {
+        element_ = &element;
         row_ = source_.offset();
         return true;
     }
@@ -187,10 +189,12 @@ private:
 
     bool fail_end(const PlyProperty& property) {
         row_ = source_.offset();
-        return fail("the end of the file", property.name);
+        return fail("the end of the file", fmt::format("{} of {} rows of {}", property.name,
+                                                       element_->count, element_->name));
     }
 
     Source& source_;
+    const PlyElement* element_ = nullptr;
     uint64_t row_ = 0; // where the row begins, or the file ended
     Error error_;
 };

@@ -1,2 +1,272 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
+// PLY: encodings, elements, errors by their text, damage.
+#include "importers/test_files.h"
+
+#include <bit>
+#include <cstring>
+
+namespace ovc {
+namespace {
+
+constexpr const char* kSquareHeader = "element vertex 4\nproperty float x\nproperty float y\n"
+                                      "property float z\nelement face 2\n"
+                                      "property list uchar int vertex_indices\nend_header\n";
+constexpr const char* kSquareRows = "0 0 0\n1 0 0\n1 1 0\n0 1 0.5\n3 0 1 2\n3 0 2 3\n";
+
+std::string ascii(const std::string& rest) {
+    return "ply\nformat ascii 1.0\n" + rest;
+}
+
+/// The value's bytes, last first where `big`.
+template <class T>
+std::string bytes(T value, bool big) {
+    std::string text(sizeof(T), '\0');
+    std::memcpy(text.data(), &value, sizeof(T));
+    return big ? std::string(text.rbegin(), text.rend()) : text;
+}
+
+std::string binary_square(bool big) {
+    std::string file = std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                       "_endian 1.0\n" + kSquareHeader;
+    for (const float value : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1})
+        file += bytes(value, big);
+    file += bytes(0.5f, big);
+    for (const auto& face : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
+        file += '\3';
+        for (const int32_t index : face)
+            file += bytes(index, big);
+    }
+    return file;
+}
+
+const std::vector<Triangle> kSquare = {{dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(1, 1, 0)},
+                                       {dvec3(0, 0, 0), dvec3(1, 1, 0), dvec3(0, 1, 0.5)}};
+
+TEST(Ply, EveryEncodingGivesTheSameTriangles) {
+    const TestFolder folder;
+    const std::string text = ascii(std::string(kSquareHeader) + kSquareRows);
+    std::string dos, mac;
+    for (const char c : text) {
+        dos += c == '\n' ? "\r\n" : std::string(1, c);
+        mac += c == '\n' ? '\r' : c;
+    }
+    EXPECT_EQ(triangles_of(load(folder.write("a.ply", text))), kSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("dos.ply", dos))), kSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("mac.ply", mac))), kSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("le.ply", binary_square(false)))), kSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("be.ply", binary_square(true)))), kSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("end.ply", text.substr(0, text.size() - 1)))),
+              kSquare);
+}
+
+TEST(Ply, ExtraPropertiesElementsAndBlanksAreSkipped) {
+    const TestFolder folder;
+    const auto path = folder.write(
+        "extra.ply",
+        ascii("obj_info made by hand\ncomment x\nelement camera 1\nproperty list uchar float pose\n"
+              "property int id\nelement nothing 4000000000\nelement vertex 4\nproperty uchar red\n"
+              "property float z\nproperty float y\nproperty list int short tags\nproperty float x\n"
+              "element edge 1\nproperty int a\nelement face 2\nproperty uchar material\n"
+              "property list uchar uint vertex_index\nproperty list uchar float texcoord\n"
+              "end_header\n2 0.5 0.25 7 \n\n255 0 0 0 0 \n255 0 0 2 9 9 1\t\n"
+              " 255 0 1 0 1\n255 .5 +1 0 0e0\n42\n1 3 0 1 2 0\n1 3 0 2 3 2 0.5 0.5\n"));
+    EXPECT_EQ(triangles_of(load(path)), kSquare);
+}
+
+TEST(Ply, FacesMayComeBeforeVertices) {
+    const TestFolder folder;
+    const auto path =
+        folder.write("first.ply", ascii("element face 1\nproperty list uchar int vertex_indices\n"
+                                        "element vertex 4\nproperty double x\nproperty double y\n"
+                                        "property double z\nend_header\n"
+                                        "4 0 1 2 3\n0 0 0\n1 0 0\n1 1 0\n0 1 0.5\n"));
+    EXPECT_EQ(triangles_of(load(path)), kSquare);
+}
+
+TEST(Ply, StripsAlternateTheirWindingAndRestart) {
+    const TestFolder folder;
+    const auto strip = triangles_of(
+        load(folder.write("strip.ply", ascii("element vertex 4\nproperty int x\nproperty char y\n"
+                                             "property short z\nelement tristrips 1\n"
+                                             "property list int int vertex_indices\nend_header\n"
+                                             "0 0 0\n1 0 0\n0 1 0\n1 1 0\n"
+                                             "12 0 1 2 3 -1 -1 0 1 -1 3 2 1\n"))));
+    const dvec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(1, 1, 0);
+    EXPECT_EQ(strip, (std::vector<Triangle>{{a, b, c}, {c, b, d}, {d, c, b}}));
+}
+
+TEST(Ply, NormalsAreReadWhereAllCanBeUsed) {
+    const TestFolder folder;
+    const auto with_normal = [&](const std::string& last) {
+        return ascii("element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                     "property float nx\nproperty float ny\nproperty float nz\nelement face 1\n"
+                     "property list uchar int vertex_indices\nend_header\n"
+                     "0 0 0 0 0 1\n1 0 0 0 2 0\n0 1 0 " +
+                     last + "\n3 2 1 0\n");
+    };
+    const auto good = load(folder.write("good.ply", with_normal("0 0 -1")));
+    ASSERT_TRUE(good);
+    EXPECT_EQ(good->meshes[0].normals, (std::vector<vec3>{{0, 0, -1}, {0, 1, 0}, {0, 0, 1}}));
+    for (const char* bad : {"0 0 0", "nan 0 0", "0 inf 0", "3e38 3e38 3e38"}) {
+        std::vector<std::string> warnings;
+        const auto scene = load(folder.write("bad.ply", with_normal(bad)), gather(warnings));
+        ASSERT_TRUE(scene) << bad;
+        EXPECT_TRUE(scene->meshes[0].normals.empty()) << bad;
+        ASSERT_EQ(warnings.size(), 1u) << bad;
+        EXPECT_EQ(folder.plain(warnings[0]),
+                  "bad.ply: normals left out: some are zero or not finite");
+    }
+}
+
+TEST(Ply, DoublesKeepTheirPrecisionFarFromTheOrigin) {
+    const TestFolder folder;
+    const std::string header = "element vertex 3\nproperty double x\nproperty double y\n"
+                               "property double z\nelement face 1\n"
+                               "property list uchar int vertex_indices\nend_header\n";
+    const auto far = load(folder.write(
+        "far.ply",
+        ascii(header + "5000000.125 10 0\n5000001.125 10 0\n5000000.125 11 0.25\n3 0 1 2\n")));
+    EXPECT_EQ(triangles_of(far)[0], (Triangle{dvec3(5000000.125, 10, 0), dvec3(5000001.125, 10, 0),
+                                              dvec3(5000000.125, 11, 0.25)}));
+    const auto near =
+        load(folder.write("near.ply", ascii(header + "0 0.5 0\n1 0 0\n2 1 0\n3 0 1 2\n")));
+    ASSERT_TRUE(near);
+    EXPECT_EQ(near->soup.chunks[0].origin(), dvec3(0)) << "floats stay as they are";
+    const auto fine = triangles_of(load(folder.write(
+        "fine.ply", ascii(header + "100.1 100.2 100.3\n101.7 100 100\n100 101 100\n3 0 1 2\n"))));
+    EXPECT_NEAR(fine[0][0].x, 100.1, 1e-7); // a float there is off by 1.5e-6
+}
+
+TEST(Ply, NonFiniteVerticesAreKept) {
+    const TestFolder folder;
+    std::string rows = kSquareRows;
+    rows.replace(0, 5, "nan -1.#IND 1e999");
+    const auto triangles = triangles_of(load(folder.write("nan.ply", ascii(kSquareHeader + rows))));
+    ASSERT_EQ(triangles.size(), 2u);
+    EXPECT_TRUE(std::isnan(triangles[0][0].x));
+    EXPECT_TRUE(std::isnan(triangles[0][0].y));
+    EXPECT_TRUE(std::isinf(triangles[0][0].z));
+}
+
+TEST(Ply, PointCloudsGiveAnEmptyMeshAndAWarning) {
+    const TestFolder folder;
+    std::vector<std::string> warnings;
+    const auto scene = load(folder.write("points.ply", ascii("element vertex 1\nproperty float x\n"
+                                                             "property float y\nproperty float z\n"
+                                                             "end_header\n1 2 3\n")),
+                            gather(warnings));
+    EXPECT_TRUE(triangles_of(scene).empty());
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(folder.plain(warnings[0]), "points.ply: it has no triangles");
+}
+
+const struct {
+    const char* name;
+    std::string contents;
+    const char* message;
+} kInvalid[] = {
+    {"empty", "", "bad.ply: the file is empty, expected a model"},
+    {"magic", "plyx\n", "bad.ply, line 1: found 'plyx', expected ply"},
+    {"binary rubbish",
+     std::string("\x7f"
+                 "ELF\0\1",
+                 6),
+     "bad.ply, line 1: found '?ELF?\?', expected ply"},
+    {"no end", "ply\nformat ascii 1.0\n",
+     "bad.ply, line 2: found the end of the file, expected end_header"},
+    {"no format", "ply\nend_header\n",
+     "bad.ply, line 2: found end_header, expected a line format … before it"},
+    {"format", "ply\nformat utf8 1.0\n",
+     "bad.ply, line 2: found format 'utf8', expected ascii, binary_little_endian or "
+     "binary_big_endian"},
+    {"version", "ply\nformat ascii 2.0\n",
+     "bad.ply, line 2: found format version '2.0', expected 1.0"},
+    {"keyword", ascii("elemnt vertex 3\n"),
+     "bad.ply, line 3: found 'elemnt', expected format, element, property, comment, obj_info or "
+     "end_header"},
+    {"count", ascii("element vertex -3\n"),
+     "bad.ply, line 3: found element count '-3', expected a whole number, 0 or more"},
+    {"huge count", ascii("element vertex 99999999999999999999\n"),
+     "bad.ply, line 3: found element count '99999999999999999999', expected a whole number, 0 or "
+     "more"},
+    {"orphan", ascii("property float x\n"),
+     "bad.ply, line 3: found a property, expected an element before it"},
+    {"type", ascii("element vertex 1\nproperty half x\n"),
+     "bad.ply, line 4: found type 'half', expected a type such as char, uchar, short, ushort, int, "
+     "uint, float, double"},
+    {"nameless", ascii("element vertex 1\nproperty float\n"),
+     "bad.ply, line 4: found the end of the line, expected the name of the property"},
+    {"list length type", ascii("element face 1\nproperty list float int vertex_indices\n"),
+     "bad.ply, line 4: found list length type 'float', expected an integer type"},
+    {"no z", ascii("element vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n"),
+     "bad.ply, line 6: found an element vertex without a property z, expected x, y and z"},
+    {"no list", ascii("element face 1\nproperty int a\nend_header\n1\n"),
+     "bad.ply, line 5: found an element face without vertex_indices, expected a list of integers "
+     "of "
+     "that name"},
+    {"float list", ascii("element face 1\nproperty list uchar float vertex_indices\nend_header\n"),
+     "bad.ply, line 5: found an element face without vertex_indices, expected a list of integers "
+     "of "
+     "that name"},
+    {"word", ascii(std::string(kSquareHeader) + "0 0 0\n1 x 0\n"),
+     "bad.ply, line 11: found 'x', expected a number for y"},
+    {"short row", ascii(std::string(kSquareHeader) + "0 0 0\n1 0\n"),
+     "bad.ply, line 11: found the end of the line, expected a number for z"},
+    {"long row", ascii(std::string(kSquareHeader) + "0 0 0 7\n"),
+     "bad.ply, line 10: found '7', expected the end of the line"},
+    {"end of rows", ascii(std::string(kSquareHeader) + "0 0 0\n1 0 0\n"),
+     "bad.ply, line 11: found the end of the file, expected 4 rows of vertex"},
+    {"index too large", ascii(std::string(kSquareHeader) + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 4\n"),
+     "bad.ply, line 14: found vertex index 4, expected 0 to 3"},
+    {"negative index", ascii(std::string(kSquareHeader) + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 -1\n"),
+     "bad.ply, line 14: found vertex index -1, expected 0 to 3"},
+    {"index is no integer",
+     ascii(std::string(kSquareHeader) + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 1.5\n"),
+     "bad.ply, line 14: found '1.5', expected a whole number for vertex_indices"},
+    {"negative length",
+     ascii(std::string(kSquareHeader) + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n-3 0 1 1\n"),
+     "bad.ply, line 14: found '-3', expected the length of vertex_indices"},
+    {"no vertices",
+     ascii("element face 1\nproperty list uchar int vertex_indices\nend_header\n3 0 0 0\n"),
+     "bad.ply, line 6: found vertex index 0, expected none, for there are no vertices"},
+    {"short binary vertex", binary_square(false).substr(0, 180),
+     "bad.ply, byte 177: found the end of the file, expected z of 4 rows of vertex"},
+    {"short binary face", binary_square(true).substr(0, binary_square(true).size() - 1),
+     "bad.ply, byte 236: found the end of the file, expected vertex_indices of 2 rows of face"},
+    {"four thousand million",
+     "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\n"
+     "property double y\nproperty double z\nend_header\n12345678",
+     "bad.ply, byte 135: found the end of the file, expected y of 4000000000 rows of vertex"},
+    {"list of four thousand million",
+     "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty char x\nproperty char y\n"
+     "property char z\nproperty list uint double w\nend_header\n123\xff\xff\xff\xff"
+     "12345678",
+     "bad.ply, byte 147: found the end of the file, expected w of 1 rows of vertex"},
+};
+
+TEST(Ply, ErrorsNameThePlaceAndWhatWasExpected) {
+    const TestFolder folder;
+    for (const auto& c : kInvalid) {
+        folder.write("bad.ply", c.contents);
+        EXPECT_EQ(folder.failure("bad.ply"), c.message) << c.name;
+    }
+}
+
+TEST(Ply, SurvivesTruncationAndFlippedBits) {
+    const TestFolder folder;
+    folder.write("ascii.ply", ascii(std::string(kSquareHeader) + kSquareRows));
+    folder.write("le.ply", binary_square(false));
+    folder.write("be.ply", binary_square(true));
+    for (const char* name : {"ascii.ply", "le.ply", "be.ply"})
+        survive_damage(folder, name);
+}
+
+TEST(Ply, EveryTruncationOfABinaryFileIsAnError) {
+    const TestFolder folder;
+    const std::string whole = binary_square(false);
+    for (size_t length = 0; length < whole.size(); ++length)
+        EXPECT_FALSE(load(folder.write("cut.ply", whole.substr(0, length)))) << length;
+}
+
+} // namespace
+} // namespace ovc

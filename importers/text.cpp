@@ -5,10 +5,23 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace ovc {
 
 namespace {
+
+/// "1.#IND", "1.#QNAN0", "1.#INF": what old Windows runtimes print for numbers that are none.
+template <class T>
+std::optional<T> parse_windows_non_number(std::string_view word) {
+    const bool negative = word.starts_with('-');
+    word.remove_prefix(negative ? 1 : 0);
+    if (word.starts_with("1.#INF"))
+        return std::numeric_limits<T>::infinity() * T(negative ? -1 : 1);
+    if (word.starts_with("1.#IND") || word.starts_with("1.#QNAN") || word.starts_with("1.#SNAN"))
+        return std::numeric_limits<T>::quiet_NaN();
+    return std::nullopt;
+}
 
 template <class T>
 std::optional<T> parse_real(std::string_view word) {
@@ -25,9 +38,9 @@ std::optional<T> parse_real(std::string_view word) {
         end = again.ptr;
         value = T(wide);
     }
-    if (ec != std::errc() || end != last)
-        return std::nullopt;
-    return value;
+    if (ec == std::errc() && end == last)
+        return value;
+    return parse_windows_non_number<T>(word);
 }
 
 /// Halfway between two floats, as one text in 2^29 comes out when rounded to double first.

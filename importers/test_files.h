@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files and scenes for the importers' tests.
+#pragma once
+
+#include "importers/importer.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+namespace ovc {
+
+/// A folder of one test process, gone with it.
+class TestFolder {
+public:
+    TestFolder()
+        : path_(std::filesystem::path(testing::TempDir()) /
+                ("overcast-importers-" + std::to_string(getpid()))) {
+        std::filesystem::create_directories(path_);
+    }
+    ~TestFolder() { std::filesystem::remove_all(path_); }
+    TestFolder(const TestFolder&) = delete;
+    TestFolder& operator=(const TestFolder&) = delete;
+
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+    std::filesystem::path write(const std::string& name, const std::string& contents) const {
+        std::ofstream(path_ / name, std::ios::binary) << contents;
+        return path_ / name;
+    }
+
+    std::string read(const std::string& name) const {
+        std::ifstream file(path_ / name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+
+    /// An error's message without the folder: the same in every run.
+    std::string plain(std::string message) const {
+        const std::string prefix = path_.string() + "/";
+        for (size_t at; (at = message.find(prefix)) != message.npos;)
+            message.erase(at, prefix.size());
+        return message;
+    }
+
+    /// load()'s message, or how many triangles it gave where it should have failed.
+    std::string failure(const std::string& name) const {
+        const auto scene = load(path_ / name);
+        if (scene)
+            return std::to_string(scene->soup.triangle_count()) + " triangles";
+        return plain(scene.error().message);
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+/// The scene's triangles in order; the test fails where there is no scene.
+inline std::vector<Triangle> triangles_of(const Result<Scene>& scene) {
+    std::vector<Triangle> triangles;
+    if (!scene) {
+        ADD_FAILURE() << scene.error().message;
+        return triangles;
+    }
+    for (const Chunk& chunk : scene->soup.chunks)
+        for (uint32_t prim = 0; prim < chunk.size(); ++prim)
+            triangles.push_back(chunk.triangle(prim));
+    return triangles;
+}
+
+/// Gathers warnings.
+inline ImportOptions gather(std::vector<std::string>& messages) {
+    ImportOptions options;
+    options.log = [&messages](LogLevel, const std::string& message) {
+        messages.push_back(message);
+    };
+    return options;
+}
+
+/// load() must come back, with a scene or with an error, on every beginning of the file and with
+/// any one bit changed.
+inline void survive_damage(const TestFolder& folder, const std::string& name) {
+    const std::string whole = folder.read(name);
+    const std::string damaged_name = "damaged-" + name;
+    for (size_t length = 0; length < whole.size(); ++length) {
+        const auto scene = load(folder.write(damaged_name, whole.substr(0, length)));
+        if (!scene) {
+            ASSERT_NE(scene.error().message.find(damaged_name), std::string::npos);
+        }
+    }
+    for (size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+        std::string damaged = whole;
+        damaged[bit / 8] = char(damaged[bit / 8] ^ (1 << bit % 8));
+        const auto scene = load(folder.write(damaged_name, damaged));
+        if (scene) {
+            ASSERT_LT(scene->soup.triangle_count(), whole.size()) << "bit " << bit;
+        }
+    }
+}
+
+} // namespace ovc
