@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parsing of subcommand arguments and of the values they take.
+#include "host/arguments.h"
+#include "host/suggestion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace ovc {
+
+/// Options that the design has and this version does not.
+static constexpr std::string_view kLater[] = {"--mode",    "--precision",   "--kernel",
+                                              "--frames",  "--camera-path", "--samples",
+                                              "--threads", "--aov"};
+
+static Error unknown_option(const CLI::App& app, const std::string& word) {
+    const std::string option = word.substr(0, word.find('='));
+    if (std::find(std::begin(kLater), std::end(kLater), option) != std::end(kLater))
+        return {fmt::format("the option {} is not there yet", option)};
+    if (word[0] != '-')
+        return {fmt::format("'{}' is one argument too many for {}; see {} --help", word,
+                            app.get_name(), app.get_name())};
+    std::vector<std::string> names;
+    for (const CLI::Option* known : app.get_options())
+        for (const std::string& name : known->get_lnames())
+            names.push_back("--" + name);
+    const std::vector<std::string_view> candidates(names.begin(), names.end());
+    return {fmt::format("{} has no option '{}'{}", app.get_name(), option,
+                        did_you_mean(option, candidates))};
+}
+
+/// The word that nobody wanted: an option rather than the value that follows it.
+static std::string culprit(const std::vector<std::string>& left_over) {
+    const auto option = std::find_if(left_over.begin(), left_over.end(),
+                                     [](const std::string& word) { return word[0] == '-'; });
+    return option == left_over.end() ? left_over.front() : *option;
+}
+
+Result<Parsed> parse_arguments(CLI::App& app, std::vector<std::string> arguments) {
+    std::reverse(arguments.begin(), arguments.end()); // as CLI11 takes them
+    try {
+        app.parse(arguments);
+        return Parsed::Run;
+    } catch (const CLI::CallForHelp&) {
+        fmt::print("{}", app.help());
+        return Parsed::HelpShown;
+    } catch (const CLI::ParseError& error) {
+        std::vector<std::string> left_over = app.remaining();
+        std::erase(left_over, std::string());
+        if (!left_over.empty())
+            return unknown_option(app, culprit(left_over));
+        return Error{fmt::format("{}; see {} --help", error.what(), app.get_name())};
+    }
+}
+
+Result<std::vector<std::string>> translate_pov_words(const std::vector<std::string>& arguments) {
+    std::vector<std::string> ours;
+    std::string width, height;
+    for (size_t i = 0; i < arguments.size(); ++i) {
+        const std::string& word = arguments[i];
+        const std::string head = word.substr(0, 2);
+        if (head == "+W" || head == "+w")
+            width = word.substr(2);
+        else if (head == "+H" || head == "+h")
+            height = word.substr(2);
+        else if (head == "+O" || head == "+o")
+            ours.insert(ours.end(), {"-o", word.size() > 2            ? word.substr(2)
+                                           : i + 1 < arguments.size() ? arguments[++i]
+                                                                      : std::string()});
+        else if ((word == "--camera" || word == "--light") && i + 1 < arguments.size())
+            ours.push_back(word + "=" + arguments[++i]);
+        else
+            ours.push_back(word);
+    }
+    if (width.empty() != height.empty())
+        return Error{
+            fmt::format("+W and +H belong together; {} is missing", width.empty() ? "+W" : "+H")};
+    if (!width.empty())
+        ours.push_back("--size=" + width + "x" + height);
+    return ours;
+}
+
+Result<uint64_t> parse_count(std::string_view option, std::string_view text, uint64_t least,
+                             uint64_t most) {
+    uint64_t value = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, failure] = std::from_chars(text.data(), end, value);
+    if (failure != std::errc{} || stop != end || value < least || value > most)
+        return Error{fmt::format("{} needs a whole number from {} to {}, not '{}'", option, least,
+                                 most, text)};
+    return value;
+}
+
+Result<ImageSize> parse_size(std::string_view text) {
+    const size_t cross = text.find_first_of("xX");
+    if (cross == std::string_view::npos)
+        return Error{fmt::format("--size needs WIDTHxHEIGHT, such as 640x480, not '{}'", text)};
+    const Result<uint64_t> width =
+        parse_count("the width in --size", text.substr(0, cross), 1, 65535);
+    if (!width)
+        return width.error();
+    const Result<uint64_t> height =
+        parse_count("the height in --size", text.substr(cross + 1), 1, 65535);
+    if (!height)
+        return height.error();
+    return ImageSize{uint32_t(*width), uint32_t(*height)};
+}
+
+/// Finite numbers between commas; nothing where one is none.
+static std::vector<double> parse_reals(std::string_view text) {
+    std::vector<double> values;
+    for (size_t at = 0; at <= text.size();) {
+        const size_t comma = std::min(text.find(',', at), text.size());
+        std::string_view word = text.substr(at, comma - at);
+        word.remove_prefix(std::min(word.find_first_not_of(" <"), word.size()));
+        word = word.substr(0, word.find_last_not_of(" >") + 1);
+        double value = 0;
+        const auto [stop, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (failure != std::errc{} || stop != word.data() + word.size() || !std::isfinite(value))
+            return {};
+        values.push_back(value);
+        at = comma + 1;
+    }
+    return values;
+}
+
+Result<Camera> parse_camera(std::string_view text) {
+    const std::vector<double> v = parse_reals(text);
+    if (v.size() != 6 && v.size() != 7)
+        return Error{fmt::format(
+            "--camera needs ex,ey,ez,tx,ty,tz or ex,ey,ez,tx,ty,tz,fov, not '{}'", text)};
+    Camera camera;
+    camera.eye = {v[0], v[1], v[2]};
+    camera.target = {v[3], v[4], v[5]};
+    if (v.size() == 7)
+        camera.fov_degrees = v[6];
+    if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
+        return Error{
+            fmt::format("--camera needs a field of view between 0 and 180 degrees, not {}", v[6])};
+    if (camera.eye == camera.target)
+        return Error{fmt::format("--camera looks from a point at itself: '{}'", text)};
+    return camera;
+}
+
+Result<dvec3> parse_position(std::string_view option, std::string_view text) {
+    const std::vector<double> v = parse_reals(text);
+    if (v.size() != 3)
+        return Error{fmt::format("{} needs x,y,z, not '{}'", option, text)};
+    return dvec3(v[0], v[1], v[2]);
+}
+
+} // namespace ovc

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arguments: what every subcommand does with its words, and errors that say what was meant. CLI11
+// does the parsing.
+#pragma once
+
+#include "core/result.h"
+#include "core/scene.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ovc {
+
+enum class Parsed { Run, HelpShown };
+
+/// Parses a subcommand's arguments; --help prints its help. Error: one sentence, with the nearest
+/// option there is.
+Result<Parsed> parse_arguments(CLI::App& app, std::vector<std::string> arguments);
+
+/// POV-Ray's words in ours: +W640 +H480 become --size 640x480, +Ofile or +O file become -o file.
+/// Also joins --camera and
+/// --light with their value, which may begin with a minus sign.
+Result<std::vector<std::string>> translate_pov_words(const std::vector<std::string>& arguments);
+
+/// A whole number from least to most. option: named in the error.
+Result<uint64_t> parse_count(std::string_view option, std::string_view text, uint64_t least,
+                             uint64_t most);
+
+struct ImageSize {
+    uint32_t width = 512;
+    uint32_t height = 512;
+};
+
+/// "640x480"; each side from 1 to 65535.
+Result<ImageSize> parse_size(std::string_view text);
+
+/// "ex,ey,ez,tx,ty,tz" or with ",fov" in degrees, 0 < fov < 180; eye and target differ.
+Result<Camera> parse_camera(std::string_view text);
+
+/// "x,y,z".
+Result<dvec3> parse_position(std::string_view option, std::string_view text);
+
+} // namespace ovc

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arguments: POV-Ray's words, values, and what an error says.
+#include "host/arguments.h"
+#include "host/suggestion.h"
+
+#include <gmock/gmock.h>
+
+namespace ovc {
+
+using testing::ElementsAre;
+
+TEST(PovWords, BecomeOurs) {
+    EXPECT_THAT(*translate_pov_words({"a.ply", "+W640", "+H480", "+Oout.png"}),
+                ElementsAre("a.ply", "-o", "out.png", "--size=640x480"));
+    EXPECT_THAT(*translate_pov_words({"+O", "out.exr", "--quiet"}),
+                ElementsAre("-o", "out.exr", "--quiet"));
+    EXPECT_EQ(translate_pov_words({"+W640"}).error().message,
+              "+W and +H belong together; +H is missing");
+}
+
+TEST(PovWords, JoinOptionsWhoseValueMayBeNegative) {
+    EXPECT_THAT(*translate_pov_words({"--camera", "-.5,0,0,1,1,1", "--light", "-1,2,3"}),
+                ElementsAre("--camera=-.5,0,0,1,1,1", "--light=-1,2,3"));
+}
+
+TEST(ParseSize, TakesTwoNumbers) {
+    EXPECT_EQ(parse_size("640x480")->width, 640u);
+    EXPECT_EQ(parse_size("640X480")->height, 480u);
+    for (const char* text :
+         {"", "640", "x", "0x5", "5x0", "65536x1", "-1x5", "5x5x5", "axb", "5 x 5"})
+        EXPECT_FALSE(parse_size(text)) << text;
+    EXPECT_EQ(parse_size("0x5").error().message,
+              "the width in --size needs a whole number from 1 to 65535, not '0'");
+}
+
+TEST(ParseCamera, TakesSixOrSevenNumbers) {
+    EXPECT_EQ(parse_camera("1,2,3,4,5,6")->target, dvec3(4, 5, 6));
+    EXPECT_EQ(parse_camera("-.5, 2,3e1,4,5,6,35")->eye, dvec3(-0.5, 2, 30));
+    EXPECT_EQ(parse_camera("1,2,3,4,5,6,35")->fov_degrees, 35);
+    for (const char* text : {"", "1,2,3", "1,2,3,4,5,x", "1,2,3,4,5,6,", "1,2,3,4,5,6,0",
+                             "1,2,3,4,5,6,180", "1,2,3,1,2,3", "1,2,3,4,5,inf"})
+        EXPECT_FALSE(parse_camera(text)) << text;
+}
+
+TEST(ParseCount, NamesTheOption) {
+    EXPECT_EQ(*parse_count("--leaves", "12", 1, 100), 12u);
+    EXPECT_EQ(parse_count("--leaves", "abc", 1, 100).error().message,
+              "--leaves needs a whole number from 1 to 100, not 'abc'");
+    EXPECT_FALSE(parse_count("--leaves", "101", 1, 100));
+    EXPECT_FALSE(parse_count("--leaves", "1.5", 1, 100));
+    EXPECT_FALSE(parse_count("--leaves", "", 1, 100));
+}
+
+class ParseArguments : public testing::Test {
+protected:
+    ParseArguments() {
+        app_.add_option("SCENE", scene_)->required();
+        app_.add_option("--gpu-memory", memory_);
+    }
+    std::string error(std::vector<std::string> arguments) {
+        const Result<Parsed> parsed = parse_arguments(app_, std::move(arguments));
+        return parsed ? "" : parsed.error().message;
+    }
+    CLI::App app_{"", "overcast render"};
+    std::string scene_, memory_;
+};
+
+TEST_F(ParseArguments, SuggestsTheOptionThatWasMeant) {
+    EXPECT_EQ(error({"a.ply", "--gpu-memroy", "5"}),
+              "overcast render has no option '--gpu-memroy'; did you mean '--gpu-memory'?");
+    EXPECT_EQ(error({"a.ply", "--gpu-memroy=5"}),
+              "overcast render has no option '--gpu-memroy'; did you mean '--gpu-memory'?");
+    EXPECT_EQ(error({"a.ply", "--zebra"}), "overcast render has no option '--zebra'");
+}
+
+TEST_F(ParseArguments, SaysWhatIsNotThereYet) {
+    EXPECT_EQ(error({"a.ply", "--mode", "mixed"}), "the option --mode is not there yet");
+    EXPECT_EQ(error({"--precision=fast", "a.ply"}), "the option --precision is not there yet");
+}
+
+TEST_F(ParseArguments, SaysWhatIsMissingOrTooMuch) {
+    EXPECT_THAT(error({}), testing::HasSubstr("SCENE"));
+    EXPECT_EQ(error({"a.ply", "b.ply"}),
+              "'b.ply' is one argument too many for overcast render; see overcast render --help");
+    EXPECT_EQ(error({"a.ply", "--gpu-memory", "5M"}), "");
+    EXPECT_EQ(memory_, "5M");
+}
+
+TEST(Suggestion, FindsNearMissesOnly) {
+    const std::string_view commands[] = {"render", "info", "trace"};
+    EXPECT_EQ(nearest("rendr", commands), "render");
+    EXPECT_EQ(nearest("redner", commands), "render");
+    EXPECT_EQ(nearest("inof", commands), "info");
+    EXPECT_EQ(nearest("zebra", commands), "");
+    EXPECT_EQ(did_you_mean("rendre", commands), "; did you mean 'render'?");
+}
+
+} // namespace ovc

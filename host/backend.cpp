@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which backend: the one asked for, or for Auto the first that this machine has.
+#include "host/backend.h"
+#include "host/plugin_loader.h"
+
+#include <fmt/format.h>
+
+namespace ovc {
+
+Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOptions& options,
+                                              const LogSink& log) {
+    if (options.kind == BackendKind::CpuKdTree)
+        return make_cpu_backend(soup);
+    const Result<const ovc_api*> api = load_plugin();
+    if (!api)
+        return api.error();
+    Result<PluginDevice> device = PluginDevice::open(*api, options.device, log);
+    if (device)
+        return make_two_level_backend(std::move(*device), soup, options);
+    // Whoever named a device or a backend meant it; anyone else gets a picture, slower, and is told
+    // why.
+    if (options.kind == BackendKind::TwoLevel || !options.device.empty())
+        return device.error();
+    say(log, LogLevel::Warning,
+        fmt::format("tracing on the CPU KD-tree instead of a GPU: {}", device.error().message));
+    return make_cpu_backend(soup);
+}
+
+} // namespace ovc

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Backend: what answers rays. The plugin, or the CPU KD-tree it is compared with.
+#pragma once
+
+#include "core/log.h"
+#include "core/ray.h"
+#include "core/result.h"
+#include "core/soup.h"
+#include "host/memory_size.h"
+#include "plugin/overcast.h"
+
+#include <memory>
+#include <span>
+#include <string>
+
+namespace ovc {
+
+class PluginDevice;
+
+/// Built over one soup, which it may use in place: the soup outlives it unchanged.
+class Backend {
+public:
+    virtual ~Backend() = default;
+
+    /// The nearest hit of each ray. skip: empty, or for each ray the triangle it starts on and does
+    /// not see. hits: as many as rays.
+    virtual Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                                   std::span<Hit> hits) = 0;
+    /// occluded[i] = 1 when ray i hits anything, else 0.
+    virtual Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                                  std::span<uint8_t> occluded) = 0;
+    /// Counted since it was built. What a backend does not have is 0.
+    virtual ovc_statistics statistics() const = 0;
+    /// What does the work, for a person: the GL renderer's name, or the CPU.
+    virtual std::string renderer() const = 0;
+};
+
+enum class BackendKind { Auto, TwoLevel, CpuKdTree };
+
+struct BackendOptions {
+    BackendKind kind = BackendKind::Auto;
+    MemorySize gpu_memory;
+    uint64_t leaf_triangles = 0; // 0: the plugin's default
+    uint32_t leaves = 0;         // 0: as leaf_triangles says
+    std::string device;          // empty: the plugin chooses
+};
+
+/// Auto is the plugin; where no device opens and none was named it is the CPU KD-tree, and the log
+/// gets a warning that says so.
+Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOptions& options,
+                                              const LogSink& log);
+
+/// The options' device is not looked at again. Through plugin/overcast.h and nothing else.
+Result<std::unique_ptr<Backend>> make_two_level_backend(PluginDevice device, const Soup& soup,
+                                                        const BackendOptions& options);
+
+std::unique_ptr<Backend> make_cpu_backend(const Soup& soup);
+
+} // namespace ovc

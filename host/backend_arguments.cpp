@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// --backend, --gpu-memory, --leaf-triangles, --leaves, --device.
+#include "host/backend_arguments.h"
+#include "host/arguments.h"
+#include "host/suggestion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ovc {
+
+static constexpr std::string_view kBackends[] = {"auto", "two-level", "cpu-kdtree"};
+/// In the order of BackendKind; these are in the design and not here.
+static constexpr std::string_view kLaterBackends[] = {"single-texture", "multi-texture", "gpu-grid",
+                                                      "gpu-kdtree", "embree"};
+
+static Result<BackendKind> parse_backend(std::string_view name) {
+    const auto known = std::find(std::begin(kBackends), std::end(kBackends), name);
+    if (known != std::end(kBackends))
+        return BackendKind(known - std::begin(kBackends));
+    if (std::find(std::begin(kLaterBackends), std::end(kLaterBackends), name) !=
+        std::end(kLaterBackends))
+        return Error{fmt::format(
+            "the backend '{}' is not there yet; there are auto, two-level and cpu-kdtree", name)};
+    return Error{
+        fmt::format("no backend is called '{}'; there are auto, two-level and cpu-kdtree{}", name,
+                    did_you_mean(name, kBackends))};
+}
+
+void BackendArguments::add_to(CLI::App& app) {
+    const char* group = "Tracing";
+    app.add_option("--backend", backend,
+                   "auto, two-level (the GPU) or cpu-kdtree (the CPU, double precision)")
+        ->group(group)
+        ->type_name("NAME");
+    app.add_option("--gpu-memory", gpu_memory,
+                   "The most GPU memory to use: 256M, 1.5GiB, or 50% of what the device has free; "
+                   "default: what the "
+                   "driver reports, less headroom")
+        ->group(group)
+        ->type_name("SIZE");
+    CLI::Option* per_leaf =
+        app.add_option("--leaf-triangles", leaf_triangles,
+                       "The most triangles of a level-1 leaf; default: a tenth of the scene")
+            ->group(group)
+            ->type_name("N");
+    app.add_option("--leaves", leaves, "Instead: about so many level-1 leaves")
+        ->group(group)
+        ->type_name("N")
+        ->excludes(per_leaf);
+    app.add_option("--device", device,
+                   "A number or a part of a name from `overcast devices`; default: the first GPU, "
+                   "else the software renderer")
+        ->group(group)
+        ->type_name("NAME");
+}
+
+Result<BackendOptions> BackendArguments::resolve() const {
+    BackendOptions options;
+    const Result<BackendKind> kind = parse_backend(backend);
+    if (!kind)
+        return kind.error();
+    options.kind = *kind;
+    if (options.kind == BackendKind::CpuKdTree)
+        for (const auto& [option, value] : {std::pair{"--gpu-memory", &gpu_memory},
+                                            {"--leaf-triangles", &leaf_triangles},
+                                            {"--leaves", &leaves},
+                                            {"--device", &device}})
+            if (!value->empty())
+                return Error{fmt::format(
+                    "{} means nothing to the backend cpu-kdtree, which uses no GPU", option)};
+    if (!gpu_memory.empty()) {
+        const Result<MemorySize> size = parse_memory_size(gpu_memory);
+        if (!size)
+            return Error{"--gpu-memory: " + size.error().message};
+        options.gpu_memory = *size;
+    }
+    if (!leaf_triangles.empty()) {
+        const Result<uint64_t> count =
+            parse_count("--leaf-triangles", leaf_triangles, 1, 0xffffffffu);
+        if (!count)
+            return count.error();
+        options.leaf_triangles = *count;
+    }
+    if (!leaves.empty()) {
+        const Result<uint64_t> count = parse_count("--leaves", leaves, 1, 1000000);
+        if (!count)
+            return count.error();
+        options.leaves = uint32_t(*count);
+    }
+    options.device = device;
+    return options;
+}
+
+} // namespace ovc

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options that choose and size a backend, the same for every subcommand that traces.
+#pragma once
+
+#include "core/result.h"
+#include "host/backend.h"
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace ovc {
+
+/// The words as given; empty: not given.
+struct BackendArguments {
+    std::string backend = "auto";
+    std::string gpu_memory;
+    std::string leaf_triangles;
+    std::string leaves;
+    std::string device;
+
+    void add_to(CLI::App& app);
+    Result<BackendOptions> resolve() const;
+};
+
+} // namespace ovc

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two-level backend: a soup and its rays, handed through the C ABI without a copy.
+#include "host/backend.h"
+#include "host/plugin_loader.h"
+
+#include <fmt/format.h>
+
+#include <cassert>
+
+namespace ovc {
+
+// The records are the same on both sides, so arrays are handed over as they are.
+static_assert(sizeof(Ray) == sizeof(ovc_ray) && offsetof(Ray, org) == offsetof(ovc_ray, org) &&
+              offsetof(Ray, t_min) == offsetof(ovc_ray, t_min) &&
+              offsetof(Ray, dir) == offsetof(ovc_ray, dir) &&
+              offsetof(Ray, t_max) == offsetof(ovc_ray, t_max));
+static_assert(sizeof(Hit) == sizeof(ovc_hit) && offsetof(Hit, t) == offsetof(ovc_hit, t) &&
+              offsetof(Hit, u) == offsetof(ovc_hit, u) &&
+              offsetof(Hit, v) == offsetof(ovc_hit, v) &&
+              offsetof(Hit, id) == offsetof(ovc_hit, mesh));
+static_assert(sizeof(TriangleId) == sizeof(ovc_triangle) &&
+              offsetof(TriangleId, prim) == offsetof(ovc_triangle, prim) && kNone == OVC_NONE);
+static_assert(sizeof(vec3) == 3 * sizeof(float));
+
+static const ovc_ray* as_abi(std::span<const Ray> rays) {
+    return reinterpret_cast<const ovc_ray*>(rays.data());
+}
+
+static ovc_query query_of(std::span<const TriangleId> skip) {
+    ovc_query query{};
+    query.struct_size = sizeof(query);
+    query.skip = skip.empty() ? nullptr : reinterpret_cast<const ovc_triangle*>(skip.data());
+    return query;
+}
+
+static ovc_mesh mesh_of(const Chunk& chunk) {
+    ovc_mesh mesh{};
+    mesh.struct_size = sizeof(mesh);
+    mesh.positions = reinterpret_cast<const float*>(chunk.corners().data());
+    mesh.vertex_count = chunk.corners().size();
+    for (int axis = 0; axis < 3; ++axis)
+        mesh.origin[axis] = chunk.origin()[axis];
+    mesh.flags = OVC_MESH_SHARED;
+    return mesh;
+}
+
+class TwoLevelBackend final : public Backend {
+public:
+    TwoLevelBackend(PluginDevice device, std::string renderer, PluginScene scene)
+        : device_(std::move(device)), renderer_(std::move(renderer)), scene_(std::move(scene)) {}
+
+    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                           std::span<Hit> hits) override {
+        assert(hits.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
+        const ovc_query query = query_of(skip);
+        return device_.checked(api().intersect(scene_.get(), as_abi(rays), rays.size(),
+                                               reinterpret_cast<ovc_hit*>(hits.data()), &query));
+    }
+
+    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                          std::span<uint8_t> occluded) override {
+        assert(occluded.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
+        const ovc_query query = query_of(skip);
+        return device_.checked(
+            api().occluded(scene_.get(), as_abi(rays), rays.size(), occluded.data(), &query));
+    }
+
+    ovc_statistics statistics() const override {
+        ovc_statistics statistics{};
+        statistics.struct_size = sizeof(statistics);
+        api().statistics(scene_.get(), &statistics);
+        return statistics;
+    }
+
+    std::string renderer() const override { return renderer_; }
+
+private:
+    const ovc_api& api() const { return *device_.api(); }
+
+    PluginDevice device_;
+    std::string renderer_;
+    PluginScene scene_; // after device_: destroyed before it
+};
+
+static Result<Done> fill(const PluginDevice& device, ovc_scene scene, const Soup& soup) {
+    for (const Chunk& chunk : soup.chunks) {
+        const ovc_mesh mesh = mesh_of(chunk);
+        const Result<Done> added = device.checked(device.api()->add_mesh(scene, &mesh, nullptr));
+        if (!added)
+            return added;
+    }
+    return device.checked(device.api()->commit(scene));
+}
+
+Result<std::unique_ptr<Backend>> make_two_level_backend(PluginDevice device, const Soup& soup,
+                                                        const BackendOptions& options) {
+    const Result<ovc_device_info> info = device.describe();
+    if (!info)
+        return info.error();
+    ovc_scene_config config{};
+    config.struct_size = sizeof(config);
+    config.gpu_memory_bytes = options.gpu_memory.of(info->memory_bytes);
+    config.leaf_triangles = options.leaf_triangles;
+    config.leaves = options.leaves;
+    Result<PluginScene> scene = device.create_scene(config);
+    if (!scene)
+        return scene.error();
+    if (const Result<Done> filled = fill(device, scene->get(), soup); !filled)
+        return filled.error();
+    return std::unique_ptr<Backend>(
+        std::make_unique<TwoLevelBackend>(std::move(device), info->renderer, std::move(*scene)));
+}
+
+} // namespace ovc

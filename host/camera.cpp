@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pinhole rays, Morton order and automatic framing.
+#include "host/camera.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace ovc {
+
+static constexpr uint32_t kTile = 8;
+
+/// The basis of a view: forward and up are perpendicular, all three of unit length.
+struct ViewAxes {
+    dvec3 forward, right, up;
+};
+
+static ViewAxes view_axes(const Camera& camera) {
+    const dvec3 forward = glm::normalize(camera.target - camera.eye);
+    dvec3 right = glm::cross(forward, camera.up);
+    if (!(glm::dot(right, right) > 1e-18 * glm::dot(camera.up, camera.up))) {
+        dvec3 other(0);
+        other[(major_axis(forward) + 1) % 3] = 1;
+        right = glm::cross(forward, other);
+    }
+    right = glm::normalize(right);
+    return {forward, right, glm::cross(right, forward)};
+}
+
+static double half_angle_tangent(double fov_degrees) {
+    return std::tan(fov_degrees * (std::numbers::pi / 360.0));
+}
+
+Pinhole::Pinhole(const Camera& camera, uint32_t width, uint32_t height)
+    : width_(width), height_(height), eye_(camera.eye) {
+    assert(width > 0 && height > 0 && camera.eye != camera.target);
+    const ViewAxes axes = view_axes(camera);
+    forward_ = axes.forward;
+    right_ = axes.right;
+    up_ = axes.up;
+    const double unit = half_angle_tangent(camera.fov_degrees) / std::min(width, height);
+    half_width_ = unit * width;
+    half_height_ = unit * height;
+}
+
+Ray Pinhole::ray(uint32_t x, uint32_t y) const {
+    const double across = (2 * (x + 0.5) / width_ - 1) * half_width_;
+    const double upward = (1 - 2 * (y + 0.5) / height_) * half_height_;
+    Ray ray;
+    ray.org = eye_;
+    ray.dir = forward_ + across * right_ + upward * up_;
+    return ray;
+}
+
+/// The bits of x on even places, those of y on odd ones.
+static uint32_t morton_code(uint32_t x, uint32_t y) {
+    const auto spread = [](uint32_t v) {
+        v = (v | (v << 8)) & 0x00ff00ffu;
+        v = (v | (v << 4)) & 0x0f0f0f0fu;
+        v = (v | (v << 2)) & 0x33333333u;
+        return (v | (v << 1)) & 0x55555555u;
+    };
+    return spread(x) | (spread(y) << 1);
+}
+
+std::vector<uint32_t> pixel_order(uint32_t width, uint32_t height) {
+    assert(width <= 65535 && height <= 65535);
+    struct Cell {
+        uint32_t x, y;
+    };
+    const auto cells_in_order = [](uint32_t across, uint32_t down) {
+        std::vector<Cell> cells;
+        cells.reserve(size_t(across) * down);
+        for (uint32_t y = 0; y < down; ++y)
+            for (uint32_t x = 0; x < across; ++x)
+                cells.push_back({x, y});
+        std::sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) {
+            return morton_code(a.x, a.y) < morton_code(b.x, b.y);
+        });
+        return cells;
+    };
+    const std::vector<Cell> inside = cells_in_order(kTile, kTile);
+    std::vector<uint32_t> pixels;
+    pixels.reserve(size_t(width) * height);
+    for (const Cell& tile :
+         cells_in_order((width + kTile - 1) / kTile, (height + kTile - 1) / kTile))
+        for (const Cell& cell : inside) {
+            const uint32_t x = tile.x * kTile + cell.x;
+            const uint32_t y = tile.y * kTile + cell.y;
+            if (x < width && y < height)
+                pixels.push_back(y * width + x);
+        }
+    return pixels;
+}
+
+Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height) {
+    Camera camera;
+    if (bounds.empty())
+        return camera;
+    camera.target = bounds.center();
+    const dvec3 towards_eye = glm::normalize(dvec3(0.45, 0.35, 1));
+    camera.eye = camera.target + towards_eye;
+    const ViewAxes axes = view_axes(camera);
+
+    const double unit = half_angle_tangent(camera.fov_degrees) / std::min(width, height);
+    double distance = 0;
+    for (int i = 0; i < 8; ++i) {
+        const dvec3 sign(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5);
+        const dvec3 corner = sign * bounds.extent();
+        const double nearer = -glm::dot(corner, axes.forward);
+        distance =
+            std::max({distance, nearer + std::abs(glm::dot(corner, axes.right)) / (unit * width),
+                      nearer + std::abs(glm::dot(corner, axes.up)) / (unit * height)});
+    }
+    // 4 % of air around the model; a scene that is one point is looked at from some way off.
+    distance = distance > 0 ? distance * 1.04 : 1;
+    camera.eye = camera.target + distance * towards_eye;
+    return camera;
+}
+
+PointLight shoulder_light(const Camera& camera) {
+    const ViewAxes axes = view_axes(camera);
+    const double distance = glm::length(camera.target - camera.eye);
+    return {camera.eye + distance * (0.9 * axes.up - 0.6 * axes.right), kDefaultLightColor};
+}
+
+} // namespace ovc

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Camera rays: a pinhole in double, the order pixels are visited in, and a view for scenes that
+// come without one.
+#pragma once
+
+#include "core/box.h"
+#include "core/ray.h"
+#include "core/scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace ovc {
+
+/// A camera made ready for an image of width x height pixels.
+class Pinhole {
+public:
+    /// camera.eye and camera.target differ; an up along the view is replaced by an axis that is
+    /// not.
+    Pinhole(const Camera& camera, uint32_t width, uint32_t height);
+
+    /// Through the centre of pixel (x, y), (0, 0) being top left. dir is not of unit length: t is
+    /// the depth.
+    Ray ray(uint32_t x, uint32_t y) const;
+
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    /// Unit length, perpendicular to the view.
+    const dvec3& up() const { return up_; }
+    const dvec3& right() const { return right_; }
+
+private:
+    uint32_t width_, height_;
+    dvec3 eye_, forward_, right_, up_;
+    double half_width_, half_height_; // of the image plane at distance 1
+};
+
+/// The pixels y * width + x of an image, each once: tiles of 8 x 8 in Morton order, Morton order
+/// within each. Neighbours in the list are neighbours in the image, so a batch of rays touches few
+/// leaves. width, height <= 65535.
+std::vector<uint32_t> pixel_order(uint32_t width, uint32_t height);
+
+/// Looks at `bounds` from in front, a little from the right and above, so that the whole box just
+/// fits into an image of width x height. Empty bounds: the default Camera.
+Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height);
+
+/// A light above the camera's left shoulder, as far away as the eye is from the target.
+PointLight shoulder_light(const Camera& camera);
+
+/// What a light has that was only given a position: a white surface that faces it comes out at 0.9.
+inline constexpr vec3 kDefaultLightColor{2.83f};
+
+} // namespace ovc

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Camera: what pinhole rays, the pixel order and the automatic view promise.
+#include "host/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace ovc {
+
+TEST(Pinhole, LooksAtTheTargetThroughTheCentreOfTheImage) {
+    Camera camera;
+    camera.eye = {3, 4, 5};
+    camera.target = {-1, 2, 0};
+    const Ray ray = Pinhole(camera, 5, 3).ray(2, 1);
+    EXPECT_EQ(ray.org, camera.eye);
+    const dvec3 off =
+        glm::cross(glm::normalize(ray.dir), glm::normalize(camera.target - camera.eye));
+    EXPECT_LT(glm::length(off), 1e-15);
+}
+
+TEST(Pinhole, RowsGoDownAndColumnsGoRight) {
+    const Pinhole pinhole(Camera{}, 4, 4); // from +z towards the origin, y up: x to the right
+    EXPECT_LT(pinhole.ray(0, 0).dir.x, 0);
+    EXPECT_GT(pinhole.ray(3, 0).dir.x, 0);
+    EXPECT_GT(pinhole.ray(0, 0).dir.y, 0);
+    EXPECT_LT(pinhole.ray(0, 3).dir.y, 0);
+}
+
+TEST(Pinhole, OpensTheFieldOfViewAlongTheShorterSide) {
+    Camera camera;
+    camera.fov_degrees = 90;
+    // The image plane at distance 1 is 2 high; the outermost pixel centres are half a pixel inside.
+    const dvec3 wide = Pinhole(camera, 200, 100).ray(0, 0).dir;
+    EXPECT_NEAR(wide.y, 0.99, 1e-12);
+    EXPECT_NEAR(wide.x, -1.99, 1e-12);
+    const dvec3 tall = Pinhole(camera, 100, 200).ray(0, 0).dir;
+    EXPECT_NEAR(tall.x, -0.99, 1e-12);
+    EXPECT_NEAR(tall.y, 1.99, 1e-12);
+}
+
+TEST(Pinhole, AcceptsAnUpAlongTheView) {
+    Camera camera;
+    camera.eye = {0, 5, 0};
+    EXPECT_TRUE(is_finite(Pinhole(camera, 8, 8).ray(3, 5).dir));
+}
+
+TEST(PixelOrder, VisitsEveryPixelOnce) {
+    for (const auto& [width, height] :
+         {std::pair{1u, 1u}, {8u, 8u}, {17u, 5u}, {64u, 48u}, {1u, 100u}}) {
+        std::vector<uint32_t> pixels = pixel_order(width, height);
+        std::sort(pixels.begin(), pixels.end());
+        std::vector<uint32_t> all(size_t(width) * height);
+        std::iota(all.begin(), all.end(), 0u);
+        EXPECT_EQ(pixels, all) << width << " x " << height;
+    }
+}
+
+TEST(PixelOrder, KeepsATileTogether) {
+    const std::vector<uint32_t> pixels = pixel_order(64, 64);
+    for (size_t i = 0; i < pixels.size(); ++i) {
+        const uint32_t x = pixels[i] % 64, y = pixels[i] / 64;
+        const uint32_t x0 = pixels[i / 64 * 64] % 64, y0 = pixels[i / 64 * 64] / 64;
+        EXPECT_EQ(x / 8, x0 / 8);
+        EXPECT_EQ(y / 8, y0 / 8);
+    }
+}
+
+/// The largest |x| and |y| of the corners of `box` as `camera` sees them; 1 is the edge of the
+/// image.
+static dvec2 seen_extent(const Box& box, const Camera& camera, uint32_t width, uint32_t height) {
+    const Pinhole pinhole(camera, width, height);
+    const double plane =
+        std::tan(camera.fov_degrees * 3.14159265358979323846 / 360) / std::min(width, height);
+    const dvec3 forward = glm::normalize(camera.target - camera.eye);
+    dvec2 largest(0);
+    for (int i = 0; i < 8; ++i) {
+        const dvec3 corner(i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y,
+                           i & 4 ? box.hi.z : box.lo.z);
+        const dvec3 d = corner - camera.eye;
+        const double depth = glm::dot(d, forward);
+        EXPECT_GT(depth, 0);
+        const dvec2 at(std::abs(glm::dot(d, pinhole.right())) / depth / (plane * width),
+                       std::abs(glm::dot(d, pinhole.up())) / depth / (plane * height));
+        largest = glm::max(largest, at);
+    }
+    return largest;
+}
+
+TEST(FramingCamera, ShowsTheWholeBoxAndFillsTheImage) {
+    const Box boxes[] = {{dvec3(-1), dvec3(1)},
+                         {{1e6, 0, 0}, {1e6 + 10, 1, 2}},
+                         {{0, 0, 0}, {1, 50, 1}},
+                         {{0, 0, 0}, {3, 0, 3}}};
+    for (const Box& box : boxes)
+        for (const auto& [width, height] : {std::pair{512u, 512u}, {800u, 200u}, {200u, 800u}}) {
+            const dvec2 seen = seen_extent(box, framing_camera(box, width, height), width, height);
+            const double fullest = std::max(seen.x, seen.y);
+            EXPECT_LT(fullest, 1);
+            EXPECT_GT(fullest, 0.8);
+        }
+}
+
+TEST(FramingCamera, CopesWithNothingAndWithOnePoint) {
+    EXPECT_EQ(framing_camera(Box{}, 10, 10).eye, Camera{}.eye);
+    const Camera camera = framing_camera(Box{dvec3(7), dvec3(7)}, 10, 10);
+    EXPECT_EQ(camera.target, dvec3(7));
+    EXPECT_NE(camera.eye, camera.target);
+}
+
+TEST(ShoulderLight, StandsAboveTheCamera) {
+    const Camera camera = framing_camera(Box{dvec3(-1), dvec3(1)}, 10, 10);
+    EXPECT_GT(shoulder_light(camera).position.y, camera.eye.y);
+}
+
+} // namespace ovc

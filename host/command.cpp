@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of subcommands, and the program's own help and version.
+#include "host/command.h"
+
+#include "host/interrupt.h"
+#include "host/suggestion.h"
+#include "plugin/overcast.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ovc {
+
+static constexpr Command kCommands[] = {
+    {"render", "Render a picture of a scene", run_render},
+    {"info", "Say what a scene consists of and needs", run_info},
+    {"trace", "Answer rays from standard input", run_trace},
+    {"convert", "Write a scene as .ply or .obj", run_convert},
+    {"devices", "List the GPUs and software renderers there are", run_devices},
+    {"scenes", "List the generated test scenes", run_scenes},
+};
+
+/// Subcommands that the design has and this version does not.
+static constexpr std::string_view kLater[] = {"report", "bench", "diff"};
+
+std::span<const Command> commands() {
+    return kCommands;
+}
+
+static void print_help() {
+    fmt::print(
+        "Overcast finds where rays hit triangles, in scenes larger than the GPU's memory.\n\n"
+        "Usage: overcast COMMAND [arguments]\n\nCommands:\n");
+    for (const Command& command : kCommands)
+        fmt::print("  {:<9} {}\n", command.name, command.summary);
+    fmt::print(
+        "\n  overcast COMMAND --help   what a command takes, with examples\n"
+        "  overcast --version\n\n"
+        "Examples:\n"
+        "  overcast scenes                                  what there is to render without any "
+        "file\n"
+        "  overcast render dragon.ply -o dragon.png         a picture, framed and lit by itself\n"
+        "  overcast render plants --gpu-memory 64M          with 64 MiB of GPU memory\n"
+        "  overcast info dragon.ply                         triangles, bounds, what it needs\n"
+        "  echo 0 0 9  0 0 -1 | overcast trace dragon.ply   where one ray hits\n\n"
+        "Exit codes: 0 done, 1 an error (one sentence on standard error), 2 interrupted.\n");
+}
+
+static Error unknown_command(std::string_view name) {
+    if (std::find(std::begin(kLater), std::end(kLater), name) != std::end(kLater))
+        return {fmt::format("the command '{}' is not there yet", name)};
+    std::vector<std::string_view> names;
+    for (const Command& command : kCommands)
+        names.push_back(command.name);
+    const std::string hint = did_you_mean(name, names);
+    return {fmt::format("there is no command '{}'{}", name,
+                        hint.empty() ? "; see overcast --help" : hint)};
+}
+
+Result<int> run_command(const Arguments& arguments) {
+    if (arguments.empty())
+        return Error{"no command given; see overcast --help"};
+    const std::string& name = arguments.front();
+    if (name == "--help" || name == "-h" || name == "help") {
+        print_help();
+        return kExitOk;
+    }
+    if (name == "--version") {
+        fmt::print("overcast {}.{}.{}\n", OVC_VERSION / 10000, OVC_VERSION / 100 % 100,
+                   OVC_VERSION % 100);
+        return kExitOk;
+    }
+    for (const Command& command : kCommands)
+        if (command.name == name)
+            return command.run({arguments.begin() + 1, arguments.end()});
+    return unknown_command(name);
+}
+
+} // namespace ovc

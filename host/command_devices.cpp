@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// overcast devices: what the plugin can run on.
+#include "host/arguments.h"
+#include "host/command.h"
+#include "host/interrupt.h"
+#include "host/memory_size.h"
+#include "host/plugin_loader.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace ovc {
+
+static constexpr const char* kExamples = R"(Examples:
+  overcast devices
+  overcast render dragon.ply --device 1
+  overcast render dragon.ply --device llvmpipe
+
+The environment variable OVC_PLUGIN names another libovercast.so than the one beside this program.)";
+
+static std::string describe(size_t number, const ovc_device_info& info) {
+    return fmt::format("{}  {}{}\n"
+                       "   vendor   {}\n"
+                       "   version  {}\n"
+                       "   memory   {}, of which {} by default\n"
+                       "   limits   textures of {} texels a side, buffer textures of {} texels\n",
+                       number, info.renderer, info.is_software ? " (software)" : "", info.vendor,
+                       info.version, human_bytes(info.memory_bytes),
+                       human_bytes(info.default_budget_bytes), human_count(info.max_texture_size),
+                       human_count(info.max_buffer_texels));
+}
+
+Result<int> run_devices(const Arguments& arguments) {
+    CLI::App app{"Lists the devices that rays can be traced on, by number and name.",
+                 "overcast devices"};
+    app.footer(kExamples);
+    const Result<Parsed> parsed = parse_arguments(app, arguments);
+    if (!parsed)
+        return parsed.error();
+    if (*parsed == Parsed::HelpShown)
+        return kExitOk;
+
+    const Result<const ovc_api*> api = load_plugin();
+    if (!api)
+        return api.error();
+    const Result<std::vector<ovc_device_info>> infos = list_devices(*api);
+    if (!infos)
+        return infos.error();
+    for (size_t i = 0; i < infos->size(); ++i)
+        fmt::print("{}", describe(i, (*infos)[i]));
+    if (infos->empty())
+        fmt::print("no devices; --backend cpu-kdtree traces on the CPU\n");
+    return kExitOk;
+}
+
+} // namespace ovc

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// overcast trace: rays in, hits out.
+#include "host/arguments.h"
+#include "host/backend_arguments.h"
+#include "host/command.h"
+#include "host/interrupt.h"
+#include "host/scene_source.h"
+#include "host/trace_stream.h"
+
+#include <unistd.h>
+
+namespace ovc {
+
+static constexpr const char* kExamples =
+    R"(Standard input, one ray a line:    ox oy oz dx dy dz [tmin tmax]
+Standard output, one line a ray:   t u v mesh prim   or   miss   (with --any: hit or miss)
+The hit lies at o + t d = (1 - u - v) a + u b + v c of the triangle's corners a, b, c. Without tmin and tmax a ray
+begins at 0 and never ends; d need not be of unit length, t counts in its lengths. Numbers are the shortest that read
+back as the same doubles. Blank lines and lines that begin with # are passed over; any other line that is no ray ends
+the program with an error that names it, after the answers to the rays before it.
+
+With --binary a ray is 8 little-endian doubles (ox oy oz tmin dx dy dz tmax: the record ovc_ray of overcast.h), a hit 3
+doubles and 2 unsigned 32-bit integers (t u v mesh prim: ovc_hit; a miss has t infinite and both integers 4294967295);
+with --any as well an answer is one byte, 1 or 0.
+
+Examples:
+  echo 0 0 9  0 0 -1 | overcast trace dragon.ply
+  overcast trace dragon.ply --any < rays.txt > shadows.txt
+  overcast trace dragon.ply --binary --gpu-memory 64M < rays.bin > hits.bin)";
+
+Result<int> run_trace(const Arguments& arguments) {
+    CLI::App app{"Answers rays: where each first hits the scene, or whether it hits it at all.",
+                 "overcast trace"};
+    std::string source;
+    TraceOptions options;
+    BackendArguments words;
+    app.add_option("SCENE", source, "A file or a test scene's name")->required();
+    app.add_flag("--any", options.any, "Only whether a ray hits anything");
+    app.add_flag("--binary", options.binary, "Records of doubles instead of lines, in and out");
+    words.add_to(app);
+    app.footer(kExamples);
+    const Result<Parsed> parsed = parse_arguments(app, arguments);
+    if (!parsed)
+        return parsed.error();
+    if (*parsed == Parsed::HelpShown)
+        return kExitOk;
+
+    const Result<BackendOptions> backend_options = words.resolve();
+    if (!backend_options)
+        return backend_options.error();
+    const LogSink log = standard_error_log(/* chatty= */ false);
+    const Result<Scene> scene = open_scene(source, log);
+    if (!scene)
+        return scene.error();
+    const Result<std::unique_ptr<Backend>> backend =
+        make_backend(scene->soup, *backend_options, log);
+    if (!backend)
+        return backend.error();
+    const Result<Done> done = trace_stream(**backend, STDIN_FILENO, STDOUT_FILENO, options);
+    if (!done)
+        return done.error();
+    return kExitOk;
+}
+
+} // namespace ovc

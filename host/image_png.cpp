@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// PNG out: 8 bits a channel, sRGB, as a viewer expects. The only file that sees libpng.
+#include "host/output.h"
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+namespace ovc {
+
+/// IEC 61966-2-1, from linear light to the 8-bit code. NaN comes out black.
+static uint8_t srgb_code(float linear) {
+    const float clamped = linear > 0 ? std::min(linear, 1.0f) : 0.0f;
+    const float coded =
+        clamped <= 0.0031308f ? 12.92f * clamped : 1.055f * std::pow(clamped, 1 / 2.4f) - 0.055f;
+    return uint8_t(std::lround(coded * 255));
+}
+
+static std::vector<uint8_t> srgb_rows(const Image& image) {
+    std::vector<uint8_t> rows;
+    rows.reserve(image.pixels.size() * 3);
+    for (const vec4& pixel : image.pixels)
+        for (int channel = 0; channel < 3; ++channel)
+            rows.push_back(srgb_code(pixel[channel]));
+    return rows;
+}
+
+Result<Done> write_png(const Image& image, const std::filesystem::path& path) {
+    const std::vector<uint8_t> rows = srgb_rows(image);
+    const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "wb"), std::fclose);
+    if (!file)
+        return Error{std::strerror(errno)};
+
+    // libpng's simplified interface reports errors in `header` instead of jumping out of this
+    // function.
+    png_image header{};
+    header.version = PNG_IMAGE_VERSION;
+    header.width = image.width;
+    header.height = image.height;
+    header.format = PNG_FORMAT_RGB;
+    const bool written = png_image_write_to_stdio(&header, file.get(), /* convert_to_8_bit= */ 0,
+                                                  rows.data(), int32_t(image.width * 3), nullptr);
+    if (!written)
+        return Error{header.message};
+    if (std::fflush(file.get()) != 0)
+        return Error{std::strerror(errno)};
+    return Done{};
+}
+
+} // namespace ovc

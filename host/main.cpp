@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The `overcast` command: hands over to a subcommand; an error is one sentence and exit code 1.
+#include "host/command.h"
+#include "host/interrupt.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+static int fail(const char* sentence) {
+    fmt::print(stderr, "overcast: {}\n", sentence);
+    return ovc::kExitError;
+}
+
+int main(int argc, char** argv) {
+    try {
+        ovc::exit_on_interrupt();
+        const ovc::Result<int> code = ovc::run_command({argv + 1, argv + argc});
+        if (!code)
+            return fail(code.error().message.c_str());
+        if (std::fflush(stdout) != 0)
+            return fail("cannot write to standard output");
+        return *code;
+    } catch (const std::bad_alloc&) {
+        return fail("out of memory");
+    } catch (const std::exception& error) {
+        return fail(error.what());
+    }
+}

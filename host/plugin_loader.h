@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plugin from the host's side: finding libovercast.so, and owners for its handles. They add
+// nothing to the C calls.
+#pragma once
+
+#include "core/log.h"
+#include "core/result.h"
+#include "plugin/overcast.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ovc {
+
+/// Loads the plugin: the file that the environment variable OVC_PLUGIN names, or libovercast.so
+/// beside this program, in
+/// ../lib from there, or where the system's loader looks. It stays loaded until the program ends.
+Result<const ovc_api*> load_plugin();
+
+struct DestroyDevice {
+    const ovc_api* api = nullptr;
+    void operator()(ovc_device device) const { api->destroy_device(device); }
+};
+
+struct DestroyScene {
+    const ovc_api* api = nullptr;
+    void operator()(ovc_scene scene) const { api->destroy_scene(scene); }
+};
+
+using PluginScene = std::unique_ptr<ovc_scene_t, DestroyScene>;
+
+/// An open device. What went wrong, and why the library's last error says so, is one Error.
+class PluginDevice {
+public:
+    /// name: a number as listed or a part of the renderer's name; empty: the plugin chooses. log
+    /// may be called from the device's thread.
+    static Result<PluginDevice> open(const ovc_api* api, const std::string& name, LogSink log);
+
+    const ovc_api* api() const { return api_; }
+    Result<ovc_device_info> describe() const;
+    Result<PluginScene> create_scene(const ovc_scene_config& config) const;
+
+    /// Nothing when `result` is OVC_OK, else the library's sentence.
+    Result<Done> checked(ovc_result result) const;
+
+private:
+    PluginDevice(const ovc_api* api, std::unique_ptr<LogSink> log)
+        : api_(api), log_(std::move(log)) {}
+
+    const ovc_api* api_;
+    std::unique_ptr<LogSink> log_; // the library holds its address
+    std::unique_ptr<ovc_device_t, DestroyDevice> device_;
+};
+
+/// All devices there are.
+Result<std::vector<ovc_device_info>> list_devices(const ovc_api* api);
+
+} // namespace ovc

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Progress: one line on a terminal that overwrites itself; nothing on a pipe.
+#pragma once
+
+#include "host/backend.h"
+#include "host/stopwatch.h"
+#include "host/whitted_batched.h"
+
+#include <cstdint>
+
+namespace ovc {
+
+class Progress {
+public:
+    /// shown: false keeps it silent even on a terminal.
+    Progress(const Backend& backend, uint64_t pixel_count, bool shown);
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    void update(const RenderReport& report);
+
+private:
+    const Backend& backend_;
+    uint64_t pixel_count_;
+    bool shown_;
+    Stopwatch watch_;
+    double last_seconds_ = 0;
+};
+
+} // namespace ovc

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scene consists of.
+#include "host/scene_summary.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ovc {
+
+TEST(SceneSummary, CountsWhatCannotBeHitAndLeavesItOutOfTheBounds) {
+    Scene scene;
+    scene.add_mesh("good", 0, Chunk::owning({10, 0, 0}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 2}}));
+    scene.add_mesh(
+        "bad", 0,
+        Chunk::owning(dvec3(0),
+                      {{0, 0, 0}, {NAN, 0, 0}, {0, 1, 0}, {99, 0, 0}, {99, 1, 0}, {99, 2, 0}}));
+    const SceneSummary s = summarize(scene);
+    EXPECT_EQ(s.triangles, 3u);
+    EXPECT_EQ(s.meshes, 2u);
+    EXPECT_EQ(s.dropped.not_finite, 1u);
+    EXPECT_EQ(s.dropped.degenerate, 1u);
+    EXPECT_EQ(s.bounds.lo, dvec3(10, 0, 0));
+    EXPECT_EQ(s.bounds.hi, dvec3(11, 1, 2));
+    EXPECT_EQ(hittable_bounds(scene.soup).hi, s.bounds.hi);
+}
+
+TEST(SceneSummary, KnowsWhatIsNeeded) {
+    Scene scene;
+    scene.materials = {{"dull"}, {"mirror", vec3(1), 0.5f}};
+    const std::vector<vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    scene.add_mesh("plain", 0, Chunk::owning(dvec3(0), corners));
+    EXPECT_FALSE(summarize(scene).needs.vertex_normals);
+    EXPECT_FALSE(summarize(scene).needs.reflection); // the mirror is not used
+    EXPECT_EQ(summarize(scene).left_out.front().what, "vertex normals");
+    EXPECT_EQ(summarize(scene).left_out.front().bytes, 36u);
+    scene.add_mesh("smooth", 1, Chunk::owning(dvec3(0), corners),
+                   std::vector<vec3>(3, vec3(0, 0, 1)));
+    EXPECT_TRUE(summarize(scene).needs.vertex_normals);
+    EXPECT_TRUE(summarize(scene).needs.reflection);
+}
+
+TEST(SceneSummary, OfNothingHasNoBounds) {
+    EXPECT_TRUE(summarize(Scene{}).bounds.empty());
+}
+
+} // namespace ovc

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shading: what a hit looks like by itself, before shadows and reflections. Whitted's model on
+// two-sided surfaces.
+#pragma once
+
+#include "core/ray.h"
+#include "core/scene.h"
+
+#include <cstdint>
+
+namespace ovc {
+
+/// A point on a surface as a ray saw it: both normals face the ray.
+struct SurfacePoint {
+    dvec3 position;
+    vec3 geometric_normal; // of the triangle's plane
+    vec3 normal;           // interpolated where the mesh has normals, else the geometric one
+    vec3 color;
+    float mirror;
+};
+
+/// Where a ray hit. The position lies on the triangle, moved towards the ray's side by far less
+/// than float can tell but more than double errs, so that a second triangle in the same place does
+/// not shadow the first; the triangle itself is left out of spawned rays by its id.
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
+
+/// What a ray in direction `dir` sees that hits nothing. up: unit length.
+vec3 background_color(const Background& background, const vec3& up, const dvec3& dir);
+
+/// Light from the sky and, weaker, from the ground, without shadows: the radiance the surface
+/// reflects of it.
+vec3 ambient_light(const Background& background, const vec3& up, const SurfacePoint& surface);
+
+/// What the surface reflects of `light` when nothing is in between; 0 when the light is behind it.
+vec3 direct_light(const PointLight& light, const SurfacePoint& surface);
+
+/// From the surface to the light: t = 1 is the light.
+Ray shadow_ray(const PointLight& light, const SurfacePoint& surface);
+
+/// The mirrored ray; never goes below the triangle's plane.
+Ray mirror_ray(const Ray& ray, const SurfacePoint& surface);
+
+} // namespace ovc
