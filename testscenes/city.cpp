@@ -33,7 +33,7 @@ void add_box(Corners& out, dvec3 lo, dvec3 hi) {
 void add_house(std::array<Corners, kLooks>& town, dvec3 lo, dvec3 size, Random& random) {
     const dvec3 hi = lo + size;
     const Look wall = random.chance(0.5) ? Plaster : Brick;
-    add_box(town[wall], lo, hi);
+    add_box(town[wall], lo, {hi.x, hi.y - 0.1, hi.z}); // the topmost slab is the roof
     const int storeys = int(size.y / kStorey);
     for (int storey = 1; storey <= storeys; ++storey) { // slabs share the plane of the walls below
         const double y = lo.y + storey * kStorey;

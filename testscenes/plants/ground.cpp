@@ -29,11 +29,9 @@ Cover cover_at(dvec2 at, double height, double slope) {
         return Cover::Sand;
     if (slope > 0.95 + 0.15 * grain)
         return Cover::Stone;
-    const double distance = glm::length(at - kViewpoint) + 130 * fractal_noise(at / 70.0, 3, 44);
-    if (distance > 900)
-        return Cover::FarRidge;
-    if (distance > 480)
-        return Cover::FarWood;
+    const double patches = fractal_noise(at / 60.0, 4, 44);
+    if (glm::length(at - kViewpoint) > 520 + 150 * patches)
+        return height > 62 + 55 * patches ? Cover::FarRidge : Cover::FarWood;
     if (shore > 40 + 12 * grain && slope + 0.1 * grain > 0.22)
         return Cover::ForestFloor;
     return fractal_noise(at / 11.0, 3, 43) + 0.25 * grain > 0.15 ? Cover::DryMeadow : Cover::Meadow;
@@ -91,11 +89,16 @@ std::array<Corners, kCovers> make_ground(uint32_t cells) {
     return ground;
 }
 
-Corners make_water(uint32_t cells) {
+Corners make_water() {
+    constexpr int kCells = 48; // one large quad would reach into every leaf of a tree
+    const auto point = [](int column, int row) {
+        return dvec3(kReach * (2.0 * column / kCells - 1), 0, kReach * (1.2 * row / kCells - 1));
+    };
     Corners water;
-    (void)cells;
-    add_quad(water, dvec3(-kReach, 0, -kReach), dvec3(-kReach, 0, 200), dvec3(kReach, 0, 200),
-             dvec3(kReach, 0, -kReach));
+    for (int row = 0; row < kCells; ++row)
+        for (int column = 0; column < kCells; ++column)
+            add_quad(water, point(column, row), point(column, row + 1), point(column + 1, row + 1),
+                     point(column + 1, row));
     return water;
 }
 

@@ -16,7 +16,7 @@ inline constexpr size_t kCovers = 8;
 /// cells x cells squares of two triangles, finer towards the viewer, sorted by cover.
 std::array<Corners, kCovers> make_ground(uint32_t cells);
 
-/// The water, gently rippled: a fan of cells that look alike in size from where the viewer stands.
-Corners make_water(uint32_t cells);
+/// The water, flat at y = 0, also below the land.
+Corners make_water();
 
 } // namespace ovc::plants

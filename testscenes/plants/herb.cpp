@@ -43,8 +43,9 @@ struct Tuft {
 };
 
 void add_tuft(Corners& out, const Tuft& tuft, double detail, Random& random) {
-    const uint32_t count = scaled(tuft.blades, detail, 5);
+    const uint32_t count = scaled(tuft.blades, detail, 10);
     const double width = tuft.width * std::min(4.0, std::sqrt(tuft.blades / count));
+    const double radius = detail > 0.2 ? tuft.radius : 2 * tuft.radius; // hides gaps far away
     const int segments = detail > 0.6 ? 3 : detail > 0.2 ? 2 : 1;
     for (uint32_t i = 0; i < count; ++i) {
         const double out_by = std::sqrt(random.uniform());
@@ -52,7 +53,7 @@ void add_tuft(Corners& out, const Tuft& tuft, double detail, Random& random) {
         const double height = tuft.height * random.uniform(0.55, 1.1);
         const dvec3 lean = (outwards * (0.3 + out_by) + level(random.uniform()) * 0.5) *
                            (height * tuft.bend * random.uniform(0.2, 1.0));
-        const dvec3 base = outwards * (out_by * tuft.radius) - dvec3(0, 0.05, 0);
+        const dvec3 base = outwards * (out_by * radius) - dvec3(0, 0.05, 0);
         add_blade(out, base, height, lean, width * random.uniform(0.7, 1.3), segments);
     }
 }

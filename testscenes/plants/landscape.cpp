@@ -26,7 +26,7 @@ double river_half_width(double ahead) {
 double hills(dvec2 at) {
     const double ahead = -at.y;
     const double rolling = 9 * fractal_noise(at / 90.0, 4, 11) + 7;
-    const double ridge = 1 - std::abs(fractal_noise(at / 420.0 + dvec2(3.1, 0.4), 4, 12)) * 2.2;
+    const double ridge = 1 - std::abs(fractal_noise(at / 420.0 + dvec2(3.1, 0.4), 5, 12)) * 2.2;
     const double mountains = 120 * smooth_step(260, 1000, ahead) * std::max(0.15, ridge);
     const double right_shoulder = 26 * smooth_step(30, 190, at.x - 0.12 * ahead);
     const double left_shoulder = 16 * smooth_step(-60, -240, at.x);

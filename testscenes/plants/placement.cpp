@@ -69,7 +69,8 @@ std::optional<Choice> choose_tree(const Site& site, Random& random) {
         return std::nullopt;
     // Conifers take over on the right bank and uphill.
     const double conifers = smooth_step(4, 24, site.height + 6 * noise(site.at / 30.0, 52));
-    if (random.chance(0.45 * smooth_step(250, 420, site.distance)))
+    // Far away a few stand for many; above the tree line, none.
+    if (random.chance(0.8 * smooth_step(190, 520, site.distance)) || site.height > 75)
         return std::nullopt;
     const double size = random.uniform(0.65, 1.25);
     if (random.chance(0.1 + 0.85 * conifers))
@@ -110,7 +111,7 @@ std::optional<Choice> choose_water_plant(const Site& site, Random& random) {
     const double clump = noise(site.at / 7.0, 57) + 0.35 * noise(site.at / 1.5, 58);
     if (site.shore > -2.2 && site.shore < 0.9 && clump > 0.3 && random.chance(0.75))
         return Choice{Kind::Reed, random.uniform(0.7, 1.1)};
-    if (site.shore < -1.6 && site.shore > -6.5 && clump < -0.22 && random.chance(0.7))
+    if (site.shore < -1.6 && site.shore > -6.5 && clump < -0.28 && random.chance(0.4))
         return Choice{Kind::Lily, random.uniform(0.8, 1.3)};
     return std::nullopt;
 }
@@ -124,19 +125,28 @@ std::optional<Choice> choose_rock(const Site& site, Random& random) {
 }
 
 constexpr Layer kLayers[] = {
-    {61, 4.6, 0.004, 640, choose_tree},         {62, 2.6, 0.012, 170, choose_bush},
-    {63, 0.2, 0.018, 120, choose_grass},        {64, 0.3, 0.022, 60, choose_flower},
+    {61, 4.8, 0.005, 900, choose_tree},         {62, 2.6, 0.012, 170, choose_bush},
+    {63, 0.2, 0.015, 130, choose_grass},        {64, 0.3, 0.022, 60, choose_flower},
     {65, 0.38, 0.012, 170, choose_water_plant}, {66, 0.9, 0.02, 110, choose_rock},
+};
+
+/// Trees that frame the picture, and throw the long shadows across its foreground.
+constexpr Plant kFramingTrees[] = {
+    {Kind::Oak, 1, 1, 0.95, 0.10, {8.4, 0, -13}},
+    {Kind::Birch, 0, 2, 0.9, 0.30, {15, 0, -22}},
+    {Kind::Oak, 0, 3, 1.1, 0.70, {17, 0, 12}},
+    {Kind::Birch, 1, 0, 1.0, 0.55, {9, 0, 13}},
 };
 
 struct Ring {
     double from, to;
 };
 
-std::vector<Ring> rings_of(const Layer& layer) {
+std::vector<Ring> rings_of(const Layer& layer, double density) {
+    const double narrower = 1 / std::sqrt(density);
     std::vector<Ring> rings;
     for (double from = 0.9; from < layer.reach;) {
-        const double to = from + std::max(layer.cell, layer.cell_per_distance * from);
+        const double to = from + narrower * std::max(layer.cell, layer.cell_per_distance * from);
         rings.push_back({from, to});
         from = to;
     }
@@ -161,15 +171,14 @@ Plant make_plant(const Choice& choice, dvec2 at, Random& random) {
     return plant;
 }
 
-void plant_ring(const Layer& layer, const Ring& ring, uint64_t number, double density,
-                std::vector<Plant>& out) {
+void plant_ring(const Layer& layer, const Ring& ring, uint64_t number, std::vector<Plant>& out) {
     const double size = ring.to - ring.from;
     const uint32_t cells = uint32_t(6.283 * ring.from / size) + 1;
     for (uint32_t cell = 0; cell < cells; ++cell) {
         Random random(mix_bits(layer.seed ^ number << 32), cell);
         const double distance = ring.from + size * random.uniform();
         const dvec2 offset = distance * circle((cell + random.uniform()) / cells);
-        if (!random.chance(density) || !worth_planting(offset, distance))
+        if (!worth_planting(offset, distance))
             continue;
         Site site{kViewpoint + offset, distance};
         site.shore = shore_distance(site.at);
@@ -183,12 +192,16 @@ void plant_ring(const Layer& layer, const Ring& ring, uint64_t number, double de
 
 std::vector<Plant> place_plants(double density) {
     std::vector<Plant> plants;
+    for (const Plant& plant : kFramingTrees) {
+        plants.push_back(plant);
+        plants.back().at.y = ground_height({plant.at.x, plant.at.z}) - 0.05;
+    }
     for (const Layer& layer : kLayers) {
-        const std::vector<Ring> rings = rings_of(layer);
+        const std::vector<Ring> rings = rings_of(layer, density);
         std::vector<std::vector<Plant>> by_ring(rings.size());
         parallel_for(rings.size(), 1, [&](size_t first, size_t last) {
             for (size_t r = first; r < last; ++r)
-                plant_ring(layer, rings[r], r, density, by_ring[r]);
+                plant_ring(layer, rings[r], r, by_ring[r]);
         });
         for (const std::vector<Plant>& ring : by_ring)
             plants.insert(plants.end(), ring.begin(), ring.end());

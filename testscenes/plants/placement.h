@@ -18,7 +18,7 @@ struct Plant {
     dvec3 at;
 };
 
-/// All plants; `density` 1 is the demo scene's, less leaves some out.
+/// All plants; `density` 1 is the demo scene's, 2 has twice as many plants.
 std::vector<Plant> place_plants(double density);
 
 } // namespace ovc::plants

@@ -19,8 +19,8 @@ namespace {
 using namespace plants;
 
 // Each for plants beyond kFarther times their fine distance.
-constexpr double kDetails[] = {1, 0.3, 0.09, 0.03, 0.008};
-constexpr double kFarther[] = {0, 1, 2.2, 5, 10};
+constexpr double kDetails[] = {1, 0.42, 0.14, 0.042, 0.009};
+constexpr double kFarther[] = {0, 1, 2.1, 4.4, 9};
 constexpr size_t kDetailLevels = std::size(kDetails);
 
 /// Prototypes of all species, variants and details.
@@ -37,8 +37,8 @@ public:
             for (size_t p = begin; p < end; ++p) {
                 const size_t number = p - first_[owner[p]];
                 const Random random(100 + owner[p], number / kDetailLevels);
-                prototypes_[p] = species()[owner[p]].make(
-                    random, std::min(1.5, detail * kDetails[number % kDetailLevels]));
+                prototypes_[p] =
+                    species()[owner[p]].make(random, detail * kDetails[number % kDetailLevels]);
             }
         });
     }
@@ -131,35 +131,35 @@ void add_land(Scene& scene, double detail) {
         {"mud", {0.10f, 0.075f, 0.045f}},        {"sand", {0.36f, 0.29f, 0.19f}},
         {"meadow", {0.12f, 0.20f, 0.04f}},       {"dry meadow", {0.22f, 0.24f, 0.07f}},
         {"forest floor", {0.09f, 0.11f, 0.04f}}, {"stone", {0.27f, 0.25f, 0.22f}},
-        {"far wood", {0.10f, 0.16f, 0.11f}},     {"far ridge", {0.20f, 0.27f, 0.32f}},
+        {"far wood", {0.10f, 0.16f, 0.11f}},     {"far ridge", {0.23f, 0.29f, 0.34f}},
     };
     std::array<Corners, kCovers> ground =
         make_ground(std::max(60u, uint32_t(720 * std::sqrt(detail))));
     for (size_t cover = 0; cover < kCovers; ++cover)
         add_mesh(scene, kCoverLooks[cover].name, kCoverLooks[cover].color, 0,
                  std::move(ground[cover]));
-    add_mesh(scene, "water", {0.02f, 0.05f, 0.07f}, 0.6f,
-             make_water(uint32_t(300 * std::sqrt(detail))));
+    add_mesh(scene, "water", {0.02f, 0.05f, 0.07f}, 0.6f, make_water());
 }
 
 } // namespace
 
 Scene make_plants(uint32_t size) {
-    // Half of the saving is in the number of plants, half in the triangles of each.
-    const double share = std::sqrt(size / kPlantsDemoSize);
-    const Nursery nursery(share);
-    const std::vector<Plant> plants = place_plants(std::min(1.0, share));
+    // A smaller scene has fewer plants, and each a little fewer triangles.
+    const double share = size / kPlantsDemoSize;
+    const double fewer = std::sqrt(std::sqrt(share));
+    const Nursery nursery(fewer);
+    const std::vector<Plant> plants = place_plants(share / fewer);
 
     Scene scene;
-    add_land(scene, share * share);
+    add_land(scene, share);
     for (const MeshPlan& mesh : plan_meshes(plants, nursery))
         add_mesh(scene, mesh.name, mesh.color, 0, expand(mesh));
 
     scene.lights.push_back({dvec3(5600, 3500, 4600), vec3(4.6f, 3.6f, 2.4f)});
     const double eye_height = ground_height(kViewpoint) + 2.3;
     scene.camera = Camera{dvec3(kViewpoint.x, eye_height, kViewpoint.y),
-                          dvec3(-9, eye_height - 1.5, -40), dvec3(0, 1, 0), 42};
-    scene.background = {vec3(0.95f, 0.84f, 0.70f), vec3(0.10f, 0.29f, 0.74f)};
+                          dvec3(-9, eye_height - 2.6, -40), dvec3(0, 1, 0), 42};
+    scene.background = {vec3(0.82f, 0.75f, 0.65f), vec3(0.0f, 0.16f, 0.70f)};
     return scene;
 }
 

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// The catalog: every scene builds, is the same everywhere, and is what its description says.
+#include "testscenes/catalog.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <array>
+#include <bit>
+#include <map>
+#include <string>
+
+namespace ovc {
+namespace {
+
+Scene make(const std::string& name) {
+    Result<Scene> scene = make_test_scene(name);
+    if (!scene)
+        throw std::runtime_error(scene.error().message);
+    return std::move(*scene);
+}
+
+/// FNV-1a over 32-bit words: all corners, origins, and which material a mesh has.
+class Hash {
+public:
+    void add(uint32_t word) { value_ = (value_ ^ word) * 0x100000001b3u; }
+    void add(double value) {
+        const uint64_t bits = std::bit_cast<uint64_t>(value);
+        add(uint32_t(bits));
+        add(uint32_t(bits >> 32));
+    }
+    uint64_t value() const { return value_; }
+
+private:
+    uint64_t value_ = 0xcbf29ce484222325u;
+};
+
+uint64_t hash(const Scene& scene) {
+    Hash h;
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        const Chunk& chunk = scene.soup.chunks[m];
+        h.add(scene.meshes[m].material);
+        for (int axis = 0; axis < 3; ++axis)
+            h.add(chunk.origin()[axis]);
+        for (const vec3& corner : chunk.corners())
+            for (int axis = 0; axis < 3; ++axis)
+                h.add(std::bit_cast<uint32_t>(corner[axis]));
+    }
+    return h.value();
+}
+
+struct Sample {
+    const char* name;
+    uint64_t triangles;
+    uint64_t hash; // a change is a change of the scene: every picture and measurement of it is new
+};
+
+/// Each entry of the catalog at its smallest or a small size.
+constexpr Sample kSamples[] = {
+    {"plants-1", 0, 0}, {"terrain-1", 0, 0}, {"terrain-64", 0, 0}, {"sphere-0", 0, 0},
+    {"sphere-3", 0, 0}, {"knot", 0, 0},      {"soup-1", 0, 0},     {"city", 0, 0},
+    {"mirrors", 0, 0},  {"box", 0, 0},
+};
+
+class CatalogScene : public testing::TestWithParam<Sample> {};
+
+TEST_P(CatalogScene, IsTheSameOnEveryMachine) {
+    const Scene scene = make(GetParam().name);
+    EXPECT_EQ(scene.soup.triangle_count(), GetParam().triangles);
+    EXPECT_EQ(hash(scene), GetParam().hash) << std::hex << "now 0x" << hash(scene);
+}
+
+TEST_P(CatalogScene, IsTheSameForAnyNumberOfThreads) {
+    const uint64_t many = hash(make(GetParam().name));
+    const oneapi::tbb::global_control one(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_EQ(hash(make(GetParam().name)), many);
+}
+
+TEST_P(CatalogScene, HasNoTriangleThatCannotBeHit) {
+    const Scene scene = make(GetParam().name);
+    Dropped dropped;
+    hittable_triangles(scene.soup, &dropped, nullptr);
+    EXPECT_EQ(dropped.not_finite, 0u);
+    EXPECT_EQ(dropped.degenerate, 0u);
+}
+
+TEST_P(CatalogScene, IsReadyToRender) {
+    const Scene scene = make(GetParam().name);
+    EXPECT_EQ(scene.name, GetParam().name);
+    ASSERT_EQ(scene.meshes.size(), scene.soup.chunks.size());
+    ASSERT_TRUE(scene.camera);
+    EXPECT_FALSE(scene.lights.empty());
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        EXPECT_GT(scene.soup.chunks[m].size(), 0u) << scene.meshes[m].name;
+        ASSERT_LT(scene.meshes[m].material, scene.materials.size());
+    }
+    for (const Material& material : scene.materials)
+        for (int channel = 0; channel < 3; ++channel) {
+            EXPECT_GE(material.color[channel], 0) << material.name;
+            EXPECT_LE(material.color[channel] + material.mirror, 1.5) << material.name;
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CatalogScene, testing::ValuesIn(kSamples), [](const auto& sample) {
+    std::string name = sample.param.name;
+    std::erase(name, '-');
+    return name;
+});
+
+TEST(Catalog, HasASampleOfEveryEntryHere) {
+    for (const CatalogEntry& entry : catalog()) {
+        if (entry.name == "plants") // large: it has a test of its own
+            continue;
+        const std::string_view stem =
+            entry.name.ends_with("-N") ? entry.name.substr(0, entry.name.size() - 1) : entry.name;
+        const auto is_sample = [&](const Sample& s) {
+            return std::string_view(s.name).starts_with(stem);
+        };
+        EXPECT_TRUE(std::ranges::any_of(kSamples, is_sample)) << entry.name;
+        EXPECT_FALSE(entry.description.empty()) << entry.name;
+    }
+}
+
+TEST(Catalog, CountsAreThoseItsDescriptionsName) {
+    EXPECT_EQ(make("terrain-100").soup.triangle_count(), 20000u);
+    EXPECT_EQ(make("sphere-4").soup.triangle_count(), 5120u);
+    EXPECT_EQ(make("knot").soup.triangle_count(), 873600u);
+    EXPECT_EQ(make("soup-7").soup.triangle_count(), 7000u);
+    EXPECT_EQ(make("mirrors").soup.triangle_count(), 81922u);
+    EXPECT_EQ(make("box").soup.triangle_count(), 30u);
+    EXPECT_NEAR(double(make("city").soup.triangle_count()), 718000, 5000);
+}
+
+TEST(Catalog, PlantsGrowWithTheirSize) {
+    uint64_t before = 0;
+    for (const int size : {1, 4, 16}) {
+        const uint64_t count = make("plants-" + std::to_string(size)).soup.triangle_count();
+        EXPECT_GT(count, before);
+        EXPECT_GT(double(count), 0.5e5 * size) << size;
+        EXPECT_LT(double(count), 2e5 * size) << size;
+        before = count;
+    }
+}
+
+TEST(Catalog, PlantsIsLargeAndWhole) {
+    const Scene scene = make("plants");
+    EXPECT_GE(scene.soup.triangle_count(), 5'000'000u);
+    EXPECT_LE(scene.soup.triangle_count(), 8'000'000u);
+    Dropped dropped;
+    hittable_triangles(scene.soup, &dropped, nullptr);
+    EXPECT_EQ(dropped.total(), 0u);
+    const auto is_mirror = [](const Material& m) { return m.mirror > 0.5f; };
+    EXPECT_TRUE(std::ranges::any_of(scene.materials, is_mirror)) << "the water";
+}
+
+// --- closed surfaces --------------------------------------------------------------------------
+
+using Bits = std::array<uint32_t, 3>;
+
+Bits bits_of(const vec3& v) {
+    // -0 and 0 are the same place.
+    return {std::bit_cast<uint32_t>(v.x + 0.0f), std::bit_cast<uint32_t>(v.y + 0.0f),
+            std::bit_cast<uint32_t>(v.z + 0.0f)};
+}
+
+/// Edges that are not met exactly once in each direction.
+uint64_t open_edges(const Chunk& chunk) {
+    std::map<Bits, uint32_t> numbers;
+    std::vector<uint32_t> corner;
+    for (const vec3& v : chunk.corners())
+        corner.push_back(numbers.try_emplace(bits_of(v), uint32_t(numbers.size())).first->second);
+    std::vector<std::pair<uint32_t, uint32_t>> edges, reversed;
+    for (size_t i = 0; i < corner.size(); i += 3)
+        for (size_t k = 0; k < 3; ++k) {
+            edges.emplace_back(corner[i + k], corner[i + (k + 1) % 3]);
+            reversed.emplace_back(edges.back().second, edges.back().first);
+        }
+    std::ranges::sort(edges);
+    std::ranges::sort(reversed);
+    const bool twice = std::ranges::adjacent_find(edges) != edges.end();
+    uint64_t open = twice;
+    for (size_t i = 0; i < edges.size(); ++i)
+        open += edges[i] != reversed[i];
+    return open;
+}
+
+/// Positive when the faces look outwards.
+double enclosed_volume(const Chunk& chunk) {
+    double sum = 0;
+    for (uint32_t prim = 0; prim < chunk.size(); ++prim) {
+        const Triangle t = chunk.triangle(prim);
+        sum += glm::dot(t[0], glm::cross(t[1], t[2])) / 6;
+    }
+    return sum;
+}
+
+TEST(ClosedScenes, EveryEdgeIsMetOnceInEachDirection) {
+    for (const char* name : {"sphere-0", "sphere-1", "sphere-5", "knot"}) {
+        const Scene scene = make(name);
+        ASSERT_EQ(scene.soup.chunks.size(), 1u);
+        EXPECT_EQ(open_edges(scene.soup.chunks[0]), 0u) << name;
+        EXPECT_GT(enclosed_volume(scene.soup.chunks[0]), 0.1) << name << " is inside out";
+    }
+}
+
+TEST(ClosedScenes, MirrorsAreBallsOnAFloor) {
+    const Scene scene = make("mirrors");
+    for (size_t m = 1; m < scene.soup.chunks.size(); ++m)
+        EXPECT_EQ(open_edges(scene.soup.chunks[m]), 0u) << scene.meshes[m].name;
+}
+
+// --- names ------------------------------------------------------------------------------------
+
+TEST(CatalogNames, WrongOnesAreAnsweredWithOneSentence) {
+    const struct {
+        const char* name;
+        const char* message;
+    } cases[] = {
+        {"plnats", "no test scene is called \"plnats\"; did you mean \"plants\"?"},
+        {"terain-64", "no test scene is called \"terain-64\"; did you mean \"terrain-N\"?"},
+        {"terrain", "no test scene is called \"terrain\"; did you mean \"terrain-N\"?"},
+        {"knots", "no test scene is called \"knots\"; did you mean \"knot\"?"},
+        {"sphere-11", "test scene \"sphere-11\": the N of sphere-N must be from 0 to 10"},
+        {"plants-0", "test scene \"plants-0\": the N of plants-N must be from 1 to 200"},
+        {"soup-99999999999999999999999",
+         "test scene \"soup-99999999999999999999999\": the N of soup-N must be from 1 to 20000"},
+    };
+    for (const auto& c : cases) {
+        const Result<Scene> scene = make_test_scene(c.name);
+        ASSERT_FALSE(scene) << c.name;
+        EXPECT_EQ(scene.error().message, c.message);
+    }
+}
+
+TEST(CatalogNames, AreTellableFromFiles) {
+    for (const char* name : {"plants", "plants-3", "sphere-0", "sphere-99", "soup-007", "knot"})
+        EXPECT_TRUE(is_test_scene(name)) << name;
+    for (const char* name : {"", "-", "plants-", "plants-x", "plants-1.5", "plants--1", "sphere",
+                             "knot-1", "Plants", "plants.ply", "sphere-N", "box "})
+        EXPECT_FALSE(is_test_scene(name)) << name;
+}
+
+TEST(CatalogNames, UnpleasantOnesAreErrors) {
+    for (const std::string& name : {std::string(), std::string(10000, '7'), std::string("\0x", 2)})
+        EXPECT_FALSE(make_test_scene(name));
+}
+
+} // namespace
+} // namespace ovc
