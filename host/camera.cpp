@@ -122,7 +122,7 @@ Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height) {
 PointLight shoulder_light(const Camera& camera) {
     const ViewAxes axes = view_axes(camera);
     const double distance = glm::length(camera.target - camera.eye);
-    return {camera.eye + distance * (0.9 * axes.up - 0.6 * axes.right), kDefaultLightColor};
+    return {camera.eye + distance * (1.1 * axes.up - 0.9 * axes.right), kDefaultLightColor};
 }
 
 } // namespace ovc

@@ -47,7 +47,8 @@ Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height);
 /// A light above the camera's left shoulder, as far away as the eye is from the target.
 PointLight shoulder_light(const Camera& camera);
 
-/// What a light has that was only given a position: a white surface that faces it comes out at 0.9.
-inline constexpr vec3 kDefaultLightColor{2.83f};
+/// What a light has that was only given a position, a little warm: a white surface that faces it
+/// comes out at about 0.85.
+inline constexpr vec3 kDefaultLightColor{2.8f, 2.65f, 2.4f};
 
 } // namespace ovc

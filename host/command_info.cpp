@@ -23,8 +23,13 @@ static constexpr const char* kExamples = R"(Examples:
 static Json as_json(const dvec3& v) {
     return {v.x, v.y, v.z};
 }
+/// The shortest decimal that is this float: as a double 0.8f would be 0.800000011920929.
+static Json as_json(float value) {
+    return std::stod(fmt::format("{}", value));
+}
+
 static Json as_json(const vec3& v) {
-    return {v.x, v.y, v.z};
+    return {as_json(v.x), as_json(v.y), as_json(v.z)};
 }
 
 static Json materials_json(const Scene& scene) {
@@ -32,7 +37,7 @@ static Json materials_json(const Scene& scene) {
     for (const Material& material : scene.materials)
         list.push_back({{"name", material.name},
                         {"color", as_json(material.color)},
-                        {"mirror", material.mirror}});
+                        {"mirror", as_json(material.mirror)}});
     return list;
 }
 

@@ -9,7 +9,9 @@
 namespace ovc {
 
 /// The share of the background's light that arrives as ambient light; the rest is the lamps'.
-static constexpr float kAmbientShare = 0.45f;
+static constexpr float kSkyShare = 0.32f;
+/// Light from nowhere in particular, so that shadows in a room without a sky are not black.
+static constexpr float kAmbient = 0.04f;
 /// How much darker than the horizon the ground below it is taken to be.
 static constexpr float kGround = 0.35f;
 
@@ -67,7 +69,7 @@ vec3 ambient_light(const Background& background, const vec3& up, const SurfacePo
     const vec3 ground = kGround * background.horizon;
     const vec3 sky = 0.5f * (background.horizon + background.zenith);
     const float openness = 0.5f + 0.5f * glm::dot(surface.normal, up);
-    return kAmbientShare * surface.color * glm::mix(ground, sky, openness);
+    return surface.color * (kAmbient + kSkyShare * glm::mix(ground, sky, openness));
 }
 
 vec3 direct_light(const PointLight& light, const SurfacePoint& surface) {

@@ -74,7 +74,7 @@ TEST(WhittedBatched, MirrorsShowTheFloor) {
     WhittedOptions no_bounces;
     no_bounces.max_depth = 0;
     const vec4 plain = render(scene, towards(low_on_the_wall), no_bounces).pixels[0];
-    EXPECT_EQ(plain.r, plain.g);
+    EXPECT_LT(plain.r, plain.b); // grey, under a blue sky
 }
 
 TEST(WhittedBatched, ShowsTheBackgroundWhereNothingIs) {
