@@ -28,6 +28,13 @@ void add_box(Corners& out, dvec3 lo, dvec3 hi) {
         add_quad(out, corner(s[0]), corner(s[1]), corner(s[2]), corner(s[3]));
 }
 
+/// Low houses, and a tower here and there.
+uint32_t storeys_of(Random& random) {
+    const uint32_t low = 2 + random.below(5);
+    const uint32_t kind = random.below(3);
+    return low + kind * random.below(9);
+}
+
 /// A tower: a core of walls, panes set a little before it, posts over the full height, slabs
 /// between storeys.
 void add_house(std::array<Corners, kLooks>& town, dvec3 lo, dvec3 size, Random& random) {
@@ -71,8 +78,7 @@ Scene make_city() {
             for (int house = 0; house < 4; ++house) { // neighbours share a wall
                 const dvec3 lo(column * kBlock - half + 5 + 15 * (house % 2), 0,
                                row * kBlock - half + 5 + 15 * (house / 2));
-                const double height =
-                    kStorey * (2 + random.below(5) + random.below(3) * random.below(9));
+                const double height = kStorey * storeys_of(random);
                 add_house(town, lo, {15, height, 15}, random);
             }
         }

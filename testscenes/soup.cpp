@@ -15,8 +15,9 @@ Scene make_soup(uint32_t thousands) {
         for (size_t prim = first; prim < last; ++prim) {
             Random random(91, prim);
             const dvec3 centre{random.uniform(), random.uniform(), random.uniform()};
-            const dvec3 along = random.direction() * random.uniform(0.01, 0.1);
-            const dvec3 across = random.direction() * random.uniform(0.0005, 0.004);
+            const double length = random.uniform(0.01, 0.1), width = random.uniform(0.0005, 0.004);
+            const dvec3 along = length * random.direction();
+            const dvec3 across = width * random.direction();
             corners[prim * 3] = vec3(glm::clamp(centre - along, 0.0, 1.0));
             corners[prim * 3 + 1] = vec3(glm::clamp(centre + along, 0.0, 1.0));
             corners[prim * 3 + 2] = vec3(glm::clamp(centre + across, 0.0, 1.0));

@@ -32,9 +32,10 @@ void add_branch(Corners& out, dvec3 root, dvec3 outwards, double length, uint32_
             std::max(0.12 * length, 0.62 * length * (1.05 - s)) + 0.9 * length / sprays;
         const dvec3 base = at(s - 0.5 / sprays);
         for (double hand : {-1.0, 1.0}) {
-            const dvec3 along = outwards * random.uniform(0.5, 0.9) +
-                                side * (hand * random.uniform(0.5, 1.0)) -
-                                dvec3(0, random.uniform(0.05, 0.45), 0);
+            const double forwards = random.uniform(0.5, 0.9);
+            const double sidewards = hand * random.uniform(0.5, 1.0);
+            const double sinking = random.uniform(0.05, 0.45);
+            const dvec3 along = outwards * forwards + side * sidewards - dvec3(0, sinking, 0);
             const dvec3 up = dvec3(0, 1, 0) + 0.5 * outwards + 0.4 * random.in_ball();
             add_leaf(out, base, spray * 0.7 * glm::normalize(along), up,
                      spray * (0.32 + 0.5 / sprays));
@@ -61,8 +62,9 @@ Prototype make_spruce(Random random, double detail) {
         const double turn = random.uniform();
         for (uint32_t b = 0; b < branches; ++b) {
             const dvec2 d = circle(turn + (b + random.uniform(-0.3, 0.3)) / branches);
-            add_branch(tree[Part::Tinted], {0, y + random.uniform(-0.15, 0.15), 0}, {d.x, 0, d.y},
-                       length * random.uniform(0.75, 1.1),
+            const dvec3 root(0, y + random.uniform(-0.15, 0.15), 0);
+            const double reaches = length * random.uniform(0.75, 1.1);
+            add_branch(tree[Part::Tinted], root, {d.x, 0, d.y}, reaches,
                        std::max(1u, uint32_t(sprays * (1 - 0.7 * s))), random);
         }
     }

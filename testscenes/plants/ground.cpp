@@ -13,7 +13,7 @@ namespace ovc::plants {
 
 namespace {
 
-/// Maps [-1, 1] onto [-kReach, kReach]; the slope in the middle is 1/40 of the mean.
+/// Maps [-1, 1] onto [-kReach, kReach]; cells in the middle are the smallest.
 double spread(double s) {
     const double s2 = s * s;
     return kReach * s * (0.03 + 0.42 * s2 + 0.55 * s2 * s2);

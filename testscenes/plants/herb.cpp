@@ -15,6 +15,12 @@ dvec3 level(double turns) {
     return {c.x, 0, c.y};
 }
 
+/// A point beside the middle of a plant, at a distance between `from` and `to`.
+dvec3 beside(Random& random, double from, double to) {
+    const dvec3 outwards = level(random.uniform());
+    return outwards * random.uniform(from, to);
+}
+
 /// A blade that bends over towards `lean` in `segments` steps, the last one a point.
 void add_blade(Corners& out, dvec3 base, double height, dvec3 lean, double width, int segments) {
     const double lean_length = std::sqrt(glm::dot(lean, lean));
@@ -40,10 +46,11 @@ struct Tuft {
     double height;
     double bend; // as a share of the height
     double width;
+    uint32_t least_blades;
 };
 
 void add_tuft(Corners& out, const Tuft& tuft, double detail, Random& random) {
-    const uint32_t count = scaled(tuft.blades, detail, 10);
+    const uint32_t count = scaled(tuft.blades, detail, tuft.least_blades);
     const double width = tuft.width * std::min(4.0, std::sqrt(tuft.blades / count));
     const double radius = detail > 0.2 ? tuft.radius : 2 * tuft.radius; // hides gaps far away
     const int segments = detail > 0.6 ? 3 : detail > 0.2 ? 2 : 1;
@@ -51,8 +58,8 @@ void add_tuft(Corners& out, const Tuft& tuft, double detail, Random& random) {
         const double out_by = std::sqrt(random.uniform());
         const dvec3 outwards = level(random.uniform());
         const double height = tuft.height * random.uniform(0.55, 1.1);
-        const dvec3 lean = (outwards * (0.3 + out_by) + level(random.uniform()) * 0.5) *
-                           (height * tuft.bend * random.uniform(0.2, 1.0));
+        const dvec3 towards = outwards * (0.3 + out_by) + level(random.uniform()) * 0.5;
+        const dvec3 lean = towards * (height * tuft.bend * random.uniform(0.2, 1.0));
         const dvec3 base = outwards * (out_by * radius) - dvec3(0, 0.05, 0);
         add_blade(out, base, height, lean, width * random.uniform(0.7, 1.3), segments);
     }
@@ -80,15 +87,19 @@ void add_cattail(Corners& out, dvec3 foot, double length, double radius) {
 Prototype make_blossoms(Random& random, double detail, uint32_t petals, double size, double lift,
                         double height) {
     Prototype plant;
-    add_tuft(plant[Part::Wood], {9, 0.08, 0.5 * height, 0.7, 0.014}, detail, random);
+    const bool coarse = detail < 0.2;
+    add_tuft(plant[Part::Wood], {9, 0.08, 0.5 * height, 0.7, 0.014, 4}, detail, random);
     const uint32_t stems = 2 + random.below(4);
     for (uint32_t i = 0; i < stems; ++i) {
-        const dvec3 base = level(random.uniform()) * random.uniform(0.0, 0.1);
-        const dvec3 lean = level(random.uniform()) * random.uniform(0.02, 0.14);
+        const dvec3 base = beside(random, 0, 0.1);
+        const dvec3 lean = beside(random, 0.02, 0.14);
         const double tall = height * random.uniform(0.7, 1.15);
         add_blade(plant[Part::Wood], base, tall, lean, 0.008, 2);
         const dvec3 head = base + lean + dvec3(0, tall, 0);
-        add_petals(plant[Part::Tinted], head, size, petals, lift, 0.7, random);
+        add_petals(plant[Part::Tinted], head, size, coarse ? 5 : petals, lift, coarse ? 1.1 : 0.7,
+                   random);
+        if (coarse)
+            continue;
         add_petals(plant[Part::Accent], head + dvec3(0, 0.1 * size, 0), 0.32 * size, 4, 0.6, 0.9,
                    random);
     }
@@ -99,17 +110,18 @@ Prototype make_blossoms(Random& random, double detail, uint32_t petals, double s
 
 Prototype make_grass(Random random, double detail) {
     Prototype tuft;
-    add_tuft(tuft[Part::Tinted], {34, 0.17, random.uniform(0.2, 0.42), 0.8, 0.011}, detail, random);
+    add_tuft(tuft[Part::Tinted], {34, 0.17, random.uniform(0.2, 0.42), 0.8, 0.011, 10}, detail,
+             random);
     return tuft;
 }
 
 Prototype make_reed(Random random, double detail) {
     Prototype reed;
-    add_tuft(reed[Part::Tinted], {22, 0.3, random.uniform(1.1, 1.7), 0.3, 0.03}, detail, random);
+    add_tuft(reed[Part::Tinted], {22, 0.3, random.uniform(1.1, 1.7), 0.3, 0.03, 8}, detail, random);
     const uint32_t cattails = random.below(3);
     for (uint32_t i = 0; i < cattails; ++i) {
-        const dvec3 base = level(random.uniform()) * random.uniform(0.0, 0.25);
-        const dvec3 lean = level(random.uniform()) * random.uniform(0.0, 0.12);
+        const dvec3 base = beside(random, 0, 0.25);
+        const dvec3 lean = beside(random, 0, 0.12);
         const double tall = random.uniform(1.2, 1.8);
         add_blade(reed[Part::Tinted], base, tall + 0.3, lean, 0.018, 2);
         add_cattail(reed[Part::Accent], base + lean * 0.7 + dvec3(0, tall, 0), 0.15, 0.014);
@@ -129,8 +141,7 @@ Prototype make_lily(Random random, double detail) {
     Prototype lily;
     const uint32_t pads = 3 + random.below(4);
     for (uint32_t p = 0; p < pads; ++p) {
-        const dvec3 centre =
-            level(random.uniform()) * random.uniform(0.1, 0.6) + dvec3(0, 0.012 + 0.004 * p, 0);
+        const dvec3 centre = beside(random, 0.1, 0.6) + dvec3(0, 0.012 + 0.004 * p, 0);
         const double radius = random.uniform(0.1, 0.2), turn = random.uniform();
         const uint32_t sides = scaled(14, detail, 7);
         for (uint32_t i = 0; i + 1 < sides; ++i) { // one sector stays open: the notch

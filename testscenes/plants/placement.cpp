@@ -167,7 +167,8 @@ Plant make_plant(const Choice& choice, dvec2 at, Random& random) {
     plant.turn = random.uniform();
     plant.at = {at.x, choice.kind == Kind::Lily ? 0.0 : ground_height(at) - 0.02, at.y};
     if (choice.kind == Kind::Flower) // flowers of one colour grow together
-        plant.tint = uint8_t(4.0 * std::clamp(0.5 + 0.9 * noise(at / 7.0, 60), 0.0, 0.999));
+        plant.tint = uint8_t(double(kind.tints.size()) *
+                             std::clamp(0.5 + 0.9 * noise(at / 7.0, 60), 0.0, 0.999));
     return plant;
 }
 

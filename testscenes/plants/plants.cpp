@@ -155,11 +155,11 @@ Scene make_plants(uint32_t size) {
     for (const MeshPlan& mesh : plan_meshes(plants, nursery))
         add_mesh(scene, mesh.name, mesh.color, 0, expand(mesh));
 
-    scene.lights.push_back({dvec3(5600, 3500, 4600), vec3(4.6f, 3.6f, 2.4f)});
+    scene.lights.push_back({dvec3(6300, 3000, 3600), vec3(5.6f, 4.2f, 2.6f)});
     const double eye_height = ground_height(kViewpoint) + 2.3;
     scene.camera = Camera{dvec3(kViewpoint.x, eye_height, kViewpoint.y),
                           dvec3(-9, eye_height - 2.6, -40), dvec3(0, 1, 0), 42};
-    scene.background = {vec3(0.82f, 0.75f, 0.65f), vec3(0.0f, 0.16f, 0.70f)};
+    scene.background = {vec3(0.66f, 0.72f, 0.78f), vec3(0.0f, 0.13f, 0.60f)};
     return scene;
 }
 

@@ -45,13 +45,17 @@ void add_foliage(Corners& out, const std::vector<Knot>& knots, const Crown& crow
     }
 }
 
-Prototype make_tree(const Crown& crown, const Foliage& foliage, double tip_radius, Random random,
-                    double detail) {
-    Prototype tree;
-    const std::vector<Knot> knots = grow(crown, tip_radius, random);
+struct Tree {
+    Prototype prototype;
+    std::vector<Knot> knots;
+};
+
+Tree make_tree(const Crown& crown, const Foliage& foliage, double tip_radius, Random& random,
+               double detail) {
+    Tree tree{{}, grow(crown, tip_radius, random)};
     const double thinnest = detail > 0.5 ? 0 : detail > 0.1 ? 1.5 * tip_radius : 4 * tip_radius;
-    add_wood(tree[Part::Wood], knots, thinnest, detail);
-    add_foliage(tree[Part::Tinted], knots, crown, foliage, detail, random);
+    add_wood(tree.prototype[Part::Wood], tree.knots, thinnest, detail);
+    add_foliage(tree.prototype[Part::Tinted], tree.knots, crown, foliage, detail, random);
     return tree;
 }
 
@@ -98,29 +102,27 @@ void add_leaf(Corners& out, dvec3 base, dvec3 along, dvec3 normal, double width)
 Prototype make_oak(Random random, double detail) {
     const double height = random.uniform(8.5, 12);
     const Crown crown{height * 0.2, height, height * random.uniform(0.38, 0.46), 0.42, 0.55, 620};
-    return make_tree(crown, {16000, 0.2, 0.62, 0.55, 0.035}, 0.013, random, detail);
+    return make_tree(crown, {16000, 0.2, 0.62, 0.55, 0.035}, 0.013, random, detail).prototype;
 }
 
 Prototype make_birch(Random random, double detail) {
     const double height = random.uniform(9, 13);
     const Crown crown{height * 0.22, height, height * random.uniform(0.17, 0.22), 0.35, 0.2, 420};
-    return make_tree(crown, {9000, 0.15, 0.7, 0.4, 0.03}, 0.007, random, detail);
+    return make_tree(crown, {9000, 0.15, 0.7, 0.4, 0.03}, 0.007, random, detail).prototype;
 }
 
 Prototype make_willow(Random random, double detail) {
     const double height = random.uniform(7, 9);
     const Crown crown{height * 0.35, height, height * 0.46, 0.5, 0.6, 260};
-    Prototype tree = make_tree(crown, {2500, 0.2, 0.3, 0.5, 0.03}, 0.016, random, detail);
-    Random same = random; // the same wood again: grow() starts from this state
-    const std::vector<Knot> knots = grow(crown, 0.016, same);
-    add_hanging(tree[Part::Tinted], knots, detail, same);
-    return tree;
+    Tree tree = make_tree(crown, {2500, 0.2, 0.3, 0.5, 0.03}, 0.016, random, detail);
+    add_hanging(tree.prototype[Part::Tinted], tree.knots, detail, random);
+    return tree.prototype;
 }
 
 Prototype make_bush(Random random, double detail) {
     const double height = random.uniform(1.3, 2.4);
     const Crown crown{0.15, height, height * random.uniform(0.55, 0.8), 0.5, 0.5, 160};
-    return make_tree(crown, {3600, 0.11, 0.6, 0.2, 0.03}, 0.006, random, detail);
+    return make_tree(crown, {3600, 0.11, 0.6, 0.2, 0.03}, 0.006, random, detail).prototype;
 }
 
 } // namespace ovc::plants
