@@ -9,10 +9,11 @@
 
 namespace ovc {
 
-/// Per axis 0, or the middle of `bounds` where that is farther from 0 than `far` times the longest
-/// extent. The middle is rounded to 1/256 of the extent: coordinates that are themselves short
-/// binary fractions keep exact offsets, and reading what was written from these offsets finds the
-/// same origin. One origin serves a whole file: two would tear meshes that share corners apart.
+/// Per axis 0, or the middle of `bounds` where that is farther from 0 than `far` (1 or more) times
+/// the longest extent: not nearer, for coordinates near 0 may be finer than the bounds tell. The
+/// middle is rounded to 1/256 of the extent, so that coordinates which are short binary fractions
+/// keep exact offsets. One origin serves a whole file: with two, meshes that share corners would
+/// come apart.
 inline dvec3 chunk_origin(const Box& bounds, double far) {
     const double extent = bounds.empty() ? 0 : max_component(bounds.extent());
     if (!(extent < 1e300))

@@ -184,7 +184,7 @@ private:
                 are_floats = are_floats && dvec3(vec3(v)) == v;
             }
             if (!are_floats)
-                origin_ = chunk_origin(bounds, /* far= */ 0);
+                origin_ = chunk_origin(bounds, /* far= */ 1);
         }
         vertices_ready_ = true;
     }

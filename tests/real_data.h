@@ -36,7 +36,8 @@ inline std::optional<std::filesystem::path> real_data() {
     const int lock = open((folder.string() + ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
     if (lock < 0 || flock(lock, LOCK_EX) != 0)
         return std::nullopt;
-    const std::string command = "'" + unpack.string() + "' '" + folder.string() + "' >&2";
+    std::string command = unpack.string();
+    command.append(" ").append(folder.string()).append(" >&2");
     const bool unpacked = fs::exists(folder / ".unpacked") || std::system(command.c_str()) == 0;
     close(lock);
     return unpacked ? std::optional(folder) : std::nullopt;
