@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// A binary bounding volume hierarchy over boxes, one box a leaf. Collapsed to four children when
+// packed (page.h). Based on: Wald 2007, "On fast Construction of SAH-based Bounding Volume
+// Hierarchies" (binning).
+#pragma once
+
+#include "core/box.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+/// A subtree over n boxes takes 2 n - 1 nodes in a row: its root, then the subtree of `left`, then
+/// that of `right`.
+struct BvhNode {
+    Boxf box;
+    uint32_t right = 0; // inner: index of the right child; the left one is the next node
+    uint32_t item = 0;  // leaf: index of the box
+    bool is_leaf() const { return right == 0; }
+};
+
+/// The hierarchy over `boxes` (none of them empty), root first; empty for none. Deterministic. At
+/// most kMaxBvhDepth deep.
+std::vector<BvhNode> build_bvh(std::span<const Boxf> boxes);
+
+/// Inner levels of any tree of build_bvh: where the heuristic would go deeper, halves by count keep
+/// to it.
+inline constexpr int kMaxBvhDepth = 48;
+
+} // namespace ovc

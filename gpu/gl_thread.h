@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// GlThread: the one thread on which a device's context is current. The host's own context and
+// threads are left alone.
+#pragma once
+
+#include "gpu/egl_context.h"
+#include "gpu/kernel.h"
+
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace ovc {
+
+/// What lives on the thread: the context, and the programs compiled in it, which go first.
+struct GlState {
+    EglContext context;
+    KernelCache kernels;
+};
+
+class GlThread {
+public:
+    /// Starts the thread and opens the device there.
+    static Result<std::unique_ptr<GlThread>> start(const std::string& device, LogSink log);
+    ~GlThread();
+    GlThread(const GlThread&) = delete;
+
+    /// Runs work(GlState&) there and waits for it; what it throws is thrown here. Callers take
+    /// turns.
+    template <class Work>
+    auto run(Work&& work) {
+        using Value = std::invoke_result_t<Work, GlState&>;
+        if constexpr (std::is_void_v<Value>) {
+            execute([&](GlState& state) { work(state); });
+        } else {
+            std::optional<Value> value;
+            execute([&](GlState& state) { value.emplace(work(state)); });
+            return std::move(*value);
+        }
+    }
+
+    const DeviceInfo& info() const { return info_; }
+
+private:
+    GlThread() = default;
+    void execute(const std::function<void(GlState&)>& work);
+    void serve(const std::string& device, const LogSink& log);
+
+    std::mutex turn_; // one caller at a time
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    const std::function<void(GlState&)>* work_ = nullptr;
+    std::exception_ptr thrown_;
+    std::optional<Result<Done>> started_;
+    bool done_ = false;
+    bool stop_ = false;
+    DeviceInfo info_;
+    std::thread thread_;
+};
+
+} // namespace ovc

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kernel: include expansion, compilation, logs that name the file.
+#include "gpu/kernel.h"
+
+#include "shaders/sources.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <regex>
+
+namespace ovc {
+namespace {
+
+const ShaderSource* find_source(std::string_view name) {
+    for (const ShaderSource& source : shader_sources())
+        if (source.name == name)
+            return &source;
+    return nullptr;
+}
+
+/// Appends the file line by line; returns the name of a file that is missing, or nothing.
+std::string append_expanded(std::string_view name, const std::string& defines,
+                            std::vector<std::string>& files, std::string& out) {
+    const ShaderSource* source = find_source(name);
+    if (!source)
+        return std::string(name);
+    const size_t number = files.size();
+    files.emplace_back(name);
+    int line = 0;
+    for (size_t at = 0; at < source->text.size();) {
+        const size_t end = std::min(source->text.find('\n', at), source->text.size());
+        const std::string_view text = source->text.substr(at, end - at);
+        at = end + 1;
+        ++line;
+        constexpr std::string_view include = "#include \"";
+        if (text.starts_with(include)) {
+            const std::string_view rest = text.substr(include.size());
+            out += fmt::format("#line 1 {}\n", files.size());
+            if (std::string missing =
+                    append_expanded(rest.substr(0, rest.find('"')), {}, files, out);
+                !missing.empty())
+                return missing;
+            out += fmt::format("#line {} {}\n", line + 1, number);
+            continue;
+        }
+        out += text;
+        out += '\n';
+        if (text.starts_with("#version"))
+            out += fmt::format("{}#line {} {}\n", defines, line + 1, number);
+    }
+    return {};
+}
+
+std::string info_log(GLuint id, bool program) {
+    GLint length = 0;
+    (program ? glGetProgramiv : glGetShaderiv)(id, GL_INFO_LOG_LENGTH, &length);
+    std::string log(size_t(std::max(length, 1)), '\0');
+    (program ? glGetProgramInfoLog : glGetShaderInfoLog)(id, length, nullptr, log.data());
+    log.resize(std::min(log.find('\0'), log.size()));
+    return log;
+}
+
+Result<gl::Shader> compile(GLenum stage, std::string_view name, const std::string& defines) {
+    std::vector<std::string> files;
+    const Result<std::string> source = expand_shader(name, defines, files);
+    if (!source)
+        return source.error();
+    gl::Shader shader(glCreateShader(stage));
+    const char* text = source->c_str();
+    glShaderSource(shader.id(), 1, &text, nullptr);
+    glCompileShader(shader.id());
+    GLint ok = GL_FALSE;
+    glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &ok);
+    if (!ok)
+        return Error{fmt::format("the driver does not compile {}: {}", name,
+                                 rewrite_log(info_log(shader.id(), /* program= */ false), files))};
+    return shader;
+}
+
+Result<gl::Program> link(const ShaderConfig& config) {
+    const std::string defines = config.defines();
+    Result<gl::Shader> vertex = compile(GL_VERTEX_SHADER, "fullscreen.vert.glsl", defines);
+    if (!vertex)
+        return vertex.error();
+    Result<gl::Shader> fragment = compile(GL_FRAGMENT_SHADER, "trace.frag.glsl", defines);
+    if (!fragment)
+        return fragment.error();
+    gl::Program program(glCreateProgram());
+    glAttachShader(program.id(), vertex->id());
+    glAttachShader(program.id(), fragment->id());
+    glLinkProgram(program.id());
+    GLint ok = GL_FALSE;
+    glGetProgramiv(program.id(), GL_LINK_STATUS, &ok);
+    if (!ok)
+        return Error{"the driver does not link the kernel: " + info_log(program.id(), true)};
+    return program;
+}
+
+} // namespace
+
+std::string ShaderConfig::defines() const {
+    return fmt::format("#define OVC_ANY_HIT {:d}\n"
+                       "#define OVC_STACK_DEPTH {}\n"
+                       "#define OVC_STACK_REGISTERS {:d}\n"
+                       "#define OVC_PAGE_IMAGE {:d}\n",
+                       any_hit, stack_depth, stack_registers, page_image);
+}
+
+Result<std::string> expand_shader(std::string_view name, const std::string& defines,
+                                  std::vector<std::string>& files) {
+    std::string out;
+    const std::string missing = append_expanded(name, defines, files, out);
+    if (!missing.empty())
+        return Error{fmt::format("no shader source is called '{}'", missing)};
+    return out;
+}
+
+std::string rewrite_log(const std::string& log, const std::vector<std::string>& files) {
+    static const std::regex place(R"((\d+)[:(](\d+)\)?)", std::regex::optimize);
+    std::string out;
+    for (size_t at = 0; at < log.size();) {
+        const size_t end = std::min(log.find('\n', at), log.size());
+        const std::string line = log.substr(at, end - at);
+        at = end + 1;
+        std::smatch match;
+        const bool named = std::regex_search(line, match, place) && match.position() == 0 &&
+                           match[1].length() < 6 && size_t(std::stoi(match[1])) < files.size();
+        out +=
+            named ? files[size_t(std::stoi(match[1]))] + ":" + match[2].str() + match.suffix().str()
+                  : line;
+        out += '\n';
+    }
+    return out;
+}
+
+Result<GLuint> KernelCache::program(const ShaderConfig& config) {
+    for (const Compiled& compiled : programs_)
+        if (compiled.config == config)
+            return compiled.program.id();
+    Result<gl::Program> program = link(config);
+    if (!program)
+        return program.error();
+    programs_.push_back({config, std::move(*program)});
+    return programs_.back().program.id();
+}
+
+} // namespace ovc

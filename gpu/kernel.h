@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kernel: a ShaderConfig made into a program. Programs are kept per configuration.
+#pragma once
+
+#include "core/result.h"
+#include "gpu/gl_object.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ovc {
+
+/// Every switch of shaders/config.glsl, by value. Derived from what the query and the pages need,
+/// and from the driver.
+struct ShaderConfig {
+    bool any_hit = false;
+    uint32_t stack_depth = 16;
+    bool stack_registers = true;
+    bool page_image = true;
+
+    bool operator==(const ShaderConfig&) const = default;
+    /// All defines, one a line, in fixed order.
+    std::string defines() const;
+};
+
+/// A source with its #include lines replaced by the embedded files, and `defines` after the
+/// #version line. Lines keep their numbers by #line, whose second number counts the files in
+/// `files`. Error: a file that is not there.
+Result<std::string> expand_shader(std::string_view name, const std::string& defines,
+                                  std::vector<std::string>& files);
+
+/// A driver's log with "2:57" or "2(57)" at the start of lines turned into "traverse.glsl:57".
+std::string rewrite_log(const std::string& log, const std::vector<std::string>& files);
+
+class KernelCache {
+public:
+    /// The program for `config`, compiled on first use. The context must be current. Error: the
+    /// driver's log.
+    Result<GLuint> program(const ShaderConfig& config);
+
+private:
+    struct Compiled {
+        ShaderConfig config;
+        gl::Program program;
+    };
+    std::vector<Compiled> programs_;
+};
+
+} // namespace ovc

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ledger: how many bytes of GL buffers and textures are alive, and the most there ever were.
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+
+namespace ovc {
+
+/// The budget in books: every GL object with storage enters its bytes and takes them out again.
+struct Ledger {
+    uint64_t budget = 0;
+    uint64_t in_use = 0;
+    uint64_t peak = 0;
+
+    void add(uint64_t bytes) {
+        in_use += bytes;
+        peak = std::max(peak, in_use);
+        assert(in_use <= budget);
+    }
+    void remove(uint64_t bytes) {
+        assert(bytes <= in_use);
+        in_use -= bytes;
+    }
+};
+
+} // namespace ovc

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Page: the BVH of one leaf as texels, in the layout of shaders/layout.h. The unit in which level 2
+// lives in GPU memory.
+#pragma once
+
+#include "core/soup.h"
+#include "kdtree/partition.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace ovc {
+
+struct Page {
+    std::vector<uvec4> texels;
+    uint32_t depth = 0; // stack words a traversal needs
+
+    uint64_t bytes() const { return texels.size() * sizeof(uvec4); }
+};
+
+/// Builds and packs the BVH of a leaf. Triangle i of the page is leaf.triangles[i].
+Page build_page(const Soup& soup, const Leaf& leaf);
+
+} // namespace ovc

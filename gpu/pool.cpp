@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pool: eviction by least recent use among neighbours, upload.
+#include "gpu/pool.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+namespace ovc {
+
+Residency::Residency(uint64_t bytes, uint64_t alignment, size_t leaves)
+    : bytes_(bytes), alignment_(alignment), slots_(leaves, Slot{0, 0}), last_use_(leaves, 0) {}
+
+/// A run of neighbouring pages and the gaps around them that is wide enough. Of all such runs the
+/// one whose most recently used page was used longest ago; a gap that is wide enough by itself
+/// evicts nobody.
+Residency::Range Residency::cheapest_range(uint64_t bytes) const {
+    const auto gap_begin = [&](size_t i) {
+        return i == 0 ? 0 : slots_[order_[i - 1]].offset + slots_[order_[i - 1]].bytes;
+    };
+    const auto gap_end = [&](size_t i) {
+        return i == order_.size() ? bytes_ : slots_[order_[i]].offset;
+    };
+    Range best{0, order_.size(), 0};
+    uint64_t best_use = std::numeric_limits<uint64_t>::max();
+    for (size_t first = 0; first <= order_.size(); ++first) {
+        const uint64_t begin = gap_begin(first);
+        uint64_t use = 0;
+        for (size_t last = first; last <= order_.size(); ++last) {
+            if (last > first)
+                use = std::max(use, last_use_[order_[last - 1]]);
+            if (use >= best_use)
+                break;
+            if (gap_end(last) - begin >= bytes) {
+                best = {first, last, begin};
+                best_use = use;
+                break;
+            }
+        }
+    }
+    return best;
+}
+
+Slot Residency::admit(uint32_t leaf, uint64_t bytes) {
+    assert(!resident(leaf));
+    bytes = (bytes + alignment_ - 1) / alignment_ * alignment_;
+    assert(bytes <= bytes_);
+    const Range range = cheapest_range(bytes);
+    for (size_t i = range.first; i < range.last; ++i)
+        slots_[order_[i]] = {0, 0};
+    const auto at = order_.erase(order_.begin() + ptrdiff_t(range.first),
+                                 order_.begin() + ptrdiff_t(range.last));
+    order_.insert(at, leaf);
+    slots_[leaf] = {range.offset, bytes};
+    touch(leaf);
+    return slots_[leaf];
+}
+
+Slot Pool::bring(uint32_t leaf, const Page& page, uint64_t& moved) {
+    moved = 0;
+    if (residency_.resident(leaf)) {
+        residency_.touch(leaf);
+        return residency_.slot(leaf);
+    }
+    const Slot slot = residency_.admit(leaf, page.bytes());
+    glNamedBufferSubData(buffer_.id(), GLintptr(slot.offset), GLsizeiptr(page.bytes()),
+                         page.texels.data());
+    moved = page.bytes();
+    return slot;
+}
+
+} // namespace ovc

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pool: the fixed number of GPU bytes that pages live in. One buffer, allocated once, filled by
+// sub-buffer updates.
+#pragma once
+
+#include "gpu/gl_object.h"
+#include "gpu/page.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace ovc {
+
+/// Where a page lies in the pool.
+struct Slot {
+    uint64_t offset;
+    uint64_t bytes;
+};
+
+/// Book-keeping of the pool, apart from GL: which leaf's page lies where, and which go when room is
+/// needed.
+class Residency {
+public:
+    Residency(uint64_t bytes, uint64_t alignment, size_t leaves);
+
+    bool resident(uint32_t leaf) const { return slots_[leaf].bytes != 0; }
+    const Slot& slot(uint32_t leaf) const { return slots_[leaf]; }
+
+    /// Marks the leaf as used now.
+    void touch(uint32_t leaf) { last_use_[leaf] = ++clock_; }
+
+    /// Finds room for the leaf's page, which must fit the pool, and evicts what has to go: the
+    /// least recently used pages that together with the gaps between them make enough room.
+    Slot admit(uint32_t leaf, uint64_t bytes);
+
+private:
+    struct Range {
+        size_t first; // into order_: pages to evict
+        size_t last;
+        uint64_t offset;
+    };
+    Range cheapest_range(uint64_t bytes) const;
+
+    uint64_t bytes_;
+    uint64_t alignment_;
+    uint64_t clock_ = 0;
+    std::vector<Slot> slots_;
+    std::vector<uint64_t> last_use_;
+    std::vector<uint32_t> order_; // resident leaves by offset
+};
+
+/// The buffer and its books. Needs the context current.
+class Pool {
+public:
+    Pool(Ledger& ledger, uint64_t bytes, uint64_t alignment, size_t leaves)
+        : buffer_(ledger, bytes, "page pool"), residency_(bytes, alignment, leaves) {}
+
+    bool resident(uint32_t leaf) const { return residency_.resident(leaf); }
+
+    /// Makes the page resident, moving it in if it was not; returns where it is. moved: bytes
+    /// uploaded now.
+    Slot bring(uint32_t leaf, const Page& page, uint64_t& moved);
+
+    const gl::Buffer& buffer() const { return buffer_; }
+
+private:
+    gl::Buffer buffer_;
+    Residency residency_;
+};
+
+} // namespace ovc

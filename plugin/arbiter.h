@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The arbiter: a ray that float32 could not decide, traced in double through level 1 and the pages
+// in host memory. Equals the CPU KDT of kdtree/traverse.h bit for bit, because both test with
+// core/triangle.h every triangle that could be hit.
+#pragma once
+
+#include "core/triangle.h"
+#include "gpu/page.h"
+#include "gpu/page_walk.h"
+#include "kdtree/partition.h"
+#include "kdtree/walk.h"
+
+#include <span>
+
+namespace ovc {
+
+/// The nearest hit, or with kAnyHit some hit, of a valid ray. pages[i] belongs to level1.leaves[i].
+template <bool kAnyHit>
+Hit arbitrate(const Soup& soup, const Level1& level1, std::span<const Page> pages, PreparedRay p) {
+    Hit best;
+    const auto limit = [&] { return p.ray.t_max; };
+    walk(
+        level1.nodes, level1.bounds, p,
+        [&](const KdNode& cell, double, double) {
+            for (uint32_t l = cell.first(); l < cell.first() + cell.count(); ++l) {
+                const Leaf& leaf = level1.leaves[l];
+                const auto test = [&](uint32_t i) {
+                    const TriangleId id = leaf.triangles[i];
+                    const auto hit = intersect(p, soup.triangle(id), id);
+                    if (!hit || !hit->nearer_than(best))
+                        return false;
+                    best = *hit;
+                    p.ray.t_max = best.t;
+                    return kAnyHit;
+                };
+                if (walk_page(pages[l], leaf, p, p.ray.t_min, test, limit))
+                    return true;
+            }
+            return false;
+        },
+        limit);
+    return best;
+}
+
+} // namespace ovc

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Devices: listing, opening, describing.
+#include "plugin/device.h"
+
+#include "plugin/handles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <thread>
+
+namespace ovc {
+namespace {
+
+thread_local Messages no_device;
+
+template <size_t N>
+void copy(char (&to)[N], const std::string& from) {
+    const size_t length = std::min(from.size(), N - 1);
+    std::memcpy(to, from.data(), length);
+    to[length] = '\0';
+}
+
+void check_size(const char* name, size_t found, size_t expected) {
+    if (found != expected)
+        throw Failure{OVC_ERROR_INVALID_ARGUMENT,
+                      fmt::format("{}.struct_size is {}, expected sizeof({}) = {}", name, found,
+                                  name, expected)};
+}
+
+void fill(ovc_device_info& to, const DeviceInfo& from) {
+    check_size("ovc_device_info", to.struct_size, sizeof(ovc_device_info));
+    copy(to.renderer, from.renderer);
+    copy(to.vendor, from.vendor);
+    copy(to.version, from.version);
+    to.is_software = from.is_software;
+    to.max_texture_size = from.max_texture_size;
+    to.max_buffer_texels = from.max_buffer_texels;
+    to.memory_bytes = from.memory_bytes;
+    to.default_budget_bytes = from.default_budget_bytes();
+}
+
+/// EGL's idea of a current context is per thread: a thread of our own leaves the host's alone.
+Result<std::vector<DeviceInfo>> list_on_own_thread() {
+    Result<std::vector<DeviceInfo>> found = Error{};
+    std::thread([&] { found = EglContext::list(); }).join();
+    return found;
+}
+
+} // namespace
+
+bool is_device(ovc_device device) {
+    return device && device->magic == kDeviceMagic;
+}
+
+ovc_result fail_without_device(ovc_result code, const char* message) {
+    no_device.set(message);
+    return code;
+}
+
+const char* last_error(ovc_device device) {
+    return is_device(device) ? device->messages.get() : no_device.get();
+}
+
+ovc_result list_devices(ovc_device_info* infos, uint32_t capacity, uint32_t* count) {
+    return guard(no_device, [&] {
+        if (!count || (capacity && !infos))
+            throw Failure{OVC_ERROR_INVALID_ARGUMENT, "list_devices: infos or count is NULL"};
+        const Result<std::vector<DeviceInfo>> found = list_on_own_thread();
+        if (!found)
+            throw Failure{OVC_ERROR_NO_DEVICE, found.error().message};
+        for (uint32_t i = 0; i < std::min<size_t>(capacity, found->size()); ++i)
+            fill(infos[i], (*found)[i]);
+        *count = uint32_t(found->size());
+    });
+}
+
+ovc_result create_device(const ovc_device_config* config, ovc_device* device) {
+    return guard(no_device, [&] {
+        if (!device)
+            throw Failure{OVC_ERROR_INVALID_ARGUMENT, "create_device: device is NULL"};
+        *device = nullptr;
+        auto created = std::make_unique<ovc_device_t>();
+        std::string name;
+        if (config) {
+            check_size("ovc_device_config", config->struct_size, sizeof(ovc_device_config));
+            name = config->name ? config->name : "";
+            if (config->log)
+                created->log = [log = config->log,
+                                user = config->log_user](LogLevel level, const std::string& text) {
+                    log(user, ovc_log_level(level), text.c_str());
+                };
+        }
+        Result<std::unique_ptr<GlThread>> gl = GlThread::start(name, created->log);
+        if (!gl)
+            throw Failure{OVC_ERROR_NO_DEVICE, gl.error().message};
+        created->gl = std::move(*gl);
+        *device = created.release();
+    });
+}
+
+ovc_result describe_device(ovc_device device, ovc_device_info* info) {
+    if (!is_device(device))
+        return fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
+                                   "describe_device: device is NULL or not a device");
+    return guard(device->messages, [&] {
+        if (!info)
+            throw Failure{OVC_ERROR_INVALID_ARGUMENT, "describe_device: info is NULL"};
+        fill(*info, device->gl->info());
+    });
+}
+
+void destroy_device(ovc_device device) {
+    if (!is_device(device))
+        return;
+    if (device->scenes > 0) {
+        say(device->log, LogLevel::Error,
+            fmt::format("destroy_device: {} scenes are still alive; the device stays",
+                        device->scenes.load()));
+        return;
+    }
+    device->magic = 0;
+    delete device;
+}
+
+} // namespace ovc

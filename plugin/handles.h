@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the opaque handles of overcast.h point to, and how failures become result codes.
+#pragma once
+
+#include "core/log.h"
+#include "core/soup.h"
+#include "gpu/gl_thread.h"
+#include "plugin/overcast.h"
+#include "plugin/two_level.h"
+
+#include <atomic>
+#include <cfenv>
+#include <exception>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <string>
+#include <thread>
+
+namespace ovc {
+
+/// A failure on its way to the ABI; thrown and caught inside the plugin only.
+struct Failure {
+    ovc_result code;
+    std::string message;
+};
+
+/// The last message per thread.
+class Messages {
+public:
+    void set(std::string message) {
+        const std::lock_guard lock(mutex_);
+        messages_[std::this_thread::get_id()] = std::move(message);
+    }
+    const char* get() {
+        const std::lock_guard lock(mutex_);
+        return messages_[std::this_thread::get_id()].c_str();
+    }
+
+private:
+    std::mutex mutex_;
+    std::map<std::thread::id, std::string> messages_;
+};
+
+inline constexpr uint32_t kDeviceMagic = 0x6f766344;
+inline constexpr uint32_t kSceneMagic = 0x6f766353;
+
+} // namespace ovc
+
+struct ovc_device_t {
+    uint32_t magic = ovc::kDeviceMagic;
+    ovc::Messages messages;
+    ovc::LogSink log;
+    std::unique_ptr<ovc::GlThread> gl;
+    std::atomic<int> scenes{0};
+};
+
+struct ovc_scene_t {
+    uint32_t magic = ovc::kSceneMagic;
+    ovc_device device = nullptr;
+    std::mutex turn; // calls on one scene wait here
+    ovc::TwoLevelOptions options;
+    ovc::Soup soup;
+    std::unique_ptr<ovc::TwoLevel> two_level; // set by commit
+};
+
+namespace ovc {
+
+/// The thread's floating-point mode as the host set it, replaced by the default while this lives:
+/// proofs about rounding hold in no other.
+class DefaultFloatMode {
+public:
+    DefaultFloatMode() {
+        std::fegetenv(&host_);
+        std::fesetenv(FE_DFL_ENV);
+    }
+    ~DefaultFloatMode() { std::fesetenv(&host_); }
+    DefaultFloatMode(const DefaultFloatMode&) = delete;
+
+private:
+    std::fenv_t host_;
+};
+
+/// Runs body; whatever it throws becomes a code, and a message in `messages`.
+template <class Body>
+ovc_result guard(Messages& messages, Body&& body) {
+    try {
+        const DefaultFloatMode mode;
+        body();
+        return OVC_OK;
+    } catch (const Failure& failure) {
+        messages.set(failure.message);
+        return failure.code;
+    } catch (const std::bad_alloc&) {
+        messages.set("out of host memory");
+        return OVC_ERROR_OUT_OF_MEMORY;
+    } catch (const std::exception& e) {
+        messages.set(std::string("internal error: ") + e.what());
+        return OVC_ERROR_INTERNAL;
+    } catch (...) {
+        messages.set("internal error");
+        return OVC_ERROR_INTERNAL;
+    }
+}
+
+} // namespace ovc

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes: meshes in, commit, rays, statistics. Arguments are checked here; what is below trusts
+// them.
+#include "plugin/scene.h"
+
+#include "plugin/device.h"
+#include "plugin/handles.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <cstring>
+
+namespace ovc {
+namespace {
+
+// The records of the ABI are the records of core, byte for byte: batches cross without a copy.
+static_assert(sizeof(ovc_ray) == sizeof(Ray) && offsetof(ovc_ray, t_min) == offsetof(Ray, t_min) &&
+              offsetof(ovc_ray, dir) == offsetof(Ray, dir) &&
+              offsetof(ovc_ray, t_max) == offsetof(Ray, t_max));
+static_assert(sizeof(ovc_hit) == sizeof(Hit) && offsetof(ovc_hit, u) == offsetof(Hit, u) &&
+              offsetof(ovc_hit, mesh) == offsetof(Hit, id));
+static_assert(sizeof(ovc_triangle) == sizeof(TriangleId) && OVC_NONE == kNone);
+
+[[noreturn]] void invalid(std::string message) {
+    throw Failure{OVC_ERROR_INVALID_ARGUMENT, std::move(message)};
+}
+
+/// body(scene) with the scene's turn taken.
+template <class Body>
+ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
+    if (!scene || scene->magic != kSceneMagic)
+        return fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
+                                   fmt::format("{}: scene is NULL or not a scene", call).c_str());
+    return guard(scene->device->messages, [&] {
+        const std::lock_guard turn(scene->turn);
+        body();
+    });
+}
+
+void check_mesh(const ovc_mesh& mesh, size_t stride) {
+    if (mesh.struct_size != sizeof(ovc_mesh))
+        invalid(fmt::format("ovc_mesh.struct_size is {}, expected sizeof(ovc_mesh) = {}",
+                            mesh.struct_size, sizeof(ovc_mesh)));
+    if (!mesh.positions && mesh.vertex_count)
+        invalid("ovc_mesh.positions is NULL");
+    if (stride < 12 || stride % 4 || reinterpret_cast<uintptr_t>(mesh.positions) % 4)
+        invalid(fmt::format(
+            "ovc_mesh.stride is {}, expected 12 or more and, as positions, a multiple of 4",
+            stride));
+    if (mesh.flags & ~uint32_t(OVC_MESH_SHARED) || mesh.reserved)
+        invalid("ovc_mesh.flags or reserved has bits that this version does not know");
+    if (!mesh.indices && mesh.vertex_count % 3)
+        invalid(fmt::format("ovc_mesh.vertex_count is {} without indices, expected a multiple of 3",
+                            mesh.vertex_count));
+    const uint64_t triangles = mesh.indices ? mesh.triangle_count : mesh.vertex_count / 3;
+    if (!mesh.indices && mesh.triangle_count && mesh.triangle_count != triangles)
+        invalid(
+            fmt::format("ovc_mesh.triangle_count is {}, but {} vertices without indices make {}",
+                        mesh.triangle_count, mesh.vertex_count, triangles));
+    if (triangles >= kNone)
+        invalid(fmt::format("a mesh holds fewer than {} triangles, not {}; split it", kNone,
+                            triangles));
+    if ((mesh.flags & OVC_MESH_SHARED) && (stride != 12 || mesh.indices))
+        invalid("OVC_MESH_SHARED needs stride 12 and no indices");
+    for (int axis = 0; axis < 3; ++axis)
+        if (!std::isfinite(mesh.origin[axis]))
+            invalid("ovc_mesh.origin is not finite");
+}
+
+std::vector<vec3> copied_corners(const ovc_mesh& mesh, size_t stride) {
+    const uint64_t count = mesh.indices ? mesh.triangle_count * 3 : mesh.vertex_count;
+    std::vector<vec3> corners(count);
+    const char* base = reinterpret_cast<const char*>(mesh.positions);
+    for (uint64_t i = 0; i < count; ++i) {
+        const uint64_t vertex = mesh.indices ? mesh.indices[i] : i;
+        if (vertex >= mesh.vertex_count)
+            invalid(fmt::format("ovc_mesh.indices[{}] is {}, expected less than vertex_count = {}",
+                                i, vertex, mesh.vertex_count));
+        std::memcpy(&corners[i], base + vertex * stride, sizeof(vec3));
+    }
+    return corners;
+}
+
+/// The triangles that rays do not see, as a span; empty for none.
+std::span<const TriangleId> skip_of(const ovc_query* query, size_t ray_count) {
+    if (!query)
+        return {};
+    if (query->struct_size != sizeof(ovc_query))
+        invalid(fmt::format("ovc_query.struct_size is {}, expected sizeof(ovc_query) = {}",
+                            query->struct_size, sizeof(ovc_query)));
+    if (!query->skip)
+        return {};
+    return {reinterpret_cast<const TriangleId*>(query->skip), ray_count};
+}
+
+TwoLevel& committed(ovc_scene scene, const char* call) {
+    if (!scene->two_level)
+        throw Failure{OVC_ERROR_INVALID_STATE,
+                      fmt::format("{}: the scene is not committed yet", call)};
+    return *scene->two_level;
+}
+
+void check_buffers(const char* call, const void* rays, const void* answers, size_t ray_count) {
+    if (ray_count && (!rays || !answers))
+        invalid(fmt::format("{}: rays or the answers' buffer is NULL", call));
+}
+
+void check(const Result<Done>& result) {
+    if (!result)
+        throw Failure{OVC_ERROR_INTERNAL, result.error().message};
+}
+
+} // namespace
+
+ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_scene* scene) {
+    if (!is_device(device))
+        return fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
+                                   "create_scene: device is NULL or not a device");
+    return guard(device->messages, [&] {
+        if (!scene)
+            invalid("create_scene: scene is NULL");
+        *scene = nullptr;
+        auto created = std::make_unique<ovc_scene_t>();
+        created->device = device;
+        if (config) {
+            if (config->struct_size != sizeof(ovc_scene_config))
+                invalid(fmt::format(
+                    "ovc_scene_config.struct_size is {}, expected sizeof(ovc_scene_config) = {}",
+                    config->struct_size, sizeof(ovc_scene_config)));
+            if (config->leaf_triangles && config->leaves)
+                invalid(
+                    "ovc_scene_config: leaf_triangles and leaves are both set; one says it all");
+            if (config->reserved)
+                invalid("ovc_scene_config.reserved is not 0");
+            created->options = {config->gpu_memory_bytes, config->leaf_triangles, config->leaves};
+        }
+        // Known to be too small before anything is added: say so now.
+        const uint64_t budget = created->options.budget_bytes;
+        if (budget)
+            if (const Result<MemoryPlan> plan = plan_memory(budget, device->gl->info()); !plan)
+                throw Failure{OVC_ERROR_OUT_OF_BUDGET, plan.error().message};
+        ++device->scenes;
+        *scene = created.release();
+    });
+}
+
+ovc_result add_mesh(ovc_scene scene, const ovc_mesh* mesh, uint32_t* mesh_id) {
+    return on_scene(scene, "add_mesh", [&] {
+        if (!mesh)
+            invalid("add_mesh: mesh is NULL");
+        if (scene->two_level)
+            throw Failure{OVC_ERROR_INVALID_STATE,
+                          "add_mesh: the scene is committed; it takes no more meshes"};
+        const size_t stride = mesh->stride ? mesh->stride : 12;
+        check_mesh(*mesh, stride);
+        const dvec3 origin(mesh->origin[0], mesh->origin[1], mesh->origin[2]);
+        const vec3* positions = reinterpret_cast<const vec3*>(mesh->positions);
+        scene->soup.chunks.push_back(
+            mesh->flags & OVC_MESH_SHARED
+                ? Chunk::borrowing(origin, {positions, size_t(mesh->vertex_count)})
+                : Chunk::owning(origin, copied_corners(*mesh, stride)));
+        if (mesh_id)
+            *mesh_id = uint32_t(scene->soup.chunks.size() - 1);
+    });
+}
+
+ovc_result commit(ovc_scene scene) {
+    return on_scene(scene, "commit", [&] {
+        if (scene->two_level)
+            throw Failure{OVC_ERROR_INVALID_STATE, "commit: the scene is committed already"};
+        Result<std::unique_ptr<TwoLevel>> built =
+            TwoLevel::build(scene->soup, *scene->device->gl, scene->options, scene->device->log);
+        if (!built)
+            throw Failure{OVC_ERROR_OUT_OF_BUDGET, built.error().message};
+        scene->two_level = std::move(*built);
+    });
+}
+
+ovc_result intersect(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits,
+                     const ovc_query* query) {
+    return on_scene(scene, "intersect", [&] {
+        check_buffers("intersect", rays, hits, ray_count);
+        check(committed(scene, "intersect")
+                  .intersect({reinterpret_cast<const Ray*>(rays), ray_count},
+                             skip_of(query, ray_count), {reinterpret_cast<Hit*>(hits), ray_count}));
+    });
+}
+
+ovc_result occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded,
+                    const ovc_query* query) {
+    return on_scene(scene, "occluded", [&] {
+        check_buffers("occluded", rays, occluded, ray_count);
+        check(committed(scene, "occluded")
+                  .occluded({reinterpret_cast<const Ray*>(rays), ray_count},
+                            skip_of(query, ray_count), {occluded, ray_count}));
+    });
+}
+
+ovc_result statistics(ovc_scene scene, ovc_statistics* statistics) {
+    return on_scene(scene, "statistics", [&] {
+        if (!statistics)
+            invalid("statistics: statistics is NULL");
+        if (statistics->struct_size != sizeof(ovc_statistics))
+            invalid(fmt::format(
+                "ovc_statistics.struct_size is {}, expected sizeof(ovc_statistics) = {}",
+                statistics->struct_size, sizeof(ovc_statistics)));
+        const TwoLevel& structure = committed(scene, "statistics");
+        const TwoLevelStatistics& s = structure.statistics();
+        *statistics = {sizeof(ovc_statistics),
+                       scene->soup.triangle_count(),
+                       s.dropped.not_finite,
+                       s.dropped.degenerate,
+                       structure.level1().leaves.size(),
+                       structure.level1().reference_count(),
+                       s.level2_bytes,
+                       s.largest_page_bytes,
+                       structure.plan().budget_bytes,
+                       s.peak_bytes,
+                       s.passes,
+                       s.pages_in,
+                       s.bytes_in,
+                       s.nearest_rays,
+                       s.occlusion_rays,
+                       s.invalid_rays,
+                       s.ray_visits,
+                       s.flagged,
+                       s.seconds_level1,
+                       s.seconds_level2,
+                       s.seconds_trace,
+                       s.seconds_kernel};
+    });
+}
+
+void destroy_scene(ovc_scene scene) {
+    if (!scene || scene->magic != kSceneMagic)
+        return;
+    {
+        const std::lock_guard turn(scene->turn); // a call that is still running ends first
+        scene->two_level.reset();
+    }
+    --scene->device->scenes;
+    scene->magic = 0;
+    delete scene;
+}
+
+} // namespace ovc

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two-level: level 1 on the CPU, a page per leaf, rays that wait in a queue per leaf, passes over
+// the fullest. Based on: thesis, sections 3.3 and 3.4 (algorithms 2, 3 and 4).
+#pragma once
+
+#include "core/log.h"
+#include "gpu/gl_thread.h"
+#include "gpu/page.h"
+#include "gpu/tracer.h"
+#include "kdtree/partition.h"
+#include "kdtree/restart.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+struct TwoLevelOptions {
+    uint64_t budget_bytes = 0;   // 0: the device's default
+    uint64_t leaf_triangles = 0; // 0: a tenth of the scene
+    uint64_t leaves = 0;         // instead: about this many
+};
+
+/// Sums over the life of a structure. Fields as in ovc_statistics.
+struct TwoLevelStatistics {
+    Dropped dropped;
+    uint64_t largest_page_bytes = 0;
+    uint64_t level2_bytes = 0;
+    uint64_t passes = 0;
+    uint64_t pages_in = 0;
+    uint64_t bytes_in = 0;
+    uint64_t nearest_rays = 0;
+    uint64_t occlusion_rays = 0;
+    uint64_t invalid_rays = 0;
+    uint64_t ray_visits = 0;
+    uint64_t flagged = 0;
+    uint64_t peak_bytes = 0;
+    double seconds_level1 = 0;
+    double seconds_level2 = 0;
+    double seconds_trace = 0;
+    double seconds_kernel = 0;
+};
+
+/// Level 1 and level 2 of a soup, and rays through them. One call at a time.
+class TwoLevel {
+public:
+    /// The soup and the thread must outlive it. Error: a budget too small, with the smallest that
+    /// works; GL's refusals.
+    static Result<std::unique_ptr<TwoLevel>>
+    build(const Soup& soup, GlThread& gl, const TwoLevelOptions& options, const LogSink& log);
+    ~TwoLevel();
+
+    /// hits[i] for rays[i]; skip: empty, or per ray the triangle it does not see.
+    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                           std::span<Hit> hits);
+    /// occluded[i] = 1 or 0 for rays[i].
+    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                          std::span<uint8_t> occluded);
+
+    const TwoLevelStatistics& statistics() const { return statistics_; }
+    const MemoryPlan& plan() const { return plan_; }
+    const Level1& level1() const { return level1_; }
+
+private:
+    TwoLevel(const Soup& soup, GlThread& gl, const MemoryPlan& plan)
+        : soup_(soup), gl_(gl), plan_(plan) {}
+
+    template <class Query>
+    Result<Done> trace(const Query& query);
+    template <class Query>
+    Result<Done> trace_wave(const Query& query, size_t first, size_t last);
+
+    const Soup& soup_;
+    GlThread& gl_;
+    MemoryPlan plan_;
+    Level1 level1_;
+    std::vector<Page> pages_;
+    std::unique_ptr<Tracer> tracer_; // made and destroyed on the thread of gl_
+    TwoLevelStatistics statistics_;
+};
+
+} // namespace ovc

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// A ray against the four boxes of a node. Boxes are padded when packed, by more than anything here can round.
+// Based on: Ize 2013, "Robust BVH Ray Traversal"; Ylitie et al. 2017 (quantised boxes folded into the ray).
+
+// The ray in grid coordinates: a plane at grid coordinate g is met at t = g * scale + offset.
+struct GridRay {
+    vec3 scale;
+    vec3 offset;
+    bvec3 backward; // the direction is negative: hi is the near plane
+};
+
+GridRay grid_ray(vec3 org, vec3 dir, vec3 grid_org, vec3 grid_cell) {
+    // A component below 1e-18 moves the ray by less than any padding over the whole leaf; its reciprocal stays finite.
+    vec3 tiny = mix(vec3(1e-18), vec3(-1e-18), lessThan(dir, vec3(0.0)));
+    vec3 inv_dir = 1.0 / mix(dir, tiny, lessThan(abs(dir), vec3(1e-18)));
+    return GridRay(grid_cell * inv_dir, (grid_org - org) * inv_dir, lessThan(inv_dir, vec3(0.0)));
+}
+
+// Four 16-bit coordinates of one side, two to a word.
+vec4 coordinates(uvec2 words) {
+    return vec4(ivec4(words.x & 0xffffu, words.x >> 16, words.y & 0xffffu, words.y >> 16));
+}
+
+vec4 near_planes(uvec4 axis, bool backward, float scale, float offset) {
+    return coordinates(backward ? axis.zw : axis.xy) * scale + offset;
+}
+vec4 far_planes(uvec4 axis, bool backward, float scale, float offset) {
+    return coordinates(backward ? axis.xy : axis.zw) * scale + offset;
+}
+
+const int OVC_NO_CHILD = 0x7fffffff;
+
+// Sort keys of the four children: the bits of the entry t with the child's number in the two lowest, OVC_NO_CHILD where
+// the ray misses. Non-negative floats order as their bits do, and signed integer min and max are one instruction where
+// float ones are three; a negative entry loses against 0, a negative exit fails the comparison as it should.
+ivec4 child_keys(uvec4 x, uvec4 y, uvec4 z, GridRay ray, float t_end) {
+    ivec4 enter = max(
+        max(floatBitsToInt(near_planes(x, ray.backward.x, ray.scale.x, ray.offset.x)),
+            floatBitsToInt(near_planes(y, ray.backward.y, ray.scale.y, ray.offset.y))),
+        max(floatBitsToInt(near_planes(z, ray.backward.z, ray.scale.z, ray.offset.z)), ivec4(0)));
+    ivec4 exit = min(
+        min(floatBitsToInt(far_planes(x, ray.backward.x, ray.scale.x, ray.offset.x)),
+            floatBitsToInt(far_planes(y, ray.backward.y, ray.scale.y, ray.offset.y))),
+        min(floatBitsToInt(far_planes(z, ray.backward.z, ray.scale.z, ray.offset.z)),
+            ivec4(floatBitsToInt(t_end))));
+    return mix(ivec4(OVC_NO_CHILD), (enter & ~3) | ivec4(0, 1, 2, 3), lessThanEqual(enter, exit));
+}
+
+void order(inout int a, inout int b) {
+    int low = min(a, b);
+    b = max(a, b);
+    a = low;
+}
+
+// Nearest first: a sorting network of five comparisons.
+void sort_keys(inout ivec4 k) {
+    order(k.x, k.y);
+    order(k.z, k.w);
+    order(k.x, k.z);
+    order(k.y, k.w);
+    order(k.y, k.z);
+}

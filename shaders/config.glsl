@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every switch of the kernel, with its default. ShaderConfig (gpu/kernel.h) always defines all of them.
+
+#ifndef OVC_ANY_HIT
+#define OVC_ANY_HIT 0 // 1: occlusion, stop at the first certain hit
+#endif
+#ifndef OVC_STACK_DEPTH
+#define OVC_STACK_DEPTH 16 // words; must be at least the page's depth. A register each on llvmpipe: 15 -> 32 costs 7 %
+#endif
+#ifndef OVC_STACK_REGISTERS
+#define OVC_STACK_REGISTERS 1 // 1: the stack is selected from by comparisons, for drivers that branch per lane on
+                              // indexed writes (llvmpipe: 4 to 25 % faster); 0: a plain array
+#endif
+#ifndef OVC_PAGE_IMAGE
+#define OVC_PAGE_IMAGE 1 // 1: imageLoad (inlined on llvmpipe, 5 % faster); 0: texelFetch
+#endif

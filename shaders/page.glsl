@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// Texels of the page that the pass runs over.
+
+#if OVC_PAGE_IMAGE
+layout(rgba32ui, binding = OVC_BINDING_PAGE) uniform readonly restrict uimageBuffer page;
+uvec4 page_texel(int i) { return imageLoad(page, i); }
+#else
+layout(binding = OVC_BINDING_PAGE) uniform usamplerBuffer page;
+uvec4 page_texel(int i) { return texelFetch(page, i); }
+#endif

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// A ray against triangles in float32, with proof: each candidate is certainly hit, certainly missed, or in doubt.
+// Based on: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection"; the bound: docs/numerics.md.
+
+// Maps the ray onto the z axis. The direction's largest component is 1 or -1, so the shear is exact.
+struct Basis {
+    vec3 x;
+    vec3 y;
+    vec3 z;
+};
+
+Basis basis_of(vec3 dir) {
+    vec3 a = abs(dir);
+    if (a.z == 1.0)
+        return Basis(vec3(1.0, 0.0, -dir.x * dir.z), vec3(0.0, 1.0, -dir.y * dir.z), vec3(0.0, 0.0, dir.z));
+    if (a.y == 1.0)
+        return Basis(vec3(1.0, -dir.x * dir.y, 0.0), vec3(0.0, -dir.z * dir.y, 1.0), vec3(0.0, dir.y, 0.0));
+    return Basis(vec3(-dir.y * dir.x, 1.0, 0.0), vec3(-dir.z * dir.x, 0.0, 1.0), vec3(dir.x, 0.0, 0.0));
+}
+
+// A corner in the basis; `error` bounds what each coordinate is off by, and a share for the products of an edge function.
+struct Corner {
+    float x;
+    float y;
+    float z;
+    float error;
+    float reach; // |x| + |y| + error
+};
+
+Corner corner(vec3 position, vec3 org, Basis basis) {
+    precise vec3 p = position - org;
+    precise float x = dot(p, basis.x);
+    precise float y = dot(p, basis.y);
+    precise float z = dot(p, basis.z);
+    float size = abs(x) + abs(y);
+    float error = float(OVC_BOUND_UNIT * OVC_BOUND_CONSTANT) +
+                  float(OVC_BOUND_UNIT * OVC_BOUND_RELATIVE) * (size + abs(z));
+    return Corner(x, y, z, error, size + error);
+}
+
+// Twice the signed area of (origin, a, b), and what it is off by at most.
+float edge(Corner a, Corner b) {
+    precise float e = a.x * b.y - a.y * b.x;
+    return e;
+}
+float edge_error(Corner a, Corner b) { return a.error * b.reach + b.error * a.reach; }
+
+// What is known of a ray and a triangle: nothing it can be hit by (possible false), or that any hit lies in [lo, hi], and
+// whether there certainly is one.
+struct Candidate {
+    bool possible;
+    bool certain;
+    float lo;
+    float hi;
+};
+
+// The triangle (a, b, c) with edge functions ab, bc, ca and their errors.
+Candidate candidate(Corner a, Corner b, Corner c, float ab, float bc, float ca, float ab_error,
+                    float bc_error, float ca_error) {
+    bool all_positive = ab > ab_error && bc > bc_error && ca > ca_error;
+    bool all_negative = ab < -ab_error && bc < -bc_error && ca < -ca_error;
+    bool any_positive = ab > ab_error || bc > bc_error || ca > ca_error;
+    bool any_negative = ab < -ab_error || bc < -bc_error || ca < -ca_error;
+    Candidate result;
+    result.possible = !(any_positive && any_negative);
+    result.certain = all_positive || all_negative;
+
+    float z_min = min(a.z, min(b.z, c.z));
+    float z_max = max(a.z, max(b.z, c.z));
+    float z_error = 2.0 * max(a.error, max(b.error, c.error));
+    // t is an average of the corners' z. The weights' errors move it by at most their share of the spread of z.
+    float area = ab + bc + ca;
+    float t = (bc * a.z + ca * b.z + ab * c.z) / area;
+    float share = min(2.0 * (ab_error + bc_error + ca_error) / abs(area), 1.0);
+    float t_error = share * (z_max - z_min) + z_error;
+    result.lo = result.certain ? t - t_error : z_min - z_error;
+    result.hi = result.certain ? t + t_error : z_max + z_error;
+    return result;
+}
