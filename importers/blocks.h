@@ -35,12 +35,9 @@ public:
 
     void push_back(const T& value) {
         if (first_.size() < first_.capacity() || first_.size() < kBlock)
-            return first_.push_back(value);
-        if (used_ == kBlock || later_.empty()) {
-            later_.push_back(map_pages(kBlock * sizeof(T)));
-            used_ = 0;
-        }
-        std::memcpy(static_cast<T*>(later_.back().get()) + used_++, &value, sizeof(T));
+            first_.push_back(value);
+        else
+            push_later(value);
     }
 
     size_t size() const {
@@ -66,6 +63,14 @@ public:
 
 private:
     static constexpr size_t kBlock = (size_t(1) << 20) / sizeof(T);
+
+    void push_later(const T& value) {
+        if (used_ == kBlock || later_.empty()) {
+            later_.push_back(map_pages(kBlock * sizeof(T)));
+            used_ = 0;
+        }
+        std::memcpy(static_cast<T*>(later_.back().get()) + used_++, &value, sizeof(T));
+    }
 
     std::vector<T> first_;
     std::vector<Pages> later_; // of kBlock items each

@@ -17,14 +17,19 @@ struct ImportOptions {
 };
 
 /// Reads a scene. The reader is chosen by the extension, a trailing .gz taken off first; any case.
-/// Never throws on bad input: the Error is one sentence with file, line or byte, what was found,
-/// what was expected. Polygons are cut into triangles in file order; a degenerate or non-finite
-/// triangle is kept (it is counted and dropped when a structure is built), so that prim numbers
-/// follow the file.
+/// A compressed file is recognised by its contents, whatever its name. Never throws on bad input:
+/// the Error is one sentence with file, line or byte, what was found, what was expected. Memory is
+/// bounded by what the file holds, not by what it claims. Polygons are cut into triangles in file
+/// order; a degenerate or non-finite triangle is kept (it is counted and dropped when a structure
+/// is built), so that prim numbers follow the file.
 Result<Scene> load(const std::filesystem::path& path, const ImportOptions& options = {});
 
-/// Writes the soup of `scene` as .ply (binary little endian, double positions where float would
-/// move them) or .obj. A file that exists is replaced only once the new one is complete.
+/// Writes the triangles of `scene` as .ply (one mesh, binary little endian, double positions where
+/// float would move them) or .obj (an object per mesh); normals and materials are not written.
+/// Corners that agree in every bit become one vertex. load() gives back the same triangles bit for
+/// bit where floats hold them; where only doubles do, offsets are rounded to floats anew, and .obj
+/// keeps the digits but load() takes them for floats unless they are far from 0. A file that exists
+/// is replaced only once the new one is complete; what is written is removed where it cannot be.
 Result<Done> save(const Scene& scene, const std::filesystem::path& path);
 
 /// The extensions load() reads with readers of ours, without the dot ("ply", "obj"); Assimp's are

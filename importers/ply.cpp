@@ -214,14 +214,10 @@ private:
     }
 
     bool read_indices(const PlyProperty& property, bool strips) {
-        uint64_t length = 0;
-        if (!rows_.count(property, length))
+        if (!rows_.list(property, row_))
             return false;
         polygon_.clear();
-        for (; length > 0; --length) {
-            int64_t index = 0;
-            if (!rows_.index(property, index))
-                return false;
+        for (const int64_t index : row_) {
             const bool restarts = strips && index == -1;
             if (!restarts && (index < 0 || uint64_t(index) >= vertex_count_))
                 return fail_index(index);
@@ -303,7 +299,8 @@ private:
     Blocks<vec3> corners_;
     Blocks<vec3> corner_normals_;
     Pending pending_;
-    std::vector<uint32_t> polygon_; // the row's indices
+    std::vector<int64_t> row_;      // the row's indices as stored
+    std::vector<uint32_t> polygon_; // and checked
     std::vector<dvec3> outline_;
     std::vector<std::array<uint32_t, 3>> cut_;
 };

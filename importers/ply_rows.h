@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <concepts>
 #include <cstring>
@@ -57,17 +58,23 @@ public:
         return !word.empty() || fail_word(word, fmt::format("a value for {}", property.name));
     }
 
-    bool count(const PlyProperty& property, uint64_t& value) {
-        return integer("the length of", property, value);
-    }
-
-    bool index(const PlyProperty& property, int64_t& value) {
-        return integer("a whole number for", property, value);
+    /// Integers only.
+    bool list(const PlyProperty& property, std::vector<int64_t>& values) {
+        uint64_t left = 0;
+        values.clear();
+        if (!integer("the length of", property, left))
+            return false;
+        for (int64_t value = 0; left > 0; --left) {
+            if (!integer("a whole number for", property, value))
+                return false;
+            values.push_back(value);
+        }
+        return true;
     }
 
     bool skip_list(const PlyProperty& property) {
         uint64_t left = 0;
-        if (!count(property, left))
+        if (!integer("the length of", property, left))
             return false;
         for (; left > 0; --left)
             if (!skip_scalar(property))
@@ -117,22 +124,26 @@ public:
 
     template <class T>
     bool scalar(const PlyProperty& property, T& value) {
-        return take(property.type, property, value);
+        return take(property.type, property, &value, 1);
     }
 
     bool skip_scalar(const PlyProperty& property) { return skip(size_of(property.type), property); }
 
-    bool count(const PlyProperty& property, uint64_t& value) {
-        int64_t length = 0;
-        if (!take(property.count_type, property, length))
+    bool list(const PlyProperty& property, std::vector<int64_t>& values) {
+        uint64_t left = 0;
+        values.clear();
+        if (!count(property, left))
             return false;
-        value = uint64_t(length);
-        return length >= 0 ||
-               fail(fmt::format("{} of length {}", property.name, length), "a length of 0 or more");
-    }
-
-    bool index(const PlyProperty& property, int64_t& value) {
-        return take(property.type, property, value);
+        // By parts: the length may claim more than the file holds.
+        while (left > 0) {
+            const auto part = size_t(std::min<uint64_t>(left, 4096));
+            const size_t first = values.size();
+            values.resize(first + part);
+            if (!take(property.type, property, values.data() + first, part))
+                return false;
+            left -= part;
+        }
+        return true;
     }
 
     bool skip_list(const PlyProperty& property) {
@@ -148,37 +159,48 @@ public:
     const Error& error() const { return error_; }
 
 private:
+    bool count(const PlyProperty& property, uint64_t& value) {
+        int64_t length = 0;
+        if (!take(property.count_type, property, &length, 1))
+            return false;
+        value = uint64_t(length);
+        return length >= 0 ||
+               fail(fmt::format("{} of length {}", property.name, length), "a length of 0 or more");
+    }
+
     template <class Stored, class T>
-    bool take_as(const PlyProperty& property, T& value) {
-        const unsigned char* at = source_.bytes(sizeof(Stored));
+    bool take_as(const PlyProperty& property, T* values, size_t count) {
+        const unsigned char* at = source_.bytes(count * sizeof(Stored));
         if (!at)
             return fail_end(property);
-        unsigned char raw[sizeof(Stored)];
-        for (size_t i = 0; i < sizeof(Stored); ++i)
-            raw[i] = at[kOrder == std::endian::native ? i : sizeof(Stored) - 1 - i];
-        value = T(std::bit_cast<Stored>(raw));
+        for (size_t k = 0; k < count; ++k, at += sizeof(Stored)) {
+            unsigned char raw[sizeof(Stored)];
+            for (size_t i = 0; i < sizeof(Stored); ++i)
+                raw[i] = at[kOrder == std::endian::native ? i : sizeof(Stored) - 1 - i];
+            values[k] = T(std::bit_cast<Stored>(raw));
+        }
         return true;
     }
 
     template <class T>
-    bool take(PlyType type, const PlyProperty& property, T& value) {
+    bool take(PlyType type, const PlyProperty& property, T* values, size_t count) {
         switch (type) {
         case PlyType::Int8:
-            return take_as<int8_t>(property, value);
+            return take_as<int8_t>(property, values, count);
         case PlyType::UInt8:
-            return take_as<uint8_t>(property, value);
+            return take_as<uint8_t>(property, values, count);
         case PlyType::Int16:
-            return take_as<int16_t>(property, value);
+            return take_as<int16_t>(property, values, count);
         case PlyType::UInt16:
-            return take_as<uint16_t>(property, value);
+            return take_as<uint16_t>(property, values, count);
         case PlyType::Int32:
-            return take_as<int32_t>(property, value);
+            return take_as<int32_t>(property, values, count);
         case PlyType::UInt32:
-            return take_as<uint32_t>(property, value);
+            return take_as<uint32_t>(property, values, count);
         case PlyType::Float32:
-            return take_as<float>(property, value);
+            return take_as<float>(property, values, count);
         case PlyType::Float64:
-            return take_as<double>(property, value);
+            return take_as<double>(property, values, count);
         }
         return false;
     }

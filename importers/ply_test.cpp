@@ -232,7 +232,7 @@ const struct {
     {"short binary vertex", binary_square(false).substr(0, 180),
      "bad.ply, byte 177: found the end of the file, expected z of 4 rows of vertex"},
     {"short binary face", binary_square(true).substr(0, binary_square(true).size() - 1),
-     "bad.ply, byte 236: found the end of the file, expected vertex_indices of 2 rows of face"},
+     "bad.ply, byte 228: found the end of the file, expected vertex_indices of 2 rows of face"},
     {"four thousand million",
      "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\n"
      "property double y\nproperty double z\nend_header\n12345678",
