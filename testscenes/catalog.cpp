@@ -32,7 +32,7 @@ constexpr Generator kGenerators[] = {
      0,
      0,
      [](uint32_t) { return make_plants(uint32_t(kPlantsDemoSize)); }},
-    {{"plants-N", "the same with about N x 100,000 triangles"}, 1, 200, make_plants},
+    {{"plants-N", "the same, larger or smaller: about N x 110,000 triangles"}, 1, 200, make_plants},
     {{"terrain-N", "hills over N x N cells: 2 N^2 triangles"}, 1, 4096, make_terrain},
     {{"sphere-N", "a closed icosphere: 20 x 4^N triangles"}, 0, 10, make_sphere_scene},
     {{"knot", "a bumpy torus knot, closed: 873,600 triangles"},

@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-/// The size of plants-N that is `plants`; N counts 100,000 triangles, roughly.
+/// The size of plants-N that is `plants`; N counts 110,000 triangles, roughly.
 inline constexpr double kPlantsDemoSize = 64;
 
 Scene make_plants(uint32_t size);

@@ -9,22 +9,26 @@
 namespace ovc {
 
 Scene make_terrain(uint32_t cells) {
+    const size_t width = size_t(cells) + 1;
+    std::vector<vec3> points(width * width);
+    parallel_for(width, 8, [&](size_t first, size_t last) {
+        for (size_t row = first; row < last; ++row)
+            for (size_t column = 0; column < width; ++column) {
+                const dvec2 at(double(column) / cells, double(row) / cells);
+                const double height = 0.2 * fractal_noise(at * 4.0, 8, 71);
+                points[row * width + column] = vec3(dvec3(at.x - 0.5, height, at.y - 0.5));
+            }
+    });
     Corners corners(size_t(cells) * cells * 6);
-    const auto point = [&](size_t column, size_t row) {
-        const dvec2 at(double(column) / cells, double(row) / cells);
-        return vec3(float(at.x - 0.5), float(0.2 * fractal_noise(at * 4.0, 8, 71)),
-                    float(at.y - 0.5));
-    };
     parallel_for(cells, 8, [&](size_t first, size_t last) {
-        for (size_t row = first; row < last; ++row) {
-            vec3* out = corners.data() + row * cells * 6;
+        vec3* out = corners.data() + first * cells * 6;
+        for (size_t row = first; row < last; ++row)
             for (size_t column = 0; column < cells; ++column) {
-                const vec3 a = point(column, row), b = point(column, row + 1);
-                const vec3 c = point(column + 1, row + 1), d = point(column + 1, row);
-                for (const vec3& corner : {a, b, c, a, c, d})
+                const vec3* a = &points[row * width + column]; // a d
+                const vec3* b = a + width;                     // b c
+                for (const vec3& corner : {a[0], b[0], b[1], a[0], b[1], a[1]})
                     *out++ = corner;
             }
-        }
     });
     Scene scene;
     scene.materials.push_back({"ground", vec3(0.42f, 0.38f, 0.28f), 0});
