@@ -28,8 +28,14 @@ static Error unknown_option(const CLI::App& app, const std::string& word) {
         for (const std::string& name : known->get_lnames())
             names.push_back("--" + name);
     const std::vector<std::string_view> candidates(names.begin(), names.end());
-    return {fmt::format("{} has no option '{}'{}", app.get_name(), option,
-                        did_you_mean(option, candidates))};
+    return {fmt::format("there is no option '{}'{}", option, did_you_mean(option, candidates))};
+}
+
+/// "--size: 1 required WxH missing" and the like, in our words.
+static Error wrong_number_of_values(std::string_view message) {
+    const std::string_view option = message.substr(0, message.find(':'));
+    const bool missing = message.find("missing") != std::string_view::npos;
+    return {fmt::format("{} {}", option, missing ? "needs a value" : "is given more than once")};
 }
 
 /// The word that nobody wanted: an option rather than the value that follows it.
@@ -47,6 +53,8 @@ Result<Parsed> parse_arguments(CLI::App& app, std::vector<std::string> arguments
     } catch (const CLI::CallForHelp&) {
         fmt::print("{}", app.help());
         return Parsed::HelpShown;
+    } catch (const CLI::ArgumentMismatch& error) {
+        return wrong_number_of_values(error.what());
     } catch (const CLI::ParseError& error) {
         std::vector<std::string> left_over = app.remaining();
         std::erase(left_over, std::string());

@@ -67,10 +67,10 @@ protected:
 
 TEST_F(ParseArguments, SuggestsTheOptionThatWasMeant) {
     EXPECT_EQ(error({"a.ply", "--gpu-memroy", "5"}),
-              "overcast render has no option '--gpu-memroy'; did you mean '--gpu-memory'?");
+              "there is no option '--gpu-memroy'; did you mean '--gpu-memory'?");
     EXPECT_EQ(error({"a.ply", "--gpu-memroy=5"}),
-              "overcast render has no option '--gpu-memroy'; did you mean '--gpu-memory'?");
-    EXPECT_EQ(error({"a.ply", "--zebra"}), "overcast render has no option '--zebra'");
+              "there is no option '--gpu-memroy'; did you mean '--gpu-memory'?");
+    EXPECT_EQ(error({"a.ply", "--zebra"}), "there is no option '--zebra'");
 }
 
 TEST_F(ParseArguments, SaysWhatIsNotThereYet) {
@@ -82,6 +82,9 @@ TEST_F(ParseArguments, SaysWhatIsMissingOrTooMuch) {
     EXPECT_THAT(error({}), testing::HasSubstr("SCENE"));
     EXPECT_EQ(error({"a.ply", "b.ply"}),
               "'b.ply' is one argument too many for overcast render; see overcast render --help");
+    EXPECT_EQ(error({"a.ply", "--gpu-memory"}), "--gpu-memory needs a value");
+    EXPECT_EQ(error({"a.ply", "--gpu-memory", "5M", "--gpu-memory=6M"}),
+              "--gpu-memory is given more than once");
     EXPECT_EQ(error({"a.ply", "--gpu-memory", "5M"}), "");
     EXPECT_EQ(memory_, "5M");
 }

@@ -13,7 +13,7 @@ Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOpt
         return make_cpu_backend(soup);
     const Result<const ovc_api*> api = load_plugin();
     if (!api)
-        return api.error();
+        return Error{api.error().message + " (--backend cpu-kdtree works without it)"};
     Result<PluginDevice> device = PluginDevice::open(*api, options.device, log);
     if (device)
         return make_two_level_backend(std::move(*device), soup, options);

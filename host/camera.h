@@ -48,7 +48,7 @@ Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height);
 PointLight shoulder_light(const Camera& camera);
 
 /// What a light has that was only given a position, a little warm: a white surface that faces it
-/// comes out at about 0.85.
-inline constexpr vec3 kDefaultLightColor{2.8f, 2.65f, 2.4f};
+/// comes out at about 0.8.
+inline constexpr vec3 kDefaultLightColor{2.6f, 2.45f, 2.2f};
 
 } // namespace ovc

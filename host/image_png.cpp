@@ -2,6 +2,8 @@
 // PNG out: 8 bits a channel, sRGB, as a viewer expects. The only file that sees libpng.
 #include "host/output.h"
 
+#include "core/parallel.h"
+
 #include <fmt/format.h>
 #include <png.h>
 
@@ -24,11 +26,12 @@ static uint8_t srgb_code(float linear) {
 }
 
 static std::vector<uint8_t> srgb_rows(const Image& image) {
-    std::vector<uint8_t> rows;
-    rows.reserve(image.pixels.size() * 3);
-    for (const vec4& pixel : image.pixels)
-        for (int channel = 0; channel < 3; ++channel)
-            rows.push_back(srgb_code(pixel[channel]));
+    std::vector<uint8_t> rows(image.pixels.size() * 3);
+    parallel_for(image.pixels.size(), 4096, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            for (int channel = 0; channel < 3; ++channel)
+                rows[i * 3 + size_t(channel)] = srgb_code(image.pixels[i][channel]);
+    });
     return rows;
 }
 

@@ -17,6 +17,8 @@ Result<Scene> open_scene(const std::string& source, const LogSink& log) {
     if (is_test_scene(source))
         return make_test_scene(source);
     std::error_code ignored;
+    if (std::filesystem::is_directory(source, ignored))
+        return Error{fmt::format("'{}' is a directory, expected a file or a test scene", source)};
     const bool looks_like_a_name = source.find_first_of("./") == std::string::npos;
     if (looks_like_a_name && !source.empty() && !std::filesystem::exists(source, ignored)) {
         // The catalog knows the nearest name; a file of this name is not there either.
