@@ -29,6 +29,10 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+uint64_t align(uint64_t bytes, uint64_t alignment) {
+    return (bytes + alignment - 1) / alignment * alignment;
+}
+
 /// The ray in the leaf's frame, from where it enters the leaf's box; no value where double
 /// precision cannot say where that is to within a sixteenth of a float rounding.
 std::optional<LocalRay> rebase(const Leaf& leaf, const PreparedRay& p) {
@@ -66,10 +70,12 @@ struct NearestQuery {
     /// The answer in double from the original triangle; false when double does not confirm it.
     bool settle(size_t i, const PreparedRay& p, const Soup& soup, TriangleId id) const {
         const std::optional<Hit> hit = ovc::intersect(p, soup.triangle(id), id);
-        if (hit)
+        if (hit && hit->nearer_than(results[i]))
             results[i] = *hit;
         return hit.has_value();
     }
+    /// Where ray i still may be hit nearer than so far.
+    double t_max(size_t i) const { return std::min(rays[i].t_max, results[i].t); }
 };
 
 struct OcclusionQuery {
@@ -85,11 +91,21 @@ struct OcclusionQuery {
         results[i] = 1;
         return true;
     }
+    double t_max(size_t i) const { return results[i] ? -HUGE_VAL : rays[i].t_max; }
 };
 
+/// Ray i as the host gave it.
 template <class Query>
 PreparedRay prepare(const Query& query, size_t i) {
     return PreparedRay(query.rays[i], query.skip.empty() ? TriangleId{} : query.skip[i]);
+}
+
+/// Ray i as far as it is still of interest: up to the best hit so far.
+template <class Query>
+PreparedRay prepare_rest(const Query& query, size_t i) {
+    PreparedRay p = prepare(query, i);
+    p.ray.t_max = query.t_max(i);
+    return p;
 }
 
 /// Ray indices that wait for each leaf, and which leaf is next.
@@ -161,10 +177,14 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     self->pages_ = std::move(levels->pages);
     statistics.seconds_level1 += levels->seconds_level1;
     statistics.seconds_level2 += levels->seconds_level2;
+    uint64_t all_pages = gl.info().buffer_alignment; // a pool of nothing is no buffer
     for (const Page& page : self->pages_) {
+        all_pages += align(page.bytes(), gl.info().buffer_alignment);
         statistics.level2_bytes += page.bytes();
         statistics.largest_page_bytes = std::max(statistics.largest_page_bytes, page.bytes());
     }
+
+    self->plan_.pool_bytes = std::min(plan->pool_bytes, all_pages);
 
     Result<std::unique_ptr<Tracer>> tracer = Error{};
     gl.run([&](GlState& state) {
@@ -237,7 +257,7 @@ Result<Done> TwoLevel::trace_wave(const Query& query, size_t first, size_t last)
                     if (j >= batch.size())
                         continue;
                     if (const auto ray =
-                            rebase(level1_.leaves[leaf], prepare(query, first + batch[j])))
+                            rebase(level1_.leaves[leaf], prepare_rest(query, first + batch[j])))
                         rays[j] = *ray;
                     else
                         rays[j].skip = OVC_FLAGGED; // undecided before the kernel saw it
@@ -263,12 +283,13 @@ Result<Done> TwoLevel::trace_wave(const Query& query, size_t first, size_t last)
                     const bool undecided = rays[j].t_end < 0 && rays[j].skip == OVC_FLAGGED;
                     const uint32_t prim = undecided ? OVC_FLAGGED : answers[j].prim;
                     next[i] = kNone;
-                    if (prim == OVC_MISS)
-                        next[i] = next_leaf(level1_, p, positions[i]).leaf;
-                    else if (prim == OVC_FLAGGED ||
-                             !query.settle(first + i, p, soup_,
-                                           level1_.leaves[leaf].triangles[prim]))
+                    if (prim == OVC_FLAGGED ||
+                        (prim != OVC_MISS &&
+                         !query.settle(first + i, p, soup_, level1_.leaves[leaf].triangles[prim])))
                         decide_in_double(i, p);
+                    else
+                        next[i] =
+                            next_leaf(level1_, prepare_rest(query, first + i), positions[i]).leaf;
                 }
             });
             for (const uint32_t i : batch)

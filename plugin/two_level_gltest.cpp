@@ -28,6 +28,12 @@ protected:
     std::unique_ptr<GlThread> gl;
 };
 
+testing::AssertionResult ok(const Result<Done>& result) {
+    if (result)
+        return testing::AssertionSuccess();
+    return testing::AssertionFailure() << result.error().message;
+}
+
 struct Variant {
     std::string name;
     TwoLevelOptions options;
@@ -53,8 +59,8 @@ TEST_F(TwoLevelGl, EqualsBruteForceBitForBit) {
             ASSERT_TRUE(structure);
             std::vector<Hit> hits(rays.size());
             std::vector<uint8_t> shadows(rays.size());
-            ASSERT_TRUE(structure->intersect(rays, {}, hits));
-            ASSERT_TRUE(structure->occluded(rays, {}, shadows));
+            ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+            ASSERT_TRUE(ok(structure->occluded(rays, {}, shadows)));
             for (size_t i = 0; i < rays.size(); ++i) {
                 ASSERT_TRUE(test::same(expected[i], hits[i]))
                     << "ray " << i << ": " << test::describe(expected[i]) << " but found "
@@ -79,7 +85,7 @@ TEST_F(TwoLevelGl, FewOrdinaryRaysAreFlagged) {
         ray.dir = random.point(-1, 1) - ray.org;
     }
     std::vector<Hit> hits(rays.size());
-    ASSERT_TRUE(structure->intersect(rays, {}, hits));
+    ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
     EXPECT_LE(structure->statistics().flagged, rays.size() / 100);
     EXPECT_GT(structure->statistics().passes, 0u);
 }
@@ -98,7 +104,7 @@ TEST_F(TwoLevelGl, RaysThatStartOnASurfaceAreNotFlaggedForIt) {
         skip.push_back({0, prim});
     }
     std::vector<Hit> hits(rays.size());
-    ASSERT_TRUE(structure->intersect(rays, skip, hits));
+    ASSERT_TRUE(ok(structure->intersect(rays, skip, hits)));
     EXPECT_LE(structure->statistics().flagged, rays.size() / 50);
     const auto ids = hittable_triangles(soup, nullptr, nullptr);
     for (size_t i = 0; i < rays.size(); i += 97)
@@ -112,7 +118,7 @@ TEST_F(TwoLevelGl, KeepsToTheBudgetByMovingPages) {
     const auto structure = build(soup, {.budget_bytes = all / 4});
     ASSERT_TRUE(structure);
     std::vector<Hit> hits(rays.size());
-    ASSERT_TRUE(structure->intersect(rays, {}, hits));
+    ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
     const TwoLevelStatistics& s = structure->statistics();
     EXPECT_LE(s.peak_bytes, all / 4);
     EXPECT_GT(s.pages_in, structure->level1().leaves.size()) << "nothing had to move twice";

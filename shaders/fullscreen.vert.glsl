@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One triangle that covers the viewport; nothing goes in.
-#version 430 core
+#version 450 core
 
 void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fragment kernel: a pixel is a ray of the queue.
-#version 430 core
+#version 450 core
 #include "layout.h"
 #include "config.glsl"
 #include "page.glsl"
