@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scene: what an importer or a generated test scene hands to the host: soup, materials, lights, cameras.
+// Scene: what an importer or a generated test scene hands to the host: soup, materials, lights,
+// cameras.
 #pragma once
 
 #include "core/soup.h"
@@ -19,14 +20,17 @@ struct Material {
     bool operator==(const Material&) const = default;
 };
 
-/// What the host must know of a mesh besides its triangles. Scene::meshes[m] belongs to Scene::soup.chunks[m].
+/// What the host must know of a mesh besides its triangles. Scene::meshes[m] belongs to
+/// Scene::soup.chunks[m].
 struct MeshInfo {
     std::string name;
-    uint32_t material = 0;     // index into Scene::materials
-    std::vector<vec3> normals; // 3 per triangle, unit length, or empty: then the triangle's own normal shades it
+    uint32_t material = 0; // index into Scene::materials
+    std::vector<vec3>
+        normals; // 3 per triangle, unit length, or empty: then the triangle's own normal shades it
 };
 
-/// Emits evenly; arrives as color / pi x the cosine, without fall-off, as POV-Ray's light_source does by default.
+/// Emits evenly; arrives as color / pi x the cosine, without fall-off, as POV-Ray's light_source
+/// does by default.
 struct PointLight {
     dvec3 position{0};
     vec3 color{1};
@@ -40,7 +44,8 @@ struct Camera {
     double fov_degrees = 40;
 };
 
-/// What a ray that hits nothing sees: a gradient from horizon to zenith along the camera's up, linear RGB.
+/// What a ray that hits nothing sees: a gradient from horizon to zenith along the camera's up,
+/// linear RGB.
 struct Background {
     vec3 horizon{0.8f};
     vec3 zenith{0.35f, 0.5f, 0.8f};
@@ -56,10 +61,10 @@ struct Scene {
     Background background;
 
     /// Appends a mesh of `material`; returns its number.
-    uint32_t add_mesh(std::string name, uint32_t material, Chunk chunk,
+    uint32_t add_mesh(std::string mesh_name, uint32_t material, Chunk chunk,
                       std::vector<vec3> normals = {}) {
         soup.chunks.push_back(std::move(chunk));
-        meshes.push_back({std::move(name), material, std::move(normals)});
+        meshes.push_back({std::move(mesh_name), material, std::move(normals)});
         return uint32_t(meshes.size() - 1);
     }
 };
