@@ -151,6 +151,16 @@ TEST(Obj, CoordinatesFarFromTheOriginKeepTheirPrecision) {
                         dvec3(500000.125, 4100001.0625, 10.5)}));
 }
 
+TEST(Obj, NonFiniteVerticesAreKept) {
+    const TestFolder folder;
+    const auto triangles = triangles_of(
+        load(folder.write("nan.obj", "v nan -nan inf\nv -1.#IND 1.#QNAN0 -1.#INF\nf 1 2 1\n")));
+    ASSERT_EQ(triangles.size(), 1u);
+    EXPECT_TRUE(std::isnan(triangles[0][0].y) && std::isnan(triangles[0][1].x));
+    EXPECT_TRUE(triangles[0][0].z > 0 && std::isinf(triangles[0][0].z));
+    EXPECT_TRUE(triangles[0][1].z < 0 && std::isinf(triangles[0][1].z));
+}
+
 TEST(Obj, WhatIsLeftOutIsSaidOncePerKind) {
     const TestFolder folder;
     std::vector<std::string> warnings;

@@ -15,8 +15,8 @@ namespace ovc {
 /// keep exact offsets. One origin serves a whole file: with two, meshes that share corners would
 /// come apart.
 inline dvec3 chunk_origin(const Box& bounds, double far) {
-    const double extent = bounds.empty() ? 0 : max_component(bounds.extent());
-    if (!(extent < 1e300))
+    const double extent = max_component(bounds.extent());
+    if (bounds.empty() || !(extent < 1e300))
         return dvec3(0);
     const dvec3 middle = bounds.center();
     const double grid =
