@@ -7,7 +7,8 @@
 
 namespace ovc {
 
-/// Error: the call failed. Warning: the result stands, something was left out. Info: what was chosen and why.
+/// Error: the call failed. Warning: the result stands, something was left out. Info: what was
+/// chosen and why.
 enum class LogLevel { Error = 0, Warning = 1, Info = 2 };
 
 /// Receives one sentence without a line end. May be empty: then nothing is said.

@@ -12,16 +12,16 @@
 
 namespace ovc {
 
-/// Calls body(first, last) on disjoint ranges that cover [0, count), of at least `grain` items where possible,
-/// from several threads. What body throws is thrown here.
+/// Calls body(first, last) on disjoint ranges that cover [0, count), of at least `grain` items
+/// where possible, from several threads. What body throws is thrown here.
 template <class Body>
 void parallel_for(size_t count, size_t grain, Body&& body) {
     oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<size_t>(0, count, grain),
                               [&](const auto& range) { body(range.begin(), range.end()); });
 }
 
-/// body(first, last, T) -> T over ranges that cover [0, count), joined by join(T, T) -> T. Both must be
-/// associative and commutative for the result to be the same on every run.
+/// body(first, last, T) -> T over ranges that cover [0, count), joined by join(T, T) -> T. Both
+/// must be associative and commutative for the result to be the same on every run.
 template <class T, class Body, class Join>
 T parallel_reduce(size_t count, T identity, Body&& body, Join&& join) {
     return oneapi::tbb::parallel_reduce(

@@ -21,7 +21,8 @@ struct TriangleId {
     auto operator<=>(const TriangleId&) const = default;
 };
 
-/// The points org + t dir, t_min <= t <= t_max. dir need not be of unit length; t counts in its lengths.
+/// The points org + t dir, t_min <= t <= t_max. dir need not be of unit length; t counts in its
+/// lengths.
 struct Ray {
     dvec3 org{0};
     double t_min = 0;
@@ -30,8 +31,8 @@ struct Ray {
 
     dvec3 at(double t) const { return org + t * dir; }
 
-    /// False for what no triangle can be asked about: NaN or infinity in org, dir or t_min, NaN in t_max,
-    /// a zero direction, t_min > t_max. Such a ray is a miss.
+    /// False for what no triangle can be asked about: NaN or infinity in org, dir or t_min, NaN in
+    /// t_max, a zero direction, t_min > t_max. Such a ray is a miss.
     bool valid() const {
         return is_finite(org) && is_finite(dir) && std::isfinite(t_min) && t_min <= t_max &&
                dir != dvec3(0);
@@ -39,7 +40,8 @@ struct Ray {
 };
 static_assert(sizeof(Ray) == 64 && offsetof(Ray, dir) == 32);
 
-/// A hit at org + t dir = (1 - u - v) a + u b + v c of triangle (a, b, c); a miss has mesh == prim == kNone.
+/// A hit at org + t dir = (1 - u - v) a + u b + v c of triangle (a, b, c); a miss has mesh == prim
+/// == kNone.
 struct Hit {
     double t = std::numeric_limits<double>::infinity();
     double u = 0;

@@ -10,9 +10,7 @@
 namespace ovc {
 
 Chunk::Chunk(dvec3 origin, std::vector<vec3> owned, std::span<const vec3> corners)
-    : origin_(origin),
-      owned_(std::move(owned)),
-      corners_(corners) {
+    : origin_(origin), owned_(std::move(owned)), corners_(corners) {
     assert(corners_.size() % 3 == 0);
     assert(corners_.size() / 3 < kNone);
 }
@@ -38,7 +36,8 @@ TriangleFault triangle_fault(const Triangle& t) {
         return TriangleFault::NotFinite;
     const dvec3 ab = t[1] - t[0];
     const dvec3 ac = t[2] - t[0];
-    // Two products compared instead of their difference with zero: nothing underflows away in between.
+    // Two products compared instead of their difference with zero: nothing underflows away in
+    // between.
     const bool on_a_line =
         ab.y * ac.z == ab.z * ac.y && ab.z * ac.x == ab.x * ac.z && ab.x * ac.y == ab.y * ac.x;
     return on_a_line ? TriangleFault::Degenerate : TriangleFault::None;

@@ -14,8 +14,9 @@ namespace ovc {
 
 using Triangle = std::array<dvec3, 3>;
 
-/// The triangles of one mesh: corner i of triangle p lies at origin + corners[3 p + i], added in double.
-/// Move-only: the corners are owned, or borrowed from a caller who keeps them alive and unchanged.
+/// The triangles of one mesh: corner i of triangle p lies at origin + corners[3 p + i], added in
+/// double. Move-only: the corners are owned, or borrowed from a caller who keeps them alive and
+/// unchanged.
 class Chunk {
 public:
     static Chunk owning(dvec3 origin, std::vector<vec3> corners);
@@ -54,7 +55,8 @@ struct Soup {
 /// Why a triangle can never be hit.
 enum class TriangleFault { None, NotFinite, Degenerate };
 
-/// NotFinite: a NaN or infinite corner. Degenerate: no area, the corners on one line (tested in double, without tolerance).
+/// NotFinite: a NaN or infinite corner. Degenerate: no area, the corners on one line (tested in
+/// double, without tolerance).
 TriangleFault triangle_fault(const Triangle& triangle);
 
 /// Triangles left out of a structure, by reason.
