@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// A page, walked on the CPU, offers every triangle that a ray hits; and it is as small as promised.
+#include "gpu/page.h"
+
+#include "gpu/page_walk.h"
+#include "kdtree/test_soups.h"
+
+#include <gtest/gtest.h>
+
+namespace ovc {
+namespace {
+
+Level1 one_leaf(const Soup& soup) {
+    Box bounds;
+    const auto ids = hittable_triangles(soup, nullptr, &bounds);
+    return partition(soup, ids, bounds, 1u << 30);
+}
+
+TEST(Page, WalkedInDoubleFindsWhatBruteForceFinds) {
+    for (const auto& [name, soup] : test::unpleasant_soups()) {
+        const Level1 level1 = one_leaf(soup);
+        if (level1.leaves.empty())
+            continue;
+        ASSERT_EQ(level1.leaves.size(), 1u);
+        const Leaf& leaf = level1.leaves[0];
+        const Page page = build_page(soup, leaf);
+        const auto rays = test::unpleasant_rays(soup, 77, 2000);
+        for (size_t i = 0; i < rays.size(); ++i) {
+            if (!rays[i].valid())
+                continue;
+            PreparedRay p(rays[i]);
+            Hit found;
+            walk_page(
+                page, leaf, p, p.ray.t_min,
+                [&](uint32_t k) {
+                    const TriangleId id = leaf.triangles[k];
+                    if (const auto hit = intersect(p, soup.triangle(id), id);
+                        hit && hit->nearer_than(found))
+                        found = *hit;
+                    return false;
+                },
+                [&] { return std::min(p.ray.t_max, found.t); });
+            const Hit expected = test::brute_force(soup, leaf.triangles, rays[i]);
+            ASSERT_TRUE(test::same(expected, found))
+                << name << " ray " << i << ": " << test::describe(expected) << " but found "
+                << test::describe(found);
+        }
+    }
+}
+
+TEST(Page, TakesAtMost52BytesATriangleWhereMostPairUpAnd96InASoup) {
+    const Soup mesh = test::closed_grid(128);
+    const Level1 of_mesh = one_leaf(mesh);
+    EXPECT_LE(double(build_page(mesh, of_mesh.leaves[0]).bytes()),
+              52.0 * double(mesh.triangle_count()));
+    const Soup soup = test::random_soup(3, 20000, 0.02);
+    const Level1 of_soup = one_leaf(soup);
+    EXPECT_LE(double(build_page(soup, of_soup.leaves[0]).bytes()),
+              96.0 * double(soup.triangle_count()));
+}
+
+TEST(Page, NeedsFewStackWordsEvenWhereNothingCanBeSplit) {
+    for (const auto& [name, soup] : test::unpleasant_soups()) {
+        const Level1 level1 = one_leaf(soup);
+        if (level1.leaves.empty())
+            continue;
+        EXPECT_LE(build_page(soup, level1.leaves[0]).depth, 24u) << name;
+    }
+}
+
+} // namespace
+} // namespace ovc
