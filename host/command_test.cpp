@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command as a whole, on the CPU: what it writes, and that an error writes nothing.
+#include "host/command.h"
+#include "host/interrupt.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
+namespace ovc {
+
+namespace fs = std::filesystem;
+
+class CommandTest : public testing::Test {
+protected:
+    void SetUp() override {
+        const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = fs::temp_directory_path() /
+                  ("overcast_" + std::string(test->name()) + "_" + std::to_string(getpid()));
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::string path(const char* name) const { return (folder_ / name).string(); }
+
+    /// The sentence that the command fails with; empty when it does not.
+    static std::string error(const Arguments& arguments) {
+        const Result<int> code = run_command(arguments);
+        return code ? "" : code.error().message;
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(CommandTest, RendersATestSceneToTwoFilesAndStatistics) {
+    const Result<int> code =
+        run_command({"render", "box", "--backend", "cpu-kdtree", "+W40", "+H30", "-o",
+                     path("a.png"), "+O" + path("a.exr"), "--stats", path("a.json"), "--quiet"});
+    ASSERT_TRUE(code) << code.error().message;
+    EXPECT_EQ(*code, kExitOk);
+    EXPECT_TRUE(fs::exists(path("a.png")));
+    EXPECT_TRUE(fs::exists(path("a.exr")));
+    std::ifstream file(path("a.json"));
+    const nlohmann::json stats = nlohmann::json::parse(file);
+    EXPECT_EQ(stats["rays"]["primary"], 1200);
+    EXPECT_EQ(stats["triangles"], 30);
+    EXPECT_EQ(stats["complete"], true);
+}
+
+TEST_F(CommandTest, ConvertsATestSceneAndReadsItBack) {
+    ASSERT_EQ(error({"convert", "box", path("box.ply")}), "");
+    EXPECT_EQ(error({"render", path("box.ply"), "--backend", "cpu-kdtree", "--size", "8x8", "-o",
+                     path("box.png"), "--quiet"}),
+              "");
+    EXPECT_TRUE(fs::exists(path("box.png")));
+}
+
+TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
+    const std::string out = path("out.png");
+    const struct {
+        Arguments arguments;
+        const char* part;
+    } cases[] = {
+        {{}, "no command given"},
+        {{"rendr"}, "did you mean 'render'?"},
+        {{"bench"}, "not there yet"},
+        {{"render"}, "SCENE is required"},
+        {{"render", path("none.ply"), "-o", out}, "none.ply"},
+        {{"render", folder_.string(), "-o", out}, "is a directory"},
+        {{"render", "bxo", "-o", out}, "bxo"},
+        {{"render", "box", "-o", path("no/out.png")}, "does not exist"},
+        {{"render", "box", "-o", path("out.tiff")}, "neither .png nor .exr"},
+        {{"render", "box", "-o", out, "--stats", path("no/s.json")}, "does not exist"},
+        {{"render", "box", "-o", out, "--gpu-memory", "abc"},
+         "--gpu-memory: 'abc' is no memory size"},
+        {{"render", "box", "-o", out, "--size", "40"}, "--size needs WIDTHxHEIGHT"},
+        {{"render", "box", "-o", out, "--camera", "1,2"}, "--camera needs"},
+        {{"render", "box", "-o", out, "--light", "-1"}, "--light needs x,y,z"},
+        {{"render", "box", "-o", out, "--max-depth", "-1"}, "--max-depth needs"},
+        {{"render", "box", "-o", out, "--backend", "embree"}, "not there yet"},
+        {{"render", "box", "-o", out, "--frames", "1:2"}, "not there yet"},
+        {{"render", "box", "-o", out, "--backend", "cpu-kdtree", "--leaves", "4"}, "means nothing"},
+        {{"info", path("none.obj")}, "none.obj"},
+        {{"trace", path("none.obj")}, "none.obj"},
+        {{"convert", "box", path("box.stl")}, "neither .ply nor .obj"},
+        {{"convert", "box", path("no/box.ply")}, "does not exist"},
+    };
+    for (const auto& c : cases) {
+        const std::string sentence = error(c.arguments);
+        EXPECT_THAT(sentence, testing::HasSubstr(c.part));
+        EXPECT_THAT(sentence, testing::Not(testing::HasSubstr("\n")));
+        EXPECT_TRUE(fs::is_empty(folder_)) << c.part;
+    }
+}
+
+TEST_F(CommandTest, EveryCommandHasHelpWithExamples) {
+    for (const Command& command : commands()) {
+        testing::internal::CaptureStdout();
+        EXPECT_EQ(*run_command({std::string(command.name), "--help"}), kExitOk);
+        std::fflush(stdout);
+        EXPECT_THAT(testing::internal::GetCapturedStdout(),
+                    testing::HasSubstr("overcast " + std::string(command.name)));
+    }
+}
+
+TEST_F(CommandTest, InfoIsJsonForPrograms) {
+    testing::internal::CaptureStdout();
+    ASSERT_EQ(error({"info", "box", "--json"}), "");
+    std::fflush(stdout);
+    const nlohmann::json info = nlohmann::json::parse(testing::internal::GetCapturedStdout());
+    for (const char* key : {"triangles", "unique_triangles", "instances", "dropped", "bounds",
+                            "meshes", "needs", "left_out"})
+        EXPECT_TRUE(info.contains(key)) << key;
+    EXPECT_EQ(info["triangles"], 30);
+    EXPECT_EQ(info["bounds"]["min"].size(), 3u);
+}
+
+} // namespace ovc
