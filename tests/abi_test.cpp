@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+// The C ABI under misuse: an error with its sentence, never a crash; and what it promises about
+// numbers.
+#include "plugin/overcast.h"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <cfenv>
+#include <cmath>
+#include <cstring>
+#include <thread>
+#include <vector>
+
+namespace {
+
+using testing::HasSubstr;
+
+const ovc_api& api() {
+    return *ovc_get_api(OVC_ABI_VERSION);
+}
+
+template <class T>
+T sized() {
+    T value{};
+    value.struct_size = sizeof(T);
+    return value;
+}
+
+constexpr float kTriangle[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+constexpr ovc_ray kDown = {{0.25, 0.25, 1}, 0, {0, 0, -1}, HUGE_VAL};
+
+class Abi : public testing::Test {
+protected:
+    void SetUp() override {
+        if (api().create_device(nullptr, &device) == OVC_ERROR_NO_DEVICE)
+            GTEST_SKIP() << api().last_error(nullptr);
+        ASSERT_TRUE(device);
+        ASSERT_EQ(api().create_scene(device, nullptr, &scene), OVC_OK);
+    }
+    void TearDown() override {
+        api().destroy_scene(scene);
+        api().destroy_device(device);
+    }
+
+    std::string error() const { return api().last_error(device); }
+
+    ovc_mesh triangle() const {
+        auto mesh = sized<ovc_mesh>();
+        mesh.positions = kTriangle;
+        mesh.vertex_count = 3;
+        return mesh;
+    }
+
+    void commit_triangle() {
+        const ovc_mesh mesh = triangle();
+        ASSERT_EQ(api().add_mesh(scene, &mesh, nullptr), OVC_OK) << error();
+        ASSERT_EQ(api().commit(scene), OVC_OK) << error();
+    }
+
+    ovc_device device = nullptr;
+    ovc_scene scene = nullptr;
+};
+
+TEST_F(Abi, AnUnknownVersionHasNoTable) {
+    EXPECT_EQ(ovc_get_api(0), nullptr);
+    EXPECT_EQ(ovc_get_api(OVC_ABI_VERSION + 1), nullptr);
+    EXPECT_EQ(api().struct_size, sizeof(ovc_api));
+    EXPECT_EQ(api().abi, OVC_ABI_VERSION);
+}
+
+TEST_F(Abi, NullHandlesAndPointersAreErrors) {
+    uint32_t count;
+    EXPECT_EQ(api().list_devices(nullptr, 0, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().list_devices(nullptr, 3, &count), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().create_device(nullptr, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().describe_device(nullptr, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().describe_device(device, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().create_scene(nullptr, nullptr, &scene), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().create_scene(device, nullptr, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().add_mesh(nullptr, nullptr, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(api().last_error(nullptr), HasSubstr("add_mesh: scene is NULL"));
+    EXPECT_EQ(api().add_mesh(scene, nullptr, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().commit(nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().intersect(nullptr, nullptr, 1, nullptr, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().occluded(nullptr, nullptr, 1, nullptr, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().statistics(scene, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    api().destroy_scene(nullptr);
+    api().destroy_device(nullptr);
+}
+
+TEST_F(Abi, WrongSizesAreNamed) {
+    auto config = sized<ovc_scene_config>();
+    config.struct_size = 3;
+    ovc_scene other;
+    EXPECT_EQ(api().create_scene(device, &config, &other), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(error(),
+                HasSubstr("ovc_scene_config.struct_size is 3, expected sizeof(ovc_scene_config)"));
+    ovc_mesh mesh = triangle();
+    mesh.struct_size = 0;
+    EXPECT_EQ(api().add_mesh(scene, &mesh, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(error(), HasSubstr("ovc_mesh.struct_size is 0"));
+    ovc_device_info info{};
+    EXPECT_EQ(api().describe_device(device, &info), OVC_ERROR_INVALID_ARGUMENT);
+    commit_triangle();
+    ovc_statistics statistics{};
+    EXPECT_EQ(api().statistics(scene, &statistics), OVC_ERROR_INVALID_ARGUMENT);
+}
+
+TEST_F(Abi, MeshesThatMakeNoSenseAreRefused) {
+    const uint32_t outside[3] = {0, 1, 3};
+    const struct {
+        const char* part;
+        void (*spoil)(ovc_mesh&, const uint32_t*);
+    } cases[] = {
+        {"positions is NULL", [](ovc_mesh& m, const uint32_t*) { m.positions = nullptr; }},
+        {"stride is 8", [](ovc_mesh& m, const uint32_t*) { m.stride = 8; }},
+        {"stride is 13", [](ovc_mesh& m, const uint32_t*) { m.stride = 13; }},
+        {"vertex_count is 2 without indices",
+         [](ovc_mesh& m, const uint32_t*) { m.vertex_count = 2; }},
+        {"triangle_count is 5, but 3 vertices",
+         [](ovc_mesh& m, const uint32_t*) { m.triangle_count = 5; }},
+        {"indices[2] is 3, expected less than vertex_count = 3",
+         [](ovc_mesh& m, const uint32_t* i) { m.indices = i, m.triangle_count = 1; }},
+        {"fewer than",
+         [](ovc_mesh& m, const uint32_t* i) { m.indices = i, m.triangle_count = 1ull << 40; }},
+        {"OVC_MESH_SHARED needs",
+         [](ovc_mesh& m, const uint32_t*) { m.flags = OVC_MESH_SHARED, m.stride = 16; }},
+        {"bits that this version does not know",
+         [](ovc_mesh& m, const uint32_t*) { m.flags = 64; }},
+        {"origin is not finite", [](ovc_mesh& m, const uint32_t*) { m.origin[1] = NAN; }},
+    };
+    for (const auto& c : cases) {
+        ovc_mesh mesh = triangle();
+        c.spoil(mesh, outside);
+        EXPECT_EQ(api().add_mesh(scene, &mesh, nullptr), OVC_ERROR_INVALID_ARGUMENT) << c.part;
+        EXPECT_THAT(error(), HasSubstr(c.part));
+    }
+}
+
+TEST_F(Abi, CallsInTheWrongOrderAreErrors) {
+    ovc_hit hit;
+    EXPECT_EQ(api().intersect(scene, &kDown, 1, &hit, nullptr), OVC_ERROR_INVALID_STATE);
+    EXPECT_EQ(error(), "intersect: the scene is not committed yet");
+    commit_triangle();
+    EXPECT_EQ(api().commit(scene), OVC_ERROR_INVALID_STATE);
+    const ovc_mesh mesh = triangle();
+    EXPECT_EQ(api().add_mesh(scene, &mesh, nullptr), OVC_ERROR_INVALID_STATE);
+}
+
+TEST_F(Abi, ABudgetTooSmallNamesTheSmallest) {
+    auto config = sized<ovc_scene_config>();
+    config.gpu_memory_bytes = 1024;
+    ovc_scene small = nullptr;
+    EXPECT_EQ(api().create_scene(device, &config, &small), OVC_ERROR_OUT_OF_BUDGET);
+    EXPECT_THAT(error(), HasSubstr("the smallest that works is 57344 bytes"));
+    EXPECT_EQ(small, nullptr);
+}
+
+TEST_F(Abi, ADeviceThatDoesNotExistIsNamed) {
+    auto config = sized<ovc_device_config>();
+    config.name = "no such card";
+    ovc_device other;
+    EXPECT_EQ(api().create_device(&config, &other), OVC_ERROR_NO_DEVICE);
+    EXPECT_EQ(other, nullptr);
+    EXPECT_THAT(api().last_error(nullptr), HasSubstr("no device is called 'no such card'"));
+}
+
+TEST_F(Abi, AnEmptySceneMissesAndNoRaysAreFine) {
+    ASSERT_EQ(api().commit(scene), OVC_OK) << error();
+    ovc_hit hit;
+    uint8_t shadow = 7;
+    EXPECT_EQ(api().intersect(scene, &kDown, 1, &hit, nullptr), OVC_OK);
+    EXPECT_EQ(hit.mesh, OVC_NONE);
+    EXPECT_TRUE(std::isinf(hit.t));
+    EXPECT_EQ(api().occluded(scene, &kDown, 1, &shadow, nullptr), OVC_OK);
+    EXPECT_EQ(shadow, 0);
+    EXPECT_EQ(api().intersect(scene, nullptr, 0, nullptr, nullptr), OVC_OK);
+}
+
+TEST_F(Abi, BadRaysMissAndAreCounted) {
+    commit_triangle();
+    std::vector<ovc_ray> rays;
+    for (int field = 0; field < 8; ++field)
+        for (const double bad : {double(NAN), HUGE_VAL, -HUGE_VAL}) {
+            ovc_ray ray = kDown;
+            (&ray.org[0])[field] = bad;
+            if (field != 7 || bad != HUGE_VAL) // an infinite end is no fault
+                rays.push_back(ray);
+        }
+    rays.push_back({{0.25, 0.25, 1}, 0, {0, 0, 0}, 9});
+    rays.push_back({{0.25, 0.25, 1}, 2, {0, 0, -1}, 1});
+    std::vector<ovc_hit> hits(rays.size());
+    ASSERT_EQ(api().intersect(scene, rays.data(), rays.size(), hits.data(), nullptr), OVC_OK);
+    for (const ovc_hit& hit : hits)
+        EXPECT_EQ(hit.mesh, OVC_NONE);
+    auto statistics = sized<ovc_statistics>();
+    ASSERT_EQ(api().statistics(scene, &statistics), OVC_OK);
+    EXPECT_EQ(statistics.invalid_rays, rays.size());
+}
+
+TEST_F(Abi, IndicesStridesOriginsAndSharingGiveTheSameTriangle) {
+    const float wide[] = {9, 1, 0, 0, 9, 0,
+                          1, 0, 9, 0, 0, 0}; // stride 16, the first float not ours
+    const uint32_t indices[3] = {2, 0, 1};
+    ovc_mesh indexed = triangle();
+    indexed.positions = wide + 1;
+    indexed.stride = 16;
+    indexed.indices = indices;
+    indexed.triangle_count = 1;
+    indexed.origin[2] = -1;
+    ovc_mesh shared = triangle();
+    shared.flags = OVC_MESH_SHARED;
+    uint32_t first = 9, second = 9;
+    ASSERT_EQ(api().add_mesh(scene, &indexed, &first), OVC_OK) << error();
+    ASSERT_EQ(api().add_mesh(scene, &shared, &second), OVC_OK) << error();
+    EXPECT_EQ(first, 0u);
+    EXPECT_EQ(second, 1u);
+    ASSERT_EQ(api().commit(scene), OVC_OK) << error();
+    ovc_hit hit;
+    auto query = sized<ovc_query>();
+    const ovc_triangle skip{1, 0};
+    ASSERT_EQ(api().intersect(scene, &kDown, 1, &hit, nullptr), OVC_OK);
+    EXPECT_EQ(hit.mesh, 1u);
+    EXPECT_EQ(hit.t, 1);
+    query.skip = &skip;
+    ASSERT_EQ(api().intersect(scene, &kDown, 1, &hit, &query), OVC_OK);
+    EXPECT_EQ(hit.mesh, 0u);
+    EXPECT_EQ(hit.t, 2);
+    EXPECT_EQ(hit.u, 0.25);
+    EXPECT_EQ(hit.v, 0.25);
+}
+
+TEST_F(Abi, ThirtyTwoThreadsTakeTurns) {
+    commit_triangle();
+    std::atomic<int> wrong{0};
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 32; ++i)
+        threads.emplace_back([&] {
+            for (int k = 0; k < 20; ++k) {
+                ovc_hit hit{};
+                wrong += api().intersect(scene, &kDown, 1, &hit, nullptr) != OVC_OK || hit.t != 1;
+            }
+        });
+    for (std::thread& thread : threads)
+        thread.join();
+    EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(Abi, LeavesTheHostsRoundingModeAlone) {
+    commit_triangle();
+    std::fesetround(FE_UPWARD);
+    ovc_hit hit{};
+    const ovc_result result = api().intersect(scene, &kDown, 1, &hit, nullptr);
+    const int mode = std::fegetround();
+    std::fesetround(FE_TONEAREST);
+    EXPECT_EQ(result, OVC_OK);
+    EXPECT_EQ(mode, FE_UPWARD);
+    EXPECT_EQ(hit.t, 1);
+}
+
+TEST_F(Abi, TwoDevicesAndScenesWorkSideBySide) {
+    commit_triangle();
+    ovc_device other = nullptr;
+    ovc_scene far = nullptr;
+    ASSERT_EQ(api().create_device(nullptr, &other), OVC_OK);
+    ASSERT_EQ(api().create_scene(other, nullptr, &far), OVC_OK);
+    ovc_mesh mesh = triangle();
+    mesh.origin[2] = -9;
+    ASSERT_EQ(api().add_mesh(far, &mesh, nullptr), OVC_OK);
+    ASSERT_EQ(api().commit(far), OVC_OK);
+    ovc_hit near_hit, far_hit;
+    ASSERT_EQ(api().intersect(scene, &kDown, 1, &near_hit, nullptr), OVC_OK);
+    ASSERT_EQ(api().intersect(far, &kDown, 1, &far_hit, nullptr), OVC_OK);
+    EXPECT_EQ(near_hit.t, 1);
+    EXPECT_EQ(far_hit.t, 10);
+    api().destroy_device(other); // refused: a scene is alive
+    ASSERT_EQ(api().intersect(far, &kDown, 1, &far_hit, nullptr), OVC_OK);
+    api().destroy_scene(far);
+    api().destroy_device(other);
+}
+
+} // namespace

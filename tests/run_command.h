@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs a command as a user would, and keeps what it said.
+#pragma once
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include <sys/wait.h>
+
+namespace ovc::test {
+
+struct CommandResult {
+    int exit_code = -1; // -1: ended by a signal
+    std::string output; // standard output and standard error
+};
+
+/// Through /bin/sh; what is not redirected is captured.
+inline CommandResult run_shell(const std::string& command) {
+    CommandResult result;
+    FILE* pipe = popen(("{ " + command + "; } 2>&1").c_str(), "r");
+    if (!pipe)
+        return result;
+    std::array<char, 4096> block;
+    while (const size_t n = fread(block.data(), 1, block.size(), pipe))
+        result.output.append(block.data(), n);
+    const int status = pclose(pipe);
+    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return result;
+}
+
+} // namespace ovc::test
