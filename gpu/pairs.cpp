@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairing: edges are sorted by their end points, equal neighbours are the candidates.
+// Pairing: sides meet in a hash table of their end points; the neighbours so found are the
+// candidates.
 #include "gpu/pairs.h"
 
 #include "core/ray.h"
@@ -25,13 +26,6 @@ uint64_t hash(const vec3& p) {
     return mix(mix(xy) ^ std::bit_cast<uint32_t>(p.z + 0.0f));
 }
 
-/// Side k of a triangle runs from corner k to corner k + 1.
-struct Side {
-    uint64_t key; // of its two end points, in either order
-    uint32_t triangle;
-    uint32_t side;
-};
-
 Boxf box_of(const LocalTriangle& t) {
     Boxf box;
     for (const vec3& corner : t)
@@ -51,30 +45,57 @@ struct Neighbour {
     uint32_t its_side = 0;
 };
 
-/// Up to three neighbours of each triangle, one across each side.
+/// Sides that still look for a neighbour, by the hash of their two end points: open addressing,
+/// linear probing. Side k of a triangle runs from corner k to corner k + 1 and is numbered 3
+/// triangle + k.
+class OpenSides {
+public:
+    explicit OpenSides(size_t triangles) : slots_(std::bit_ceil(triangles * 6 + 1), kEmpty) {}
+
+    /// The side that `fits` among those of this key, taken out; or kNone, and `side` is put in.
+    template <class Fits>
+    uint32_t match_or_add(uint64_t key, uint32_t side, Fits&& fits) {
+        const uint64_t tag = key & ~uint64_t(kNone);
+        const size_t mask = slots_.size() - 1;
+        size_t at = size_t(key) & mask;
+        for (; slots_[at] != kEmpty; at = (at + 1) & mask) {
+            const uint32_t other = uint32_t(slots_[at]);
+            if ((slots_[at] & ~uint64_t(kNone)) == tag && other != kTaken && fits(other)) {
+                slots_[at] = tag | kTaken; // not empty: probing goes on across it
+                return other;
+            }
+        }
+        slots_[at] = tag | side;
+        return kNone;
+    }
+
+private:
+    static constexpr uint64_t kEmpty = ~uint64_t(0);
+    static constexpr uint32_t kTaken = kNone - 1;
+
+    std::vector<uint64_t> slots_; // upper half of the key, side below
+};
+
+/// Up to three neighbours of each triangle, one across each side. An edge joins two triangles;
+/// further ones at it pair up among themselves.
 std::vector<std::array<Neighbour, 3>> neighbours(std::span<const LocalTriangle> triangles) {
-    std::vector<Side> sides;
-    sides.reserve(triangles.size() * 3);
+    OpenSides open(triangles.size());
+    std::vector<std::array<Neighbour, 3>> result(triangles.size());
     for (uint32_t i = 0; i < triangles.size(); ++i) {
         std::array<uint64_t, 3> h;
         for (int k = 0; k < 3; ++k)
             h[k] = hash(triangles[i][k]);
-        for (uint32_t k = 0; k < 3; ++k)
-            sides.push_back({h[k] + h[(k + 1) % 3], i, k});
-    }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-        return a.key != b.key ? a.key < b.key : a.triangle < b.triangle;
-    });
-    std::vector<std::array<Neighbour, 3>> result(triangles.size());
-    for (size_t i = 0; i + 1 < sides.size(); ++i) {
-        const Side& s = sides[i];
-        const Side& t = sides[i + 1];
-        if (s.key != t.key || s.triangle == t.triangle ||
-            !same_side(triangles[s.triangle], s.side, triangles[t.triangle], t.side))
-            continue;
-        result[s.triangle][s.side] = {t.triangle, s.side, t.side};
-        result[t.triangle][t.side] = {s.triangle, t.side, s.side};
-        ++i; // an edge joins two triangles; further ones at it pair up among themselves
+        for (uint32_t k = 0; k < 3; ++k) {
+            const uint32_t other =
+                open.match_or_add(mix(h[k] + h[(k + 1) % 3]), 3 * i + k, [&](uint32_t side) {
+                    return side / 3 != i &&
+                           same_side(triangles[i], k, triangles[side / 3], side % 3);
+                });
+            if (other == kNone)
+                continue;
+            result[i][k] = {other / 3, k, other % 3};
+            result[other / 3][other % 3] = {i, other % 3, k};
+        }
     }
     return result;
 }

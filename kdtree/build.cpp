@@ -120,8 +120,8 @@ private:
             return;
         if (below >= total && above >= total)
             return;
-        // Level 1 splits where the heuristic would not pay yet, but never where a quarter of the triangles
-        // land on both sides: the references would multiply with every level.
+        // Level 1 splits where the heuristic would not pay yet, but never where a quarter of the
+        // triangles land on both sides: the references would multiply with every level.
         if (options_.max_leaf_triangles && below + above > total + total / 4)
             return;
         const dvec3 extent = cell.extent();
@@ -224,6 +224,10 @@ private:
     std::vector<Fragment> divide(std::vector<Fragment>& fragments, const Split& split,
                                  const Box& below_cell, const Box& above_cell) const {
         std::vector<Fragment> above;
+        above.reserve(
+            size_t(std::count_if(fragments.begin(), fragments.end(), [&](const Fragment& f) {
+                return f.box.hi[split.axis] >= split.position;
+            })));
         size_t kept = 0;
         for (const Fragment& fragment : fragments) {
             const bool is_below = fragment.box.lo[split.axis] <= split.position;
