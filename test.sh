@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Builds and runs the tests; installs packages first; re-runnable.
+# usage: ./test.sh [--asan] [ctest options]
+#   ./test.sh                  all tests
+#   ./test.sh -L importers     one folder's tests: core importers kdtree gpu plugin host testscenes tests
+#   ./test.sh -L accelerator   kdtree, gpu and plugin
+#   ./test.sh -R EmbreeParity  tests by name
+#   ./test.sh --asan …         the same with AddressSanitizer and UndefinedBehaviorSanitizer, in build-asan/
+set -euo pipefail
+cd "$(dirname "$0")"
+source ./install.sh
+
+if [[ ${1:-} == --help || ${1:-} == -h ]]; then
+    sed -n '2,9s/^# \{0,1\}//p' "$0"
+    exit 0
+fi
+preset=release
+build=build
+if [[ ${1:-} == --asan ]]; then
+    shift
+    preset=asan
+    build=build-asan
+    # Mesa's drivers are unloaded before the report: what they leak cannot be named, so leaks are not asked for there.
+    export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=0:abort_on_error=1}
+    export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1:halt_on_error=1}
+fi
+install_packages
+echo "== configure and build ($preset) into $build/"
+cmake --preset "$preset" -DOVC_TESTS=ON ${CI:+-DOVC_WERROR=ON} >/dev/null
+cmake --build "$build"
+echo "== test"
+ctest --test-dir "$build" --output-on-failure --parallel "$(nproc)" "$@"
