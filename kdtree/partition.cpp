@@ -15,10 +15,11 @@
 namespace ovc {
 namespace {
 
-/// Of the cell's largest extent. 64 float roundings of a local coordinate: more than the kernel can
-/// be off by, so a hit inside the cell is never in doubt for lying at the end of the padded
-/// interval (docs/numerics.md).
-constexpr double kPad = 0x1p-18;
+/// Of the cell's largest extent. The kernel sees a ray within the padded box and cannot prove a hit
+/// that lies within a rounding of either end. This keeps what is hit in the cell clear of the ends,
+/// even on triangles hundreds of times the size of the leaf, whose roundings are as much larger
+/// (docs/numerics.md).
+constexpr double kPad = 0x1p-10;
 
 /// A leaf node of the tree, the closed cell it stands for, and the cell with its padding.
 struct Cell {

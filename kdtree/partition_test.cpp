@@ -18,16 +18,18 @@ Level1 cut(const Soup& soup, uint32_t most) {
     return partition(soup, ids, bounds, most);
 }
 
-/// Leaf by leaf, all triangles of each tested, ending with the first leaf whose box holds a hit.
+/// Leaf by leaf, all triangles of each tested; after the first hit only the leaves of its cell are
+/// left.
 Hit trace(const Level1& level1, const Soup& soup, const Ray& ray) {
     Hit best;
     if (!ray.valid())
         return best;
     const PreparedRay p(ray);
-    RayPosition position{ray.t_min, 0};
+    RayPosition position{ray.t_min};
     std::set<uint32_t> seen;
     while (true) {
-        const Visit visit = next_leaf(level1, p, position);
+        const Visit visit =
+            best.is_hit() ? next_leaf_in_cell(level1, p, position) : next_leaf(level1, p, position);
         if (visit.leaf == kNone)
             return best;
         EXPECT_TRUE(seen.insert(visit.leaf).second) << "a leaf twice";
@@ -35,9 +37,6 @@ Hit trace(const Level1& level1, const Soup& soup, const Ray& ray) {
             if (const auto hit = intersect(p, soup.triangle(id), id))
                 if (hit->t <= visit.inside.exit && hit->nearer_than(best))
                     best = *hit;
-        // Leaves of one cell share a box: a nearer hit may be in the next of them.
-        if (best.is_hit() && position.t > best.t)
-            return best;
     }
 }
 

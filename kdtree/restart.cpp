@@ -49,26 +49,32 @@ bool can_walk(const Level1& level1, const PreparedRay& p) {
     return level1.nodes.empty() || p.margin(level1.bounds) <= level1.smallest_padding;
 }
 
+Visit next_leaf_in_cell(const Level1& level1, const PreparedRay& p, RayPosition& position) {
+    while (position.next < position.end) {
+        const uint32_t leaf = position.next++;
+        const Interval inside = clip(p, level1.leaves[leaf].box, p.ray.t_min, p.ray.t_max);
+        if (!inside.empty())
+            return {leaf, inside};
+    }
+    return {};
+}
+
 Visit next_leaf(const Level1& level1, const PreparedRay& p, RayPosition& position) {
+    constexpr double never = std::numeric_limits<double>::infinity();
     if (level1.nodes.empty())
         return {};
-    if (position.t == p.ray.t_min && position.done == 0 &&
+    if (position.t == p.ray.t_min && position.end == 0 &&
         clip(p, level1.bounds.padded(level1.smallest_padding), p.ray.t_min, p.ray.t_max).empty())
         return {};
-    while (position.t <= p.ray.t_max) {
+    while (true) {
+        if (const Visit visit = next_leaf_in_cell(level1, p, position); visit.leaf != kNone)
+            return visit;
+        if (position.t == never)
+            return {};
         const CellVisit visit = cell_after(level1, p, position.t);
-        while (position.done < visit.cell->count()) {
-            const uint32_t leaf = visit.cell->first() + position.done++;
-            const Interval inside = clip(p, level1.leaves[leaf].box, p.ray.t_min, p.ray.t_max);
-            if (!inside.empty())
-                return {leaf, inside};
-        }
-        if (visit.exit <= position.t || visit.exit >= p.ray.t_max)
-            break;
-        position = {visit.exit, 0};
+        position = {visit.exit < p.ray.t_max ? visit.exit : never, visit.cell->first(),
+                    visit.cell->first() + visit.cell->count()};
     }
-    position.t = std::numeric_limits<double>::infinity();
-    return {};
 }
 
 } // namespace ovc

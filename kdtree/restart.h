@@ -15,10 +15,12 @@ struct Visit {
     Interval inside{1, 0};
 };
 
-/// Where a ray stands on level 1. Start with t = t_min of the ray.
+/// Where a ray stands on level 1: cells up to t are done, but for leaves [next, end) of the last of
+/// them. Start with t = t_min of the ray.
 struct RayPosition {
-    double t = 0;      // cells before are done
-    uint32_t done = 0; // leaves of the cell at t that are done, where a cell has several
+    double t = 0;
+    uint32_t next = 0;
+    uint32_t end = 0;
 };
 
 /// True when double precision and the padding of leaves suffice to walk level 1 plane by plane
@@ -27,8 +29,12 @@ struct RayPosition {
 /// kdtree/walk.h.
 bool can_walk(const Level1& level1, const PreparedRay& p);
 
-/// The next leaf along the ray at or after `position`, which is moved past it; leaf == kNone when
-/// there is none. Leaves come in order of entry, each once. Needs can_walk().
+/// The next leaf along the ray, and `position` moved past it; leaf == kNone when there is none.
+/// Leaves come in order of entry, each once. Needs can_walk().
 Visit next_leaf(const Level1& level1, const PreparedRay& p, RayPosition& position);
+
+/// The same, but no leaf beyond the cell of the last one: where a ray goes on that was hit, since a
+/// hit inside a leaf's box is nearer than anything in later cells.
+Visit next_leaf_in_cell(const Level1& level1, const PreparedRay& p, RayPosition& position);
 
 } // namespace ovc

@@ -74,7 +74,8 @@ struct NearestQuery {
             results[i] = *hit;
         return hit.has_value();
     }
-    /// Where ray i still may be hit nearer than so far.
+    bool was_hit(size_t i) const { return results[i].is_hit(); }
+    /// The end of ray i as far as it is still of interest.
     double t_max(size_t i) const { return std::min(rays[i].t_max, results[i].t); }
 };
 
@@ -91,7 +92,8 @@ struct OcclusionQuery {
         results[i] = 1;
         return true;
     }
-    double t_max(size_t i) const { return results[i] ? -HUGE_VAL : rays[i].t_max; }
+    bool was_hit(size_t i) const { return results[i]; }
+    double t_max(size_t i) const { return rays[i].t_max; }
 };
 
 /// Ray i as the host gave it.
@@ -232,7 +234,7 @@ Result<Done> TwoLevel::trace_wave(const Query& query, size_t first, size_t last)
                 continue;
             }
             const PreparedRay p = prepare(query, first + i);
-            positions[i] = {p.ray.t_min, 0};
+            positions[i] = {p.ray.t_min};
             if (can_walk(level1_, p))
                 next[i] = next_leaf(level1_, p, positions[i]).leaf;
             else
@@ -287,9 +289,12 @@ Result<Done> TwoLevel::trace_wave(const Query& query, size_t first, size_t last)
                         (prim != OVC_MISS &&
                          !query.settle(first + i, p, soup_, level1_.leaves[leaf].triangles[prim])))
                         decide_in_double(i, p);
-                    else
+                    else if (!query.was_hit(first + i))
+                        next[i] = next_leaf(level1_, p, positions[i]).leaf;
+                    else if (!Query::kAnyHit)
                         next[i] =
-                            next_leaf(level1_, prepare_rest(query, first + i), positions[i]).leaf;
+                            next_leaf_in_cell(level1_, prepare_rest(query, first + i), positions[i])
+                                .leaf;
                 }
             });
             for (const uint32_t i : batch)
