@@ -111,9 +111,9 @@ DeviceInfo describe() {
     return info;
 }
 
-/// EGL_PLATFORM asks Mesa for a window system. Overcast opens none; a value that no EGL knows is a
-/// mistake worth saying.
-Result<Done> check_platform_variable() {
+} // namespace
+
+Result<Done> check_egl_environment() {
     const char* value = std::getenv("EGL_PLATFORM");
     if (!value || !*value)
         return Done{};
@@ -128,10 +128,8 @@ Result<Done> check_platform_variable() {
         value)};
 }
 
-} // namespace
-
 Result<std::vector<EglContext::Platform>> EglContext::platforms() {
-    if (Result<Done> checked = check_platform_variable(); !checked)
+    if (Result<Done> checked = check_egl_environment(); !checked)
         return checked.error();
     std::vector<Platform> found;
     const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);

@@ -27,6 +27,10 @@ struct DeviceInfo {
     uint64_t default_budget_bytes() const { return memory_bytes - memory_bytes / 8; }
 };
 
+/// Error: EGL_PLATFORM is set to what no EGL knows. Overcast opens no window system, but a mistake
+/// is worth saying.
+Result<Done> check_egl_environment();
+
 /// A context, with its display. Current on one thread at most; destroyed on the thread it is
 /// current on.
 class EglContext {

@@ -14,13 +14,15 @@ Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOpt
     const Result<const ovc_api*> api = load_plugin();
     if (!api)
         return Error{api.error().message + " (--backend cpu-kdtree works without it)"};
-    Result<PluginDevice> device = PluginDevice::open(*api, options.device, log);
+    ovc_result code = OVC_OK;
+    Result<PluginDevice> device = PluginDevice::open(*api, options.device, log, &code);
     if (device)
         return make_two_level_backend(std::move(*device), soup, options);
-    // Whoever named a device or a backend meant it; anyone else gets a picture, slower, and is told
-    // why.
-    if (options.kind == BackendKind::TwoLevel || !options.device.empty())
-        return device.error();
+    // Whoever named a device or a backend meant it, and a wrong setting is for its owner to mend;
+    // where there just is no device, the picture is made, slower, and the reason told.
+    if (options.kind == BackendKind::TwoLevel || !options.device.empty() ||
+        code != OVC_ERROR_NO_DEVICE)
+        return Error{device.error().message + " (--backend cpu-kdtree works without EGL)"};
     say(log, LogLevel::Warning,
         fmt::format("tracing on the CPU KD-tree instead of a GPU: {}", device.error().message));
     return make_cpu_backend(soup);

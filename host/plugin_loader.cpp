@@ -57,7 +57,8 @@ static void forward_log(void* user, ovc_log_level level, const char* message) {
     say(*static_cast<const LogSink*>(user), LogLevel(level), message);
 }
 
-Result<PluginDevice> PluginDevice::open(const ovc_api* api, const std::string& name, LogSink log) {
+Result<PluginDevice> PluginDevice::open(const ovc_api* api, const std::string& name, LogSink log,
+                                        ovc_result* code) {
     PluginDevice opened(api, std::make_unique<LogSink>(std::move(log)));
     ovc_device_config config{};
     config.struct_size = sizeof(config);
@@ -65,7 +66,10 @@ Result<PluginDevice> PluginDevice::open(const ovc_api* api, const std::string& n
     config.log = forward_log;
     config.log_user = opened.log_.get();
     ovc_device device = nullptr;
-    if (const ovc_result result = api->create_device(&config, &device); result != OVC_OK)
+    const ovc_result result = api->create_device(&config, &device);
+    if (code)
+        *code = result;
+    if (result != OVC_OK)
         return Error{sentence_of(api, nullptr, result)};
     opened.device_ = {device, DestroyDevice{api}};
     return opened;

@@ -34,8 +34,9 @@ using PluginScene = std::unique_ptr<ovc_scene_t, DestroyScene>;
 class PluginDevice {
 public:
     /// name: a number as listed or a part of the renderer's name; empty: the plugin chooses. log
-    /// may be called from the device's thread.
-    static Result<PluginDevice> open(const ovc_api* api, const std::string& name, LogSink log);
+    /// may be called from the device's thread. code: optional, receives the library's result.
+    static Result<PluginDevice> open(const ovc_api* api, const std::string& name, LogSink log,
+                                     ovc_result* code = nullptr);
 
     const ovc_api* api() const { return api_; }
     Result<ovc_device_info> describe() const;

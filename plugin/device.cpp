@@ -92,6 +92,8 @@ ovc_result create_device(const ovc_device_config* config, ovc_device* device) {
                     log(user, ovc_log_level(level), text.c_str());
                 };
         }
+        if (const Result<Done> environment = check_egl_environment(); !environment)
+            throw Failure{OVC_ERROR_INVALID_ARGUMENT, environment.error().message};
         Result<std::unique_ptr<GlThread>> gl = GlThread::start(name, created->log);
         if (!gl)
             throw Failure{OVC_ERROR_NO_DEVICE, gl.error().message};

@@ -26,7 +26,7 @@ typedef struct ovc_scene_t* ovc_scene;
 
 typedef enum ovc_result {
     OVC_OK = 0,
-    OVC_ERROR_INVALID_ARGUMENT = 1, /* a null, a wrong struct_size, a number out of range */
+    OVC_ERROR_INVALID_ARGUMENT = 1, /* a null, a wrong struct_size, a number out of range, EGL_PLATFORM set to nonsense */
     OVC_ERROR_INVALID_STATE = 2,    /* tracing before commit, adding after it */
     OVC_ERROR_NO_DEVICE = 3,        /* EGL or OpenGL is missing, or no device has that name */
     OVC_ERROR_OUT_OF_BUDGET = 4,    /* gpu_memory_bytes is too small; the message names the smallest that works */

@@ -160,10 +160,13 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     TwoLevelStatistics& statistics = self->statistics_;
     const std::vector<TriangleId> triangles =
         hittable_triangles(soup, &statistics.dropped, &bounds);
-    if (statistics.dropped.total())
+    if (statistics.dropped.not_finite)
         say(log, LogLevel::Warning,
-            fmt::format("left out {} triangles with a NaN or infinite corner and {} without area",
-                        statistics.dropped.not_finite, statistics.dropped.degenerate));
+            fmt::format("left out {} triangles with a NaN or infinite corner",
+                        statistics.dropped.not_finite));
+    if (statistics.dropped.degenerate)
+        say(log, LogLevel::Warning,
+            fmt::format("left out {} triangles without area", statistics.dropped.degenerate));
     statistics.seconds_level1 = seconds_since(start);
 
     const uint64_t parts = options.leaves ? options.leaves : kDefaultLeaves;

@@ -171,8 +171,8 @@ void compare(const std::string& scene, size_t count) {
 TEST(EmbreeParity, Knot) {
     compare("knot", 100'000);
 }
-TEST(EmbreeParity, City) {
-    compare("city", 100'000);
+TEST(EmbreeParity, Plants) {
+    compare("plants-1", 100'000);
 }
 
 TEST(EmbreeParity, Bunny) {
