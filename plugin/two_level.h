@@ -68,9 +68,9 @@ private:
         : soup_(soup), gl_(gl), plan_(plan) {}
 
     template <class Query>
-    Result<Done> trace(const Query& query);
+    class Wave;
     template <class Query>
-    Result<Done> trace_wave(const Query& query, size_t first, size_t last);
+    Result<Done> trace(const Query& query);
 
     const Soup& soup_;
     GlThread& gl_;
