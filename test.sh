@@ -20,8 +20,6 @@ if [[ ${1:-} == --asan ]]; then
     shift
     preset=asan
     build=build-asan
-    # Mesa's drivers are unloaded before the report: what they leak cannot be named, so leaks are not asked for there.
-    export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=0:abort_on_error=1}
     export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1:halt_on_error=1}
 fi
 install_packages
