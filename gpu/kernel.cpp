@@ -78,17 +78,23 @@ Result<gl::Shader> compile(GLenum stage, std::string_view name, const std::strin
     return shader;
 }
 
+struct Stage {
+    GLenum stage;
+    std::string_view source;
+};
+
 Result<gl::Program> link(const ShaderConfig& config) {
-    const std::string defines = config.defines();
-    Result<gl::Shader> vertex = compile(GL_VERTEX_SHADER, "fullscreen.vert.glsl", defines);
-    if (!vertex)
-        return vertex.error();
-    Result<gl::Shader> fragment = compile(GL_FRAGMENT_SHADER, "trace.frag.glsl", defines);
-    if (!fragment)
-        return fragment.error();
+    const std::vector<Stage> stages =
+        config.compute ? std::vector<Stage>{{GL_COMPUTE_SHADER, "trace.comp.glsl"}}
+                       : std::vector<Stage>{{GL_VERTEX_SHADER, "fullscreen.vert.glsl"},
+                                            {GL_FRAGMENT_SHADER, "trace.frag.glsl"}};
     gl::Program program(glCreateProgram());
-    glAttachShader(program.id(), vertex->id());
-    glAttachShader(program.id(), fragment->id());
+    for (const Stage& stage : stages) {
+        const Result<gl::Shader> shader = compile(stage.stage, stage.source, config.defines());
+        if (!shader)
+            return shader.error();
+        glAttachShader(program.id(), shader->id());
+    }
     glLinkProgram(program.id());
     GLint ok = GL_FALSE;
     glGetProgramiv(program.id(), GL_LINK_STATUS, &ok);
@@ -101,10 +107,11 @@ Result<gl::Program> link(const ShaderConfig& config) {
 
 std::string ShaderConfig::defines() const {
     return fmt::format("#define OVC_ANY_HIT {:d}\n"
+                       "#define OVC_CERTIFY {:d}\n"
                        "#define OVC_STACK_DEPTH {}\n"
                        "#define OVC_STACK_REGISTERS {:d}\n"
                        "#define OVC_PAGE_IMAGE {:d}\n",
-                       any_hit, stack_depth, stack_registers, page_image);
+                       any_hit, certify, stack_depth, stack_registers, page_image);
 }
 
 Result<std::string> expand_shader(std::string_view name, const std::string& defines,

@@ -12,10 +12,12 @@
 
 namespace ovc {
 
-/// Every switch of shaders/config.glsl, by value. Derived from what the query and the pages need,
-/// and from the driver.
+/// Which kernel, and every switch of shaders/config.glsl, by value. Derived from what the query and
+/// the pages need, and from the driver.
 struct ShaderConfig {
+    bool compute = false; // which wrapper; no switch of config.glsl
     bool any_hit = false;
+    bool certify = true;
     uint32_t stack_depth = 16;
     bool stack_registers = true;
     bool page_image = true;

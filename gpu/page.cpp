@@ -158,8 +158,8 @@ private:
     }
 
     void pack_pair(const TrianglePair& pair, uint32_t index) {
-        const std::array<uint32_t, 4> w{pair.a, pair.b == kNone ? OVC_NO_TRIANGLE : pair.b, 0,
-                                        OVC_PAIR};
+        const std::array<uint32_t, 4> w{pair.a, pair.b == kNone ? OVC_NO_TRIANGLE : pair.b,
+                                        pair.order, OVC_PAIR};
         for (int i = 0; i < 4; ++i) {
             const vec3& c = pair.corners[i];
             unit(index)[i] = {bits(c.x), bits(c.y), bits(c.z), w[i]};

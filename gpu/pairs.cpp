@@ -100,16 +100,28 @@ std::vector<std::array<Neighbour, 3>> neighbours(std::span<const LocalTriangle> 
     return result;
 }
 
+/// Which own corners the pair's corners 0 and 2 are.
+uint32_t order(uint32_t first, uint32_t last) {
+    return first | last << 2;
+}
+
 TrianglePair single(const LocalTriangle& t, uint32_t id) {
-    return {{t[0], t[1], t[2], t[1]}, id, kNone};
+    return {{t[0], t[1], t[2], t[1]}, id, kNone, order(0, 2)};
 }
 
 /// a's corner opposite the shared side becomes corner 1, b's becomes corner 3.
 TrianglePair joined(const LocalTriangle& a, uint32_t a_id, const LocalTriangle& b,
                     const Neighbour& n) {
     const uint32_t side = n.my_side;
-    return {
-        {a[(side + 1) % 3], a[(side + 2) % 3], a[side], b[(n.its_side + 2) % 3]}, a_id, n.triangle};
+    // b may have the shared side run either way: its end that is corner 0 is told by position.
+    const uint32_t far = (n.its_side + 1) % 3;
+    const bool opposite = b[n.its_side] == a[(side + 1) % 3];
+    const uint32_t first_of_b = opposite ? n.its_side : far;
+    const uint32_t last_of_b = opposite ? far : n.its_side;
+    return {{a[(side + 1) % 3], a[(side + 2) % 3], a[side], b[(n.its_side + 2) % 3]},
+            a_id,
+            n.triangle,
+            order((side + 1) % 3, side) | order(first_of_b, last_of_b) << 4};
 }
 
 } // namespace

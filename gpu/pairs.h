@@ -22,6 +22,8 @@ struct TrianglePair {
     std::array<vec3, 4> corners;
     uint32_t a;
     uint32_t b;
+    uint32_t
+        order; // of layout.h: which own corners of a, then of b, the pair's corners 0 and 2 are
 };
 
 /// Every triangle in exactly one pair. Two are joined where they share an edge bit for bit and the

@@ -62,7 +62,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Dev
       software_(device.is_software),
       rays_(*ledger_, GL_RGBA32UI, sizeof(uvec4), kRowRays * OVC_RAY_TEXELS,
             plan.batch_rays / kRowRays, "rays"),
-      answers_(*ledger_, GL_RG32UI, sizeof(LocalAnswer), kRowRays, plan.batch_rays / kRowRays,
+      answers_(*ledger_, GL_RGBA32UI, sizeof(LocalAnswer), kRowRays, plan.batch_rays / kRowRays,
                "answers"),
       framebuffer_(answers_),
       pool_(*ledger_, plan.pool_bytes, device.buffer_alignment, leaves) {}
@@ -75,16 +75,18 @@ Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const Dev
     if (Result<Done> ok = check_gl("allocating the page pool and the ray textures"); !ok)
         return ok.error();
     if (!tracer->framebuffer_.complete())
-        return Error{"the driver cannot render to RG32UI textures, which answers come back in"};
+        return Error{"the driver cannot render to RGBA32UI textures, which answers come back in"};
     return tracer;
 }
 
-Result<PassResult> Tracer::pass(uint32_t leaf, const Page& page, bool any_hit,
+Result<PassResult> Tracer::pass(uint32_t leaf, const Page& page, const PassOptions& options,
                                 std::span<const LocalRay> rays, std::span<LocalAnswer> answers) {
     assert(!rays.empty() && rays.size() == answers.size());
     const auto start = std::chrono::steady_clock::now();
     ShaderConfig config;
-    config.any_hit = any_hit;
+    config.compute = options.compute;
+    config.any_hit = options.any_hit;
+    config.certify = options.certify;
     config.stack_depth = round_up(page.depth, 4); // few programs, no register more than needed
     config.stack_registers = software_;
     config.page_image = software_;
@@ -100,18 +102,26 @@ Result<PassResult> Tracer::pass(uint32_t leaf, const Page& page, bool any_hit,
                         GL_UNSIGNED_INT, rays.data());
 
     glUseProgram(*program);
-    glBindVertexArray(vertex_array_.id());
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-    glViewport(0, 0, kRowRays, rows);
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
     if (config.page_image)
         glBindImageTexture(OVC_BINDING_PAGE, page_.id(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
     else
         glBindTextureUnit(OVC_BINDING_PAGE, page_.id());
     glBindTextureUnit(OVC_BINDING_RAYS, rays_.id());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glReadPixels(0, 0, kRowRays, rows, GL_RG_INTEGER, GL_UNSIGNED_INT, answers.data());
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+    if (config.compute) {
+        static_assert(kRowRays % OVC_GROUP_SIZE == 0);
+        glBindImageTexture(OVC_BINDING_ANSWERS, answers_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
+                           GL_RGBA32UI);
+        glDispatchCompute(kRowRays / OVC_GROUP_SIZE, GLuint(rows), 1);
+        glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
+    } else {
+        glBindVertexArray(vertex_array_.id());
+        glViewport(0, 0, kRowRays, rows);
+        glDisable(GL_DEPTH_TEST);
+        glDisable(GL_BLEND);
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+    glReadPixels(0, 0, kRowRays, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT, answers.data());
     if (Result<Done> ok = check_gl("tracing a pass"); !ok)
         return ok.error();
     result.seconds =

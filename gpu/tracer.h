@@ -24,11 +24,21 @@ struct LocalRay {
 static_assert(sizeof(LocalRay) == 32);
 
 /// What the kernel answers: prim is the index of a triangle of the leaf, OVC_MISS or OVC_FLAGGED.
+/// u, v: in fast precision.
 struct LocalAnswer {
     float t;
+    float u;
+    float v;
     uint32_t prim;
 };
-static_assert(sizeof(LocalAnswer) == 8);
+static_assert(sizeof(LocalAnswer) == 16);
+
+/// What a pass is to find, and how.
+struct PassOptions {
+    bool any_hit = false;
+    bool certify = true;  // false: fast precision
+    bool compute = false; // which kernel: they answer alike
+};
 
 /// How a budget is shared out: pages get what rays and answers leave.
 struct MemoryPlan {
@@ -62,7 +72,7 @@ public:
     /// Traces rays (at most plan.batch_rays) in the leaf's page, moving the page in if need be.
     /// answers: as many as rays. The storage of `rays` is used up to the next multiple of kRowRays:
     /// see row_padded().
-    Result<PassResult> pass(uint32_t leaf, const Page& page, bool any_hit,
+    Result<PassResult> pass(uint32_t leaf, const Page& page, const PassOptions& options,
                             std::span<const LocalRay> rays, std::span<LocalAnswer> answers);
 
     const Ledger& ledger() const { return *ledger_; }

@@ -40,13 +40,13 @@ protected:
         });
     }
 
-    std::vector<LocalAnswer> trace(std::vector<LocalRay> rays, bool any_hit) {
+    std::vector<LocalAnswer> trace(std::vector<LocalRay> rays, const PassOptions& options) {
         const size_t count = rays.size();
         rays.resize(Tracer::row_padded(count),
                     LocalRay{vec3(0), -1, vec3(0, 0, 1), OVC_NO_TRIANGLE});
         std::vector<LocalAnswer> answers(rays.size());
         gl->run([&](GlState&) {
-            const auto pass = tracer->pass(0, page, any_hit, std::span(rays).first(count),
+            const auto pass = tracer->pass(0, page, options, std::span(rays).first(count),
                                            std::span(answers).first(count));
             ASSERT_TRUE(pass) << pass.error().message;
         });
@@ -94,8 +94,8 @@ TEST_F(KernelGl, WhatItCallsCertainIsTrue) {
         std::vector<LocalRay> rays;
         for (int i = 0; i < 2000; ++i)
             rays.push_back(random_local(random, leaf));
-        const auto nearest = trace(rays, /* any_hit= */ false);
-        const auto any = trace(rays, /* any_hit= */ true);
+        const auto nearest = trace(rays, {});
+        const auto any = trace(rays, {.any_hit = true});
         for (size_t i = 0; i < rays.size(); ++i) {
             const Hit expected = test::brute_force(soup, leaf.triangles, to_world(rays[i], leaf));
             if (nearest[i].prim != OVC_FLAGGED) {
@@ -128,14 +128,14 @@ TEST_F(KernelGl, FlagsRaysAtSharedEdgesAndVertices) {
         LocalRay ray{vec3(corner) - vec3(0, 0, 0.25f), 8, vec3(0, 0, 1), OVC_NO_TRIANGLE};
         rays.push_back(ray);
     }
-    for (const LocalAnswer& answer : trace(rays, /* any_hit= */ false))
+    for (const LocalAnswer& answer : trace(rays, {}))
         EXPECT_EQ(answer.prim, OVC_FLAGGED);
 }
 
 TEST_F(KernelGl, ANegativeEndIsNoRay) {
     load(test::closed_grid(8));
     std::vector<LocalRay> rays(3000, LocalRay{vec3(0, 0, -1), -1, vec3(0, 0, 1), OVC_NO_TRIANGLE});
-    for (const LocalAnswer& answer : trace(rays, /* any_hit= */ false))
+    for (const LocalAnswer& answer : trace(rays, {}))
         EXPECT_EQ(answer.prim, OVC_MISS);
 }
 

@@ -12,9 +12,8 @@
 namespace ovc {
 
 /// Options that the design has and this version does not.
-static constexpr std::string_view kLater[] = {"--mode",    "--precision",   "--kernel",
-                                              "--frames",  "--camera-path", "--samples",
-                                              "--threads", "--aov"};
+static constexpr std::string_view kLater[] = {"--mode",    "--frames",  "--camera-path",
+                                              "--samples", "--threads", "--aov"};
 
 static Error unknown_option(const CLI::App& app, const std::string& word) {
     const std::string option = word.substr(0, word.find('='));

@@ -75,7 +75,7 @@ TEST_F(ParseArguments, SuggestsTheOptionThatWasMeant) {
 
 TEST_F(ParseArguments, SaysWhatIsNotThereYet) {
     EXPECT_EQ(error({"a.ply", "--mode", "mixed"}), "the option --mode is not there yet");
-    EXPECT_EQ(error({"--precision=fast", "a.ply"}), "the option --precision is not there yet");
+    EXPECT_EQ(error({"--mode=mixed", "a.ply"}), "the option --mode is not there yet");
 }
 
 TEST_F(ParseArguments, SaysWhatIsMissingOrTooMuch) {

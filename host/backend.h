@@ -43,6 +43,8 @@ struct BackendOptions {
     uint64_t leaf_triangles = 0; // 0: the plugin's default
     uint32_t leaves = 0;         // 0: as leaf_triangles says
     std::string device;          // empty: the plugin chooses
+    ovc_precision precision = OVC_PRECISION_CERTIFIED;
+    ovc_kernel kernel = OVC_KERNEL_AUTO;
 };
 
 /// Auto is the plugin; where no device opens and none was named it is the CPU KD-tree, and the log

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// --backend, --gpu-memory, --leaf-triangles, --leaves, --device.
+// --backend, --gpu-memory, --leaf-triangles, --leaves, --device, --precision, --kernel.
 #include "host/backend_arguments.h"
 #include "host/arguments.h"
 #include "host/suggestion.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -54,6 +55,24 @@ void BackendArguments::add_to(CLI::App& app) {
                    "else the software renderer")
         ->group(group)
         ->type_name("NAME");
+    app.add_option(
+           "--precision", precision,
+           "certified (the default: the answer of double precision) or fast (float32's own)")
+        ->group(group)
+        ->type_name("NAME");
+    app.add_option("--kernel", kernel, "auto, fragment or compute; they answer alike")
+        ->group(group)
+        ->type_name("NAME");
+}
+
+/// The place of `value` among `names`; 0 where none was given.
+static Result<size_t> parse_choice(const char* option, const std::string& value,
+                                   std::span<const std::string_view> names) {
+    const auto known = value.empty() ? names.begin() : std::find(names.begin(), names.end(), value);
+    if (known != names.end())
+        return size_t(known - names.begin());
+    return Error{fmt::format("{}: '{}' is none of {}{}", option, value, fmt::join(names, ", "),
+                             did_you_mean(value, names))};
 }
 
 Result<BackendOptions> BackendArguments::resolve() const {
@@ -66,7 +85,9 @@ Result<BackendOptions> BackendArguments::resolve() const {
         for (const auto& [option, value] : {std::pair{"--gpu-memory", &gpu_memory},
                                             {"--leaf-triangles", &leaf_triangles},
                                             {"--leaves", &leaves},
-                                            {"--device", &device}})
+                                            {"--device", &device},
+                                            {"--precision", &precision},
+                                            {"--kernel", &kernel}})
             if (!value->empty())
                 return Error{fmt::format(
                     "{} means nothing to the backend cpu-kdtree, which uses no GPU", option)};
@@ -90,6 +111,16 @@ Result<BackendOptions> BackendArguments::resolve() const {
         options.leaves = uint32_t(*count);
     }
     options.device = device;
+    static constexpr std::string_view precisions[] = {"certified", "fast"};
+    const Result<size_t> precision_choice = parse_choice("--precision", precision, precisions);
+    if (!precision_choice)
+        return precision_choice.error();
+    options.precision = ovc_precision(*precision_choice);
+    static constexpr std::string_view kernels[] = {"auto", "fragment", "compute"};
+    const Result<size_t> kernel_choice = parse_choice("--kernel", kernel, kernels);
+    if (!kernel_choice)
+        return kernel_choice.error();
+    options.kernel = ovc_kernel(*kernel_choice);
     return options;
 }
 

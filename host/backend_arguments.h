@@ -20,6 +20,8 @@ struct BackendArguments {
     std::string leaf_triangles;
     std::string leaves;
     std::string device;
+    std::string precision;
+    std::string kernel;
 
     void add_to(CLI::App& app);
     Result<BackendOptions> resolve() const;

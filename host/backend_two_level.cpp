@@ -102,6 +102,8 @@ Result<std::unique_ptr<Backend>> make_two_level_backend(PluginDevice device, con
     config.gpu_memory_bytes = options.gpu_memory.of(info->memory_bytes);
     config.leaf_triangles = options.leaf_triangles;
     config.leaves = options.leaves;
+    config.precision = options.precision;
+    config.kernel = options.kernel;
     Result<PluginScene> scene = device.create_scene(config);
     if (!scene)
         return scene.error();

@@ -86,11 +86,24 @@ typedef struct ovc_device_info {
     uint64_t default_budget_bytes;   /* what gpu_memory_bytes = 0 means */
 } ovc_device_info;
 
+typedef enum ovc_precision {
+    OVC_PRECISION_CERTIFIED = 0, /* the answer of double precision, bit for bit: the kernel proves, doubles decide the rest */
+    OVC_PRECISION_FAST = 1       /* the kernel's own t, u, v in float32; near edges and near ties another triangle may be named */
+} ovc_precision;
+
+typedef enum ovc_kernel {
+    OVC_KERNEL_AUTO = 0, /* whichever is faster on this device */
+    OVC_KERNEL_FRAGMENT = 1,
+    OVC_KERNEL_COMPUTE = 2
+} ovc_kernel;
+
 typedef struct ovc_scene_config {
     size_t struct_size;
     uint64_t gpu_memory_bytes; /* the budget: pages, rays and hits together stay below it. 0: the device's default */
     uint64_t leaf_triangles;   /* most triangles a level-1 leaf holds. 0: a tenth of the scene, capped so that pages fit the budget */
     uint32_t leaves;           /* instead of leaf_triangles: about this many leaves. 0: as leaf_triangles says */
+    uint32_t precision;        /* ovc_precision */
+    uint32_t kernel;           /* ovc_kernel */
     uint32_t reserved;         /* 0 */
 } ovc_scene_config;
 

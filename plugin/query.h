@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 namespace ovc {
@@ -23,13 +22,10 @@ struct NearestQuery {
     /// The end of ray i as far as it is still of interest.
     double t_max(size_t i) const { return std::min(rays[i].t_max, results[i].t); }
 
-    /// The kernel's certain hit, computed again in double from the original triangle; false when
-    /// double does not confirm it.
-    bool settle(size_t i, const PreparedRay& p, const Soup& soup, TriangleId id) const {
-        const std::optional<Hit> hit = intersect(p, soup.triangle(id), id);
-        if (hit && hit->nearer_than(results[i]))
-            results[i] = *hit;
-        return hit.has_value();
+    /// A hit found; the nearest of them stays.
+    void enter(size_t i, const Hit& hit) const {
+        if (hit.nearer_than(results[i]))
+            results[i] = hit;
     }
 };
 
@@ -44,11 +40,7 @@ struct OcclusionQuery {
     bool was_hit(size_t i) const { return results[i] != 0; }
     double t_max(size_t i) const { return rays[i].t_max; }
 
-    /// A certain hit decides, whichever triangle it is.
-    bool settle(size_t i, const PreparedRay&, const Soup&, TriangleId) const {
-        results[i] = 1;
-        return true;
-    }
+    void enter(size_t i, const Hit&) const { results[i] = 1; }
 };
 
 /// Ray i as the host gave it.

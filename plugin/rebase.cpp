@@ -49,4 +49,9 @@ LocalRay rebase(const Leaf& leaf, const PreparedRay& p, bool& decidable) {
             index_in(leaf, p.skip)};
 }
 
+double world_t(const Leaf& leaf, const PreparedRay& p, float t_local) {
+    const Interval inside = clip(p, leaf.box, p.ray.t_min, p.ray.t_max);
+    return inside.enter + double(t_local) / (std::abs(p.ray.dir[p.kz]) * leaf.frame.scale);
+}
+
 } // namespace ovc

@@ -18,4 +18,7 @@ LocalRay no_ray();
 /// must answer.
 LocalRay rebase(const Leaf& leaf, const PreparedRay& p, bool& decidable);
 
+/// The host's t of what the kernel found at t_local on the ray that rebase() made of p.
+double world_t(const Leaf& leaf, const PreparedRay& p, float t_local);
+
 } // namespace ovc

@@ -131,9 +131,17 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
             if (config->leaf_triangles && config->leaves)
                 invalid(
                     "ovc_scene_config: leaf_triangles and leaves are both set; one says it all");
+            if (config->precision > OVC_PRECISION_FAST)
+                invalid(fmt::format("ovc_scene_config.precision is {}, expected 0 or 1",
+                                    config->precision));
+            if (config->kernel > OVC_KERNEL_COMPUTE)
+                invalid(fmt::format("ovc_scene_config.kernel is {}, expected 0, 1 or 2",
+                                    config->kernel));
             if (config->reserved)
                 invalid("ovc_scene_config.reserved is not 0");
-            created->options = {config->gpu_memory_bytes, config->leaf_triangles, config->leaves};
+            created->options = {config->gpu_memory_bytes, config->leaf_triangles, config->leaves,
+                                config->precision != OVC_PRECISION_FAST,
+                                config->kernel == OVC_KERNEL_COMPUTE};
         }
         // Known to be too small before anything is added: say so now.
         const uint64_t budget = created->options.budget_bytes;

@@ -43,7 +43,7 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     const Result<MemoryPlan> plan = plan_memory(budget, gl.info());
     if (!plan)
         return plan.error();
-    std::unique_ptr<TwoLevel> self(new TwoLevel(soup, gl, *plan));
+    std::unique_ptr<TwoLevel> self(new TwoLevel(soup, gl, options, *plan));
 
     const auto start = std::chrono::steady_clock::now();
     Box bounds;
@@ -155,9 +155,9 @@ private:
         rebase_all(leaf, batch);
         Result<PassResult> pass = Error{};
         s_.gl_.run([&](GlState&) {
-            pass = s_.tracer_->pass(leaf, s_.pages_[leaf], Query::kAnyHit,
-                                    std::span(rays_).first(batch.size()),
-                                    std::span(answers_).first(batch.size()));
+            pass = s_.tracer_->pass(
+                leaf, s_.pages_[leaf], {Query::kAnyHit, s_.options_.certify, s_.options_.compute},
+                std::span(rays_).first(batch.size()), std::span(answers_).first(batch.size()));
         });
         if (!pass)
             return pass.error();
@@ -189,23 +189,37 @@ private:
     void settle_all(uint32_t leaf, std::span<const uint32_t> batch) {
         parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j)
-                settle(leaf, batch[j], decidable_[j] ? answers_[j].prim : OVC_FLAGGED);
+                settle(leaf, batch[j], answers_[j], decidable_[j]);
         });
     }
 
     /// Takes in the kernel's answer for ray i, and says in next_[i] where the ray goes from here.
-    void settle(uint32_t leaf, uint32_t i, uint32_t prim) {
+    void settle(uint32_t leaf, uint32_t i, const LocalAnswer& answer, bool decidable) {
         const size_t ray = first_ + i;
         const PreparedRay p = prepare(query_, ray);
         next_[i] = kNone;
-        if (prim == OVC_FLAGGED ||
-            (prim != OVC_MISS &&
-             !query_.settle(ray, p, s_.soup_, s_.level1_.leaves[leaf].triangles[prim])))
+        if (!decidable || answer.prim == OVC_FLAGGED ||
+            (answer.prim != OVC_MISS && !confirm(leaf, ray, p, answer)))
             decide_in_double(i, p);
         else if (!query_.was_hit(ray))
             next_[i] = next_leaf(s_.level1_, p, positions_[i]).leaf;
         else if (!Query::kAnyHit)
             next_[i] = next_leaf_in_cell(s_.level1_, prepare_rest(query_, ray), positions_[i]).leaf;
+    }
+
+    /// Enters the kernel's hit, computed again in double or, in fast precision, as it is. False
+    /// when double does not find it.
+    bool confirm(uint32_t leaf_index, size_t ray, const PreparedRay& p, const LocalAnswer& answer) {
+        const Leaf& leaf = s_.level1_.leaves[leaf_index];
+        const TriangleId id = leaf.triangles[answer.prim];
+        std::optional<Hit> hit;
+        if (s_.options_.certify)
+            hit = ovc::intersect(p, s_.soup_.triangle(id), id);
+        else
+            hit = Hit{world_t(leaf, prepare_rest(query_, ray), answer.t), answer.u, answer.v, id};
+        if (hit)
+            query_.enter(ray, *hit);
+        return hit.has_value();
     }
 
     void decide_in_double(size_t i, const PreparedRay& p) {

@@ -21,6 +21,8 @@ struct TwoLevelOptions {
     uint64_t budget_bytes = 0;   // 0: the device's default
     uint64_t leaf_triangles = 0; // 0: a tenth of the scene
     uint64_t leaves = 0;         // instead: about this many
+    bool certify = true;         // false: fast precision, the kernel's own answers
+    bool compute = false;        // which kernel
 };
 
 /// Sums over the life of a structure. Fields as in ovc_statistics.
@@ -64,8 +66,8 @@ public:
     const Level1& level1() const { return level1_; }
 
 private:
-    TwoLevel(const Soup& soup, GlThread& gl, const MemoryPlan& plan)
-        : soup_(soup), gl_(gl), plan_(plan) {}
+    TwoLevel(const Soup& soup, GlThread& gl, const TwoLevelOptions& options, const MemoryPlan& plan)
+        : soup_(soup), gl_(gl), options_(options), plan_(plan) {}
 
     template <class Query>
     class Wave;
@@ -74,6 +76,7 @@ private:
 
     const Soup& soup_;
     GlThread& gl_;
+    TwoLevelOptions options_;
     MemoryPlan plan_;
     Level1 level1_;
     std::vector<Page> pages_;

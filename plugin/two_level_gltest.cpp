@@ -43,6 +43,7 @@ std::vector<Variant> variants() {
     return {{"ten leaves", {}},
             {"one leaf", {.leaf_triangles = 1u << 30}},
             {"leaves of 40", {.leaf_triangles = 40}},
+            {"compute", {.leaf_triangles = 500, .compute = true}},
             {"smallest budget", {.budget_bytes = 64u << 10, .leaf_triangles = 100}}};
 }
 
@@ -125,14 +126,46 @@ TEST_F(TwoLevelGl, KeepsToTheBudgetByMovingPages) {
     EXPECT_GE(s.bytes_in, s.level2_bytes);
 }
 
+TEST_F(TwoLevelGl, FastPrecisionIsCloseAndFlagsNothing) {
+    const Soup soup = test::closed_grid(100);
+    const auto ids = hittable_triangles(soup, nullptr, nullptr);
+    for (const bool compute : {false, true}) {
+        const auto structure = build(soup, {.certify = false, .compute = compute});
+        ASSERT_TRUE(structure);
+        test::Random random(15);
+        std::vector<Ray> rays(5000);
+        for (Ray& ray : rays) {
+            ray.org = random.point(-1, 1) + dvec3(0, 0, 4);
+            ray.dir = random.point(-1, 1) - ray.org;
+        }
+        std::vector<Hit> hits(rays.size());
+        ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+        size_t other = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const Hit expected = test::brute_force(soup, ids, rays[i]);
+            if (hits[i].id != expected.id) {
+                ++other;
+                continue;
+            }
+            if (!expected.is_hit())
+                continue;
+            EXPECT_NEAR(hits[i].t, expected.t, 1e-5);
+            EXPECT_NEAR(hits[i].u, expected.u, 1e-2);
+            EXPECT_NEAR(hits[i].v, expected.v, 1e-2);
+        }
+        EXPECT_LT(other, rays.size() / 500);
+        EXPECT_EQ(structure->statistics().flagged, 0u);
+    }
+}
+
 TEST_F(TwoLevelGl, NamesTheSmallestBudgetThatWorks) {
     const Soup soup = test::random_soup(8, 100, 0.01);
     const auto refused = TwoLevel::build(soup, *gl, {.budget_bytes = 1024}, {});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message,
-              "a GPU budget of 1024 bytes is too small: the smallest that works is 57344 bytes "
-              "(40960 for rays and answers, 16384 for a page)");
-    EXPECT_TRUE(TwoLevel::build(soup, *gl, {.budget_bytes = 57344}, {}));
+              "a GPU budget of 1024 bytes is too small: the smallest that works is 65536 bytes "
+              "(49152 for rays and answers, 16384 for a page)");
+    EXPECT_TRUE(TwoLevel::build(soup, *gl, {.budget_bytes = 65536}, {}));
 }
 
 } // namespace

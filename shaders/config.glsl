@@ -4,6 +4,9 @@
 #ifndef OVC_ANY_HIT
 #define OVC_ANY_HIT 0 // 1: occlusion, stop at the first certain hit
 #endif
+#ifndef OVC_CERTIFY
+#define OVC_CERTIFY 1 // 0: fast precision, float32's own answer, nothing flagged but what did not end
+#endif
 #ifndef OVC_STACK_DEPTH
 #define OVC_STACK_DEPTH 16 // words; must be at least the page's depth. A register each on llvmpipe: 15 -> 32 costs 7 %
 #endif

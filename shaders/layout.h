@@ -14,7 +14,8 @@
 //                      hi0|hi1<<16, hi2|hi3<<16. A missing child has lo = 0xffff > hi = 0.
 //         texel 3: unit of the first child (children are contiguous), 0, 0, 0
 // pair    texels 0..3: corners v0 v1 v2 v3 (float bits) of the triangles A = (v0, v1, v2) and B = (v0, v3, v2);
-//         w of texel 0: id of A; w of texel 1: id of B or OVC_NO_TRIANGLE; w of texel 2: 0; w of texel 3: OVC_PAIR
+//         w of texel 0: id of A; w of texel 1: id of B or OVC_NO_TRIANGLE; w of texel 3: OVC_PAIR;
+//         w of texel 2: which corner of the triangle itself the pair's v0 and v2 are, two bits each, A's then B's
 #define OVC_UNIT_TEXELS 4
 #define OVC_UNIT_BYTES 64
 #define OVC_ROOT_UNIT 1
@@ -27,12 +28,16 @@
 // It begins at t = 0. Coordinates are those of the leaf's frame, the origin within [-1, 1].
 #define OVC_RAY_TEXELS 2
 
-// An answer is RG32UI: t (float bits), and the id of the triangle hit, or one of these.
+// An answer is RGBA32UI: t, u, v (float bits; u and v in fast precision only), and the id of the triangle hit, or one of these.
 #define OVC_MISS 0xffffffffu
 #define OVC_FLAGGED 0xfffffffeu
 
 #define OVC_BINDING_PAGE 0
 #define OVC_BINDING_RAYS 1
+#define OVC_BINDING_ANSWERS 2
+
+// Invocations of a work group of the compute kernel; a row of rays is a multiple.
+#define OVC_GROUP_SIZE 64
 
 // The error bound, in units of u = 2^-24 (docs/numerics.md): a projected corner p is off by at most
 // u (OVC_BOUND_CONSTANT + OVC_BOUND_RELATIVE (|x| + |y| + |z|)).

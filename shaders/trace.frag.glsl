@@ -9,12 +9,12 @@
 #include "traverse.glsl"
 
 layout(binding = OVC_BINDING_RAYS) uniform usampler2D rays;
-layout(location = 0) out uvec2 answer;
+layout(location = 0) out uvec4 answer;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 org = texelFetch(rays, ivec2(pixel.x * OVC_RAY_TEXELS, pixel.y), 0);
     uvec4 dir = texelFetch(rays, ivec2(pixel.x * OVC_RAY_TEXELS + 1, pixel.y), 0);
     Answer a = trace(uintBitsToFloat(org.xyz), uintBitsToFloat(org.w), uintBitsToFloat(dir.xyz), dir.w);
-    answer = uvec2(floatBitsToUint(a.t), a.prim);
+    answer = uvec4(floatBitsToUint(a.t), floatBitsToUint(a.uv), a.prim);
 }

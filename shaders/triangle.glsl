@@ -52,16 +52,29 @@ struct Candidate {
     bool certain;
     float lo;
     float hi;
+    vec2 weights; // of corners b and c at the hit
 };
 
 // The triangle (a, b, c) with edge functions ab, bc, ca and their errors.
 Candidate candidate(Corner a, Corner b, Corner c, float ab, float bc, float ca, float ab_error,
                     float bc_error, float ca_error) {
+    Candidate result;
+    float area = ab + bc + ca;
+    float t = (bc * a.z + ca * b.z + ab * c.z) / area;
+    result.weights = vec2(ca, ab) / area;
+    if (OVC_CERTIFY == 0) {
+        // Closed: a shared edge belongs to both triangles.
+        result.certain = (ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab <= 0.0 && bc <= 0.0 && ca <= 0.0);
+        result.certain = result.certain && area != 0.0;
+        result.possible = result.certain;
+        result.lo = t;
+        result.hi = t;
+        return result;
+    }
     bool all_positive = ab > ab_error && bc > bc_error && ca > ca_error;
     bool all_negative = ab < -ab_error && bc < -bc_error && ca < -ca_error;
     bool any_positive = ab > ab_error || bc > bc_error || ca > ca_error;
     bool any_negative = ab < -ab_error || bc < -bc_error || ca < -ca_error;
-    Candidate result;
     result.possible = !(any_positive && any_negative);
     result.certain = all_positive || all_negative;
 
@@ -69,8 +82,6 @@ Candidate candidate(Corner a, Corner b, Corner c, float ab, float bc, float ca, 
     float z_max = max(a.z, max(b.z, c.z));
     float z_error = 2.0 * max(a.error, max(b.error, c.error));
     // t is an average of the corners' z. The weights' errors move it by at most their share of the spread of z.
-    float area = ab + bc + ca;
-    float t = (bc * a.z + ca * b.z + ab * c.z) / area;
     float share = min(2.0 * (ab_error + bc_error + ca_error) / abs(area), 1.0);
     float t_error = share * (z_max - z_min) + z_error;
     result.lo = result.certain ? t - t_error : z_min - z_error;
