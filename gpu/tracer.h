@@ -8,6 +8,8 @@
 #include "gpu/ledger.h"
 #include "gpu/pool.h"
 
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -23,13 +25,18 @@ struct LocalRay {
 };
 static_assert(sizeof(LocalRay) == 32);
 
-/// What the kernel answers: prim is the index of a triangle of the leaf, OVC_MISS or OVC_FLAGGED.
-/// u, v: in fast precision.
+/// What the kernel answers, in the layout of shaders/layout.h. prim is the index of a triangle of
+/// the leaf, OVC_MISS or OVC_FLAGGED.
 struct LocalAnswer {
-    float t;
-    float u;
-    float v;
+    std::array<uint32_t, 3> words;
     uint32_t prim;
+
+    /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
+    std::span<const uint32_t, 2> rivals() const { return std::span(words).first<2>(); }
+    /// Fast precision.
+    float t() const { return std::bit_cast<float>(words[0]); }
+    float u() const { return std::bit_cast<float>(words[1]); }
+    float v() const { return std::bit_cast<float>(words[2]); }
 };
 static_assert(sizeof(LocalAnswer) == 16);
 

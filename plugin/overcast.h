@@ -147,7 +147,8 @@ typedef struct ovc_statistics {
     uint64_t occlusion_rays;
     uint64_t invalid_rays;         /* answered as misses */
     uint64_t ray_visits;           /* rays counted once in each leaf they were traced in */
-    uint64_t flagged;              /* rays the kernel could not decide, traced again in double */
+    uint64_t flagged;              /* answers the kernel could not decide alone: doubles chose among its candidates */
+    uint64_t retraced;             /* of them with too many candidates: the ray was traced again in double */
     double seconds_level1;         /* building the level-1 tree */
     double seconds_level2;         /* building and packing all pages */
     double seconds_trace;          /* inside intersect and occluded */

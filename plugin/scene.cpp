@@ -233,6 +233,7 @@ ovc_result statistics(ovc_scene scene, ovc_statistics* statistics) {
                        s.invalid_rays,
                        s.ray_visits,
                        s.flagged,
+                       s.retraced,
                        s.seconds_level1,
                        s.seconds_level2,
                        s.seconds_trace,

@@ -124,6 +124,7 @@ public:
         }
         s_.statistics_.invalid_rays += invalid_;
         s_.statistics_.flagged += flagged_;
+        s_.statistics_.retraced += retraced_;
         return Done{};
     }
 
@@ -198,8 +199,7 @@ private:
         const size_t ray = first_ + i;
         const PreparedRay p = prepare(query_, ray);
         next_[i] = kNone;
-        if (!decidable || answer.prim == OVC_FLAGGED ||
-            (answer.prim != OVC_MISS && !confirm(leaf, ray, p, answer)))
+        if (!decidable || answer.prim == OVC_FLAGGED || !take_in(leaf, ray, p, answer))
             decide_in_double(i, p);
         else if (!query_.was_hit(ray))
             next_[i] = next_leaf(s_.level1_, p, positions_[i]).leaf;
@@ -207,24 +207,44 @@ private:
             next_[i] = next_leaf_in_cell(s_.level1_, prepare_rest(query_, ray), positions_[i]).leaf;
     }
 
-    /// Enters the kernel's hit, computed again in double or, in fast precision, as it is. False
-    /// when double does not find it.
-    bool confirm(uint32_t leaf_index, size_t ray, const PreparedRay& p, const LocalAnswer& answer) {
+    /// Enters what the kernel found in the leaf. False when double does not find what the kernel
+    /// was certain of.
+    bool take_in(uint32_t leaf_index, size_t ray, const PreparedRay& p, const LocalAnswer& answer) {
         const Leaf& leaf = s_.level1_.leaves[leaf_index];
-        const TriangleId id = leaf.triangles[answer.prim];
-        std::optional<Hit> hit;
-        if (s_.options_.certify)
-            hit = ovc::intersect(p, s_.soup_.triangle(id), id);
-        else
-            hit = Hit{world_t(leaf, prepare_rest(query_, ray), answer.t), answer.u, answer.v, id};
-        if (hit)
+        if (!s_.options_.certify) {
+            if (answer.prim != OVC_MISS)
+                query_.enter(ray, {world_t(leaf, prepare_rest(query_, ray), answer.t()), answer.u(),
+                                   answer.v(), leaf.triangles[answer.prim]});
+            return true;
+        }
+        if (answer.prim != OVC_MISS) {
+            const TriangleId id = leaf.triangles[answer.prim];
+            const std::optional<Hit> hit = ovc::intersect(p, s_.soup_.triangle(id), id);
+            if (!hit)
+                return false;
             query_.enter(ray, *hit);
-        return hit.has_value();
+        }
+        if (answer.rivals()[0] != OVC_NO_TRIANGLE) {
+            ++flagged_;
+            for (const uint32_t rival : answer.rivals())
+                if (rival != OVC_NO_TRIANGLE)
+                    enter_rival(leaf, ray, p, leaf.triangles[rival]);
+        }
+        return true;
+    }
+
+    /// Enters a hit that only double can see, unless it lies beyond the leaf: there a nearer one
+    /// may be in the next.
+    void enter_rival(const Leaf& leaf, size_t ray, const PreparedRay& p, TriangleId id) {
+        const std::optional<Hit> hit = ovc::intersect(p, s_.soup_.triangle(id), id);
+        if (hit && hit->t <= clip(p, leaf.box, p.ray.t_min, p.ray.t_max).exit)
+            query_.enter(ray, *hit);
     }
 
     void decide_in_double(size_t i, const PreparedRay& p) {
         query_.set(first_ + i, arbitrate<Query::kAnyHit>(s_.soup_, s_.level1_, s_.pages_, p));
         ++flagged_;
+        ++retraced_;
     }
 
     void enqueue(std::span<const uint32_t> rays) {
@@ -244,6 +264,7 @@ private:
     std::vector<uint8_t> decidable_;
     std::atomic<uint64_t> invalid_{0};
     std::atomic<uint64_t> flagged_{0};
+    std::atomic<uint64_t> retraced_{0};
 };
 
 template <class Query>

@@ -38,6 +38,7 @@ struct TwoLevelStatistics {
     uint64_t invalid_rays = 0;
     uint64_t ray_visits = 0;
     uint64_t flagged = 0;
+    uint64_t retraced = 0;
     uint64_t peak_bytes = 0;
     double seconds_level1 = 0;
     double seconds_level2 = 0;

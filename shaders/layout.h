@@ -28,7 +28,9 @@
 // It begins at t = 0. Coordinates are those of the leaf's frame, the origin within [-1, 1].
 #define OVC_RAY_TEXELS 2
 
-// An answer is RGBA32UI: t, u, v (float bits; u and v in fast precision only), and the id of the triangle hit, or one of these.
+// An answer is RGBA32UI. w: the id of the certain nearest hit, OVC_MISS where there is none, OVC_FLAGGED where the kernel
+// cannot tell. x, y: up to two rivals, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is
+// none; what is named neither in w nor here is certainly not the answer. In fast precision x, y, z are t, u, v (float bits).
 #define OVC_MISS 0xffffffffu
 #define OVC_FLAGGED 0xfffffffeu
 

@@ -6,6 +6,7 @@
 #include "page.glsl"
 #include "box.glsl"
 #include "triangle.glsl"
+#include "found.glsl"
 #include "traverse.glsl"
 
 layout(local_size_x = OVC_GROUP_SIZE) in;
@@ -16,6 +17,6 @@ void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     uvec4 org = texelFetch(rays, ivec2(pixel.x * OVC_RAY_TEXELS, pixel.y), 0);
     uvec4 dir = texelFetch(rays, ivec2(pixel.x * OVC_RAY_TEXELS + 1, pixel.y), 0);
-    Answer a = trace(uintBitsToFloat(org.xyz), uintBitsToFloat(org.w), uintBitsToFloat(dir.xyz), dir.w);
-    imageStore(answers, pixel, uvec4(floatBitsToUint(a.t), floatBitsToUint(a.uv), a.prim));
+    imageStore(answers, pixel,
+               trace(uintBitsToFloat(org.xyz), uintBitsToFloat(org.w), uintBitsToFloat(dir.xyz), dir.w));
 }

@@ -6,6 +6,7 @@
 #include "page.glsl"
 #include "box.glsl"
 #include "triangle.glsl"
+#include "found.glsl"
 #include "traverse.glsl"
 
 layout(binding = OVC_BINDING_RAYS) uniform usampler2D rays;
@@ -15,6 +16,5 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 org = texelFetch(rays, ivec2(pixel.x * OVC_RAY_TEXELS, pixel.y), 0);
     uvec4 dir = texelFetch(rays, ivec2(pixel.x * OVC_RAY_TEXELS + 1, pixel.y), 0);
-    Answer a = trace(uintBitsToFloat(org.xyz), uintBitsToFloat(org.w), uintBitsToFloat(dir.xyz), dir.w);
-    answer = uvec4(floatBitsToUint(a.t), floatBitsToUint(a.uv), a.prim);
+    answer = trace(uintBitsToFloat(org.xyz), uintBitsToFloat(org.w), uintBitsToFloat(dir.xyz), dir.w);
 }

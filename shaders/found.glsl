@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a traversal knows so far: the best certain hit, and what else might still be nearer (docs/numerics.md).
+
+const float OVC_NEVER = 3.0e38;
+
+// A certain hit in [best_lo, best_hi]. Rivals: candidates that may be hit, but not certainly farther than the best; the
+// two that may be hit first, by name, and the least t of all others.
+struct Found {
+    float best_lo;
+    float best_hi;
+    uint prim;
+    float rival_lo[2];
+    uint rival[2];
+    float others_lo;
+    vec2 weights; // fast precision: of the pair's corners that are not v0; with `order` they become u and v
+    uint order;
+};
+
+Found nothing_found(float t_end) {
+    return Found(OVC_NEVER, t_end, OVC_MISS, float[2](OVC_NEVER, OVC_NEVER), uint[2](OVC_NO_TRIANGLE, OVC_NO_TRIANGLE),
+                 OVC_NEVER, vec2(0.0), 8u);
+}
+
+// Keeps the two least of the rivals and `lo`.
+void add_rival(inout Found found, float lo, uint prim) {
+    bool first = lo < found.rival_lo[0];
+    bool second = lo < found.rival_lo[1];
+    found.others_lo = second ? found.rival_lo[1] : min(found.others_lo, lo);
+    found.rival_lo[1] = first ? found.rival_lo[0] : (second ? lo : found.rival_lo[1]);
+    found.rival[1] = first ? found.rival[0] : (second ? prim : found.rival[1]);
+    found.rival_lo[0] = first ? lo : found.rival_lo[0];
+    found.rival[0] = first ? prim : found.rival[0];
+}
+
+// Takes a candidate in. Returns true when it is now the best.
+bool take(inout Found found, Candidate c, bool valid, uint prim, uint order) {
+    bool possible = valid && c.possible && c.hi >= 0.0;
+    bool better = possible && c.certain && (c.lo > 0.0 || OVC_CERTIFY == 0) && c.hi < found.best_hi;
+    if (OVC_CERTIFY != 0) {
+        float lo = better ? found.best_lo : c.lo; // the one of the two that is not the best
+        add_rival(found, possible ? lo : OVC_NEVER, better ? found.prim : prim);
+    }
+    found.best_lo = better ? c.lo : found.best_lo;
+    found.best_hi = better ? c.hi : found.best_hi;
+    found.prim = better ? prim : found.prim;
+    found.weights = better ? c.weights : found.weights;
+    found.order = better ? order : found.order;
+    return better;
+}
+
+bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pair, vec3 org, Basis basis,
+               uint skip) {
+    Corner v0 = corner(uintBitsToFloat(X.xyz), org, basis);
+    Corner v1 = corner(uintBitsToFloat(Y.xyz), org, basis);
+    Corner v2 = corner(uintBitsToFloat(Z.xyz), org, basis);
+    Corner v3 = corner(uintBitsToFloat(W.xyz), org, basis);
+    float e20 = edge(v2, v0);
+    float e20_error = edge_error(v2, v0);
+    Candidate a = candidate(v0, v1, v2, edge(v0, v1), edge(v1, v2), e20, edge_error(v0, v1),
+                            edge_error(v1, v2), e20_error);
+    Candidate b = candidate(v0, v3, v2, edge(v0, v3), edge(v3, v2), e20, edge_error(v0, v3),
+                            edge_error(v3, v2), e20_error);
+    bool took_a = take(found, a, is_pair && X.w != skip, X.w, Z.w);
+    bool took_b = take(found, b, is_pair && Y.w != skip && Y.w != OVC_NO_TRIANGLE, Y.w, Z.w >> 4);
+    return took_a || took_b;
+}
+
+// The weights of the pair's corners as u and v of the triangle's own: order says which of its corners v0 and v2 are.
+vec2 barycentric(Found found) {
+    uint first = found.order & 3u;
+    uint last = (found.order >> 2) & 3u;
+    float weight = 1.0 - found.weights.x - found.weights.y;
+    float u = first == 1u ? weight : (last == 1u ? found.weights.y : found.weights.x);
+    float v = first == 2u ? weight : (last == 2u ? found.weights.y : found.weights.x);
+    return vec2(u, v);
+}
+
+uvec4 answer_of(Found found, bool any_hit) {
+    if (OVC_CERTIFY == 0)
+        return uvec4(floatBitsToUint(vec3(found.best_lo, barycentric(found))), found.prim);
+    if (any_hit && found.prim != OVC_MISS)
+        return uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, 0u, found.prim);
+    // A rival counts unless it certainly lies beyond the best; with more than two, none can be named.
+    uint first = found.rival_lo[0] <= found.best_hi ? found.rival[0] : OVC_NO_TRIANGLE;
+    uint second = found.rival_lo[1] <= found.best_hi ? found.rival[1] : OVC_NO_TRIANGLE;
+    return uvec4(first, second, 0u, found.others_lo <= found.best_hi ? OVC_FLAGGED : found.prim);
+}
