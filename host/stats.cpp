@@ -53,6 +53,7 @@ std::string stats_json(const RenderStats& s) {
         {"ray_visits", t.ray_visits},
         {"invalid_rays", t.invalid_rays},
         {"flagged", t.flagged},
+        {"retraced", t.retraced},
         {"time", times_of(s)}};
     // A name of a file or a driver need not be UTF-8; what is not is replaced rather than thrown
     // about.
@@ -86,7 +87,9 @@ std::string stats_summary(const RenderStats& s) {
                         human_count(rays.total()), human_count(rays.primary),
                         human_count(rays.shadow), human_count(rays.reflection));
     if (t.flagged > 0)
-        text += fmt::format("  settled    {} rays in double precision\n", human_count(t.flagged));
+        text += fmt::format(
+            "  flagged    {} answers, decided in double precision; {} of them traced again\n",
+            human_count(t.flagged), human_count(t.retraced));
     text += fmt::format("  host       {} at most\n", human_bytes(host_peak_bytes()));
     text +=
         fmt::format("  seconds    {:.2f}: import {:.2f}, build {:.2f}, trace {:.2f}, shade {:.2f}, "
