@@ -7,6 +7,7 @@
 #include "importers/test_files.h"
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <zlib.h>
 
 #include <bit>
@@ -73,13 +74,41 @@ TEST(Importer, ErrorsNameTheFileAndWhatWasExpected) {
     EXPECT_EQ(folder.failure("gone"), "gone: no such file");
     EXPECT_EQ(folder.failure("no folder/gone.ply"), "no folder/gone.ply: no such file");
     EXPECT_EQ(folder.failure("a.obj/b.ply"), "a.obj/b.ply: no such file");
-    EXPECT_EQ(folder.failure("folder.ply"), "folder.ply: found a directory, expected a file");
     EXPECT_EQ(folder.failure("a.plyx"),
               "a.plyx: found extension .plyx" + reads + "; did you mean .ply?");
     EXPECT_EQ(folder.failure("a.xyzw"), "a.xyzw: found extension .xyzw" + reads);
     EXPECT_EQ(folder.failure("none"), "none: found no extension" + reads);
     EXPECT_EQ(folder.failure("a.gz"), "a.gz: found no extension" + reads);
     EXPECT_EQ(folder.failure("empty.stl"), "empty.stl: the file is empty, expected a model");
+}
+
+TEST(Importer, OnlyRegularFilesAreOpened) {
+    const TestFolder folder;
+    fs::create_directories(folder / "folder.ply");
+    folder.write("one.obj", kObj);
+    const struct {
+        const char* name;
+        const char* target; // of the link; null: a pipe that nobody writes to
+        const char* message;
+    } cases[] = {
+        {"pipe.obj", nullptr, "pipe.obj: found a pipe, which is no regular file"},
+        {"to pipe.ply", "pipe.obj", "to pipe.ply: found a pipe, which is no regular file"},
+        {"zero.ply", "/dev/zero", "zero.ply: found a device, which is no regular file"},
+        {"zero.stl", "/dev/zero", "zero.stl: found a device, which is no regular file"},
+        {"to folder.obj", "folder.ply",
+         "to folder.obj: found a directory, which is no regular file"},
+        {"nowhere.obj", "gone", "nowhere.obj: no such file"},
+        {"to file.obj", "one.obj", "1 triangles"},
+    };
+    for (const auto& test : cases) {
+        if (test.target)
+            fs::create_symlink(test.target, folder / test.name);
+        else
+            ASSERT_EQ(mkfifo((folder / test.name).c_str(), 0600), 0);
+        EXPECT_EQ(folder.failure(test.name), test.message) << test.name;
+    }
+    EXPECT_EQ(folder.failure("folder.ply"),
+              "folder.ply: found a directory, which is no regular file");
 }
 
 TEST(Importer, DamagedCompressionIsSaid) {

@@ -2,6 +2,8 @@
 // OBJ and MTL: statements, meshes, materials, errors by their text, damage.
 #include "importers/test_files.h"
 
+#include <sys/stat.h>
+
 namespace ovc {
 namespace {
 
@@ -119,6 +121,23 @@ TEST(Obj, LibrariesAreFoundUnderEveryKindOfName) {
         ASSERT_TRUE(scene);
         EXPECT_EQ(scene->materials[scene->meshes[0].material].color, vec3(1, 0, 0)) << statement;
         EXPECT_TRUE(warnings.empty()) << warnings[0];
+    }
+}
+
+TEST(Obj, LibrariesThatAreNoRegularFilesAreMissing) {
+    const TestFolder folder;
+    ASSERT_EQ(mkfifo((folder / "pipe.mtl").c_str(), 0600), 0);
+    std::filesystem::create_directories(folder / "folder.mtl");
+    std::filesystem::create_symlink("/dev/zero", folder / "zero.mtl");
+    for (const std::string name : {"/dev/zero", "zero.mtl", "pipe.mtl", "folder.mtl", "."}) {
+        std::vector<std::string> warnings;
+        const auto scene =
+            load(folder.write("a.obj", "mtllib " + name + "\n" + kCorners + "f 1 2 3 4\n"),
+                 gather(warnings));
+        EXPECT_EQ(triangles_of(scene), kSquare) << name;
+        ASSERT_EQ(warnings.size(), 1u) << name;
+        EXPECT_EQ(folder.plain(warnings[0]),
+                  "a.obj, line 1: no material library '" + name + "': its materials become grey");
     }
 }
 

@@ -17,6 +17,24 @@ constexpr size_t kBlockBytes = size_t(1) << 16; // larger was no faster
 constexpr size_t kLongestLine = size_t(1) << 26;
 constexpr uint64_t kLikelyCompression = 12; // models as text reach 3 to 6
 
+/// What is there instead of a regular file: reading it might block, or never end. Null where
+/// nothing speaks against opening it.
+const char* other_than_a_file(std::filesystem::file_type type) {
+    switch (type) {
+    case std::filesystem::file_type::directory:
+        return "a directory";
+    case std::filesystem::file_type::fifo:
+        return "a pipe";
+    case std::filesystem::file_type::socket:
+        return "a socket";
+    case std::filesystem::file_type::character:
+    case std::filesystem::file_type::block:
+        return "a device";
+    default:
+        return nullptr;
+    }
+}
+
 } // namespace
 
 void Source::CloseFile::operator()(gzFile_s* file) const {
@@ -30,8 +48,8 @@ Result<Source> Source::open(const std::filesystem::path& path) {
     const auto status = std::filesystem::status(path, ec);
     if (status.type() == std::filesystem::file_type::not_found)
         return source.error("no such file");
-    if (std::filesystem::is_directory(status))
-        return source.error("found a directory, expected a file");
+    if (const char* other = other_than_a_file(status.type()))
+        return source.error(fmt::format("found {}, which is no regular file", other));
     errno = 0;
     source.file_.reset(gzopen(path.c_str(), "rb"));
     if (!source.file_)

@@ -20,7 +20,7 @@ namespace ovc {
 /// the file holds. Compression is told by the file's first bytes, not by its name.
 class Source {
 public:
-    /// Fails on no such file, a directory, no permission, an empty file.
+    /// Fails on no such file, no regular file (links are followed), no permission, an empty file.
     static Result<Source> open(const std::filesystem::path& path);
 
     /// The next line without its end (LF, CR LF, or CR alone where the first line ends so); nothing
