@@ -80,6 +80,7 @@ private:
     bool read_face(std::string_view rest);
     bool read_corner(std::string_view word);
     bool read_index(std::string_view word, std::string_view text, size_t count, uint32_t& index);
+    bool fail_index(int64_t index, size_t count);
     void read_libraries(std::string_view rest);
     bool read_library(std::string_view name);
     void use_material(std::string_view name);
@@ -170,7 +171,7 @@ bool ObjReader::read_vertex(std::string_view rest) {
         const std::string_view word = next_word(rest);
         const auto value = parse_double(word);
         if (!value)
-            return fail(fmt::format("found {}, expected a coordinate", quoted(word)));
+            return fail(fmt::format("found {}, expected a coordinate", found(word)));
         position[axis] = *value;
     }
     if (is_finite(position))
@@ -185,7 +186,7 @@ bool ObjReader::read_normal(std::string_view rest) {
         const std::string_view word = next_word(rest);
         const auto value = parse_float(word);
         if (!value)
-            return fail(fmt::format("found {}, expected a coordinate", quoted(word)));
+            return fail(fmt::format("found {}, expected a coordinate", found(word)));
         normal[axis] = *value;
     }
     const float length = glm::length(normal);
@@ -229,6 +230,13 @@ bool ObjReader::read_corner(std::string_view word) {
     return true;
 }
 
+bool ObjReader::fail_index(int64_t index, size_t count) {
+    return fail(fmt::format("found vertex {}, expected {}", index,
+                            count == 0   ? "none, for none is above this line"
+                            : count == 1 ? "the one above this line"
+                                         : fmt::format("one of the {} above this line", count)));
+}
+
 /// From 1, or from the last backwards from -1.
 bool ObjReader::read_index(std::string_view word, std::string_view text, size_t count,
                            uint32_t& index) {
@@ -238,8 +246,7 @@ bool ObjReader::read_index(std::string_view word, std::string_view text, size_t 
             fmt::format("found corner {}, expected v, v/vt, v//vn or v/vt/vn", quoted(word)));
     const int64_t from_zero = *value > 0 ? *value - 1 : int64_t(count) + *value;
     if (*value == 0 || from_zero < 0 || from_zero >= int64_t(count))
-        return fail(
-            fmt::format("found vertex {}, expected one of the {} above this line", *value, count));
+        return fail_index(*value, count);
     index = uint32_t(from_zero);
     return true;
 }

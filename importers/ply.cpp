@@ -228,8 +228,9 @@ private:
 
     bool fail_index(int64_t index) {
         return rows_.fail(fmt::format("vertex index {}", index),
-                          vertex_count_ == 0 ? "none, for there are no vertices"
-                                             : fmt::format("0 to {}", vertex_count_ - 1));
+                          vertex_count_ == 0   ? "none, for there are no vertices"
+                          : vertex_count_ == 1 ? "0, the only one"
+                                               : fmt::format("0 to {}", vertex_count_ - 1));
     }
 
     /// Every other triangle of a strip is wound the other way; kRestart begins a new one.
@@ -318,7 +319,8 @@ Result<Scene> read_body(Source& source, const PlyHeader& header, const std::file
         say(log, LogLevel::Warning, source.error(sentence).message);
     };
     if (reader.too_short() > 0)
-        warn(fmt::format("{} polygons with fewer than three corners left out", reader.too_short()));
+        warn(fmt::format("{} with fewer than three corners left out",
+                         counted(reader.too_short(), "polygon")));
     if (reader.lost_normals())
         warn("normals left out: some are zero or not finite");
     Scene scene = reader.take(path.stem().string());

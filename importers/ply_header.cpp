@@ -2,9 +2,12 @@
 // PLY headers: a keyword a line.
 #include "importers/ply_header.h"
 
+#include "importers/readers.h"
 #include "importers/text.h"
 
 #include <fmt/format.h>
+
+#include <limits>
 
 namespace ovc {
 
@@ -38,14 +41,30 @@ bool is_remark(std::string_view keyword) {
     return keyword == "comment" || keyword == "obj_info" || keyword == "Created";
 }
 
+/// What 32 bits can number: vertices but for one value that marks the end of a strip, and
+/// triangles. Rows of other elements are only skipped.
+uint64_t most_rows(std::string_view element) {
+    if (element == "vertex")
+        return 0xffffffff;
+    if (element == "face" || element == "tristrips")
+        return kMostTriangles;
+    return std::numeric_limits<uint64_t>::max();
+}
+
+bool is_whole(std::string_view word) {
+    return !word.empty() && word.find_first_not_of("0123456789") == word.npos;
+}
+
 class HeaderReader {
 public:
     explicit HeaderReader(Source& source) : source_(source) {}
 
     Result<PlyHeader> read() {
-        const auto first = source_.line();
-        if (!first || trimmed(*first) != "ply")
-            return wrong(quoted(first ? trimmed(*first) : ""), "ply");
+        std::string_view first = source_.line().value_or("");
+        if (first.starts_with("\xef\xbb\xbf")) // the mark some editors put before UTF-8
+            first.remove_prefix(3);
+        if (first = trimmed(first); first != "ply")
+            return wrong(found(first), "ply");
         bool format_seen = false;
         while (const auto line = source_.line()) {
             std::string_view rest = *line;
@@ -86,10 +105,10 @@ private:
         else if (format == "binary_big_endian")
             header_.format = PlyFormat::BinaryBigEndian;
         else
-            return wrong("format " + quoted(format),
+            return wrong(found(format, "format"),
                          "ascii, binary_little_endian or binary_big_endian");
         if (const std::string_view version = next_word(rest); version != "1.0")
-            return wrong("format version " + quoted(version), "1.0");
+            return wrong(found(version, "format version"), "1.0");
         return std::nullopt;
     }
 
@@ -98,8 +117,12 @@ private:
         element.name = next_word(rest);
         const std::string_view count = next_word(rest);
         const auto value = parse_number<uint64_t>(count);
+        const uint64_t most = most_rows(element.name);
+        if (value ? *value > most : is_whole(count))
+            return wrong(found(count, "element count"),
+                         fmt::format("at most {} rows of {}", most, element.name));
         if (!value)
-            return wrong("element count " + quoted(count), "a whole number, 0 or more");
+            return wrong(found(count, "element count"), "a whole number, 0 or more");
         element.count = *value;
         header_.elements.push_back(std::move(element));
         return std::nullopt;
@@ -115,13 +138,13 @@ private:
             const std::string_view count_type = next_word(rest);
             const auto known = type_named(count_type);
             if (!known || !is_integer(*known))
-                return wrong("list length type " + quoted(count_type), "an integer type");
+                return wrong(found(count_type, "list length type"), "an integer type");
             property.count_type = *known;
             type = next_word(rest);
         }
         const auto known = type_named(type);
         if (!known)
-            return wrong("type " + quoted(type), kTypeList);
+            return wrong(found(type, "type"), kTypeList);
         property.type = *known;
         property.name = next_word(rest);
         if (property.name.empty())

@@ -15,6 +15,23 @@
 
 namespace ovc {
 
+/// How many rows of an element have been read.
+struct RowCount {
+    const PlyElement* element = nullptr;
+    uint64_t done = 0;
+
+    void begin(const PlyElement& next) {
+        if (element != &next)
+            done = 0;
+        element = &next;
+    }
+
+    std::string end_of_file() const {
+        return fmt::format("the file ends early: found {} of {} of {}", done,
+                           counted(element->count, "row"), element->name);
+    }
+};
+
 /// Every call but error() returns false at an error, which error() then holds.
 /// An element's row is one line; blank lines between rows do not count.
 class AsciiRows {
@@ -22,11 +39,13 @@ public:
     explicit AsciiRows(Source& source) : source_(source) {}
 
     bool begin_row(const PlyElement& element) {
+        rows_.begin(element);
         do {
             const auto line = source_.line();
-            if (!line)
-                return fail("the end of the file",
-                            fmt::format("{} rows of {}", element.count, element.name));
+            if (!line) {
+                error_ = source_.error_at_line(rows_.end_of_file());
+                return false;
+            }
             rest_ = *line;
             skip_blanks(rest_);
         } while (rest_.empty());
@@ -35,6 +54,7 @@ public:
 
     bool end_row() {
         skip_blanks(rest_);
+        ++rows_.done;
         return rest_.empty() || fail(quoted(next_word(rest_)), "the end of the line");
     }
 
@@ -101,10 +121,11 @@ private:
     }
 
     bool fail_word(std::string_view word, std::string_view expected) {
-        return fail(word.empty() ? "the end of the line" : quoted(word), expected);
+        return fail(found(word), expected);
     }
 
     Source& source_;
+    RowCount rows_;
     std::string_view rest_; // of the row
     Error error_;
 };
@@ -115,19 +136,22 @@ public:
     explicit BinaryRows(Source& source) : source_(source) {}
 
     bool begin_row(const PlyElement& element) {
-        element_ = &element;
+        rows_.begin(element);
         row_ = source_.offset();
         return true;
     }
 
-    bool end_row() { return true; }
+    bool end_row() {
+        ++rows_.done;
+        return true;
+    }
 
     template <class T>
     bool scalar(const PlyProperty& property, T& value) {
-        return take(property.type, property, &value, 1);
+        return take(property.type, &value, 1);
     }
 
-    bool skip_scalar(const PlyProperty& property) { return skip(size_of(property.type), property); }
+    bool skip_scalar(const PlyProperty& property) { return skip(size_of(property.type)); }
 
     bool list(const PlyProperty& property, std::vector<int64_t>& values) {
         uint64_t left = 0;
@@ -139,7 +163,7 @@ public:
             const auto part = size_t(std::min<uint64_t>(left, 4096));
             const size_t first = values.size();
             values.resize(first + part);
-            if (!take(property.type, property, values.data() + first, part))
+            if (!take(property.type, values.data() + first, part))
                 return false;
             left -= part;
         }
@@ -148,7 +172,7 @@ public:
 
     bool skip_list(const PlyProperty& property) {
         uint64_t length = 0;
-        return count(property, length) && skip(length * size_of(property.type), property);
+        return count(property, length) && skip(length * size_of(property.type));
     }
 
     bool fail(std::string_view found, std::string_view expected) {
@@ -161,7 +185,7 @@ public:
 private:
     bool count(const PlyProperty& property, uint64_t& value) {
         int64_t length = 0;
-        if (!take(property.count_type, property, &length, 1))
+        if (!take(property.count_type, &length, 1))
             return false;
         value = uint64_t(length);
         return length >= 0 ||
@@ -169,10 +193,10 @@ private:
     }
 
     template <class Stored, class T>
-    bool take_as(const PlyProperty& property, T* values, size_t count) {
+    bool take_as(T* values, size_t count) {
         const unsigned char* at = source_.bytes(count * sizeof(Stored));
         if (!at)
-            return fail_end(property);
+            return fail_end();
         for (size_t k = 0; k < count; ++k, at += sizeof(Stored)) {
             unsigned char raw[sizeof(Stored)];
             for (size_t i = 0; i < sizeof(Stored); ++i)
@@ -183,41 +207,38 @@ private:
     }
 
     template <class T>
-    bool take(PlyType type, const PlyProperty& property, T* values, size_t count) {
+    bool take(PlyType type, T* values, size_t count) {
         switch (type) {
         case PlyType::Int8:
-            return take_as<int8_t>(property, values, count);
+            return take_as<int8_t>(values, count);
         case PlyType::UInt8:
-            return take_as<uint8_t>(property, values, count);
+            return take_as<uint8_t>(values, count);
         case PlyType::Int16:
-            return take_as<int16_t>(property, values, count);
+            return take_as<int16_t>(values, count);
         case PlyType::UInt16:
-            return take_as<uint16_t>(property, values, count);
+            return take_as<uint16_t>(values, count);
         case PlyType::Int32:
-            return take_as<int32_t>(property, values, count);
+            return take_as<int32_t>(values, count);
         case PlyType::UInt32:
-            return take_as<uint32_t>(property, values, count);
+            return take_as<uint32_t>(values, count);
         case PlyType::Float32:
-            return take_as<float>(property, values, count);
+            return take_as<float>(values, count);
         case PlyType::Float64:
-            return take_as<double>(property, values, count);
+            return take_as<double>(values, count);
         }
         return false;
     }
 
-    bool skip(uint64_t bytes, const PlyProperty& property) {
-        return source_.skip(bytes) || fail_end(property);
-    }
+    bool skip(uint64_t bytes) { return source_.skip(bytes) || fail_end(); }
 
-    bool fail_end(const PlyProperty& property) {
-        row_ = source_.offset();
-        return fail("the end of the file", fmt::format("{} of {} rows of {}", property.name,
-                                                       element_->count, element_->name));
+    bool fail_end() {
+        error_ = source_.error_at_byte(source_.offset(), rows_.end_of_file());
+        return false;
     }
 
     Source& source_;
-    const PlyElement* element_ = nullptr;
-    uint64_t row_ = 0; // where the row begins, or the file ended
+    RowCount rows_;
+    uint64_t row_ = 0; // where the row begins
     Error error_;
 };
 

@@ -55,6 +55,10 @@ TEST(Ply, EveryEncodingGivesTheSameTriangles) {
     EXPECT_EQ(triangles_of(load(folder.write("mac.ply", mac))), kSquare);
     EXPECT_EQ(triangles_of(load(folder.write("le.ply", binary_square(false)))), kSquare);
     EXPECT_EQ(triangles_of(load(folder.write("be.ply", binary_square(true)))), kSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("mark.ply", "\xef\xbb\xbf" + text))), kSquare);
+    EXPECT_EQ(
+        triangles_of(load(folder.write("mark le.ply", "\xef\xbb\xbf" + binary_square(false)))),
+        kSquare);
     EXPECT_EQ(triangles_of(load(folder.write("end.ply", text.substr(0, text.size() - 1)))),
               kSquare);
 }
@@ -160,6 +164,31 @@ TEST(Ply, PointCloudsGiveAnEmptyMeshAndAWarning) {
     EXPECT_EQ(folder.plain(warnings[0]), "points.ply: it has no triangles");
 }
 
+TEST(Ply, PolygonsWithTooFewCornersAreCounted) {
+    const TestFolder folder;
+    const std::string header =
+        "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face ";
+    const std::string rows =
+        "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    const struct {
+        const char* count;
+        const char* faces;
+        const char* message;
+    } cases[] = {
+        {"2", "2 0 1\n", "short.ply: 1 polygon with fewer than three corners left out"},
+        {"3", "0\n1 2\n", "short.ply: 2 polygons with fewer than three corners left out"},
+    };
+    for (const auto& test : cases) {
+        std::vector<std::string> warnings;
+        const auto scene =
+            load(folder.write("short.ply", ascii(header + test.count + rows + test.faces)),
+                 gather(warnings));
+        EXPECT_EQ(triangles_of(scene).size(), 1u);
+        ASSERT_EQ(warnings.size(), 1u);
+        EXPECT_EQ(folder.plain(warnings[0]), test.message);
+    }
+}
+
 const struct {
     const char* name;
     std::string contents;
@@ -186,9 +215,23 @@ const struct {
      "end_header"},
     {"count", ascii("element vertex -3\n"),
      "bad.ply, line 3: found element count '-3', expected a whole number, 0 or more"},
-    {"huge count", ascii("element vertex 99999999999999999999\n"),
-     "bad.ply, line 3: found element count '99999999999999999999', expected a whole number, 0 or "
-     "more"},
+    {"no count", ascii("element vertex\n"),
+     "bad.ply, line 3: found the end of the line, expected a whole number, 0 or more"},
+    {"too many vertices", ascii("element vertex 4294967296\n"),
+     "bad.ply, line 3: found element count '4294967296', expected at most 4294967295 rows of "
+     "vertex"},
+    {"far too many vertices", ascii("element vertex 99999999999\n"),
+     "bad.ply, line 3: found element count '99999999999', expected at most 4294967295 rows of "
+     "vertex"},
+    {"a count beyond 64 bits", ascii("element vertex 99999999999999999999\n"),
+     "bad.ply, line 3: found element count '99999999999999999999', expected at most 4294967295 "
+     "rows of vertex"},
+    {"too many faces", ascii("element face 4294967295\n"),
+     "bad.ply, line 3: found element count '4294967295', expected at most 4294967294 rows of face"},
+    {"no format", "ply\nformat\n",
+     "bad.ply, line 2: found the end of the line, expected ascii, binary_little_endian or "
+     "binary_big_endian"},
+    {"empty line", "\nply\n", "bad.ply, line 1: found the end of the line, expected ply"},
     {"orphan", ascii("property float x\n"),
      "bad.ply, line 3: found a property, expected an element before it"},
     {"type", ascii("element vertex 1\nproperty half x\n"),
@@ -215,7 +258,7 @@ const struct {
     {"long row", ascii(std::string(kSquareHeader) + "0 0 0 7\n"),
      "bad.ply, line 10: found '7', expected the end of the line"},
     {"end of rows", ascii(std::string(kSquareHeader) + "0 0 0\n1 0 0\n"),
-     "bad.ply, line 11: found the end of the file, expected 4 rows of vertex"},
+     "bad.ply, line 11: the file ends early: found 2 of 4 rows of vertex"},
     {"index too large", ascii(std::string(kSquareHeader) + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 4\n"),
      "bad.ply, line 14: found vertex index 4, expected 0 to 3"},
     {"negative index", ascii(std::string(kSquareHeader) + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 -1\n"),
@@ -226,22 +269,26 @@ const struct {
     {"negative length",
      ascii(std::string(kSquareHeader) + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n-3 0 1 1\n"),
      "bad.ply, line 14: found '-3', expected the length of vertex_indices"},
+    {"index other than the only one",
+     ascii("element vertex 1\nproperty char x\nproperty char y\nproperty char z\nelement face 1\n"
+           "property list uchar int vertex_indices\nend_header\n0 0 0\n3 0 1 0\n"),
+     "bad.ply, line 11: found vertex index 1, expected 0, the only one"},
     {"no vertices",
      ascii("element face 1\nproperty list uchar int vertex_indices\nend_header\n3 0 0 0\n"),
      "bad.ply, line 6: found vertex index 0, expected none, for there are no vertices"},
     {"short binary vertex", binary_square(false).substr(0, 180),
-     "bad.ply, byte 177: found the end of the file, expected z of 4 rows of vertex"},
+     "bad.ply, byte 177: the file ends early: found 0 of 4 rows of vertex"},
     {"short binary face", binary_square(true).substr(0, binary_square(true).size() - 1),
-     "bad.ply, byte 228: found the end of the file, expected vertex_indices of 2 rows of face"},
+     "bad.ply, byte 228: the file ends early: found 1 of 2 rows of face"},
     {"four thousand million",
      "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\n"
      "property double y\nproperty double z\nend_header\n12345678",
-     "bad.ply, byte 135: found the end of the file, expected y of 4000000000 rows of vertex"},
+     "bad.ply, byte 135: the file ends early: found 0 of 4000000000 rows of vertex"},
     {"list of four thousand million",
      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty char x\nproperty char y\n"
      "property char z\nproperty list uint double w\nend_header\n123\xff\xff\xff\xff"
      "12345678",
-     "bad.ply, byte 147: found the end of the file, expected w of 1 rows of vertex"},
+     "bad.ply, byte 147: the file ends early: found 0 of 1 row of vertex"},
 };
 
 TEST(Ply, ErrorsNameThePlaceAndWhatWasExpected) {

@@ -35,6 +35,12 @@ const char* other_than_a_file(std::filesystem::file_type type) {
     }
 }
 
+/// zlib begins what it says with the file's name; the errors do so themselves.
+std::string_view without(const std::string& name, std::string_view reason) {
+    const std::string prefix = name + ": ";
+    return reason.starts_with(prefix) ? reason.substr(prefix.size()) : reason;
+}
+
 } // namespace
 
 void Source::CloseFile::operator()(gzFile_s* file) const {
@@ -98,7 +104,7 @@ bool Source::fill(size_t count) {
             else if (code == Z_ERRNO)
                 damage_ = fmt::format("cannot be read: {}", std::strerror(errno));
             else if (code != Z_OK && code != Z_STREAM_END)
-                damage_ = fmt::format("the compressed data is damaged: {}", reason);
+                damage_ = fmt::format("the compressed data is damaged: {}", without(name_, reason));
         }
         if (got <= 0)
             return end_ >= count;

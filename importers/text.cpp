@@ -2,6 +2,8 @@
 // Numbers by std::from_chars: exact, and blind to the locale.
 #include "importers/text.h"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -68,6 +70,16 @@ std::string quoted(std::string_view word) {
     for (const char c : word.substr(0, kShown))
         text += c >= ' ' && c <= '~' ? c : '?';
     return text + (word.size() > kShown ? "…'" : "'");
+}
+
+std::string found(std::string_view word, std::string_view what) {
+    if (word.empty())
+        return "the end of the line";
+    return what.empty() ? quoted(word) : fmt::format("{} {}", what, quoted(word));
+}
+
+std::string counted(uint64_t count, std::string_view noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 } // namespace ovc

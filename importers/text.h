@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <concepts>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -59,5 +60,11 @@ std::optional<double> parse_double(std::string_view word);
 
 /// The word as a message shows it: in quotes, cut short, unprintable bytes as '?'.
 std::string quoted(std::string_view word);
+
+/// The word in quotes, behind `what` it is where that is given; or that the line ends there.
+std::string found(std::string_view word, std::string_view what = {});
+
+/// "1 row", "2 rows".
+std::string counted(uint64_t count, std::string_view noun);
 
 } // namespace ovc
