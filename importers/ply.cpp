@@ -77,6 +77,8 @@ public:
     }
 
     const Error& error() const { return rows_.error(); }
+    /// A warning. Once only, after read().
+    std::optional<Error> left_over() { return rows_.left_over(); }
     uint64_t triangle_count() const { return corners_.size() / 3; }
     uint64_t too_short() const { return too_short_; }
     bool lost_normals() const { return lost_normals_; }
@@ -312,12 +314,17 @@ Result<Scene> read_body(Source& source, const PlyHeader& header, const std::file
     PlyReader<Rows, V> reader(source, header);
     if (!reader.read())
         return reader.error();
+    const std::optional<Error> left_over = reader.left_over();
+    if (source.is_damaged())
+        return source.error_at_byte(source.offset(), "");
     if (reader.triangle_count() > kMostTriangles)
         return source.error(fmt::format("found {} triangles, expected at most {}",
                                         reader.triangle_count(), kMostTriangles));
     const auto warn = [&](const std::string& sentence) {
         say(log, LogLevel::Warning, source.error(sentence).message);
     };
+    if (left_over)
+        say(log, LogLevel::Warning, left_over->message);
     if (reader.too_short() > 0)
         warn(fmt::format("{} with fewer than three corners left out",
                          counted(reader.too_short(), "polygon")));

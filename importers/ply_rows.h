@@ -32,7 +32,7 @@ struct RowCount {
     }
 };
 
-/// Every call but error() returns false at an error, which error() then holds.
+/// Every call but error() and left_over() returns false at an error, which error() then holds.
 /// An element's row is one line; blank lines between rows do not count.
 class AsciiRows {
 public:
@@ -109,6 +109,18 @@ public:
 
     const Error& error() const { return error_; }
 
+    /// What follows the last row, as a warning; nothing where only blank lines do.
+    std::optional<Error> left_over() {
+        uint64_t first = 0, count = 0;
+        while (const auto line = source_.line())
+            if (!trimmed(*line).empty() && count++ == 0)
+                first = source_.line_number();
+        if (count == 0)
+            return std::nullopt;
+        return source_.error_at_line(
+            first, fmt::format("{} after the last row left out", counted(count, "line")));
+    }
+
 private:
     template <class T>
     bool integer(std::string_view what, const PlyProperty& property, T& value) {
@@ -181,6 +193,16 @@ public:
     }
 
     const Error& error() const { return error_; }
+
+    /// What follows the last row, as a warning.
+    std::optional<Error> left_over() {
+        const uint64_t first = source_.offset();
+        const uint64_t count = source_.skip_rest();
+        if (count == 0)
+            return std::nullopt;
+        return source_.error_at_byte(
+            first, fmt::format("{} after the last row left out", counted(count, "byte")));
+    }
 
 private:
     bool count(const PlyProperty& property, uint64_t& value) {

@@ -189,6 +189,41 @@ TEST(Ply, PolygonsWithTooFewCornersAreCounted) {
     }
 }
 
+TEST(Ply, DataAfterTheLastRowIsSaid) {
+    const TestFolder folder;
+    const std::string text = ascii(std::string(kSquareHeader) + kSquareRows);
+    const struct {
+        const char* name;
+        std::string contents;
+        const char* message; // null: none
+    } cases[] = {
+        {"nothing", text, nullptr},
+        {"blank lines", text + "\n \t\r\n\n", nullptr},
+        {"a row", text + "\n3 0 1 2\n", "more.ply, line 17: 1 line after the last row left out"},
+        {"rows and blanks", text + "3 0 1 2\n\n3 0 1 2\nx",
+         "more.ply, line 16: 3 lines after the last row left out"},
+        {"binary", binary_square(false), nullptr},
+        {"a byte", binary_square(false) + "\n",
+         "more.ply, byte 243: 1 byte after the last row left out"},
+        {"little endian", binary_square(false) + std::string(100000, '\0'),
+         "more.ply, byte 243: 100000 bytes after the last row left out"},
+        {"big endian", binary_square(true) + "12",
+         "more.ply, byte 240: 2 bytes after the last row left out"},
+    };
+    for (const auto& test : cases)
+        for (const bool packed : {false, true}) {
+            SCOPED_TRACE(test.name);
+            std::vector<std::string> warnings;
+            const std::string contents = packed ? gzip(test.contents) : test.contents;
+            const auto scene = load(folder.write("more.ply", contents), gather(warnings));
+            EXPECT_EQ(triangles_of(scene), kSquare);
+            ASSERT_EQ(warnings.size(), test.message ? 1u : 0u);
+            if (test.message) {
+                EXPECT_EQ(folder.plain(warnings[0]), test.message);
+            }
+        }
+}
+
 const struct {
     const char* name;
     std::string contents;

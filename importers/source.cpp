@@ -152,10 +152,18 @@ Error Source::error(std::string_view sentence) const {
     return {fmt::format("{}: {}", name_, damage_.empty() ? sentence : damage_)};
 }
 
-Error Source::error_at_line(std::string_view sentence) const {
+uint64_t Source::skip_rest() {
+    const uint64_t from = offset();
+    do
+        begin_ = end_;
+    while (fill(1));
+    return offset() - from;
+}
+
+Error Source::error_at_line(uint64_t line, std::string_view sentence) const {
     if (!damage_.empty())
         return error_at_byte(dropped_ + end_, damage_);
-    return {fmt::format("{}, line {}: {}", name_, line_number_, sentence)};
+    return {fmt::format("{}, line {}: {}", name_, line, sentence)};
 }
 
 Error Source::error_at_byte(uint64_t byte, std::string_view sentence) const {

@@ -38,6 +38,8 @@ public:
 
     /// False where fewer are left.
     bool skip(uint64_t count);
+    /// How many bytes that were.
+    uint64_t skip_rest();
 
     /// Bytes (uncompressed) read so far.
     uint64_t offset() const { return dropped_ + begin_; }
@@ -53,7 +55,10 @@ public:
 
     /// "FILE, line 7: sentence"; or, where the file itself could not be read on, what was wrong
     /// with that.
-    Error error_at_line(std::string_view sentence) const;
+    Error error_at_line(std::string_view sentence) const {
+        return error_at_line(line_number_, sentence);
+    }
+    Error error_at_line(uint64_t line, std::string_view sentence) const;
     /// "FILE, byte 70: sentence", likewise.
     Error error_at_byte(uint64_t byte, std::string_view sentence) const;
     Error error(std::string_view sentence) const;

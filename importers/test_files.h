@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <unistd.h>
+#include <zlib.h>
 
 namespace ovc {
 
@@ -59,6 +60,20 @@ public:
 private:
     std::filesystem::path path_;
 };
+
+inline std::string gzip(const std::string& text) {
+    std::string packed(compressBound(uLong(text.size())) + 32, '\0');
+    z_stream stream{};
+    EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+    stream.avail_in = uInt(text.size());
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+    stream.avail_out = uInt(packed.size());
+    EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+    packed.resize(stream.total_out);
+    deflateEnd(&stream);
+    return packed;
+}
 
 /// The scene's triangles in order; the test fails where there is no scene.
 inline std::vector<Triangle> triangles_of(const Result<Scene>& scene) {
