@@ -32,10 +32,12 @@ struct Ray {
     dvec3 at(double t) const { return org + t * dir; }
 
     /// False for what no triangle can be asked about: NaN or infinity in org, dir or t_min, NaN in
-    /// t_max, a zero direction, t_min > t_max. Such a ray is a miss.
+    /// t_max, t_min > t_max, a direction that is zero or so short that its reciprocal overflows
+    /// (below 1e-300). Such a ray is a miss.
     bool valid() const {
+        const dvec3 length = glm::abs(dir);
         return is_finite(org) && is_finite(dir) && std::isfinite(t_min) && t_min <= t_max &&
-               dir != dvec3(0);
+               max_component(length) >= 1e-300;
     }
 };
 static_assert(sizeof(Ray) == 64 && offsetof(Ray, dir) == 32);

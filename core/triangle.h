@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reference: rays against triangles and boxes in double. What it answers is what certified mode
-// returns. Based on: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", section
-// 3; Ize 2013, "Robust BVH Ray Traversal", section 3. Needs -ffp-contract=off: a fused multiply-add
-// would break the antisymmetry of the edge functions.
+// The reference: rays against triangles as exact arithmetic decides, and against boxes. What it
+// answers is what certified mode returns. Based on: Woop, Benthin and Wald 2013, "Watertight
+// Ray/Triangle Intersection", section 3; Shewchuk 1997 (doubles first, exact sums where they leave
+// a doubt); Ize 2013, "Robust BVH Ray Traversal", section 3. Needs -ffp-contract=off and rounding
+// to nearest.
 #pragma once
 
 #include "core/box.h"
+#include "core/expansion.h"
 #include "core/ray.h"
 #include "core/soup.h"
 
@@ -43,32 +45,125 @@ struct PreparedRay {
     }
 };
 
-/// Where the ray meets the triangle, t_min <= t <= t_max; nothing where it does not. Edges and
-/// vertices belong to every triangle they bound, so a ray never slips between two triangles that
-/// share corners bit for bit: the two products of an edge function round monotonically, so its sign
-/// is right or zero, and zero counts as inside. A triangle seen exactly edge-on is not hit.
-inline std::optional<Hit> intersect(const PreparedRay& p, const Triangle& triangle, TriangleId id) {
-    double x[3], y[3], z[3];
+/// A hit of one triangle, and what its t is off by at most.
+struct Candidate {
+    Hit hit;
+    double t_error;
+};
+
+/// The triangle's edge functions without a rounding: weights of its corners, their sum, and the
+/// corners' depths so weighted. Closed: inside where no two weights have opposite signs and not all
+/// are zero.
+struct ExactTriangle {
+    std::array<Expansion, 3> weights;
+    Expansion area;  // this and the next only where inside
+    Expansion depth; // t = depth / (area dir[kz])
+
+    ExactTriangle(const PreparedRay& p, const Triangle& triangle);
+    bool inside() const;
+};
+
+/// The sign of t - `t` for a triangle that is inside.
+int compare_t(const PreparedRay& p, const ExactTriangle& triangle, double t);
+
+/// What candidate() answers where doubles cannot tell.
+std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& triangle,
+                                         TriangleId id);
+
+/// Where the ray meets the closed triangle, t_min <= t <= t_max; nothing where it does not. Decided
+/// as by exact arithmetic: in double with an error bound, and by exact_candidate() where that
+/// leaves a doubt. So a ray never slips between two triangles that share corners bit for bit. A
+/// triangle seen exactly edge-on is not hit. t, u and v are rounded; equal ray and triangle give
+/// equal bits.
+inline std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangle,
+                                          TriangleId id) {
+    if (id == p.skip)
+        return std::nullopt;
+    constexpr double u = 0x1p-53;
+    double x[3], y[3], z[3], size[3], reach[3];
     for (int i = 0; i < 3; ++i) {
         const dvec3 d = triangle[i] - p.ray.org;
         x[i] = d[p.kx] - p.sx * d[p.kz];
         y[i] = d[p.ky] - p.sy * d[p.kz];
         z[i] = d[p.kz];
+        size[i] = std::abs(x[i]) + std::abs(y[i]);
+        reach[i] = size[i] + std::abs(z[i]);
     }
+    // docs/numerics.md, "The reference": a projected corner is off by 6u reach, an edge function by
+    // what that and its own roundings make.
+    const auto edge_error = [&](int i, int j) {
+        return 12 * u * (reach[i] * size[j] + reach[j] * size[i] + 12 * u * reach[i] * reach[j]) +
+               1e-300;
+    };
     const double a = x[2] * y[1] - y[2] * x[1];
     const double b = x[0] * y[2] - y[0] * x[2];
     const double c = x[1] * y[0] - y[1] * x[0];
-    if ((a < 0 || b < 0 || c < 0) && (a > 0 || b > 0 || c > 0))
+    const double a_error = edge_error(2, 1);
+    const double b_error = edge_error(0, 2);
+    const double c_error = edge_error(1, 0);
+    const bool any_positive = a > a_error || b > b_error || c > c_error;
+    const bool any_negative = a < -a_error || b < -b_error || c < -c_error;
+    if (any_positive && any_negative)
         return std::nullopt;
-    const double det = a + b + c;
-    if (det == 0)
+    const bool inside = std::abs(a) > a_error && std::abs(b) > b_error && std::abs(c) > c_error;
+    if (!inside)
+        return exact_candidate(p, triangle, id);
+    const double area = a + b + c;
+    const double t = (a * z[0] + b * z[1] + c * z[2]) / area * p.sz;
+    const double share = std::min(2 * (a_error + b_error + c_error) / std::abs(area), 1.0);
+    const double z_min = std::min({z[0], z[1], z[2]});
+    const double z_max = std::max({z[0], z[1], z[2]});
+    const double t_error =
+        (share * (z_max - z_min) + 12 * u * std::max(std::abs(z_min), std::abs(z_max))) *
+        std::abs(p.sz);
+    if (t + t_error < p.ray.t_min || t - t_error > p.ray.t_max)
         return std::nullopt;
-    const double u = b / det;
-    const double v = c / det;
-    const double t = (a * z[0] + b * z[1] + c * z[2]) / det * p.sz;
-    if (!(t >= p.ray.t_min && t <= p.ray.t_max) || id == p.skip)
-        return std::nullopt;
-    return Hit{t, u, v, id};
+    if (!(t - t_error >= p.ray.t_min && t + t_error <= p.ray.t_max))
+        return exact_candidate(p, triangle, id);
+    return Candidate{{t, b / area, c / area, id}, t_error};
+}
+
+/// The nearest of the triangles offered, as exact arithmetic would choose: smaller t, equal t to
+/// the smaller id.
+class Nearest {
+public:
+    explicit Nearest(const PreparedRay& p) : p_(p) {}
+
+    /// Tests the triangle. Returns true when it is hit, though perhaps not the nearest.
+    bool offer(const Triangle& triangle, TriangleId id) {
+        const std::optional<Candidate> found = candidate(p_, triangle, id);
+        if (found && (!best_.hit.is_hit() || wins(*found, triangle))) {
+            best_ = *found;
+            triangle_ = triangle;
+        }
+        return found.has_value();
+    }
+
+    const Hit& hit() const { return best_.hit; }
+
+    /// Nothing beyond this t can win any more.
+    double limit() const {
+        return best_.hit.is_hit() ? std::min(best_.hit.t + best_.t_error, p_.ray.t_max)
+                                  : p_.ray.t_max;
+    }
+
+private:
+    bool wins(const Candidate& other, const Triangle& triangle) const {
+        const double gap = other.hit.t - best_.hit.t;
+        const double error = other.t_error + best_.t_error;
+        return std::abs(gap) > error ? gap < 0 : wins_exactly(other.hit.id, triangle);
+    }
+    bool wins_exactly(TriangleId id, const Triangle& triangle) const;
+
+    const PreparedRay& p_;
+    Candidate best_{};
+    Triangle triangle_{};
+};
+
+/// The hit of a single triangle.
+inline std::optional<Hit> intersect(const PreparedRay& p, const Triangle& triangle, TriangleId id) {
+    const std::optional<Candidate> found = candidate(p, triangle, id);
+    return found ? std::optional(found->hit) : std::nullopt;
 }
 
 /// The part of a ray inside something: empty when enter > exit.

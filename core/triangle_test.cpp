@@ -241,7 +241,8 @@ TEST(Hit, TiesGoToTheSmallerMeshThenPrim) {
 TEST(Ray, KnowsWhatNoTriangleCanBeAskedAbout) {
     const Ray good{dvec3(0), 0, dvec3(0, 0, 1)};
     EXPECT_TRUE(good.valid());
-    EXPECT_TRUE((Ray{dvec3(0), 1, dvec3(0, -0.0, 1e-310), 1}.valid()));
+    EXPECT_TRUE((Ray{dvec3(0), 1, dvec3(0, -0.0, 1e-290), 1}.valid()));
+    EXPECT_FALSE((Ray{dvec3(0), 1, dvec3(0, -0.0, 1e-310), 1}.valid()));
     EXPECT_FALSE((Ray{dvec3(0, kNan, 0), 0, dvec3(1)}.valid()));
     EXPECT_FALSE((Ray{dvec3(kInf, 0, 0), 0, dvec3(1)}.valid()));
     EXPECT_FALSE((Ray{dvec3(0), 0, dvec3(0, kNan, 1)}.valid()));

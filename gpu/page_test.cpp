@@ -24,22 +24,20 @@ TEST(Page, WalkedInDoubleFindsWhatBruteForceFinds) {
         ASSERT_EQ(level1.leaves.size(), 1u);
         const Leaf& leaf = level1.leaves[0];
         const Page page = build_page(soup, leaf);
-        const auto rays = test::unpleasant_rays(soup, 77, 2000);
+        const auto rays = test::unpleasant_rays(soup, 77, 800);
         for (size_t i = 0; i < rays.size(); ++i) {
             if (!rays[i].valid())
                 continue;
-            PreparedRay p(rays[i]);
-            Hit found;
+            const PreparedRay p(rays[i]);
+            Nearest nearest(p);
             walk_page(
                 page, leaf, p, p.ray.t_min,
                 [&](uint32_t k) {
-                    const TriangleId id = leaf.triangles[k];
-                    if (const auto hit = intersect(p, soup.triangle(id), id);
-                        hit && hit->nearer_than(found))
-                        found = *hit;
+                    nearest.offer(soup.triangle(leaf.triangles[k]), leaf.triangles[k]);
                     return false;
                 },
-                [&] { return std::min(p.ray.t_max, found.t); });
+                [&] { return nearest.limit(); });
+            const Hit& found = nearest.hit();
             const Hit expected = test::brute_force(soup, leaf.triangles, rays[i]);
             ASSERT_TRUE(test::same(expected, found))
                 << name << " ray " << i << ": " << test::describe(expected) << " but found "

@@ -53,12 +53,15 @@ public:
     explicit OpenSides(size_t triangles) : slots_(std::bit_ceil(triangles * 6 + 1), kEmpty) {}
 
     /// The side that `fits` among those of this key, taken out; or kNone, and `side` is put in.
+    /// Looks at a few only: where thousands of triangles lie on one edge, some stay alone.
     template <class Fits>
     uint32_t match_or_add(uint64_t key, uint32_t side, Fits&& fits) {
         const uint64_t tag = key & ~uint64_t(kNone);
         const size_t mask = slots_.size() - 1;
         size_t at = size_t(key) & mask;
-        for (; slots_[at] != kEmpty; at = (at + 1) & mask) {
+        for (int looked = 0; slots_[at] != kEmpty; at = (at + 1) & mask) {
+            if (++looked == kMostLooks)
+                return kNone;
             const uint32_t other = uint32_t(slots_[at]);
             if ((slots_[at] & ~uint64_t(kNone)) == tag && other != kTaken && fits(other)) {
                 slots_[at] = tag | kTaken; // not empty: probing goes on across it
@@ -72,6 +75,7 @@ public:
 private:
     static constexpr uint64_t kEmpty = ~uint64_t(0);
     static constexpr uint32_t kTaken = kNone - 1;
+    static constexpr int kMostLooks = 64;
 
     std::vector<uint64_t> slots_; // upper half of the key, side below
 };

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kBins = 32;
 constexpr int kMaxDepth = 96;
+constexpr size_t kWorthIsolating = 64;  // triangles
 constexpr size_t kParallelBuild = 8192; // fragments; below, a task costs more than it saves
 
 /// A triangle within a cell: the box of the part inside. In double, because a float cannot tell the
@@ -102,15 +103,22 @@ private:
     }
 
     Split choose_split(const std::vector<Fragment>& fragments, const Box& cell) const {
-        const uint32_t stop = options_.max_leaf_triangles;
-        if (fragments.size() <= stop || fragments.size() < 2)
+        const size_t count = fragments.size();
+        if (count < 2)
+            return {};
+        // Stopped by count, a leaf is still cut where that saves three quarters of the work: a few
+        // far-reaching triangles would otherwise stretch its box until the rest is a dot in it.
+        const bool stop = options_.max_leaf_triangles != 0;
+        const bool enough = stop && count <= options_.max_leaf_triangles;
+        if (enough && count < kWorthIsolating)
             return {};
         const Split split =
-            fragments.size() > kBins ? best_binned(fragments, cell) : best_exact(fragments, cell);
-        const double leaf_cost = options_.intersection_cost * double(fragments.size());
-        return split.cost < (stop ? 0.9 * leaf_cost + options_.traversal_cost : leaf_cost)
-                   ? split
-                   : Split{};
+            count > kBins ? best_binned(fragments, cell) : best_exact(fragments, cell);
+        const double leaf_cost = options_.intersection_cost * double(count);
+        const double worth = enough ? 0.25 * leaf_cost
+                             : stop ? 0.9 * leaf_cost + options_.traversal_cost
+                                    : leaf_cost;
+        return split.cost < worth ? split : Split{};
     }
 
     /// The heuristic's cost of cutting `cell` there; infinite when neither side gets smaller.

@@ -28,17 +28,19 @@ struct Cell {
     Box padded;
 };
 
-double padding(const Box& box) {
-    const double farthest = max_component(glm::max(glm::abs(box.lo), glm::abs(box.hi)));
-    // Not below a few roundings of the coordinates themselves, or far from the origin the padding
-    // would vanish.
-    return std::max(kPad * max_component(box.extent()), 0x1p-48 * farthest);
+double padding(const Box& box, const Box& scene) {
+    const double farthest = max_component(glm::max(glm::abs(scene.lo), glm::abs(scene.hi)));
+    // Not below a few roundings of the coordinates, or far from the origin the padding would
+    // vanish; nor below what lets rays from some scene sizes away be walked in double (can_walk),
+    // however small a cell is.
+    return std::max({kPad * max_component(box.extent()), 0x1p-48 * farthest,
+                     0x1p-41 * max_component(scene.extent())});
 }
 
 void collect_cells(const std::vector<KdNode>& nodes, uint32_t node, const Box& box,
                    std::vector<Cell>& cells) {
     if (nodes[node].is_leaf()) {
-        cells.push_back({node, box, box.padded(padding(box))});
+        cells.push_back({node, box, {}});
         return;
     }
     Box below = box;
@@ -101,7 +103,7 @@ private:
             return;
         }
         const int axis = n.axis();
-        const double pad = padding(cell); // no cell below is padded more
+        const double pad = padding(cell, bounds_); // no cell below is padded more
         if (box.lo[axis] <= n.split() + pad) {
             Box below = cell;
             below.hi[axis] = n.split();
@@ -165,9 +167,11 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
     std::vector<Cell> cells;
     collect_cells(tree.nodes, 0, bounds, cells);
     level1.smallest_padding = std::numeric_limits<double>::infinity();
-    for (const Cell& cell : cells)
-        level1.smallest_padding = std::min(level1.smallest_padding, padding(cell.box));
-
+    for (Cell& cell : cells) {
+        const double pad = padding(cell.box, bounds);
+        cell.padded = cell.box.padded(pad);
+        level1.smallest_padding = std::min(level1.smallest_padding, pad);
+    }
     tree.references = {};
     const std::vector<std::vector<TriangleId>> members =
         Gatherer(soup, tree.nodes, bounds, cells).gather(triangles);
@@ -177,7 +181,7 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
         const std::span<const TriangleId> inside = members[i];
         for (size_t at = 0; at < inside.size(); at += max_leaf_triangles)
             level1.leaves.push_back(make_leaf(
-                soup, cells[i].padded, padding(cells[i].box),
+                soup, cells[i].padded, padding(cells[i].box, bounds),
                 inside.subspan(at, std::min<size_t>(max_leaf_triangles, inside.size() - at))));
         tree.nodes[cells[i].node] = KdNode::leaf(first, uint32_t(level1.leaves.size()) - first);
     }

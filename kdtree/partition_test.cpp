@@ -21,22 +21,22 @@ Level1 cut(const Soup& soup, uint32_t most) {
 /// Leaf by leaf, all triangles of each tested; after the first hit only the leaves of its cell are
 /// left.
 Hit trace(const Level1& level1, const Soup& soup, const Ray& ray) {
-    Hit best;
     if (!ray.valid())
-        return best;
+        return {};
     const PreparedRay p(ray);
+    Nearest nearest(p);
     RayPosition position{ray.t_min};
     std::set<uint32_t> seen;
     while (true) {
-        const Visit visit =
-            best.is_hit() ? next_leaf_in_cell(level1, p, position) : next_leaf(level1, p, position);
+        const Visit visit = nearest.hit().is_hit() ? next_leaf_in_cell(level1, p, position)
+                                                   : next_leaf(level1, p, position);
         if (visit.leaf == kNone)
-            return best;
+            return nearest.hit();
         EXPECT_TRUE(seen.insert(visit.leaf).second) << "a leaf twice";
         for (const TriangleId id : level1.leaves[visit.leaf].triangles)
             if (const auto hit = intersect(p, soup.triangle(id), id))
-                if (hit->t <= visit.inside.exit && hit->nearer_than(best))
-                    best = *hit;
+                if (hit->t <= visit.inside.exit)
+                    nearest.offer(soup.triangle(id), id);
     }
 }
 
@@ -60,7 +60,7 @@ TEST(Partition, LeavesKeepToTheCountAndHoldEveryTriangle) {
 TEST(Partition, WalkingLeavesFindsWhatBruteForceFinds) {
     for (const auto& [name, soup] : test::unpleasant_soups()) {
         const auto ids = hittable_triangles(soup, nullptr, nullptr);
-        const auto rays = test::unpleasant_rays(soup, 21, 1500);
+        const auto rays = test::unpleasant_rays(soup, 21, 600);
         for (const uint32_t most : {100000u, 300u, 40u}) {
             const Level1 level1 = cut(soup, most);
             for (size_t i = 0; i < rays.size(); ++i) {

@@ -161,14 +161,13 @@ inline std::vector<Ray> unpleasant_rays(const Soup& soup, uint64_t seed, size_t 
 /// Every triangle tested.
 inline Hit brute_force(const Soup& soup, const std::vector<TriangleId>& ids, const Ray& ray,
                        TriangleId skip = {}) {
-    Hit best;
     if (!ray.valid())
-        return best;
+        return {};
     const PreparedRay p(ray, skip);
+    Nearest nearest(p);
     for (const TriangleId id : ids)
-        if (const auto hit = intersect(p, soup.triangle(id), id); hit && hit->nearer_than(best))
-            best = *hit;
-    return best;
+        nearest.offer(soup.triangle(id), id);
+    return nearest.hit();
 }
 
 inline bool same(const Hit& a, const Hit& b) {

@@ -13,25 +13,20 @@ namespace {
 /// Any hit and nearest hit differ in when they stop, and in nothing else.
 template <bool kAnyHit>
 Hit trace(const KdTree& tree, const Soup& soup, const Ray& ray, TriangleId skip) {
-    Hit best;
     if (!ray.valid())
-        return best;
-    PreparedRay p(ray, skip);
+        return {};
+    const PreparedRay p(ray, skip);
+    Nearest nearest(p);
     walk(
         tree.nodes, tree.bounds, p,
         [&](const KdNode& leaf, double, double) {
             for (const TriangleId id : tree.triangles(leaf))
-                if (const auto hit = intersect(p, soup.triangle(id), id);
-                    hit && hit->nearer_than(best)) {
-                    best = *hit;
-                    p.ray.t_max = best.t; // not below: an equal t with a smaller id may follow
-                    if (kAnyHit)
-                        return true;
-                }
+                if (nearest.offer(soup.triangle(id), id) && kAnyHit)
+                    return true;
             return false;
         },
-        [&] { return p.ray.t_max; });
-    return best;
+        [&] { return nearest.limit(); });
+    return nearest.hit();
 }
 
 constexpr size_t kGrain = 64; // rays a task

@@ -14,7 +14,7 @@ TEST(KdTraverse, EqualsBruteForceBitForBit) {
     for (const auto& [name, soup] : test::unpleasant_soups()) {
         const KdTree tree = build_kd_tree(soup);
         const auto ids = hittable_triangles(soup, nullptr, nullptr);
-        const auto rays = test::unpleasant_rays(soup, 7, 3000);
+        const auto rays = test::unpleasant_rays(soup, 7, 1200);
         for (size_t i = 0; i < rays.size(); ++i) {
             const Hit expected = test::brute_force(soup, ids, rays[i]);
             const Hit found = intersect(tree, soup, rays[i]);

@@ -16,9 +16,10 @@ namespace ovc {
 
 /// The nearest hit, or with kAnyHit some hit, of a valid ray. pages[i] belongs to level1.leaves[i].
 template <bool kAnyHit>
-Hit arbitrate(const Soup& soup, const Level1& level1, std::span<const Page> pages, PreparedRay p) {
-    Hit best;
-    const auto limit = [&] { return p.ray.t_max; };
+Hit arbitrate(const Soup& soup, const Level1& level1, std::span<const Page> pages,
+              const PreparedRay& p) {
+    Nearest nearest(p);
+    const auto limit = [&] { return nearest.limit(); };
     walk(
         level1.nodes, level1.bounds, p,
         [&](const KdNode& cell, double, double) {
@@ -26,12 +27,7 @@ Hit arbitrate(const Soup& soup, const Level1& level1, std::span<const Page> page
                 const Leaf& leaf = level1.leaves[l];
                 const auto test = [&](uint32_t i) {
                     const TriangleId id = leaf.triangles[i];
-                    const auto hit = intersect(p, soup.triangle(id), id);
-                    if (!hit || !hit->nearer_than(best))
-                        return false;
-                    best = *hit;
-                    p.ray.t_max = best.t;
-                    return kAnyHit;
+                    return nearest.offer(soup.triangle(id), id) && kAnyHit;
                 };
                 if (walk_page(pages[l], leaf, p, p.ray.t_min, test, limit))
                     return true;
@@ -39,7 +35,7 @@ Hit arbitrate(const Soup& soup, const Level1& level1, std::span<const Page> page
             return false;
         },
         limit);
-    return best;
+    return nearest.hit();
 }
 
 } // namespace ovc

@@ -19,14 +19,9 @@ struct NearestQuery {
     void set_miss(size_t i) const { results[i] = Hit{}; }
     void set(size_t i, const Hit& hit) const { results[i] = hit; }
     bool was_hit(size_t i) const { return results[i].is_hit(); }
+    const Hit& hit(size_t i) const { return results[i]; }
     /// The end of ray i as far as it is still of interest.
     double t_max(size_t i) const { return std::min(rays[i].t_max, results[i].t); }
-
-    /// A hit found; the nearest of them stays.
-    void enter(size_t i, const Hit& hit) const {
-        if (hit.nearer_than(results[i]))
-            results[i] = hit;
-    }
 };
 
 struct OcclusionQuery {
@@ -38,9 +33,8 @@ struct OcclusionQuery {
     void set_miss(size_t i) const { results[i] = 0; }
     void set(size_t i, const Hit& hit) const { results[i] = hit.is_hit(); }
     bool was_hit(size_t i) const { return results[i] != 0; }
+    Hit hit(size_t) const { return {}; } // which one is not kept
     double t_max(size_t i) const { return rays[i].t_max; }
-
-    void enter(size_t i, const Hit&) const { results[i] = 1; }
 };
 
 /// Ray i as the host gave it.

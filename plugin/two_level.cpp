@@ -212,33 +212,47 @@ private:
     bool take_in(uint32_t leaf_index, size_t ray, const PreparedRay& p, const LocalAnswer& answer) {
         const Leaf& leaf = s_.level1_.leaves[leaf_index];
         if (!s_.options_.certify) {
-            if (answer.prim != OVC_MISS)
-                query_.enter(ray, {world_t(leaf, prepare_rest(query_, ray), answer.t()), answer.u(),
-                                   answer.v(), leaf.triangles[answer.prim]});
+            take_in_fast(leaf, ray, answer);
             return true;
         }
-        if (answer.prim != OVC_MISS) {
-            const TriangleId id = leaf.triangles[answer.prim];
-            const std::optional<Hit> hit = ovc::intersect(p, s_.soup_.triangle(id), id);
-            if (!hit)
-                return false;
-            query_.enter(ray, *hit);
+        const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
+        flagged_ += has_rivals;
+        if (Query::kAnyHit && !has_rivals && answer.prim != OVC_MISS) {
+            query_.set(ray, Hit{0, 0, 0, leaf.triangles[answer.prim]}); // a certain hit decides
+            return true;
         }
-        if (answer.rivals()[0] != OVC_NO_TRIANGLE) {
-            ++flagged_;
-            for (const uint32_t rival : answer.rivals())
-                if (rival != OVC_NO_TRIANGLE)
-                    enter_rival(leaf, ray, p, leaf.triangles[rival]);
-        }
+        Nearest nearest(p);
+        if (query_.was_hit(ray))
+            offer(nearest, query_.hit(ray).id);
+        if (answer.prim != OVC_MISS && !offer(nearest, leaf.triangles[answer.prim]))
+            return false;
+        for (const uint32_t rival : answer.rivals())
+            if (rival != OVC_NO_TRIANGLE)
+                offer_within(leaf, p, nearest, leaf.triangles[rival]);
+        query_.set(ray, nearest.hit());
         return true;
     }
 
-    /// Enters a hit that only double can see, unless it lies beyond the leaf: there a nearer one
-    /// may be in the next.
-    void enter_rival(const Leaf& leaf, size_t ray, const PreparedRay& p, TriangleId id) {
+    void take_in_fast(const Leaf& leaf, size_t ray, const LocalAnswer& answer) {
+        if (answer.prim == OVC_MISS)
+            return;
+        const Hit hit{world_t(leaf, prepare_rest(query_, ray), answer.t()), answer.u(), answer.v(),
+                      leaf.triangles[answer.prim]};
+        if (!query_.was_hit(ray) || hit.nearer_than(query_.hit(ray)))
+            query_.set(ray, hit);
+    }
+
+    bool offer(Nearest& nearest, TriangleId id) const {
+        return nearest.offer(s_.soup_.triangle(id), id);
+    }
+
+    /// Offers a triangle that perhaps only double can see hit, unless that is beyond the leaf:
+    /// there a nearer one may be in the next.
+    void offer_within(const Leaf& leaf, const PreparedRay& p, Nearest& nearest,
+                      TriangleId id) const {
         const std::optional<Hit> hit = ovc::intersect(p, s_.soup_.triangle(id), id);
         if (hit && hit->t <= clip(p, leaf.box, p.ray.t_min, p.ray.t_max).exit)
-            query_.enter(ray, *hit);
+            offer(nearest, id);
     }
 
     void decide_in_double(size_t i, const PreparedRay& p) {

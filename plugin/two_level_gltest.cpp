@@ -50,7 +50,7 @@ std::vector<Variant> variants() {
 TEST_F(TwoLevelGl, EqualsBruteForceBitForBit) {
     for (const auto& [soup_name, soup] : test::unpleasant_soups()) {
         const auto ids = hittable_triangles(soup, nullptr, nullptr);
-        const auto rays = test::unpleasant_rays(soup, 33, 4000);
+        const auto rays = test::unpleasant_rays(soup, 33, 1500);
         std::vector<Hit> expected;
         for (const Ray& ray : rays)
             expected.push_back(test::brute_force(soup, ids, ray));

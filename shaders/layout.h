@@ -21,7 +21,7 @@
 #define OVC_ROOT_UNIT 1
 #define OVC_PAIR 0x80000000u
 #define OVC_NO_TRIANGLE 0xffffffffu
-#define OVC_MAX_UNITS 0x1000000 // a stack word has 24 bits for a unit
+#define OVC_MAX_UNITS 0x800000 // a stack word has 23 bits for a unit and must not be negative
 
 // A ray is two RGBA32UI texels side by side: origin xyz, end t (float bits; negative: no ray here); direction xyz,
 // scaled so that its largest component is 1 or -1 (float bits), id of the triangle it does not see or OVC_NO_TRIANGLE.
