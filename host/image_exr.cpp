@@ -5,13 +5,33 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfOutputFile.h>
 
+#include <algorithm>
 #include <exception>
 
 namespace ovc {
 
-Result<Done> write_exr(const Image& image, const std::filesystem::path& path) {
+/// A file in memory: OpenEXR goes back to fill in a table, which a pipe could not.
+class MemoryStream final : public Imf::OStream {
+public:
+    explicit MemoryStream(std::string& bytes) : OStream("memory"), bytes_(bytes) {}
+
+    void write(const char* data, int size) override {
+        bytes_.resize(std::max(bytes_.size(), at_ + size_t(size)));
+        std::copy(data, data + size, bytes_.begin() + std::ptrdiff_t(at_));
+        at_ += size_t(size);
+    }
+    uint64_t tellp() override { return at_; }
+    void seekp(uint64_t at) override { at_ = at; }
+
+private:
+    std::string& bytes_;
+    size_t at_ = 0;
+};
+
+Result<std::string> encode_exr(const Image& image) {
     try {
         Imf::Header header(int(image.width), int(image.height));
         header.compression() = Imf::ZIP_COMPRESSION;
@@ -26,10 +46,14 @@ Result<Done> write_exr(const Image& image, const std::filesystem::path& path) {
             frame.insert(name,
                          Imf::Slice(Imf::FLOAT, first, sizeof(vec4), sizeof(vec4) * image.width));
         }
-        Imf::OutputFile file(path.c_str(), header);
-        file.setFrameBuffer(frame);
-        file.writePixels(int(image.height));
-        return Done{};
+        std::string bytes;
+        MemoryStream stream(bytes);
+        {
+            Imf::OutputFile file(stream, header);
+            file.setFrameBuffer(frame);
+            file.writePixels(int(image.height));
+        } // the table of lines is written now
+        return bytes;
     } catch (const std::exception& e) {
         return Error{e.what()};
     }

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <vector>
@@ -35,9 +36,11 @@ static std::vector<uint8_t> srgb_rows(const Image& image) {
     return rows;
 }
 
-Result<Done> write_png(const Image& image, const std::filesystem::path& path) {
+Result<std::string> encode_png(const Image& image) {
     const std::vector<uint8_t> rows = srgb_rows(image);
-    const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "wb"), std::fclose);
+    char* text = nullptr;
+    size_t size = 0;
+    FILE* const file = open_memstream(&text, &size);
     if (!file)
         return Error{std::strerror(errno)};
 
@@ -48,13 +51,13 @@ Result<Done> write_png(const Image& image, const std::filesystem::path& path) {
     header.width = image.width;
     header.height = image.height;
     header.format = PNG_FORMAT_RGB;
-    const bool written = png_image_write_to_stdio(&header, file.get(), /* convert_to_8_bit= */ 0,
+    const bool written = png_image_write_to_stdio(&header, file, /* convert_to_8_bit= */ 0,
                                                   rows.data(), int32_t(image.width * 3), nullptr);
-    if (!written)
-        return Error{header.message};
-    if (std::fflush(file.get()) != 0)
-        return Error{std::strerror(errno)};
-    return Done{};
+    const bool closed = std::fclose(file) == 0; // only now text and size are final
+    const std::unique_ptr<char, void (*)(void*)> owner(text, std::free);
+    if (!written || !closed)
+        return Error{written ? "out of memory" : header.message};
+    return std::string(text, size);
 }
 
 } // namespace ovc

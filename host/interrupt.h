@@ -9,12 +9,12 @@ inline constexpr int kExitOk = 0;
 inline constexpr int kExitError = 1;
 inline constexpr int kExitInterrupted = 2;
 
-/// From now on SIGINT says so and exits with kExitInterrupted. Outputs are written whole, so
-/// nothing half done remains.
+/// From now on SIGINT says so and exits with kExitInterrupted. Outputs are written whole, and the
+/// one being written is removed, so nothing half done remains.
 void exit_on_interrupt();
 
-/// While it lives, the first SIGINT only sets interrupted(); a second one exits. At most one at a
-/// time.
+/// While it lives, the first SIGINT only says so and sets interrupted(); a second one exits as
+/// above. At most one at a time.
 class InterruptGuard {
 public:
     InterruptGuard();

@@ -6,31 +6,38 @@
 #include "core/result.h"
 
 #include <filesystem>
-#include <functional>
+#include <span>
+#include <string>
 #include <string_view>
 
 namespace ovc {
 
-/// Whether `path` can be written: its folder exists and lets us write, and it is no folder itself.
-/// `what` names the file in the error: "output", "statistics".
+/// Whether `path` can be written: its folder exists and lets us write, and what is there already is
+/// a file, or a device or FIFO that is written to as it is. `what` names the file in the error:
+/// "output", "statistics".
 Result<Done> check_writable(std::string_view what, const std::filesystem::path& path);
 
 /// check_writable, and the extension is one of an image format of ours.
 Result<Done> check_image_output(const std::filesystem::path& path);
 
-/// Writes a file under a temporary name in the folder of `path` and gives it its name once `write`
-/// succeeded. On an error what was at `path` stays, and nothing else remains.
-Result<Done> write_whole(const std::filesystem::path& path,
-                         const std::function<Result<Done>(const std::filesystem::path&)>& write);
+/// A file of the command line and what it is there for: "input", "output".
+struct NamedFile {
+    std::string_view what;
+    std::filesystem::path path;
+};
 
-/// Writes `image` in the format of the extension, whole.
+/// Whether no two of the files are the same, whatever links lead there.
+Result<Done> check_distinct(std::span<const NamedFile> files);
+
+/// Writes `image` in the format of the extension. On an error what was at `path` stays, and nothing
+/// else remains; so it is with save_text.
 Result<Done> save_image(const Image& image, const std::filesystem::path& path);
 
-/// Writes `text`, whole.
+/// Writes `text`.
 Result<Done> save_text(std::string_view text, const std::filesystem::path& path);
 
-/// One format each; the error says only what went wrong, the caller names the file.
-Result<Done> write_png(const Image& image, const std::filesystem::path& path);
-Result<Done> write_exr(const Image& image, const std::filesystem::path& path);
+/// The bytes of a file in one format each; the error says only what went wrong.
+Result<std::string> encode_png(const Image& image);
+Result<std::string> encode_exr(const Image& image);
 
 } // namespace ovc

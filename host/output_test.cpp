@@ -41,18 +41,27 @@ TEST_F(Output, ReplacesAFileWhole) {
     EXPECT_EQ(file_count(), 1u);
 }
 
-TEST_F(Output, AFailureLeavesTheOldFileAndNothingElse) {
-    ASSERT_TRUE(save_text("old", folder_ / "a.json"));
-    const Result<Done> done =
-        write_whole(folder_ / "a.json", [](const fs::path& temporary) -> Result<Done> {
-            std::ofstream(temporary) << "half";
-            return Error{"the disk is full"};
-        });
-    ASSERT_FALSE(done);
-    EXPECT_EQ(done.error().message,
-              "cannot write '" + (folder_ / "a.json").string() + "': the disk is full");
-    EXPECT_EQ(text_of(folder_ / "a.json"), "old");
-    EXPECT_EQ(file_count(), 1u);
+TEST_F(Output, LeavesLinksAndDevicesWhatTheyAre) {
+    ASSERT_TRUE(save_text("old", folder_ / "real.png"));
+    fs::create_symlink("real.png", folder_ / "link.png");
+    fs::create_symlink("/dev/null", folder_ / "null.exr");
+    ASSERT_TRUE(save_image(Image(2, 2), folder_ / "link.png"));
+    ASSERT_TRUE(save_image(Image(2, 2), folder_ / "null.exr"));
+    EXPECT_TRUE(fs::is_symlink(folder_ / "link.png"));
+    EXPECT_EQ(text_of(folder_ / "real.png").substr(1, 3), "PNG");
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+    EXPECT_EQ(file_count(), 3u);
+}
+
+TEST_F(Output, NoTwoFilesAreTheSame) {
+    ASSERT_TRUE(save_text("", folder_ / "a"));
+    fs::create_symlink("a", folder_ / "link");
+    const NamedFile twice[] = {{"input", folder_ / "a"}, {"output", folder_ / "link"}};
+    EXPECT_EQ(check_distinct(twice).error().message,
+              "the input file '" + (folder_ / "a").string() + "' and the output file '" +
+                  (folder_ / "link").string() + "' are the same file");
+    const NamedFile once[] = {{"input", folder_ / "a"}, {"output", folder_ / "b"}};
+    EXPECT_TRUE(check_distinct(once));
 }
 
 TEST_F(Output, IsCheckedBeforehand) {
@@ -61,10 +70,10 @@ TEST_F(Output, IsCheckedBeforehand) {
     EXPECT_EQ(check_image_output("a.jpg").error().message,
               "the output file 'a.jpg' ends in neither .png nor .exr");
     EXPECT_EQ(check_image_output("/no/such/a.png").error().message,
-              "the folder '/no/such' of the output file '/no/such/a.png' does not exist");
+              "the output file /no/such/a.png: the folder does not exist");
     fs::create_directory(folder_ / "b.png");
     EXPECT_THAT(check_image_output(folder_ / "b.png").error().message,
-                testing::HasSubstr("is a folder"));
+                testing::HasSubstr("found a directory"));
     ASSERT_TRUE(save_text("", folder_ / "file"));
     EXPECT_THAT(check_image_output(folder_ / "file" / "a.png").error().message,
                 testing::HasSubstr("is no folder"));
@@ -91,10 +100,14 @@ TEST_F(Output, WritesBothFormatsTheSameEveryTime) {
     EXPECT_EQ(file_count(), 2u);
 }
 
-TEST_F(Output, AFullDiskIsAnError) {
+TEST_F(Output, AFullDiskIsAnErrorThatSaysSo) {
     if (!fs::exists("/dev/full"))
         GTEST_SKIP() << "no /dev/full";
-    EXPECT_FALSE(write_png(unpleasant_image(), "/dev/full"));
+    for (const char* name : {"full.png", "full.exr"}) {
+        fs::create_symlink("/dev/full", folder_ / name);
+        EXPECT_EQ(save_image(unpleasant_image(), folder_ / name).error().message,
+                  (folder_ / name).string() + ": cannot be written: No space left on device");
+    }
 }
 
 } // namespace ovc

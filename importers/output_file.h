@@ -11,10 +11,17 @@
 
 namespace ovc {
 
-/// What was not committed is removed. A failed write is kept in mind: commit() reports it.
+/// What was not committed is removed. A failed write is kept in mind: commit() reports it. A
+/// symbolic link stays: the file that it leads to is replaced. A character device, a FIFO, and the
+/// file that standard output or error already goes to are written straight through, and stay what
+/// they are.
 class OutputFile {
 public:
-    /// Fails where the folder does not exist or cannot be written to.
+    /// Whether create() would succeed; touches nothing. Refused: a directory, a block device, a
+    /// socket, a folder that does not exist or cannot be written to, a name the file system cannot
+    /// hold.
+    static Result<Done> check(const std::filesystem::path& target);
+
     static Result<OutputFile> create(const std::filesystem::path& target);
 
     OutputFile(OutputFile&&) = default;
@@ -31,15 +38,29 @@ private:
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
 
-    OutputFile(std::filesystem::path target, std::filesystem::path temporary, std::FILE* file)
-        : target_(std::move(target)), temporary_(std::move(temporary)), file_(file) {}
+    OutputFile(std::filesystem::path target, std::filesystem::path final_path,
+               std::filesystem::path temporary, std::FILE* file)
+        : target_(std::move(target)),
+          final_path_(std::move(final_path)),
+          temporary_(std::move(temporary)),
+          file_(file) {}
 
-    Error failed() const;
+    static Result<OutputFile> write_through(const std::filesystem::path& target);
+    static Error failed(const std::filesystem::path& target, int error_number);
 
-    std::filesystem::path target_;
-    std::filesystem::path temporary_;
+    std::filesystem::path target_;     // as given, for messages
+    std::filesystem::path final_path_; // what it leads to
+    std::filesystem::path temporary_;  // empty: written straight through
     std::unique_ptr<std::FILE, CloseFile> file_;
     int error_number_ = 0; // of the first write that failed
 };
+
+/// True when writing to one path would change what is at the other: the same file, whatever links
+/// and dots lie between. Never for devices and FIFOs, which anything may share.
+bool is_same_output(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// Removes the temporary file of the OutputFile made last, if it is not complete yet. For a signal
+/// handler that ends the process: async-signal-safe.
+void remove_unfinished_output() noexcept;
 
 } // namespace ovc
