@@ -15,9 +15,10 @@ static constexpr const char* kExamples =
     R"(Standard input, one ray a line:    ox oy oz dx dy dz [tmin tmax]
 Standard output, one line a ray:   t u v mesh prim   or   miss   (with --any: hit or miss)
 The hit lies at o + t d = (1 - u - v) a + u b + v c of the triangle's corners a, b, c. Without tmin and tmax a ray
-begins at 0 and never ends; d need not be of unit length, t counts in its lengths. Numbers are the shortest that read
-back as the same doubles. Blank lines and lines that begin with # are passed over; any other line that is no ray ends
-the program with an error that names it, after the answers to the rays before it.
+begins at 0 and never ends; d need not be of unit length, t counts in its lengths. Numbers in an answer
+are the shortest that read back as the same doubles. Numbers of a ray are separated by blanks or tabs, never by commas;
+one too small for a double is 0. What follows a # is passed over, and so are blank lines; any other line that is no ray
+ends the program with an error that names it, after the answers to the rays before it.
 
 With --binary a ray is 8 little-endian doubles (ox oy oz tmin dx dy dz tmax: the record ovc_ray of overcast.h), a hit 3
 doubles and 2 unsigned 32-bit integers (t u v mesh prim: ovc_hit; a miss has t infinite and both integers 4294967295);

@@ -4,12 +4,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 
 namespace ovc {
+
+/// More than any device has.
+static constexpr uint64_t kMostBytes = uint64_t(1) << 62;
 
 /// The factor that a unit stands for; 0 for what is no unit.
 static double unit_factor(std::string unit) {
@@ -37,21 +39,26 @@ Result<MemorySize> parse_memory_size(std::string_view text) {
     while (!unit.empty() && unit.front() == ' ')
         unit.remove_prefix(1);
 
+    if (text.starts_with("0x") || text.starts_with("0X"))
+        return Error{fmt::format("'{}' is hexadecimal; a memory size is decimal", text)};
+    const double factor = unit == "%" ? 0.01 : unit_factor(std::string(unit));
+    if (factor == 0)
+        return not_a_size;
     if (number == 0)
         return Error{fmt::format("the memory size '{}' is zero; it must be more", text)};
+    // Zero means the default to the plugin, and that was not asked for.
+    const Error too_small{fmt::format("the memory size '{}' is less than one byte", text)};
     if (unit == "%") {
         if (number > 100)
             return Error{
                 fmt::format("'{}' is more memory than the device has; 100% is the most", text)};
-        return MemorySize{0, number / 100};
+        const MemorySize share{0, number / 100};
+        return share.of(kMostBytes) > 0 ? Result<MemorySize>(share) : too_small;
     }
-    const double bytes = number * unit_factor(std::string(unit));
-    if (bytes == 0)
-        return not_a_size;
-    if (bytes >= 0x1p62)
+    const double bytes = number * factor;
+    if (bytes >= double(kMostBytes))
         return Error{fmt::format("'{}' is more memory than any device has", text)};
-    // At least one byte: zero means the default to the plugin, and that was not asked for.
-    return MemorySize{std::max<uint64_t>(uint64_t(bytes), 1), 0};
+    return bytes >= 1 ? Result<MemorySize>(MemorySize{uint64_t(bytes), 0}) : too_small;
 }
 
 std::string human_bytes(uint64_t bytes) {

@@ -16,14 +16,14 @@ struct MemorySize {
     uint64_t bytes = 0;
     double share = 0; // in (0, 1]
 
-    /// Of a device with device_bytes. 0: the default.
+    /// Of a device with device_bytes. 0: the default, or a share that is less than one byte.
     uint64_t of(uint64_t device_bytes) const {
         return share > 0 ? uint64_t(share * double(device_bytes)) : bytes;
     }
 };
 
 /// "1000" (bytes), "256M" or "256MiB" (x 2^20), "256MB" (x 10^6), likewise K, G, T, in any case,
-/// fractions allowed; "50%". Error: anything else, zero, above 100 %.
+/// fractions allowed; "50%". Error: anything else, less than one byte, above 100 %.
 Result<MemorySize> parse_memory_size(std::string_view text);
 
 /// "12.0 MiB", "640 bytes".

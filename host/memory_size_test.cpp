@@ -21,7 +21,8 @@ TEST(MemorySize, ReadsBytesAndUnits) {
                  {"2T", 2ull << 40},
                  {"12 MiB", 12ull << 20},
                  {"640 bytes", 640},
-                 {"0.1", 1}};
+                 {"1.9", 1},
+                 {"4000G", 4000ull << 30}};
     for (const auto& c : cases) {
         const Result<MemorySize> size = parse_memory_size(c.text);
         ASSERT_TRUE(size) << c.text;
@@ -48,6 +49,11 @@ TEST(MemorySize, RefusesTheRest) {
     EXPECT_EQ(parse_memory_size("101%").error().message,
               "'101%' is more memory than the device has; 100% is the most");
     EXPECT_FALSE(parse_memory_size("9999999T"));
+    for (const char* text : {"0.1", "0.0001K", "1e-30%", "1e-307%"})
+        EXPECT_EQ(parse_memory_size(text).error().message,
+                  "the memory size '" + std::string(text) + "' is less than one byte");
+    EXPECT_EQ(parse_memory_size("0x10").error().message,
+              "'0x10' is hexadecimal; a memory size is decimal");
 }
 
 TEST(HumanBytes, UsesTheUnitThatKeepsTheNumberShort) {

@@ -10,9 +10,10 @@
 
 namespace ovc {
 
-/// "ox oy oz dx dy dz" or with " tmin tmax", separated by blanks, tabs or commas; 0 and infinity
-/// are the default interval. inf and nan are numbers here: such a ray is answered by the backend.
-/// The Error does not name the line.
+/// "ox oy oz dx dy dz" or with " tmin tmax", separated by blanks or tabs; 0 and infinity are the
+/// default interval; what follows a # is a comment. inf and nan are numbers here: such a ray is
+/// answered by the backend. A number too small for a double is 0, one too large an Error. The Error
+/// does not name the line.
 Result<Ray> parse_ray(std::string_view line);
 
 /// True for a line that holds no ray and is passed over: blank, or a comment that begins with #.

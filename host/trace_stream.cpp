@@ -80,12 +80,15 @@ private:
             ++line_;
             const std::string_view line = std::string_view(pending_).substr(begin, end - begin);
             if (line.size() > kLongestLine)
-                return Error{fmt::format("line {}: longer than {} characters, expected a ray",
-                                         line_, kLongestLine)};
+                return Error{fmt::format(
+                    "standard input, line {}: longer than {} characters, expected a ray{}", line_,
+                    kLongestLine,
+                    line.find('\0') == line.npos ? "" : "; rays that are no text need --binary")};
             if (!is_blank_line(line)) {
                 const Result<Ray> ray = parse_ray(line);
                 if (!ray)
-                    return Error{fmt::format("line {}: {}", line_, ray.error().message)};
+                    return Error{
+                        fmt::format("standard input, line {}: {}", line_, ray.error().message)};
                 rays_.push_back(*ray);
             }
             begin = end + 1;
@@ -103,8 +106,8 @@ private:
         pending_.erase(0, count * sizeof(Ray));
         line_ += count;
         if (at_end && !pending_.empty())
-            return Error{fmt::format("ray {}: found {} bytes, expected {}", line_ + 1,
-                                     pending_.size(), sizeof(Ray))};
+            return Error{fmt::format("standard input, ray {}: found {} bytes, expected {}",
+                                     line_ + 1, pending_.size(), sizeof(Ray))};
         return Done{};
     }
 

@@ -58,9 +58,13 @@ TEST_F(TraceStreamTest, AnswersOcclusion) {
 
 TEST_F(TraceStreamTest, AnswersWhatCameBeforeABadLineAndNamesIt) {
     EXPECT_EQ(trace("0 0 5 0 0 -1\n\n1 2 3\n0 0 5 0 0 -1\n"), "5 0.25 0.25 0 0\n");
-    EXPECT_EQ(error_, "line 3: found 3 numbers, expected ox oy oz dx dy dz [tmin tmax]");
+    EXPECT_EQ(error_,
+              "standard input, line 3: found 3 numbers, expected ox oy oz dx dy dz [tmin tmax]");
     EXPECT_EQ(trace(std::string(100000, 'x')), "");
-    EXPECT_EQ(error_, "line 1: longer than 4096 characters, expected a ray");
+    EXPECT_EQ(error_, "standard input, line 1: longer than 4096 characters, expected a ray");
+    EXPECT_EQ(trace(std::string(100000, '\0')), "");
+    EXPECT_EQ(error_, "standard input, line 1: longer than 4096 characters, expected a ray; rays "
+                      "that are no text need --binary");
 }
 
 TEST_F(TraceStreamTest, BatchesDoNotShow) {
@@ -90,7 +94,7 @@ TEST_F(TraceStreamTest, SpeaksBinary) {
     EXPECT_FALSE(hits[1].is_hit());
 
     EXPECT_EQ(trace(input + "abc", options).size(), 2 * sizeof(Hit));
-    EXPECT_EQ(error_, "ray 3: found 3 bytes, expected 64");
+    EXPECT_EQ(error_, "standard input, ray 3: found 3 bytes, expected 64");
     options.any = true;
     EXPECT_EQ(trace(input, options), std::string("\1\0", 2));
 }
