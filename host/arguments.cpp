@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parsing of subcommand arguments and of the values they take.
 #include "host/arguments.h"
+
+#include "host/camera.h"
 #include "host/suggestion.h"
 
 #include <fmt/format.h>
@@ -44,16 +46,56 @@ static std::string culprit(const std::vector<std::string>& left_over) {
     return option == left_over.end() ? left_over.front() : *option;
 }
 
+/// --quiet=maybe and --stats=, which CLI11 would convert, or take the next word for.
+static Result<Done> check_joined_values(const CLI::App& app,
+                                        const std::vector<std::string>& arguments) {
+    for (const std::string& word : arguments) {
+        const size_t equals = word.find('=');
+        if (!word.starts_with("--") || equals == std::string::npos)
+            continue;
+        const std::string name = word.substr(0, equals);
+        const CLI::Option* option = app.get_option_no_throw(name);
+        if (!option)
+            continue; // an unknown option, which has its own sentence
+        if (option->get_items_expected_max() == 0)
+            return Error{fmt::format("{} takes no value, and was given '{}'", name,
+                                     word.substr(equals + 1))};
+        if (equals + 1 == word.size())
+            return Error{fmt::format("{} needs a value that is not empty", name)};
+    }
+    return Done{};
+}
+
+/// An empty word is what a shell makes of a variable that is not set; it was not meant as
+/// "default".
+static Result<Done> check_empty_values(const CLI::App& app) {
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& value : option->results())
+            if (value.empty())
+                return Error{fmt::format("{} needs a value that is not empty", option->get_name())};
+    return Done{};
+}
+
 Result<Parsed> parse_arguments(CLI::App& app, std::vector<std::string> arguments) {
+    if (const Result<Done> fine = check_joined_values(app, arguments); !fine)
+        return fine.error();
     std::reverse(arguments.begin(), arguments.end()); // as CLI11 takes them
     try {
         app.parse(arguments);
-        return Parsed::Run;
+        const Result<Done> fine = check_empty_values(app);
+        return fine ? Result<Parsed>(Parsed::Run) : fine.error();
     } catch (const CLI::CallForHelp&) {
         fmt::print("{}", app.help());
         return Parsed::HelpShown;
     } catch (const CLI::ArgumentMismatch& error) {
         return wrong_number_of_values(error.what());
+    } catch (const CLI::ExcludesError& error) {
+        // "--leaves excludes --leaf-triangles"
+        const std::string_view text = error.what();
+        return Error{fmt::format("{} and {} cannot be given together",
+                                 text.substr(0, text.find(' ')), text.substr(text.rfind(' ') + 1))};
+    } catch (const CLI::ConversionError&) {
+        return Error{fmt::format("a value cannot be understood; see {} --help", app.get_name())};
     } catch (const CLI::ParseError& error) {
         std::vector<std::string> left_over = app.remaining();
         std::erase(left_over, std::string());
@@ -147,8 +189,8 @@ Result<Camera> parse_camera(std::string_view text) {
     if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
         return Error{
             fmt::format("--camera needs a field of view between 0 and 180 degrees, not {}", v[6])};
-    if (camera.eye == camera.target)
-        return Error{fmt::format("--camera looks from a point at itself: '{}'", text)};
+    if (const Result<Done> fine = check_camera(camera); !fine)
+        return Error{fmt::format("--camera: {}: '{}'", fine.error().message, text)};
     return camera;
 }
 
@@ -156,7 +198,10 @@ Result<dvec3> parse_position(std::string_view option, std::string_view text) {
     const std::vector<double> v = parse_reals(text);
     if (v.size() != 3)
         return Error{fmt::format("{} needs x,y,z, not '{}'", option, text)};
-    return dvec3(v[0], v[1], v[2]);
+    const dvec3 position(v[0], v[1], v[2]);
+    if (max_component(glm::abs(position)) > kFarthest)
+        return Error{fmt::format("{} needs numbers up to {}, not '{}'", option, kFarthest, text)};
+    return position;
 }
 
 } // namespace ovc

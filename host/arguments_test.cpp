@@ -38,8 +38,11 @@ TEST(ParseCamera, TakesSixOrSevenNumbers) {
     EXPECT_EQ(parse_camera("-.5, 2,3e1,4,5,6,35")->eye, dvec3(-0.5, 2, 30));
     EXPECT_EQ(parse_camera("1,2,3,4,5,6,35")->fov_degrees, 35);
     for (const char* text : {"", "1,2,3", "1,2,3,4,5,x", "1,2,3,4,5,6,", "1,2,3,4,5,6,0",
-                             "1,2,3,4,5,6,180", "1,2,3,1,2,3", "1,2,3,4,5,inf"})
+                             "1,2,3,4,5,6,180", "1,2,3,1,2,3", "1,2,3,4,5,inf", "1,2,3,4,5,1e101"})
         EXPECT_FALSE(parse_camera(text)) << text;
+    EXPECT_EQ(parse_camera("1,2,3,1,2,3").error().message,
+              "--camera: the camera looks from a point at itself: '1,2,3,1,2,3'");
+    EXPECT_FALSE(parse_position("--light", "1e200,0,0"));
 }
 
 TEST(ParseCount, NamesTheOption) {
@@ -56,13 +59,17 @@ protected:
     ParseArguments() {
         app_.add_option("SCENE", scene_)->required();
         app_.add_option("--gpu-memory", memory_);
+        app_.add_option("--leaves", leaves_)
+            ->excludes(app_.add_option("--leaf-triangles", per_leaf_));
+        app_.add_flag("--quiet", quiet_);
     }
     std::string error(std::vector<std::string> arguments) {
         const Result<Parsed> parsed = parse_arguments(app_, std::move(arguments));
         return parsed ? "" : parsed.error().message;
     }
     CLI::App app_{"", "overcast render"};
-    std::string scene_, memory_;
+    std::string scene_, memory_, leaves_, per_leaf_;
+    bool quiet_ = false;
 };
 
 TEST_F(ParseArguments, SuggestsTheOptionThatWasMeant) {
@@ -87,6 +94,18 @@ TEST_F(ParseArguments, SaysWhatIsMissingOrTooMuch) {
               "--gpu-memory is given more than once");
     EXPECT_EQ(error({"a.ply", "--gpu-memory", "5M"}), "");
     EXPECT_EQ(memory_, "5M");
+}
+
+TEST_F(ParseArguments, AnEmptyValueIsNotTheDefault) {
+    EXPECT_EQ(error({"a.ply", "--gpu-memory", ""}), "--gpu-memory needs a value that is not empty");
+    EXPECT_EQ(error({"--gpu-memory=", "a.ply"}), "--gpu-memory needs a value that is not empty");
+    EXPECT_EQ(error({""}), "SCENE needs a value that is not empty");
+}
+
+TEST_F(ParseArguments, SpeaksInItsOwnWords) {
+    EXPECT_EQ(error({"a.ply", "--quiet=maybe"}), "--quiet takes no value, and was given 'maybe'");
+    EXPECT_EQ(error({"a.ply", "--leaves", "4", "--leaf-triangles", "5"}),
+              "--leaves and --leaf-triangles cannot be given together");
 }
 
 TEST(Suggestion, FindsNearMissesOnly) {

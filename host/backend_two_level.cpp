@@ -100,6 +100,9 @@ Result<std::unique_ptr<Backend>> make_two_level_backend(PluginDevice device, con
     ovc_scene_config config{};
     config.struct_size = sizeof(config);
     config.gpu_memory_bytes = options.gpu_memory.of(info->memory_bytes);
+    if (options.gpu_memory.share > 0 && config.gpu_memory_bytes == 0)
+        return Error{fmt::format("--gpu-memory: {}% of the device's {} is less than one byte",
+                                 100 * options.gpu_memory.share, human_bytes(info->memory_bytes))};
     config.leaf_triangles = options.leaf_triangles;
     config.leaves = options.leaves;
     config.precision = options.precision;

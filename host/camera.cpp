@@ -2,6 +2,8 @@
 // Pinhole rays, Morton order and automatic framing.
 #include "host/camera.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -32,9 +34,23 @@ static double half_angle_tangent(double fov_degrees) {
     return std::tan(fov_degrees * (std::numbers::pi / 360.0));
 }
 
+Result<Done> check_camera(const Camera& camera) {
+    for (const dvec3& v : {camera.eye, camera.target, camera.up})
+        if (!is_finite(v) || max_component(glm::abs(v)) > kFarthest)
+            return Error{
+                fmt::format("the camera's numbers are not all finite and within {}", kFarthest)};
+    if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
+        return Error{fmt::format("the camera's field of view is {}, not between 0 and 180 degrees",
+                                 camera.fov_degrees)};
+    // Also when they differ by so little that their distance comes out as 0.
+    if (!(glm::length(camera.target - camera.eye) > 0))
+        return Error{"the camera looks from a point at itself"};
+    return Done{};
+}
+
 Pinhole::Pinhole(const Camera& camera, uint32_t width, uint32_t height)
     : width_(width), height_(height), eye_(camera.eye) {
-    assert(width > 0 && height > 0 && camera.eye != camera.target);
+    assert(width > 0 && height > 0 && check_camera(camera));
     const ViewAxes axes = view_axes(camera);
     forward_ = axes.forward;
     right_ = axes.right;

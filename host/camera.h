@@ -5,6 +5,7 @@
 
 #include "core/box.h"
 #include "core/ray.h"
+#include "core/result.h"
 #include "core/scene.h"
 
 #include <cstdint>
@@ -12,10 +13,17 @@
 
 namespace ovc {
 
+/// The largest coordinate that a camera or a light may have; rays from farther away overflow.
+inline constexpr double kFarthest = 1e100;
+
+/// Whether rays can be made of `camera`: its numbers are finite and no larger than kFarthest, and
+/// the eye is not the target. The error does not say whose camera it is.
+Result<Done> check_camera(const Camera& camera);
+
 /// A camera made ready for an image of width x height pixels.
 class Pinhole {
 public:
-    /// camera.eye and camera.target differ; an up along the view is replaced by an axis that is
+    /// check_camera() accepts it; an up along the view is replaced by an axis that is
     /// not.
     Pinhole(const Camera& camera, uint32_t width, uint32_t height);
 

@@ -114,4 +114,27 @@ TEST(ShoulderLight, StandsAboveTheCamera) {
     EXPECT_GT(shoulder_light(camera).position.y, camera.eye.y);
 }
 
+TEST(CheckCamera, RefusesWhatMakesNoRays) {
+    EXPECT_TRUE(check_camera({}));
+    const double nan = std::nan("");
+    const struct {
+        Camera camera;
+        const char* error;
+    } cases[] = {
+        {{{nan, 0, 1}}, "the camera's numbers are not all finite and within 1e+100"},
+        {{{0, 0, 2e100}}, "the camera's numbers are not all finite and within 1e+100"},
+        {{{1, 2, 3}, {1, 2, 3}}, "the camera looks from a point at itself"},
+        {{{0, 0, 1e-300}, {0, 0, 0}}, "the camera looks from a point at itself"},
+        {{{0, 0, 1}, {0, 0, 0}, {0, 1, 0}, nan},
+         "the camera's field of view is nan, not between 0 and 180 degrees"},
+    };
+    for (const auto& c : cases) {
+        const Result<Done> checked = check_camera(c.camera);
+        ASSERT_FALSE(checked) << c.error;
+        EXPECT_EQ(checked.error().message, c.error);
+    }
+    for (const double far : {1e-100, 1e100})
+        EXPECT_TRUE(Pinhole({{far, far, -far}, {0, 0, 0}}, 4, 4).ray(3, 0).valid()) << far;
+}
+
 } // namespace ovc

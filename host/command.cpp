@@ -35,8 +35,9 @@ static void print_help() {
     for (const Command& command : kCommands)
         fmt::print("  {:<9} {}\n", command.name, command.summary);
     fmt::print(
-        "\n  overcast COMMAND --help   what a command takes, with examples\n"
-        "  overcast --version\n\n"
+        "\n  overcast COMMAND --help   what a command takes, with examples; also: overcast help "
+        "COMMAND\n"
+        "  overcast --version        also: overcast version\n\n"
         "Examples:\n"
         "  overcast scenes                                  what there is to render without any "
         "file\n"
@@ -58,23 +59,29 @@ static Error unknown_command(std::string_view name) {
                         hint.empty() ? "; see overcast --help" : hint)};
 }
 
+static Result<int> run_named(const std::string& name, const Arguments& arguments) {
+    for (const Command& command : kCommands)
+        if (command.name == name)
+            return command.run(arguments);
+    return unknown_command(name);
+}
+
 Result<int> run_command(const Arguments& arguments) {
     if (arguments.empty())
         return Error{"no command given; see overcast --help"};
     const std::string& name = arguments.front();
+    if (name == "help" && arguments.size() > 1)
+        return run_named(arguments[1], {"--help"});
     if (name == "--help" || name == "-h" || name == "help") {
         print_help();
         return kExitOk;
     }
-    if (name == "--version") {
+    if (name == "--version" || name == "-V" || name == "version") {
         fmt::print("overcast {}.{}.{}\n", OVC_VERSION / 10000, OVC_VERSION / 100 % 100,
                    OVC_VERSION % 100);
         return kExitOk;
     }
-    for (const Command& command : kCommands)
-        if (command.name == name)
-            return command.run({arguments.begin() + 1, arguments.end()});
-    return unknown_command(name);
+    return run_named(name, {arguments.begin() + 1, arguments.end()});
 }
 
 } // namespace ovc

@@ -6,11 +6,14 @@
 #include "host/output.h"
 #include "host/scene_source.h"
 #include "importers/importer.h"
+#include "testscenes/catalog.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 
 namespace ovc {
 
@@ -30,12 +33,36 @@ static Result<Done> check_mesh_output(const std::filesystem::path& path) {
     return check_writable("output", path);
 }
 
+/// What the scene has and no output keeps, for a person; empty: nothing.
+static std::string left_out(const Scene& scene) {
+    std::vector<std::string> items;
+    const auto add = [&](size_t count, std::string_view what) {
+        if (count > 0)
+            items.push_back(fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"));
+    };
+    // Every scene has the grey that a file without materials gets.
+    add(size_t(std::count_if(scene.materials.begin(), scene.materials.end(),
+                             [](const Material& material) {
+                                 return material.color != Material{}.color || material.mirror != 0;
+                             })),
+        "material");
+    add(scene.lights.size(), "light");
+    if (scene.camera)
+        items.push_back("the camera");
+    if (std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                    [](const MeshInfo& mesh) { return !mesh.normals.empty(); }))
+        items.push_back("the vertex normals");
+    return fmt::format("{}", fmt::join(items, ", "));
+}
+
 Result<int> run_convert(const Arguments& arguments) {
     CLI::App app{"Writes the triangles of a scene as .ply (binary) or .obj.", "overcast convert"};
     std::string source, output;
+    bool quiet = false;
     app.add_option("IN", source, "A file or a test scene's name")->required();
     app.add_option("OUT", output, "The file to write; replaced only once the new one is complete")
         ->required();
+    app.add_flag("--quiet", quiet, "Print nothing but warnings and errors");
     app.footer(kExamples);
     const Result<Parsed> parsed = parse_arguments(app, arguments);
     if (!parsed)
@@ -45,11 +72,19 @@ Result<int> run_convert(const Arguments& arguments) {
 
     if (const Result<Done> fine = check_mesh_output(output); !fine)
         return fine.error();
+    if (!is_test_scene(source)) {
+        const NamedFile files[] = {{"input", source}, {"output", output}};
+        if (const Result<Done> fine = check_distinct(files); !fine)
+            return fine.error();
+    }
     const Result<Scene> scene = open_scene(source, standard_error_log(/* chatty= */ false));
     if (!scene)
         return scene.error();
     if (const Result<Done> saved = save(*scene, output); !saved)
         return saved.error();
+    if (const std::string items = left_out(*scene); !items.empty() && !quiet)
+        fmt::print(stderr, "overcast: only triangles are kept; left out of {}: {}\n", output,
+                   items);
     return kExitOk;
 }
 

@@ -12,6 +12,7 @@
 #include "host/scene_summary.h"
 #include "host/stats.h"
 #include "host/stopwatch.h"
+#include "testscenes/catalog.h"
 
 #include <fmt/format.h>
 
@@ -87,6 +88,18 @@ void RenderWords::add_to(CLI::App& app) {
     backend.add_to(app);
 }
 
+/// No file is written that is read or written besides.
+static Result<Done> check_files(const RenderJob& job) {
+    std::vector<NamedFile> files;
+    if (!is_test_scene(job.scene))
+        files.push_back({"input", job.scene});
+    for (const std::string& output : job.outputs)
+        files.push_back({"output", output});
+    if (!job.stats.empty())
+        files.push_back({"statistics", job.stats});
+    return check_distinct(files);
+}
+
 /// Everything that can be wrong before anything is read.
 static Result<RenderJob> understand(const RenderWords& words) {
     RenderJob job;
@@ -100,6 +113,8 @@ static Result<RenderJob> understand(const RenderWords& words) {
     if (!job.stats.empty())
         if (const Result<Done> fine = check_writable("statistics", job.stats); !fine)
             return fine.error();
+    if (const Result<Done> fine = check_files(job); !fine)
+        return fine.error();
     const Result<ImageSize> size = parse_size(words.size);
     if (!size)
         return size.error();
@@ -128,7 +143,8 @@ static Result<RenderJob> understand(const RenderWords& words) {
     return job;
 }
 
-/// Gives the scene the camera and the lights that were asked for, or those it lacks.
+/// Gives the scene the camera and the lights that were asked for, or those it lacks. A file's
+/// camera is not checked yet.
 static Camera dress(Scene& scene, const RenderJob& job) {
     Camera camera;
     if (job.camera) {
@@ -171,6 +187,8 @@ static Result<int> render(const RenderJob& job) {
     stats.seconds_import = total.seconds();
 
     const Camera camera = dress(*scene, job);
+    if (const Result<Done> fine = check_camera(camera); !fine)
+        return Error{fmt::format("{}: {}", job.scene, fine.error().message)};
     const Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, job.backend, log);
     if (!backend)
         return backend.error();

@@ -83,6 +83,11 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
         {{"render", "box", "-o", out, "--backend", "embree"}, "not there yet"},
         {{"render", "box", "-o", out, "--frames", "1:2"}, "not there yet"},
         {{"render", "box", "-o", out, "--backend", "cpu-kdtree", "--leaves", "4"}, "means nothing"},
+        {{"render", "box", "-o", out, "--camera", "0,0,1e101,0,0,0"}, "within 1e+100"},
+        {{"render", "box", "-o", out, "--stats", ""}, "--stats needs a value"},
+        {{"render", "box", "-o", out, "--device", ""}, "--device needs a value"},
+        {{"render", "box", "-o", ""}, "--output needs a value"},
+        {{"render", "box", "-o", out, "--quiet=maybe"}, "--quiet takes no value"},
         {{"info", path("none.obj")}, "none.obj"},
         {{"trace", path("none.obj")}, "none.obj"},
         {{"convert", "box", path("box.stl")}, "neither .ply nor .obj"},
@@ -96,6 +101,19 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
     }
 }
 
+TEST_F(CommandTest, WritesOverNeitherItsInputNorItself) {
+    const std::string mesh = path("mesh.ply"), picture = path("d.png");
+    ASSERT_EQ(error({"convert", "box", mesh, "--quiet"}), "");
+    const Arguments cases[] = {{"render", mesh, "-o", picture, "--stats", mesh},
+                               {"render", mesh, "-o", picture, "--stats", picture},
+                               {"render", mesh, "-o", picture, "-o", folder_ / "." / "d.png"},
+                               {"convert", mesh, mesh}};
+    for (const Arguments& arguments : cases) {
+        EXPECT_THAT(error(arguments), testing::EndsWith("are the same file"));
+        EXPECT_FALSE(fs::exists(picture));
+    }
+}
+
 TEST_F(CommandTest, EveryCommandHasHelpWithExamples) {
     for (const Command& command : commands()) {
         testing::internal::CaptureStdout();
@@ -104,6 +122,34 @@ TEST_F(CommandTest, EveryCommandHasHelpWithExamples) {
         EXPECT_THAT(testing::internal::GetCapturedStdout(),
                     testing::HasSubstr("overcast " + std::string(command.name)));
     }
+}
+
+/// What a command prints on standard output.
+static std::string printed(const Arguments& arguments) {
+    testing::internal::CaptureStdout();
+    EXPECT_TRUE(run_command(arguments));
+    std::fflush(stdout);
+    return testing::internal::GetCapturedStdout();
+}
+
+TEST_F(CommandTest, HelpAndVersionAreWordsToo) {
+    EXPECT_EQ(printed({"help", "render"}), printed({"render", "--help"}));
+    EXPECT_EQ(printed({"help"}), printed({"--help"}));
+    EXPECT_THAT(error({"help", "rendr"}), testing::HasSubstr("did you mean 'render'?"));
+    EXPECT_EQ(printed({"version"}), printed({"--version"}));
+    EXPECT_EQ(printed({"-V"}), printed({"--version"}));
+}
+
+TEST_F(CommandTest, ConvertSaysWhatItLeavesOut) {
+    testing::internal::CaptureStderr();
+    ASSERT_EQ(error({"convert", "mirrors", path("a.ply")}), "");
+    EXPECT_THAT(testing::internal::GetCapturedStderr(),
+                testing::AllOf(testing::HasSubstr("only triangles are kept; left out of "),
+                               testing::HasSubstr(" material")));
+    testing::internal::CaptureStderr();
+    ASSERT_EQ(error({"convert", "mirrors", path("b.ply"), "--quiet"}), "");
+    ASSERT_EQ(error({"convert", path("a.ply"), path("c.ply")}), "");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_F(CommandTest, InfoIsJsonForPrograms) {
