@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <random>
 
 namespace ovc {
@@ -140,6 +141,48 @@ TEST(Polygon, DegenerateAndCrossingOnesStillGiveAllTriangles) {
         Triangles triangles;
         triangulate(polygon, triangles);
         EXPECT_EQ(triangles.size(), polygon.size() - 2);
+    }
+}
+
+TEST(Polygon, AsManyConcaveCornersAsMayBeAreCutInLittleTime) {
+    constexpr int kHalf = int(kMostConcaveCorners) / 2;
+    std::vector<dvec3> comb{{2 * kHalf, -1, 0}}, spiral, cavity, dented, wild;
+    for (int tooth = kHalf - 2; tooth >= 0; --tooth) {
+        comb.emplace_back(2 * tooth + 1, 10, 0);
+        comb.emplace_back(2 * tooth, 0, 0);
+    }
+    comb.emplace_back(0, -1, 0);
+    const auto add = [](std::vector<dvec3>& polygon, double radius, double angle) {
+        polygon.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+    };
+    for (int i = 0; i < 2 * kHalf; ++i) {
+        const int along = i < kHalf ? i : 2 * kHalf - 1 - i; // there and back
+        add(spiral, (i < kHalf ? 2 : 1) + 0.1 * along, 0.3 * along);
+        add(cavity, i < kHalf ? 1 : 0.999, 3.1 * along / kHalf);
+        add(dented, i == 7 ? 0.5 : 1, 3.141592653589793 * i / kHalf);
+    }
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (int i = 0; i < 2 * kHalf; ++i)
+        wild.emplace_back(unit(random), unit(random), 0);
+    const struct {
+        const char* name;
+        const std::vector<dvec3>& polygon;
+        bool crosses;
+    } cases[] = {{"comb", comb, false},
+                 {"spiral", spiral, false}, // took 16 s
+                 {"cavity", cavity, false},
+                 {"dented", dented, false},
+                 {"wild", wild, true}}; // took 3 s
+    for (const auto& test : cases) {
+        SCOPED_TRACE(test.name);
+        const auto start = std::chrono::steady_clock::now();
+        Triangles triangles;
+        triangulate(test.polygon, triangles);
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+        EXPECT_EQ(triangles.size(), test.polygon.size() - 2);
+        if (!test.crosses)
+            expect_covered_once(test.polygon);
     }
 }
 
