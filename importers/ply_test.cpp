@@ -334,6 +334,26 @@ TEST(Ply, ErrorsNameThePlaceAndWhatWasExpected) {
     }
 }
 
+TEST(Ply, DamageBehindTheLastRowOfACompressedFileIsAnError) {
+    const TestFolder folder;
+    const std::string packed = gzip(binary_square(false));
+    std::string flipped = packed;
+    flipped[packed.size() - 6] ^= 1; // in the checksum
+    const struct {
+        const char* name;
+        std::string contents;
+        const char* message;
+    } cases[] = {{"checksum", flipped, "the compressed data is damaged: incorrect data check"},
+                 {"cut", packed.substr(0, packed.size() - 3), "the compressed data ends early"}};
+    for (const auto& test : cases) {
+        folder.write("bad.ply", test.contents);
+        const std::string message = folder.failure("bad.ply");
+        EXPECT_TRUE(message.starts_with("bad.ply") &&
+                    message.ends_with(": " + std::string(test.message)))
+            << test.name << ": " << message;
+    }
+}
+
 TEST(Ply, SurvivesTruncationAndFlippedBits) {
     const TestFolder folder;
     folder.write("ascii.ply", ascii(std::string(kSquareHeader) + kSquareRows));
