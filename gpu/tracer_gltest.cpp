@@ -105,8 +105,8 @@ TEST_F(KernelGl, WhatItCallsCertainIsTrue) {
             if (is_certain(nearest[i])) {
                 const bool hit = nearest[i].prim != OVC_MISS;
                 // Beyond its box a leaf promises nothing.
-                const bool inside =
-                    !expected.is_hit() || leaf.box.contains(to_world(rays[i], leaf).at(expected.t));
+                const bool inside = !expected.is_hit() ||
+                                    leaf.cell.contains(to_world(rays[i], leaf).at(expected.t));
                 if (!inside)
                     continue;
                 ASSERT_EQ(hit, expected.is_hit()) << "ray " << i;

@@ -9,17 +9,16 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <span>
 
 namespace ovc {
 namespace {
 
-/// Of the cell's largest extent. The kernel sees a ray within the padded box and cannot prove a hit
+/// Of the leaf's largest extent. The kernel sees a ray within the leaf's box and cannot prove a hit
 /// that lies within a rounding of either end. This keeps what is hit in the cell clear of the ends,
 /// even on triangles hundreds of times the size of the leaf, whose roundings are as much larger
 /// (docs/numerics.md).
-constexpr double kPad = 0x1p-10;
+constexpr double kMargin = 0x1p-10;
 
 /// A leaf node of the tree, the closed cell it stands for, and the cell with its padding.
 struct Cell {
@@ -28,13 +27,11 @@ struct Cell {
     Box padded;
 };
 
-double padding(const Box& box, const Box& scene) {
+/// A few roundings of the coordinates, and enough for rays from a thousand scene sizes away to be walked
+/// in double (can_walk).
+double padding_of(const Box& scene) {
     const double farthest = max_component(glm::max(glm::abs(scene.lo), glm::abs(scene.hi)));
-    // Not below a few roundings of the coordinates, or far from the origin the padding would
-    // vanish; nor below what lets rays from some scene sizes away be walked in double (can_walk),
-    // however small a cell is.
-    return std::max({kPad * max_component(box.extent()), 0x1p-48 * farthest,
-                     0x1p-41 * max_component(scene.extent())});
+    return std::max(0x1p-48 * farthest, 0x1p-36 * max_component(scene.extent()));
 }
 
 void collect_cells(const std::vector<KdNode>& nodes, uint32_t node, const Box& box,
@@ -54,8 +51,13 @@ void collect_cells(const std::vector<KdNode>& nodes, uint32_t node, const Box& b
 class Gatherer {
 public:
     Gatherer(const Soup& soup, const std::vector<KdNode>& nodes, const Box& bounds,
-             const std::vector<Cell>& cells)
-        : soup_(soup), nodes_(nodes), bounds_(bounds), cells_(cells), cell_of_node_(nodes.size()) {
+             const std::vector<Cell>& cells, double padding)
+        : soup_(soup),
+          nodes_(nodes),
+          bounds_(bounds),
+          cells_(cells),
+          padding_(padding),
+          cell_of_node_(nodes.size()) {
         for (uint32_t i = 0; i < cells.size(); ++i)
             cell_of_node_[cells[i].node] = i;
     }
@@ -103,13 +105,12 @@ private:
             return;
         }
         const int axis = n.axis();
-        const double pad = padding(cell, bounds_); // no cell below is padded more
-        if (box.lo[axis] <= n.split() + pad) {
+        if (box.lo[axis] <= n.split() + padding_) {
             Box below = cell;
             below.hi[axis] = n.split();
             hand_down(id, triangle, box, node + 1, below, lists);
         }
-        if (box.hi[axis] >= n.split() - pad) {
+        if (box.hi[axis] >= n.split() - padding_) {
             Box above = cell;
             above.lo[axis] = n.split();
             hand_down(id, triangle, box, n.above(), above, lists);
@@ -120,6 +121,7 @@ private:
     const std::vector<KdNode>& nodes_;
     const Box& bounds_;
     const std::vector<Cell>& cells_;
+    const double padding_;
     std::vector<uint32_t> cell_of_node_;
 };
 
@@ -132,13 +134,16 @@ Frame frame_of(const Box& box, double reach) {
     return {box.center(), size > 0 ? std::ldexp(1.0, -exponent) : 1.0};
 }
 
-Leaf make_leaf(const Soup& soup, const Box& padded, double pad,
-               std::span<const TriangleId> triangles) {
+Leaf make_leaf(const Soup& soup, const Box& cell, std::span<const TriangleId> triangles) {
     Leaf leaf;
     Box all;
     for (const TriangleId id : triangles)
         all.add(bounds_of(soup.triangle(id)));
-    leaf.box = all.padded(pad).intersection(padded);
+    leaf.cell = cell;
+    const Box reached = all.intersection(cell);
+    // A flat leaf, or a point, gets a margin of the cell's own padding at least.
+    const double padding = 0x1p-48 * max_component(glm::max(glm::abs(cell.lo), glm::abs(cell.hi)));
+    leaf.box = reached.padded(std::max(kMargin * max_component(reached.extent()), padding));
     leaf.frame = frame_of(leaf.box, max_component(all.extent()));
     leaf.triangles.assign(triangles.begin(), triangles.end());
     return leaf;
@@ -166,22 +171,19 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
         return level1;
     std::vector<Cell> cells;
     collect_cells(tree.nodes, 0, bounds, cells);
-    level1.smallest_padding = std::numeric_limits<double>::infinity();
-    for (Cell& cell : cells) {
-        const double pad = padding(cell.box, bounds);
-        cell.padded = cell.box.padded(pad);
-        level1.smallest_padding = std::min(level1.smallest_padding, pad);
-    }
+    level1.padding = padding_of(bounds);
+    for (Cell& cell : cells)
+        cell.padded = cell.box.padded(level1.padding);
     tree.references = {};
     const std::vector<std::vector<TriangleId>> members =
-        Gatherer(soup, tree.nodes, bounds, cells).gather(triangles);
+        Gatherer(soup, tree.nodes, bounds, cells, level1.padding).gather(triangles);
 
     for (size_t i = 0; i < cells.size(); ++i) {
         const uint32_t first = uint32_t(level1.leaves.size());
         const std::span<const TriangleId> inside = members[i];
         for (size_t at = 0; at < inside.size(); at += max_leaf_triangles)
             level1.leaves.push_back(make_leaf(
-                soup, cells[i].padded, padding(cells[i].box, bounds),
+                soup, cells[i].padded,
                 inside.subspan(at, std::min<size_t>(max_leaf_triangles, inside.size() - at))));
         tree.nodes[cells[i].node] = KdNode::leaf(first, uint32_t(level1.leaves.size()) - first);
     }

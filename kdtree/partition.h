@@ -21,9 +21,12 @@ struct Frame {
     dvec3 to_local(const dvec3& world) const { return (world - origin) * scale; }
 };
 
-/// A level-1 leaf. A hit counts inside `box` only: every triangle that touches the padded cell is
-/// listed, and `box` is the part of the padded cell that they touch.
+/// A level-1 leaf. Every triangle that touches `cell` is listed. `box` holds the part of the cell
+/// that they reach, and a margin around it: within it rays are traced, so that what is hit in the
+/// cell is clear of the ends of the ray's stretch. A hit counts only where the ray is in the cell;
+/// beyond, nearer triangles may be in the next leaf.
 struct Leaf {
+    Box cell;
     Box box;
     Frame frame;
     std::vector<TriangleId> triangles; // sorted
@@ -35,7 +38,8 @@ struct Level1 {
     std::vector<KdNode> nodes;
     std::vector<Leaf> leaves;
     Box bounds;
-    double smallest_padding = 0; // of any cell
+    double padding =
+        0; // of every cell, so that what rounding moves across a plane is on both sides
 
     uint64_t reference_count() const;
 };

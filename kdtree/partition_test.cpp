@@ -35,7 +35,8 @@ Hit trace(const Level1& level1, const Soup& soup, const Ray& ray) {
         EXPECT_TRUE(seen.insert(visit.leaf).second) << "a leaf twice";
         for (const TriangleId id : level1.leaves[visit.leaf].triangles)
             if (const auto hit = intersect(p, soup.triangle(id), id))
-                if (hit->t <= visit.inside.exit)
+                if (hit->t <=
+                    clip(p, level1.leaves[visit.leaf].cell, p.ray.t_min, p.ray.t_max).exit)
                     nearest.offer(soup.triangle(id), id);
     }
 }

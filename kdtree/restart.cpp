@@ -46,7 +46,7 @@ bool can_walk(const Level1& level1, const PreparedRay& p) {
     for (int axis = 0; axis < 3; ++axis)
         if (p.ray.dir[axis] != 0 && !std::isfinite(p.inv_dir[axis]))
             return false;
-    return level1.nodes.empty() || p.margin(level1.bounds) <= level1.smallest_padding;
+    return level1.nodes.empty() || p.margin(level1.bounds) <= level1.padding;
 }
 
 Visit next_leaf_in_cell(const Level1& level1, const PreparedRay& p, RayPosition& position) {
@@ -64,7 +64,7 @@ Visit next_leaf(const Level1& level1, const PreparedRay& p, RayPosition& positio
     if (level1.nodes.empty())
         return {};
     if (position.t == p.ray.t_min && position.end == 0 &&
-        clip(p, level1.bounds.padded(level1.smallest_padding), p.ray.t_min, p.ray.t_max).empty())
+        clip(p, level1.bounds.padded(level1.padding), p.ray.t_min, p.ray.t_max).empty())
         return {};
     while (true) {
         if (const Visit visit = next_leaf_in_cell(level1, p, position); visit.leaf != kNone)

@@ -9,7 +9,8 @@
 
 namespace ovc {
 
-/// A leaf on a ray's way, and the part of the ray inside its box.
+/// A leaf on a ray's way, and the part of the ray inside its box (a little more than inside its
+/// cell).
 struct Visit {
     uint32_t leaf = kNone;
     Interval inside{1, 0};
@@ -33,8 +34,8 @@ bool can_walk(const Level1& level1, const PreparedRay& p);
 /// Leaves come in order of entry, each once. Needs can_walk().
 Visit next_leaf(const Level1& level1, const PreparedRay& p, RayPosition& position);
 
-/// The same, but no leaf beyond the cell of the last one: where a ray goes on that was hit, since a
-/// hit inside a leaf's box is nearer than anything in later cells.
+/// The same, but no leaf beyond the cell of the last one: where a ray goes on that was hit there,
+/// since what is hit in a cell is nearer than anything in later cells.
 Visit next_leaf_in_cell(const Level1& level1, const PreparedRay& p, RayPosition& position);
 
 } // namespace ovc

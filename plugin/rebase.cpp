@@ -12,7 +12,7 @@ namespace {
 
 /// Farther than this from the leaf, in leaf sizes, the place of entry is off by more than an eighth
 /// of a float rounding.
-constexpr double kMostLeafSizes = 0x1p24;
+constexpr double kMostLeafSizes = 0x1p21;
 
 /// What the leaf calls the triangle, or OVC_NO_TRIANGLE where it does not hold it.
 uint32_t index_in(const Leaf& leaf, TriangleId id) {

@@ -228,9 +228,16 @@ private:
             return false;
         for (const uint32_t rival : answer.rivals())
             if (rival != OVC_NO_TRIANGLE)
-                offer_within(leaf, p, nearest, leaf.triangles[rival]);
-        query_.set(ray, nearest.hit());
+                offer(nearest, leaf.triangles[rival]);
+        if (nearest.hit().is_hit() && counts(leaf, p, nearest.hit().t))
+            query_.set(ray, nearest.hit());
         return true;
+    }
+
+    /// Is the hit in the leaf's cell? Beyond, a nearer one may be in the next leaf, which will find
+    /// this one too.
+    static bool counts(const Leaf& leaf, const PreparedRay& p, double t) {
+        return t <= clip(p, leaf.cell, p.ray.t_min, p.ray.t_max).exit;
     }
 
     void take_in_fast(const Leaf& leaf, size_t ray, const LocalAnswer& answer) {
@@ -238,21 +245,13 @@ private:
             return;
         const Hit hit{world_t(leaf, prepare_rest(query_, ray), answer.t()), answer.u(), answer.v(),
                       leaf.triangles[answer.prim]};
-        if (!query_.was_hit(ray) || hit.nearer_than(query_.hit(ray)))
+        if (counts(leaf, prepare(query_, ray), hit.t) &&
+            (!query_.was_hit(ray) || hit.nearer_than(query_.hit(ray))))
             query_.set(ray, hit);
     }
 
     bool offer(Nearest& nearest, TriangleId id) const {
         return nearest.offer(s_.soup_.triangle(id), id);
-    }
-
-    /// Offers a triangle that perhaps only double can see hit, unless that is beyond the leaf:
-    /// there a nearer one may be in the next.
-    void offer_within(const Leaf& leaf, const PreparedRay& p, Nearest& nearest,
-                      TriangleId id) const {
-        const std::optional<Hit> hit = ovc::intersect(p, s_.soup_.triangle(id), id);
-        if (hit && hit->t <= clip(p, leaf.box, p.ray.t_min, p.ray.t_max).exit)
-            offer(nearest, id);
     }
 
     void decide_in_double(size_t i, const PreparedRay& p) {
