@@ -7,10 +7,10 @@
 #   ./test.sh -R EmbreeParity  tests by name
 #   ./test.sh --asan …         the same with AddressSanitizer and UndefinedBehaviorSanitizer, in build-asan/
 set -euo pipefail
-cd "$(dirname "$0")"
+cd "$(dirname "$(readlink -f "$0")")"
 source ./install.sh
 
-if [[ ${1:-} == --help || ${1:-} == -h ]]; then
+if [[ " $* " == *" --help "* || " $* " == *" -h "* ]]; then
     sed -n '2,9s/^# \{0,1\}//p' "$0"
     exit 0
 fi
