@@ -38,7 +38,8 @@ typedef enum ovc_result {
 #define OVC_NONE 0xffffffffu
 
 /* The points org + t dir, t_min <= t <= t_max. dir need not be of unit length: t counts in its lengths. A ray with NaN or
- * infinity in it (but t_max may be infinite), a zero direction or t_min > t_max misses, and is counted. 64 bytes. */
+ * infinity in it (but t_max may be infinite), a direction that is zero or shorter than 1e-300, or t_min > t_max misses, and
+ * is counted. 64 bytes. */
 typedef struct ovc_ray {
     double org[3];
     double t_min;
