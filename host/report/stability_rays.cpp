@@ -220,6 +220,9 @@ RaySet surface_rays(const Soup& soup, Random& random, size_t count, Start start,
         const dvec3 from = point_of(mesh.triangle(prim), random, target);
         set.rays.push_back(inwards ? mesh.ray(from, mesh.below(random.below(mesh.size())))
                                    : mesh.towards(from, random.direction()));
+        // Past the triangles it starts on, so that the far side must be found.
+        if (inwards && i % 2)
+            set.rays.back().t_min = 0x1p-20;
         if (skip)
             set.skip.push_back(mesh.id(prim));
     }
