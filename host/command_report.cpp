@@ -17,15 +17,15 @@
 namespace ovc {
 
 static constexpr const char* kExamples =
-    R"(stability: rays at the edges and vertices of closed meshes, near and far; slivers, duplicates, deep trees; grazing rays,
-rays along axes and in planes; NaN and infinity. Wrong answers and leaks of certified and fast mode, beside Embree's robust
-mode where this program was built with Embree, against double precision over all triangles. A line for each case while it runs goes to standard
-error, the table to standard output. It ends with an error when certified mode answered anything wrong.
+    R"(stability: rays at the edges and vertices of closed meshes, near and far; slivers, duplicates, deep
+trees; grazing rays, rays along axes and in planes; NaN and infinity. Wrong answers and leaks of
+certified and fast mode, and of Embree's robust mode where this program was built with Embree. The
+table goes to standard output. It ends with an error when certified mode answered anything wrong.
 
 Examples:
   overcast report --only stability --quick             a minute
   overcast report --only stability -o out              out/stability.md and out/stability.json too
-  overcast report --only stability --times 2000        the long run: 2,000 times the rays of the short form)";
+  overcast report --only stability --times 2000        the long run)";
 
 namespace {
 

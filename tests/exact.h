@@ -55,14 +55,6 @@ inline std::optional<Rational> exact_hit(const Ray& ray, const Triangle& triangl
     return t;
 }
 
-/// False when the ray passes the triangle's box by a margin that no rounding reaches.
-inline bool near(const Ray& ray, const Triangle& triangle) {
-    const PreparedRay p(ray);
-    const Box box = bounds_of(triangle);
-    const Box wide = box.padded(1e-6 * max_component(box.extent()) + 1e3 * p.margin(box));
-    return !clip(p, wide, ray.t_min, ray.t_max).empty();
-}
-
 struct ExactHit {
     Rational t;
     TriangleId id;
@@ -73,9 +65,12 @@ struct ExactHit {
 inline std::optional<ExactHit> exact_nearest(const Soup& soup, const std::vector<TriangleId>& ids,
                                              const Ray& ray) {
     std::optional<ExactHit> best;
+    const PreparedRay p(ray);
     for (const TriangleId id : ids) {
         const Triangle triangle = soup.triangle(id);
-        if (!near(ray, triangle))
+        const Box box = bounds_of(triangle);
+        const Box wide = box.padded(1e-6 * max_component(box.extent()) + 1e3 * p.margin(box));
+        if (clip(p, wide, ray.t_min, ray.t_max).empty())
             continue;
         if (const auto t = exact_hit(ray, triangle))
             if (!best || *t < best->t || (*t == best->t && id < best->id))

@@ -32,8 +32,8 @@ bool same_bits(const Hit& a, const Hit& b) {
 bool ties(const Soup& soup, const Ray& ray, TriangleId skip, const Hit& answer, const Hit& truth) {
     if (!answer.is_hit() || !truth.is_hit())
         return false;
-    const auto hit = intersect(PreparedRay(ray, skip), soup.triangle(answer.id), answer.id);
-    return hit && std::abs(hit->t - truth.t) <= 0x1p-40 * std::abs(truth.t);
+    const auto met = candidate(PreparedRay(ray, skip), soup.triangle(answer.id), answer.id);
+    return met && std::abs(met->hit.t - truth.t) <= 0x1p-40 * std::abs(truth.t);
 }
 
 double relative_error(double t, double truth) {

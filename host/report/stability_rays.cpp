@@ -237,11 +237,12 @@ RaySet range_rays(const Soup& soup, Random& random, size_t count) {
         const uint32_t prim = random.below(mesh.size());
         const Triangle local = mesh.triangle(prim);
         ray = mesh.ray(local[0] + 2.0 * random.direction(), (local[0] + local[1] + local[2]) / 3.0);
-        const auto hit = intersect(PreparedRay(ray), soup.triangle(mesh.id(prim)), mesh.id(prim));
-        if (!hit)
+        const auto met = candidate(PreparedRay(ray), soup.triangle(mesh.id(prim)), mesh.id(prim));
+        if (!met)
             continue;
-        const double t = std::array{std::nextafter(hit->t, 0.0), hit->t,
-                                    std::nextafter(hit->t, 1e308)}[random.below(3)];
+        const double hit = met->hit.t;
+        const double t =
+            std::array{std::nextafter(hit, 0.0), hit, std::nextafter(hit, 1e308)}[random.below(3)];
         (random.chance(0.5) ? ray.t_min : ray.t_max) = t;
     }
     return set;

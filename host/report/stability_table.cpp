@@ -14,12 +14,21 @@ namespace ovc {
 static constexpr const char* kLegend =
     R"(# Numerical stability
 
-Each ray is answered by the plugin, certified and fast, by Embree 3 in its robust mode, and by the reference: every
-triangle in double precision. *wrong*: for certified, answers of which any bit of t, u, v or the name differs from the reference's,
-occlusion included; for fast and Embree, another triangle than the reference's, unless double hits that one at the same t.
-*leaks*: rays that must hit, as the mesh is closed, and do not; - where a ray may miss. *t error*: largest relative difference to the reference's
-t. *flagged*: answers that float32 could not prove; *retraced*: of them, traced again in double as a whole; a ray may be flagged in each leaf that it visits. *us/ray*: certified nearest hits,
-time from call to return. Embree has floats only: far from the origin it gets coordinates rounded to them, and it takes none beyond 1.8e18.
+Each ray is answered by the plugin, certified and fast, by Embree 3 in its robust mode where this
+program was built with it, and by the reference, core/triangle.h through a KD-tree on the CPU.
+
+- *wrong*: for certified, answers of which any bit of t, u, v or the name differs from the
+  reference's, occlusion included; for fast and Embree, another triangle than the reference's, unless
+  the reference hits that one too at the same t (to 2^-40).
+- *leaks*: rays that must hit, as the mesh is closed, and do not; "-" where a ray may miss.
+- *t error*: the largest relative difference to the reference's t, of rays that both say hit; where
+  another triangle is named it is the distance between the two.
+- *flagged*: answers that float32 could not prove, counted in each leaf that a ray visits;
+  *retraced*: of them, traced again as a whole.
+- *us/ray*: nearest hits in certified mode, from call to return.
+
+Embree has floats only: far from the origin it gets coordinates rounded to them. It refuses numbers
+beyond 1.8e18, which count as misses.
 
 )";
 
