@@ -123,7 +123,7 @@ void add_bad_shapes(Cases& cases) {
                          ""});
     }
     cases.push_back(
-        {"denormal beside kilometres", false, 60,
+        {"denormal beside kilometres", false, 40,
          [] { return soup_of(placed(denormal_triangles()), placed(kilometre_triangles())); },
          rays_at_triangles, ""});
     cases.push_back({"zero area mixed in", true, 2000,
@@ -134,7 +134,7 @@ void add_bad_shapes(Cases& cases) {
                      any_closed_mesh_rays, ""});
     cases.push_back({"coplanar overlapping walls", false, 2000, at_origin(overlapping_walls),
                      rays_at_triangles, ""});
-    cases.push_back({"10,000 coincident", false, 60,
+    cases.push_back({"10,000 coincident", false, 40,
                      [] { return soup_of(placed(coincident(10'000))); }, rays_at_triangles, ""});
     cases.push_back(
         {"fan of 10,000", true, 60, [] { return soup_of(placed(fan(10'000))); }, fan_rays, ""});
