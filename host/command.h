@@ -20,6 +20,7 @@ Result<int> run_trace(const Arguments& arguments);
 Result<int> run_convert(const Arguments& arguments);
 Result<int> run_devices(const Arguments& arguments);
 Result<int> run_scenes(const Arguments& arguments);
+Result<int> run_report(const Arguments& arguments);
 
 struct Command {
     std::string_view name;

@@ -164,4 +164,16 @@ TEST_F(CommandTest, InfoIsJsonForPrograms) {
     EXPECT_EQ(info["bounds"]["min"].size(), 3u);
 }
 
+TEST_F(CommandTest, ReportSaysWhichReportsThereAre) {
+    EXPECT_EQ(error({"report"}), "the whole report is not there yet; there is --only stability");
+    EXPECT_EQ(error({"report", "--only", "speed"}),
+              "the report 'speed' is not there yet; there is stability");
+    EXPECT_EQ(error({"report", "--only", "stabilty"}),
+              "no report is called 'stabilty'; there is stability; did you mean 'stability'?");
+    EXPECT_THAT(error({"report", "--only", "stability", "--kernel", "vertex"}),
+                testing::HasSubstr("neither fragment nor compute"));
+    EXPECT_THAT(error({"report", "--only", "stability", "--data", path("none")}),
+                testing::HasSubstr("holds no meshes/stanford-dragon/dragon_vrip.ply"));
+}
+
 } // namespace ovc

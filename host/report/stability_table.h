@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The results of the stability suite, for people (a Markdown table, aligned) and for programs
+// (JSON).
+#pragma once
+
+#include "host/report/stability.h"
+
+#include <span>
+#include <string>
+
+namespace ovc {
+
+/// What the columns mean, the table, and the sums.
+std::string stability_markdown(std::span<const StabilityResult> results);
+
+/// {"renderer", "cases": [{...}]}: one object a case, in order. Infinite numbers are null.
+std::string stability_json(std::span<const StabilityResult> results);
+
+} // namespace ovc
