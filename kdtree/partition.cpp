@@ -27,8 +27,8 @@ struct Cell {
     Box padded;
 };
 
-/// A few roundings of the coordinates, and enough for rays from a thousand scene sizes away to be walked
-/// in double (can_walk).
+/// A few roundings of the coordinates, and enough for rays from a thousand scene sizes away to be
+/// walked in double (can_walk).
 double padding_of(const Box& scene) {
     const double farthest = max_component(glm::max(glm::abs(scene.lo), glm::abs(scene.hi)));
     return std::max(0x1p-48 * farthest, 0x1p-36 * max_component(scene.extent()));
@@ -134,15 +134,16 @@ Frame frame_of(const Box& box, double reach) {
     return {box.center(), size > 0 ? std::ldexp(1.0, -exponent) : 1.0};
 }
 
-Leaf make_leaf(const Soup& soup, const Box& cell, std::span<const TriangleId> triangles) {
+/// padding: what double rounding may move a ray by; the box must not be missed for it, however
+/// small the leaf is.
+Leaf make_leaf(const Soup& soup, const Box& cell, double padding,
+               std::span<const TriangleId> triangles) {
     Leaf leaf;
     Box all;
     for (const TriangleId id : triangles)
         all.add(bounds_of(soup.triangle(id)));
     leaf.cell = cell;
     const Box reached = all.intersection(cell);
-    // A flat leaf, or a point, gets a margin of the cell's own padding at least.
-    const double padding = 0x1p-48 * max_component(glm::max(glm::abs(cell.lo), glm::abs(cell.hi)));
     leaf.box = reached.padded(std::max(kMargin * max_component(reached.extent()), padding));
     leaf.frame = frame_of(leaf.box, max_component(all.extent()));
     leaf.triangles.assign(triangles.begin(), triangles.end());
@@ -183,7 +184,7 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
         const std::span<const TriangleId> inside = members[i];
         for (size_t at = 0; at < inside.size(); at += max_leaf_triangles)
             level1.leaves.push_back(make_leaf(
-                soup, cells[i].padded,
+                soup, cells[i].padded, level1.padding,
                 inside.subspan(at, std::min<size_t>(max_leaf_triangles, inside.size() - at))));
         tree.nodes[cells[i].node] = KdNode::leaf(first, uint32_t(level1.leaves.size()) - first);
     }
