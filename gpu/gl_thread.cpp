@@ -47,7 +47,7 @@ void GlThread::serve(const std::string& device, const LogSink& log) {
         changed_.notify_all();
         return;
     }
-    GlState state{std::move(*context), {}};
+    GlState state{std::move(*context), DebugOutput(log), {}};
     info_ = state.context.info();
     started_ = Done{};
     changed_.notify_all();

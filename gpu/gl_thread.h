@@ -3,6 +3,7 @@
 // threads are left alone.
 #pragma once
 
+#include "gpu/debug_output.h"
 #include "gpu/egl_context.h"
 #include "gpu/kernel.h"
 
@@ -20,6 +21,7 @@ namespace ovc {
 /// What lives on the thread: the context, and the programs compiled in it, which go first.
 struct GlState {
     EglContext context;
+    DebugOutput debug;
     KernelCache kernels;
 };
 

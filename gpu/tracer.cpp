@@ -101,6 +101,7 @@ Result<PassResult> Tracer::pass(uint32_t leaf, const Page& page, const PassOptio
     glTextureSubImage2D(rays_.id(), 0, 0, 0, kRowRays * OVC_RAY_TEXELS, rows, GL_RGBA_INTEGER,
                         GL_UNSIGNED_INT, rays.data());
 
+    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, leaf, -1, "pass over a leaf");
     glUseProgram(*program);
     if (config.page_image)
         glBindImageTexture(OVC_BINDING_PAGE, page_.id(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
@@ -122,6 +123,7 @@ Result<PassResult> Tracer::pass(uint32_t leaf, const Page& page, const PassOptio
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
     glReadPixels(0, 0, kRowRays, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT, answers.data());
+    glPopDebugGroup();
     if (Result<Done> ok = check_gl("tracing a pass"); !ok)
         return ok.error();
     result.seconds =
