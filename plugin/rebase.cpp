@@ -10,8 +10,8 @@
 namespace ovc {
 namespace {
 
-/// Farther than this from the leaf, in leaf sizes, the place of entry is off by more than an eighth
-/// of a float rounding.
+/// Farther than this from the leaf, in leaf sizes, the place of entry is off by more than 1/64 of a
+/// float rounding.
 constexpr double kMostLeafSizes = 0x1p21;
 
 /// What the leaf calls the triangle, or OVC_NO_TRIANGLE where it does not hold it.

@@ -14,7 +14,7 @@ LocalRay no_ray();
 
 /// The ray in the leaf's frame, from where it enters the leaf's box to where it leaves it or ends;
 /// no_ray() where it does not enter. decidable = false, and no_ray(), where double precision cannot
-/// say where it enters to within an eighth of a float rounding (docs/numerics.md): then the arbiter
+/// say where it enters to within 1/64 of a float rounding (docs/numerics.md): then the arbiter
 /// must answer.
 LocalRay rebase(const Leaf& leaf, const PreparedRay& p, bool& decidable);
 
