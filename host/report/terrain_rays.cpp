@@ -15,8 +15,7 @@ static dvec3 target_on(const Soup& soup, Random& random) {
     return chunk.origin() + point_of(local, random, Target::Any);
 }
 
-/// True when the ray, on its way down, is below the box before it is beside it.
-static bool must_hit(const Ray& ray, const Box& bounds) {
+bool must_hit_ground(const Ray& ray, const Box& bounds) {
     double leaves = std::numeric_limits<double>::infinity();
     for (const int axis : {0, 2})
         if (ray.dir[axis] != 0) {
@@ -38,7 +37,7 @@ RaySet terrain_rays(const Soup& soup, Random& random, size_t count, double low, 
         const double above = std::pow(10.0, random.uniform(low, high));
         ray.org = corner + dvec3{-random.uniform(0.001, 0.05), above, -random.uniform(0.001, 0.05)};
         ray.dir = target_on(soup, random) - ray.org;
-        if (must_hit(ray, bounds))
+        if (must_hit_ground(ray, bounds))
             set.rays.push_back(ray);
     }
     return set;

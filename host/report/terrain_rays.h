@@ -11,4 +11,7 @@ namespace ovc {
 /// over a square, and each ray leaves the square below the lowest of it, so it must hit.
 RaySet terrain_rays(const Soup& soup, Random& random, size_t count, double low, double high);
 
+/// Whether a ray from above the ground of `bounds` is below all of it before it is beside it.
+bool must_hit_ground(const Ray& ray, const Box& bounds);
+
 } // namespace ovc
