@@ -11,6 +11,7 @@
 #include "host/suggestion.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -45,9 +46,10 @@ struct ReportArguments {
     std::string folder;
     std::string data;
     std::string device;
-    std::string kernel;
+    std::string kernel = "auto";
     std::string times;
     std::string rays;
+    std::string name_part;
     bool quick = false;
 };
 
@@ -90,12 +92,22 @@ Result<StabilityOptions> options_of(const ReportArguments& given) {
         options.times = *times;
     }
     options.backend.device = given.device;
-    constexpr std::string_view kernels[] = {"", "fragment", "compute"};
+    constexpr std::string_view kernels[] = {"auto", "fragment", "compute"};
     const auto kernel = std::find(std::begin(kernels), std::end(kernels), given.kernel);
     if (kernel == std::end(kernels))
-        return Error{fmt::format("--kernel: '{}' is neither fragment nor compute", given.kernel)};
+        return Error{
+            fmt::format("--kernel: '{}' is none of {}", given.kernel, fmt::join(kernels, ", "))};
     options.backend.kernel = ovc_kernel(kernel - std::begin(kernels));
     return options;
+}
+
+/// Keeps the cases whose name contains `part`.
+Result<Done> choose(std::vector<StabilityCase>& cases, const std::string& part) {
+    std::erase_if(
+        cases, [&](const StabilityCase& one) { return one.name.find(part) == std::string::npos; });
+    if (cases.empty())
+        return Error{fmt::format("--case: no case of the report has '{}' in its name", part)};
+    return Done{};
 }
 
 /// What one of the reports runs.
@@ -115,6 +127,8 @@ Result<Report> stability_report(const ReportArguments& given) {
     Result<std::vector<StabilityCase>> cases = stability_cases(given.data);
     if (!cases)
         return cases.error();
+    if (const Result<Done> chosen = choose(*cases, given.name_part); !chosen)
+        return chosen.error();
     return Report{"stability", "Numerical stability", std::move(*cases), std::move(*options)};
 }
 
@@ -130,9 +144,12 @@ Result<Report> leak_report(const ReportArguments& given) {
     const Result<uint64_t> count = parse_rays(rays);
     if (!count)
         return count.error();
-    Result<std::vector<StabilityCase>> cases = leak_cases(given.data, *count);
+    Result<std::vector<StabilityCase>> cases = leak_cases(given.data);
     if (!cases)
         return cases.error();
+    if (const Result<Done> chosen = choose(*cases, given.name_part); !chosen)
+        return chosen.error();
+    share_rays(*cases, *count);
     return Report{"leaks", "Leaks at edges and vertices", std::move(*cases), std::move(*options)};
 }
 
@@ -211,12 +228,14 @@ Result<int> run_report(const Arguments& arguments) {
         ->type_name("N");
     app.add_option("--rays", given.rays, "For leaks: how many rays altogether; default: 1e8")
         ->type_name("N");
+    app.add_option("--case", given.name_part, "Only the cases with this in their name")
+        ->type_name("TEXT");
     app.add_option("--data", given.data,
                    "A folder with meshes/stanford-dragon/dragon_vrip.ply, for cases on the dragon")
         ->type_name("DIR");
     app.add_option("--device", given.device, "A number or a part of a name from `overcast devices`")
         ->type_name("NAME");
-    app.add_option("--kernel", given.kernel, "fragment or compute; default: the faster one")
+    app.add_option("--kernel", given.kernel, "auto (the faster one), fragment or compute")
         ->type_name("NAME");
     app.footer(kExamples);
     const Result<Parsed> parsed = parse_arguments(app, arguments);

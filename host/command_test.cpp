@@ -175,12 +175,14 @@ TEST_F(CommandTest, ReportSaysWhichReportsThereAre) {
               "'stability'?");
     EXPECT_EQ(error({"report", "--only", "leaks", "--rays", "1e-3"}),
               "--rays needs a whole number from 1 to 1e+12, such as 1e8, not '1e-3'");
+    EXPECT_EQ(error({"report", "--only", "leaks", "--case", "teapot"}),
+              "--case: no case of the report has 'teapot' in its name");
     EXPECT_EQ(error({"report", "--only", "leaks", "--times", "3"}),
               "--times means nothing to the report leaks; there is --rays");
     EXPECT_EQ(error({"report", "--only", "stability", "--rays", "3"}),
               "--rays means nothing to the report stability; there is --times");
     EXPECT_THAT(error({"report", "--only", "stability", "--kernel", "vertex"}),
-                testing::HasSubstr("neither fragment nor compute"));
+                testing::HasSubstr("'vertex' is none of auto, fragment, compute"));
     EXPECT_THAT(error({"report", "--only", "stability", "--data", path("none")}),
                 testing::HasSubstr("holds no meshes/stanford-dragon/dragon_vrip.ply"));
 }

@@ -7,10 +7,12 @@
 #include "host/report/stability_meshes.h"
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
+#include "tests/real_data.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace ovc {
 namespace {
@@ -29,8 +31,9 @@ Corners with_hole(size_t count) {
 }
 
 TEST(Leaks, NoneAtEdgesAndVerticesOfClosedMeshes) {
-    const auto cases = leak_cases(/* data= */ "", /* rays= */ 100'000);
+    auto cases = leak_cases(/* data= */ "");
     ASSERT_TRUE(cases);
+    share_rays(*cases, 100'000);
     StabilityOptions options;
     options.peers = false;
     const auto results = run_stability(*cases, options, {}, [](const StabilityResult&) {});
@@ -51,8 +54,9 @@ TEST(Leaks, NoneAtEdgesAndVerticesOfClosedMeshes) {
 }
 
 TEST(Leaks, ARunEndsAfterABatchWhenTold) {
-    const auto cases = leak_cases(/* data= */ "", /* rays= */ 33'000'000);
+    auto cases = leak_cases(/* data= */ "");
     ASSERT_TRUE(cases);
+    share_rays(*cases, 33'000'000);
     StabilityOptions options;
     options.peers = false;
     options.go_on = [](const StabilityResult&) { return false; };
@@ -100,6 +104,23 @@ TEST(SoundTargets, AreHitThoughTheMeshHasHoles) {
         intersect(build_kd_tree(soup), soup, set.rays, {}, hits);
         EXPECT_TRUE(std::ranges::all_of(hits, [](const Hit& hit) { return hit.is_hit(); }));
     }
+}
+
+TEST(SoundTargets, AreNearlyAllOfTheDragon) {
+    const auto data = real_data();
+    if (!data)
+        GTEST_SKIP() << kNoRealData;
+    const auto dragon = load_dragon(data->string());
+    ASSERT_TRUE(dragon) << dragon.error().message;
+    const SoundTargets targets((*dragon)->soup);
+    std::printf("%llu of %llu edges, %llu of %llu vertices\n",
+                static_cast<unsigned long long>(targets.sound_edges()),
+                static_cast<unsigned long long>(targets.edges()),
+                static_cast<unsigned long long>(targets.sound_vertices()),
+                static_cast<unsigned long long>(targets.vertices()));
+    EXPECT_GT(double(targets.sound_edges()), 0.99 * double(targets.edges()));
+    EXPECT_GT(double(targets.sound_vertices()), 0.99 * double(targets.vertices()));
+    EXPECT_LT(targets.sound_edges(), targets.edges()) << "the scan has holes";
 }
 
 TEST(SoundTargets, OfASingleTriangleAreNone) {

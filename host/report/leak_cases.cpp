@@ -61,7 +61,7 @@ void add_dragon(Cases& cases, const std::shared_ptr<const Scene>& dragon, const 
 
 } // namespace
 
-Result<std::vector<StabilityCase>> leak_cases(const std::string& data, uint64_t rays) {
+Result<std::vector<StabilityCase>> leak_cases(const std::string& data) {
     Cases cases;
     for (const NamedMesh& mesh : closed_meshes())
         for (const NamedPlace& at : all_places())
@@ -74,9 +74,12 @@ Result<std::vector<StabilityCase>> leak_cases(const std::string& data, uint64_t 
         for (const NamedPlace& at : all_places())
             add_dragon(cases, *dragon, at, targets);
     }
+    return cases;
+}
+
+void share_rays(std::span<StabilityCase> cases, uint64_t rays) {
     for (StabilityCase& one : cases)
         one.rays = (rays + cases.size() - 1) / cases.size();
-    return cases;
 }
 
 } // namespace ovc

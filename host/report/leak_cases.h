@@ -7,10 +7,12 @@
 
 namespace ovc {
 
-/// Closed meshes at the origin and at all unpleasant places, rays in equal shares, at least `rays`
-/// together. data: as for stability_cases; the dragon has holes, so rays are aimed at what its
-/// triangles surround without a gap (SoundTargets). Error: there is no dragon in it. The dragon's
-/// cases run one at a time.
-Result<std::vector<StabilityCase>> leak_cases(const std::string& data, uint64_t rays);
+/// Closed meshes at the origin and at all unpleasant places, without a number of rays. data: as for
+/// stability_cases; the dragon has holes, so rays are aimed at what its triangles surround without
+/// a gap (SoundTargets). Error: there is no dragon in it. The dragon's cases run one at a time.
+Result<std::vector<StabilityCase>> leak_cases(const std::string& data);
+
+/// Gives each case an equal share of `rays`, rounded up.
+void share_rays(std::span<StabilityCase> cases, uint64_t rays);
 
 } // namespace ovc
