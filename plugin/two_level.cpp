@@ -23,7 +23,6 @@ constexpr size_t kGrain = 256;         // rays a task
 constexpr size_t kWaveRays = 4u << 20; // rays in flight: bounds the host memory of a call
 constexpr uint64_t kPagesAtOnce =
     3; // a page takes at most this share of the pool, so that some stay resident
-constexpr double kFastSlack = 0x1p-20;  // of a leaf: 16 roundings
 constexpr uint64_t kDefaultLeaves = 10; // thesis, section 4
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -205,60 +204,72 @@ private:
         const PreparedRay p = prepare(query_, ray);
         next_[i] = kNone;
         capped_ += decidable && answer.prim == OVC_CAPPED;
-        if (!decidable || answer.prim == OVC_FLAGGED || answer.prim == OVC_CAPPED ||
-            !take_in(leaf, ray, p, answer))
-            decide_in_double(i, p);
-        else if (!query_.was_hit(ray))
-            next_[i] = next_leaf(s_.level1_, p, positions_[i]).leaf;
-        else if (!Query::kAnyHit)
+        const bool named = decidable && answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
+        switch (named ? take_in(s_.level1_.leaves[leaf], ray, p, answer) : Then::Retrace) {
+        case Then::Retrace:
+            return decide_in_double(i, p);
+        case Then::GoOn:
+            next_[i] = next_leaf(s_.level1_, prepare_rest(query_, ray), positions_[i]).leaf;
+            return;
+        case Then::FinishCell:
             next_[i] = next_leaf_in_cell(s_.level1_, prepare_rest(query_, ray), positions_[i]).leaf;
+            return;
+        case Then::Stop:
+            return;
+        }
     }
 
-    /// Enters what the kernel found in the leaf. False when double does not find what the kernel
+    /// What becomes of a ray after a leaf. FinishCell: its best hit lies in the leaf's cell, where
+    /// nothing of later cells is nearer, nor as near. Retrace: double does not find what the kernel
     /// was certain of.
-    bool take_in(uint32_t leaf_index, size_t ray, const PreparedRay& p, const LocalAnswer& answer) {
-        const Leaf& leaf = s_.level1_.leaves[leaf_index];
-        if (!s_.options_.certify) {
-            take_in_fast(leaf, ray, answer);
-            return true;
-        }
+    enum class Then { GoOn, FinishCell, Stop, Retrace };
+
+    /// Enters what the kernel found in the leaf. A hit beyond the cell is entered too: a nearer one
+    /// in the next leaf will replace it.
+    Then take_in(const Leaf& leaf, size_t ray, const PreparedRay& p, const LocalAnswer& answer) {
+        if (!s_.options_.certify)
+            return take_in_fast(leaf, ray, p, answer);
         const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
         flagged_ += has_rivals;
         if (Query::kAnyHit && !has_rivals && answer.prim != OVC_MISS) {
             query_.set(ray, Hit{0, 0, 0, leaf.triangles[answer.prim]}); // a certain hit decides
-            return true;
+            return Then::Stop;
         }
         Nearest nearest(p);
         if (query_.was_hit(ray))
             offer(nearest, query_.hit(ray).id, p.skip);
         if (answer.prim != OVC_MISS && !offer(nearest, leaf.triangles[answer.prim], p.skip))
-            return false;
+            return Then::Retrace;
         for (const uint32_t rival : answer.rivals())
             if (rival != OVC_NO_TRIANGLE)
                 offer(nearest, leaf.triangles[rival], p.skip);
-        if (nearest.hit().is_hit() && counts(leaf, p, nearest.hit().t))
+        if (nearest.hit().is_hit())
             query_.set(ray, nearest.hit());
-        return true;
+        // limit(): no tie of this hit lies beyond, however t is rounded.
+        return after(leaf, ray, p, nearest.limit());
     }
 
-    /// Is the hit in the leaf's cell, or beyond by no more than `slack`? Farther, a nearer one may
-    /// be in the next leaf, which will find this one too.
-    static bool counts(const Leaf& leaf, const PreparedRay& p, double t, double slack = 0) {
-        return t <= clip(p, leaf.cell.padded(slack), p.ray.t_min, p.ray.t_max).exit;
+    Then take_in_fast(const Leaf& leaf, size_t ray, const PreparedRay& p,
+                      const LocalAnswer& answer) {
+        if (answer.prim != OVC_MISS) {
+            const double t = world_t(leaf, prepare_rest(query_, ray), answer.t());
+            const Hit hit = s_.twins_.seen(
+                s_.soup_, {t, answer.u(), answer.v(), leaf.triangles[answer.prim]}, p.skip);
+            if (!query_.was_hit(ray) || hit.nearer_than(query_.hit(ray)))
+                query_.set(ray, hit);
+        }
+        return after(leaf, ray, p, query_.t_max(ray));
     }
 
-    void take_in_fast(const Leaf& leaf, size_t ray, const LocalAnswer& answer) {
-        if (answer.prim == OVC_MISS)
-            return;
-        const PreparedRay p = prepare(query_, ray);
-        const double t = world_t(leaf, prepare_rest(query_, ray), answer.t());
-        const Hit hit = s_.twins_.seen(
-            s_.soup_, {t, answer.u(), answer.v(), leaf.triangles[answer.prim]}, p.skip);
-        // t is as good as float is: what lies on the last plane of the scene may come out behind
-        // it.
-        if (counts(leaf, p, t, kFastSlack / leaf.frame.scale) &&
-            (!query_.was_hit(ray) || hit.nearer_than(query_.hit(ray))))
-            query_.set(ray, hit);
+    /// Where a ray goes whose best hit so far, if there is one, lies at t or before.
+    Then after(const Leaf& leaf, size_t ray, const PreparedRay& p, double t) const {
+        if (!query_.was_hit(ray))
+            return Then::GoOn;
+        if (Query::kAnyHit)
+            return Then::Stop;
+        const Box safe =
+            leaf.cell.padded(-p.margin(leaf.cell)); // no rounding leads out of the cell
+        return t <= clip(p, safe, p.ray.t_min, p.ray.t_max).exit ? Then::FinishCell : Then::GoOn;
     }
 
     /// Offers what stands in the leaf as `id`.

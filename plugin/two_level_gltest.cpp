@@ -3,7 +3,9 @@
 // what testing every triangle in double answers.
 #include "plugin/two_level.h"
 
+#include "kdtree/build.h"
 #include "kdtree/test_soups.h"
+#include "kdtree/traverse.h"
 
 #include <gtest/gtest.h>
 
@@ -262,6 +264,47 @@ TEST_F(TwoLevelGl, ALoopThatTheDriverEndsIsCountedAndDecidedInDouble) {
                 EXPECT_EQ(s.capped, certify ? 2u : 1u) << "no loop was ended: nothing was tested";
             }
         }
+}
+
+/// Rectangles that overlap in the plane z = 0, in front of a wall.
+Soup overlapping_rectangles(int count) {
+    test::Random random(41);
+    const auto on_grid = [&](double lo, double hi) {
+        return float(std::round(random(lo, hi) * 1024) / 1024);
+    };
+    std::vector<vec3> corners;
+    for (int i = 0; i < count; ++i) {
+        const vec3 a(on_grid(-0.8, 0.5), on_grid(-0.8, 0.5), 0);
+        const vec3 x(on_grid(0.05, 0.5), 0, 0), y(0, on_grid(0.05, 0.5), 0);
+        corners.insert(corners.end(), {a, a + x, a + x + y, a, a + x + y, a + y});
+    }
+    corners.insert(corners.end(), {vec3(-3, -3, 1), vec3(9, -3, 1), vec3(-3, 9, 1)});
+    return test::one_chunk(std::move(corners));
+}
+
+// What lies in one plane is in many leaves, of one cell and of the next, and t is rounded
+// differently for each triangle.
+TEST_F(TwoLevelGl, TiesAcrossLeavesAndCellsGoToTheSmallerId) {
+    const Soup soup = overlapping_rectangles(400);
+    const KdTree tree = build_kd_tree(soup);
+    test::Random random(42);
+    std::vector<Ray> rays(40000);
+    for (Ray& ray : rays) {
+        const Triangle t = soup.triangle({0, uint32_t(random.below(800))});
+        ray.org = dvec3(vec3(random.point(-1, 1) * 3.0));
+        ray.dir = t[0] + (random.below(2) ? random(0, 1) * (t[1] - t[0]) : dvec3(0)) - ray.org;
+    }
+    std::vector<Hit> expected(rays.size()), hits(rays.size());
+    intersect(tree, soup, rays, {}, expected);
+    for (const uint64_t leaf_triangles : {40u, 150u, 1u << 30}) {
+        const auto structure = build(soup, {.leaf_triangles = leaf_triangles});
+        ASSERT_TRUE(structure);
+        ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+        for (size_t i = 0; i < rays.size(); ++i)
+            ASSERT_TRUE(test::same(expected[i], hits[i]))
+                << "ray " << i << ", leaves of " << leaf_triangles << ": "
+                << test::describe(expected[i]) << " but found " << test::describe(hits[i]);
+    }
 }
 
 TEST_F(TwoLevelGl, KeepsToTheBudgetByMovingPages) {
