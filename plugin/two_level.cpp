@@ -48,8 +48,7 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     const auto start = std::chrono::steady_clock::now();
     Box bounds;
     TwoLevelStatistics& statistics = self->statistics_;
-    const std::vector<TriangleId> triangles =
-        hittable_triangles(soup, &statistics.dropped, &bounds);
+    std::vector<TriangleId> triangles = hittable_triangles(soup, &statistics.dropped, &bounds);
     if (statistics.dropped.not_finite)
         say(log, LogLevel::Warning,
             fmt::format("left out {} triangles with a NaN or infinite corner",
@@ -57,6 +56,8 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     if (statistics.dropped.degenerate)
         say(log, LogLevel::Warning,
             fmt::format("left out {} triangles without area", statistics.dropped.degenerate));
+    self->twins_ = Twins::take_out(soup, triangles);
+    statistics.twins = self->twins_.count();
     statistics.seconds_level1 = seconds_since(start);
 
     const uint64_t parts = options.leaves ? options.leaves : kDefaultLeaves;
@@ -125,6 +126,7 @@ public:
         s_.statistics_.invalid_rays += invalid_;
         s_.statistics_.flagged += flagged_;
         s_.statistics_.retraced += retraced_;
+        s_.statistics_.capped += capped_;
         return Done{};
     }
 
@@ -177,9 +179,11 @@ private:
         const size_t padded = Tracer::row_padded(batch.size());
         parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j) {
+                PreparedRay p = prepare_rest(query_, first_ + batch[j]);
+                if (s_.twins_.stands_for_others(p.skip))
+                    p.skip = {}; // the others are to be found
                 bool decidable;
-                rays_[j] = rebase(s_.level1_.leaves[leaf], prepare_rest(query_, first_ + batch[j]),
-                                  decidable);
+                rays_[j] = rebase(s_.level1_.leaves[leaf], p, decidable);
                 decidable_[j] = decidable;
             }
         });
@@ -199,63 +203,84 @@ private:
         const size_t ray = first_ + i;
         const PreparedRay p = prepare(query_, ray);
         next_[i] = kNone;
-        if (!decidable || answer.prim == OVC_FLAGGED || !take_in(leaf, ray, p, answer))
-            decide_in_double(i, p);
-        else if (!query_.was_hit(ray))
-            next_[i] = next_leaf(s_.level1_, p, positions_[i]).leaf;
-        else if (!Query::kAnyHit)
+        capped_ += decidable && answer.prim == OVC_CAPPED;
+        const bool named = decidable && answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
+        switch (named ? take_in(s_.level1_.leaves[leaf], ray, p, answer) : Then::Retrace) {
+        case Then::Retrace:
+            return decide_in_double(i, p);
+        case Then::GoOn:
+            next_[i] = next_leaf(s_.level1_, prepare_rest(query_, ray), positions_[i]).leaf;
+            return;
+        case Then::FinishCell:
             next_[i] = next_leaf_in_cell(s_.level1_, prepare_rest(query_, ray), positions_[i]).leaf;
+            return;
+        case Then::Stop:
+            return;
+        }
     }
 
-    /// Enters what the kernel found in the leaf. False when double does not find what the kernel
+    /// What becomes of a ray after a leaf. FinishCell: its best hit lies in the leaf's cell, where
+    /// nothing of later cells is nearer, nor as near. Retrace: double does not find what the kernel
     /// was certain of.
-    bool take_in(uint32_t leaf_index, size_t ray, const PreparedRay& p, const LocalAnswer& answer) {
-        const Leaf& leaf = s_.level1_.leaves[leaf_index];
-        if (!s_.options_.certify) {
-            take_in_fast(leaf, ray, answer);
-            return true;
-        }
+    enum class Then { GoOn, FinishCell, Stop, Retrace };
+
+    /// Enters what the kernel found in the leaf. A hit beyond the cell is entered too: a nearer one
+    /// in the next leaf will replace it.
+    Then take_in(const Leaf& leaf, size_t ray, const PreparedRay& p, const LocalAnswer& answer) {
+        if (!s_.options_.certify)
+            return take_in_fast(leaf, ray, p, answer);
         const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
         flagged_ += has_rivals;
         if (Query::kAnyHit && !has_rivals && answer.prim != OVC_MISS) {
             query_.set(ray, Hit{0, 0, 0, leaf.triangles[answer.prim]}); // a certain hit decides
-            return true;
+            return Then::Stop;
         }
         Nearest nearest(p);
         if (query_.was_hit(ray))
-            offer(nearest, query_.hit(ray).id);
-        if (answer.prim != OVC_MISS && !offer(nearest, leaf.triangles[answer.prim]))
-            return false;
+            offer(nearest, query_.hit(ray).id, p.skip);
+        if (answer.prim != OVC_MISS && !offer(nearest, leaf.triangles[answer.prim], p.skip))
+            return Then::Retrace;
         for (const uint32_t rival : answer.rivals())
             if (rival != OVC_NO_TRIANGLE)
-                offer(nearest, leaf.triangles[rival]);
-        if (nearest.hit().is_hit() && counts(leaf, p, nearest.hit().t))
+                offer(nearest, leaf.triangles[rival], p.skip);
+        if (nearest.hit().is_hit())
             query_.set(ray, nearest.hit());
-        return true;
+        // limit(): no tie of this hit lies beyond, however t is rounded.
+        return after(leaf, ray, p, nearest.limit());
     }
 
-    /// Is the hit in the leaf's cell? Beyond, a nearer one may be in the next leaf, which will find
-    /// this one too.
-    static bool counts(const Leaf& leaf, const PreparedRay& p, double t) {
-        return t <= clip(p, leaf.cell, p.ray.t_min, p.ray.t_max).exit;
+    Then take_in_fast(const Leaf& leaf, size_t ray, const PreparedRay& p,
+                      const LocalAnswer& answer) {
+        if (answer.prim != OVC_MISS) {
+            const double t = world_t(leaf, prepare_rest(query_, ray), answer.t());
+            const Hit hit = s_.twins_.seen(
+                s_.soup_, {t, answer.u(), answer.v(), leaf.triangles[answer.prim]}, p.skip);
+            if (!query_.was_hit(ray) || hit.nearer_than(query_.hit(ray)))
+                query_.set(ray, hit);
+        }
+        return after(leaf, ray, p, query_.t_max(ray));
     }
 
-    void take_in_fast(const Leaf& leaf, size_t ray, const LocalAnswer& answer) {
-        if (answer.prim == OVC_MISS)
-            return;
-        const Hit hit{world_t(leaf, prepare_rest(query_, ray), answer.t()), answer.u(), answer.v(),
-                      leaf.triangles[answer.prim]};
-        if (counts(leaf, prepare(query_, ray), hit.t) &&
-            (!query_.was_hit(ray) || hit.nearer_than(query_.hit(ray))))
-            query_.set(ray, hit);
+    /// Where a ray goes whose best hit so far, if there is one, lies at t or before.
+    Then after(const Leaf& leaf, size_t ray, const PreparedRay& p, double t) const {
+        if (!query_.was_hit(ray))
+            return Then::GoOn;
+        if (Query::kAnyHit)
+            return Then::Stop;
+        const Box safe =
+            leaf.cell.padded(-p.margin(leaf.cell)); // no rounding leads out of the cell
+        return t <= clip(p, safe, p.ray.t_min, p.ray.t_max).exit ? Then::FinishCell : Then::GoOn;
     }
 
-    bool offer(Nearest& nearest, TriangleId id) const {
-        return nearest.offer(s_.soup_.triangle(id), id);
+    /// Offers what stands in the leaf as `id`.
+    bool offer(Nearest& nearest, TriangleId id, TriangleId skip) const {
+        const TriangleId seen = s_.twins_.seen(id, skip);
+        return nearest.offer(s_.soup_.triangle(seen), seen);
     }
 
     void decide_in_double(size_t i, const PreparedRay& p) {
-        query_.set(first_ + i, arbitrate<Query::kAnyHit>(s_.soup_, s_.level1_, s_.pages_, p));
+        query_.set(first_ + i,
+                   arbitrate<Query::kAnyHit>(s_.soup_, s_.twins_, s_.level1_, s_.pages_, p));
         ++flagged_;
         ++retraced_;
     }
@@ -278,6 +303,7 @@ private:
     std::atomic<uint64_t> invalid_{0};
     std::atomic<uint64_t> flagged_{0};
     std::atomic<uint64_t> retraced_{0};
+    std::atomic<uint64_t> capped_{0};
 };
 
 template <class Query>
