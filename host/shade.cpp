@@ -21,9 +21,11 @@ static constexpr float kGround = 0.35f;
 /// docs/numerics.md, "Spawned rays": computed from the corners a position errs by less than half of
 /// this.
 static constexpr double kOffset = 0x1p-48;
-/// How much farther than that it keeps away from the edges; then it clears the neighbour too, at
-/// any angle of more than 1/64 rad between the two.
-static constexpr double kEdgeOffsets = 64;
+/// How many offsets it keeps away from the edges, or its neighbour there would be crossed: at
+/// least, for any angle of more than 1/64 rad between the two; and at most, for 1e-4 rad, as long
+/// as that is not above this share of the triangle's height.
+static constexpr double kLeastEdgeOffsets = 64, kMostEdgeOffsets = 16384;
+static constexpr double kEdgeShare = 0x1p-20;
 
 /// a b - c d to two units in the last place, however much cancels. Kahan's; Jeannerod, Louvet and
 /// Muller 2013.
@@ -53,13 +55,16 @@ static dvec3 facing(const dvec3& normal, const dvec3& towards) {
     return glm::dot(normal, towards) < 0 ? -normal : normal;
 }
 
-/// The hit's weights of the corners; those of a hit closer to an edge than `distance` moved in.
-/// doubled_area: of the triangle, above 0.
-static dvec3 weights_within(const Hit& hit, const Triangle& t, double doubled_area,
-                            double distance) {
+/// The hit's weights of the corners; those of a hit too close to an edge moved in. doubled_area: of
+/// the triangle, above 0.
+static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled_area,
+                               double offset) {
     const dvec3 weights{1 - hit.u - hit.v, hit.u, hit.v};
     const dvec3 edges{glm::length(t[2] - t[1]), glm::length(t[0] - t[2]), glm::length(t[1] - t[0])};
-    const dvec3 least = glm::min(distance * edges / doubled_area, dvec3(0.25));
+    const dvec3 heights = doubled_area / edges;
+    const dvec3 wanted = glm::clamp(dvec3(kEdgeShare), kLeastEdgeOffsets * offset / heights,
+                                    kMostEdgeOffsets * offset / heights);
+    const dvec3 least = glm::min(wanted, dvec3(0.25));
     if (glm::all(glm::greaterThanEqual(weights, least)))
         return weights;
     return least + (1 - least.x - least.y - least.z) * glm::clamp(weights, 0.0, 1.0);
@@ -83,7 +88,7 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     const double reach = std::max({max_component(glm::abs(t[0])), max_component(glm::abs(t[1])),
                                    max_component(glm::abs(t[2]))});
     const double offset = kOffset * reach;
-    const dvec3 w = weights_within(hit, t, doubled_area, kEdgeOffsets * offset);
+    const dvec3 w = weights_off_edges(hit, t, doubled_area, offset);
     const dvec3 on_plane = w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
     s.position = on_plane + offset * s.geometric_normal;
     s.beyond = on_plane - offset * s.geometric_normal;
@@ -110,8 +115,8 @@ vec3 direct_light(const PointLight& light, const SurfacePoint& surface) {
     return surface.material->color * light.color * (float(cosine) * std::numbers::inv_pi_v<float>);
 }
 
-Ray shadow_ray(const PointLight& light, const SurfacePoint& surface) {
-    return {surface.position, 0, light.position - surface.position, 1};
+Ray shadow_ray(const dvec3& light, const dvec3& position) {
+    return {position, 0, light - position, 1};
 }
 
 Ray mirror_ray(const Ray& ray, const SurfacePoint& surface) {

@@ -37,8 +37,8 @@ vec3 ambient_light(const Background& background, const vec3& up, const SurfacePo
 /// What the surface reflects of `light` when nothing is in between; 0 when the light is behind it.
 vec3 direct_light(const PointLight& light, const SurfacePoint& surface);
 
-/// From the surface to the light: t = 1 is the light.
-Ray shadow_ray(const PointLight& light, const SurfacePoint& surface);
+/// From `position` to the light: t = 1 is the light.
+Ray shadow_ray(const dvec3& light, const dvec3& position);
 
 /// The mirrored ray; never goes below the triangle's plane.
 Ray mirror_ray(const Ray& ray, const SurfacePoint& surface);

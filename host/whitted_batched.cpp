@@ -62,6 +62,11 @@ static void select(size_t count, std::vector<uint32_t>& chosen, Keep&& keep) {
             chosen.push_back(uint32_t(i));
 }
 
+/// The share that goes through; what is mirrored does not.
+static float transmitted(const Material& material) {
+    return std::min(material.transmission, 1 - material.mirror);
+}
+
 class BatchedRenderer {
 public:
     BatchedRenderer(const Scene& scene, const Camera& camera, Backend& backend,
@@ -72,7 +77,9 @@ public:
           observe_(observe),
           image_(image),
           pinhole_(camera, image.width, image.height),
-          up_(glm::normalize(camera.up)) {}
+          up_(glm::normalize(camera.up)),
+          glass_(std::any_of(scene.materials.begin(), scene.materials.end(),
+                             [](const Material& m) { return m.transmission > 0; })) {}
 
     Result<RenderReport> render() {
         const Stopwatch watch;
@@ -162,7 +169,7 @@ private:
         Path& path = now_.paths[i];
         const Material& material = *surfaces_[k].material;
         float mirror = material.mirror;
-        float through = std::min(material.transmission, 1 - mirror);
+        float through = transmitted(material);
         if (through > 0 && !refracted_ray(now_.rays[i], surfaces_[k]))
             mirror += std::exchange(through, 0.0f);
         const float shares[] = {mirror, through};
@@ -185,32 +192,84 @@ private:
             for (size_t k = first; k < last; ++k)
                 arriving_[k] = direct_light(light, surfaces_[k]);
         });
-        select(surfaces_.size(), chosen_, [&](size_t k) { return arriving_[k] != vec3(0); });
-        occluded_.assign(chosen_.size(), 0);
         if (options_.shadows)
             if (Result<Done> done = trace_shadows(light); !done || !report_.complete)
                 return done;
-        parallel_for(chosen_.size(), kGrain, [&](size_t first, size_t last) {
-            for (size_t j = first; j < last; ++j)
-                if (!occluded_[j])
-                    radiance_[hit_rays_[chosen_[j]]] += arriving_[chosen_[j]];
+        parallel_for(surfaces_.size(), kGrain, [&](size_t first, size_t last) {
+            for (size_t k = first; k < last; ++k)
+                radiance_[hit_rays_[k]] += arriving_[k];
         });
         return Done{};
     }
 
+    /// Takes from arriving_ what does not reach its surface.
     Result<Done> trace_shadows(const PointLight& light) {
-        if (chosen_.empty())
-            return Done{};
+        select(surfaces_.size(), chosen_, [&](size_t k) { return arriving_[k] != vec3(0); });
         shadow_rays_.resize(chosen_.size());
         shadow_skip_.resize(chosen_.size());
         parallel_for(chosen_.size(), kGrain, [&](size_t first, size_t last) {
             for (size_t j = first; j < last; ++j) {
-                shadow_rays_[j] = shadow_ray(light, surfaces_[chosen_[j]]);
+                shadow_rays_[j] = shadow_ray(light.position, surfaces_[chosen_[j]].position);
                 shadow_skip_[j] = hits_[hit_rays_[chosen_[j]]].id;
             }
         });
-        report_.rays.shadow += chosen_.size();
-        return timed([&] { return backend_.occluded(shadow_rays_, shadow_skip_, occluded_); });
+        for (uint32_t depth = 0; !chosen_.empty(); ++depth) {
+            report_.rays.shadow += chosen_.size();
+            const Result<Done> done = glass_ ? dim_by_glass(light, depth) : block();
+            if (!done || !report_.complete)
+                return done;
+        }
+        return Done{};
+    }
+
+    /// Nothing is let through: whatever is in the way blocks the light, and all rays are answered.
+    Result<Done> block() {
+        occluded_.resize(chosen_.size());
+        Result<Done> done =
+            timed([&] { return backend_.occluded(shadow_rays_, shadow_skip_, occluded_); });
+        for (size_t j = 0; j < chosen_.size(); ++j)
+            if (occluded_[j])
+                arriving_[chosen_[j]] = vec3(0);
+        chosen_.clear();
+        return done;
+    }
+
+    /// Follows the shadow rays to the nearest surface in their way, straight on as POV-Ray does,
+    /// and keeps those that light comes through.
+    Result<Done> dim_by_glass(const PointLight& light, uint32_t depth) {
+        shadow_hits_.resize(chosen_.size());
+        Result<Done> done =
+            timed([&] { return backend_.intersect(shadow_rays_, shadow_skip_, shadow_hits_); });
+        if (!done || !report_.complete)
+            return done;
+        occluded_.resize(chosen_.size());
+        parallel_for(chosen_.size(), kGrain, [&](size_t first, size_t last) {
+            for (size_t j = first; j < last; ++j)
+                occluded_[j] = shadow_hits_[j].is_hit() && pass_glass(light, depth, j);
+        });
+        size_t kept = 0;
+        for (size_t j = 0; j < chosen_.size(); ++j)
+            if (occluded_[j]) {
+                shadow_rays_[kept] = shadow_rays_[j];
+                shadow_skip_[kept] = shadow_hits_[j].id;
+                chosen_[kept++] = chosen_[j];
+            }
+        shadow_rays_.resize(kept);
+        shadow_skip_.resize(kept);
+        chosen_.resize(kept);
+        return done;
+    }
+
+    /// Dims the light of shadow ray j by what it hit; true when some is left, and the ray begins
+    /// behind it.
+    bool pass_glass(const PointLight& light, uint32_t depth, size_t j) {
+        const SurfacePoint glass = surface_point(scene_, shadow_rays_[j], shadow_hits_[j]);
+        vec3& left = arriving_[chosen_[j]];
+        left *= transmitted(*glass.material) * glass.material->filter;
+        if (depth >= options_.max_depth || max_component(left) < kLeastWeight)
+            left = vec3(0);
+        shadow_rays_[j] = shadow_ray(light.position, glass.beyond);
+        return left != vec3(0);
     }
 
     /// A pixel's paths are added in their order, by whoever has the first of them.
@@ -277,6 +336,7 @@ private:
     Image& image_;
     const Pinhole pinhole_;
     const vec3 up_;
+    const bool glass_; // some material lets light through
     RenderReport report_;
 
     // All are kept between rounds so that they are allocated once.
@@ -295,7 +355,8 @@ private:
     std::vector<uint32_t> chosen_;
     std::vector<Ray> shadow_rays_;
     std::vector<TriangleId> shadow_skip_;
-    std::vector<uint8_t> occluded_;
+    std::vector<Hit> shadow_hits_;
+    std::vector<uint8_t> occluded_; // or dimmed, and some light is left
 };
 
 Result<RenderReport> render_batched(const Scene& scene, const Camera& camera, Backend& backend,

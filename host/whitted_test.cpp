@@ -162,6 +162,25 @@ TEST(WhittedBatched, TheFilterTintsEveryCrossing) {
     EXPECT_EQ(tinted.b, 0);
 }
 
+TEST(WhittedBatched, LightThroughGlassIsDimmedAndTintedAtEveryCrossing) {
+    Scene scene = room();
+    scene.materials[0] = {"grey", vec3(0.5f), 0};
+    const vec4 dark = render(scene, towards({0, 0, 0})).pixels[0];
+    WhittedOptions options;
+    options.shadows = false;
+    const vec4 lit = render(scene, towards({0, 0, 0}), options).pixels[0];
+    // The blocker becomes two panes, one above the other.
+    scene.materials.push_back({"pane", vec3(0), 0.1f, 0.5f, {1, 0.5f, 0}, 1.5});
+    scene.meshes[1].material = 2;
+    scene.add_mesh("pane", 2, quad({-1, 2.5, 1}, {1, 2.5, 1}, {1, 2.5, -1}, {-1, 2.5, -1}));
+    RenderReport report;
+    const vec4 through = render(scene, towards({0, 0, 0}), {}, 1, 1, &report).pixels[0];
+    EXPECT_NEAR((through.r - dark.r) / (lit.r - dark.r), 0.25, 1e-5);
+    EXPECT_NEAR((through.g - dark.g) / (lit.g - dark.g), 0.0625, 1e-5);
+    EXPECT_NEAR(through.b, dark.b, 1e-6);
+    EXPECT_EQ(report.rays.shadow, 3u) << "one for each stretch of the way";
+}
+
 TEST(WhittedBatched, GlassCountsReflectionsAndRefractions) {
     RenderReport report;
     const Scene scene = room_with_box({"glass", vec3(0), 0.25f, 0.75f, vec3(1), 1.5});

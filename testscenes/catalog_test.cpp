@@ -139,6 +139,7 @@ TEST(Catalog, CountsAreThoseItsDescriptionsName) {
     EXPECT_EQ(make("knot").soup.triangle_count(), 873600u);
     EXPECT_EQ(make("soup-7").soup.triangle_count(), 7000u);
     EXPECT_EQ(make("mirrors").soup.triangle_count(), 81922u);
+    EXPECT_EQ(make("glass").soup.triangle_count(), 41472u);
     EXPECT_EQ(make("box").soup.triangle_count(), 30u);
     EXPECT_NEAR(double(make("city").soup.triangle_count()), 718000, 5000);
 }
@@ -212,6 +213,18 @@ TEST(ClosedScenes, EveryEdgeIsMetOnceInEachDirection) {
         ASSERT_EQ(scene.soup.chunks.size(), 1u);
         EXPECT_EQ(open_edges(scene.soup.chunks[0]), 0u) << name;
         EXPECT_GT(enclosed_volume(scene.soup.chunks[0]), 0.1) << name << " is inside out";
+    }
+}
+
+TEST(ClosedScenes, GlassIsClosedAndItsTrianglesFaceOutwards) {
+    const Scene scene = make("glass");
+    for (size_t m = 2; m < scene.soup.chunks.size(); ++m) {
+        EXPECT_EQ(open_edges(scene.soup.chunks[m]), 0u) << scene.meshes[m].name;
+        const std::span<const vec3> corners = scene.soup.chunks[m].corners();
+        for (size_t i = 0; i < corners.size(); i += 3)
+            ASSERT_GT(glm::dot(glm::cross(corners[i + 1] - corners[i], corners[i + 2] - corners[i]),
+                               corners[i]),
+                      0);
     }
 }
 

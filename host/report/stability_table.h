@@ -3,6 +3,7 @@
 // (JSON).
 #pragma once
 
+#include "host/report/optics.h"
 #include "host/report/stability.h"
 
 #include <span>
@@ -13,7 +14,9 @@ namespace ovc {
 /// What the columns mean, the table, and the sums.
 std::string stability_markdown(std::span<const StabilityResult> results);
 
-/// {"renderer", "cases": [{...}]}: one object a case, in order. Infinite numbers are null.
-std::string stability_json(std::span<const StabilityResult> results);
+/// {"renderer", "cases": [{...}], "optics": [{...}]}: one object a case, in order. Infinite numbers
+/// are null.
+std::string stability_json(std::span<const StabilityResult> results,
+                           std::span<const OpticsResult> optics);
 
 } // namespace ovc
