@@ -65,8 +65,7 @@ TEST(SurfacePoint, KeepsClearOfTheEdgesOfItsTriangle) {
         const SurfacePoint at_corner = surface_point(scene, kFromAbove, {1, 0, 0, {0, 0}});
         const double away = glm::length(at_corner.position - t[0]);
         const double above = at_corner.position.y - origin.y;
-        EXPECT_GT(away, 32 * above)
-            << "a neighbour at a sharp angle to this one would be crossed";
+        EXPECT_GT(away, 32 * above) << "a neighbour at a sharp angle to this one would be crossed";
         EXPECT_LT(away, 0x1p-30 * max_component(glm::abs(t[1]))) << "float cannot tell";
         // Elsewhere the hit is where it is.
         EXPECT_NEAR(surface_point(scene, kFromAbove, kHit).position.x, -1 + 0.3 * 2 + 0.3, 1e-15);

@@ -65,7 +65,8 @@ constexpr Sample kSamples[] = {
     {"terrain-64", 8192, 0x572b4fee2859fa98}, {"sphere-0", 20, 0xde27547eb5d06a37},
     {"sphere-3", 1280, 0x89338c6c67343787},   {"knot", 873600, 0x82ea6ba2d992ff19},
     {"soup-1", 1000, 0x7dd5499d4622b217},     {"city", 717978, 0xd52fceda6866f325},
-    {"mirrors", 81922, 0x6d08983876b79f76},   {"box", 30, 0xa3188fbfd523c5bc},
+    {"mirrors", 81922, 0x6d08983876b79f76},   {"glass", 41472, 0x13ff34bdbb2f366b},
+    {"box", 30, 0xa3188fbfd523c5bc},
 };
 
 /// For the names of failing tests.
