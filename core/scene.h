@@ -11,14 +11,26 @@
 
 namespace ovc {
 
-/// Whitted's surface, linear RGB in [0, 1]. mirror: the share of light reflected as by a mirror.
+/// Whitted's surface, linear RGB in [0, 1]. Of the light that it sends on, `mirror` is the share
+/// reflected as by a mirror and `transmission` the share let through, tinted by `filter` at every
+/// crossing; the rest, at least 0, is the surface's own color. ior: of the inside of a closed mesh
+/// of outward triangles (counterclockwise seen from outside), usable; the outside has 1. An open
+/// mesh is a boundary between the two, met from either side.
 struct Material {
     std::string name;
     vec3 color{0.8f};
     float mirror = 0;
+    float transmission = 0;
+    vec3 filter{1};
+    double ior = 1;
 
     bool operator==(const Material&) const = default;
 };
+
+/// Far beyond any material, and near enough for its square to be a number.
+inline bool is_usable_ior(double ior) {
+    return ior >= 1e-6 && ior <= 1e6;
+}
 
 /// What the host must know of a mesh besides its triangles. Scene::meshes[m] belongs to
 /// Scene::soup.chunks[m].

@@ -43,7 +43,8 @@ static std::string left_out(const Scene& scene) {
     // Every scene has the grey that a file without materials gets.
     add(size_t(std::count_if(scene.materials.begin(), scene.materials.end(),
                              [](const Material& material) {
-                                 return material.color != Material{}.color || material.mirror != 0;
+                                 return material.color != Material{}.color ||
+                                        material.mirror != 0 || material.transmission != 0;
                              })),
         "material");
     add(scene.lights.size(), "light");

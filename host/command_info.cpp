@@ -37,7 +37,10 @@ static Json materials_json(const Scene& scene) {
     for (const Material& material : scene.materials)
         list.push_back({{"name", material.name},
                         {"color", as_json(material.color)},
-                        {"mirror", as_json(material.mirror)}});
+                        {"mirror", as_json(material.mirror)},
+                        {"transmission", as_json(material.transmission)},
+                        {"filter", as_json(material.filter)},
+                        {"ior", material.ior}});
     return list;
 }
 

@@ -86,7 +86,9 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_option("--light", lights, "A point light instead of the scene's; may be repeated")
         ->allow_extra_args(false)
         ->type_name("X,Y,Z");
-    app.add_option("--max-depth", max_depth, "Mirror bounces at most; default: 5")->type_name("N");
+    app.add_option("--max-depth,--max-trace-level", max_depth,
+                   "Reflections and refractions in a row at most, up to 1000; default: 5")
+        ->type_name("N");
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
     app.add_option("--stats", stats, "Write statistics as JSON (docs/stats.md)")
         ->type_name("FILE.json");
@@ -228,7 +230,7 @@ static Result<int> render(const RenderJob& job) {
 }
 
 Result<int> run_render(const Arguments& arguments) {
-    CLI::App app{"Renders a picture of a scene with Whitted's model: shadows and mirrors.",
+    CLI::App app{"Renders a picture of a scene with Whitted's model: shadows, mirrors and glass.",
                  "overcast render"};
     RenderWords words;
     words.add_to(app);

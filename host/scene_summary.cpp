@@ -49,11 +49,12 @@ static uint64_t triangles_without_normals(const Scene& scene) {
     return triangles;
 }
 
-static bool any_mirror(const Scene& scene) {
-    for (const MeshInfo& mesh : scene.meshes)
-        if (mesh.material < scene.materials.size() && scene.materials[mesh.material].mirror > 0)
-            return true;
-    return false;
+/// True when the material of some mesh has it.
+template <class Has>
+static bool any_material(const Scene& scene, Has&& has) {
+    return std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const MeshInfo& mesh) {
+        return mesh.material < scene.materials.size() && has(scene.materials[mesh.material]);
+    });
 }
 
 SceneSummary summarize(const Scene& scene) {
@@ -68,13 +69,18 @@ SceneSummary summarize(const Scene& scene) {
 
     const uint64_t flat = triangles_without_normals(scene);
     summary.needs.vertex_normals = flat < summary.triangles;
-    summary.needs.reflection = any_mirror(scene);
+    summary.needs.refraction =
+        any_material(scene, [](const Material& m) { return m.transmission > 0; });
+    // Where light is let through it may be reflected totally.
+    summary.needs.reflection = summary.needs.refraction ||
+                               any_material(scene, [](const Material& m) { return m.mirror > 0; });
     if (flat > 0)
         summary.left_out.push_back({"vertex normals", flat * 3 * sizeof(vec3)});
     summary.left_out.push_back({"texture coordinates", summary.triangles * 3 * sizeof(vec2)});
     if (!summary.needs.reflection)
         summary.left_out.push_back({"reflection rays", 0});
-    summary.left_out.push_back({"refraction rays", 0});
+    if (!summary.needs.refraction)
+        summary.left_out.push_back({"refraction rays", 0});
     return summary;
 }
 

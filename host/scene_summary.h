@@ -16,7 +16,7 @@ struct Needs {
     bool vertex_normals = false;
     bool texture_coordinates = false; // no material of ours has textures
     bool reflection = false;
-    bool refraction = false; // no material of ours refracts
+    bool refraction = false;
     bool shadows = true;
 };
 

@@ -38,6 +38,18 @@ TEST(SceneSummary, KnowsWhatIsNeeded) {
                    std::vector<vec3>(3, vec3(0, 0, 1)));
     EXPECT_TRUE(summarize(scene).needs.vertex_normals);
     EXPECT_TRUE(summarize(scene).needs.reflection);
+    EXPECT_FALSE(summarize(scene).needs.refraction);
+}
+
+TEST(SceneSummary, GlassNeedsReflectionTooAsItMayReflectTotally) {
+    Scene scene;
+    scene.materials = {{"glass", vec3(1), 0, 0.5f}};
+    EXPECT_FALSE(summarize(scene).needs.refraction);
+    scene.add_mesh("pane", 0, Chunk::owning(dvec3(0), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_TRUE(summarize(scene).needs.refraction);
+    EXPECT_TRUE(summarize(scene).needs.reflection);
+    for (const LeftOut& item : summarize(scene).left_out)
+        EXPECT_EQ(item.what.find("rays"), std::string::npos) << item.what;
 }
 
 TEST(SceneSummary, OfNothingHasNoBounds) {

@@ -3,6 +3,8 @@
 // sky for ambient light.
 #include "host/shade.h"
 
+#include "host/refract.h"
+
 #include <algorithm>
 #include <numbers>
 
@@ -15,48 +17,81 @@ static constexpr float kAmbient = 0.04f;
 /// How much darker than the horizon the ground below it is taken to be.
 static constexpr float kGround = 0.35f;
 
-static vec3 geometric_normal(const Triangle& t) {
-    const dvec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
-    // Scaled first: the squared length of a tiny triangle's normal underflows. A hit triangle has
-    // an area.
-    return vec3(glm::normalize(n / max_component(glm::abs(n))));
+/// How far a position lies off its triangle, in units of the largest coordinate of the corners.
+/// docs/numerics.md, "Spawned rays": computed from the corners a position errs by less than half of
+/// this.
+static constexpr double kOffset = 0x1p-48;
+/// How many offsets it keeps away from the edges, or its neighbour there would be crossed: at
+/// least, for any angle of more than 1/64 rad between the two; and at most, for 1e-4 rad, as long
+/// as that is not above this share of the triangle's height.
+static constexpr double kLeastEdgeOffsets = 64, kMostEdgeOffsets = 16384;
+static constexpr double kEdgeShare = 0x1p-20;
+
+/// a b - c d to two units in the last place, however much cancels. Kahan's; Jeannerod, Louvet and
+/// Muller 2013.
+static double difference_of_products(double a, double b, double c, double d) {
+    const double cd = c * d;
+    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
 }
 
-static vec3 interpolated_normal(const MeshInfo& mesh, const Hit& hit, const vec3& fallback) {
+/// Also of slivers: a rounded product would turn it by their aspect times a rounding.
+static dvec3 cross(const dvec3& a, const dvec3& b) {
+    return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
+            difference_of_products(a.x, b.y, a.y, b.x)};
+}
+
+static dvec3 interpolated_normal(const MeshInfo& mesh, const Hit& hit, const dvec3& fallback) {
     if (mesh.normals.empty())
         return fallback;
     const vec3* corner = mesh.normals.data() + size_t(hit.id.prim) * 3;
-    const vec3 n =
-        float(1 - hit.u - hit.v) * corner[0] + float(hit.u) * corner[1] + float(hit.v) * corner[2];
-    const float length = glm::length(n);
+    const dvec3 n = (1 - hit.u - hit.v) * dvec3(corner[0]) + hit.u * dvec3(corner[1]) +
+                    hit.v * dvec3(corner[2]);
+    const double length = glm::length(n);
     // Opposite or missing normals cancel out; then the plane's own has to do.
-    return length > 1e-6f && std::isfinite(length) ? n / length : fallback;
+    return length > 1e-6 && std::isfinite(length) ? n / length : fallback;
 }
 
-static vec3 facing(const vec3& normal, const vec3& towards) {
+static dvec3 facing(const dvec3& normal, const dvec3& towards) {
     return glm::dot(normal, towards) < 0 ? -normal : normal;
+}
+
+/// The hit's weights of the corners; those of a hit too close to an edge moved in. doubled_area: of
+/// the triangle, above 0.
+static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled_area,
+                               double offset) {
+    const dvec3 weights{1 - hit.u - hit.v, hit.u, hit.v};
+    const dvec3 edges{glm::length(t[2] - t[1]), glm::length(t[0] - t[2]), glm::length(t[1] - t[0])};
+    const dvec3 heights = doubled_area / edges;
+    const dvec3 wanted = glm::clamp(dvec3(kEdgeShare), kLeastEdgeOffsets * offset / heights,
+                                    kMostEdgeOffsets * offset / heights);
+    const dvec3 least = glm::min(wanted, dvec3(0.25));
+    if (glm::all(glm::greaterThanEqual(weights, least)))
+        return weights;
+    return least + (1 - least.x - least.y - least.z) * glm::clamp(weights, 0.0, 1.0);
 }
 
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     static const Material kPlain;
     const MeshInfo& mesh = scene.meshes[hit.id.mesh];
-    const Material& material =
-        mesh.material < scene.materials.size() ? scene.materials[mesh.material] : kPlain;
     const Triangle t = scene.soup.triangle(hit.id);
+    const dvec3 outwards = cross(t[1] - t[0], t[2] - t[0]);
+    const double doubled_area = glm::length(outwards); // a hit triangle has an area
 
     SurfacePoint s;
-    const vec3 plane = geometric_normal(t);
-    s.geometric_normal = glm::dot(dvec3(plane), ray.dir) > 0 ? -plane : plane;
+    s.material = mesh.material < scene.materials.size() ? &scene.materials[mesh.material] : &kPlain;
+    s.entering = glm::dot(outwards, ray.dir) <= 0;
+    s.geometric_normal = (s.entering ? 1.0 : -1.0) * (outwards / doubled_area);
     s.normal = facing(interpolated_normal(mesh, hit, s.geometric_normal), s.geometric_normal);
-    s.color = material.color;
-    s.mirror = material.mirror;
 
     // From the corners the position errs by a few ulp of their coordinates, however far away the
     // ray began.
-    const dvec3 on_plane = (1 - hit.u - hit.v) * t[0] + hit.u * t[1] + hit.v * t[2];
     const double reach = std::max({max_component(glm::abs(t[0])), max_component(glm::abs(t[1])),
                                    max_component(glm::abs(t[2]))});
-    s.position = on_plane + (0x1p-48 * reach) * dvec3(s.geometric_normal);
+    const double offset = kOffset * reach;
+    const dvec3 w = weights_off_edges(hit, t, doubled_area, offset);
+    const dvec3 on_plane = w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
+    s.position = on_plane + offset * s.geometric_normal;
+    s.beyond = on_plane - offset * s.geometric_normal;
     return s;
 }
 
@@ -68,32 +103,51 @@ vec3 background_color(const Background& background, const vec3& up, const dvec3&
 vec3 ambient_light(const Background& background, const vec3& up, const SurfacePoint& surface) {
     const vec3 ground = kGround * background.horizon;
     const vec3 sky = 0.5f * (background.horizon + background.zenith);
-    const float openness = 0.5f + 0.5f * glm::dot(surface.normal, up);
-    return surface.color * (kAmbient + kSkyShare * glm::mix(ground, sky, openness));
+    const float openness = 0.5f + 0.5f * float(glm::dot(surface.normal, dvec3(up)));
+    return surface.material->color * (kAmbient + kSkyShare * glm::mix(ground, sky, openness));
 }
 
 vec3 direct_light(const PointLight& light, const SurfacePoint& surface) {
-    const vec3 towards = vec3(glm::normalize(light.position - surface.position));
-    const float cosine = glm::dot(surface.normal, towards);
+    const dvec3 towards = glm::normalize(light.position - surface.position);
+    const double cosine = glm::dot(surface.normal, towards);
     if (!(cosine > 0) || !(glm::dot(surface.geometric_normal, towards) > 0))
         return vec3(0);
-    return surface.color * light.color * (cosine * std::numbers::inv_pi_v<float>);
+    return surface.material->color * light.color * (float(cosine) * std::numbers::inv_pi_v<float>);
 }
 
-Ray shadow_ray(const PointLight& light, const SurfacePoint& surface) {
-    return {surface.position, 0, light.position - surface.position, 1};
+Ray shadow_ray(const dvec3& light, const dvec3& position) {
+    return {position, 0, light - position, 1};
 }
 
 Ray mirror_ray(const Ray& ray, const SurfacePoint& surface) {
-    const auto mirrored = [&](const vec3& normal) {
-        const dvec3 n = glm::normalize(dvec3(normal));
-        return ray.dir - 2 * glm::dot(ray.dir, n) * n;
+    const auto mirrored = [&](const dvec3& normal) {
+        return ray.dir - 2 * glm::dot(ray.dir, normal) * normal;
     };
     Ray out;
     out.org = surface.position;
     out.dir = mirrored(surface.normal);
-    if (glm::dot(out.dir, dvec3(surface.geometric_normal)) <= 0)
+    if (glm::dot(out.dir, surface.geometric_normal) <= 0)
         out.dir = mirrored(surface.geometric_normal);
+    return out;
+}
+
+std::optional<Ray> refracted_ray(const Ray& ray, const SurfacePoint& surface) {
+    const double inside = surface.material->ior;
+    const double from = surface.entering ? 1 : inside, to = surface.entering ? inside : 1;
+    const bool seen = glm::dot(ray.dir, surface.normal) < 0;
+    const auto below = [&](const dvec3& dir) {
+        return glm::dot(dir, surface.geometric_normal) < 0;
+    };
+    std::optional<dvec3> dir =
+        refracted(ray.dir, seen ? surface.normal : surface.geometric_normal, from, to);
+    if (dir && !below(*dir))
+        dir = refracted(ray.dir, surface.geometric_normal, from, to);
+    // Within a rounding of the critical angle the ray might still run along the plane.
+    if (!dir || !below(*dir))
+        return std::nullopt;
+    Ray out;
+    out.org = surface.beyond;
+    out.dir = *dir;
     return out;
 }
 

@@ -1,27 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shading: what a hit looks like by itself, before shadows and reflections. Whitted's model on
-// two-sided surfaces.
+// Shading: what a hit looks like by itself, before shadows and reflections, and the rays that leave
+// it. Whitted's model on two-sided surfaces.
 #pragma once
 
 #include "core/ray.h"
 #include "core/scene.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace ovc {
 
-/// A point on a surface as a ray saw it: both normals face the ray.
+/// A point on a surface as a ray saw it: both normals face the ray and are of unit length.
 struct SurfacePoint {
-    dvec3 position;
-    vec3 geometric_normal; // of the triangle's plane
-    vec3 normal;           // interpolated where the mesh has normals, else the geometric one
-    vec3 color;
-    float mirror;
+    dvec3 position;         // just on the ray's side of the triangle
+    dvec3 beyond;           // just on the other side
+    dvec3 geometric_normal; // of the triangle's plane
+    dvec3 normal;           // interpolated where the mesh has normals, else the geometric one
+    const Material* material;
+    bool entering; // the ray came from outside: from where the corners run counterclockwise
 };
 
-/// Where a ray hit. The position lies on the triangle, moved towards the ray's side by far less
-/// than float can tell but more than double errs, so that a second triangle in the same place does
-/// not shadow the first; the triangle itself is left out of spawned rays by its id.
+/// Where a ray hit. Both positions lie off the triangle by far less than float can tell but more
+/// than double errs, so that a second triangle in the same place is neither a shadow nor a second
+/// surface; near an edge they are also moved into the triangle, as its neighbour may bend towards
+/// either side. The triangle itself is left out of spawned rays by its id.
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit);
 
 /// What a ray in direction `dir` sees that hits nothing. up: unit length.
@@ -34,10 +37,14 @@ vec3 ambient_light(const Background& background, const vec3& up, const SurfacePo
 /// What the surface reflects of `light` when nothing is in between; 0 when the light is behind it.
 vec3 direct_light(const PointLight& light, const SurfacePoint& surface);
 
-/// From the surface to the light: t = 1 is the light.
-Ray shadow_ray(const PointLight& light, const SurfacePoint& surface);
+/// From `position` to the light: t = 1 is the light.
+Ray shadow_ray(const dvec3& light, const dvec3& position);
 
 /// The mirrored ray; never goes below the triangle's plane.
 Ray mirror_ray(const Ray& ray, const SurfacePoint& surface);
+
+/// The ray that goes on beyond the surface, on the other side of the triangle's plane; nothing
+/// where the light is reflected totally.
+std::optional<Ray> refracted_ray(const Ray& ray, const SurfacePoint& surface);
 
 } // namespace ovc

@@ -23,19 +23,19 @@ static const Ray kFromBelow{{0, -1, 0}, 0, {0, 1, 0}};
 
 TEST(SurfacePoint, NormalsFaceTheRayOnBothSides) {
     const Scene scene = floor_scene();
-    EXPECT_EQ(surface_point(scene, kFromAbove, kHit).normal, vec3(0, 1, 0));
-    EXPECT_EQ(surface_point(scene, kFromBelow, kHit).normal, vec3(0, -1, 0));
+    EXPECT_EQ(surface_point(scene, kFromAbove, kHit).normal, dvec3(0, 1, 0));
+    EXPECT_EQ(surface_point(scene, kFromBelow, kHit).normal, dvec3(0, -1, 0));
 }
 
 TEST(SurfacePoint, InterpolatesNormalsAndIgnoresThoseThatCancel) {
     const vec3 tilted = glm::normalize(vec3(1, 1, 0));
     EXPECT_LT(
         glm::length(surface_point(floor_scene({tilted, tilted, tilted}), kFromAbove, kHit).normal -
-                    tilted),
-        1e-6f);
+                    dvec3(tilted)),
+        1e-6);
     const vec3 nothing(0);
     EXPECT_EQ(surface_point(floor_scene({nothing, nothing, nothing}), kFromAbove, kHit).normal,
-              vec3(0, 1, 0));
+              dvec3(0, 1, 0));
 }
 
 TEST(SurfacePoint, LiesJustOnTheRaysSideOfTheTriangle) {
@@ -43,6 +43,7 @@ TEST(SurfacePoint, LiesJustOnTheRaysSideOfTheTriangle) {
         const Scene scene = floor_scene({}, origin);
         const double above = surface_point(scene, kFromAbove, kHit).position.y - origin.y;
         const double below = surface_point(scene, kFromBelow, kHit).position.y - origin.y;
+        EXPECT_EQ(surface_point(scene, kFromAbove, kHit).beyond.y - origin.y, below);
         EXPECT_GT(above, 0);
         EXPECT_LT(above, 1e-7);
         EXPECT_LT(below, 0);
@@ -54,7 +55,37 @@ TEST(SurfacePoint, HasANormalHoweverSmallTheTriangle) {
     Scene scene;
     scene.add_mesh("speck", 0,
                    Chunk::owning(dvec3(0), {{0, 0, 0}, {1e-30f, 0, 0}, {0, 1e-30f, 0}}));
-    EXPECT_EQ(surface_point(scene, {{0, 0, 1}, 0, {0, 0, -1}}, kHit).normal, vec3(0, 0, 1));
+    EXPECT_EQ(surface_point(scene, {{0, 0, 1}, 0, {0, 0, -1}}, kHit).normal, dvec3(0, 0, 1));
+}
+
+TEST(SurfacePoint, KeepsClearOfTheEdgesOfItsTriangle) {
+    for (const dvec3 origin : {dvec3(0), dvec3(0, 1e6, 0)}) {
+        const Scene scene = floor_scene({}, origin);
+        const Triangle t = scene.soup.triangle(kHit.id);
+        const SurfacePoint at_corner = surface_point(scene, kFromAbove, {1, 0, 0, {0, 0}});
+        const double away = glm::length(at_corner.position - t[0]);
+        const double above = at_corner.position.y - origin.y;
+        EXPECT_GT(away, 32 * above) << "a neighbour at a sharp angle to this one would be crossed";
+        EXPECT_LT(away, 0x1p-30 * max_component(glm::abs(t[1]))) << "float cannot tell";
+        // Elsewhere the hit is where it is.
+        EXPECT_NEAR(surface_point(scene, kFromAbove, kHit).position.x, -1 + 0.3 * 2 + 0.3, 1e-15);
+    }
+}
+
+TEST(SurfacePoint, KnowsWhetherTheRayEnters) {
+    EXPECT_TRUE(surface_point(floor_scene(), kFromAbove, kHit).entering);
+    EXPECT_FALSE(surface_point(floor_scene(), kFromBelow, kHit).entering);
+}
+
+TEST(SurfacePoint, TheNormalOfASliverIsThatOfExactArithmetic) {
+    // Its corners are on one line but for one unit in the last place.
+    const float step = 0x1p-23f;
+    Scene scene;
+    scene.add_mesh("sliver", 0,
+                   Chunk::owning(dvec3(0), {{0, 0, 0}, {1, 1, 1}, {3, 3 + 2 * step, 3}}));
+    const dvec3 exact = glm::normalize(dvec3(-1, 0, 1));
+    const Ray ray{{0, 0, 5}, 0, {0.1, 0, -1}};
+    EXPECT_LT(glm::length(surface_point(scene, ray, kHit).normal - exact), 1e-15);
 }
 
 TEST(DirectLight, FollowsTheCosineAndStopsBehindTheSurface) {
@@ -75,7 +106,7 @@ TEST(DirectLight, DoesNotShineThroughTheTriangleOntoATiltedNormal) {
 TEST(ShadowRay, EndsAtTheLight) {
     const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
     const PointLight light{{3, 4, 5}, vec3(1)};
-    const Ray ray = shadow_ray(light, s);
+    const Ray ray = shadow_ray(light.position, s.position);
     EXPECT_EQ(ray.t_max, 1);
     EXPECT_LT(glm::length(ray.at(1) - light.position), 1e-12);
 }
@@ -89,6 +120,49 @@ TEST(MirrorRay, NeverGoesBelowThePlane) {
     const vec3 tilted = glm::normalize(vec3(1, 0.2f, 0));
     const SurfacePoint s = surface_point(floor_scene({tilted, tilted, tilted}), kFromAbove, kHit);
     EXPECT_GT(mirror_ray({{1, 0.3, 0}, 0, {-1, -0.3, 0}}, s).dir.y, 0);
+}
+
+/// The floor of glass whose index of refraction is below the plane; seen from above and from below.
+static Scene glass_scene(double ior, std::vector<vec3> normals = {}) {
+    Scene scene = floor_scene(std::move(normals));
+    scene.materials = {{"glass", vec3(0), 0, 1, vec3(1), ior}};
+    return scene;
+}
+
+TEST(RefractedRay, BendsTowardsTheNormalGoingInAndAwayGoingOut) {
+    const Scene scene = glass_scene(1.5);
+    const Ray in{{-1, 1, 0}, 0, {1, -1, 0}};
+    const auto inside = refracted_ray(in, surface_point(scene, in, kHit));
+    ASSERT_TRUE(inside);
+    EXPECT_NEAR(inside->dir.x / glm::length(inside->dir), std::sqrt(0.5) / 1.5, 1e-15);
+    EXPECT_LT(inside->org.y, 0);
+    const Ray out{{0, -1, 0}, 0, {0.5, 1, 0}};
+    const auto outside = refracted_ray(out, surface_point(scene, out, kHit));
+    ASSERT_TRUE(outside);
+    EXPECT_NEAR(outside->dir.x / glm::length(outside->dir), 1.5 * std::sqrt(0.2), 1e-15);
+    EXPECT_GT(outside->org.y, 0);
+}
+
+TEST(RefractedRay, BeyondTheCriticalAngleThereIsNone) {
+    const Scene scene = glass_scene(1.5);
+    const Ray flat{{-1, -1, 0}, 0, {1, 1, 0}}; // 45 degrees, the critical angle is 41.8
+    EXPECT_FALSE(refracted_ray(flat, surface_point(scene, flat, kHit)));
+}
+
+TEST(RefractedRay, StaysOnItsSideOfThePlaneWhateverTheVertexNormals) {
+    for (double tilt = -3; tilt <= 3; tilt += 0.01) {
+        const vec3 tilted(float(std::sin(tilt)), float(std::cos(tilt)), 0);
+        const Scene scene = glass_scene(1.5, {tilted, tilted, tilted});
+        for (const double slope : {-20.0, -1.0, 0.0, 3.0, 1e6}) {
+            const Ray down{{0, 1, 0}, 0, {slope, -1, 0}}, up{{0, -1, 0}, 0, {slope, 1, 0}};
+            for (const Ray& ray : {down, up}) {
+                const SurfacePoint s = surface_point(scene, ray, kHit);
+                EXPECT_GT(mirror_ray(ray, s).dir.y * -ray.dir.y, 0) << tilt << " " << slope;
+                const auto beyond = refracted_ray(ray, s);
+                EXPECT_TRUE(!beyond || beyond->dir.y * ray.dir.y > 0) << tilt << " " << slope;
+            }
+        }
+    }
 }
 
 TEST(BackgroundColor, RunsFromHorizonToZenithAndStaysBelow) {

@@ -50,7 +50,8 @@ std::string stats_json(const RenderStats& s) {
         {"rays",
          {{"primary", s.report.rays.primary},
           {"shadow", s.report.rays.shadow},
-          {"reflection", s.report.rays.reflection}}},
+          {"reflection", s.report.rays.reflection},
+          {"refraction", s.report.rays.refraction}}},
         {"ray_visits", t.ray_visits},
         {"invalid_rays", t.invalid_rays},
         {"flagged", t.flagged},
@@ -85,9 +86,10 @@ std::string stats_summary(const RenderStats& s) {
     text += fmt::format("  renderer   {}\n", s.renderer);
     if (t.level2_bytes > 0)
         text += gpu_lines(t);
-    text += fmt::format("  rays       {}: {} primary, {} shadow, {} reflection\n",
-                        human_count(rays.total()), human_count(rays.primary),
-                        human_count(rays.shadow), human_count(rays.reflection));
+    text +=
+        fmt::format("  rays       {}: {} primary, {} shadow, {} reflection, {} refraction\n",
+                    human_count(rays.total()), human_count(rays.primary), human_count(rays.shadow),
+                    human_count(rays.reflection), human_count(rays.refraction));
     if (t.flagged > 0)
         text += fmt::format(
             "  flagged    {} answers, decided in double precision; {} of them traced again\n",

@@ -53,7 +53,7 @@ TEST(StatsSummary, SaysWhatAPersonWantsToKnow) {
     const std::string text = stats_summary(example());
     for (const char* part :
          {"871,414 triangles", "leaves     11", "11.0 MiB at most, of a budget of 12.0 MiB",
-          "llvmpipe", "362,149: 262,144 primary, 100,000 shadow, 5 reflection"})
+          "llvmpipe", "362,149: 262,144 primary, 100,000 shadow, 5 reflection, 0 refraction"})
         EXPECT_THAT(text, testing::HasSubstr(part));
     RenderStats on_cpu;
     EXPECT_THAT(stats_summary(on_cpu), testing::Not(testing::HasSubstr("budget")));

@@ -14,17 +14,21 @@
 namespace ovc {
 
 struct WhittedOptions {
-    uint32_t max_depth = 5; // mirror bounces; at the last one a mirror shows its own colour
+    /// Reflections and refractions in a row; the last surface shows its own color alone.
+    uint32_t max_depth = 5;
     bool shadows = true;
-    size_t batch_rays = size_t(1) << 20; // most rays a backend gets at once; bounds host memory
+    /// The most rays a backend gets at once, but for those of a single pixel. Bounds host memory:
+    /// at most about three times as many rays wait.
+    size_t batch_rays = size_t(1) << 20;
 };
 
 struct RayCounts {
     uint64_t primary = 0;
     uint64_t shadow = 0;
     uint64_t reflection = 0;
+    uint64_t refraction = 0;
 
-    uint64_t total() const { return primary + shadow + reflection; }
+    uint64_t total() const { return primary + shadow + reflection + refraction; }
 };
 
 struct RenderReport {

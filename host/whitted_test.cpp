@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 namespace ovc {
 
@@ -104,6 +105,160 @@ TEST(WhittedBatched, EndsBetweenTwoMirrors) {
     RenderReport report;
     render(scene, towards({0, 1.5, 0}), options, 1, 1, &report);
     EXPECT_EQ(report.rays.reflection, 7u);
+}
+
+/// A closed box of this material in front of the wall, whose mirror is taken away.
+static Scene room_with_box(Material material) {
+    Scene scene = room();
+    scene.materials[1] = {"wall", {0.1f, 0.2f, 0.8f}, 0};
+    scene.materials.push_back(std::move(material));
+    const dvec3 lo(-1, 0.5, 3), hi(1, 2.5, 5);
+    const auto at = [&](int i) {
+        return dvec3(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z);
+    };
+    for (const auto& [a, b, c, d] : {std::array{4, 5, 7, 6},
+                                     {1, 0, 2, 3},
+                                     {5, 1, 3, 7},
+                                     {0, 4, 6, 2},
+                                     {6, 7, 3, 2},
+                                     {0, 1, 5, 4}})
+        scene.add_mesh("side", 2, quad(at(a), at(b), at(c), at(d)));
+    return scene;
+}
+
+static Camera at_the_box(double fov_degrees) {
+    Camera camera = towards({0.2, 1.6, 4});
+    camera.fov_degrees = fov_degrees;
+    return camera;
+}
+
+TEST(WhittedBatched, ClearGlassOfTheAirsIndexIsNotSeen) {
+    Scene bare = room_with_box({});
+    bare.meshes.resize(3);
+    bare.soup.chunks.erase(bare.soup.chunks.begin() + 3, bare.soup.chunks.end());
+    WhittedOptions options;
+    options.shadows = false;
+    const Image without = render(bare, at_the_box(30), options, 61, 43);
+    RenderReport report;
+    for (const double ior : {1.0, 1 + 1e-12, 1 - 1e-12}) {
+        const Scene scene = room_with_box({"glass", vec3(0), 0, 1, vec3(1), ior});
+        const Image with = render(scene, at_the_box(30), options, 61, 43, &report);
+        EXPECT_LT(difference(with, without).max, 1e-6) << ior;
+        EXPECT_GT(report.rays.refraction, 61u);
+    }
+}
+
+TEST(WhittedBatched, TheFilterTintsEveryCrossing) {
+    WhittedOptions options;
+    options.shadows = false;
+    const vec4 clear =
+        render(room_with_box({"glass", vec3(0), 0, 1, vec3(1), 1}), at_the_box(0.01), options)
+            .pixels[0];
+    const vec4 tinted =
+        render(room_with_box({"glass", vec3(0), 0, 1, {1, 0.5f, 0}, 1}), at_the_box(0.01), options)
+            .pixels[0];
+    EXPECT_FLOAT_EQ(tinted.r, clear.r);
+    EXPECT_FLOAT_EQ(tinted.g, 0.25f * clear.g);
+    EXPECT_EQ(tinted.b, 0);
+}
+
+TEST(WhittedBatched, LightThroughGlassIsDimmedAndTintedAtEveryCrossing) {
+    Scene scene = room();
+    scene.materials[0] = {"grey", vec3(0.5f), 0};
+    const vec4 dark = render(scene, towards({0, 0, 0})).pixels[0];
+    WhittedOptions options;
+    options.shadows = false;
+    const vec4 lit = render(scene, towards({0, 0, 0}), options).pixels[0];
+    // The blocker becomes two panes, one above the other.
+    scene.materials.push_back({"pane", vec3(0), 0.1f, 0.5f, {1, 0.5f, 0}, 1.5});
+    scene.meshes[1].material = 2;
+    scene.add_mesh("pane", 2, quad({-1, 2.5, 1}, {1, 2.5, 1}, {1, 2.5, -1}, {-1, 2.5, -1}));
+    RenderReport report;
+    const vec4 through = render(scene, towards({0, 0, 0}), {}, 1, 1, &report).pixels[0];
+    EXPECT_NEAR((through.r - dark.r) / (lit.r - dark.r), 0.25, 1e-5);
+    EXPECT_NEAR((through.g - dark.g) / (lit.g - dark.g), 0.0625, 1e-5);
+    EXPECT_NEAR(through.b, dark.b, 1e-6);
+    EXPECT_EQ(report.rays.shadow, 3u) << "one for each stretch of the way";
+}
+
+TEST(WhittedBatched, GlassCountsReflectionsAndRefractions) {
+    RenderReport report;
+    const Scene scene = room_with_box({"glass", vec3(0), 0.25f, 0.75f, vec3(1), 1.5});
+    WhittedOptions options;
+    options.max_depth = 1;
+    render(scene, at_the_box(0.01), options, 1, 1, &report);
+    EXPECT_EQ(report.rays.reflection, 1u);
+    EXPECT_EQ(report.rays.refraction, 1u);
+    options.max_depth = 2;
+    render(scene, at_the_box(0.01), options, 1, 1, &report);
+    EXPECT_EQ(report.rays.reflection, 2u) << "at the front, and inside at the back";
+    EXPECT_EQ(report.rays.refraction, 2u);
+}
+
+TEST(WhittedBatched, TotalReflectionKeepsAllTheLight) {
+    // A ray inside a glass box of a great index never leaves, until the box shows its own color.
+    Scene scene = room_with_box({"glass", {0, 1, 0}, 0, 1, vec3(1), 1e3});
+    Camera camera = at_the_box(0.01);
+    camera.eye = {0, 1.5, 4};
+    camera.target = {0.3, 1.7, 4.4};
+    WhittedOptions options;
+    options.max_depth = 50;
+    RenderReport report;
+    const vec4 pixel = render(scene, camera, options, 1, 1, &report).pixels[0];
+    EXPECT_EQ(report.rays.reflection, 50u);
+    EXPECT_EQ(report.rays.refraction, 0u);
+    EXPECT_GT(pixel.g, 0.01f);
+    EXPECT_EQ(pixel.r, 0);
+}
+
+TEST(WhittedBatched, BatchSizeDoesNotChangeAPixelThroughSplittingRays) {
+    const Scene scene = room_with_box({"glass", vec3(0.2f), 0.45f, 0.5f, {1, 0.9f, 0.8f}, 1.5});
+    WhittedOptions options;
+    options.max_depth = 12;
+    RenderReport report;
+    const Image whole = render(scene, at_the_box(30), options, 67, 45, &report);
+    EXPECT_GT(report.rays.total(), 20u * 67 * 45 / 4);
+    for (size_t batch : {1u, 7u, 64u, 1000u}) {
+        options.batch_rays = batch;
+        RenderReport again;
+        EXPECT_EQ(
+            difference(render(scene, at_the_box(30), options, 67, 45, &again), whole).differing, 0u)
+            << batch;
+        EXPECT_EQ(again.rays.total(), report.rays.total());
+    }
+}
+
+/// Hands on to the CPU and remembers the most rays it got at once.
+class CountingBackend final : public Backend {
+public:
+    explicit CountingBackend(const Soup& soup) : cpu_(make_cpu_backend(soup)) {}
+    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                           std::span<Hit> hits) override {
+        most = std::max(most, rays.size());
+        return cpu_->intersect(rays, skip, hits);
+    }
+    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                          std::span<uint8_t> occluded) override {
+        return cpu_->occluded(rays, skip, occluded);
+    }
+    ovc_statistics statistics() const override { return {}; }
+    std::string renderer() const override { return "none"; }
+
+    size_t most = 0;
+
+private:
+    std::unique_ptr<Backend> cpu_;
+};
+
+TEST(WhittedBatched, ABatchIsNeverLargerThanAsked) {
+    const Scene scene = room_with_box({"glass", vec3(0), 0.45f, 0.55f, vec3(1), 1.5});
+    CountingBackend backend(scene.soup);
+    WhittedOptions options;
+    options.max_depth = 200;
+    options.batch_rays = 2000;
+    Image image(64, 64);
+    ASSERT_TRUE(render_batched(scene, at_the_box(8), backend, options, {}, image));
+    EXPECT_EQ(backend.most, 2000u);
 }
 
 TEST(WhittedBatched, BatchSizeDoesNotChangeAPixel) {

@@ -9,6 +9,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 
 namespace ovc {
@@ -22,6 +23,22 @@ vec3 from(const aiVector3D& v) {
     return {v.x, v.y, v.z};
 }
 
+/// glTF's transmission is tinted by the base color; other formats know opacity, which is not.
+void let_light_through(const aiMaterial& source, Material& material) {
+    ai_real share = 0, opacity = 1, ior = 1;
+    source.Get(AI_MATKEY_TRANSMISSION_FACTOR, share);
+    source.Get(AI_MATKEY_OPACITY, opacity);
+    source.Get(AI_MATKEY_REFRACTI, ior);
+    const bool tinted = share > 0;
+    share = tinted ? share : 1 - opacity;
+    if (!(share > 0))
+        return;
+    material.transmission = std::min(float(share), 1.0f);
+    material.filter = tinted ? material.color : vec3(1);
+    if (is_usable_ior(ior))
+        material.ior = ior;
+}
+
 Material material_from(const aiMaterial& source) {
     Material material;
     material.name = source.GetName().C_Str();
@@ -31,6 +48,7 @@ Material material_from(const aiMaterial& source) {
         if (is_finite(rgb))
             material.color = glm::clamp(rgb, vec3(0), vec3(1));
     }
+    let_light_through(source, material);
     return material;
 }
 

@@ -249,6 +249,40 @@ TEST(Save, AFailedWriteLeavesTheOldFileAndNothingElse) {
     EXPECT_EQ(folder.read("kept.obj"), kObj);
 }
 
+/// A glTF file of one triangle whose material is the JSON object `material`.
+std::string gltf_with(const std::string& material) {
+    return R"({"asset": {"version": "2.0"},
+        "extensionsUsed": ["KHR_materials_transmission", "KHR_materials_ior"],
+        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                       "min": [0, 0, 0], "max": [1, 1, 0]}],
+        "materials": [)" +
+           material + R"(],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+        "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0})";
+}
+
+TEST(Assimp, GlassLetsLightThrough) {
+    const TestFolder folder;
+    const auto material = [&](const std::string& json) {
+        const auto scene = load(folder.write("a.gltf", gltf_with(json)));
+        EXPECT_TRUE(scene) << scene.error().message;
+        return scene->materials[scene->meshes[0].material];
+    };
+    const std::string green = R"("pbrMetallicRoughness": {"baseColorFactor": [0.25, 1, 0.5, 1]})";
+    const Material glass = material("{" + green + R"(, "extensions": {
+        "KHR_materials_transmission": {"transmissionFactor": 0.75}}})");
+    EXPECT_EQ(glass.transmission, 0.75f);
+    EXPECT_EQ(glass.filter, vec3(0.25f, 1, 0.5f));
+    EXPECT_EQ(material("{" + green + "}").transmission, 0);
+    const Material veil = material(R"({"alphaMode": "BLEND",
+        "pbrMetallicRoughness": {"baseColorFactor": [0.25, 1, 0.5, 0.25]}})");
+    EXPECT_EQ(veil.transmission, 0.75f);
+    EXPECT_EQ(veil.filter, vec3(1));
+    EXPECT_EQ(veil.ior, 1);
+}
+
 TEST(Assimp, AgreesOnPlyAndObj) {
     const TestFolder folder;
     folder.write(

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// MTL: newmtl, Kd, Ks, illum.
+// MTL: newmtl, Kd, Ks, Tf, d, Tr, Ni, illum.
+// Based on: Wavefront, "MTL material format", version 4.2 (1995).
 #include "importers/mtl.h"
 
 #include "importers/source.h"
 #include "importers/text.h"
+
+#include <algorithm>
+#include <optional>
 
 namespace ovc {
 
@@ -26,22 +30,68 @@ std::optional<vec3> parse_color(std::string_view text) {
     return glm::clamp(color, vec3(0), vec3(1));
 }
 
-/// 3 and up reflect; 10 only casts shadows.
+/// 3 and up reflect; 9 only lets light through, 10 only casts shadows.
 bool reflects(int illumination) {
-    return illumination >= 3 && illumination < 10;
+    return illumination >= 3 && illumination < 9;
+}
+
+/// Whether light passes through; 6 and 7 bend it as well.
+bool refracts(int illumination) {
+    return illumination == 6 || illumination == 7;
+}
+bool transmits(int illumination) {
+    return illumination == 4 || refracts(illumination) || illumination == 9;
 }
 
 struct Entry {
     Material material;
     vec3 specular{0};
+    std::optional<vec3> filter;
+    std::optional<float> dissolve, transparency; // d and Tr: 1 is opaque, and clear
+    double ior = 1;
     int illumination = 0;
+
+    /// The share of the unmirrored light that goes through. Programs write Tr both ways round, so
+    /// d has the last word. The format scales by Tf alone; today's programs leave that out and
+    /// write d.
+    float through() const {
+        const bool stated = dissolve || transparency;
+        const float opaque = dissolve ? *dissolve : 1 - transparency.value_or(0);
+        if (opaque < 1)
+            return std::min(1 - opaque, 1.0f);
+        return filter || !stated ? 1.0f : 0.0f;
+    }
+
+    void finish() {
+        const float mean = (specular.x + specular.y + specular.z) / 3;
+        material.mirror = reflects(illumination) ? mean : 0;
+        if (!transmits(illumination))
+            return;
+        material.transmission = (1 - material.mirror) * through();
+        material.filter = filter.value_or(vec3(1));
+        if (refracts(illumination) && is_usable_ior(ior))
+            material.ior = ior;
+    }
 };
+
+std::optional<float> parse_share(std::string_view text) {
+    const auto value = parse_float(next_word(text));
+    return value && std::isfinite(*value) ? std::optional(*value) : std::nullopt;
+}
 
 void read_line(std::string_view keyword, std::string_view rest, Entry& entry) {
     if (keyword == "Kd")
         entry.material.color = parse_color(rest).value_or(entry.material.color);
     else if (keyword == "Ks")
         entry.specular = parse_color(rest).value_or(entry.specular);
+    else if (keyword == "Tf")
+        entry.filter = parse_color(rest);
+    else if (keyword == "d")
+        entry.dissolve = parse_share(rest);
+    else if (keyword == "Tr")
+        entry.transparency = parse_share(rest);
+    else if (keyword == "Ni")
+        entry.ior = parse_double(next_word(rest)).value_or(1);
     else if (keyword == "illum")
         entry.illumination = parse_number<int>(next_word(rest)).value_or(0);
 }
@@ -65,8 +115,7 @@ Result<std::vector<Material>> read_mtl(const std::filesystem::path& path) {
         return source->error("");
     std::vector<Material> materials;
     for (Entry& entry : entries) {
-        const float mean = (entry.specular.x + entry.specular.y + entry.specular.z) / 3;
-        entry.material.mirror = reflects(entry.illumination) ? mean : 0;
+        entry.finish();
         materials.push_back(std::move(entry.material));
     }
     return materials;

@@ -11,8 +11,10 @@
 namespace ovc {
 
 /// The materials of the file, in order. Kd becomes the color, clamped to [0, 1]; the mean of Ks the
-/// mirror where illum (3 and more, but for 10) asks for reflection. All else, textures too, and
-/// what is no number, is passed over.
+/// mirror where illum (3 to 8) asks for reflection. Where it asks for glass (4, 6, 7, 9), what is
+/// not mirrored goes through: 1 - d of it, else Tr, or all where neither dims it; Tf becomes the
+/// filter, and Ni the index of refraction where illum is 6 or 7. Fresnel's equations (5, 7) are
+/// left out. All else, textures too, and what is no number, is passed over.
 Result<std::vector<Material>> read_mtl(const std::filesystem::path& path);
 
 } // namespace ovc

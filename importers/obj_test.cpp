@@ -107,6 +107,50 @@ TEST(Obj, MaterialsTakeColorAndMirror) {
     EXPECT_EQ(scene->meshes[0].material, 1u);
 }
 
+/// The material that an MTL file with these statements gives.
+Material mtl_material(const std::string& statements) {
+    const TestFolder folder;
+    folder.write("g.mtl", "newmtl glass\n" + statements);
+    const auto scene = load(folder.write("g.obj", std::string("mtllib g.mtl\n") + kCorners +
+                                                      "usemtl glass\nf 1 2 3\n"));
+    EXPECT_TRUE(scene);
+    return scene->materials[scene->meshes[0].material];
+}
+
+TEST(Obj, GlassLetsThroughWhatItDoesNotMirror) {
+    struct {
+        const char* statements;
+        float mirror, transmission;
+        vec3 filter;
+        double ior;
+    } const kCases[] = {
+        {"illum 6\nNi 1.5", 0, 1, vec3(1), 1.5},
+        {"illum 7\nNi 1.000000000001\nKs 0.25\nTf 1 0.5 0.25\n",
+         0.25f,
+         0.75f,
+         {1, 0.5f, 0.25f},
+         1.000000000001},
+        {"illum 7\nNi 1.5\nd 1\nTf 1 1 1\n", 0, 1, vec3(1), 1.5},
+        {"illum 7\nNi 1.5\nd 1\n", 0, 0, vec3(1), 1.5},
+        {"illum 6\nd 0.25\nTr 1\nTf 0.5\n", 0, 0.75f, vec3(0.5f), 1},
+        {"illum 6\nTr 0.25\n", 0, 0.25f, vec3(1), 1},
+        {"illum 4\nNi 1.5\nKs 0.5\nd 0.5\n", 0.5f, 0.25f, vec3(1), 1},
+        {"illum 9\nNi 1.5\nKs 0.5\nd 0.5\n", 0, 0.5f, vec3(1), 1},
+        {"illum 6\nd -3\nNi 0\n", 0, 1, vec3(1), 1},
+        {"illum 6\nd nan\nNi nan\nTf x\n", 0, 1, vec3(1), 1},
+        // What 3ds Max writes for what is opaque.
+        {"illum 2\nNi 1.5\nd 1\nTr 1\nTf 1 1 1\n", 0, 0, vec3(1), 1},
+        {"illum 3\nKs 0.5\nd 0.5\nNi 1.5\n", 0.5f, 0, vec3(1), 1},
+    };
+    for (const auto& expected : kCases) {
+        const Material found = mtl_material(expected.statements);
+        EXPECT_EQ(found.mirror, expected.mirror) << expected.statements;
+        EXPECT_EQ(found.transmission, expected.transmission) << expected.statements;
+        EXPECT_EQ(found.filter, expected.filter) << expected.statements;
+        EXPECT_EQ(found.ior, expected.ior) << expected.statements;
+    }
+}
+
 TEST(Obj, LibrariesAreFoundUnderEveryKindOfName) {
     const TestFolder folder;
     std::filesystem::create_directories(folder / "sub");

@@ -61,12 +61,12 @@ struct Sample {
 
 /// Each entry of the catalog at its smallest or a small size.
 constexpr Sample kSamples[] = {
-    {"plants-1", 175221, 0x8743bc96b3d823e4},    {"terrain-1", 2, 0x952ac25a51d027d8},
-    {"terrain-64", 8192, 0x572b4fee2859fa98},    {"sphere-0", 20, 0xde27547eb5d06a37},
-    {"sphere-3", 1280, 0x89338c6c67343787},      {"knot", 873600, 0x82ea6ba2d992ff19},
-    {"soup-1", 1000, 0x7dd5499d4622b217},        {"city", 717978, 0xd52fceda6866f325},
-    {"mirrors", 81922, 0x6d08983876b79f76},      {"box", 30, 0xa3188fbfd523c5bc},
-    {"far-terrain", 274160, 0xba45980e69015acb},
+    {"plants-1", 175221, 0x8743bc96b3d823e4}, {"terrain-1", 2, 0x952ac25a51d027d8},
+    {"terrain-64", 8192, 0x572b4fee2859fa98}, {"sphere-0", 20, 0xde27547eb5d06a37},
+    {"sphere-3", 1280, 0x89338c6c67343787},   {"knot", 873600, 0x82ea6ba2d992ff19},
+    {"soup-1", 1000, 0x7dd5499d4622b217},     {"city", 717978, 0xd52fceda6866f325},
+    {"mirrors", 81922, 0x6d08983876b79f76},   {"glass", 41472, 0x13ff34bdbb2f366b},
+    {"box", 30, 0xa3188fbfd523c5bc},          {"far-terrain", 274160, 0xba45980e69015acb},
 };
 
 /// For the names of failing tests.
@@ -140,6 +140,7 @@ TEST(Catalog, CountsAreThoseItsDescriptionsName) {
     EXPECT_EQ(make("knot").soup.triangle_count(), 873600u);
     EXPECT_EQ(make("soup-7").soup.triangle_count(), 7000u);
     EXPECT_EQ(make("mirrors").soup.triangle_count(), 81922u);
+    EXPECT_EQ(make("glass").soup.triangle_count(), 41472u);
     EXPECT_EQ(make("box").soup.triangle_count(), 30u);
     EXPECT_NEAR(double(make("city").soup.triangle_count()), 718000, 5000);
 }
@@ -213,6 +214,18 @@ TEST(ClosedScenes, EveryEdgeIsMetOnceInEachDirection) {
         ASSERT_EQ(scene.soup.chunks.size(), 1u);
         EXPECT_EQ(open_edges(scene.soup.chunks[0]), 0u) << name;
         EXPECT_GT(enclosed_volume(scene.soup.chunks[0]), 0.1) << name << " is inside out";
+    }
+}
+
+TEST(ClosedScenes, GlassIsClosedAndItsTrianglesFaceOutwards) {
+    const Scene scene = make("glass");
+    for (size_t m = 2; m < scene.soup.chunks.size(); ++m) {
+        EXPECT_EQ(open_edges(scene.soup.chunks[m]), 0u) << scene.meshes[m].name;
+        const std::span<const vec3> corners = scene.soup.chunks[m].corners();
+        for (size_t i = 0; i < corners.size(); i += 3)
+            ASSERT_GT(glm::dot(glm::cross(corners[i + 1] - corners[i], corners[i + 2] - corners[i]),
+                               corners[i]),
+                      0);
     }
 }
 

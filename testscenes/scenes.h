@@ -20,6 +20,7 @@ Scene make_knot();
 Scene make_soup(uint32_t thousands);
 Scene make_city();
 Scene make_mirrors();
+Scene make_glass();
 Scene make_box();
 
 } // namespace ovc

@@ -174,6 +174,19 @@ nlohmann::ordered_json json_of(const StabilityResult& r) {
     return object;
 }
 
+nlohmann::ordered_json json_of(const OpticsResult& r) {
+    return {{"name", r.name},         {"rays", r.score.rays},   {"wrong", r.score.wrong},
+            {"leaks", r.score.leaks}, {"error", r.score.error}, {"wrong_means", r.counted}};
+}
+
+template <class Result>
+nlohmann::ordered_json list_of(std::span<const Result> results) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const Result& result : results)
+        list.push_back(json_of(result));
+    return list;
+}
+
 } // namespace
 
 std::string stability_markdown(const std::string& title, std::span<const StabilityResult> results) {
@@ -187,12 +200,12 @@ std::string stability_markdown(const std::string& title, std::span<const Stabili
                        renderer, table_of(rows), sums_of(results));
 }
 
-std::string stability_json(std::span<const StabilityResult> results) {
-    nlohmann::ordered_json cases = nlohmann::ordered_json::array();
-    for (const StabilityResult& result : results)
-        cases.push_back(json_of(result));
-    const nlohmann::ordered_json document = {
-        {"renderer", results.empty() ? "" : results[0].renderer}, {"cases", cases}};
+std::string stability_json(std::span<const StabilityResult> results,
+                           std::span<const OpticsResult> optics) {
+    nlohmann::ordered_json document = {{"renderer", results.empty() ? "" : results[0].renderer},
+                                       {"cases", list_of(results)}};
+    if (!optics.empty())
+        document["optics"] = list_of(optics);
     return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

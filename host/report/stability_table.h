@@ -3,6 +3,7 @@
 // (JSON).
 #pragma once
 
+#include "host/report/optics.h"
 #include "host/report/stability.h"
 
 #include <span>
@@ -14,7 +15,9 @@ namespace ovc {
 /// left out.
 std::string stability_markdown(const std::string& title, std::span<const StabilityResult> results);
 
-/// {"renderer", "cases": [{...}]}: one object a case, in order. Infinite numbers are null.
-std::string stability_json(std::span<const StabilityResult> results);
+/// {"renderer", "cases": [{...}], "optics": [{...}]}: one object a case, in order. Infinite numbers
+/// are null; without optics cases there is no "optics".
+std::string stability_json(std::span<const StabilityResult> results,
+                           std::span<const OpticsResult> optics);
 
 } // namespace ovc

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Glass, mirrors and shadows through glass look as POV-Ray draws them: its own spheres, our
+// triangles.
+#include "host/whitted_batched.h"
+#include "tests/run_command.h"
+#include "testscenes/catalog.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+namespace ovc {
+namespace {
+
+constexpr uint32_t kSize = 256;
+
+/// A binary PPM of two bytes a color, linear.
+std::optional<Image> read_ppm(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string header, line;
+    uint32_t width = 0, height = 0, most = 0;
+    while (most == 0 && std::getline(file, line)) {
+        header += line[0] == '#' ? "" : line + " "; // POV-Ray says when and by whom it was drawn
+        std::sscanf(header.c_str(), "P6 %u %u %u", &width, &height, &most);
+    }
+    if (most != 65535)
+        return std::nullopt;
+    Image image(width, height);
+    for (vec4& pixel : image.pixels) {
+        unsigned char bytes[6];
+        if (!file.read(reinterpret_cast<char*>(bytes), 6))
+            return std::nullopt;
+        for (int i = 0; i < 3; ++i)
+            pixel[i] = float(256 * bytes[2 * i] + bytes[2 * i + 1]) / 65535;
+        pixel.a = 1;
+    }
+    return image;
+}
+
+TEST(Povray, DrawsGlassAndMirrorsAsWeDo) {
+    if (test::run_shell("command -v povray").exit_code != 0)
+        GTEST_SKIP() << "povray is not installed";
+    const std::filesystem::path ppm =
+        std::filesystem::temp_directory_path() / fmt::format("ovc-povray-{}.ppm", getpid());
+    const test::CommandResult drawn = test::run_shell(fmt::format(
+        "povray +I{}/testscenes/glass.pov +O{} +W{} +H{} +FP16 File_Gamma=1.0 -A -D -GA",
+        OVC_SOURCE_DIR, ppm.string(), kSize, kSize));
+    ASSERT_EQ(drawn.exit_code, 0) << drawn.output;
+    const std::optional<Image> theirs = read_ppm(ppm);
+    std::filesystem::remove(ppm);
+    ASSERT_TRUE(theirs && theirs->width == kSize && theirs->height == kSize);
+
+    const Result<Scene> scene = make_test_scene("glass");
+    ASSERT_TRUE(scene);
+    Image ours(kSize, kSize);
+    WhittedOptions options;
+    options.max_depth = 12;
+    const std::unique_ptr<Backend> backend = make_cpu_backend(scene->soup);
+    ASSERT_TRUE(render_batched(*scene, *scene->camera, *backend, options, {}, ours));
+
+    double sum = 0;
+    size_t unlike = 0;
+    for (size_t i = 0; i < ours.pixels.size(); ++i) {
+        // What is brighter than white POV-Ray cuts off.
+        const vec3 off =
+            glm::abs(glm::min(vec3(ours.pixels[i]), vec3(1)) - vec3(theirs->pixels[i]));
+        sum += double(off.x + off.y + off.z) / 3;
+        unlike += max_component(off) > 0.02f;
+    }
+    std::printf("mean difference %.5f, %zu of %zu pixels unlike\n",
+                sum / double(ours.pixels.size()), unlike, ours.pixels.size());
+    // Where edges of squares and balls cross a pixel's middle, facets and spheres may disagree.
+    EXPECT_LT(sum / double(ours.pixels.size()), 0.001);
+    EXPECT_LT(unlike, ours.pixels.size() / 250);
+}
+
+} // namespace
+} // namespace ovc
