@@ -78,6 +78,8 @@ static Result<CameraPath> parse_json(const std::string& name, const std::string&
         document = Json::parse(text, shallow);
     } catch (const Json::parse_error& error) {
         return Error{fmt::format("{}, byte {}: this is not JSON", name, error.byte)};
+    } catch (const Json::out_of_range&) {
+        return Error{fmt::format("{}: a number in it is too large", name)};
     }
     const Json& cameras =
         document.is_object() && document.contains("cameras") ? document["cameras"] : document;

@@ -89,7 +89,7 @@ TEST_F(CameraPathFile, WrongOnesAreAnsweredWithOneSentence) {
         {"[{\"eye\":[1,2],\"target\":[0,0,0]}]", "its \"eye\" is not a list of three numbers"},
         {"[{\"eye\":[1,2,\"3\"],\"target\":[0,0,0]}]", "its \"eye\" is not"},
         {"[{\"eye\":[1,2,[3]],\"target\":[0,0,0]}]", "its \"eye\" is not"},
-        {"[{\"eye\":[1,2,1e999],\"target\":[0,0,0]}]", "this is not JSON"},
+        {"[{\"eye\":[1,2,1e999],\"target\":[0,0,0]}]", "a number in it is too large"},
         {"[{\"eye\":[1,2,3],\"target\":[1,2,3]}]", "looks from a point at itself"},
         {"[{\"eye\":[1,2,3],\"target\":[0,0,0],\"up\":[0,0,0]}]", "has no direction"},
         {"[{\"eye\":[1,2,3],\"target\":[0,0,0],\"fov\":0}]", "between 0 and 180"},

@@ -63,8 +63,8 @@ struct Sample {
 /// Each entry of the catalog at its smallest or a small size.
 constexpr Sample kSamples[] = {
     {"dragons-1", 1076214, 0x81c164dedf8f8247},
-    {"powerplant-200000", 200000, 0x725b6c6780a29d32},
-    {"powerplant-600001", 600000, 0x14df3c0b08ef11b4},
+    {"powerplant-200000", 200000, 0x5f58e50b18c9f4fb},
+    {"powerplant-600001", 600000, 0x659dcaf242efec1},
     {"plants-1", 175221, 0x8743bc96b3d823e4},
     {"terrain-1", 2, 0x952ac25a51d027d8},
     {"terrain-64", 8192, 0x572b4fee2859fa98},

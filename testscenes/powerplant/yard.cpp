@@ -60,7 +60,9 @@ void add_cooling_tower(Works& works, dvec3 foot, double height) {
 
 void add_tank_farm(Works& works, const Plan& plan) {
     for (int i = 0; i < 4; ++i) {
-        const dvec3 foot(plan.length() + 22, -0.2, 3 + 13.0 * i);
+        // Two to each side of the way to the door.
+        const double door = kBay * (plan.aisle() + 0.5), aside = 8 + 13 * (i % 2);
+        const dvec3 foot(plan.length() + 22, -0.2, i < 2 ? door - aside : door + aside);
         const dvec2 shell[] = {{5, 0},      {5, 3},       {5.08, 3.02}, {5.08, 3.1}, {5, 3.12},
                                {5, 6},      {5.08, 6.02}, {5.08, 6.1},  {5, 6.12},   {5, 8},
                                {5.2, 8.02}, {5.2, 8.2},   {2.5, 8.9},   {0, 9.1}};
