@@ -46,6 +46,7 @@ struct MeshInfo {
 struct PointLight {
     dvec3 position{0};
     vec3 color{1};
+    bool on_camera = false; // position is where it is mounted: an offset from the eye
 };
 
 /// A perspective camera. fov_degrees: the full angle of view along the image's shorter side.

@@ -14,8 +14,7 @@
 namespace ovc {
 
 /// Options that the design has and this version does not.
-static constexpr std::string_view kLater[] = {"--mode",    "--frames",  "--camera-path",
-                                              "--samples", "--threads", "--aov"};
+static constexpr std::string_view kLater[] = {"--mode", "--samples", "--threads", "--aov"};
 
 static Error unknown_option(const CLI::App& app, const std::string& word) {
     const std::string option = word.substr(0, word.find('='));
@@ -176,11 +175,11 @@ static std::vector<double> parse_reals(std::string_view text) {
     return values;
 }
 
-Result<Camera> parse_camera(std::string_view text) {
+Result<Camera> parse_camera(std::string_view what, std::string_view text) {
     const std::vector<double> v = parse_reals(text);
     if (v.size() != 6 && v.size() != 7)
-        return Error{fmt::format(
-            "--camera needs ex,ey,ez,tx,ty,tz or ex,ey,ez,tx,ty,tz,fov, not '{}'", text)};
+        return Error{fmt::format("{} needs ex,ey,ez,tx,ty,tz or ex,ey,ez,tx,ty,tz,fov, not '{}'",
+                                 what, text)};
     Camera camera;
     camera.eye = {v[0], v[1], v[2]};
     camera.target = {v[3], v[4], v[5]};
@@ -188,9 +187,9 @@ Result<Camera> parse_camera(std::string_view text) {
         camera.fov_degrees = v[6];
     if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
         return Error{
-            fmt::format("--camera needs a field of view between 0 and 180 degrees, not {}", v[6])};
+            fmt::format("{} needs a field of view between 0 and 180 degrees, not {}", what, v[6])};
     if (const Result<Done> fine = check_camera(camera); !fine)
-        return Error{fmt::format("--camera: {}: '{}'", fine.error().message, text)};
+        return Error{fmt::format("{}: {}: '{}'", what, fine.error().message, text)};
     return camera;
 }
 

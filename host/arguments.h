@@ -38,8 +38,9 @@ struct ImageSize {
 /// "640x480"; each side from 1 to 65535.
 Result<ImageSize> parse_size(std::string_view text);
 
-/// "ex,ey,ez,tx,ty,tz" or with ",fov" in degrees, 0 < fov < 180; eye and target differ.
-Result<Camera> parse_camera(std::string_view text);
+/// "ex,ey,ez,tx,ty,tz" or with ",fov" in degrees, 0 < fov < 180; eye and target differ. what: who
+/// needs it, in the error.
+Result<Camera> parse_camera(std::string_view what, std::string_view text);
 
 /// "x,y,z".
 Result<dvec3> parse_position(std::string_view option, std::string_view text);

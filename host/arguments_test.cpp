@@ -34,13 +34,13 @@ TEST(ParseSize, TakesTwoNumbers) {
 }
 
 TEST(ParseCamera, TakesSixOrSevenNumbers) {
-    EXPECT_EQ(parse_camera("1,2,3,4,5,6")->target, dvec3(4, 5, 6));
-    EXPECT_EQ(parse_camera("-.5, 2,3e1,4,5,6,35")->eye, dvec3(-0.5, 2, 30));
-    EXPECT_EQ(parse_camera("1,2,3,4,5,6,35")->fov_degrees, 35);
+    EXPECT_EQ(parse_camera("--camera", "1,2,3,4,5,6")->target, dvec3(4, 5, 6));
+    EXPECT_EQ(parse_camera("--camera", "-.5, 2,3e1,4,5,6,35")->eye, dvec3(-0.5, 2, 30));
+    EXPECT_EQ(parse_camera("--camera", "1,2,3,4,5,6,35")->fov_degrees, 35);
     for (const char* text : {"", "1,2,3", "1,2,3,4,5,x", "1,2,3,4,5,6,", "1,2,3,4,5,6,0",
                              "1,2,3,4,5,6,180", "1,2,3,1,2,3", "1,2,3,4,5,inf", "1,2,3,4,5,1e101"})
-        EXPECT_FALSE(parse_camera(text)) << text;
-    EXPECT_EQ(parse_camera("1,2,3,1,2,3").error().message,
+        EXPECT_FALSE(parse_camera("--camera", text)) << text;
+    EXPECT_EQ(parse_camera("--camera", "1,2,3,1,2,3").error().message,
               "--camera: the camera looks from a point at itself: '1,2,3,1,2,3'");
     EXPECT_FALSE(parse_position("--light", "1e200,0,0"));
 }

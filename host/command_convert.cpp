@@ -58,9 +58,10 @@ static std::string left_out(const Scene& scene) {
 
 Result<int> run_convert(const Arguments& arguments) {
     CLI::App app{"Writes the triangles of a scene as .ply (binary) or .obj.", "overcast convert"};
-    std::string source, output;
+    SceneArguments source;
+    std::string output;
     bool quiet = false;
-    app.add_option("IN", source, "A file or a test scene's name")->required();
+    source.add_to(app, "IN");
     app.add_option("OUT", output, "The file to write; replaced only once the new one is complete")
         ->required();
     app.add_flag("--quiet", quiet, "Print nothing but warnings and errors");
@@ -73,11 +74,12 @@ Result<int> run_convert(const Arguments& arguments) {
 
     if (const Result<Done> fine = check_mesh_output(output); !fine)
         return fine.error();
-    if (!is_test_scene(source)) {
-        const NamedFile files[] = {{"input", source}, {"output", output}};
-        if (const Result<Done> fine = check_distinct(files); !fine)
-            return fine.error();
-    }
+    if (const Result<Done> fine = source.check(); !fine)
+        return fine.error();
+    std::vector<NamedFile> files = source.files();
+    files.push_back({"output", output});
+    if (const Result<Done> fine = check_distinct(files); !fine)
+        return fine.error();
     const Result<Scene> scene = open_scene(source, standard_error_log(/* chatty= */ false));
     if (!scene)
         return scene.error();

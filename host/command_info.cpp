@@ -119,9 +119,9 @@ static std::string info_text(const std::string& source, const Scene& scene, cons
 Result<int> run_info(const Arguments& arguments) {
     CLI::App app{"Says what a scene consists of, what it needs, and what is left out of it.",
                  "overcast info"};
-    std::string source;
+    SceneArguments source;
     bool json = false;
-    app.add_option("SCENE", source, "A file or a test scene's name")->required();
+    source.add_to(app);
     app.add_flag("--json", json, "As JSON, for a program");
     app.footer(kExamples);
     const Result<Parsed> parsed = parse_arguments(app, arguments);
@@ -130,11 +130,13 @@ Result<int> run_info(const Arguments& arguments) {
     if (*parsed == Parsed::HelpShown)
         return kExitOk;
 
+    if (const Result<Done> fine = source.check(); !fine)
+        return fine.error();
     const Result<Scene> scene = open_scene(source, standard_error_log(/* chatty= */ false));
     if (!scene)
         return scene.error();
     const SceneSummary summary = summarize(*scene);
-    fmt::print("{}", json ? info_json(*scene, summary) : info_text(source, *scene, summary));
+    fmt::print("{}", json ? info_json(*scene, summary) : info_text(source.scene, *scene, summary));
     return kExitOk;
 }
 

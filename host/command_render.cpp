@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast render: a scene in, pictures and statistics out.
-#include "host/arguments.h"
+// overcast render: a scene in, pictures and statistics out. The words of the command line, and
+// what they mean.
 #include "host/backend_arguments.h"
 #include "host/camera.h"
+#include "host/camera_path_file.h"
 #include "host/command.h"
+#include "host/frames.h"
 #include "host/interrupt.h"
-#include "host/memory_size.h"
-#include "host/output.h"
-#include "host/progress.h"
-#include "host/scene_source.h"
-#include "host/scene_summary.h"
-#include "host/stats.h"
-#include "host/stopwatch.h"
+#include "host/render_job.h"
 #include "testscenes/catalog.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
-
-#include <cstdio>
 
 namespace ovc {
 
@@ -30,17 +24,25 @@ static constexpr const char* kExamples = R"(Examples:
       from a point of view, 60 degrees wide, with two lights
   overcast render plants --stats plants.json --quiet
       a generated scene, with statistics for a program
+  overcast render dragons-10 --frames 0:99 -o dragons-####.png
+      100 frames along the scene's camera path, built once: dragons-0000.png to dragons-0099.png
+  overcast render dragon.ply --camera-path walk.csv --frames 0:90:10 -o walk-###.png
+      every tenth frame of a path of your own (docs/scenes.md)
+  overcast render dragons-5 --model dragon.ply
+      the scene with your model in the place of the generated one
   overcast render dragon.ply +W640 +H480 +Od.png
       POV-Ray's words are understood
 
-Interrupted with Ctrl-C, it saves what it has and exits with 2.)";
+Interrupted with Ctrl-C, it saves what it has (of a sequence, the finished frames) and exits with 2.)";
 
 /// The words as given.
 struct RenderWords {
-    std::string scene;
+    SceneArguments scene;
     std::vector<std::string> outputs;
     std::string size = "512x512";
     std::string camera;
+    std::string frames;
+    std::string camera_path;
     std::vector<std::string> lights;
     std::string max_depth = "5";
     bool no_shadows = false;
@@ -56,33 +58,29 @@ struct RenderWords {
 /// the same within the noise, but where the budget is tight these move up to 1.6 times the bytes.
 static constexpr size_t kWatchedBatchRays = size_t(1) << 18;
 
-/// What they mean.
-struct RenderJob {
-    std::string scene;
-    std::vector<std::string> outputs;
-    ImageSize size;
-    std::optional<Camera> camera;
-    std::vector<PointLight> lights;
-    WhittedOptions whitted;
-    BackendOptions backend;
-    std::string stats;
-    bool quiet = false;
-};
-
 void RenderWords::add_to(CLI::App& app) {
-    app.add_option("SCENE", scene,
-                   "A file (.ply .obj, also .gz, or what Assimp reads) or a test scene's name")
-        ->required();
+    scene.add_to(app);
     app.add_option("-o,--output,--outfile", outputs,
-                   "The picture: .png (sRGB) or .exr (linear); may be repeated; default: out.png")
+                   "The picture: .png (sRGB) or .exr (linear); may be repeated; #### becomes the "
+                   "frame's number; default: out.png, of frames out-####.png")
         ->allow_extra_args(false)
         ->type_name("FILE");
     app.add_option("--size", size, "Pixels, at most 65535 a side; default: 512x512")
         ->type_name("WxH");
-    app.add_option("--camera", camera,
-                   "Eye, target and angle of view in degrees along the shorter side (40); default: "
-                   "the scene's, else the whole scene is framed")
-        ->type_name("EX,EY,EZ,TX,TY,TZ[,FOV]");
+    CLI::Option* still =
+        app.add_option("--camera", camera,
+                       "Eye, target and angle of view in degrees along the shorter side (40); "
+                       "default: the scene's, else the whole scene is framed")
+            ->type_name("EX,EY,EZ,TX,TY,TZ[,FOV]");
+    app.add_option("--frames", frames,
+                   "Frames of the camera path, the first and the last included; default: one "
+                   "picture, with --camera-path all frames")
+        ->type_name("A:B[:STEP]")
+        ->excludes(still);
+    app.add_option("--camera-path", camera_path,
+                   "A path in a file, JSON or CSV, instead of the scene's own (docs/scenes.md)")
+        ->type_name("FILE")
+        ->excludes(still);
     app.add_option("--light", lights, "A point light instead of the scene's; may be repeated")
         ->allow_extra_args(false)
         ->type_name("X,Y,Z");
@@ -96,39 +94,90 @@ void RenderWords::add_to(CLI::App& app) {
     backend.add_to(app);
 }
 
+/// The path to take, and what it is called in a sentence.
+struct NamedPath {
+    CameraPath cameras;
+    std::string name;
+};
+
+static Result<NamedPath> choose_path(const RenderWords& words) {
+    const std::string& scene = words.scene.scene;
+    const bool from_file = !words.camera_path.empty();
+    if (!from_file && !is_test_scene(scene))
+        return Error{
+            fmt::format("--frames: '{}' has no camera path; --camera-path gives it one", scene)};
+    Result<CameraPath> path =
+        from_file ? load_camera_path(words.camera_path) : test_scene_path(scene);
+    if (!path)
+        return path.error();
+    return NamedPath{std::move(*path), from_file ? "'" + words.camera_path + "'" : scene};
+}
+
+/// The shots that --frames and --camera-path ask for; none for a single picture.
+static Result<std::vector<Shot>> understand_frames(const RenderWords& words) {
+    std::vector<Shot> shots;
+    if (words.frames.empty() && words.camera_path.empty())
+        return shots;
+    const Result<NamedPath> path = choose_path(words);
+    if (!path)
+        return path.error();
+    FrameRange range{0, uint32_t(path->cameras.size() - 1), 1};
+    if (!words.frames.empty()) {
+        const Result<FrameRange> asked =
+            parse_frames(words.frames, uint32_t(path->cameras.size()), path->name);
+        if (!asked)
+            return asked.error();
+        range = *asked;
+    }
+    for (uint32_t i = 0; i < range.count(); ++i) {
+        const uint32_t frame = range.first + i * range.step;
+        shots.push_back({frame, path->cameras[frame]});
+    }
+    return shots;
+}
+
 /// No file is written that is read or written besides.
-static Result<Done> check_files(const RenderJob& job) {
-    std::vector<NamedFile> files;
-    if (!is_test_scene(job.scene))
-        files.push_back({"input", job.scene});
+static Result<Done> check_files(const RenderWords& words, const RenderJob& job,
+                                std::optional<uint32_t> frame) {
+    std::vector<NamedFile> files = job.scene.files();
+    if (!words.camera_path.empty())
+        files.push_back({"camera path", words.camera_path});
     for (const std::string& output : job.outputs)
-        files.push_back({"output", output});
+        files.push_back({"output", frame ? frame_file(output, *frame) : output});
     if (!job.stats.empty())
         files.push_back({"statistics", job.stats});
     return check_distinct(files);
 }
 
-/// Everything that can be wrong before anything is read.
-static Result<RenderJob> understand(const RenderWords& words) {
-    RenderJob job;
-    job.scene = words.scene;
-    job.outputs = words.outputs.empty() ? std::vector<std::string>{"out.png"} : words.outputs;
-    job.stats = words.stats;
-    job.quiet = words.quiet;
-    for (const std::string& output : job.outputs)
-        if (const Result<Done> fine = check_image_output(output); !fine)
+static Result<Done> check_outputs(const RenderWords& words, const RenderJob& job) {
+    for (const std::string& output : job.outputs) {
+        if (job.shots.size() > 1 && !has_frame_number(output))
+            return Error{fmt::format("the output file '{}' has no place for the number of each of "
+                                     "{} frames, such as the #### in out-####.png",
+                                     output, job.shots.size())};
+        const std::string first =
+            job.shots.empty() ? output : frame_file(output, job.shots[0].frame);
+        if (const Result<Done> fine = check_image_output(first); !fine)
             return fine.error();
+    }
     if (!job.stats.empty())
         if (const Result<Done> fine = check_writable("statistics", job.stats); !fine)
             return fine.error();
-    if (const Result<Done> fine = check_files(job); !fine)
-        return fine.error();
+    if (job.shots.empty())
+        return check_files(words, job, std::nullopt);
+    for (const Shot& shot : job.shots)
+        if (const Result<Done> fine = check_files(words, job, shot.frame); !fine)
+            return fine.error();
+    return Done{};
+}
+
+static Result<Done> understand_view(const RenderWords& words, RenderJob& job) {
     const Result<ImageSize> size = parse_size(words.size);
     if (!size)
         return size.error();
     job.size = *size;
     if (!words.camera.empty()) {
-        const Result<Camera> camera = parse_camera(words.camera);
+        const Result<Camera> camera = parse_camera("--camera", words.camera);
         if (!camera)
             return camera.error();
         job.camera = *camera;
@@ -139,6 +188,10 @@ static Result<RenderJob> understand(const RenderWords& words) {
             return position.error();
         job.lights.push_back({*position, kDefaultLightColor});
     }
+    return Done{};
+}
+
+static Result<Done> understand_shading(const RenderWords& words, RenderJob& job) {
     const Result<uint64_t> depth = parse_count("--max-depth", words.max_depth, 0, 1000);
     if (!depth)
         return depth.error();
@@ -146,87 +199,35 @@ static Result<RenderJob> understand(const RenderWords& words) {
     job.whitted.shadows = !words.no_shadows;
     if (isatty(STDERR_FILENO))
         job.whitted.batch_rays = kWatchedBatchRays;
+    return Done{};
+}
+
+/// Everything that can be wrong before anything but a camera path is read.
+static Result<RenderJob> understand(const RenderWords& words) {
+    RenderJob job;
+    job.scene = words.scene;
+    job.stats = words.stats;
+    job.quiet = words.quiet;
+    if (const Result<Done> fine = words.scene.check(); !fine)
+        return fine.error();
+    Result<std::vector<Shot>> shots = understand_frames(words);
+    if (!shots)
+        return shots.error();
+    job.shots = std::move(*shots);
+    job.outputs = words.outputs;
+    if (job.outputs.empty())
+        job.outputs = {job.shots.empty() ? "out.png" : "out-####.png"};
+    if (const Result<Done> fine = check_outputs(words, job); !fine)
+        return fine.error();
+    if (const Result<Done> fine = understand_view(words, job); !fine)
+        return fine.error();
+    if (const Result<Done> fine = understand_shading(words, job); !fine)
+        return fine.error();
     const Result<BackendOptions> backend = words.backend.resolve();
     if (!backend)
         return backend.error();
     job.backend = *backend;
     return job;
-}
-
-/// Gives the scene the camera and the lights that were asked for, or those it lacks. A file's
-/// camera is not checked yet.
-static Camera dress(Scene& scene, const RenderJob& job) {
-    Camera camera;
-    if (job.camera) {
-        camera = *job.camera;
-        if (scene.camera)
-            camera.up = scene.camera->up;
-    } else if (scene.camera) {
-        camera = *scene.camera;
-    } else {
-        camera = framing_camera(hittable_bounds(scene.soup), job.size.width, job.size.height);
-    }
-    if (!job.lights.empty())
-        scene.lights = job.lights;
-    if (scene.lights.empty())
-        scene.lights.push_back(shoulder_light(camera));
-    return camera;
-}
-
-static Result<Done> save_all(const RenderJob& job, const Image& image, RenderStats& stats,
-                             const Stopwatch& total) {
-    const Stopwatch watch;
-    for (const std::string& output : job.outputs)
-        if (const Result<Done> saved = save_image(image, output); !saved)
-            return saved;
-    stats.seconds_output = watch.seconds();
-    stats.seconds_total = total.seconds();
-    return job.stats.empty() ? Result<Done>(Done{}) : save_text(stats_json(stats), job.stats);
-}
-
-static Result<int> render(const RenderJob& job) {
-    const Stopwatch total;
-    const LogSink log = standard_error_log(/* chatty= */ !job.quiet);
-    RenderStats stats;
-    Result<Scene> scene = open_scene(job.scene, log);
-    if (!scene)
-        return scene.error();
-    stats.scene = job.scene;
-    stats.width = job.size.width;
-    stats.height = job.size.height;
-    stats.seconds_import = total.seconds();
-
-    const Camera camera = dress(*scene, job);
-    if (const Result<Done> fine = check_camera(camera); !fine)
-        return Error{fmt::format("{}: {}", job.scene, fine.error().message)};
-    const Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, job.backend, log);
-    if (!backend)
-        return backend.error();
-
-    Image image(job.size.width, job.size.height);
-    const InterruptGuard interrupt;
-    {
-        Progress progress(**backend, image.pixels.size(), /* shown= */ !job.quiet);
-        const auto observe = [&](const RenderReport& report) {
-            progress.update(report);
-            return !interrupt.interrupted();
-        };
-        const Result<RenderReport> report =
-            render_batched(*scene, camera, **backend, job.whitted, observe, image);
-        if (!report)
-            return report.error();
-        stats.report = *report;
-    }
-    stats.tracing = (*backend)->statistics();
-    stats.renderer = (*backend)->renderer();
-    if (const Result<Done> saved = save_all(job, image, stats, total); !saved)
-        return saved.error();
-    if (!job.quiet)
-        fmt::print("{}  wrote      {}\n", stats_summary(stats), fmt::join(job.outputs, ", "));
-    if (stats.report.complete)
-        return kExitOk;
-    fmt::print(stderr, "overcast: interrupted; what was rendered so far is saved\n");
-    return kExitInterrupted;
 }
 
 Result<int> run_render(const Arguments& arguments) {

@@ -13,7 +13,11 @@
 namespace ovc {
 
 static constexpr const char* kExamples = R"(A name stands wherever a command takes a SCENE:
-  overcast render plants -o plants.png)";
+  overcast render plants -o plants.png
+A scene with frames has a camera path; these are its first two frames:
+  overcast render dragons-3 --frames 0:1 -o dragons-###.png
+dragons-N and dragonball show a generated dragon, or a model of yours:
+  overcast render dragons-3 --model dragon.ply)";
 
 Result<int> run_scenes(const Arguments& arguments) {
     CLI::App app{"Lists the test scenes that are generated on demand.", "overcast scenes"};
@@ -28,7 +32,8 @@ Result<int> run_scenes(const Arguments& arguments) {
     for (const CatalogEntry& entry : catalog())
         widest = std::max(widest, entry.name.size());
     for (const CatalogEntry& entry : catalog())
-        fmt::print("{:<{}}  {}\n", entry.name, widest, entry.description);
+        fmt::print("{:<{}}  {}{}\n", entry.name, widest, entry.description,
+                   entry.frames > 0 ? fmt::format("; {} frames", entry.frames) : "");
     return kExitOk;
 }
 

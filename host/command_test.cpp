@@ -2,12 +2,18 @@
 // The command as a whole, on the CPU: what it writes, and that an error writes nothing.
 #include "host/command.h"
 #include "host/interrupt.h"
+#include "testscenes/catalog.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <thread>
 #include <unistd.h>
 
 namespace ovc {
@@ -30,6 +36,11 @@ protected:
     static std::string error(const Arguments& arguments) {
         const Result<int> code = run_command(arguments);
         return code ? "" : code.error().message;
+    }
+
+    std::string bytes(const char* name) const {
+        std::ifstream file(path(name), std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
     }
 
     fs::path folder_;
@@ -82,7 +93,18 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
         {{"render", "box", "-o", out, "--max-depth", "-1"}, "--max-depth needs"},
         {{"render", "box", "-o", out, "--backend", "gpu-grid"}, "not there yet"},
         {{"render", "box", "-o", out, "--backend", "embree", "--leaves", "4"}, "means nothing"},
-        {{"render", "box", "-o", out, "--frames", "1:2"}, "not there yet"},
+        {{"render", "box", "-o", out, "--frames", "1:2"}, "box has no camera path"},
+        {{"render", path("a.ply"), "-o", out, "--frames", "0"}, "a.ply' has no camera path"},
+        {{"render", "dragons-22", "-o", out, "--frames", "0"}, "must be from 1 to 21"},
+        {{"render", "dragons-2", "-o", out, "--frames", "0:1"},
+         "no place for the number of each of 2 frames"},
+        {{"render", "dragons-2", "-o", out, "--frames", "7:107"}, "there is no frame 107"},
+        {{"render", "dragons-2", "-o", path("no/##.png"), "--frames", "7:8"}, "does not exist"},
+        {{"render", "dragons-2", "--frames", "0", "--camera", "0,0,1,0,0,0"}, "given together"},
+        {{"render", "box", "-o", out, "--camera-path", path("none.csv")}, "none.csv"},
+        {{"render", "box", "-o", out, "--model", "a.ply"}, "not with 'box'"},
+        {{"info", path("b.ply"), "--model", "a.ply"}, "--model goes with the test scenes"},
+        {{"trace", "dragons-1", "--model", path("none.ply")}, "none.ply"},
         {{"render", "box", "-o", out, "--backend", "cpu-kdtree", "--leaves", "4"}, "means nothing"},
         {{"render", "box", "-o", out, "--camera", "0,0,1e101,0,0,0"}, "within 1e+100"},
         {{"render", "box", "-o", out, "--stats", ""}, "--stats needs a value"},
@@ -100,6 +122,91 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
         EXPECT_THAT(sentence, testing::Not(testing::HasSubstr("\n")));
         EXPECT_TRUE(fs::is_empty(folder_)) << c.part;
     }
+}
+
+/// A model small enough for a test, and what renders dragons-2 with it.
+static Arguments small_dragons(const std::string& model, const std::string& output,
+                               const char* size = "32x32") {
+    return {"render",     "dragons-2", "--model", model, "--backend",
+            "cpu-kdtree", "--size",    size,      "-o",  output};
+}
+
+TEST_F(CommandTest, RendersFramesOfThePathWithStatisticsOfEach) {
+    const std::string model = path("model.ply");
+    ASSERT_EQ(error({"convert", "sphere-2", model, "--quiet"}), "");
+    Arguments arguments = small_dragons(model, path("d-###.png"));
+    arguments.insert(arguments.end(),
+                     {"--frames", "0:60:30", "--stats", path("s.json"), "--quiet"});
+    ASSERT_EQ(error(arguments), "");
+    for (const char* name : {"d-000.png", "d-030.png", "d-060.png"})
+        EXPECT_TRUE(fs::exists(path(name))) << name;
+    std::ifstream file(path("s.json"));
+    const nlohmann::json stats = nlohmann::json::parse(file);
+    EXPECT_EQ(stats["triangles"], 204800 + 2 * 320);
+    ASSERT_EQ(stats["frames"].size(), 3u);
+    uint64_t shadow = 0;
+    for (const nlohmann::json& frame : stats["frames"]) {
+        EXPECT_EQ(frame["complete"], true);
+        EXPECT_EQ(frame["rays"]["primary"], 1024);
+        shadow += frame["rays"]["shadow"].get<uint64_t>();
+    }
+    EXPECT_EQ(stats["frames"][2]["frame"], 60);
+    EXPECT_EQ(stats["rays"]["primary"], 3 * 1024);
+    EXPECT_EQ(stats["rays"]["shadow"], shadow);
+
+    // The same frame alone, and from a file, is the same picture.
+    Arguments alone = small_dragons(model, path("alone.png"));
+    alone.insert(alone.end(), {"--frames", "30", "--quiet"});
+    ASSERT_EQ(error(alone), "");
+    EXPECT_EQ(bytes("alone.png"), bytes("d-030.png"));
+    EXPECT_NE(bytes("d-000.png"), bytes("d-030.png"));
+    const Camera camera = test_scene_path("dragons-2")->at(30);
+    std::ofstream(path("path.csv"))
+        << fmt::format("{},{},{},{},{},{}\n", camera.eye.x, camera.eye.y, camera.eye.z,
+                       camera.target.x, camera.target.y, camera.target.z);
+    Arguments from_file = small_dragons(model, path("file-#.png"));
+    from_file.insert(from_file.end(), {"--camera-path", path("path.csv"), "--quiet"});
+    ASSERT_EQ(error(from_file), "");
+    EXPECT_EQ(bytes("file-0.png"), bytes("d-030.png"));
+}
+
+TEST_F(CommandTest, AnInterruptedSequenceKeepsItsFinishedFrames) {
+    const std::string model = path("model.ply");
+    ASSERT_EQ(error({"convert", "sphere-2", model, "--quiet"}), "");
+    Arguments arguments = small_dragons(model, path("####.png"), "256x256");
+    arguments.insert(arguments.end(), {"--frames", "0:99", "--stats", path("s.json"), "--quiet"});
+    std::thread user([&] {
+        while (!fs::exists(path("0001.png")))
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        std::raise(SIGINT);
+    });
+    testing::internal::CaptureStderr();
+    const Result<int> code = run_command(arguments);
+    user.join();
+    const std::string said = testing::internal::GetCapturedStderr();
+    ASSERT_TRUE(code);
+    EXPECT_EQ(*code, kExitInterrupted);
+    std::ifstream file(path("s.json"));
+    const nlohmann::json stats = nlohmann::json::parse(file);
+    EXPECT_EQ(stats["complete"], false);
+    const size_t saved = stats["frames"].size();
+    EXPECT_GE(saved, 2u);
+    EXPECT_LT(saved, 100u);
+    EXPECT_THAT(said, testing::HasSubstr(fmt::format(
+                          "{} of 100 frames are saved, frame {} is the next", saved, saved)));
+    size_t pictures = 0;
+    for (const auto& entry : fs::directory_iterator(folder_))
+        pictures += entry.path().extension() == ".png";
+    EXPECT_EQ(pictures, saved);
+}
+
+TEST_F(CommandTest, ScenesListsCountsAndFrames) {
+    testing::internal::CaptureStdout();
+    ASSERT_EQ(error({"scenes"}), "");
+    std::fflush(stdout);
+    const std::string text = testing::internal::GetCapturedStdout();
+    for (const char* part : {"dragons-N", "7,364,817", "12,748,510", "100 frames", "275 frames"})
+        EXPECT_THAT(text, testing::HasSubstr(part));
 }
 
 TEST_F(CommandTest, WritesOverNeitherItsInputNorItself) {

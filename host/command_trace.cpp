@@ -32,10 +32,10 @@ Examples:
 Result<int> run_trace(const Arguments& arguments) {
     CLI::App app{"Answers rays: where each first hits the scene, or whether it hits it at all.",
                  "overcast trace"};
-    std::string source;
+    SceneArguments source;
     TraceOptions options;
     BackendArguments words;
-    app.add_option("SCENE", source, "A file or a test scene's name")->required();
+    source.add_to(app);
     app.add_flag("--any", options.any, "Only whether a ray hits anything");
     app.add_flag("--binary", options.binary, "Records of doubles instead of lines, in and out");
     words.add_to(app);
@@ -49,6 +49,8 @@ Result<int> run_trace(const Arguments& arguments) {
     const Result<BackendOptions> backend_options = words.resolve();
     if (!backend_options)
         return backend_options.error();
+    if (const Result<Done> fine = source.check(); !fine)
+        return fine.error();
     const LogSink log = standard_error_log(/* chatty= */ false);
     const Result<Scene> scene = open_scene(source, log);
     if (!scene)

@@ -8,14 +8,18 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <utility>
 
 namespace ovc {
 
 /// A terminal that is written to more often than this only flickers.
 static constexpr double kSecondsBetweenLines = 0.1;
 
-Progress::Progress(const Backend& backend, uint64_t pixel_count, bool shown)
-    : backend_(backend), pixel_count_(pixel_count), shown_(shown && isatty(STDERR_FILENO)) {}
+Progress::Progress(const Backend& backend, std::string label, uint64_t pixel_count, bool shown)
+    : backend_(backend),
+      label_(std::move(label)),
+      pixel_count_(pixel_count),
+      shown_(shown && isatty(STDERR_FILENO)) {}
 
 Progress::~Progress() {
     if (shown_)
@@ -28,7 +32,7 @@ void Progress::update(const RenderReport& report) {
         return;
     last_seconds_ = seconds;
     const ovc_statistics statistics = backend_.statistics();
-    fmt::print(stderr, "\r\033[K{:3.0f} % of pixels, {} rays, {:.2f} million a second",
+    fmt::print(stderr, "\r\033[K{}{:3.0f} % of pixels, {} rays, {:.2f} million a second", label_,
                100.0 * double(report.pixels_done) / double(pixel_count_),
                human_count(report.rays.total()), double(report.rays.total()) / seconds * 1e-6);
     if (statistics.level2_bytes > 0)

@@ -7,13 +7,15 @@
 #include "host/whitted_batched.h"
 
 #include <cstdint>
+#include <string>
 
 namespace ovc {
 
 class Progress {
 public:
-    /// shown: false keeps it silent even on a terminal.
-    Progress(const Backend& backend, uint64_t pixel_count, bool shown);
+    /// label: what the line begins with, such as "frame 7, "; may be empty. shown: false keeps it
+    /// silent even on a terminal.
+    Progress(const Backend& backend, std::string label, uint64_t pixel_count, bool shown);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -22,6 +24,7 @@ public:
 
 private:
     const Backend& backend_;
+    std::string label_;
     uint64_t pixel_count_;
     bool shown_;
     Stopwatch watch_;

@@ -2,6 +2,7 @@
 // Test scenes by name, files by path.
 #include "host/scene_source.h"
 
+#include "host/arguments.h"
 #include "importers/importer.h"
 #include "testscenes/catalog.h"
 
@@ -13,9 +14,44 @@
 
 namespace ovc {
 
-Result<Scene> open_scene(const std::string& source, const LogSink& log) {
+void SceneArguments::add_to(CLI::App& app, const char* name) {
+    app.add_option(name, scene,
+                   "A file (.ply .obj, also .gz, or what Assimp reads) or a test scene's name")
+        ->required();
+    app.add_option("--model", model,
+                   "For dragons-N and dragonball: the model they show instead of a generated one")
+        ->type_name("FILE");
+}
+
+Result<Done> SceneArguments::check() const {
+    if (model.empty() || (is_test_scene(scene) && test_scene_entry(scene).takes_model))
+        return Done{};
+    return Error{fmt::format(
+        "--model goes with the test scenes that show one (dragons-N, dragonball), not with '{}'",
+        scene)};
+}
+
+std::vector<NamedFile> SceneArguments::files() const {
+    std::vector<NamedFile> files;
+    if (!is_test_scene(scene))
+        files.push_back({"input", scene});
+    if (!model.empty())
+        files.push_back({"model", model});
+    return files;
+}
+
+static Result<Scene> make_with_model(const std::string& name, const LogSink& log,
+                                     const std::string& model) {
+    const Result<Scene> loaded = load(model, {log});
+    if (!loaded)
+        return loaded.error();
+    Result<Scene> scene = make_test_scene(name, &loaded->soup);
+    return scene ? std::move(scene) : Error{fmt::format("{}: {}", model, scene.error().message)};
+}
+
+Result<Scene> open_scene(const std::string& source, const LogSink& log, const std::string& model) {
     if (is_test_scene(source))
-        return make_test_scene(source);
+        return model.empty() ? make_test_scene(source) : make_with_model(source, log, model);
     std::error_code ignored;
     if (std::filesystem::is_directory(source, ignored))
         return Error{fmt::format("'{}' is a directory, expected a file or a test scene", source)};

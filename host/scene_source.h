@@ -5,14 +5,37 @@
 #include "core/log.h"
 #include "core/result.h"
 #include "core/scene.h"
+#include "host/output.h"
 
 #include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace ovc {
 
+/// SCENE and what belongs to it, the same for every subcommand that takes one.
+struct SceneArguments {
+    std::string scene;
+    std::string model; // empty: not given
+
+    /// name: what the help calls the scene.
+    void add_to(CLI::App& app, const char* name = "SCENE");
+    /// Whether --model goes with this scene; before anything is read.
+    Result<Done> check() const;
+    /// The files it reads.
+    std::vector<NamedFile> files() const;
+};
+
 /// The name of a test scene makes that scene; everything else is a file (./plants is a file even if
-/// plants is not).
-Result<Scene> open_scene(const std::string& source, const LogSink& log);
+/// plants is not). model: a file whose triangles a test scene shows instead of its own; or empty.
+Result<Scene> open_scene(const std::string& source, const LogSink& log,
+                         const std::string& model = {});
+inline Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log) {
+    return open_scene(arguments.scene, log, arguments.model);
+}
 
 /// Writes warnings and errors, and Info if `chatty`, to standard error, one line each.
 LogSink standard_error_log(bool chatty);

@@ -19,6 +19,56 @@ uint64_t host_peak_bytes() {
     return uint64_t(usage.ru_maxrss) * 1024; // Linux counts in KiB
 }
 
+ovc_statistics counted_between(const ovc_statistics& before, const ovc_statistics& after) {
+    ovc_statistics counted = after;
+    for (const auto count :
+         {&ovc_statistics::passes, &ovc_statistics::pages_in, &ovc_statistics::bytes_in,
+          &ovc_statistics::nearest_rays, &ovc_statistics::occlusion_rays,
+          &ovc_statistics::invalid_rays, &ovc_statistics::ray_visits, &ovc_statistics::flagged,
+          &ovc_statistics::retraced})
+        counted.*count -= before.*count;
+    counted.seconds_trace -= before.seconds_trace;
+    counted.seconds_kernel -= before.seconds_kernel;
+    return counted;
+}
+
+void RenderStats::add(const FrameStats& frame) {
+    report.rays += frame.report.rays;
+    report.seconds_trace += frame.report.seconds_trace;
+    report.seconds_shade += frame.report.seconds_shade;
+    report.pixels_done += frame.report.pixels_done;
+    seconds_output += frame.seconds_output;
+    frames.push_back(frame);
+}
+
+static Json rays_of(const RayCounts& rays) {
+    return {{"primary", rays.primary},
+            {"shadow", rays.shadow},
+            {"reflection", rays.reflection},
+            {"refraction", rays.refraction}};
+}
+
+static Json frames_of(const RenderStats& s) {
+    Json frames = Json::array();
+    for (const FrameStats& f : s.frames)
+        frames.push_back({{"frame", f.frame},
+                          {"complete", f.report.complete},
+                          {"passes", f.tracing.passes},
+                          {"pages_in", f.tracing.pages_in},
+                          {"bytes_in", f.tracing.bytes_in},
+                          {"rays", rays_of(f.report.rays)},
+                          {"ray_visits", f.tracing.ray_visits},
+                          {"flagged", f.tracing.flagged},
+                          {"retraced", f.tracing.retraced},
+                          {"time",
+                           {{"trace", f.report.seconds_trace},
+                            {"kernel", f.tracing.seconds_kernel},
+                            {"shade", f.report.seconds_shade},
+                            {"output", f.seconds_output},
+                            {"total", f.seconds}}}});
+    return frames;
+}
+
 static Json times_of(const RenderStats& s) {
     return {{"import", s.seconds_import},         {"level1", s.tracing.seconds_level1},
             {"level2", s.tracing.seconds_level2}, {"trace", s.report.seconds_trace},
@@ -47,20 +97,26 @@ std::string stats_json(const RenderStats& s) {
         {"passes", t.passes},
         {"pages_in", t.pages_in},
         {"bytes_in", t.bytes_in},
-        {"rays",
-         {{"primary", s.report.rays.primary},
-          {"shadow", s.report.rays.shadow},
-          {"reflection", s.report.rays.reflection},
-          {"refraction", s.report.rays.refraction}}},
+        {"rays", rays_of(s.report.rays)},
         {"ray_visits", t.ray_visits},
         {"invalid_rays", t.invalid_rays},
         {"flagged", t.flagged},
         {"retraced", t.retraced},
         {"capped", t.capped},
-        {"time", times_of(s)}};
+        {"time", times_of(s)},
+        {"frames", frames_of(s)}};
     // A name of a file or a driver need not be UTF-8; what is not is replaced rather than thrown
     // about.
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string frame_summary(const FrameStats& f) {
+    std::string text = fmt::format("frame {:<4} {:7.2f} s, {} rays", f.frame, f.seconds,
+                                   human_count(f.report.rays.total()));
+    if (f.tracing.level2_bytes > 0)
+        text += fmt::format(", {} passes, {} moved in {} pages", human_count(f.tracing.passes),
+                            human_bytes(f.tracing.bytes_in), human_count(f.tracing.pages_in));
+    return text;
 }
 
 static std::string gpu_lines(const ovc_statistics& t) {

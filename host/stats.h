@@ -7,23 +7,44 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace ovc {
+
+/// One picture of a run.
+struct FrameStats {
+    uint32_t frame = 0; // its number in the camera path; 0 for a picture without one
+    RenderReport report;
+    ovc_statistics tracing{}; // what was counted for this frame alone
+    double seconds_output = 0;
+    double seconds = 0; // from its first ray to its last file
+};
+
+/// What `after` counts on top of `before`, two readings of one backend. What does not count up
+/// (leaves, bytes of the structure, peaks) is that of `after`.
+ovc_statistics counted_between(const ovc_statistics& before, const ovc_statistics& after);
 
 struct RenderStats {
     std::string scene;
     uint32_t width = 0;
     uint32_t height = 0;
-    RenderReport report;
+    RenderReport report; // all frames together
     ovc_statistics tracing{};
+    std::vector<FrameStats> frames; // those that are finished, and for a single picture also a part
     std::string renderer;
     double seconds_import = 0;
     double seconds_output = 0;
     double seconds_total = 0;
+
+    /// Appends the frame and adds it to the totals.
+    void add(const FrameStats& frame);
 };
 
 /// The document of docs/stats.md, with a line end.
 std::string stats_json(const RenderStats& stats);
+
+/// One line about a frame, without a line end.
+std::string frame_summary(const FrameStats& frame);
 
 /// A few lines for the terminal, with a line end.
 std::string stats_summary(const RenderStats& stats);

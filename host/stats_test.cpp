@@ -15,7 +15,12 @@ static RenderStats example() {
     RenderStats stats;
     stats.scene = "caf\xe9.ply"; // not UTF-8
     stats.renderer = "llvmpipe (LLVM 15, 256 bits)";
-    stats.report.rays = {262144, 100000, 5};
+    FrameStats frame;
+    frame.frame = 7;
+    frame.report.rays = {262144, 100000, 5};
+    frame.report.complete = true;
+    frame.tracing.passes = 3;
+    stats.add(frame);
     stats.report.complete = true;
     stats.tracing.triangles = 871414;
     stats.tracing.leaves = 11;
@@ -47,6 +52,42 @@ TEST(StatsJson, EveryKeyIsDocumented) {
     for (const auto& [key, value] : flat.items())
         EXPECT_THAT(text, testing::HasSubstr(fmt::format("`{}`", key.substr(key.rfind('/') + 1))))
             << key;
+}
+
+TEST(StatsJson, HasAnEntryAFrameAndTheirSum) {
+    RenderStats stats = example();
+    FrameStats second;
+    second.frame = 8;
+    second.report.rays = {1000, 200, 30};
+    second.report.seconds_trace = 2;
+    stats.add(second);
+    const nlohmann::json document = nlohmann::json::parse(stats_json(stats));
+    ASSERT_EQ(document["frames"].size(), 2u);
+    EXPECT_EQ(document["frames"][0]["frame"], 7);
+    EXPECT_EQ(document["frames"][0]["passes"], 3);
+    EXPECT_EQ(document["frames"][1]["rays"]["shadow"], 200);
+    EXPECT_EQ(document["frames"][1]["complete"], false);
+    EXPECT_EQ(document["rays"]["primary"], 263144);
+    EXPECT_EQ(document["rays"]["reflection"], 35);
+    EXPECT_EQ(document["time"]["trace"], 2);
+}
+
+TEST(StatsCounters, OfAFrameAreWhatWasCountedInBetween) {
+    ovc_statistics before{}, after{};
+    before.passes = 10;
+    before.bytes_in = 1000;
+    before.seconds_kernel = 1.5;
+    after.passes = 14;
+    after.bytes_in = 1000;
+    after.seconds_kernel = 2;
+    after.leaves = 9;
+    after.gpu_peak_bytes = 77;
+    const ovc_statistics counted = counted_between(before, after);
+    EXPECT_EQ(counted.passes, 4u);
+    EXPECT_EQ(counted.bytes_in, 0u);
+    EXPECT_EQ(counted.seconds_kernel, 0.5);
+    EXPECT_EQ(counted.leaves, 9u);
+    EXPECT_EQ(counted.gpu_peak_bytes, 77u);
 }
 
 TEST(StatsSummary, SaysWhatAPersonWantsToKnow) {

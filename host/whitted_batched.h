@@ -29,6 +29,13 @@ struct RayCounts {
     uint64_t refraction = 0;
 
     uint64_t total() const { return primary + shadow + reflection + refraction; }
+    RayCounts& operator+=(const RayCounts& other) {
+        primary += other.primary;
+        shadow += other.shadow;
+        reflection += other.reflection;
+        refraction += other.refraction;
+        return *this;
+    }
 };
 
 struct RenderReport {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <charconv>
 #include <optional>
 #include <vector>
@@ -17,7 +18,8 @@ namespace {
 struct Generator {
     CatalogEntry entry;
     uint32_t least = 0, most = 0; // the range of N; no N when most is 0
-    Scene (*make)(uint32_t size);
+    Scene (*make)(uint32_t size, const Soup* model);
+    CameraPath (*path)(uint32_t size) = nullptr;
 
     bool sized() const { return most != 0; }
     /// "terrain-" for "terrain-N", "knot" for "knot".
@@ -26,40 +28,69 @@ struct Generator {
     }
 };
 
+/// A generator that has no use for a model.
+template <Scene (*kMake)(uint32_t size)>
+Scene alone(uint32_t size, const Soup*) {
+    return kMake(size);
+}
+template <Scene (*kMake)()>
+Scene alone(uint32_t, const Soup*) {
+    return kMake();
+}
+
 constexpr Generator kGenerators[] = {
-    {{"plants",
-      "a river valley with trees, reeds and flowers; the demo: about 7 million triangles"},
+    {{"dragons-N", "N dragons on a mirror: 204,800 + N x 871,414 triangles", 100, true},
+     1,
+     kMostDragons,
+     make_dragons,
+     dragons_path},
+    {{"dragonball", "a dragon, a mirror ball, a glass ball, a lens, waves: 7,364,817 triangles",
+      100, true},
      0,
      0,
-     [](uint32_t) { return make_plants(uint32_t(kPlantsDemoSize)); }},
-    {{"plants-N", "the same, larger or smaller: about N x 110,000 triangles"}, 1, 200, make_plants},
-    {{"terrain-N", "hills over N x N cells: 2 N^2 triangles"}, 1, 4096, make_terrain},
+     [](uint32_t, const Soup* model) { return make_dragonball(model); },
+     [](uint32_t) { return dragonball_path(); }},
+    {{"plants", "a river valley with trees, reeds and flowers; the demo: about 7 million triangles",
+      255},
+     0,
+     0,
+     [](uint32_t, const Soup*) { return make_plants(uint32_t(kPlantsDemoSize)); },
+     [](uint32_t) { return plants_path(); }},
+    {{"plants-N", "the same, larger or smaller: about N x 110,000 triangles", 255},
+     1,
+     200,
+     alone<make_plants>,
+     [](uint32_t) { return plants_path(); }},
+    {{"powerplant",
+      "a hall of eight storeys: pipes, tanks, stairs, rails; six lights: 12,748,510 triangles",
+      275},
+     0,
+     0,
+     [](uint32_t, const Soup*) { return make_powerplant(kPowerplantTriangles); },
+     [](uint32_t) { return powerplant_path(kPowerplantTriangles); }},
+    {{"powerplant-N", "the same, smaller or larger: N triangles (N - 1 where N is odd)", 275},
+     200'000,
+     30'000'000,
+     alone<make_powerplant>,
+     powerplant_path},
+    {{"terrain-N", "hills over N x N cells: 2 N^2 triangles"}, 1, 4096, alone<make_terrain>},
     {{"far-terrain", "a ground of 1e7 m, down to 1 mm at its far corner: 274,160 triangles"},
      0,
      0,
-     [](uint32_t) { return make_far_terrain(); }},
-    {{"sphere-N", "a closed icosphere: 20 x 4^N triangles"}, 0, 10, make_sphere_scene},
-    {{"knot", "a bumpy torus knot, closed: 873,600 triangles"},
-     0,
-     0,
-     [](uint32_t) { return make_knot(); }},
-    {{"soup-N", "random slivers in a unit cube: N x 1000 triangles"}, 1, 20000, make_soup},
+     alone<make_far_terrain>},
+    {{"sphere-N", "a closed icosphere: 20 x 4^N triangles"}, 0, 10, alone<make_sphere_scene>},
+    {{"knot", "a bumpy torus knot, closed: 873,600 triangles"}, 0, 0, alone<make_knot>},
+    {{"soup-N", "random slivers in a unit cube: N x 1000 triangles"}, 1, 20000, alone<make_soup>},
     {{"city", "houses of axis-aligned, coplanar, long thin triangles: about 718,000"},
      0,
      0,
-     [](uint32_t) { return make_city(); }},
-    {{"mirrors", "spheres over a mirror floor: 81,922 triangles"},
-     0,
-     0,
-     [](uint32_t) { return make_mirrors(); }},
+     alone<make_city>},
+    {{"mirrors", "spheres over a mirror floor: 81,922 triangles"}, 0, 0, alone<make_mirrors>},
     {{"glass", "a glass and a mirror ball over a checked floor: 41,472 triangles"},
      0,
      0,
-     [](uint32_t) { return make_glass(); }},
-    {{"box", "a small room with two blocks: 30 triangles"},
-     0,
-     0,
-     [](uint32_t) { return make_box(); }},
+     alone<make_glass>},
+    {{"box", "a small room with two blocks: 30 triangles"}, 0, 0, alone<make_box>},
 };
 
 constexpr auto kEntries = [] {
@@ -119,6 +150,32 @@ std::string_view nearest_name(std::string_view name) {
         .name;
 }
 
+/// The request, where its size is in range.
+Result<Request> find(std::string_view name) {
+    const std::optional<Request> request = parse(name);
+    if (!request)
+        return Error{"no test scene is called \"" + std::string(name) + "\"; did you mean \"" +
+                     std::string(nearest_name(name)) + "\"?"};
+    const Generator& generator = *request->generator;
+    const bool in_range = request->size >= generator.least && request->size <= generator.most;
+    if (generator.sized() && !in_range)
+        return Error{"test scene \"" + std::string(name) + "\": the N of " +
+                     std::string(generator.entry.name) + " must be from " +
+                     std::to_string(generator.least) + " to " + std::to_string(generator.most)};
+    return *request;
+}
+
+Result<Done> check_model(const Generator& generator, const Soup& model) {
+    if (!generator.entry.takes_model)
+        return Error{"the test scene " + std::string(generator.entry.name) +
+                     " shows no model of yours; dragons-N and dragonball do"};
+    Dropped dropped;
+    hittable_triangles(model, &dropped, nullptr);
+    if (dropped.total() == model.triangle_count())
+        return Error{"the model has no triangle that a ray can hit"};
+    return Done{};
+}
+
 } // namespace
 
 std::span<const CatalogEntry> catalog() {
@@ -129,19 +186,31 @@ bool is_test_scene(std::string_view name) {
     return parse(name).has_value();
 }
 
-Result<Scene> make_test_scene(std::string_view name) {
-    const std::optional<Request> request = parse(name);
+const CatalogEntry& test_scene_entry(std::string_view name) {
+    assert(is_test_scene(name));
+    return parse(name)->generator->entry;
+}
+
+Result<Scene> make_test_scene(std::string_view name, const Soup* model) {
+    const Result<Request> request = find(name);
     if (!request)
-        return Error{"no test scene is called \"" + std::string(name) + "\"; did you mean \"" +
-                     std::string(nearest_name(name)) + "\"?"};
+        return request.error();
     const Generator& generator = *request->generator;
-    if (generator.sized() && (request->size < generator.least || request->size > generator.most))
-        return Error{"test scene \"" + std::string(name) + "\": the N of " +
-                     std::string(generator.entry.name) + " must be from " +
-                     std::to_string(generator.least) + " to " + std::to_string(generator.most)};
-    Scene scene = generator.make(uint32_t(request->size));
+    if (model)
+        if (const Result<Done> fine = check_model(generator, *model); !fine)
+            return fine.error();
+    Scene scene = generator.make(uint32_t(request->size), model);
     scene.name = name;
     return scene;
+}
+
+Result<CameraPath> test_scene_path(std::string_view name) {
+    const Result<Request> request = find(name);
+    if (!request)
+        return request.error();
+    if (!request->generator->path)
+        return Error{"the test scene " + std::string(name) + " has no camera path of its own"};
+    return request->generator->path(uint32_t(request->size));
 }
 
 } // namespace ovc

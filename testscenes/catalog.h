@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/result.h"
-#include "core/scene.h"
+#include "testscenes/camera_path.h"
 
 #include <span>
 #include <string>
@@ -15,6 +15,8 @@ namespace ovc {
 struct CatalogEntry {
     std::string_view name;        // "plants"; "NAME-N" where the entry takes a size
     std::string_view description; // one line, with its triangle count
+    uint32_t frames = 0;          // of its camera path; 0: it has none
+    bool takes_model = false;     // shows a model of the user's instead of its own
 };
 
 /// All scenes, for `overcast scenes` and for suggestions.
@@ -23,7 +25,15 @@ std::span<const CatalogEntry> catalog();
 /// True when `name` names a scene of the catalog, its size perhaps out of range.
 bool is_test_scene(std::string_view name);
 
-/// Builds the scene. Error: an unknown name (the nearest one is suggested) or a size out of range.
-Result<Scene> make_test_scene(std::string_view name);
+/// The entry of such a name.
+const CatalogEntry& test_scene_entry(std::string_view name);
+
+/// Builds the scene. model: what it shows instead of its generated model, scaled to fit; null:
+/// none. Error: an unknown name (the nearest one is suggested), a size out of range, a model for a
+/// scene that takes none or without a triangle to hit.
+Result<Scene> make_test_scene(std::string_view name, const Soup* model = nullptr);
+
+/// The camera path of the scene. Error: as of make_test_scene(), or the scene has none.
+Result<CameraPath> test_scene_path(std::string_view name);
 
 } // namespace ovc

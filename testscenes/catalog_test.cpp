@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The catalog: every scene builds, is the same everywhere, and is what its description says.
 #include "testscenes/catalog.h"
+#include "testscenes/closed_test.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,12 +62,21 @@ struct Sample {
 
 /// Each entry of the catalog at its smallest or a small size.
 constexpr Sample kSamples[] = {
-    {"plants-1", 175221, 0x8743bc96b3d823e4}, {"terrain-1", 2, 0x952ac25a51d027d8},
-    {"terrain-64", 8192, 0x572b4fee2859fa98}, {"sphere-0", 20, 0xde27547eb5d06a37},
-    {"sphere-3", 1280, 0x89338c6c67343787},   {"knot", 873600, 0x82ea6ba2d992ff19},
-    {"soup-1", 1000, 0x7dd5499d4622b217},     {"city", 717978, 0xd52fceda6866f325},
-    {"mirrors", 81922, 0x6d08983876b79f76},   {"glass", 41472, 0x13ff34bdbb2f366b},
-    {"box", 30, 0xa3188fbfd523c5bc},          {"far-terrain", 274160, 0xba45980e69015acb},
+    {"dragons-1", 1076214, 0x81c164dedf8f8247},
+    {"powerplant-200000", 200000, 0x5f58e50b18c9f4fb},
+    {"powerplant-600001", 600000, 0x659dcaf242efec1},
+    {"plants-1", 175221, 0x8743bc96b3d823e4},
+    {"terrain-1", 2, 0x952ac25a51d027d8},
+    {"terrain-64", 8192, 0x572b4fee2859fa98},
+    {"sphere-0", 20, 0xde27547eb5d06a37},
+    {"sphere-3", 1280, 0x89338c6c67343787},
+    {"knot", 873600, 0x82ea6ba2d992ff19},
+    {"soup-1", 1000, 0x7dd5499d4622b217},
+    {"city", 717978, 0xd52fceda6866f325},
+    {"mirrors", 81922, 0x6d08983876b79f76},
+    {"glass", 41472, 0x13ff34bdbb2f366b},
+    {"box", 30, 0xa3188fbfd523c5bc},
+    {"far-terrain", 274160, 0xba45980e69015acb},
 };
 
 /// For the names of failing tests.
@@ -108,7 +118,8 @@ TEST_P(CatalogScene, IsReadyToRender) {
     }
     for (const Material& material : scene.materials)
         for (const float share :
-             {material.color.x, material.color.y, material.color.z, material.mirror}) {
+             {material.color.x, material.color.y, material.color.z, material.mirror,
+              material.transmission, 1 - material.mirror - material.transmission}) {
             EXPECT_GE(share, 0) << material.name;
             EXPECT_LE(share, 1) << material.name;
         }
@@ -122,8 +133,8 @@ INSTANTIATE_TEST_SUITE_P(All, CatalogScene, testing::ValuesIn(kSamples), [](cons
 
 TEST(Catalog, HasASampleOfEveryEntryHere) {
     for (const CatalogEntry& entry : catalog()) {
-        if (entry.name == "plants") // large: it has a test of its own
-            continue;
+        if (entry.name == "plants" || entry.name == "powerplant" || entry.name == "dragonball")
+            continue; // large: each has a test of its own
         const std::string_view stem =
             entry.name.ends_with("-N") ? entry.name.substr(0, entry.name.size() - 1) : entry.name;
         const auto is_sample = [&](const Sample& s) {
@@ -143,6 +154,44 @@ TEST(Catalog, CountsAreThoseItsDescriptionsName) {
     EXPECT_EQ(make("glass").soup.triangle_count(), 41472u);
     EXPECT_EQ(make("box").soup.triangle_count(), 30u);
     EXPECT_NEAR(double(make("city").soup.triangle_count()), 718000, 5000);
+}
+
+TEST(Catalog, CountsAreThoseOfTheThesis) {
+    EXPECT_EQ(make("dragons-2").soup.triangle_count(), 1'947'628u);
+    EXPECT_EQ(make("dragons-21").soup.triangle_count(), 18'504'494u);
+    EXPECT_EQ(make("powerplant").soup.triangle_count(), 12'748'510u);
+    EXPECT_EQ(make("powerplant").lights.size(), 6u);
+}
+
+TEST(Catalog, APathHasTheFramesThatItsEntryNames) {
+    for (const CatalogEntry& entry : catalog()) {
+        std::string name(entry.name);
+        if (name.ends_with("-N"))
+            name.replace(name.size() - 1, 1, name.starts_with("powerplant") ? "200000" : "7");
+        const Result<CameraPath> path = test_scene_path(name);
+        EXPECT_EQ(path ? path->size() : 0, entry.frames) << name;
+    }
+    EXPECT_EQ(test_scene_path("box").error().message,
+              "the test scene box has no camera path of its own");
+    EXPECT_EQ(test_scene_path("dragons-22").error().message,
+              "test scene \"dragons-22\": the N of dragons-N must be from 1 to 21");
+    EXPECT_FALSE(test_scene_path("nothing"));
+}
+
+TEST(Catalog, APathGoesWithoutJumps) {
+    for (const char* name :
+         {"dragons-1", "dragons-21", "dragonball", "plants", "powerplant", "powerplant-200000"}) {
+        const CameraPath path = *test_scene_path(name);
+        double length = 0, longest = 0;
+        for (size_t i = 0; i < path.size(); ++i) {
+            EXPECT_TRUE(is_finite(path[i].eye) && is_finite(path[i].target)) << name << " " << i;
+            EXPECT_GT(glm::length(path[i].target - path[i].eye), 0.5) << name << " " << i;
+            const double step = i > 0 ? glm::length(path[i].eye - path[i - 1].eye) : 0;
+            length += step;
+            longest = std::max(longest, step);
+        }
+        EXPECT_LT(longest, 6 * length / double(path.size())) << name;
+    }
 }
 
 TEST(Catalog, PlantsGrowWithTheirSize) {
@@ -169,58 +218,19 @@ TEST(Catalog, PlantsIsLargeAndWhole) {
 
 // --- closed surfaces --------------------------------------------------------------------------
 
-using Bits = std::array<uint32_t, 3>;
-
-Bits bits_of(const vec3& v) {
-    // -0 and 0 are the same place.
-    return {std::bit_cast<uint32_t>(v.x + 0.0f), std::bit_cast<uint32_t>(v.y + 0.0f),
-            std::bit_cast<uint32_t>(v.z + 0.0f)};
-}
-
-/// Edges that are not met exactly once in each direction.
-uint64_t open_edges(const Chunk& chunk) {
-    std::map<Bits, uint32_t> numbers;
-    std::vector<uint32_t> corner;
-    for (const vec3& v : chunk.corners())
-        corner.push_back(numbers.try_emplace(bits_of(v), uint32_t(numbers.size())).first->second);
-    std::vector<std::pair<uint32_t, uint32_t>> edges, reversed;
-    for (size_t i = 0; i < corner.size(); i += 3)
-        for (size_t k = 0; k < 3; ++k) {
-            edges.emplace_back(corner[i + k], corner[i + (k + 1) % 3]);
-            reversed.emplace_back(edges.back().second, edges.back().first);
-        }
-    std::ranges::sort(edges);
-    std::ranges::sort(reversed);
-    const bool twice = std::ranges::adjacent_find(edges) != edges.end();
-    uint64_t open = twice;
-    for (size_t i = 0; i < edges.size(); ++i)
-        open += edges[i] != reversed[i];
-    return open;
-}
-
-/// Positive when the faces look outwards.
-double enclosed_volume(const Chunk& chunk) {
-    double sum = 0;
-    for (uint32_t prim = 0; prim < chunk.size(); ++prim) {
-        const Triangle t = chunk.triangle(prim);
-        sum += glm::dot(t[0], glm::cross(t[1], t[2])) / 6;
-    }
-    return sum;
-}
-
 TEST(ClosedScenes, EveryEdgeIsMetOnceInEachDirection) {
     for (const char* name : {"sphere-0", "sphere-1", "sphere-5", "knot"}) {
         const Scene scene = make(name);
         ASSERT_EQ(scene.soup.chunks.size(), 1u);
-        EXPECT_EQ(open_edges(scene.soup.chunks[0]), 0u) << name;
-        EXPECT_GT(enclosed_volume(scene.soup.chunks[0]), 0.1) << name << " is inside out";
+        EXPECT_EQ(open_edges(scene.soup.chunks[0].corners()), 0u) << name;
+        EXPECT_GT(enclosed_volume(scene.soup.chunks[0].corners()), 0.1) << name << " is inside out";
     }
 }
 
 TEST(ClosedScenes, GlassIsClosedAndItsTrianglesFaceOutwards) {
     const Scene scene = make("glass");
     for (size_t m = 2; m < scene.soup.chunks.size(); ++m) {
-        EXPECT_EQ(open_edges(scene.soup.chunks[m]), 0u) << scene.meshes[m].name;
+        EXPECT_EQ(open_edges(scene.soup.chunks[m].corners()), 0u) << scene.meshes[m].name;
         const std::span<const vec3> corners = scene.soup.chunks[m].corners();
         for (size_t i = 0; i < corners.size(); i += 3)
             ASSERT_GT(glm::dot(glm::cross(corners[i + 1] - corners[i], corners[i + 2] - corners[i]),
@@ -232,7 +242,7 @@ TEST(ClosedScenes, GlassIsClosedAndItsTrianglesFaceOutwards) {
 TEST(ClosedScenes, MirrorsAreBallsOnAFloor) {
     const Scene scene = make("mirrors");
     for (size_t m = 1; m < scene.soup.chunks.size(); ++m)
-        EXPECT_EQ(open_edges(scene.soup.chunks[m]), 0u) << scene.meshes[m].name;
+        EXPECT_EQ(open_edges(scene.soup.chunks[m].corners()), 0u) << scene.meshes[m].name;
 }
 
 // --- names ------------------------------------------------------------------------------------

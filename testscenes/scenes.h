@@ -3,7 +3,7 @@
 // catalog names the scene.
 #pragma once
 
-#include "core/scene.h"
+#include "testscenes/camera_path.h"
 
 #include <cstdint>
 
@@ -22,5 +22,21 @@ Scene make_city();
 Scene make_mirrors();
 Scene make_glass();
 Scene make_box();
+
+inline constexpr uint32_t kMostDragons = 21;
+/// model: shown instead of the generated dragon; null: none. At least one of its triangles can be
+/// hit.
+Scene make_dragons(uint32_t count, const Soup* model);
+Scene make_dragonball(const Soup* model);
+
+inline constexpr uint32_t kPowerplantTriangles = 12'748'510; // as the one of UNC
+/// Exactly so many triangles, one less where that is odd.
+Scene make_powerplant(uint32_t triangles);
+
+// The camera paths of the thesis, one a scene.
+CameraPath dragons_path(uint32_t count);
+CameraPath dragonball_path();
+CameraPath plants_path();
+CameraPath powerplant_path(uint32_t triangles);
 
 } // namespace ovc

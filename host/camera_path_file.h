@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Camera paths in files: one camera a frame, as JSON or as lines of numbers (docs/scenes.md).
+#pragma once
+
+#include "core/result.h"
+#include "testscenes/camera_path.h"
+
+#include <filesystem>
+
+namespace ovc {
+
+/// The most frames and bytes that are read.
+inline constexpr uint32_t kMostFrames = 1'000'000;
+inline constexpr uint64_t kMostPathBytes = uint64_t(64) << 20;
+
+/// Reads a path of at least one frame; what the file leaves out (up, the angle of view) is the
+/// default Camera's. Error: one sentence with the file, the line or the frame.
+Result<CameraPath> load_camera_path(const std::filesystem::path& file);
+
+} // namespace ovc

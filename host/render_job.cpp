@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rendering: the scene and the structure once, then picture after picture.
+#include "host/render_job.h"
+
+#include "host/camera.h"
+#include "host/frames.h"
+#include "host/interrupt.h"
+#include "host/progress.h"
+#include "host/scene_summary.h"
+#include "host/stats.h"
+#include "host/stopwatch.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdio>
+
+namespace ovc {
+
+/// The camera of a single picture: the one asked for, the scene's, or one that sees all of it.
+static Camera still_camera(const Scene& scene, const RenderJob& job) {
+    if (job.camera) {
+        Camera camera = *job.camera;
+        if (scene.camera)
+            camera.up = scene.camera->up;
+        return camera;
+    }
+    if (scene.camera)
+        return *scene.camera;
+    return framing_camera(hittable_bounds(scene.soup), job.size.width, job.size.height);
+}
+
+/// The lights as they are placed for one picture: those on the camera are where it is.
+static std::vector<PointLight> lights_for(const std::vector<PointLight>& lights,
+                                          const Camera& camera) {
+    std::vector<PointLight> placed = lights;
+    for (PointLight& light : placed)
+        if (light.on_camera)
+            light.position += camera.eye;
+    if (placed.empty())
+        placed.push_back(shoulder_light(camera));
+    return placed;
+}
+
+/// A run of pictures over one scene and one backend.
+class Rendering {
+public:
+    Rendering(const RenderJob& job, Scene& scene, Backend& backend)
+        : job_(job),
+          scene_(scene),
+          lights_(job.lights.empty() ? scene.lights : job.lights),
+          backend_(backend) {}
+
+    /// Every picture in turn until one is interrupted. A single picture is saved as far as it
+    /// came; of a sequence, only whole frames are.
+    Result<Done> run(const std::vector<Shot>& shots, RenderStats& stats) {
+        stats.report.complete = true;
+        for (const Shot& shot : shots) {
+            const Result<FrameStats> frame = render_one(shot);
+            if (!frame)
+                return frame.error();
+            stats.report.complete = frame->report.complete;
+            if (!frame->report.complete && is_sequence())
+                return Done{};
+            stats.add(*frame);
+            if (is_sequence() && !job_.quiet) {
+                fmt::print("{}\n", frame_summary(*frame));
+                std::fflush(stdout);
+            }
+            if (!stats.report.complete)
+                return Done{};
+        }
+        return Done{};
+    }
+
+    bool is_sequence() const { return !job_.shots.empty(); }
+
+private:
+    Result<FrameStats> render_one(const Shot& shot) {
+        const Stopwatch watch;
+        const ovc_statistics before = backend_.statistics();
+        FrameStats frame;
+        frame.frame = shot.frame;
+        scene_.lights = lights_for(lights_, shot.camera);
+        Image image(job_.size.width, job_.size.height);
+        if (const Result<RenderReport> report = trace(shot, image); report)
+            frame.report = *report;
+        else
+            return report.error();
+        frame.tracing = counted_between(before, backend_.statistics());
+        const Stopwatch output;
+        if (frame.report.complete || !is_sequence())
+            if (const Result<Done> saved = save_all(image, shot.frame); !saved)
+                return saved.error();
+        frame.seconds_output = output.seconds();
+        frame.seconds = watch.seconds();
+        return frame;
+    }
+
+    Result<RenderReport> trace(const Shot& shot, Image& image) {
+        Progress progress(backend_, is_sequence() ? fmt::format("frame {}: ", shot.frame) : "",
+                          image.pixels.size(), /* shown= */ !job_.quiet);
+        const auto observe = [&](const RenderReport& report) {
+            progress.update(report);
+            return !interrupt_.interrupted();
+        };
+        return render_batched(scene_, shot.camera, backend_, job_.whitted, observe, image);
+    }
+
+    Result<Done> save_all(const Image& image, uint32_t frame) const {
+        for (const std::string& output : job_.outputs)
+            if (const Result<Done> saved =
+                    save_image(image, is_sequence() ? frame_file(output, frame) : output);
+                !saved)
+                return saved;
+        return Done{};
+    }
+
+    const RenderJob& job_;
+    Scene& scene_;
+    const std::vector<PointLight> lights_; // as the scene or the user has them
+    Backend& backend_;
+    const InterruptGuard interrupt_;
+};
+
+static void report(const RenderJob& job, const RenderStats& stats) {
+    if (!job.quiet && !stats.frames.empty())
+        fmt::print("{}  wrote      {}\n", stats_summary(stats), fmt::join(job.outputs, ", "));
+    if (stats.report.complete)
+        return;
+    if (job.shots.empty())
+        fmt::print(stderr, "overcast: interrupted; what was rendered so far is saved\n");
+    else
+        fmt::print(stderr,
+                   "overcast: interrupted; {} of {} frames are saved, frame {} is the next to "
+                   "render\n",
+                   stats.frames.size(), job.shots.size(), job.shots[stats.frames.size()].frame);
+}
+
+Result<int> render(const RenderJob& job) {
+    const Stopwatch total;
+    const LogSink log = standard_error_log(/* chatty= */ !job.quiet);
+    RenderStats stats;
+    Result<Scene> scene = open_scene(job.scene, log);
+    if (!scene)
+        return scene.error();
+    stats.scene = job.scene.scene;
+    stats.width = job.size.width;
+    stats.height = job.size.height;
+    stats.seconds_import = total.seconds();
+
+    const std::vector<Shot> shots =
+        job.shots.empty() ? std::vector<Shot>{{0, still_camera(*scene, job)}} : job.shots;
+    for (const Shot& shot : shots) // a file's camera is not checked yet
+        if (const Result<Done> fine = check_camera(shot.camera); !fine)
+            return Error{fmt::format("{}: {}", job.scene.scene, fine.error().message)};
+    const Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, job.backend, log);
+    if (!backend)
+        return backend.error();
+
+    Result<Done> done = Rendering(job, *scene, **backend).run(shots, stats);
+    if (!done)
+        return done.error();
+    stats.tracing = (*backend)->statistics();
+    stats.renderer = (*backend)->renderer();
+    stats.seconds_total = total.seconds();
+    if (!job.stats.empty())
+        if (done = save_text(stats_json(stats), job.stats); !done)
+            return done.error();
+    report(job, stats);
+    return stats.report.complete ? kExitOk : kExitInterrupted;
+}
+
+} // namespace ovc

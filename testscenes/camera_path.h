@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// CameraPath: one camera a frame.
+#pragma once
+
+#include "core/scene.h"
+
+#include <vector>
+
+namespace ovc {
+
+using CameraPath = std::vector<Camera>;
+
+} // namespace ovc

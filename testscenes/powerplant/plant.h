@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plan of the plant: a hall of storeys, each of bays; what stands where. Metres; the hall's
+// corner is at (0, 0, 0), x runs along it, y up.
+#pragma once
+
+#include "testscenes/powerplant/parts.h"
+#include "testscenes/random.h"
+
+#include <cstdint>
+
+namespace ovc::powerplant {
+
+inline constexpr double kBay = 6;    // along x and z
+inline constexpr double kStorey = 5; // from floor to floor
+
+struct Plan {
+    uint32_t bays_x, bays_z, storeys;
+
+    double length() const { return kBay * bays_x; }
+    double depth() const { return kBay * bays_z; }
+    double height() const { return kStorey * storeys; }
+    /// The row of bays kept free to walk along, and the bay that is open through all storeys.
+    uint32_t aisle() const { return bays_z / 2; }
+    uint32_t shaft() const { return bays_x / 2; }
+    /// The walls that divide a storey into three rooms stand before these columns of bays.
+    uint32_t first_wall() const { return bays_x / 3; }
+    uint32_t second_wall() const { return bays_x - bays_x / 3; }
+};
+
+/// A plan for about so many triangles.
+Plan plan_for(uint64_t triangles);
+
+struct Bay {
+    uint32_t x, storey, z;
+
+    dvec3 corner() const { return {kBay * x, kStorey * storey, kBay * z}; }
+    dvec3 middle() const { return corner() + dvec3(0.5 * kBay, 0, 0.5 * kBay); }
+};
+
+// structure.cpp: columns, beams, floor, walls, lamps, stairs
+void add_structure(Works& works, const Plan& plan, const Bay& bay);
+// services.cpp: pipes and trays under the ceiling, along a whole row of bays, and between storeys
+void add_pipe_rack(Works& works, const Plan& plan, uint32_t storey, uint32_t row);
+void add_cable_trays(Works& works, const Bay& bay, Random& random);
+void add_risers(Works& works, const Bay& bay, Random& random);
+// machines.cpp: what a bay is there for
+void add_machines(Works& works, const Bay& bay, Random& random);
+// yard.cpp: what stands outside
+void add_yard(Works& works, const Plan& plan);
+/// A heap of coal of exactly so many triangles, even and at least kLeastHeap.
+inline constexpr uint64_t kLeastHeap = 2000;
+void add_coal_heap(Works& works, const Plan& plan, uint64_t triangles);
+
+} // namespace ovc::powerplant
