@@ -231,8 +231,8 @@ TEST(Invariance, SoupOverVectorWidths) {
           "LP_NATIVE_VECTOR_WIDTH=512 KERNEL=compute"}) {
         const test::CommandResult run = test::run_shell(
             std::string("export MESA_SHADER_CACHE_DISABLE=true ") + setting +
-            "; " OVC_BINARY_DIR "/bin/overcast trace --binary --kernel $KERNEL soup-10 < " +
-            base + " > " + base + ".hits");
+            "; " OVC_BINARY_DIR "/bin/overcast trace --binary --kernel $KERNEL soup-10 < " + base +
+            " > " + base + ".hits");
         EXPECT_EQ(run.exit_code, 0) << setting << ": " << run.output;
         std::vector<Hit> hits(scene.rays().size());
         std::ifstream in(base + ".hits", std::ios::binary);
