@@ -101,6 +101,8 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
         {{"render", "dragons-2", "-o", out, "--frames", "7:107"}, "there is no frame 107"},
         {{"render", "dragons-2", "-o", path("no/##.png"), "--frames", "7:8"}, "does not exist"},
         {{"render", "dragons-2", "--frames", "0", "--camera", "0,0,1,0,0,0"}, "given together"},
+        {{"render", "box", "--camera-path", "a.csv", "--camera", "0,0,1,0,0,0"},
+         "--camera and --camera-path cannot be given together"},
         {{"render", "box", "-o", out, "--camera-path", path("none.csv")}, "none.csv"},
         {{"render", "box", "-o", out, "--model", "a.ply"}, "not with 'box'"},
         {{"info", path("b.ply"), "--model", "a.ply"}, "--model goes with the test scenes"},
