@@ -34,7 +34,7 @@ TEST(ScenePaths, SeeSomethingAndStandInNothing) {
     model.chunks.push_back(Chunk::owning(dvec3(0), make_sphere(3)));
     for (const Case& c : {Case{"dragons-1", true, 5, 0.5}, Case{"dragons-21", true, 5, 0.5},
                           Case{"dragonball", true, 5, 0.5}, Case{"plants-1", false, 5, 0.3},
-                          Case{"powerplant-2000000", false, 2, 0.2}}) {
+                          Case{"powerplant-600000", false, 2, 0.2}}) {
         const Result<Scene> scene = make_test_scene(c.name, c.with_model ? &model : nullptr);
         ASSERT_TRUE(scene);
         const std::unique_ptr<Backend> backend = make_cpu_backend(scene->soup);

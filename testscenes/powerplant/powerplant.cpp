@@ -191,7 +191,7 @@ std::vector<View> walk(const Plan& plan) {
     go(middle + 4, eye, west);
     go(middle + 0.5, eye, up);
     go(middle, eye + 1, up);
-    go(middle, upper - 3, south);
+    go(middle, std::max(upper - 3, eye + 1), south); // not below a plant of one storey
     go(middle, upper, dvec3(2, 0, 7));
     go(middle, upper, dvec3(7, -0.5, 1));
     go(middle, upper, dvec3(1, -1, -7));
