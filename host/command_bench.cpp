@@ -193,7 +193,7 @@ Result<int> bench(const BenchJob& job) {
             return Error{wrong};
     if (!stop())
         return kExitOk;
-    fmt::print(stderr, "overcast: interrupted; what was measured so far is above\n");
+    fmt::print(stderr, "overcast: interrupted; what was measured so far is kept\n");
     return kExitInterrupted;
 }
 

@@ -5,6 +5,7 @@
 #include "host/stopwatch.h"
 
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
 #include <cassert>
@@ -21,12 +22,20 @@ uint64_t count_differing(std::span<const uint64_t> a, std::span<const uint64_t> 
     return count;
 }
 
+double process_cpu_seconds() {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
 /// Runs the workload once; its counters, and the seconds where `timed`.
 Result<Done> call(const Workload& workload, Backend& backend, bool timed, Measurement& m) {
     const ovc_statistics before = backend.statistics();
+    const double cpu_before = process_cpu_seconds();
     const Stopwatch watch;
     const Result<uint64_t> rays = workload.run(backend);
     const double seconds = watch.seconds();
+    const double cpu_seconds = process_cpu_seconds() - cpu_before;
     if (!rays)
         return rays.error();
     const ovc_statistics after = backend.statistics();
@@ -37,6 +46,7 @@ Result<Done> call(const Workload& workload, Backend& backend, bool timed, Measur
     m.bytes_in = after.bytes_in - before.bytes_in;
     if (timed) {
         m.seconds.push_back(seconds);
+        m.cpu_seconds.push_back(cpu_seconds);
         m.kernel_seconds.push_back(after.seconds_kernel - before.seconds_kernel);
     }
     return Done{};
@@ -140,7 +150,7 @@ Result<Done> run_contenders(std::vector<Entrant>& entrants, std::vector<Workload
     const Result<bool> done = *warm ? bench.repeat(repeats) : warm;
     if (!done)
         return done.error();
-    result.complete = *done;
+    result.complete = *done && !stop();
     result.measurements = std::move(bench.measurements);
     std::erase_if(result.measurements, [](const Measurement& m) { return m.seconds.empty(); });
     return Done{};

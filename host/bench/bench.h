@@ -30,8 +30,10 @@ struct Measurement {
     uint64_t retraced = 0;
     uint64_t passes = 0;
     uint64_t bytes_in = 0;
-    std::vector<double> seconds;        // from call to return, one a repeat
-    std::vector<double> kernel_seconds; // of them, waiting for the GPU; 0 for who has none
+    std::vector<double> seconds; // from call to return, one a repeat
+    std::vector<double>
+        cpu_seconds; // of all threads: what is left on a machine that others use too
+    std::vector<double> kernel_seconds; // of seconds, waiting for the GPU; 0 for who has none
 };
 
 struct BenchEntrant {

@@ -55,12 +55,15 @@ TextRow work_header(const std::string& workload, bool sweep) {
                       "min",
                       "max",
                       "Mrays/s",
+                      "CPU s",
                       "kernel s",
                       "kernel Mrays/s",
                       "speed to robust",
                       "kernel to robust",
+                      "CPU to robust",
                       "time to fast",
                       "kernel to fast",
+                      "CPU to fast",
                       "differ",
                       "flagged %",
                       "retraced %",
@@ -68,7 +71,7 @@ TextRow work_header(const std::string& workload, bool sweep) {
                       "moved",
                       "checksum"};
     if (sweep)
-        header.insert(header.begin() + 11, {"time to first", "kernel to first"});
+        header.insert(header.begin() + 14, {"time to first", "kernel to first"});
     return header;
 }
 
@@ -83,12 +86,15 @@ TextRow work_row(const BenchResult& r, const Measurement& m, bool sweep) {
                    fmt::format("{:.4f}", call.min),
                    fmt::format("{:.4f}", call.max),
                    number(mrays(m, call.median), 2),
+                   fmt::format("{:.4f}", spread_of(m.cpu_seconds).median),
                    on_gpu ? fmt::format("{:.4f}", kernel.median) : "-",
                    number(mrays(m, kernel.median), 2),
                    number(ratios.call_speed_to_robust, 2),
                    number(ratios.kernel_speed_to_robust, 2),
+                   number(ratios.cpu_speed_to_robust, 2),
                    number(ratios.call_time_to_fast, 2),
                    number(ratios.kernel_time_to_fast, 2),
+                   number(ratios.cpu_time_to_fast, 2),
                    human_count(m.differing),
                    on_gpu ? percent(m.flagged, m.rays) : "-",
                    on_gpu ? percent(m.retraced, m.rays) : "-",
@@ -96,7 +102,7 @@ TextRow work_row(const BenchResult& r, const Measurement& m, bool sweep) {
                    on_gpu ? human_bytes(m.bytes_in) : "-",
                    fmt::format("{:016x}", m.checksum)};
     if (sweep)
-        row.insert(row.begin() + 11,
+        row.insert(row.begin() + 14,
                    {number(ratios.call_time_to_first, 2), number(ratios.kernel_time_to_first, 2)});
     return row;
 }

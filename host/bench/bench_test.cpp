@@ -68,6 +68,7 @@ TEST_F(RunContenders, TakeTurns) {
     for (const Measurement& m : result.measurements) {
         EXPECT_EQ(m.rays, 3u);
         EXPECT_EQ(m.seconds.size(), 2u);
+        EXPECT_EQ(m.cpu_seconds.size(), 2u);
         EXPECT_THAT(m.kernel_seconds, testing::ElementsAre(0.25, 0.25));
         EXPECT_EQ(m.passes, 2u); // of one call, not of all
         EXPECT_EQ(m.flagged, 3u);

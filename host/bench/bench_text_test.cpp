@@ -25,9 +25,11 @@ BenchResult example() {
     result.repeats = 3;
     result.complete = true;
     result.workloads = {"primary", "frame"};
-    for (const Contender& contender : *choose_contenders(
-             std::vector<std::string>{"certified", "fast", "cpu", "embree"},
-             std::vector<LeavesChoice>{{1, "1"}, {8, "8"}}, std::vector<BudgetChoice>(1))) {
+    const Result<std::vector<Contender>> contenders = choose_contenders(
+        std::vector<std::string>{"certified", "fast", "cpu", "embree"},
+        std::vector<LeavesChoice>{{1, "1"}, {8, "8"}}, std::vector<BudgetChoice>(1));
+    EXPECT_TRUE(bool(contenders));
+    for (const Contender& contender : *contenders) {
         result.entrants.push_back({contender, "a renderer", {}});
         if (contender.kind == ContenderKind::TwoLevel)
             result.entrants.back().built.level2_bytes = 52000;
@@ -39,6 +41,7 @@ BenchResult example() {
             const bool kernel = result.entrants[e].contender.kind == ContenderKind::TwoLevel;
             Measurement m{.entrant = e, .workload = w, .rays = 1048576, .checksum = 0xabcdef + e};
             m.seconds = {base, base + 0.02, base + 0.01};
+            m.cpu_seconds = {2 * base, 2 * base, 3 * base};
             m.kernel_seconds = std::vector<double>(3, kernel ? base / 2 : 0);
             m.flagged = 1000;
             result.measurements.push_back(m);
@@ -100,6 +103,10 @@ TEST(BenchText, JsonHasWhatTheTableShows) {
             EXPECT_EQ(cell(rows, row, "Mrays/s"), shown(m["call_seconds"]["mrays_per_second"], 2));
             EXPECT_EQ(cell(rows, row, "kernel s"),
                       shown(kernel.is_null() ? kernel : kernel["median"], 4));
+            EXPECT_EQ(cell(rows, row, "CPU s"), shown(m["cpu_seconds"]["median"], 4));
+            EXPECT_EQ(cell(rows, row, "CPU to robust"), shown(m["cpu_speed_to_robust"], 2));
+            EXPECT_EQ(cell(rows, row, "CPU to fast"), shown(m["cpu_time_to_fast"], 2));
+            EXPECT_EQ(cell(rows, row, "kernel to first"), shown(m["kernel_time_to_first"], 2));
             EXPECT_EQ(cell(rows, row, "speed to robust"), shown(m["call_speed_to_robust"], 2));
             EXPECT_EQ(cell(rows, row, "kernel to robust"), shown(m["kernel_speed_to_robust"], 2));
             EXPECT_EQ(cell(rows, row, "time to fast"), shown(m["call_time_to_fast"], 2));

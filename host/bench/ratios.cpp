@@ -33,6 +33,10 @@ static double call_seconds(const Measurement& m) {
     return spread_of(m.seconds).median;
 }
 
+static double cpu_seconds(const Measurement& m) {
+    return spread_of(m.cpu_seconds).median;
+}
+
 static double kernel_seconds(const Measurement& m) {
     return spread_of(m.kernel_seconds).median;
 }
@@ -53,6 +57,7 @@ Ratios ratios_of(const BenchResult& result, const Measurement& m) {
             find(result, m, [](const Contender& c) { return c.name == "embree-robust"; })) {
         ratios.call_speed_to_robust = quotient(call_seconds(*robust), call_seconds(m));
         ratios.kernel_speed_to_robust = quotient(call_seconds(*robust), kernel_seconds(m));
+        ratios.cpu_speed_to_robust = quotient(cpu_seconds(*robust), cpu_seconds(m));
     }
     if (self.kind != ContenderKind::TwoLevel)
         return ratios;
@@ -64,6 +69,7 @@ Ratios ratios_of(const BenchResult& result, const Measurement& m) {
     if (fast) {
         ratios.call_time_to_fast = quotient(call_seconds(m), call_seconds(*fast));
         ratios.kernel_time_to_fast = quotient(kernel_seconds(m), kernel_seconds(*fast));
+        ratios.cpu_time_to_fast = quotient(cpu_seconds(m), cpu_seconds(*fast));
     }
     if (const Measurement* first =
             find(result, m, [&](const Contender& c) { return c.name == self.name; })) {

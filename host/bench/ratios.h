@@ -26,8 +26,10 @@ std::optional<double> mrays(const Measurement& m, double seconds);
 struct Ratios {
     std::optional<double> call_speed_to_robust; // embree-robust's time over this one's
     std::optional<double> kernel_speed_to_robust;
+    std::optional<double> cpu_speed_to_robust;
     std::optional<double> call_time_to_fast; // this one's time over fast's: same kernel, same sweep
     std::optional<double> kernel_time_to_fast;
+    std::optional<double> cpu_time_to_fast;
     std::optional<double> call_time_to_first; // over that of the first values of its sweep
     std::optional<double> kernel_time_to_first;
 };

@@ -21,6 +21,7 @@ protected:
         m.entrant = result.entrants.size() - 1;
         m.rays = 1'000'000;
         m.seconds = {call, call, 100};
+        m.cpu_seconds = {3 * call, 3 * call, 100};
         m.kernel_seconds = {kernel, kernel, 100};
         result.measurements.push_back(m);
         return result.measurements.back();
@@ -47,7 +48,9 @@ TEST_F(BenchRatios, SayHowMuchFasterThanEmbreeAndHowMuchSlowerThanFast) {
     const Ratios r = ratios_of(result, certified);
     EXPECT_DOUBLE_EQ(*r.call_speed_to_robust, 2);
     EXPECT_DOUBLE_EQ(*r.kernel_speed_to_robust, 4);
+    EXPECT_DOUBLE_EQ(*r.cpu_speed_to_robust, 2);
     EXPECT_DOUBLE_EQ(*r.call_time_to_fast, 1.25);
+    EXPECT_DOUBLE_EQ(*r.cpu_time_to_fast, 1.25);
     EXPECT_DOUBLE_EQ(*r.kernel_time_to_fast, 1.25);
     EXPECT_DOUBLE_EQ(*ratios_of(result, fast).call_time_to_fast, 1);
     EXPECT_DOUBLE_EQ(*ratios_of(result, robust).call_speed_to_robust, 1);

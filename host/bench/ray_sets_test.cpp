@@ -16,7 +16,9 @@ namespace {
 constexpr uint32_t kWidth = 100, kHeight = 60;
 
 Scene lit(const char* name) {
-    Scene scene = *make_test_scene(name);
+    Result<Scene> made = make_test_scene(name);
+    EXPECT_TRUE(bool(made));
+    Scene scene = std::move(*made);
     scene.lights = {{{3, 50, 20}, vec3(1)}};
     return scene;
 }
