@@ -84,7 +84,8 @@ TEST(BenchArguments, SayWhatIsWrong) {
         {{.gpu_memory = "abc"}, "--gpu-memory: 'abc' is no memory size"},
         {{.resident = "12M"}, "--resident needs a share such as 30%, or all, not '12M'"},
         {{.json = "no/such/folder/b.json"}, "does not exist"},
-        {{.scenes = {__FILE__}, .json = __FILE__}, "same file"},
+        {{.scenes = {OVC_SOURCE_DIR "/README.md"}, .json = OVC_SOURCE_DIR "/README.md"},
+         "same file"},
     };
     for (const auto& c : cases)
         EXPECT_THAT(error(c.words), testing::HasSubstr(c.part));
