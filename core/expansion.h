@@ -5,6 +5,7 @@
 // products must stay within about 1e-290 … 1e300.
 #pragma once
 
+#include "core/double_double.h"
 #include "core/vec.h"
 
 #include <algorithm>
@@ -68,6 +69,14 @@ public:
         double total = 0;
         for (int i = 0; i < size_; ++i) // smallest first
             total += components_[i];
+        return total;
+    }
+
+    /// Off by at most 2^-96 of itself.
+    DoubleDouble rounded() const {
+        DoubleDouble total;
+        for (int i = 0; i < size_; ++i)
+            total = total + DoubleDouble{components_[i], 0};
         return total;
     }
 

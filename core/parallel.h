@@ -6,6 +6,7 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/parallel_reduce.h>
+#include <oneapi/tbb/parallel_sort.h>
 
 #include <cstddef>
 #include <utility>
@@ -30,6 +31,12 @@ T parallel_reduce(size_t count, T identity, Body&& body, Join&& join) {
             return body(range.begin(), range.end(), std::move(value));
         },
         std::forward<Join>(join));
+}
+
+/// Sorts [first, last) by <. Equal elements come in any order.
+template <class Iterator>
+void parallel_sort(Iterator first, Iterator last) {
+    oneapi::tbb::parallel_sort(first, last);
 }
 
 /// Runs both, perhaps at the same time.

@@ -2,29 +2,26 @@
 // The reference where doubles leave a doubt: the same determinants, exactly.
 #include "core/triangle.h"
 
+#include "core/refined.h"
+
+#include <bit>
+
 namespace ovc {
 namespace {
 
-/// The direction scaled by a power of two to about 1: weights and depth scale alike, and stay away
-/// from underflow.
-dvec3 scaled_direction(const PreparedRay& p) {
-    int exponent = 0;
-    std::frexp(p.ray.dir[p.kz], &exponent);
-    return {std::ldexp(p.ray.dir.x, -exponent), std::ldexp(p.ray.dir.y, -exponent),
-            std::ldexp(p.ray.dir.z, -exponent)};
-}
-
-/// Do both have the same three corners, in whatever order? Then no ray tells them apart.
-bool same_corners(const Triangle& a, const Triangle& b) {
-    for (int turn = 0; turn < 3; ++turn) {
-        const dvec3& first = b[turn];
-        const dvec3& second = b[(turn + 1) % 3];
-        const dvec3& third = b[(turn + 2) % 3];
-        if (a[0] == first &&
-            ((a[1] == second && a[2] == third) || (a[1] == third && a[2] == second)))
-            return true;
+/// Do the corners of `b` that `b_support` names lie where those of `a` do? Then the ray meets both
+/// in one point: a shared corner, a shared side, or a triangle with the same three corners.
+bool same_support(const Triangle& a, uint32_t a_support, const Triangle& b, uint32_t b_support) {
+    if (std::popcount(a_support) != std::popcount(b_support))
+        return false;
+    for (int i = 0; i < 3; ++i) {
+        bool found = !(a_support >> i & 1);
+        for (int k = 0; k < 3; ++k)
+            found |= (b_support >> k & 1) && a[i] == b[k];
+        if (!found)
+            return false;
     }
-    return false;
+    return true;
 }
 
 /// Do both lie in one plane across an axis? Walls and floors do.
@@ -74,6 +71,8 @@ std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& t
                                          TriangleId id) {
     if (!is_finite(triangle[0]) || !is_finite(triangle[1]) || !is_finite(triangle[2]))
         return std::nullopt;
+    if (const RefinedAnswer refined = refined_candidate(p, triangle, id); refined.known)
+        return refined.candidate;
     const ExactTriangle exact(p, triangle);
     if (!exact.inside() || compare_t(p, exact, p.ray.t_min) < 0 ||
         (std::isfinite(p.ray.t_max) && compare_t(p, exact, p.ray.t_max) > 0))
@@ -81,13 +80,19 @@ std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& t
     const double area = exact.area.estimate();
     const double t = exact.depth.estimate() / area / p.ray.dir[p.kz];
     const double inside = std::clamp(t, p.ray.t_min, p.ray.t_max);
+    uint32_t support = 0;
+    for (int i = 0; i < 3; ++i)
+        support |= uint32_t(exact.weights[i].sign() != 0) << i;
     return Candidate{
         {inside, exact.weights[1].estimate() / area, exact.weights[2].estimate() / area, id},
-        0x1p-50 * std::abs(inside)};
+        kRefinedError * std::abs(inside),
+        support};
 }
 
-bool Nearest::wins_exactly(TriangleId id, const Triangle& triangle) const {
-    if (same_corners(triangle, triangle_) || share_axis_plane(triangle, triangle_))
+bool Nearest::wins_exactly(const Candidate& candidate, const Triangle& triangle) const {
+    const TriangleId id = candidate.hit.id;
+    if (same_support(triangle, candidate.support, triangle_, best_.support) ||
+        share_axis_plane(triangle, triangle_))
         return id < best_.hit.id;
     const ExactTriangle mine(p_, triangle_);
     const ExactTriangle other(p_, triangle);

@@ -45,10 +45,15 @@ struct PreparedRay {
     }
 };
 
-/// A hit of one triangle, and what its t is off by at most.
+/// A hit of one triangle.
 struct Candidate {
+    static constexpr uint32_t kAllCorners = 7;
+
     Hit hit;
-    double t_error;
+    double t_error; // what t is off by at most
+    uint32_t support =
+        kAllCorners; // bit i: corner i has a part in the hit. One bit: the hit is that
+                     // corner, two: it lies on that side. All where nobody looked
 };
 
 /// The triangle's edge functions without a rounding: weights of its corners, their sum, and the
@@ -66,7 +71,8 @@ struct ExactTriangle {
 /// The sign of t - `t` for a triangle that is inside.
 int compare_t(const PreparedRay& p, const ExactTriangle& triangle, double t);
 
-/// What candidate() answers where doubles cannot tell.
+/// What candidate() answers where doubles cannot tell: in doubled precision (core/refined.h), and
+/// exactly where that leaves a doubt.
 std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& triangle,
                                          TriangleId id);
 
@@ -151,9 +157,9 @@ private:
     bool wins(const Candidate& other, const Triangle& triangle) const {
         const double gap = other.hit.t - best_.hit.t;
         const double error = other.t_error + best_.t_error;
-        return std::abs(gap) > error ? gap < 0 : wins_exactly(other.hit.id, triangle);
+        return std::abs(gap) > error ? gap < 0 : wins_exactly(other, triangle);
     }
-    bool wins_exactly(TriangleId id, const Triangle& triangle) const;
+    bool wins_exactly(const Candidate& other, const Triangle& triangle) const;
 
     const PreparedRay& p_;
     Candidate best_{};

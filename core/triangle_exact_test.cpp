@@ -86,6 +86,51 @@ const Case kCases[] = {
          ray.dir = inside - ray.org;
          (r.below(2) ? ray.t_min : ray.t_max) = 1;
      }},
+    {"a vertex of many",
+     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+         const dvec3 apex = r.lattice();
+         for (int i = 0; i < 6; ++i) {
+             t.push_back({r.lattice(), r.lattice(), apex});
+             std::rotate(t[i].begin(), t[i].begin() + int(r.below(3)), t[i].end());
+         }
+         ray = {r.lattice() * 3.0, 0, dvec3(0)};
+         ray.dir = apex - ray.org;
+     }},
+    {"a side of many",
+     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+         const dvec3 a = r.lattice(), b = r.lattice();
+         for (int i = 0; i < 6; ++i) {
+             t.push_back({a, r.lattice(), b});
+             std::rotate(t[i].begin(), t[i].begin() + int(r.below(3)), t[i].end());
+             if (r.below(2))
+                 std::swap(t[i][0], t[i][1]);
+         }
+         ray = {r.lattice() * 3.0, 0, dvec3(0)};
+         ray.dir = 0.5 * (a + b) - ray.org;
+     }},
+    {"next to a side of many",
+     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+         const dvec3 a = r.point(), b = r.point();
+         for (int i = 0; i < 6; ++i)
+             t.push_back({a, b, r.point()});
+         ray = {r.point() * 3.0, 0, dvec3(0)};
+         ray.dir = a + r(0, 1) * (b - a) - ray.org;
+     }},
+    {"tiny ones seen from afar",
+     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+         const double size = std::ldexp(1.0, -int(r.below(140)));
+         for (int i = 0; i < 4; ++i)
+             t.push_back({size * r.point(), size * r.point(), size * r.lattice()});
+         ray = {r.below(2) ? 1e3 * r.point() : 100.0 * r.lattice(), 0, dvec3(0)};
+         ray.dir = r.below(2) ? -ray.org : t[0][2] - ray.org;
+     }},
+    {"huge",
+     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+         for (int i = 0; i < 4; ++i)
+             t.push_back({1e93 * r.lattice(), 1e93 * r.lattice(), 1e93 * r.lattice()});
+         ray = {3e93 * r.lattice(), 0, dvec3(0)};
+         ray.dir = 1e-93 * (0.5 * (t[0][0] + t[0][1]) - ray.org);
+     }},
     {"coplanar and overlapping",
      [](Random& r, std::vector<Triangle>& t, Ray& ray) {
          const dvec3 a = r.lattice(), u = r.lattice(), v = r.lattice();
@@ -124,6 +169,40 @@ TEST(Reference, EqualsExactArithmetic) {
             ASSERT_EQ(nearest.hit().id, truth ? truth->id : TriangleId{})
                 << c.name << " seed " << seed;
             hits += truth.has_value();
+        }
+        EXPECT_GT(hits, 20u) << c.name;
+    }
+}
+
+TEST(Reference, RoundsWhatItDecidesWithCare) {
+    for (const Case& c : kCases) {
+        size_t hits = 0;
+        for (uint64_t seed = 0; seed < 300; ++seed) {
+            Random random(seed);
+            std::vector<Triangle> triangles;
+            Ray ray;
+            c.make(random, triangles, ray);
+            if (!ray.valid())
+                continue;
+            for (const Triangle& triangle : triangles) {
+                if (triangle_fault(triangle) != TriangleFault::None)
+                    continue;
+                const auto found = exact_candidate(PreparedRay(ray), triangle, {0, 0});
+                const auto t = test::exact_hit(ray, triangle);
+                ASSERT_EQ(t.has_value(), found.has_value()) << c.name << " seed " << seed;
+                if (!t)
+                    continue;
+                ++hits;
+                ASSERT_LE(abs(test::Rational(found->hit.t) - *t), test::Rational(found->t_error))
+                    << c.name << " seed " << seed;
+                ASSERT_LE(found->t_error, 0x1p-50 * std::abs(found->hit.t));
+                for (int i = 0; i < 3; ++i)
+                    if (!(found->support >> i & 1)) {
+                        const Hit& h = found->hit;
+                        ASSERT_NEAR(i == 0 ? 1 - h.u - h.v : i == 1 ? h.u : h.v, 0, 1e-15)
+                            << c.name << " seed " << seed;
+                    }
+            }
         }
         EXPECT_GT(hits, 20u) << c.name;
     }

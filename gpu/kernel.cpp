@@ -110,8 +110,9 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_CERTIFY {:d}\n"
                        "#define OVC_STACK_DEPTH {}\n"
                        "#define OVC_STACK_REGISTERS {:d}\n"
-                       "#define OVC_PAGE_IMAGE {:d}\n",
-                       any_hit, certify, stack_depth, stack_registers, page_image);
+                       "#define OVC_PAGE_IMAGE {:d}\n"
+                       "#define OVC_MOST_ROUNDS {}\n",
+                       any_hit, certify, stack_depth, stack_registers, page_image, most_rounds);
 }
 
 Result<std::string> expand_shader(std::string_view name, const std::string& defines,

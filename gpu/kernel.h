@@ -21,6 +21,7 @@ struct ShaderConfig {
     uint32_t stack_depth = 16;
     bool stack_registers = true;
     bool page_image = true;
+    uint32_t most_rounds = 0; // 0: as many as it takes
 
     bool operator==(const ShaderConfig&) const = default;
     /// All defines, one a line, in fixed order.

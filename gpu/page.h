@@ -5,6 +5,7 @@
 
 #include "core/soup.h"
 #include "kdtree/partition.h"
+#include "shaders/layout.h"
 
 #include <cstdint>
 #include <vector>
@@ -15,6 +16,7 @@ struct Page {
     std::vector<uvec4> texels;
     uint32_t depth = 0; // stack words a traversal needs
 
+    uint64_t units() const { return texels.size() / OVC_UNIT_TEXELS; }
     uint64_t bytes() const { return texels.size() * sizeof(uvec4); }
 };
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/triangle.h"
+#include "gpu/bvh.h"
 #include "gpu/page.h"
 #include "shaders/layout.h"
 
@@ -38,7 +39,9 @@ bool walk_page(const Page& page, const Leaf& leaf, const PreparedRay& p, double 
         uint32_t unit;
         double enter;
     };
-    std::array<Entry, 3 * 64> stack; // three siblings a level, deeper than any page
+    // Three siblings a level, and the one that is next.
+    static_assert(3 * kMaxBvhDepth + 1 <= 3 * 64);
+    std::array<Entry, 3 * 64> stack;
     size_t top = 0;
     stack[top++] = {OVC_ROOT_UNIT, from};
     while (top > 0) {

@@ -14,7 +14,10 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kMaxBatchRows = 512;   // half a million rays: beyond, a pass gains nothing more
+constexpr uint32_t kMaxBatchRows = 512; // half a million rays: beyond, a pass gains nothing more
+/// llvmpipe ends a loop after 65,535 rounds without a word. The kernel's loop comes to each unit of
+/// a page once at most, so smaller pages need no count.
+constexpr uint32_t kMostRoundsInSoftware = 65000;
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
 Result<Done> check_gl(const char* doing) {
@@ -90,6 +93,8 @@ Result<PassResult> Tracer::pass(uint32_t leaf, const Page& page, const PassOptio
     config.stack_depth = round_up(page.depth, 4); // few programs, no register more than needed
     config.stack_registers = software_;
     config.page_image = software_;
+    if (software_ && page.units() > kMostRoundsInSoftware)
+        config.most_rounds = kMostRoundsInSoftware;
     const Result<GLuint> program = kernels_.program(config);
     if (!program)
         return program.error();

@@ -36,6 +36,7 @@ std::string stats_json(const RenderStats& s) {
         {"renderer", s.renderer},
         {"triangles", t.triangles},
         {"dropped", {{"not_finite", t.dropped_not_finite}, {"degenerate", t.dropped_degenerate}}},
+        {"twins", t.twins},
         {"leaves", t.leaves},
         {"leaf_references", t.leaf_references},
         {"level2_bytes", t.level2_bytes},
@@ -54,6 +55,7 @@ std::string stats_json(const RenderStats& s) {
         {"invalid_rays", t.invalid_rays},
         {"flagged", t.flagged},
         {"retraced", t.retraced},
+        {"capped", t.capped},
         {"time", times_of(s)}};
     // A name of a file or a driver need not be UTF-8; what is not is replaced rather than thrown
     // about.

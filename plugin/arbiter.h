@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/triangle.h"
+#include "core/twins.h"
 #include "gpu/page.h"
 #include "gpu/page_walk.h"
 #include "kdtree/partition.h"
@@ -14,10 +15,11 @@
 
 namespace ovc {
 
-/// The nearest hit, or with kAnyHit some hit, of a valid ray. pages[i] belongs to level1.leaves[i].
+/// The nearest hit, or with kAnyHit some hit, of a valid ray. pages[i] belongs to level1.leaves[i];
+/// neither holds the twins that were taken out.
 template <bool kAnyHit>
-Hit arbitrate(const Soup& soup, const Level1& level1, std::span<const Page> pages,
-              const PreparedRay& p) {
+Hit arbitrate(const Soup& soup, const Twins& twins, const Level1& level1,
+              std::span<const Page> pages, const PreparedRay& p) {
     Nearest nearest(p);
     const auto limit = [&] { return nearest.limit(); };
     walk(
@@ -26,7 +28,7 @@ Hit arbitrate(const Soup& soup, const Level1& level1, std::span<const Page> page
             for (uint32_t l = cell.first(); l < cell.first() + cell.count(); ++l) {
                 const Leaf& leaf = level1.leaves[l];
                 const auto test = [&](uint32_t i) {
-                    const TriangleId id = leaf.triangles[i];
+                    const TriangleId id = twins.seen(leaf.triangles[i], p.skip);
                     return nearest.offer(soup.triangle(id), id) && kAnyHit;
                 };
                 if (walk_page(pages[l], leaf, p, p.ray.t_min, test, limit))

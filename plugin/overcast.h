@@ -135,6 +135,7 @@ typedef struct ovc_statistics {
     uint64_t triangles;            /* added */
     uint64_t dropped_not_finite;   /* with a NaN or infinite corner: never hit */
     uint64_t dropped_degenerate;   /* without area: never hit */
+    uint64_t twins;                /* with the same three corners as a smaller (mesh, prim), which answers for them: in no leaf */
     uint64_t leaves;
     uint64_t leaf_references;      /* triangles counted once in each leaf they touch */
     uint64_t level2_bytes;         /* all pages together */
@@ -150,6 +151,7 @@ typedef struct ovc_statistics {
     uint64_t ray_visits;           /* rays counted once in each leaf they were traced in */
     uint64_t flagged;              /* answers the kernel could not decide alone: doubles chose among its candidates */
     uint64_t retraced;             /* of them with too many candidates: the ray was traced again in double */
+    uint64_t capped;               /* of them because the driver ended the kernel's loop early (llvmpipe does after 65535 rounds) */
     double seconds_level1;         /* building the level-1 tree */
     double seconds_level2;         /* building and packing all pages */
     double seconds_trace;          /* inside intersect and occluded */

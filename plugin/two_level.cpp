@@ -23,6 +23,7 @@ constexpr size_t kGrain = 256;         // rays a task
 constexpr size_t kWaveRays = 4u << 20; // rays in flight: bounds the host memory of a call
 constexpr uint64_t kPagesAtOnce =
     3; // a page takes at most this share of the pool, so that some stay resident
+constexpr double kFastSlack = 0x1p-20;  // of a leaf: 16 roundings
 constexpr uint64_t kDefaultLeaves = 10; // thesis, section 4
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -48,8 +49,7 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     const auto start = std::chrono::steady_clock::now();
     Box bounds;
     TwoLevelStatistics& statistics = self->statistics_;
-    const std::vector<TriangleId> triangles =
-        hittable_triangles(soup, &statistics.dropped, &bounds);
+    std::vector<TriangleId> triangles = hittable_triangles(soup, &statistics.dropped, &bounds);
     if (statistics.dropped.not_finite)
         say(log, LogLevel::Warning,
             fmt::format("left out {} triangles with a NaN or infinite corner",
@@ -57,6 +57,8 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     if (statistics.dropped.degenerate)
         say(log, LogLevel::Warning,
             fmt::format("left out {} triangles without area", statistics.dropped.degenerate));
+    self->twins_ = Twins::take_out(soup, triangles);
+    statistics.twins = self->twins_.count();
     statistics.seconds_level1 = seconds_since(start);
 
     const uint64_t parts = options.leaves ? options.leaves : kDefaultLeaves;
@@ -125,6 +127,7 @@ public:
         s_.statistics_.invalid_rays += invalid_;
         s_.statistics_.flagged += flagged_;
         s_.statistics_.retraced += retraced_;
+        s_.statistics_.capped += capped_;
         return Done{};
     }
 
@@ -177,9 +180,11 @@ private:
         const size_t padded = Tracer::row_padded(batch.size());
         parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j) {
+                PreparedRay p = prepare_rest(query_, first_ + batch[j]);
+                if (s_.twins_.stands_for_others(p.skip))
+                    p.skip = {}; // the others are to be found
                 bool decidable;
-                rays_[j] = rebase(s_.level1_.leaves[leaf], prepare_rest(query_, first_ + batch[j]),
-                                  decidable);
+                rays_[j] = rebase(s_.level1_.leaves[leaf], p, decidable);
                 decidable_[j] = decidable;
             }
         });
@@ -199,7 +204,9 @@ private:
         const size_t ray = first_ + i;
         const PreparedRay p = prepare(query_, ray);
         next_[i] = kNone;
-        if (!decidable || answer.prim == OVC_FLAGGED || !take_in(leaf, ray, p, answer))
+        capped_ += decidable && answer.prim == OVC_CAPPED;
+        if (!decidable || answer.prim == OVC_FLAGGED || answer.prim == OVC_CAPPED ||
+            !take_in(leaf, ray, p, answer))
             decide_in_double(i, p);
         else if (!query_.was_hit(ray))
             next_[i] = next_leaf(s_.level1_, p, positions_[i]).leaf;
@@ -223,39 +230,46 @@ private:
         }
         Nearest nearest(p);
         if (query_.was_hit(ray))
-            offer(nearest, query_.hit(ray).id);
-        if (answer.prim != OVC_MISS && !offer(nearest, leaf.triangles[answer.prim]))
+            offer(nearest, query_.hit(ray).id, p.skip);
+        if (answer.prim != OVC_MISS && !offer(nearest, leaf.triangles[answer.prim], p.skip))
             return false;
         for (const uint32_t rival : answer.rivals())
             if (rival != OVC_NO_TRIANGLE)
-                offer(nearest, leaf.triangles[rival]);
+                offer(nearest, leaf.triangles[rival], p.skip);
         if (nearest.hit().is_hit() && counts(leaf, p, nearest.hit().t))
             query_.set(ray, nearest.hit());
         return true;
     }
 
-    /// Is the hit in the leaf's cell? Beyond, a nearer one may be in the next leaf, which will find
-    /// this one too.
-    static bool counts(const Leaf& leaf, const PreparedRay& p, double t) {
-        return t <= clip(p, leaf.cell, p.ray.t_min, p.ray.t_max).exit;
+    /// Is the hit in the leaf's cell, or beyond by no more than `slack`? Farther, a nearer one may
+    /// be in the next leaf, which will find this one too.
+    static bool counts(const Leaf& leaf, const PreparedRay& p, double t, double slack = 0) {
+        return t <= clip(p, leaf.cell.padded(slack), p.ray.t_min, p.ray.t_max).exit;
     }
 
     void take_in_fast(const Leaf& leaf, size_t ray, const LocalAnswer& answer) {
         if (answer.prim == OVC_MISS)
             return;
-        const Hit hit{world_t(leaf, prepare_rest(query_, ray), answer.t()), answer.u(), answer.v(),
-                      leaf.triangles[answer.prim]};
-        if (counts(leaf, prepare(query_, ray), hit.t) &&
+        const PreparedRay p = prepare(query_, ray);
+        const double t = world_t(leaf, prepare_rest(query_, ray), answer.t());
+        const Hit hit = s_.twins_.seen(
+            s_.soup_, {t, answer.u(), answer.v(), leaf.triangles[answer.prim]}, p.skip);
+        // t is as good as float is: what lies on the last plane of the scene may come out behind
+        // it.
+        if (counts(leaf, p, t, kFastSlack / leaf.frame.scale) &&
             (!query_.was_hit(ray) || hit.nearer_than(query_.hit(ray))))
             query_.set(ray, hit);
     }
 
-    bool offer(Nearest& nearest, TriangleId id) const {
-        return nearest.offer(s_.soup_.triangle(id), id);
+    /// Offers what stands in the leaf as `id`.
+    bool offer(Nearest& nearest, TriangleId id, TriangleId skip) const {
+        const TriangleId seen = s_.twins_.seen(id, skip);
+        return nearest.offer(s_.soup_.triangle(seen), seen);
     }
 
     void decide_in_double(size_t i, const PreparedRay& p) {
-        query_.set(first_ + i, arbitrate<Query::kAnyHit>(s_.soup_, s_.level1_, s_.pages_, p));
+        query_.set(first_ + i,
+                   arbitrate<Query::kAnyHit>(s_.soup_, s_.twins_, s_.level1_, s_.pages_, p));
         ++flagged_;
         ++retraced_;
     }
@@ -278,6 +292,7 @@ private:
     std::atomic<uint64_t> invalid_{0};
     std::atomic<uint64_t> flagged_{0};
     std::atomic<uint64_t> retraced_{0};
+    std::atomic<uint64_t> capped_{0};
 };
 
 template <class Query>

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/log.h"
+#include "core/twins.h"
 #include "gpu/gl_thread.h"
 #include "gpu/page.h"
 #include "gpu/tracer.h"
@@ -28,6 +29,7 @@ struct TwoLevelOptions {
 /// Sums over the life of a structure. Fields as in ovc_statistics.
 struct TwoLevelStatistics {
     Dropped dropped;
+    uint64_t twins = 0;
     uint64_t largest_page_bytes = 0;
     uint64_t level2_bytes = 0;
     uint64_t passes = 0;
@@ -39,6 +41,7 @@ struct TwoLevelStatistics {
     uint64_t ray_visits = 0;
     uint64_t flagged = 0;
     uint64_t retraced = 0;
+    uint64_t capped = 0;
     uint64_t peak_bytes = 0;
     double seconds_level1 = 0;
     double seconds_level2 = 0;
@@ -79,7 +82,8 @@ private:
     GlThread& gl_;
     TwoLevelOptions options_;
     MemoryPlan plan_;
-    Level1 level1_;
+    Twins twins_;
+    Level1 level1_; // without them
     std::vector<Page> pages_;
     std::unique_ptr<Tracer> tracer_; // made and destroyed on the thread of gl_
     TwoLevelStatistics statistics_;

@@ -112,6 +112,158 @@ TEST_F(TwoLevelGl, RaysThatStartOnASurfaceAreNotFlaggedForIt) {
         EXPECT_TRUE(test::same(hits[i], test::brute_force(soup, ids, rays[i], skip[i])));
 }
 
+/// The triangles of `once` in three meshes: the second has some of them twice, the third all of
+/// them; each copy's corners are turned and wound in a way of its own.
+Soup tripled(const Soup& once) {
+    constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
+                                   {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+    const auto corners = once.chunks[0].corners();
+    std::vector<vec3> meshes[3];
+    for (uint32_t prim = 0; prim < once.triangle_count(); ++prim)
+        for (uint32_t copy = 0; copy < 4; ++copy) {
+            if (copy == 0 && prim % 3 == 0)
+                continue;
+            if (copy == 2 && prim % 2)
+                continue;
+            const int* order = kOrders[(prim + 2 * copy) % 6];
+            for (int i = 0; i < 3; ++i)
+                meshes[std::max(copy, 1u) - 1].push_back(corners[prim * 3 + uint32_t(order[i])]);
+        }
+    Soup soup;
+    for (auto& mesh : meshes)
+        soup.chunks.push_back(Chunk::owning(once.chunks[0].origin(), std::move(mesh)));
+    return soup;
+}
+
+/// Rays that start on triangles of the soup, which they do not see, and rays that do not see a
+/// triangle elsewhere on their way.
+void rays_that_skip(const Soup& soup, size_t count, std::vector<Ray>& rays,
+                    std::vector<TriangleId>& skip) {
+    const auto ids = hittable_triangles(soup, nullptr, nullptr);
+    test::Random random(19);
+    for (size_t i = 0; i < count; ++i) {
+        const TriangleId id = ids[random.below(ids.size())];
+        const Triangle t = soup.triangle(id);
+        const double u = i % 5 ? random(0, 0.5) : 0, v = i % 7 ? random(0, 0.5) : 0;
+        const dvec3 at = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
+        const dvec3 dir = random.point(-1, 1);
+        rays.push_back({i % 2 ? at : at - dir, 0, dir});
+        skip.push_back(id);
+    }
+}
+
+TEST_F(TwoLevelGl, TwinsAnswerAsBruteForceDoes) {
+    const Soup single[] = {test::random_soup(2, 700, 0.05), test::closed_grid(12),
+                           test::closed_grid(12, dvec3(4.5e6, 6e6, -6))};
+    for (const Soup& once : single) {
+        const Soup soup = tripled(once);
+        const auto ids = hittable_triangles(soup, nullptr, nullptr);
+        std::vector<Ray> rays = test::unpleasant_rays(soup, 35, 800);
+        std::vector<TriangleId> skip(rays.size());
+        rays_that_skip(soup, 1600, rays, skip);
+        std::vector<Hit> expected;
+        size_t met_a_twin = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            expected.push_back(test::brute_force(soup, ids, rays[i], skip[i]));
+            met_a_twin += expected[i].is_hit() && skip[i].mesh != kNone &&
+                          same_corners(soup.triangle(expected[i].id), soup.triangle(skip[i]));
+        }
+        EXPECT_GT(met_a_twin, 400u);
+        for (const auto& [name, options] : variants()) {
+            SCOPED_TRACE(name);
+            const auto structure = build(soup, options);
+            ASSERT_TRUE(structure);
+            EXPECT_EQ(structure->statistics().twins, ids.size() - once.triangle_count());
+            EXPECT_EQ(structure->statistics().level2_bytes,
+                      build(once, options)->statistics().level2_bytes);
+            std::vector<Hit> hits(rays.size());
+            std::vector<uint8_t> shadows(rays.size());
+            ASSERT_TRUE(ok(structure->intersect(rays, skip, hits)));
+            ASSERT_TRUE(ok(structure->occluded(rays, skip, shadows)));
+            for (size_t i = 0; i < rays.size(); ++i) {
+                ASSERT_TRUE(test::same(expected[i], hits[i]))
+                    << "ray " << i << ": " << test::describe(expected[i]) << " but found "
+                    << test::describe(hits[i]);
+                ASSERT_EQ(expected[i].is_hit(), shadows[i] != 0) << "ray " << i;
+            }
+        }
+    }
+}
+
+TEST_F(TwoLevelGl, TwinsAreNotFlaggedForEachOther) {
+    const Soup soup = tripled(test::closed_grid(100));
+    const auto structure = build(soup, {});
+    ASSERT_TRUE(structure);
+    test::Random random(5);
+    std::vector<Ray> rays(20000);
+    for (Ray& ray : rays) {
+        ray.org = random.point(-1, 1) + dvec3(0, 0, 4);
+        ray.dir = random.point(-1, 1) - ray.org;
+    }
+    std::vector<Hit> hits(rays.size());
+    ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+    EXPECT_LE(structure->statistics().flagged, rays.size() / 100);
+}
+
+TEST_F(TwoLevelGl, FastPrecisionSeesTheTwinOfWhatItSkips) {
+    const Soup soup = tripled(test::closed_grid(12));
+    const auto ids = hittable_triangles(soup, nullptr, nullptr);
+    std::vector<Ray> rays;
+    std::vector<TriangleId> skip;
+    rays_that_skip(soup, 4000, rays, skip);
+    const auto structure = build(soup, {.certify = false});
+    ASSERT_TRUE(structure);
+    std::vector<Hit> hits(rays.size());
+    ASSERT_TRUE(ok(structure->intersect(rays, skip, hits)));
+    size_t same = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const Hit expected = test::brute_force(soup, ids, rays[i], skip[i]);
+        if (!expected.is_hit() || hits[i].id != expected.id || expected.t < 0.01)
+            continue;
+        ++same;
+        EXPECT_NEAR(hits[i].t, expected.t, 1e-4);
+        EXPECT_NEAR(hits[i].u, expected.u, 1e-2);
+        EXPECT_NEAR(hits[i].v, expected.v, 1e-2);
+    }
+    EXPECT_GT(same, rays.size() / 3);
+}
+
+/// Triangles one behind the other along z, each with a corner on the z axis; a ray past all of them
+/// at (0.9, 0.9) goes through all their boxes.
+Soup stack_of_triangles(int count) {
+    std::vector<vec3> corners;
+    for (int i = 0; i < count; ++i)
+        for (const vec3& v : {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)})
+            corners.push_back(v + vec3(0, 0, float(i) / float(count)));
+    return test::one_chunk(std::move(corners));
+}
+
+TEST_F(TwoLevelGl, ALoopThatTheDriverEndsIsCountedAndDecidedInDouble) {
+    const Soup soup = stack_of_triangles(200'000);
+    const std::vector<Ray> rays = {
+        {dvec3(0, 0, -1), 0, dvec3(0, 0, 1)},        // each in doubt
+        {dvec3(0.9, 0.9, -1), 0, dvec3(0, 0, 1)},    // each box, no triangle
+        {dvec3(0.25, 0.25, 2), 0, dvec3(0, 0, -1)}}; // the first is certain
+    for (const bool certify : {true, false})
+        for (const bool compute : {false, true}) {
+            SCOPED_TRACE(std::string(certify ? "certified" : "fast") +
+                         (compute ? ", compute" : ""));
+            const auto structure =
+                build(soup, {.leaf_triangles = 1u << 30, .certify = certify, .compute = compute});
+            ASSERT_TRUE(structure);
+            std::vector<Hit> hits(rays.size());
+            ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+            EXPECT_EQ(hits[0].id, (TriangleId{0, 0}));
+            EXPECT_FALSE(hits[1].is_hit());
+            EXPECT_EQ(hits[2].id, (TriangleId{0, 199'999}));
+            const TwoLevelStatistics& s = structure->statistics();
+            EXPECT_LE(s.capped, s.retraced);
+            if (gl->info().is_software) {
+                EXPECT_EQ(s.capped, certify ? 2u : 1u) << "no loop was ended: nothing was tested";
+            }
+        }
+}
+
 TEST_F(TwoLevelGl, KeepsToTheBudgetByMovingPages) {
     const Soup soup = test::random_soup(8, 60000, 0.01);
     const uint64_t all = build(soup, {})->statistics().level2_bytes;
@@ -155,6 +307,29 @@ TEST_F(TwoLevelGl, FastPrecisionIsCloseAndFlagsNothing) {
         }
         EXPECT_LT(other, rays.size() / 500);
         EXPECT_EQ(structure->statistics().flagged, 0u);
+    }
+}
+
+TEST_F(TwoLevelGl, FastPrecisionSeesTheFloorThatEndsTheScene) {
+    std::vector<vec3> corners;
+    for (int i = 0; i < 400; ++i)
+        for (const vec3& v : {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0), vec3(1, 0, 0),
+                              vec3(1, 1, 0), vec3(0, 1, 0)})
+            corners.push_back(v + vec3(float(i % 20), float(i / 20), 0));
+    corners.insert(corners.end(), {vec3(0, 0, 7), vec3(1, 0, 7), vec3(0, 1, 7)});
+    const auto structure = build(test::one_chunk(std::move(corners)), {.certify = false});
+    ASSERT_TRUE(structure);
+    test::Random random(25);
+    std::vector<Ray> rays(5000);
+    for (Ray& ray : rays) {
+        ray.org = dvec3(random(2, 18), random(2, 18), 5);
+        ray.dir = dvec3(random(2, 18), random(2, 18), 0) - ray.org;
+    }
+    std::vector<Hit> hits(rays.size());
+    ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+    for (size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_TRUE(hits[i].is_hit()) << "ray " << i;
+        ASSERT_NEAR(hits[i].t, 1, 1e-5) << "ray " << i;
     }
 }
 

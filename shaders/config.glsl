@@ -17,3 +17,6 @@
 #ifndef OVC_PAGE_IMAGE
 #define OVC_PAGE_IMAGE 1 // 1: imageLoad (inlined on llvmpipe, 5 % faster); 0: texelFetch
 #endif
+#ifndef OVC_MOST_ROUNDS
+#define OVC_MOST_ROUNDS 0 // > 0: the loop ends itself after so many rounds and says so, before the driver ends it silently
+#endif

@@ -8,7 +8,7 @@
 //
 // header  texel 0: grid origin xyz (float bits), 0
 //         texel 1: grid cell xyz (float bits), 0
-//         texel 2: the traversal's first state: the root's unit, the empty stack (-1), stack height 0, 0
+//         texel 2: the traversal's first state: the root's unit, the empty stack (-1), stack height 0, rounds 0
 //         texel 3: 0
 // node    texels 0..2: per axis, the 16-bit grid coordinates of four children's boxes: lo0|lo1<<16, lo2|lo3<<16,
 //                      hi0|hi1<<16, hi2|hi3<<16. A missing child has lo = 0xffff > hi = 0.
@@ -29,10 +29,11 @@
 #define OVC_RAY_TEXELS 2
 
 // An answer is RGBA32UI. w: the id of the certain nearest hit, OVC_MISS where there is none, OVC_FLAGGED where the kernel
-// cannot tell. x, y: up to two rivals, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is
+// cannot tell, OVC_CAPPED where its loop was ended before it was done. x, y: up to two rivals, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is
 // none; what is named neither in w nor here is certainly not the answer. In fast precision x, y, z are t, u, v (float bits).
 #define OVC_MISS 0xffffffffu
 #define OVC_FLAGGED 0xfffffffeu
+#define OVC_CAPPED 0xfffffffdu
 
 #define OVC_BINDING_PAGE 0
 #define OVC_BINDING_RAYS 1

@@ -22,6 +22,9 @@ uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
     int stack[OVC_STACK_DEPTH];
     for (int i = 0; i < OVC_STACK_DEPTH; ++i)
         stack[i] = first.y;
+#if OVC_MOST_ROUNDS
+    int rounds = first.w;
+#endif
 
     bool done = t_end < 0.0;
     if (!done)
@@ -63,10 +66,16 @@ uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
             int below = stack[clamp(height, 0, OVC_STACK_DEPTH - 1)];
 #endif
             top = push ? stack_word(int(W.x), keys, left) : (pop ? below : (descend ? top : advanced));
-            if (done)
+            bool stop = done;
+#if OVC_MOST_ROUNDS
+            ++rounds;
+            stop = done || rounds == OVC_MOST_ROUNDS;
+#endif
+            if (stop)
                 break;
         }
 
-    // llvmpipe ends a loop after 65535 rounds without a word: such a ray is not done, and nobody may believe it.
-    return done ? answer_of(found, any_hit) : uvec4(0u, 0u, 0u, OVC_FLAGGED);
+    // Only with OVC_MOST_ROUNDS can a ray not be done here: a compiler that sees `done` as the one way out takes it for true,
+    // even where its driver has another.
+    return done ? answer_of(found, any_hit) : uvec4(0u, 0u, 0u, OVC_CAPPED);
 }

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Twins: triangles with the same three corners, whatever their order. No ray tells them apart, so
+// the smallest id of each such set stands for all in every structure over the soup.
+#pragma once
+
+#include "core/soup.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace ovc {
+
+/// Do both have the same three corners, in any order and either winding? 0 equals -0.
+bool same_corners(const Triangle& a, const Triangle& b);
+
+/// The sets of twins of a soup. Equal t goes to the smaller id, so the smallest of a set is the
+/// answer wherever one of them is; only a ray that does not see the smallest is answered with
+/// another one, and then with the second smallest.
+class Twins {
+public:
+    /// Takes all but the smallest id of each set out of `triangles`: finite ones, sorted, without
+    /// repetition, and so they stay.
+    static Twins take_out(const Soup& soup, std::vector<TriangleId>& triangles);
+
+    /// Which triangle a ray that does not see `skip` meets where `id` stands: `id`, or, where that
+    /// is the one it does not see, its twin; `id` still where it has none.
+    TriangleId seen(TriangleId id, TriangleId skip) const { return id == skip ? second(id) : id; }
+
+    /// The same for a hit: u and v then count from the corners of the triangle named.
+    Hit seen(const Soup& soup, const Hit& hit, TriangleId skip) const;
+
+    /// Whether the triangle stands for others as well.
+    bool stands_for_others(TriangleId id) const { return !pairs_.empty() && second(id) != id; }
+
+    /// Triangles taken out.
+    uint64_t count() const { return count_; }
+
+private:
+    struct Pair {
+        TriangleId smallest;
+        TriangleId second;
+    };
+
+    /// The second smallest of the set whose smallest is `id`; `id` where there is no such set.
+    TriangleId second(TriangleId id) const;
+
+    std::vector<Pair> pairs_; // sorted by smallest
+    uint64_t count_ = 0;
+};
+
+} // namespace ovc
