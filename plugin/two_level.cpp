@@ -3,11 +3,12 @@
 #include "plugin/two_level.h"
 
 #include "core/parallel.h"
+#include "gpu/level1_table.h"
+#include "kdtree/restart.h"
 #include "plugin/arbiter.h"
 #include "plugin/level2.h"
 #include "plugin/query.h"
-#include "plugin/queues.h"
-#include "plugin/rebase.h"
+#include "plugin/waiting.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>
@@ -23,15 +24,11 @@ constexpr size_t kGrain = 256;         // rays a task
 constexpr size_t kWaveRays = 4u << 20; // rays in flight: bounds the host memory of a call
 constexpr uint64_t kPagesAtOnce =
     3; // a page takes at most this share of the pool, so that some stay resident
-constexpr double kFastSlack = 0x1p-20;  // of a leaf: 16 roundings
+constexpr size_t kFewRays = 4096;       // below, a pass is not worth its start while others wait
 constexpr uint64_t kDefaultLeaves = 10; // thesis, section 4
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-uint64_t align(uint64_t bytes, uint64_t alignment) {
-    return (bytes + alignment - 1) / alignment * alignment;
 }
 
 } // namespace
@@ -46,6 +43,9 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
         return plan.error();
     std::unique_ptr<TwoLevel> self(new TwoLevel(soup, gl, options, *plan));
 
+    if (soup.triangle_count() > OVC_MAX_TRIANGLES)
+        return Error{fmt::format("{} triangles are too many: a scene takes {}",
+                                 soup.triangle_count(), OVC_MAX_TRIANGLES)};
     const auto start = std::chrono::steady_clock::now();
     Box bounds;
     TwoLevelStatistics& statistics = self->statistics_;
@@ -67,25 +67,26 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
                               : std::max<uint64_t>((triangles.size() + parts - 1) / parts, 1);
     const uint64_t page_bytes = std::min<uint64_t>(plan->pool_bytes / kPagesAtOnce,
                                                    uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES);
-    Result<Levels> levels = build_levels(soup, triangles, bounds, most, page_bytes);
+    self->numbers_ = Numbering(soup);
+    Result<Levels> levels = build_levels(soup, self->numbers_, triangles, bounds, most, page_bytes);
     if (!levels)
         return levels.error();
     self->level1_ = std::move(levels->level1);
     self->pages_ = std::move(levels->pages);
     statistics.seconds_level1 += levels->seconds_level1;
     statistics.seconds_level2 += levels->seconds_level2;
-    uint64_t all_pages = gl.info().buffer_alignment; // a pool of nothing is no buffer
     for (const Page& page : self->pages_) {
-        all_pages += align(page.bytes(), gl.info().buffer_alignment);
         statistics.level2_bytes += page.bytes();
         statistics.largest_page_bytes = std::max(statistics.largest_page_bytes, page.bytes());
     }
-
-    self->plan_.pool_bytes = std::min(plan->pool_bytes, all_pages);
+    if (self->pages_.empty())
+        return self; // every ray misses, no GPU needed
+    if (const Result<Done> shared = self->share_out(); !shared)
+        return shared.error();
 
     Result<std::unique_ptr<Tracer>> tracer = Error{};
     gl.run([&](GlState& state) {
-        tracer = Tracer::create(self->plan_, gl.info(), state.kernels, self->pages_.size());
+        tracer = Tracer::create(self->plan_, gl.info(), state.kernels, self->level1_, self->pages_);
     });
     if (!tracer)
         return tracer.error();
@@ -95,10 +96,25 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
 }
 
 TwoLevel::~TwoLevel() {
-    gl_.run([&](GlState&) { tracer_.reset(); });
+    if (tracer_)
+        gl_.run([&](GlState&) { tracer_.reset(); });
 }
 
-/// Some rays of a call on their way through the leaves, until none waits any more.
+/// Takes level 1 off the pool, and what no page needs.
+Result<Done> TwoLevel::share_out() {
+    const uint64_t table = level1_texels(level1_) * sizeof(uvec4);
+    const uint64_t needed = table + statistics_.largest_page_bytes;
+    if (plan_.pool_bytes < needed)
+        return Error{fmt::format(
+            "a GPU budget of {} bytes is too small for this scene: the smallest that works is {} "
+            "bytes ({} for level 1 with {} leaves, {} for the largest page, an eighth for rays)",
+            plan_.budget_bytes, (needed + plan_.ray_bytes()) / 7 * 8 + 8, table,
+            level1_.leaves.size(), statistics_.largest_page_bytes)};
+    plan_.pool_bytes = std::min(plan_.pool_bytes - table, statistics_.level2_bytes);
+    return Done{};
+}
+
+/// Some rays of a call on their way through the leaves, until none is under way any more.
 template <class Query>
 class TwoLevel::Wave {
 public:
@@ -107,22 +123,20 @@ public:
           query_(query),
           first_(first),
           positions_(count),
-          next_(count, kNone),
-          queues_(structure.level1_.leaves.size()),
-          rays_(Tracer::row_padded(std::min<size_t>(structure.plan_.batch_rays, count))),
-          answers_(rays_.size()),
-          decidable_(rays_.size()) {}
+          waiting_(structure.level1_.leaves.size()),
+          used_(structure.level1_.leaves.size()),
+          travellers_(Tracer::row_padded(std::min<size_t>(structure.plan_.batch_rays, count))),
+          answers_(travellers_.size()) {}
 
     Result<Done> run() {
         start();
-        for (uint32_t leaf; (leaf = queues_.choose(*s_.tracer_, s_.pages_)) != kNone;) {
-            const std::vector<uint32_t> queue = queues_.take(leaf);
-            const size_t most = s_.plan_.batch_rays;
-            for (size_t at = 0; at < queue.size(); at += most)
-                if (Result<Done> done =
-                        pass(leaf, std::span(queue).subspan(at, std::min(most, queue.size() - at)));
-                    !done)
-                    return done;
+        while (true) {
+            if (ready_.size() < kFewRays && waiting_.count() > 0)
+                bring();
+            if (ready_.empty())
+                break;
+            if (Result<Done> done = pass(); !done)
+                return done;
         }
         s_.statistics_.invalid_rays += invalid_;
         s_.statistics_.flagged += flagged_;
@@ -132,7 +146,13 @@ public:
     }
 
 private:
-    /// Finds the first leaf of each ray.
+    /// Where a ray stands; t_from and leaf as in Traveller.
+    struct Position {
+        double t_from = 0;
+        uint32_t leaf = OVC_NO_LEAF;
+        enum : uint32_t { Done, Ready, Waits } state = Done;
+    };
+
     void start() {
         std::vector<uint32_t> all(positions_.size());
         parallel_for(all.size(), kGrain, [&](size_t from, size_t to) {
@@ -144,156 +164,168 @@ private:
                     continue;
                 }
                 const PreparedRay p = prepare(query_, first_ + i);
-                positions_[i] = {p.ray.t_min};
+                if (s_.pages_.empty())
+                    continue;
                 if (can_walk(s_.level1_, p))
-                    next_[i] = next_leaf(s_.level1_, p, positions_[i]).leaf;
+                    positions_[i] = {p.ray.t_min, OVC_NO_LEAF, Position::Ready};
                 else
                     decide_in_double(i, p);
             }
         });
-        enqueue(all);
+        send_on(all);
     }
 
-    /// Traces a batch of the leaf's queue and sends its rays on.
-    Result<Done> pass(uint32_t leaf, std::span<const uint32_t> batch) {
-        rebase_all(leaf, batch);
-        Result<PassResult> pass = Error{};
+    void send_on(std::span<const uint32_t> rays) {
+        for (const uint32_t i : rays) {
+            if (positions_[i].state == Position::Ready)
+                ready_.push_back(i);
+            else if (positions_[i].state == Position::Waits)
+                waiting_.push(positions_[i].leaf, i);
+        }
+    }
+
+    /// Moves pages in and calls up who waited for them.
+    void bring() {
+        const std::vector<uint32_t> wanted = waiting_.wanted(s_.pages_);
+        Moved moved;
+        s_.gl_.run([&](GlState&) { moved = s_.tracer_->bring(wanted); });
+        for (size_t i = 0; i < moved.pages; ++i)
+            for (const uint32_t ray : waiting_.take(wanted[i]))
+                ready_.push_back(ray);
+        s_.statistics_.pages_in += moved.pages;
+        s_.statistics_.bytes_in += moved.bytes;
+    }
+
+    /// Walks a batch of the rays that are ready, takes in the answers, and sends the rays on.
+    Result<Done> pass() {
+        const size_t count = std::min<size_t>(ready_.size(), s_.plan_.batch_rays);
+        const std::vector<uint32_t> batch(ready_.begin(), ready_.begin() + ptrdiff_t(count));
+        ready_.erase(ready_.begin(), ready_.begin() + ptrdiff_t(count));
+        load(batch);
+        Result<double> seconds = Error{};
         s_.gl_.run([&](GlState&) {
-            pass = s_.tracer_->pass(
-                leaf, s_.pages_[leaf], {Query::kAnyHit, s_.options_.certify, s_.options_.compute},
-                std::span(rays_).first(batch.size()), std::span(answers_).first(batch.size()));
+            seconds = s_.tracer_->pass({Query::kAnyHit, s_.options_.certify, s_.options_.compute},
+                                       std::span(travellers_).first(count),
+                                       std::span(answers_).first(count));
         });
-        if (!pass)
-            return pass.error();
-        TwoLevelStatistics& statistics = s_.statistics_;
-        statistics.passes += 1;
-        statistics.pages_in += pass->bytes_in > 0;
-        statistics.bytes_in += pass->bytes_in;
-        statistics.ray_visits += batch.size();
-        statistics.seconds_kernel += pass->seconds;
-        settle_all(leaf, batch);
-        enqueue(batch);
+        if (!seconds)
+            return seconds.error();
+        s_.statistics_.passes += 1;
+        s_.statistics_.ray_visits += count;
+        s_.statistics_.seconds_kernel += *seconds;
+        parallel_for(count, kGrain, [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j)
+                settle(batch[j], answers_[j]);
+        });
+        for (uint32_t leaf = 0; leaf < used_.size(); ++leaf)
+            if (used_[leaf].exchange(0, std::memory_order_relaxed))
+                s_.tracer_->touch(leaf);
+        send_on(batch);
         return Done{};
     }
 
-    void rebase_all(uint32_t leaf, std::span<const uint32_t> batch) {
-        const size_t padded = Tracer::row_padded(batch.size());
+    void load(std::span<const uint32_t> batch) {
         parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j) {
-                PreparedRay p = prepare_rest(query_, first_ + batch[j]);
-                if (s_.twins_.stands_for_others(p.skip))
-                    p.skip = {}; // the others are to be found
-                bool decidable;
-                rays_[j] = rebase(s_.level1_.leaves[leaf], p, decidable);
-                decidable_[j] = decidable;
+                const size_t ray = first_ + batch[j];
+                const Position& at = positions_[batch[j]];
+                travellers_[j] = {query_.rays[ray], at.t_from,
+                                  s_.number_to_skip(query_.skipped(ray)), at.leaf};
             }
         });
-        std::fill(rays_.begin() + ptrdiff_t(batch.size()), rays_.begin() + ptrdiff_t(padded),
-                  no_ray());
+        const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
+        std::fill(travellers_.begin() + ptrdiff_t(batch.size()),
+                  travellers_.begin() + ptrdiff_t(Tracer::row_padded(batch.size())), none);
     }
 
-    void settle_all(uint32_t leaf, std::span<const uint32_t> batch) {
-        parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
-            for (size_t j = from; j < to; ++j)
-                settle(leaf, batch[j], answers_[j], decidable_[j]);
-        });
+    /// Takes in the kernel's answer for ray i, and says in positions_[i] where the ray goes from
+    /// here.
+    void settle(uint32_t i, const Answer& answer) {
+        positions_[i].state = Position::Done;
+        if (answer.prim == OVC_WAITS) {
+            positions_[i] = {answer.t(), answer.leaf(), Position::Waits};
+            return;
+        }
+        const bool decided = answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
+        capped_ += answer.prim == OVC_CAPPED;
+        if (!decided || !(s_.options_.certify ? take_in(i, answer) : take_in_fast(i, answer)))
+            decide_in_double(i, prepare(query_, first_ + i));
     }
 
-    /// Takes in the kernel's answer for ray i, and says in next_[i] where the ray goes from here.
-    void settle(uint32_t leaf, uint32_t i, const LocalAnswer& answer, bool decidable) {
+    /// Enters what the kernel found. False where double does not find what the kernel was certain
+    /// of.
+    bool take_in(uint32_t i, const Answer& answer) {
         const size_t ray = first_ + i;
-        const PreparedRay p = prepare(query_, ray);
-        next_[i] = kNone;
-        capped_ += decidable && answer.prim == OVC_CAPPED;
-        if (!decidable || answer.prim == OVC_FLAGGED || answer.prim == OVC_CAPPED ||
-            !take_in(leaf, ray, p, answer))
-            decide_in_double(i, p);
-        else if (!query_.was_hit(ray))
-            next_[i] = next_leaf(s_.level1_, p, positions_[i]).leaf;
-        else if (!Query::kAnyHit)
-            next_[i] = next_leaf_in_cell(s_.level1_, prepare_rest(query_, ray), positions_[i]).leaf;
-    }
-
-    /// Enters what the kernel found in the leaf. False when double does not find what the kernel
-    /// was certain of.
-    bool take_in(uint32_t leaf_index, size_t ray, const PreparedRay& p, const LocalAnswer& answer) {
-        const Leaf& leaf = s_.level1_.leaves[leaf_index];
-        if (!s_.options_.certify) {
-            take_in_fast(leaf, ray, answer);
-            return true;
-        }
         const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
+        if (answer.prim == OVC_MISS && !has_rivals)
+            return true;
         flagged_ += has_rivals;
-        if (Query::kAnyHit && !has_rivals && answer.prim != OVC_MISS) {
-            query_.set(ray, Hit{0, 0, 0, leaf.triangles[answer.prim]}); // a certain hit decides
+        const uint32_t leaf = answer.leaf();
+        if (used_[leaf].load(std::memory_order_relaxed) == 0)
+            used_[leaf].store(1, std::memory_order_relaxed);
+        if (Query::kAnyHit && !has_rivals) {
+            query_.set(ray, Hit{0, 0, 0, s_.numbers_.id(answer.prim)}); // a certain hit decides
             return true;
         }
+        const PreparedRay p = prepare(query_, ray);
         Nearest nearest(p);
-        if (query_.was_hit(ray))
-            offer(nearest, query_.hit(ray).id, p.skip);
-        if (answer.prim != OVC_MISS && !offer(nearest, leaf.triangles[answer.prim], p.skip))
+        if (answer.prim != OVC_MISS && !offer(nearest, answer.prim, p.skip))
             return false;
         for (const uint32_t rival : answer.rivals())
             if (rival != OVC_NO_TRIANGLE)
-                offer(nearest, leaf.triangles[rival], p.skip);
-        if (nearest.hit().is_hit() && counts(leaf, p, nearest.hit().t))
+                offer(nearest, rival, p.skip);
+        // Beyond the cell a nearer hit may be in the next leaf, which will find this one too.
+        const double exit = clip(p, s_.level1_.leaves[leaf].cell, p.ray.t_min, p.ray.t_max).exit;
+        if (nearest.hit().is_hit() && nearest.hit().t <= exit)
             query_.set(ray, nearest.hit());
+        else if (exit < p.ray.t_max)
+            positions_[i] = {exit, OVC_NO_LEAF, Position::Ready};
         return true;
     }
 
-    /// Is the hit in the leaf's cell, or beyond by no more than `slack`? Farther, a nearer one may
-    /// be in the next leaf, which will find this one too.
-    static bool counts(const Leaf& leaf, const PreparedRay& p, double t, double slack = 0) {
-        return t <= clip(p, leaf.cell.padded(slack), p.ray.t_min, p.ray.t_max).exit;
+    bool take_in_fast(uint32_t i, const Answer& answer) {
+        const size_t ray = first_ + i;
+        if (answer.prim != OVC_MISS)
+            query_.set(ray, s_.twins_.seen(
+                                s_.soup_,
+                                {answer.t(), answer.u(), answer.v(), s_.numbers_.id(answer.prim)},
+                                query_.skipped(ray)));
+        return true;
     }
 
-    void take_in_fast(const Leaf& leaf, size_t ray, const LocalAnswer& answer) {
-        if (answer.prim == OVC_MISS)
-            return;
-        const PreparedRay p = prepare(query_, ray);
-        const double t = world_t(leaf, prepare_rest(query_, ray), answer.t());
-        const Hit hit = s_.twins_.seen(
-            s_.soup_, {t, answer.u(), answer.v(), leaf.triangles[answer.prim]}, p.skip);
-        // t is as good as float is: what lies on the last plane of the scene may come out behind
-        // it.
-        if (counts(leaf, p, t, kFastSlack / leaf.frame.scale) &&
-            (!query_.was_hit(ray) || hit.nearer_than(query_.hit(ray))))
-            query_.set(ray, hit);
-    }
-
-    /// Offers what stands in the leaf as `id`.
-    bool offer(Nearest& nearest, TriangleId id, TriangleId skip) const {
-        const TriangleId seen = s_.twins_.seen(id, skip);
+    /// Offers what stands in the page as `number`.
+    bool offer(Nearest& nearest, uint32_t number, TriangleId skip) const {
+        const TriangleId seen = s_.twins_.seen(s_.numbers_.id(number), skip);
         return nearest.offer(s_.soup_.triangle(seen), seen);
     }
 
     void decide_in_double(size_t i, const PreparedRay& p) {
-        query_.set(first_ + i,
-                   arbitrate<Query::kAnyHit>(s_.soup_, s_.twins_, s_.level1_, s_.pages_, p));
+        query_.set(first_ + i, arbitrate<Query::kAnyHit>(s_.soup_, s_.numbers_, s_.twins_,
+                                                         s_.level1_, s_.pages_, p));
         ++flagged_;
         ++retraced_;
     }
 
-    void enqueue(std::span<const uint32_t> rays) {
-        for (const uint32_t i : rays)
-            if (next_[i] != kNone)
-                queues_.push(next_[i], i);
-    }
-
     TwoLevel& s_;
     const Query& query_;
-    const size_t first_;                 // of the call's rays; indices below count from it
-    std::vector<RayPosition> positions_; // per ray
-    std::vector<uint32_t> next_;         // per ray: the leaf it goes to
-    Queues queues_;
-    std::vector<LocalRay> rays_; // per ray of a batch, as are the next two
-    std::vector<LocalAnswer> answers_;
-    std::vector<uint8_t> decidable_;
+    const size_t first_;              // of the call's rays; indices below count from it
+    std::vector<Position> positions_; // per ray
+    std::vector<uint32_t> ready_;     // rays for the next passes
+    Waiting waiting_;
+    std::vector<std::atomic<uint8_t>> used_; // per leaf: a ray of the last pass ended there
+    std::vector<Traveller> travellers_;      // per ray of a batch, as are the answers
+    std::vector<Answer> answers_;
     std::atomic<uint64_t> invalid_{0};
     std::atomic<uint64_t> flagged_{0};
     std::atomic<uint64_t> retraced_{0};
     std::atomic<uint64_t> capped_{0};
 };
+
+/// The number of a triangle that a ray shall not see; OVC_NO_TRIANGLE where it stands for others,
+/// which are to be found.
+uint32_t TwoLevel::number_to_skip(TriangleId id) const {
+    return id.mesh == kNone || twins_.stands_for_others(id) ? OVC_NO_TRIANGLE : numbers_.of(id);
+}
 
 template <class Query>
 Result<Done> TwoLevel::trace(const Query& query) {
