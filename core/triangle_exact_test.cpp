@@ -177,7 +177,7 @@ TEST(Reference, EqualsExactArithmetic) {
 TEST(Reference, RoundsWhatItDecidesWithCare) {
     for (const Case& c : kCases) {
         size_t hits = 0;
-        for (uint64_t seed = 0; seed < 300; ++seed) {
+        for (uint64_t seed = 0; seed < 800; ++seed) {
             Random random(seed);
             std::vector<Triangle> triangles;
             Ray ray;
@@ -199,7 +199,10 @@ TEST(Reference, RoundsWhatItDecidesWithCare) {
                 for (int i = 0; i < 3; ++i)
                     if (!(found->support >> i & 1)) {
                         const Hit& h = found->hit;
-                        ASSERT_NEAR(i == 0 ? 1 - h.u - h.v : i == 1 ? h.u : h.v, 0, 1e-15)
+                        ASSERT_NEAR(i == 0   ? 1 - h.u - h.v
+                                    : i == 1 ? h.u
+                                             : h.v,
+                                    0, 1e-15)
                             << c.name << " seed " << seed;
                     }
             }

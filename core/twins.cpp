@@ -107,9 +107,11 @@ Twins Twins::take_out(const Soup& soup, std::vector<TriangleId>& triangles) {
         const auto end =
             std::find_if(first, all.end(), [&](const Suspect& s) { return s.hash != first->hash; });
         const Triangle triangle = soup.triangle(first->id);
-        const auto rest = std::stable_partition(first + 1, end, [&](const Suspect& s) {
+        const auto is_twin = [&](const Suspect& s) {
             return same_corners(triangle, soup.triangle(s.id));
-        });
+        };
+        const auto rest =
+            std::stable_partition(std::find_if_not(first + 1, end, is_twin), end, is_twin);
         if (rest != first + 1)
             twins.pairs_.push_back({first->id, (first + 1)->id});
         for (auto twin = first + 1; twin != rest; ++twin)

@@ -11,6 +11,8 @@ Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOpt
                                               const LogSink& log) {
     if (options.kind == BackendKind::CpuKdTree)
         return make_cpu_backend(soup);
+    if (options.kind == BackendKind::Embree)
+        return make_embree_backend(soup, EmbreeMode::Robust);
     const Result<const ovc_api*> api = load_plugin();
     if (!api)
         return Error{api.error().message + " (--backend cpu-kdtree works without it)"};

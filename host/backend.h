@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Backend: what answers rays. The plugin, or the CPU KD-tree it is compared with.
+// Backend: what answers rays. The plugin, or what it is compared with: the CPU KD-tree and Embree.
 #pragma once
 
 #include "core/log.h"
@@ -35,7 +35,7 @@ public:
     virtual std::string renderer() const = 0;
 };
 
-enum class BackendKind { Auto, TwoLevel, CpuKdTree };
+enum class BackendKind { Auto, TwoLevel, CpuKdTree, Embree };
 
 struct BackendOptions {
     BackendKind kind = BackendKind::Auto;
@@ -57,5 +57,12 @@ Result<std::unique_ptr<Backend>> make_two_level_backend(PluginDevice device, con
                                                         const BackendOptions& options);
 
 std::unique_ptr<Backend> make_cpu_backend(const Soup& soup);
+
+/// Robust is RTC_SCENE_FLAG_ROBUST, Default is without it.
+enum class EmbreeMode { Default, Robust };
+
+/// Embree has floats only: world positions and rays are rounded to them, and rays with numbers
+/// beyond 1.8e18 miss. Error: this program was built without Embree, or Embree cannot build.
+Result<std::unique_ptr<Backend>> make_embree_backend(const Soup& soup, EmbreeMode mode);
 
 } // namespace ovc

@@ -11,10 +11,10 @@
 
 namespace ovc {
 
-static constexpr std::string_view kBackends[] = {"auto", "two-level", "cpu-kdtree"};
+static constexpr std::string_view kBackends[] = {"auto", "two-level", "cpu-kdtree", "embree"};
 /// In the order of BackendKind; these are in the design and not here.
 static constexpr std::string_view kLaterBackends[] = {"single-texture", "multi-texture", "gpu-grid",
-                                                      "gpu-kdtree", "embree"};
+                                                      "gpu-kdtree"};
 
 static Result<BackendKind> parse_backend(std::string_view name) {
     const auto known = std::find(std::begin(kBackends), std::end(kBackends), name);
@@ -22,17 +22,18 @@ static Result<BackendKind> parse_backend(std::string_view name) {
         return BackendKind(known - std::begin(kBackends));
     if (std::find(std::begin(kLaterBackends), std::end(kLaterBackends), name) !=
         std::end(kLaterBackends))
-        return Error{fmt::format(
-            "the backend '{}' is not there yet; there are auto, two-level and cpu-kdtree", name)};
-    return Error{
-        fmt::format("no backend is called '{}'; there are auto, two-level and cpu-kdtree{}", name,
-                    did_you_mean(name, kBackends))};
+        return Error{fmt::format("the backend '{}' is not there yet; there are {}", name,
+                                 fmt::join(kBackends, ", "))};
+    return Error{fmt::format("no backend is called '{}'; there are {}{}", name,
+                             fmt::join(kBackends, ", "), did_you_mean(name, kBackends))};
 }
 
 void BackendArguments::add_to(CLI::App& app) {
     const char* group = "Tracing";
-    app.add_option("--backend", backend,
-                   "auto, two-level (the GPU) or cpu-kdtree (the CPU, double precision)")
+    app.add_option(
+           "--backend", backend,
+           "auto, two-level (the GPU), cpu-kdtree (the CPU, double precision) or embree (the "
+           "CPU, float32, Embree's robust mode)")
         ->group(group)
         ->type_name("NAME");
     app.add_option("--gpu-memory", gpu_memory,
@@ -81,7 +82,7 @@ Result<BackendOptions> BackendArguments::resolve() const {
     if (!kind)
         return kind.error();
     options.kind = *kind;
-    if (options.kind == BackendKind::CpuKdTree)
+    if (options.kind == BackendKind::CpuKdTree || options.kind == BackendKind::Embree)
         for (const auto& [option, value] : {std::pair{"--gpu-memory", &gpu_memory},
                                             {"--leaf-triangles", &leaf_triangles},
                                             {"--leaves", &leaves},
@@ -89,8 +90,8 @@ Result<BackendOptions> BackendArguments::resolve() const {
                                             {"--precision", &precision},
                                             {"--kernel", &kernel}})
             if (!value->empty())
-                return Error{fmt::format(
-                    "{} means nothing to the backend cpu-kdtree, which uses no GPU", option)};
+                return Error{fmt::format("{} means nothing to the backend {}, which uses no GPU",
+                                         option, backend)};
     if (!gpu_memory.empty()) {
         const Result<MemorySize> size = parse_memory_size(gpu_memory);
         if (!size)

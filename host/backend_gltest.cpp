@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <random>
 
@@ -69,6 +70,37 @@ TEST(TwoLevelBackend, AnswersWhatTheCpuAnswers) {
     EXPECT_EQ(statistics.nearest_rays, 2 * rays.size());
     EXPECT_LE(statistics.gpu_peak_bytes, statistics.gpu_budget_bytes);
     EXPECT_GE(statistics.leaves, 4u);
+}
+
+TEST(EmbreeBackend, AnswersAboutWhatTheCpuAnswers) {
+    const Soup soup = random_soup(1, 3000);
+    const std::unique_ptr<Backend> cpu = make_cpu_backend(soup);
+    const std::vector<Ray> rays = random_rays(2, 20000);
+    std::vector<Hit> expected(rays.size()), found(rays.size());
+    std::vector<uint8_t> hidden(rays.size());
+    std::vector<TriangleId> skip(rays.size());
+    for (const EmbreeMode mode : {EmbreeMode::Default, EmbreeMode::Robust}) {
+        const Result<std::unique_ptr<Backend>> embree = make_embree_backend(soup, mode);
+        if (!embree)
+            GTEST_SKIP() << embree.error().message;
+        for (int round = 0; round < 2; ++round) {
+            ASSERT_TRUE(cpu->intersect(rays, skip, expected));
+            ASSERT_TRUE((*embree)->intersect(rays, skip, found));
+            ASSERT_TRUE((*embree)->occluded(rays, skip, hidden));
+            size_t other = 0;
+            for (size_t i = 0; i < rays.size(); ++i) {
+                other += expected[i].id != found[i].id || hidden[i] != expected[i].is_hit();
+                // Floats at 100: its triangles are moved by some 1e-5.
+                if (expected[i].id == found[i].id && found[i].is_hit()) {
+                    EXPECT_NEAR(expected[i].t, found[i].t, 1e-2) << "ray " << i;
+                }
+                skip[i] = expected[i].id; // the second round looks behind the first hit
+            }
+            EXPECT_LT(other, rays.size() / 500) << "round " << round;
+        }
+        std::ranges::fill(skip, TriangleId{});
+        EXPECT_EQ((*embree)->statistics().nearest_rays, 2 * rays.size());
+    }
 }
 
 TEST(TwoLevelBackend, HandsOnThePluginsSentence) {

@@ -3,29 +3,41 @@
 #include "host/arguments.h"
 #include "host/command.h"
 #include "host/interrupt.h"
+#include "host/memory_size.h"
 #include "host/output.h"
+#include "host/report/leak_cases.h"
 #include "host/report/stability_table.h"
 #include "host/scene_source.h"
 #include "host/suggestion.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 
 namespace ovc {
 
 static constexpr const char* kExamples =
     R"(stability: rays at the edges and vertices of closed meshes, near and far; slivers, duplicates, deep
-trees; grazing rays, rays along axes and in planes; NaN and infinity. Wrong answers and leaks of
-certified and fast mode, and of Embree's robust mode where this program was built with Embree. The
-table goes to standard output. It ends with an error when certified mode answered anything wrong.
+trees; a ground of 1e7 m with detail of 1 mm; grazing rays, rays along axes and in planes; NaN and
+infinity. Wrong answers and leaks of certified and fast mode, and of Embree's default and robust mode
+where this program was built with Embree.
+
+leaks: certified mode alone, in large numbers: rays at edges and vertices of closed meshes, from
+inside and outside, at the origin and far from it, small and large. With --data also at edges and
+vertices of the dragon that its triangles surround without a gap; elsewhere it has holes.
+
+The table goes to standard output. Ctrl-C ends it early, with the table so far. It ends with an error
+when certified mode answered anything wrong.
 
 Examples:
   overcast report --only stability --quick             a minute
   overcast report --only stability -o out              out/stability.md and out/stability.json too
-  overcast report --only stability --times 2000        the long run)";
+  overcast report --only leaks --rays 1e8 -o out       the long run; the files grow case by case)";
 
 namespace {
 
@@ -34,23 +46,40 @@ struct ReportArguments {
     std::string folder;
     std::string data;
     std::string device;
-    std::string kernel;
+    std::string kernel = "auto";
     std::string times;
+    std::string rays;
+    std::string name_part;
     bool quick = false;
 };
 
-/// All of the design; the first is there.
-constexpr std::string_view kReports[] = {"stability", "speed", "memory", "scenes"};
+/// All of the design; the first two are there.
+constexpr std::string_view kReports[] = {"stability", "leaks", "speed", "memory", "scenes"};
 
 Result<Done> check_name(const std::string& name) {
-    if (name == kReports[0])
+    if (name == kReports[0] || name == kReports[1])
         return Done{};
     if (name.empty())
-        return Error{"the whole report is not there yet; there is --only stability"};
+        return Error{"the whole report is not there yet; there are --only stability and leaks"};
     if (std::find(std::begin(kReports), std::end(kReports), name) != std::end(kReports))
-        return Error{fmt::format("the report '{}' is not there yet; there is stability", name)};
-    return Error{fmt::format("no report is called '{}'; there is stability{}", name,
+        return Error{
+            fmt::format("the report '{}' is not there yet; there are stability and leaks", name)};
+    return Error{fmt::format("no report is called '{}'; there are stability and leaks{}", name,
                              did_you_mean(name, kReports))};
+}
+
+/// "100000000" or "1e8".
+Result<uint64_t> parse_rays(const std::string& text) {
+    constexpr double most = 1e12;
+    double value = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, failure] = std::from_chars(text.data(), end, value);
+    if (failure != std::errc{} || stop != end || !(value >= 1 && value <= most) ||
+        value != std::floor(value))
+        return Error{fmt::format("--rays needs a whole number from 1 to {:.0e}, such as 1e8, not "
+                                 "'{}'",
+                                 most, text)};
+    return uint64_t(value);
 }
 
 Result<StabilityOptions> options_of(const ReportArguments& given) {
@@ -63,28 +92,83 @@ Result<StabilityOptions> options_of(const ReportArguments& given) {
         options.times = *times;
     }
     options.backend.device = given.device;
-    constexpr std::string_view kernels[] = {"", "fragment", "compute"};
+    constexpr std::string_view kernels[] = {"auto", "fragment", "compute"};
     const auto kernel = std::find(std::begin(kernels), std::end(kernels), given.kernel);
     if (kernel == std::end(kernels))
-        return Error{fmt::format("--kernel: '{}' is neither fragment nor compute", given.kernel)};
+        return Error{
+            fmt::format("--kernel: '{}' is none of {}", given.kernel, fmt::join(kernels, ", "))};
     options.backend.kernel = ovc_kernel(kernel - std::begin(kernels));
     return options;
 }
 
-Result<Done> make_folder(const std::string& folder) {
+/// Keeps the cases whose name contains `part`.
+Result<Done> choose(std::vector<StabilityCase>& cases, const std::string& part) {
+    std::erase_if(
+        cases, [&](const StabilityCase& one) { return one.name.find(part) == std::string::npos; });
+    if (cases.empty())
+        return Error{fmt::format("--case: no case of the report has '{}' in its name", part)};
+    return Done{};
+}
+
+/// What one of the reports runs.
+struct Report {
+    std::string name;
+    std::string title;
+    std::vector<StabilityCase> cases;
+    StabilityOptions options;
+};
+
+Result<Report> stability_report(const ReportArguments& given) {
+    if (!given.rays.empty())
+        return Error{"--rays means nothing to the report stability; there is --times"};
+    Result<StabilityOptions> options = options_of(given);
+    if (!options)
+        return options.error();
+    Result<std::vector<StabilityCase>> cases = stability_cases(given.data);
+    if (!cases)
+        return cases.error();
+    if (const Result<Done> chosen = choose(*cases, given.name_part); !chosen)
+        return chosen.error();
+    return Report{"stability", "Numerical stability", std::move(*cases), std::move(*options)};
+}
+
+Result<Report> leak_report(const ReportArguments& given) {
+    if (!given.times.empty())
+        return Error{"--times means nothing to the report leaks; there is --rays"};
+    Result<StabilityOptions> options = options_of(given);
+    if (!options)
+        return options.error();
+    options->times = 1;
+    options->peers = false;
+    const std::string rays = !given.rays.empty() ? given.rays : given.quick ? "1e6" : "1e8";
+    const Result<uint64_t> count = parse_rays(rays);
+    if (!count)
+        return count.error();
+    Result<std::vector<StabilityCase>> cases = leak_cases(given.data);
+    if (!cases)
+        return cases.error();
+    if (const Result<Done> chosen = choose(*cases, given.name_part); !chosen)
+        return chosen.error();
+    share_rays(*cases, *count);
+    return Report{"leaks", "Leaks at edges and vertices", std::move(*cases), std::move(*options)};
+}
+
+Result<Done> make_folder(const std::string& folder, const Report& report) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error)
         return Error{fmt::format("cannot make the folder '{}': {}", folder, error.message())};
-    return check_writable("report", std::filesystem::path(folder) / "stability.md");
+    return check_writable("report", std::filesystem::path(folder) / (report.name + ".md"));
 }
 
-Result<Done> save(const std::string& folder, std::span<const StabilityResult> results) {
+Result<Done> save(const std::string& folder, const Report& report,
+                  std::span<const StabilityResult> results) {
     const std::filesystem::path path = folder;
-    if (const Result<Done> saved = save_text(stability_markdown(results), path / "stability.md");
+    if (const Result<Done> saved =
+            save_text(stability_markdown(report.title, results), path / (report.name + ".md"));
         !saved)
         return saved;
-    return save_text(stability_json(results), path / "stability.json");
+    return save_text(stability_json(results), path / (report.name + ".json"));
 }
 
 bool all_right(std::span<const StabilityResult> results) {
@@ -93,33 +177,40 @@ bool all_right(std::span<const StabilityResult> results) {
     });
 }
 
-void print_progress(const StabilityResult& r) {
+/// One line a case on a terminal, which overwrites itself while the case runs.
+void print_progress(const StabilityResult& r, bool finished) {
     if (isatty(STDERR_FILENO))
-        fmt::print(stderr, "{}: {} rays, {} wrong, {} leaks\n", r.name, r.rays,
-                   r.certified.wrong + r.wrong_occlusions, r.certified.leaks);
+        fmt::print(stderr, "\r{}: {} rays, {} wrong, {} leaks\033[K{}", r.name, human_count(r.rays),
+                   r.certified.wrong + r.wrong_occlusions, r.certified.leaks, finished ? "\n" : "");
 }
 
-Result<int> report_stability(const ReportArguments& given) {
-    const Result<StabilityOptions> options = options_of(given);
-    if (!options)
-        return options.error();
-    if (!given.folder.empty())
-        if (const Result<Done> made = make_folder(given.folder); !made)
+/// Runs the cases; files, if any, have all that is known after each.
+Result<int> make_report(Report report, const std::string& folder) {
+    if (!folder.empty())
+        if (const Result<Done> made = make_folder(folder, report); !made)
             return made.error();
-    const Result<std::vector<StabilityCase>> cases = stability_cases(given.data);
-    if (!cases)
-        return cases.error();
-    const Result<std::vector<StabilityResult>> results =
-        run_stability(*cases, *options, {}, print_progress);
+    const InterruptGuard interrupt;
+    report.options.go_on = [&](const StabilityResult& so_far) {
+        print_progress(so_far, /* finished= */ false);
+        return !interrupt.interrupted();
+    };
+    Result<Done> saved = Done{};
+    std::vector<StabilityResult> seen;
+    const auto results =
+        run_stability(report.cases, report.options, {}, [&](const StabilityResult& result) {
+            print_progress(result, /* finished= */ true);
+            seen.push_back(result);
+            if (saved && !folder.empty())
+                saved = save(folder, report, seen);
+        });
     if (!results)
         return results.error();
-    fmt::print("{}", stability_markdown(*results));
-    if (!given.folder.empty())
-        if (const Result<Done> saved = save(given.folder, *results); !saved)
-            return saved.error();
+    if (!saved)
+        return saved.error();
+    fmt::print("{}", stability_markdown(report.title, *results));
     if (!all_right(*results))
         return Error{"certified mode answered wrong: see the columns wrong and leaks"};
-    return kExitOk;
+    return interrupt.interrupted() ? kExitInterrupted : kExitOk;
 }
 
 } // namespace
@@ -127,19 +218,24 @@ Result<int> report_stability(const ReportArguments& given) {
 Result<int> run_report(const Arguments& arguments) {
     CLI::App app{"Measures what the documents claim.", "overcast report"};
     ReportArguments given;
-    app.add_option("--only", given.only, "The report to make: stability")->type_name("NAME");
+    app.add_option("--only", given.only, "The report to make: stability or leaks")
+        ->type_name("NAME");
     app.add_option("-o,--output", given.folder, "Also write NAME.md and NAME.json into this folder")
         ->type_name("DIR");
-    app.add_flag("--quick", given.quick, "The short form: a tenth of the rays");
+    app.add_flag("--quick", given.quick, "The short form: a tenth of the rays; for leaks, 1e6");
     app.add_option("--times", given.times,
-                   "Instead: so many times the rays of the short form; default: 10")
+                   "For stability: so many times the rays of the short form; default: 10")
         ->type_name("N");
+    app.add_option("--rays", given.rays, "For leaks: how many rays altogether; default: 1e8")
+        ->type_name("N");
+    app.add_option("--case", given.name_part, "Only the cases with this in their name")
+        ->type_name("TEXT");
     app.add_option("--data", given.data,
                    "A folder with meshes/stanford-dragon/dragon_vrip.ply, for cases on the dragon")
         ->type_name("DIR");
     app.add_option("--device", given.device, "A number or a part of a name from `overcast devices`")
         ->type_name("NAME");
-    app.add_option("--kernel", given.kernel, "fragment or compute; default: the faster one")
+    app.add_option("--kernel", given.kernel, "auto (the faster one), fragment or compute")
         ->type_name("NAME");
     app.footer(kExamples);
     const Result<Parsed> parsed = parse_arguments(app, arguments);
@@ -149,7 +245,11 @@ Result<int> run_report(const Arguments& arguments) {
         return kExitOk;
     if (const Result<Done> known = check_name(given.only); !known)
         return known.error();
-    return report_stability(given);
+    Result<Report> report =
+        given.only == kReports[0] ? stability_report(given) : leak_report(given);
+    if (!report)
+        return report.error();
+    return make_report(std::move(*report), given.folder);
 }
 
 } // namespace ovc

@@ -80,7 +80,8 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
         {{"render", "box", "-o", out, "--camera", "1,2"}, "--camera needs"},
         {{"render", "box", "-o", out, "--light", "-1"}, "--light needs x,y,z"},
         {{"render", "box", "-o", out, "--max-depth", "-1"}, "--max-depth needs"},
-        {{"render", "box", "-o", out, "--backend", "embree"}, "not there yet"},
+        {{"render", "box", "-o", out, "--backend", "gpu-grid"}, "not there yet"},
+        {{"render", "box", "-o", out, "--backend", "embree", "--leaves", "4"}, "means nothing"},
         {{"render", "box", "-o", out, "--frames", "1:2"}, "not there yet"},
         {{"render", "box", "-o", out, "--backend", "cpu-kdtree", "--leaves", "4"}, "means nothing"},
         {{"render", "box", "-o", out, "--camera", "0,0,1e101,0,0,0"}, "within 1e+100"},
@@ -165,13 +166,23 @@ TEST_F(CommandTest, InfoIsJsonForPrograms) {
 }
 
 TEST_F(CommandTest, ReportSaysWhichReportsThereAre) {
-    EXPECT_EQ(error({"report"}), "the whole report is not there yet; there is --only stability");
+    EXPECT_EQ(error({"report"}),
+              "the whole report is not there yet; there are --only stability and leaks");
     EXPECT_EQ(error({"report", "--only", "speed"}),
-              "the report 'speed' is not there yet; there is stability");
+              "the report 'speed' is not there yet; there are stability and leaks");
     EXPECT_EQ(error({"report", "--only", "stabilty"}),
-              "no report is called 'stabilty'; there is stability; did you mean 'stability'?");
+              "no report is called 'stabilty'; there are stability and leaks; did you mean "
+              "'stability'?");
+    EXPECT_EQ(error({"report", "--only", "leaks", "--rays", "1e-3"}),
+              "--rays needs a whole number from 1 to 1e+12, such as 1e8, not '1e-3'");
+    EXPECT_EQ(error({"report", "--only", "leaks", "--case", "teapot"}),
+              "--case: no case of the report has 'teapot' in its name");
+    EXPECT_EQ(error({"report", "--only", "leaks", "--times", "3"}),
+              "--times means nothing to the report leaks; there is --rays");
+    EXPECT_EQ(error({"report", "--only", "stability", "--rays", "3"}),
+              "--rays means nothing to the report stability; there is --times");
     EXPECT_THAT(error({"report", "--only", "stability", "--kernel", "vertex"}),
-                testing::HasSubstr("neither fragment nor compute"));
+                testing::HasSubstr("'vertex' is none of auto, fragment, compute"));
     EXPECT_THAT(error({"report", "--only", "stability", "--data", path("none")}),
                 testing::HasSubstr("holds no meshes/stanford-dragon/dragon_vrip.ply"));
 }

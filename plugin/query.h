@@ -19,6 +19,8 @@ struct NearestQuery {
     TriangleId skipped(size_t i) const { return skip.empty() ? TriangleId{} : skip[i]; }
     void set_miss(size_t i) const { results[i] = Hit{}; }
     void set(size_t i, const Hit& hit) const { results[i] = hit; }
+    bool was_hit(size_t i) const { return results[i].is_hit(); }
+    const Hit& hit(size_t i) const { return results[i]; }
 };
 
 struct OcclusionQuery {
@@ -30,6 +32,8 @@ struct OcclusionQuery {
     TriangleId skipped(size_t i) const { return skip.empty() ? TriangleId{} : skip[i]; }
     void set_miss(size_t i) const { results[i] = 0; }
     void set(size_t i, const Hit& hit) const { results[i] = hit.is_hit(); }
+    bool was_hit(size_t i) const { return results[i] != 0; }
+    Hit hit(size_t) const { return {}; } // which one is not kept
 };
 
 /// Ray i as the host gave it.

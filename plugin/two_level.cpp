@@ -146,9 +146,10 @@ public:
     }
 
 private:
-    /// Where a ray stands; t_from and leaf as in Traveller.
+    /// Where a ray stands; t_from and leaf as in Traveller. Nothing beyond t_end is of interest.
     struct Position {
         double t_from = 0;
+        double t_end = 0;
         uint32_t leaf = OVC_NO_LEAF;
         enum : uint32_t { Done, Ready, Waits } state = Done;
     };
@@ -167,7 +168,7 @@ private:
                 if (s_.pages_.empty())
                     continue;
                 if (can_walk(s_.level1_, p))
-                    positions_[i] = {p.ray.t_min, OVC_NO_LEAF, Position::Ready};
+                    positions_[i] = {p.ray.t_min, p.ray.t_max, OVC_NO_LEAF, Position::Ready};
                 else
                     decide_in_double(i, p);
             }
@@ -229,8 +230,9 @@ private:
             for (size_t j = from; j < to; ++j) {
                 const size_t ray = first_ + batch[j];
                 const Position& at = positions_[batch[j]];
-                travellers_[j] = {query_.rays[ray], at.t_from,
-                                  s_.number_to_skip(query_.skipped(ray)), at.leaf};
+                Ray rest = query_.rays[ray];
+                rest.t_max = at.t_end;
+                travellers_[j] = {rest, at.t_from, s_.number_to_skip(query_.skipped(ray)), at.leaf};
             }
         });
         const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
@@ -243,7 +245,7 @@ private:
     void settle(uint32_t i, const Answer& answer) {
         positions_[i].state = Position::Done;
         if (answer.prim == OVC_WAITS) {
-            positions_[i] = {answer.t(), answer.leaf(), Position::Waits};
+            positions_[i] = {answer.t(), positions_[i].t_end, answer.leaf(), Position::Waits};
             return;
         }
         const bool decided = answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
@@ -269,18 +271,27 @@ private:
         }
         const PreparedRay p = prepare(query_, ray);
         Nearest nearest(p);
+        if (query_.was_hit(ray))
+            offer(nearest, s_.numbers_.of(query_.hit(ray).id), p.skip);
         if (answer.prim != OVC_MISS && !offer(nearest, answer.prim, p.skip))
             return false;
         for (const uint32_t rival : answer.rivals())
             if (rival != OVC_NO_TRIANGLE)
                 offer(nearest, rival, p.skip);
-        // Beyond the cell a nearer hit may be in the next leaf, which will find this one too.
-        const double exit = clip(p, s_.level1_.leaves[leaf].cell, p.ray.t_min, p.ray.t_max).exit;
-        if (nearest.hit().is_hit() && nearest.hit().t <= exit)
+        if (nearest.hit().is_hit())
             query_.set(ray, nearest.hit());
-        else if (exit < p.ray.t_max)
-            positions_[i] = {exit, OVC_NO_LEAF, Position::Ready};
+        if (!Query::kAnyHit || !nearest.hit().is_hit())
+            go_on_behind(i, s_.level1_.leaves[leaf].cell, p, nearest.limit());
         return true;
+    }
+
+    /// Sends the ray on unless its best hit, which is not beyond `end` however t is rounded, lies
+    /// in the cell: then nothing of later cells is nearer, nor as near.
+    void go_on_behind(uint32_t i, const Box& cell, const PreparedRay& p, double end) {
+        const Box safe = cell.padded(-p.margin(cell)); // no rounding leads out of the cell
+        const double exit = clip(p, cell, p.ray.t_min, p.ray.t_max).exit;
+        if (end > clip(p, safe, p.ray.t_min, p.ray.t_max).exit && exit < end)
+            positions_[i] = {exit, end, OVC_NO_LEAF, Position::Ready};
     }
 
     bool take_in_fast(uint32_t i, const Answer& answer) {

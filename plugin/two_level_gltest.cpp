@@ -3,7 +3,9 @@
 // what testing every triangle in double answers.
 #include "plugin/two_level.h"
 
+#include "kdtree/build.h"
 #include "kdtree/test_soups.h"
+#include "kdtree/traverse.h"
 
 #include <gtest/gtest.h>
 
@@ -262,6 +264,50 @@ TEST_F(TwoLevelGl, ALoopThatTheDriverEndsIsCountedAndDecidedInDouble) {
                 EXPECT_EQ(s.capped, certify ? 2u : 1u) << "no loop was ended: nothing was tested";
             }
         }
+}
+
+/// Rectangles that overlap in the plane z = 0, in front of a wall: level 1 cuts many thin cells
+/// along that plane.
+Soup overlapping_rectangles(int count) {
+    test::Random random(41);
+    const auto on_grid = [&](double lo, double hi) {
+        return float(std::round(random(lo, hi) * 4096) / 4096);
+    };
+    std::vector<vec3> corners;
+    const auto add_rectangle = [&](vec3 a, vec3 x, vec3 y) {
+        corners.insert(corners.end(), {a, a + x, a + x + y, a, a + x + y, a + y});
+    };
+    for (int i = 0; i < 16; ++i)
+        add_rectangle(vec3(float(i % 4) / 2 - 1, float(i / 4) / 2 - 1, -1), vec3(0.5f, 0, 0),
+                      vec3(0, 0.5f, 0));
+    for (int i = 0; i < count; ++i)
+        add_rectangle(vec3(on_grid(-1, 0.5), on_grid(-1, 0.5), 0), vec3(on_grid(0.01, 0.5), 0, 0),
+                      vec3(0, on_grid(0.01, 0.5), 0));
+    return test::one_chunk(std::move(corners));
+}
+
+// What lies in one plane is in many leaves, of one cell and of the next, and t is rounded
+// differently for each triangle.
+TEST_F(TwoLevelGl, TiesAcrossLeavesAndCellsGoToTheSmallerId) {
+    const Soup soup = overlapping_rectangles(400);
+    const KdTree tree = build_kd_tree(soup);
+    test::Random random(42);
+    std::vector<Ray> rays(10000);
+    for (Ray& ray : rays) {
+        const Triangle t = soup.triangle({0, uint32_t(random.below(soup.triangle_count()))});
+        const dvec3 target = t[0] + random(0, 1) * (t[1] - t[0]);
+        ray.org = dvec3(vec3(target + std::exp(random(-4, 1)) * random.point(-1, 1)));
+        ray.dir = dvec3(vec3(target - ray.org));
+    }
+    std::vector<Hit> expected(rays.size()), hits(rays.size());
+    intersect(tree, soup, rays, {}, expected);
+    const auto structure = build(soup, {.leaf_triangles = 40});
+    ASSERT_TRUE(structure);
+    ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+    for (size_t i = 0; i < rays.size(); ++i)
+        ASSERT_TRUE(test::same(expected[i], hits[i]))
+            << "ray " << i << ": " << test::describe(expected[i]) << " but found "
+            << test::describe(hits[i]);
 }
 
 TEST_F(TwoLevelGl, KeepsToTheBudgetByMovingPages) {

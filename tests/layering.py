@@ -29,7 +29,7 @@ PLACES = {
     r"(EGL|GL|GLES\d?|KHR)/": [],
     r"(OpenEXR/|Imf)": ["host/image_exr.cpp"],
     r"png\.h": ["host/image_png.cpp"],
-    r"embree": ["host/report/embree_peer.cpp"],
+    r"embree": ["host/backend_embree.cpp"],
     r"(boost|gtest|gmock)/": [],
 }
 

@@ -28,7 +28,7 @@ TEST(Stability, CertifiedIsTheReferenceAndLeaksNothing) {
     const auto results = run_stability(cases, options, {}, [](const StabilityResult&) {});
     if (!results)
         GTEST_SKIP() << results.error().message;
-    std::fputs(stability_markdown(*results).c_str(), stdout);
+    std::fputs(stability_markdown("Numerical stability", *results).c_str(), stdout);
     uint64_t flagged = 0;
     for (const StabilityResult& r : *results) {
         EXPECT_EQ(r.certified.wrong, 0u) << r.name;

@@ -61,11 +61,12 @@ struct Sample {
 
 /// Each entry of the catalog at its smallest or a small size.
 constexpr Sample kSamples[] = {
-    {"plants-1", 175221, 0x8743bc96b3d823e4}, {"terrain-1", 2, 0x952ac25a51d027d8},
-    {"terrain-64", 8192, 0x572b4fee2859fa98}, {"sphere-0", 20, 0xde27547eb5d06a37},
-    {"sphere-3", 1280, 0x89338c6c67343787},   {"knot", 873600, 0x82ea6ba2d992ff19},
-    {"soup-1", 1000, 0x7dd5499d4622b217},     {"city", 717978, 0xd52fceda6866f325},
-    {"mirrors", 81922, 0x6d08983876b79f76},   {"box", 30, 0xa3188fbfd523c5bc},
+    {"plants-1", 175221, 0x8743bc96b3d823e4},    {"terrain-1", 2, 0x952ac25a51d027d8},
+    {"terrain-64", 8192, 0x572b4fee2859fa98},    {"sphere-0", 20, 0xde27547eb5d06a37},
+    {"sphere-3", 1280, 0x89338c6c67343787},      {"knot", 873600, 0x82ea6ba2d992ff19},
+    {"soup-1", 1000, 0x7dd5499d4622b217},        {"city", 717978, 0xd52fceda6866f325},
+    {"mirrors", 81922, 0x6d08983876b79f76},      {"box", 30, 0xa3188fbfd523c5bc},
+    {"far-terrain", 274160, 0xba45980e69015acb},
 };
 
 /// For the names of failing tests.

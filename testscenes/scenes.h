@@ -14,6 +14,7 @@ inline constexpr double kPlantsDemoSize = 64;
 
 Scene make_plants(uint32_t size);
 Scene make_terrain(uint32_t cells);
+Scene make_far_terrain();
 Scene make_sphere_scene(uint32_t level);
 Scene make_knot();
 Scene make_soup(uint32_t thousands);

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What triangles in the same place cost: renders scenes of 200,000 triangles once, and with every triangle or wall doubled.
+"""What triangles in the same place cost: renders scenes of 200,000 triangles without doubles, and with.
 
 usage: doubles.py [--overcast build/bin/overcast] [--runs 5] [--size 512] [--triangles 200000] [--most 1.5]
 
-Pairs: slivers strewn at random and a closed sphere, each written twice (as it is, and with the corners of the copy turned
-round and wound the other way); a wall along an axis and a tilted one, each against itself with a second wall in its plane
-that is cut otherwise. Runs in turn, one light with shadows and a mirror's share of secondary rays left out. Prints a row a
+Pairs: slivers strewn at random and a closed sphere, each written twice (as it is, and with the copy wound the
+other way from another corner); two walls along an axis and two tilted ones, cut differently, once one behind the other
+and once in one plane. One light with shadows; runs in turn. Prints a row a
 scene: medians of seconds of the kernel, of tracing, of building and of the whole program, shares of flagged and retraced
 answers; and the ratio of each doubled scene to its single one. Exits with 1 where a whole program or its tracing takes
 more than --most times the single scene's.
@@ -60,14 +60,14 @@ def sphere(count):
             for t in ((at(i, j), at(i, j + 1), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i + 1, j)))]
 
 
-def wall(count, tilted, cut):
-    """The square [0, 1]^2 as n x n cells; cut 1 has other cells and other diagonals than cut 0, and another outline."""
+def wall(count, tilted, cut, behind=0.0):
+    """A square of n x n cells; cut 1 has other cells and other diagonals than cut 0, and lies a little aside."""
     n = max(4, math.isqrt(count // 2)) - 7 * cut
     shift = 0.0123 * cut
 
     def at(i, j):
         x, y = shift + i / n, shift / 2 + j / n
-        return (x, y, 0.31 * x - 0.17 * y + 0.5 if tilted else 0.5)
+        return (x, y, (0.31 * x - 0.17 * y + 0.5 if tilted else 0.5) - behind)
 
     result = []
     for i in range(n):
@@ -78,8 +78,8 @@ def wall(count, tilted, cut):
 
 
 def turned(triangles):
-    """The same triangles with the first corner last, and wound the other way."""
-    return [(b, a, c) for a, b, c in triangles]
+    """The same triangles wound the other way, from another corner."""
+    return [(c, b, a) for a, b, c in triangles]
 
 
 def scenes(count):
@@ -89,10 +89,10 @@ def scenes(count):
         yield name, None, once
         yield f"{name} twice", name, once + once
         yield f"{name} twice, turned", name, once + turned(once)
-    for name, tilted in (("wall", False), ("tilted wall", True)):
-        once = wall(count, tilted, 0)
-        yield name, None, once
-        yield f"{name}, two in a plane", name, once + wall(count, tilted, 1)
+    for name, tilted in (("walls", False), ("tilted walls", True)):
+        front = wall(count // 2, tilted, 0)
+        yield name, None, front + wall(count // 2, tilted, 1, behind=0.05)
+        yield f"{name} in one plane", name, front + wall(count // 2, tilted, 1)
 
 
 def measure(overcast, scene, size, folder):

@@ -3,7 +3,6 @@
 #include "host/report/stability.h"
 
 #include "core/triangle.h"
-#include "host/report/embree_peer.h"
 #include "host/stopwatch.h"
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
@@ -67,6 +66,11 @@ void score(const Batch& batch, const Soup& soup, bool closed, std::span<const Hi
     }
 }
 
+struct Peer {
+    std::unique_ptr<Backend> backend;
+    std::optional<StabilityScore> StabilityResult::*score;
+};
+
 /// One case while it runs: the soup and all who answer.
 class Run {
 public:
@@ -92,6 +96,8 @@ public:
             if (const Result<Done> done = ask(number, count); !done)
                 return done.error();
             left -= count;
+            if (options_.go_on && !options_.go_on(result_))
+                break;
         }
         finish();
         return result_;
@@ -99,21 +105,36 @@ public:
 
 private:
     Result<Done> open(const LogSink& log) {
-        for (const ovc_precision precision : {OVC_PRECISION_CERTIFIED, OVC_PRECISION_FAST}) {
-            if (precision == OVC_PRECISION_FAST && !options_.peers)
-                continue;
-            BackendOptions options = options_.backend;
-            options.kind = BackendKind::TwoLevel;
-            options.precision = precision;
-            Result<std::unique_ptr<Backend>> backend = make_backend(soup_, options, log);
-            if (!backend)
-                return backend.error();
-            (precision == OVC_PRECISION_FAST ? fast_ : certified_) = std::move(*backend);
-        }
-        if (options_.peers)
-            embree_ = make_embree_peer(soup_);
+        Result<std::unique_ptr<Backend>> certified = plugin(OVC_PRECISION_CERTIFIED, log);
+        if (!certified)
+            return certified.error();
+        certified_ = std::move(*certified);
         result_.renderer = certified_->renderer();
+        if (options_.peers)
+            if (const Result<Done> opened = open_peers(log); !opened)
+                return opened;
         return warm_up();
+    }
+
+    Result<Done> open_peers(const LogSink& log) {
+        Result<std::unique_ptr<Backend>> fast = plugin(OVC_PRECISION_FAST, log);
+        if (!fast)
+            return fast.error();
+        peers_.push_back({std::move(*fast), &StabilityResult::fast});
+        // Where this program was built without Embree there is none to show.
+        for (const auto& [mode, score_of] :
+             {std::pair(EmbreeMode::Robust, &StabilityResult::embree_robust),
+              std::pair(EmbreeMode::Default, &StabilityResult::embree_default)})
+            if (Result<std::unique_ptr<Backend>> embree = make_embree_backend(soup_, mode); embree)
+                peers_.push_back({std::move(*embree), score_of});
+        return Done{};
+    }
+
+    Result<std::unique_ptr<Backend>> plugin(ovc_precision precision, const LogSink& log) const {
+        BackendOptions options = options_.backend;
+        options.kind = BackendKind::TwoLevel;
+        options.precision = precision;
+        return make_backend(soup_, options, log);
     }
 
     /// The driver compiles with the first rays; they are neither timed nor counted.
@@ -127,13 +148,14 @@ private:
 
     Result<Done> ask(uint64_t number, size_t count) {
         const Batch batch = make_batch(number, count);
-        std::vector<Hit> answers(count);
+        std::vector<Hit> answers(batch.truth.size());
         const Stopwatch watch;
         if (const Result<Done> done =
                 certified_->intersect(batch.set.rays, batch.set.skip, answers);
             !done)
             return done;
         seconds_ += watch.seconds();
+        result_.microseconds = 1e6 * seconds_ / double(result_.rays);
         const ovc_statistics after = certified_->statistics();
         result_.flagged += after.flagged - before_.flagged;
         result_.retraced += after.retraced - before_.retraced;
@@ -145,10 +167,11 @@ private:
     }
 
     Batch make_batch(uint64_t number, size_t count) {
-        Batch batch{stability_rays(case_, soup_, number, count), std::vector<Hit>(count)};
+        Batch batch{stability_rays(case_, soup_, number, count), {}};
+        batch.truth.resize(batch.set.rays.size());
         intersect(tree_, soup_, batch.set.rays, batch.set.skip, batch.truth);
-        result_.rays += count;
-        for (size_t i = 0; i < count; ++i) {
+        result_.rays += batch.truth.size();
+        for (size_t i = 0; i < batch.truth.size(); ++i) {
             result_.hits += batch.truth[i].is_hit();
             result_.invalid += !batch.set.rays[i].valid();
             result_.reference_leaks += case_.closed && !batch.truth[i].is_hit();
@@ -165,25 +188,20 @@ private:
     }
 
     Result<Done> ask_peers(const Batch& batch, std::span<Hit> answers) {
-        if (!options_.peers)
-            return Done{};
-        if (const Result<Done> done = fast_->intersect(batch.set.rays, batch.set.skip, answers);
-            !done)
-            return done;
-        if (!result_.fast)
-            result_.fast.emplace();
-        score(batch, soup_, case_.closed, answers, Claim::Triangle, *result_.fast);
-        if (!embree_)
-            return Done{};
-        embree_->intersect(batch.set.rays, batch.set.skip, answers);
-        if (!result_.embree)
-            result_.embree.emplace();
-        score(batch, soup_, case_.closed, answers, Claim::Triangle, *result_.embree);
+        for (const Peer& peer : peers_) {
+            if (const Result<Done> done =
+                    peer.backend->intersect(batch.set.rays, batch.set.skip, answers);
+                !done)
+                return done;
+            std::optional<StabilityScore>& total = result_.*peer.score;
+            if (!total)
+                total.emplace();
+            score(batch, soup_, case_.closed, answers, Claim::Triangle, *total);
+        }
         return Done{};
     }
 
     void finish() {
-        result_.microseconds = 1e6 * seconds_ / double(result_.rays);
         const ovc_statistics end = certified_->statistics();
         // Each ray was asked twice, nearest and occlusion, after the warm-up.
         uint64_t warm = 0;
@@ -198,8 +216,8 @@ private:
     const StabilityOptions& options_;
     Soup soup_;
     KdTree tree_;
-    std::unique_ptr<Backend> certified_, fast_;
-    std::unique_ptr<EmbreePeer> embree_;
+    std::unique_ptr<Backend> certified_;
+    std::vector<Peer> peers_;
     ovc_statistics before_{};
     double seconds_ = 0;
     StabilityResult result_;
@@ -231,6 +249,8 @@ run_stability(std::span<const StabilityCase> cases, const StabilityOptions& opti
                 result->time_ratio = result->microseconds / before.microseconds;
         results.push_back(std::move(*result));
         seen(results.back());
+        if (results.back().rays < one.rays * options.times)
+            break;
     }
     return results;
 }

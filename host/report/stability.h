@@ -8,14 +8,19 @@
 #include "host/backend.h"
 #include "host/report/stability_cases.h"
 
+#include <functional>
 #include <optional>
 
 namespace ovc {
+
+struct StabilityResult;
 
 struct StabilityOptions {
     BackendOptions backend; // precision is not looked at: both are run
     uint64_t times = 1;     // how many times the short form's rays
     bool peers = true;      // fast mode and Embree too
+    /// Called after each batch of a case with what it is so far; false: stop. Empty: go on.
+    std::function<bool(const StabilityResult&)> go_on;
 };
 
 /// What one program answered. wrong: for certified any bit that differs from the reference; for
@@ -45,14 +50,15 @@ struct StabilityResult {
     double microseconds = 0; // per ray, certified nearest hits
     double time_ratio = 0;   // to the rays of StabilityCase::time_as; 0: none
     StabilityScore certified;
-    std::optional<StabilityScore> fast, embree;
+    std::optional<StabilityScore> fast, embree_robust, embree_default;
 };
 
 /// Error: the plugin failed. Rays come in batches, each drawn from its own seed.
 Result<StabilityResult> run_stability_case(const StabilityCase& stability_case,
                                            const StabilityOptions& options, const LogSink& log);
 
-/// All cases in turn, time ratios too. seen: called after each.
+/// All cases in turn, time ratios too; the last one in part where go_on ended it. seen: called
+/// after each.
 Result<std::vector<StabilityResult>>
 run_stability(std::span<const StabilityCase> cases, const StabilityOptions& options,
               const LogSink& log, const std::function<void(const StabilityResult&)>& seen);

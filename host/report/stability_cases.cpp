@@ -3,12 +3,10 @@
 #include "host/report/stability_cases.h"
 
 #include "host/report/stability_meshes.h"
-#include "importers/importer.h"
+#include "host/report/terrain_rays.h"
+#include "testscenes/catalog.h"
 
 #include <fmt/format.h>
-
-#include <filesystem>
-#include <memory>
 
 namespace ovc {
 
@@ -23,33 +21,6 @@ Soup soup_of(Chunks&&... chunks) {
     (soup.chunks.push_back(std::forward<Chunks>(chunks)), ...);
     return soup;
 }
-
-struct NamedMesh {
-    const char* name;
-    Generator make;
-};
-
-constexpr NamedMesh kClosedMeshes[] = {
-    {"icosphere", icosphere}, {"lat-long", lat_long}, {"knot", small_knot}};
-
-struct NamedPlace {
-    const char* name;
-    dvec3 place;
-    double scale;
-};
-
-const NamedPlace kPlaces[] = {
-    {"at (148376, 1234, -223423)", {148376, 1234, -223423}, 1},
-    {"at UTM (4.5e6, 6e6, 6)", {4.5e6, 6e6, 6}, 1},
-    {"at 1e7", dvec3(1e7), 1},
-    {"at 1e9", dvec3(1e9), 1},
-    {"times 1e-30", dvec3(0), 1e-30},
-    {"times 1e-12", dvec3(0), 1e-12},
-    {"times 1e-6", dvec3(0), 1e-6},
-    {"times 1e6", dvec3(0), 1e6},
-    {"times 1e12", dvec3(0), 1e12},
-    {"times 1e30", dvec3(0), 1e30},
-};
 
 struct NamedAim {
     const char* name;
@@ -75,43 +46,57 @@ auto aimed(const Aim& aim) {
 }
 
 void add_closed_meshes(Cases& cases) {
-    for (const NamedMesh& mesh : kClosedMeshes) {
+    for (const NamedMesh& mesh : closed_meshes()) {
         for (const NamedAim& aim : kAims)
             cases.push_back({fmt::format("{}: {}", mesh.name, aim.name), true, 2000,
                              at_origin(mesh.make), aimed(aim.aim), ""});
-        for (const NamedPlace& at : kPlaces)
+        for (const NamedPlace& at : unpleasant_places())
             cases.push_back({fmt::format("{} {}", mesh.name, at.name), true, 2000,
                              [=] { return soup_of(placed(mesh.make(), at.place, at.scale)); },
                              any_closed_mesh_rays, ""});
     }
 }
 
-/// dragon_vrip.ply, or the same packed.
-std::filesystem::path dragon_file(const std::string& data) {
-    const std::filesystem::path folder = std::filesystem::path(data) / "meshes" / "stanford-dragon";
-    for (const char* name : {"dragon_vrip.ply", "dragon_vrip.ply.gz"})
-        if (std::filesystem::exists(folder / name))
-            return folder / name;
-    return {};
-}
-
 Result<Done> add_dragon(Cases& cases, const std::string& data) {
-    const std::filesystem::path file = dragon_file(data);
-    if (file.empty())
-        return Error{
-            fmt::format("--data: '{}' holds no meshes/stanford-dragon/dragon_vrip.ply", data)};
-    Result<Scene> scene = load(file.string());
-    if (!scene)
-        return scene.error();
-    const auto dragon = std::make_shared<const Scene>(std::move(*scene));
-    const auto at = [=](dvec3 place) {
-        return [=] { return soup_of(Chunk::borrowing(place, dragon->soup.chunks[0].corners())); };
+    const Result<std::shared_ptr<const Scene>> dragon = load_dragon(data);
+    if (!dragon)
+        return dragon.error();
+    const auto at = [scene = *dragon](dvec3 place) {
+        return [=] { return soup_of(Chunk::borrowing(place, scene->soup.chunks[0].corners())); };
     };
-    // Not closed: the scan has holes where no scanner looked.
+    // Not closed: any ray may leave through a hole. What must be hit is in leak_cases.cpp.
     cases.push_back({"dragon", false, 2000, at(dvec3(0)), any_closed_mesh_rays, ""});
     cases.push_back({"dragon at UTM (4.5e6, 6e6, 6)", false, 2000, at({4.5e6, 6e6, 6}),
                      any_closed_mesh_rays, ""});
     return Done{};
+}
+
+/// far-terrain moved by `by`.
+std::function<Soup()> far_terrain(dvec3 by) {
+    return [by] {
+        Result<Scene> scene = make_test_scene("far-terrain");
+        Soup soup;
+        for (const Chunk& chunk : scene->soup.chunks)
+            soup.chunks.push_back(Chunk::owning(
+                chunk.origin() + by, Corners(chunk.corners().begin(), chunk.corners().end())));
+        return soup;
+    };
+}
+
+auto from_above(double low, double high) {
+    return [=](const Soup& soup, Random& random, size_t count) {
+        return terrain_rays(soup, random, count, low, high);
+    };
+}
+
+void add_far_terrain(Cases& cases) {
+    const dvec3 corner(10'485'760, 0, 10'485'760);
+    cases.push_back({"far-terrain from 1 to 10 cm above", true, 2000, far_terrain(dvec3(0)),
+                     from_above(-2, -1), ""});
+    cases.push_back({"far-terrain from up to 1e7 m above", true, 2000, far_terrain(dvec3(0)),
+                     from_above(-2, 7), ""});
+    cases.push_back({"far-terrain, its corner at the origin", true, 2000, far_terrain(-corner),
+                     from_above(-2, -1), ""});
 }
 
 void add_bad_shapes(Cases& cases) {
@@ -207,6 +192,7 @@ Result<std::vector<StabilityCase>> stability_cases(const std::string& data) {
     if (!data.empty())
         if (const Result<Done> added = add_dragon(cases, data); !added)
             return added.error();
+    add_far_terrain(cases);
     add_bad_shapes(cases);
     add_bad_directions(cases);
     add_surface_starts(cases);

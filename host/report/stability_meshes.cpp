@@ -2,11 +2,15 @@
 // The meshes of the stability suite.
 #include "host/report/stability_meshes.h"
 
+#include "importers/importer.h"
 #include "testscenes/random.h"
 #include "testscenes/sphere.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace ovc {
 
@@ -72,6 +76,47 @@ Corners small_knot() {
         for (int j = 0; j < around; ++j)
             add_quad(corners, at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
     return corners;
+}
+
+std::span<const NamedMesh> closed_meshes() {
+    static constexpr NamedMesh meshes[] = {
+        {"icosphere", icosphere}, {"lat-long", lat_long}, {"knot", small_knot}};
+    return meshes;
+}
+
+std::span<const NamedPlace> unpleasant_places() {
+    static const NamedPlace places[] = {
+        {"at (148376, 1234, -223423)", {148376, 1234, -223423}, 1},
+        {"at UTM (4.5e6, 6e6, 6)", {4.5e6, 6e6, 6}, 1},
+        {"at 1e7", dvec3(1e7), 1},
+        {"at 1e9", dvec3(1e9), 1},
+        {"times 1e-30", dvec3(0), 1e-30},
+        {"times 1e-12", dvec3(0), 1e-12},
+        {"times 1e-6", dvec3(0), 1e-6},
+        {"times 1e6", dvec3(0), 1e6},
+        {"times 1e12", dvec3(0), 1e12},
+        {"times 1e30", dvec3(0), 1e30},
+    };
+    return places;
+}
+
+static std::filesystem::path dragon_file(const std::string& data) {
+    const std::filesystem::path folder = std::filesystem::path(data) / "meshes" / "stanford-dragon";
+    for (const char* name : {"dragon_vrip.ply", "dragon_vrip.ply.gz"})
+        if (std::filesystem::exists(folder / name))
+            return folder / name;
+    return {};
+}
+
+Result<std::shared_ptr<const Scene>> load_dragon(const std::string& data) {
+    const std::filesystem::path file = dragon_file(data);
+    if (file.empty())
+        return Error{
+            fmt::format("--data: '{}' holds no meshes/stanford-dragon/dragon_vrip.ply", data)};
+    Result<Scene> scene = load(file.string());
+    if (!scene)
+        return scene.error();
+    return std::make_shared<const Scene>(std::move(*scene));
 }
 
 Corners box_of_squares() {

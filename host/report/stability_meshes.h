@@ -2,8 +2,13 @@
 // The triangles of the stability suite: closed meshes, and triangles that are hard on arithmetic.
 #pragma once
 
-#include "core/soup.h"
+#include "core/result.h"
+#include "core/scene.h"
 #include "testscenes/corners.h"
+
+#include <memory>
+#include <span>
+#include <string>
 
 namespace ovc {
 
@@ -16,6 +21,26 @@ Corners icosphere();      // 5,120 triangles
 Corners lat_long();       // 16 x 16, each radius drawn from [0.5, 1.5]
 Corners small_knot();     // a tube of 4,096 triangles, not star-shaped
 Corners box_of_squares(); // the unit cube, its faces cut at multiples of 1/8
+
+struct NamedMesh {
+    const char* name;
+    Corners (*make)();
+};
+/// The first three.
+std::span<const NamedMesh> closed_meshes();
+
+/// Where and how large a mesh is put.
+struct NamedPlace {
+    const char* name;
+    dvec3 place;
+    double scale;
+};
+/// Far from the origin, small and large.
+std::span<const NamedPlace> unpleasant_places();
+
+/// The scan in the folder `data`, meshes/stanford-dragon/dragon_vrip.ply or the same packed. It is
+/// not closed: it has holes where no scanner looked. Error: there is none, or it cannot be read.
+Result<std::shared_ptr<const Scene>> load_dragon(const std::string& data);
 
 /// n x n squares of [-1, 1]^2 at height z.
 Corners sheet(int n, double z);

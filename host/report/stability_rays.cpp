@@ -71,19 +71,6 @@ private:
     double in_;
 };
 
-/// A vertex, or a point of an edge or the inside, rounded to float; on edges every other one is
-/// a multiple of an eighth.
-dvec3 point_of(const Triangle& t, Random& random, Target target) {
-    const uint32_t k = random.below(3);
-    const dvec3 a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
-    const uint32_t kind = target == Target::Any ? random.below(3) : target == Target::Edges;
-    if (kind == 0)
-        return a;
-    const double w = random.chance(0.5) ? (1 + random.below(7)) / 8.0 : random.uniform();
-    const dvec3 on_edge = a + w * (b - a);
-    return as_float(kind == 1 ? on_edge : on_edge + random.uniform() * (c - on_edge));
-}
-
 Ray closed_mesh_ray(const ClosedMesh& mesh, Random& random, const Aim& aim) {
     const uint32_t prim = random.below(mesh.size());
     const dvec3 target = point_of(mesh.triangle(prim), random, aim.target);
@@ -111,6 +98,17 @@ RaySet collect(size_t count, const Make& make) {
 
 } // namespace
 
+dvec3 point_of(const Triangle& t, Random& random, Target target) {
+    const uint32_t k = random.below(3);
+    const dvec3 a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
+    const uint32_t kind = target == Target::Any ? random.below(3) : target == Target::Edges;
+    if (kind == 0)
+        return a;
+    const double w = random.chance(0.5) ? (1 + random.below(7)) / 8.0 : random.uniform();
+    const dvec3 on_edge = a + w * (b - a);
+    return as_float(kind == 1 ? on_edge : on_edge + random.uniform() * (c - on_edge));
+}
+
 RaySet closed_mesh_rays(const Soup& soup, Random& random, size_t count, const Aim& aim) {
     const ClosedMesh mesh(soup);
     return collect(count, [&] { return closed_mesh_ray(mesh, random, aim); });
@@ -121,6 +119,15 @@ RaySet any_closed_mesh_rays(const Soup& soup, Random& random, size_t count) {
     return collect(count, [&] {
         const Side side = random.chance(0.5) ? Side::Inside : Side::Outside;
         return closed_mesh_ray(mesh, random, {side, Target::Any, 0});
+    });
+}
+
+RaySet edge_and_vertex_rays(const Soup& soup, Random& random, size_t count, double grid) {
+    const ClosedMesh mesh(soup);
+    return collect(count, [&] {
+        const Side side = random.chance(0.5) ? Side::Inside : Side::Outside;
+        const Target target = random.chance(0.5) ? Target::Vertices : Target::Edges;
+        return closed_mesh_ray(mesh, random, {side, target, grid});
     });
 }
 

@@ -30,6 +30,13 @@ RaySet closed_mesh_rays(const Soup& soup, Random& random, size_t count, const Ai
 /// Half begin inside; targets of all kinds.
 RaySet any_closed_mesh_rays(const Soup& soup, Random& random, size_t count);
 
+/// At vertices and edges, half begin inside. grid: as in Aim.
+RaySet edge_and_vertex_rays(const Soup& soup, Random& random, size_t count, double grid);
+
+/// A vertex, or a point of an edge or the inside, rounded to float; on edges every other one is a
+/// multiple of an eighth.
+dvec3 point_of(const Triangle& t, Random& random, Target target);
+
 /// At vertices, edges and insides of any triangle, from near (its size) to far (the soup's).
 RaySet rays_at_triangles(const Soup& soup, Random& random, size_t count);
 /// Down at the sheet of [-1, 1]^2 at height 0, `height` above it at their beginning, to insides,

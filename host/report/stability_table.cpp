@@ -12,33 +12,59 @@
 namespace ovc {
 
 static constexpr const char* kLegend =
-    R"(# Numerical stability
+    R"(Each ray is answered by the plugin and by the reference, core/triangle.h through a KD-tree on the
+CPU.
 
-Each ray is answered by the plugin, certified and fast, by Embree 3 in its robust mode where this
-program was built with it, and by the reference, core/triangle.h through a KD-tree on the CPU.
-
-- *wrong*: for certified, answers of which any bit of t, u, v or the name differs from the
-  reference's, occlusion included; for fast and Embree, another triangle than the reference's, unless
-  the reference hits that one too at the same t (to 2^-40).
-- *leaks*: rays that must hit, as the mesh is closed, and do not; "-" where a ray may miss.
+- *wrong*: for certified mode, answers of which any bit of t, u, v or the name differs from the
+  reference's, occlusion included.
+- *leaks*: rays that must hit, as the mesh is closed where they are aimed at, and do not; "-" where a
+  ray may miss.
 - *t error*: the largest relative difference to the reference's t, of rays that both say hit; where
   another triangle is named it is the distance between the two.
 - *flagged*: answers that float32 could not prove, counted in each leaf that a ray visits;
   *retraced*: of them, traced again as a whole.
 - *us/ray*: nearest hits in certified mode, from call to return.
+)";
 
-Embree has floats only: far from the origin it gets coordinates rounded to them. It refuses numbers
-beyond 1.8e18, which count as misses.
-
+static constexpr const char* kPeerLegend =
+    R"(- *fast*: the plugin without the proofs; *Embree*: Embree 3 as it is by default and in its robust
+  mode, where this program was built with it. Theirs is *wrong* when another triangle is named than
+  the reference's, unless the reference hits that one too at the same t (to 2^-40). Embree has floats
+  only: positions and rays are rounded to them. It refuses numbers beyond 1.8e18, which count as
+  misses.
 )";
 
 namespace {
 
 using Row = std::vector<std::string>;
 
-const Row kHeader = {"case",       "triangles",  "rays",         "wrong",        "leaks",
-                     "t error",    "flagged %",  "retraced %",   "us/ray",       "fast wrong",
-                     "fast leaks", "fast t err", "Embree wrong", "Embree leaks", "Embree t err"};
+struct Peer {
+    const char* name;
+    std::optional<StabilityScore> StabilityResult::*score;
+};
+
+constexpr Peer kPeers[] = {{"fast", &StabilityResult::fast},
+                           {"Embree robust", &StabilityResult::embree_robust},
+                           {"Embree default", &StabilityResult::embree_default}};
+
+/// Those that were asked anywhere.
+std::vector<Peer> peers_of(std::span<const StabilityResult> results) {
+    std::vector<Peer> peers;
+    for (const Peer& peer : kPeers)
+        if (std::ranges::any_of(results,
+                                [&](const auto& r) { return (r.*peer.score).has_value(); }))
+            peers.push_back(peer);
+    return peers;
+}
+
+Row header_of(std::span<const Peer> peers) {
+    Row row = {"case",    "triangles", "rays",       "wrong", "leaks",
+               "t error", "flagged %", "retraced %", "us/ray"};
+    for (const Peer& peer : peers)
+        for (const char* column : {"wrong", "leaks", "t err"})
+            row.push_back(fmt::format("{} {}", peer.name, column));
+    return row;
+}
 
 std::string percent(uint64_t part, uint64_t whole) {
     return fmt::format("{:.2f}", whole ? 100.0 * double(part) / double(whole) : 0.0);
@@ -56,7 +82,7 @@ void add(Row& row, const std::optional<StabilityScore>& peer, bool closed) {
                                fmt::format("{:.1e}", peer->t_error)});
 }
 
-Row row_of(const StabilityResult& r) {
+Row row_of(const StabilityResult& r, std::span<const Peer> peers) {
     Row row = {r.name,
                fmt::format("{}", r.triangles),
                fmt::format("{}", r.rays),
@@ -66,8 +92,8 @@ Row row_of(const StabilityResult& r) {
                percent(r.flagged, r.rays),
                percent(r.retraced, r.rays),
                fmt::format("{:.2f}", r.microseconds)};
-    add(row, r.fast, r.closed);
-    add(row, r.embree, r.closed);
+    for (const Peer& peer : peers)
+        add(row, r.*peer.score, r.closed);
     return row;
 }
 
@@ -87,7 +113,7 @@ std::string rule_of(const std::vector<size_t>& widths) {
 }
 
 std::string table_of(const std::vector<Row>& rows) {
-    std::vector<size_t> widths(kHeader.size());
+    std::vector<size_t> widths(rows[0].size());
     for (const Row& row : rows)
         for (size_t i = 0; i < row.size(); ++i)
             widths[i] = std::max(widths[i], row[i].size());
@@ -141,20 +167,24 @@ nlohmann::ordered_json json_of(const StabilityResult& r) {
         object["time_ratio"] = r.time_ratio;
     if (r.fast)
         object["fast"] = json_of(*r.fast);
-    if (r.embree)
-        object["embree"] = json_of(*r.embree);
+    if (r.embree_robust)
+        object["embree_robust"] = json_of(*r.embree_robust);
+    if (r.embree_default)
+        object["embree_default"] = json_of(*r.embree_default);
     return object;
 }
 
 } // namespace
 
-std::string stability_markdown(std::span<const StabilityResult> results) {
-    std::vector<Row> rows = {kHeader};
+std::string stability_markdown(const std::string& title, std::span<const StabilityResult> results) {
+    const std::vector<Peer> peers = peers_of(results);
+    std::vector<Row> rows = {header_of(peers)};
     for (const StabilityResult& result : results)
-        rows.push_back(row_of(result));
+        rows.push_back(row_of(result, peers));
     const std::string renderer =
         results.empty() ? "" : fmt::format("Renderer: {}\n\n", results[0].renderer);
-    return kLegend + renderer + table_of(rows) + sums_of(results);
+    return fmt::format("# {}\n\n{}{}\n{}{}{}", title, kLegend, peers.empty() ? "" : kPeerLegend,
+                       renderer, table_of(rows), sums_of(results));
 }
 
 std::string stability_json(std::span<const StabilityResult> results) {

@@ -10,8 +10,9 @@
 
 namespace ovc {
 
-/// What the columns mean, the table, and the sums.
-std::string stability_markdown(std::span<const StabilityResult> results);
+/// title, what the columns mean, the table, and the sums. Columns of peers that were not asked are
+/// left out.
+std::string stability_markdown(const std::string& title, std::span<const StabilityResult> results);
 
 /// {"renderer", "cases": [{...}]}: one object a case, in order. Infinite numbers are null.
 std::string stability_json(std::span<const StabilityResult> results);
