@@ -33,7 +33,8 @@ TEST(Page, WalkedInDoubleFindsWhatBruteForceFinds) {
             walk_page(
                 page, leaf, p, p.ray.t_min,
                 [&](uint32_t k) {
-                    nearest.offer(soup.triangle(leaf.triangles[k]), leaf.triangles[k]);
+                    const TriangleId id = Numbering(soup).id(k);
+                    nearest.offer(soup.triangle(id), id);
                     return false;
                 },
                 [&] { return nearest.limit(); });
@@ -90,34 +91,6 @@ TEST(Page, SaysHowManyWordsItsLongestWayCanPush) {
         if (level1.leaves.empty())
             continue;
         const Page page = build_page(soup, Numbering(soup), level1.leaves[0]);
-        EXPECT_EQ(page.depth, longest_way(page, OVC_ROOT_UNIT)) << name;
-    }
-}
-
-/// Inner nodes on the longest way from `unit` down, counted from the texels alone.
-uint32_t longest_way(const Page& page, uint32_t unit) {
-    const auto texel = [&](int i) {
-        return page.texels[size_t(unit) * OVC_UNIT_TEXELS + size_t(i)];
-    };
-    if (texel(3).w == OVC_PAIR)
-        return 0;
-    uint32_t longest = 0;
-    for (uint32_t child = 0; child < 4; ++child) {
-        const uint32_t shift = (child & 1) * 16;
-        const bool present = (texel(0)[int(child / 2)] >> shift & 0xffffu) <=
-                             (texel(0)[2 + int(child / 2)] >> shift & 0xffffu);
-        if (present)
-            longest = std::max(longest, longest_way(page, texel(3).x + child));
-    }
-    return 1 + longest;
-}
-
-TEST(Page, SaysHowManyWordsItsLongestWayCanPush) {
-    for (const auto& [name, soup] : test::unpleasant_soups()) {
-        const Level1 level1 = one_leaf(soup);
-        if (level1.leaves.empty())
-            continue;
-        const Page page = build_page(soup, level1.leaves[0]);
         EXPECT_EQ(page.depth, longest_way(page, OVC_ROOT_UNIT)) << name;
     }
 }

@@ -23,7 +23,7 @@ struct Traveller {
     Ray ray;             // t_max < t_min: no ray
     double t_from;       // the walk begins in the cell after this t; ray.t_min at first
     uint32_t skip;       // number of a triangle it does not see, or OVC_NO_TRIANGLE
-    uint32_t first_leaf; // of that cell, or OVC_NO_LEAF: its first
+    uint32_t first_leaf; // of that cell, where the ray has been in it; else OVC_NO_LEAF
 };
 static_assert(sizeof(Traveller) == 80);
 

@@ -281,17 +281,18 @@ private:
         if (nearest.hit().is_hit())
             query_.set(ray, nearest.hit());
         if (!Query::kAnyHit || !nearest.hit().is_hit())
-            go_on_behind(i, s_.level1_.leaves[leaf].cell, p, nearest.limit());
+            go_on_behind(i, leaf, p, nearest.limit());
         return true;
     }
 
     /// Sends the ray on unless its best hit, which is not beyond `end` however t is rounded, lies
-    /// in the cell: then nothing of later cells is nearer, nor as near.
-    void go_on_behind(uint32_t i, const Box& cell, const PreparedRay& p, double end) {
+    /// in the leaf's cell: then nothing of later cells is nearer, nor as near.
+    void go_on_behind(uint32_t i, uint32_t leaf, const PreparedRay& p, double end) {
+        const Box& cell = s_.level1_.leaves[leaf].cell;
         const Box safe = cell.padded(-p.margin(cell)); // no rounding leads out of the cell
         const double exit = clip(p, cell, p.ray.t_min, p.ray.t_max).exit;
         if (end > clip(p, safe, p.ray.t_min, p.ray.t_max).exit && exit < end)
-            positions_[i] = {exit, end, OVC_NO_LEAF, Position::Ready};
+            positions_[i] = {exit, end, leaf + 1, Position::Ready};
     }
 
     bool take_in_fast(uint32_t i, const Answer& answer) {

@@ -40,7 +40,8 @@
 
 // A ray is five RGBA32UI texels side by side: the record of core/ray.h, org, t_min, dir, t_max (doubles; t_max < t_min: no
 // ray here); then the t of the cells it is done with (double), the number of the triangle it does not see or
-// OVC_NO_TRIANGLE, and the leaf to begin with in the first cell or OVC_NO_LEAF.
+// OVC_NO_TRIANGLE, and, where the cell just after that t is one it has been in, the leaf of it to go on with, one past the
+// last where it is done with all; else any leaf of other cells, or OVC_NO_LEAF.
 #define OVC_RAY_TEXELS 5
 #define OVC_NO_LEAF 0xffffffffu
 

@@ -24,8 +24,10 @@ bool traverse(inout Found found, int page, vec3 org, float t_end, vec3 dir, uint
     for (int i = 0; i < OVC_STACK_DEPTH; ++i)
         stack[i] = first.y;
 
-    bool done = false;
-    for (;;) {
+    // Tested at the top, and fetched as well: llvmpipe (22.3) keeps, behind a loop, only what was known at its top for lanes
+    // that left early; what the rest of the body computed it computes again, for the lanes that go on.
+    bool done = first.w != 0;
+    while (!done && rounds < OVC_MOST_ROUNDS) {
         int at = header + unit * OVC_UNIT_TEXELS;
         uvec4 X = page_texel(at);
         uvec4 Y = page_texel(at + 1);
@@ -64,8 +66,6 @@ bool traverse(inout Found found, int page, vec3 org, float t_end, vec3 dir, uint
 #endif
         top = push ? stack_word(int(W.x), keys, left) : (pop ? below : (descend ? top : advanced));
         ++rounds;
-        if (done || rounds >= OVC_MOST_ROUNDS)
-            break;
     }
     return done;
 }

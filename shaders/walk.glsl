@@ -36,7 +36,7 @@ uvec4 walk(Traveller traveller) {
                 cell = cell_after(ray, t);
                 t = cell.exit;
                 last = t >= ray.t_max;
-                cell.first = first_leaf >= cell.first && first_leaf < cell.end ? first_leaf : cell.first;
+                cell.first = first_leaf > cell.first && first_leaf <= cell.end ? first_leaf : cell.first;
                 first_leaf = -1;
             }
             if (!done && cell.first < cell.end) {
