@@ -21,6 +21,7 @@ Result<int> run_convert(const Arguments& arguments);
 Result<int> run_devices(const Arguments& arguments);
 Result<int> run_scenes(const Arguments& arguments);
 Result<int> run_report(const Arguments& arguments);
+Result<int> run_bench(const Arguments& arguments);
 
 struct Command {
     std::string_view name;

@@ -66,7 +66,7 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
     } cases[] = {
         {{}, "no command given"},
         {{"rendr"}, "did you mean 'render'?"},
-        {{"bench"}, "not there yet"},
+        {{"diff"}, "not there yet"},
         {{"render"}, "SCENE is required"},
         {{"render", path("none.ply"), "-o", out}, "none.ply"},
         {{"render", folder_.string(), "-o", out}, "is a directory"},

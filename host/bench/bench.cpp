@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rounds of calls, and what each took.
+#include "host/bench/bench.h"
+
+#include "host/stopwatch.h"
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace ovc {
+
+namespace {
+
+uint64_t count_differing(std::span<const uint64_t> a, std::span<const uint64_t> b) {
+    assert(a.size() == b.size());
+    uint64_t count = 0;
+    for (size_t i = 0; i < a.size(); ++i)
+        count += a[i] != b[i];
+    return count;
+}
+
+double process_cpu_seconds() {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+/// Runs the workload once; its counters, and the seconds where `timed`.
+Result<Done> call(const Workload& workload, Backend& backend, bool timed, Measurement& m) {
+    const ovc_statistics before = backend.statistics();
+    const double cpu_before = process_cpu_seconds();
+    const Stopwatch watch;
+    const Result<uint64_t> rays = workload.run(backend);
+    const double seconds = watch.seconds();
+    const double cpu_seconds = process_cpu_seconds() - cpu_before;
+    if (!rays)
+        return rays.error();
+    const ovc_statistics after = backend.statistics();
+    m.rays = *rays;
+    m.flagged = after.flagged - before.flagged;
+    m.retraced = after.retraced - before.retraced;
+    m.passes = after.passes - before.passes;
+    m.bytes_in = after.bytes_in - before.bytes_in;
+    if (timed) {
+        m.seconds.push_back(seconds);
+        m.cpu_seconds.push_back(cpu_seconds);
+        m.kernel_seconds.push_back(after.seconds_kernel - before.seconds_kernel);
+    }
+    return Done{};
+}
+
+class Bench {
+public:
+    Bench(std::vector<Entrant>& entrants, std::vector<Workload>& workloads, Backend& reference,
+          const StopRequest& stop, const BenchObserver& observe)
+        : entrants_(entrants),
+          workloads_(workloads),
+          reference_(reference),
+          stop_(stop),
+          observe_(observe) {
+        for (size_t w = 0; w < workloads.size(); ++w)
+            for (size_t e = 0; e < entrants.size(); ++e)
+                measurements.push_back({.entrant = e, .workload = w});
+    }
+
+    /// False: it was stopped.
+    Result<bool> warm_up() {
+        std::vector<uint64_t> right;
+        for (Measurement& m : measurements) {
+            if (m.entrant == 0) {
+                Result<Done> answered = ask_reference(m.workload, right);
+                if (!answered)
+                    return answered.error();
+            }
+            const Result<bool> done = step(m, /* timed= */ false, "first call");
+            if (!done || !*done)
+                return done;
+            const std::vector<uint64_t> answers = workloads_[m.workload].answers();
+            m.checksum = checksum(answers);
+            m.differing = count_differing(answers, right);
+        }
+        return true;
+    }
+
+    Result<bool> repeat(uint32_t repeats) {
+        for (uint32_t round = 1; round <= repeats; ++round)
+            for (Measurement& m : measurements) {
+                const Result<bool> done =
+                    step(m, /* timed= */ true, fmt::format("{} of {}", round, repeats));
+                if (!done || !*done)
+                    return done;
+            }
+        return true;
+    }
+
+    std::vector<Measurement> measurements;
+
+private:
+    Result<Done> ask_reference(size_t workload, std::vector<uint64_t>& right) {
+        const Result<uint64_t> done = workloads_[workload].run(reference_);
+        if (!done)
+            return done.error();
+        right = workloads_[workload].answers();
+        return Done{};
+    }
+
+    /// False: stopped, before the call or in it; a call cut short is not kept.
+    Result<bool> step(Measurement& m, bool timed, const std::string& which) {
+        if (stop_())
+            return false;
+        const Entrant& entrant = entrants_[m.entrant];
+        const Workload& workload = workloads_[m.workload];
+        observe_(fmt::format("{}, {}, {}", workload.name, entrant.contender.label(), which));
+        Measurement next = m;
+        const Result<Done> done = call(workload, *entrant.backend, timed, next);
+        if (!done)
+            return Error{fmt::format("{}: {}", entrant.contender.label(), done.error().message)};
+        if (stop_())
+            return false;
+        m = std::move(next);
+        return true;
+    }
+
+    std::vector<Entrant>& entrants_;
+    std::vector<Workload>& workloads_;
+    Backend& reference_;
+    const StopRequest& stop_;
+    const BenchObserver& observe_;
+};
+
+} // namespace
+
+Result<Done> run_contenders(std::vector<Entrant>& entrants, std::vector<Workload>& workloads,
+                            Backend& reference, uint32_t repeats, const StopRequest& stop,
+                            const BenchObserver& observe, BenchResult& result) {
+    for (const Entrant& entrant : entrants)
+        result.entrants.push_back(
+            {entrant.contender, entrant.backend->renderer(), entrant.backend->statistics()});
+    for (const Workload& workload : workloads)
+        result.workloads.push_back(workload.name);
+    result.repeats = repeats;
+
+    Bench bench(entrants, workloads, reference, stop, observe);
+    const Result<bool> warm = bench.warm_up();
+    if (!warm)
+        return warm.error();
+    const Result<bool> done = *warm ? bench.repeat(repeats) : warm;
+    if (!done)
+        return done.error();
+    result.complete = *done && !stop();
+    result.measurements = std::move(bench.measurements);
+    std::erase_if(result.measurements, [](const Measurement& m) { return m.seconds.empty(); });
+    return Done{};
+}
+
+std::string wrong_answers(const BenchResult& result) {
+    for (const Measurement& m : result.measurements)
+        if (const Contender& contender = result.entrants[m.entrant].contender;
+            contender.certified() && m.differing > 0)
+            return fmt::format("{} of {} answered {} wrong: {} answers unlike double precision's",
+                               result.scene, contender.label(), result.workloads[m.workload],
+                               m.differing);
+    return "";
+}
+
+} // namespace ovc

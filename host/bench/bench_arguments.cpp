@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes, contenders, sizes and sweeps.
+#include "host/bench/bench_arguments.h"
+
+#include "host/output.h"
+#include "testscenes/catalog.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace ovc {
+
+static constexpr const char* kDefaultScene = "knot";
+/// For a sweep: the device's default, which is enough for most scenes.
+static constexpr std::string_view kAll = "all";
+
+void BenchWords::add_to(CLI::App& app) {
+    app.add_option("SCENE", scenes,
+                   fmt::format("Files or test scenes' names; default: {}", kDefaultScene));
+    app.add_option("--only", only,
+                   fmt::format("Contenders, or the first words of their names; default: all of {}",
+                               fmt::join(contender_names(), ", ")))
+        ->type_name("NAME,...");
+    app.add_option("--size", size, "Pixels, and with them rays; default: 1024x1024")
+        ->type_name("WxH");
+    app.add_option("--repeats", repeats, "Timed calls of each; default: 5")->type_name("N");
+    app.add_option("--leaves", leaves,
+                   "The plugin with about so many level-1 leaves, a row for each")
+        ->type_name("N,...");
+    CLI::Option* memory =
+        app.add_option("--gpu-memory", gpu_memory,
+                       "The plugin with so much GPU memory (12M, 50% of the device's, all), a row "
+                       "for each")
+            ->type_name("SIZE,...");
+    app.add_option("--resident", resident,
+                   "Instead: a share of the bytes of all pages of the scene (30%, all)")
+        ->type_name("SHARE,...")
+        ->excludes(memory);
+    app.add_option("--device", device, "A number or a part of a name from `overcast devices`")
+        ->type_name("NAME");
+    app.add_option("--json", json,
+                   "Also write what was measured as JSON (docs/benchmarks.md); -: to standard "
+                   "output, instead of the tables")
+        ->type_name("FILE|-");
+}
+
+Result<std::vector<std::string>> parse_list(std::string_view option, std::string_view text) {
+    std::vector<std::string> items;
+    for (;;) {
+        const size_t comma = text.find(',');
+        items.emplace_back(text.substr(0, comma));
+        if (items.back().empty())
+            return Error{fmt::format("{} has an empty item in its list", option)};
+        if (comma == std::string_view::npos)
+            return items;
+        text.remove_prefix(comma + 1);
+    }
+}
+
+/// A choice for each item of the list; for no list one choice, the default.
+template <class Choice, class Parse>
+static Result<std::vector<Choice>> parse_sweep(std::string_view option, std::string_view text,
+                                               const Parse& parse) {
+    if (text.empty())
+        return std::vector<Choice>(1);
+    const Result<std::vector<std::string>> items = parse_list(option, text);
+    if (!items)
+        return items.error();
+    std::vector<Choice> choices;
+    for (const std::string& item : *items) {
+        const Result<Choice> choice = parse(item);
+        if (!choice)
+            return choice.error();
+        for (const Choice& earlier : choices)
+            if (earlier.words == item)
+                return Error{fmt::format("{} has '{}' twice", option, item)};
+        choices.push_back(*choice);
+    }
+    return choices;
+}
+
+Result<std::vector<LeavesChoice>> parse_leaves_sweep(std::string_view text) {
+    return parse_sweep<LeavesChoice>(
+        "--leaves", text, [](const std::string& item) -> Result<LeavesChoice> {
+            const Result<uint64_t> leaves = parse_count("--leaves", item, 1, 1000000);
+            if (!leaves)
+                return leaves.error();
+            return LeavesChoice{uint32_t(*leaves), item};
+        });
+}
+
+Result<std::vector<BudgetChoice>> parse_memory_sweep(std::string_view text) {
+    return parse_sweep<BudgetChoice>(
+        "--gpu-memory", text, [](const std::string& item) -> Result<BudgetChoice> {
+            if (item == kAll)
+                return BudgetChoice{{}, 0, item};
+            const Result<MemorySize> memory = parse_memory_size(item);
+            if (!memory)
+                return Error{"--gpu-memory: " + memory.error().message};
+            return BudgetChoice{*memory, 0, item};
+        });
+}
+
+Result<std::vector<BudgetChoice>> parse_resident_sweep(std::string_view text) {
+    return parse_sweep<BudgetChoice>(
+        "--resident", text, [](const std::string& item) -> Result<BudgetChoice> {
+            if (item == kAll)
+                return BudgetChoice{{}, 0, item};
+            const Result<MemorySize> memory = parse_memory_size(item);
+            if (!memory || !(memory->share > 0))
+                return Error{
+                    fmt::format("--resident needs a share such as 30%, or all, not '{}'", item)};
+            return BudgetChoice{{}, memory->share, item};
+        });
+}
+
+static Result<std::vector<Contender>> contenders_of(const BenchWords& words) {
+    std::vector<std::string> only;
+    if (!words.only.empty()) {
+        Result<std::vector<std::string>> names = parse_list("--only", words.only);
+        if (!names)
+            return names.error();
+        only = std::move(*names);
+    }
+    const Result<std::vector<LeavesChoice>> leaves = parse_leaves_sweep(words.leaves);
+    if (!leaves)
+        return leaves.error();
+    const Result<std::vector<BudgetChoice>> budgets = words.resident.empty()
+                                                          ? parse_memory_sweep(words.gpu_memory)
+                                                          : parse_resident_sweep(words.resident);
+    if (!budgets)
+        return budgets.error();
+    return choose_contenders(only, *leaves, *budgets);
+}
+
+/// The file for JSON can be written and is none of the scenes.
+static Result<Done> check_json(const BenchJob& job) {
+    if (job.json.empty() || job.json == "-")
+        return Done{};
+    if (const Result<Done> fine = check_writable("JSON", job.json); !fine)
+        return fine;
+    std::vector<NamedFile> files = {{"JSON", job.json}};
+    for (const std::string& scene : job.scenes)
+        if (!is_test_scene(scene)) {
+            files.resize(1); // the same scene may come twice
+            files.push_back({"input", scene});
+            if (const Result<Done> fine = check_distinct(files); !fine)
+                return fine;
+        }
+    return Done{};
+}
+
+Result<BenchJob> understand_bench(const BenchWords& words) {
+    BenchJob job;
+    job.scenes = words.scenes.empty() ? std::vector<std::string>{kDefaultScene} : words.scenes;
+    job.device = words.device;
+    job.json = words.json;
+    const Result<ImageSize> size = parse_size(words.size);
+    if (!size)
+        return size.error();
+    job.size = *size;
+    const Result<uint64_t> repeats = parse_count("--repeats", words.repeats, 1, 1000);
+    if (!repeats)
+        return repeats.error();
+    job.repeats = uint32_t(*repeats);
+    Result<std::vector<Contender>> contenders = contenders_of(words);
+    if (!contenders)
+        return contenders.error();
+    job.contenders = std::move(*contenders);
+    if (const Result<Done> fine = check_json(job); !fine)
+        return fine.error();
+    return job;
+}
+
+} // namespace ovc

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `overcast bench` is asked to do, from its words.
+#pragma once
+
+#include "host/arguments.h"
+#include "host/bench/contender.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ovc {
+
+/// The words as given.
+struct BenchWords {
+    std::vector<std::string> scenes;
+    std::string only;
+    std::string size = "1024x1024";
+    std::string repeats = "5";
+    std::string leaves;
+    std::string gpu_memory;
+    std::string resident;
+    std::string device;
+    std::string json;
+
+    void add_to(CLI::App& app);
+};
+
+struct BenchJob {
+    std::vector<std::string> scenes;
+    ImageSize size;
+    uint32_t repeats = 5;
+    std::vector<Contender> contenders;
+    std::string device;
+    std::string json; // a file, "-" for standard output, or empty
+};
+
+/// Everything that can be wrong before a scene is read.
+Result<BenchJob> understand_bench(const BenchWords& words);
+
+/// "a,b,c" without its commas. Error: an empty item. option: named in the error.
+Result<std::vector<std::string>> parse_list(std::string_view option, std::string_view text);
+
+/// "8,32"; empty: one choice, the plugin's own.
+Result<std::vector<LeavesChoice>> parse_leaves_sweep(std::string_view text);
+
+/// "all,12M,50%": as `overcast render` takes them, and all for the device's default; empty: that
+/// alone.
+Result<std::vector<BudgetChoice>> parse_memory_sweep(std::string_view text);
+
+/// "all,30%": shares of the bytes of all pages.
+Result<std::vector<BudgetChoice>> parse_resident_sweep(std::string_view text);
+
+} // namespace ovc

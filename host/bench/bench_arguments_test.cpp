@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// What bench is asked for: names, lists, sweeps, and what is wrong with them.
+#include "host/bench/bench_arguments.h"
+
+#include <gmock/gmock.h>
+
+namespace ovc {
+namespace {
+
+std::vector<std::string> labels(const BenchWords& words) {
+    const Result<BenchJob> job = understand_bench(words);
+    EXPECT_TRUE(bool(job)) << (job ? "" : job.error().message);
+    std::vector<std::string> labels;
+    for (const Contender& contender : job->contenders)
+        labels.push_back(contender.label());
+    return labels;
+}
+
+std::string error(const BenchWords& words) {
+    const Result<BenchJob> job = understand_bench(words);
+    return job ? "" : job.error().message;
+}
+
+TEST(BenchArguments, HaveDefaults) {
+    const Result<BenchJob> job = understand_bench({});
+    ASSERT_TRUE(bool(job));
+    EXPECT_THAT(job->scenes, testing::ElementsAre("knot"));
+    EXPECT_EQ(job->size.width, 1024u);
+    EXPECT_EQ(job->size.height, 1024u);
+    EXPECT_EQ(job->repeats, 5u);
+    EXPECT_EQ(job->json, "");
+    EXPECT_THAT(labels({}), testing::IsSupersetOf({"certified-fragment", "certified-compute",
+                                                   "fast-fragment", "fast-compute", "cpu-kdtree"}));
+}
+
+TEST(BenchArguments, ChooseContendersByNameOrFirstWord) {
+    EXPECT_THAT(labels({.only = "fast-compute,certified"}),
+                testing::ElementsAre("certified-fragment", "certified-compute", "fast-compute"));
+    EXPECT_THAT(labels({.only = "embree"}),
+                testing::ElementsAre("embree-default", "embree-robust"));
+    EXPECT_THAT(error({.only = "fast-comput"}),
+                testing::AllOf(testing::HasSubstr("there is no contender 'fast-comput'"),
+                               testing::HasSubstr("did you mean 'fast-compute'?")));
+    EXPECT_THAT(error({.only = "fast,"}), testing::HasSubstr("empty item"));
+    EXPECT_THAT(error({.only = "fast-"}), testing::HasSubstr("no contender 'fast-'"));
+}
+
+TEST(BenchArguments, SweepThePluginAlone) {
+    EXPECT_THAT(
+        labels({.only = "certified-compute,cpu-kdtree", .leaves = "1,32", .gpu_memory = "all,12M"}),
+        testing::ElementsAre("certified-compute, 1 leaf, budget all",
+                             "certified-compute, 1 leaf, budget 12M",
+                             "certified-compute, 32 leaves, budget all",
+                             "certified-compute, 32 leaves, budget 12M", "cpu-kdtree"));
+}
+
+TEST(BenchArguments, UnderstandTheValuesOfSweeps) {
+    const auto leaves = parse_leaves_sweep("8,128");
+    ASSERT_TRUE(bool(leaves));
+    EXPECT_EQ((*leaves)[1].leaves, 128u);
+    const auto memory = parse_memory_sweep("all,12M,50%");
+    ASSERT_TRUE(bool(memory));
+    EXPECT_EQ((*memory)[0].memory.of(1000), 0u);
+    EXPECT_EQ((*memory)[1].memory.of(1000), 12u << 20);
+    EXPECT_EQ((*memory)[2].memory.of(1000), 500u);
+    EXPECT_EQ((*memory)[2].pages_share, 0);
+    const auto resident = parse_resident_sweep("30%,all");
+    ASSERT_TRUE(bool(resident));
+    EXPECT_DOUBLE_EQ((*resident)[0].pages_share, 0.3);
+    EXPECT_EQ((*resident)[0].memory.of(1000), 0u);
+    EXPECT_EQ((*resident)[1].pages_share, 0);
+}
+
+TEST(BenchArguments, SayWhatIsWrong) {
+    const struct {
+        BenchWords words;
+        const char* part;
+    } cases[] = {
+        {{.size = "40"}, "--size needs WIDTHxHEIGHT"},
+        {{.repeats = "0"}, "--repeats needs a whole number from 1 to 1000, not '0'"},
+        {{.leaves = "8,0"}, "--leaves needs a whole number from 1 to 1000000, not '0'"},
+        {{.leaves = "8,,9"}, "--leaves has an empty item"},
+        {{.leaves = "8,9,8"}, "--leaves has '8' twice"},
+        {{.gpu_memory = "abc"}, "--gpu-memory: 'abc' is no memory size"},
+        {{.resident = "12M"}, "--resident needs a share such as 30%, or all, not '12M'"},
+        {{.json = "no/such/folder/b.json"}, "does not exist"},
+        {{.scenes = {OVC_SOURCE_DIR "/README.md"}, .json = OVC_SOURCE_DIR "/README.md"},
+         "same file"},
+    };
+    for (const auto& c : cases)
+        EXPECT_THAT(error(c.words), testing::HasSubstr(c.part));
+}
+
+} // namespace
+} // namespace ovc

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command with the plugin: certified contenders answer alike, whatever the sweep.
+#include "host/command.h"
+#include "host/interrupt.h"
+#include "host/plugin_loader.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <map>
+
+namespace ovc {
+namespace {
+
+bool there_is_a_device() {
+    const Result<const ovc_api*> api = load_plugin();
+    return api && PluginDevice::open(*api, "", {});
+}
+
+nlohmann::json bench(Arguments arguments) {
+    arguments.insert(arguments.begin(), "bench");
+    arguments.insert(arguments.end(), {"--json", "-"});
+    testing::internal::CaptureStdout();
+    const Result<int> code = run_command(arguments);
+    const std::string text = testing::internal::GetCapturedStdout();
+    EXPECT_TRUE(bool(code)) << (code ? "" : code.error().message);
+    EXPECT_EQ(code ? *code : kExitError, kExitOk);
+    return nlohmann::json::parse(text, nullptr, /* allow_exceptions= */ false);
+}
+
+TEST(BenchCommand, CertifiedContendersAnswerAlike) {
+    if (!there_is_a_device())
+        GTEST_SKIP() << "no device for the plugin";
+    const nlohmann::json document =
+        bench({"sphere-4", "mirrors", "--only", "certified,cpu-kdtree", "--size", "64x48",
+               "--repeats", "1", "--leaves", "1,5", "--gpu-memory", "all,4M"});
+    ASSERT_EQ(document["scenes"].size(), 2u);
+    for (const auto& scene : document["scenes"]) {
+        EXPECT_EQ(scene["complete"], true);
+        ASSERT_EQ(scene["contenders"].size(), 2u * 2 * 2 + 1);
+        ASSERT_EQ(scene["measurements"].size(), 4u * 9);
+        std::map<std::string, std::string> checksums; // by workload
+        for (const auto& m : scene["measurements"]) {
+            SCOPED_TRACE(m["contender"].get<std::string>() + ", " +
+                         m["workload"].get<std::string>());
+            const auto [first, is_new] = checksums.try_emplace(m["workload"], m["checksum"]);
+            EXPECT_EQ(first->second, m["checksum"]);
+            EXPECT_EQ(m["differ"], 0);
+            EXPECT_GT(m["rays"], 0);
+            EXPECT_GT(m["call_seconds"]["median"], 0.0);
+        }
+        EXPECT_EQ(checksums.size(), 4u);
+        EXPECT_NE(checksums["primary"], checksums["diffuse"]);
+    }
+}
+
+TEST(BenchCommand, GivesABudgetAsAShareOfThePages) {
+    if (!there_is_a_device())
+        GTEST_SKIP() << "no device for the plugin";
+    const nlohmann::json document =
+        bench({"knot", "--only", "certified-fragment", "--size", "16x16", "--repeats", "1",
+               "--leaves", "40", "--resident", "all,30%"});
+    const auto& contenders = document["scenes"][0]["contenders"];
+    ASSERT_EQ(contenders.size(), 2u);
+    const uint64_t all = contenders[0]["level2_bytes"];
+    EXPECT_GE(contenders[0]["gpu_budget_bytes"], all);
+    EXPECT_NEAR(contenders[1]["gpu_budget_bytes"].get<double>(), 0.3 * double(all), 1);
+}
+
+} // namespace
+} // namespace ovc

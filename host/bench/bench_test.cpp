@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Taking turns, counting what differs, and stopping, with backends that answer what they are told.
+#include "host/bench/bench.h"
+
+#include <gmock/gmock.h>
+
+namespace ovc {
+namespace {
+
+/// Hits triangle (0, prim) with every ray, and counts two passes a call.
+class Scripted final : public Backend {
+public:
+    Scripted(std::string name, uint32_t prim, std::vector<std::string>& calls)
+        : name_(std::move(name)), prim_(prim), calls_(calls) {}
+
+    Result<Done> intersect(std::span<const Ray>, std::span<const TriangleId>,
+                           std::span<Hit> hits) override {
+        calls_.push_back(name_);
+        for (Hit& hit : hits)
+            hit = {1, 0, 0, {0, prim_}};
+        statistics_.passes += 2;
+        statistics_.flagged += hits.size();
+        statistics_.seconds_kernel += 0.25;
+        return Done{};
+    }
+    Result<Done> occluded(std::span<const Ray>, std::span<const TriangleId>,
+                          std::span<uint8_t>) override {
+        return Error{name_ + " does not do that"};
+    }
+    ovc_statistics statistics() const override { return statistics_; }
+    std::string renderer() const override { return "scripted " + name_; }
+
+private:
+    std::string name_;
+    uint32_t prim_;
+    std::vector<std::string>& calls_;
+    ovc_statistics statistics_{};
+};
+
+class RunContenders : public testing::Test {
+protected:
+    void enter(const char* name, uint32_t prim) {
+        Contender contender{};
+        contender.name = name;
+        entrants.push_back({contender, std::make_shared<Scripted>(name, prim, calls)});
+    }
+    Result<Done> run(
+        uint32_t repeats, const StopRequest& stop = [] { return false; }) {
+        return run_contenders(
+            entrants, workloads, reference, repeats, stop, [](const std::string&) {}, result);
+    }
+
+    std::vector<std::string> calls;
+    Scripted reference{"reference", 7, calls};
+    std::vector<Entrant> entrants;
+    std::vector<Workload> workloads;
+    BenchResult result;
+};
+
+TEST_F(RunContenders, TakeTurns) {
+    enter("a", 7);
+    enter("b", 7);
+    workloads.push_back(ray_workload({"rays", RayQuery::Nearest, std::vector<Ray>(3)}));
+    ASSERT_TRUE(run(2));
+    EXPECT_THAT(calls, testing::ElementsAre("reference", "a", "b", "a", "b", "a", "b"));
+    EXPECT_TRUE(result.complete);
+    ASSERT_EQ(result.measurements.size(), 2u);
+    for (const Measurement& m : result.measurements) {
+        EXPECT_EQ(m.rays, 3u);
+        EXPECT_EQ(m.seconds.size(), 2u);
+        EXPECT_EQ(m.cpu_seconds.size(), 2u);
+        EXPECT_THAT(m.kernel_seconds, testing::ElementsAre(0.25, 0.25));
+        EXPECT_EQ(m.passes, 2u); // of one call, not of all
+        EXPECT_EQ(m.flagged, 3u);
+    }
+    EXPECT_EQ(result.entrants[1].renderer, "scripted b");
+}
+
+TEST_F(RunContenders, CountAnswersUnlikeTheReferences) {
+    enter("right", 7);
+    enter("wrong", 8);
+    workloads.push_back(ray_workload({"rays", RayQuery::Nearest, std::vector<Ray>(5)}));
+    ASSERT_TRUE(run(1));
+    EXPECT_EQ(result.measurements[0].differing, 0u);
+    EXPECT_EQ(result.measurements[1].differing, 5u);
+    EXPECT_NE(result.measurements[0].checksum, result.measurements[1].checksum);
+    EXPECT_EQ(result.measurements[0].checksum, checksum(std::vector<uint64_t>(5, 7)));
+    // Only certified answers are promised.
+    result.entrants[1].contender.kind = ContenderKind::Embree;
+    EXPECT_EQ(wrong_answers(result), "");
+    result.entrants[1].contender.kind = ContenderKind::TwoLevel;
+    EXPECT_THAT(wrong_answers(result), testing::HasSubstr("5 answers unlike"));
+    result.entrants[1].contender.precision = OVC_PRECISION_FAST;
+    EXPECT_EQ(wrong_answers(result), "");
+}
+
+TEST_F(RunContenders, KeepWhatIsDoneWhenStopped) {
+    enter("a", 7);
+    enter("b", 7);
+    workloads.push_back(ray_workload({"rays", RayQuery::Nearest, std::vector<Ray>(3)}));
+    // The call that is running then is not kept: b has one timed call, a two.
+    ASSERT_TRUE(run(5, [&] { return calls.size() >= 7; }));
+    EXPECT_FALSE(result.complete);
+    ASSERT_EQ(result.measurements.size(), 2u);
+    EXPECT_EQ(result.measurements[0].seconds.size(), 2u);
+    EXPECT_EQ(result.measurements[1].seconds.size(), 1u);
+}
+
+TEST_F(RunContenders, LeaveOutWhatWasNotTimed) {
+    enter("a", 7);
+    enter("b", 7);
+    workloads.push_back(ray_workload({"rays", RayQuery::Nearest, std::vector<Ray>(3)}));
+    ASSERT_TRUE(run(5, [&] { return calls.size() >= 5; }));
+    ASSERT_EQ(result.measurements.size(), 1u);
+    EXPECT_EQ(result.measurements[0].entrant, 0u);
+}
+
+TEST_F(RunContenders, HandOnWhatAContenderSays) {
+    enter("a", 7);
+    workloads.push_back(ray_workload({"rays", RayQuery::Occlusion, std::vector<Ray>(3)}));
+    const Result<Done> done = run(1);
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().message, "reference does not do that");
+}
+
+TEST(Checksum, IsFnv1a) {
+    // The 8 bytes of "foobar!!", by a program of a few lines of Python.
+    EXPECT_EQ(checksum(std::vector<uint64_t>{0x21217261626f6f66u}), 0x745faceb4ecb0edeu);
+    EXPECT_EQ(checksum({}), 0xcbf29ce484222325u);
+    EXPECT_NE(checksum(std::vector<uint64_t>{1, 2}), checksum(std::vector<uint64_t>{2, 1}));
+}
+
+} // namespace
+} // namespace ovc

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of contenders, who of them was asked for, and how each is built.
+#include "host/bench/contender.h"
+
+#include "host/suggestion.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace ovc {
+
+static const Contender kContenders[] = {
+    {"certified-fragment", ContenderKind::TwoLevel, OVC_PRECISION_CERTIFIED, OVC_KERNEL_FRAGMENT},
+    {"certified-compute", ContenderKind::TwoLevel, OVC_PRECISION_CERTIFIED, OVC_KERNEL_COMPUTE},
+    {"fast-fragment", ContenderKind::TwoLevel, OVC_PRECISION_FAST, OVC_KERNEL_FRAGMENT},
+    {"fast-compute", ContenderKind::TwoLevel, OVC_PRECISION_FAST, OVC_KERNEL_COMPUTE},
+    {"cpu-kdtree", ContenderKind::CpuKdTree},
+    {.name = "embree-default", .kind = ContenderKind::Embree, .embree = EmbreeMode::Default},
+    {.name = "embree-robust", .kind = ContenderKind::Embree, .embree = EmbreeMode::Robust},
+};
+
+std::string Contender::label() const {
+    std::string text(name);
+    if (!leaves.words.empty())
+        text += fmt::format(", {} {}", leaves.words, leaves.words == "1" ? "leaf" : "leaves");
+    if (!budget.words.empty())
+        text += fmt::format(", budget {}", budget.words);
+    return text;
+}
+
+std::vector<std::string_view> contender_names() {
+    std::vector<std::string_view> names;
+    for (const Contender& contender : kContenders)
+        names.push_back(contender.name);
+    return names;
+}
+
+static bool answers_to(std::string_view name, std::string_view word) {
+    return name.starts_with(word) && (name.size() == word.size() || name[word.size()] == '-');
+}
+
+static Result<Done> check_names(std::span<const std::string> only) {
+    const std::vector<std::string_view> names = contender_names();
+    for (const std::string& word : only)
+        if (std::none_of(names.begin(), names.end(),
+                         [&](std::string_view name) { return answers_to(name, word); }))
+            return Error{fmt::format("--only: there is no contender '{}'; there are {}{}", word,
+                                     fmt::join(names, ", "), did_you_mean(word, names))};
+    return Done{};
+}
+
+static bool has_embree() {
+    return bool(make_embree_backend(Soup{}, EmbreeMode::Default));
+}
+
+static bool wanted(const Contender& contender, std::span<const std::string> only) {
+    if (only.empty())
+        return contender.kind != ContenderKind::Embree || has_embree();
+    return std::any_of(only.begin(), only.end(),
+                       [&](const std::string& word) { return answers_to(contender.name, word); });
+}
+
+Result<std::vector<Contender>> choose_contenders(std::span<const std::string> only,
+                                                 std::span<const LeavesChoice> leaves,
+                                                 std::span<const BudgetChoice> budgets) {
+    assert(!leaves.empty() && !budgets.empty());
+    if (const Result<Done> known = check_names(only); !known)
+        return known.error();
+    std::vector<Contender> chosen;
+    for (Contender contender : kContenders) {
+        if (!wanted(contender, only))
+            continue;
+        if (contender.kind != ContenderKind::TwoLevel) {
+            chosen.push_back(contender);
+            continue;
+        }
+        for (const LeavesChoice& leaf_choice : leaves)
+            for (const BudgetChoice& budget : budgets) {
+                contender.leaves = leaf_choice;
+                contender.budget = budget;
+                chosen.push_back(contender);
+            }
+    }
+    return chosen;
+}
+
+ContenderBuilder::ContenderBuilder(const Soup& soup, std::shared_ptr<Backend> reference,
+                                   std::string device, LogSink log)
+    : soup_(soup),
+      reference_(std::move(reference)),
+      device_(std::move(device)),
+      log_(std::move(log)) {}
+
+static Result<std::shared_ptr<Backend>> shared(Result<std::unique_ptr<Backend>> backend) {
+    if (!backend)
+        return backend.error();
+    return std::shared_ptr<Backend>(std::move(*backend));
+}
+
+Result<std::shared_ptr<Backend>> ContenderBuilder::build(const Contender& contender) {
+    switch (contender.kind) {
+    case ContenderKind::TwoLevel:
+        return shared(build_two_level(contender));
+    case ContenderKind::Embree:
+        return shared(make_embree_backend(soup_, contender.embree));
+    case ContenderKind::CpuKdTree:
+        break;
+    }
+    return reference_;
+}
+
+/// Of a scene cut into as many leaves without a tight budget.
+Result<uint64_t> ContenderBuilder::all_pages_bytes(BackendOptions options) {
+    const auto known = pages_bytes_.find(options.leaves);
+    if (known != pages_bytes_.end())
+        return known->second;
+    options.gpu_memory = {};
+    const Result<std::unique_ptr<Backend>> whole = make_backend(soup_, options, log_);
+    if (!whole)
+        return whole.error();
+    return pages_bytes_[options.leaves] = (*whole)->statistics().level2_bytes;
+}
+
+Result<std::unique_ptr<Backend>> ContenderBuilder::build_two_level(const Contender& contender) {
+    BackendOptions options;
+    options.kind = BackendKind::TwoLevel;
+    options.device = device_;
+    options.precision = contender.precision;
+    options.kernel = contender.kernel;
+    options.leaves = contender.leaves.leaves;
+    options.gpu_memory = contender.budget.memory;
+    if (contender.budget.pages_share > 0) {
+        const Result<uint64_t> bytes = all_pages_bytes(options);
+        if (!bytes)
+            return bytes.error();
+        options.gpu_memory.bytes =
+            std::max(uint64_t(1), uint64_t(contender.budget.pages_share * double(*bytes)));
+    }
+    return make_backend(soup_, options, log_);
+}
+
+} // namespace ovc

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contender: who is timed. The plugin in each precision and kernel, under each of the settings that
+// are swept; and the peers on the CPU.
+#pragma once
+
+#include "core/result.h"
+#include "host/backend.h"
+
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ovc {
+
+enum class ContenderKind { TwoLevel, CpuKdTree, Embree };
+
+/// A value of a sweep over the plugin's settings, and the words it was asked for with; empty: not
+/// asked.
+struct LeavesChoice {
+    uint32_t leaves = 0;
+    std::string words;
+};
+struct BudgetChoice {
+    MemorySize memory;      // neither bytes nor share: the device's default
+    double pages_share = 0; // instead, where above 0: of the bytes of all pages
+    std::string words;
+};
+
+struct Contender {
+    std::string_view name; // "certified-fragment"
+    ContenderKind kind;
+    ovc_precision precision = OVC_PRECISION_CERTIFIED;
+    ovc_kernel kernel = OVC_KERNEL_AUTO;
+    EmbreeMode embree = EmbreeMode::Default;
+    LeavesChoice leaves;
+    BudgetChoice budget;
+
+    /// The name, and the words of its sweep: "certified-fragment, 8 leaves, budget 12M".
+    std::string label() const;
+    bool certified() const {
+        return kind == ContenderKind::TwoLevel && precision == OVC_PRECISION_CERTIFIED;
+    }
+};
+
+/// All names, in the order of the table.
+std::vector<std::string_view> contender_names();
+
+/// only: names, or their first words ("certified", "embree"); empty: all that this program was
+/// built with. Each contender of the plugin comes once for each pair of leaves and budget; both
+/// lists have at least one value. Error: a name that there is none of.
+Result<std::vector<Contender>> choose_contenders(std::span<const std::string> only,
+                                                 std::span<const LeavesChoice> leaves,
+                                                 std::span<const BudgetChoice> budgets);
+
+/// Builds contenders over one soup, which outlives them.
+class ContenderBuilder {
+public:
+    /// reference: answers for the contender cpu-kdtree, as one tree is enough.
+    ContenderBuilder(const Soup& soup, std::shared_ptr<Backend> reference, std::string device,
+                     LogSink log);
+    Result<std::shared_ptr<Backend>> build(const Contender& contender);
+
+private:
+    Result<std::unique_ptr<Backend>> build_two_level(const Contender& contender);
+    Result<uint64_t> all_pages_bytes(BackendOptions options);
+
+    const Soup& soup_;
+    std::shared_ptr<Backend> reference_;
+    std::string device_;
+    LogSink log_;
+    std::map<uint32_t, uint64_t> pages_bytes_; // by leaves
+};
+
+} // namespace ovc

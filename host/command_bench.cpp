@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// overcast bench: how fast rays are answered, by the plugin certified and fast and by its peers, in
+// turn on the same rays.
+#include "host/bench/bench_arguments.h"
+#include "host/bench/bench_text.h"
+#include "host/camera.h"
+#include "host/command.h"
+#include "host/interrupt.h"
+#include "host/output.h"
+#include "host/scene_source.h"
+#include "host/scene_summary.h"
+#include "host/stopwatch.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <mutex>
+#include <set>
+#include <thread>
+
+namespace ovc {
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  overcast bench dragon.ply
+      camera, shadow and bounced rays, and a frame: all contenders, five times in turn
+  overcast bench knot plants --only certified,embree --size 512x512 --repeats 11
+      two scenes; the plugin certified, by both kernels, and both modes of Embree
+  overcast bench --only certified-compute --leaves 1,8,32,128
+      what leaves cost: each row says its time to the first row's
+  overcast bench plants --only certified --resident all,30%
+      what a budget costs that holds 30 % of the pages
+  overcast bench dragon.ply --json - | jq '.scenes[].measurements[] | {contender, call_seconds}'
+
+All contenders answer the same rays with the same number of threads, and are in memory at once.
+Interrupted with Ctrl-C, it prints what it has and exits with 2.)";
+
+/// One line on a terminal that overwrites itself.
+class ProgressLine {
+public:
+    ~ProgressLine() { clear(); }
+    void say(const std::string& what) const {
+        if (!shown_)
+            return;
+        fmt::print(stderr, "\r\033[K{}", what);
+        std::fflush(stderr);
+    }
+    void clear() const { say(""); }
+
+private:
+    bool shown_ = isatty(STDERR_FILENO);
+};
+
+/// To standard error, each sentence once: every contender of the plugin opens the same device.
+class QuietLog {
+public:
+    LogSink sink() {
+        return [this](LogLevel level, const std::string& message) {
+            const std::lock_guard lock(mutex_); // the device's thread may call
+            if (said_.insert(message).second)
+                log_(level, message);
+        };
+    }
+
+private:
+    LogSink log_ = standard_error_log(/* chatty= */ false);
+    std::mutex mutex_;
+    std::set<std::string> said_;
+};
+
+double load_average() {
+    double load = 0;
+    return getloadavg(&load, 1) == 1 ? load : 0;
+}
+
+/// The scene's own camera and lights, or those that `overcast render` would add.
+Result<Camera> dress(Scene& scene, const ImageSize& size) {
+    const Camera camera =
+        scene.camera ? *scene.camera
+                     : framing_camera(hittable_bounds(scene.soup), size.width, size.height);
+    if (scene.lights.empty())
+        scene.lights.push_back(shoulder_light(camera));
+    const Result<Done> fine = check_camera(camera);
+    return fine ? Result<Camera>(camera) : fine.error();
+}
+
+Result<std::vector<Workload>> workloads_of(const Scene& scene, const Camera& camera,
+                                           const ImageSize& size, Backend& reference,
+                                           const StopRequest& stop) {
+    Result<std::vector<RaySet>> sets =
+        make_ray_sets(scene, camera, size.width, size.height, reference);
+    if (!sets)
+        return sets.error();
+    std::vector<Workload> workloads;
+    for (RaySet& set : *sets)
+        workloads.push_back(ray_workload(std::move(set)));
+    workloads.push_back(frame_workload(scene, camera, size.width, size.height, stop));
+    return workloads;
+}
+
+/// Fewer than asked for where it was stopped.
+Result<std::vector<Entrant>> build_entrants(const BenchJob& job, const Scene& scene,
+                                            std::shared_ptr<Backend> reference,
+                                            const StopRequest& stop, const LogSink& log,
+                                            const ProgressLine& progress) {
+    ContenderBuilder builder(scene.soup, std::move(reference), job.device, log);
+    std::vector<Entrant> entrants;
+    for (const Contender& contender : job.contenders) {
+        if (stop())
+            break;
+        progress.say("building " + contender.label());
+        Result<std::shared_ptr<Backend>> backend = builder.build(contender);
+        if (!backend)
+            return Error{fmt::format("{}: {}", contender.label(), backend.error().message)};
+        entrants.push_back({contender, std::move(*backend)});
+    }
+    return entrants;
+}
+
+Result<BenchResult> bench_scene(const BenchJob& job, const std::string& source,
+                                const StopRequest& stop, const LogSink& log,
+                                const ProgressLine& progress) {
+    BenchResult result;
+    result.scene = source;
+    result.width = job.size.width;
+    result.height = job.size.height;
+    result.threads = std::thread::hardware_concurrency();
+    progress.say("reading " + source);
+    const Stopwatch import;
+    Result<Scene> scene = open_scene(source, log);
+    if (!scene)
+        return scene.error();
+    result.seconds_import = import.seconds();
+    result.triangles = scene->soup.triangle_count();
+    const Result<Camera> camera = dress(*scene, job.size);
+    if (!camera)
+        return Error{fmt::format("{}: {}", source, camera.error().message)};
+
+    progress.say("building the reference");
+    const std::shared_ptr<Backend> reference = make_cpu_backend(scene->soup);
+    Result<std::vector<Entrant>> entrants =
+        build_entrants(job, *scene, reference, stop, log, progress);
+    if (!entrants)
+        return entrants.error();
+    Result<std::vector<Workload>> workloads =
+        workloads_of(*scene, *camera, job.size, *reference, stop);
+    if (!workloads)
+        return workloads.error();
+    result.load_before = load_average();
+    const auto observe = [&](const std::string& what) { progress.say(source + ": " + what); };
+    const Result<Done> done =
+        run_contenders(*entrants, *workloads, *reference, job.repeats, stop, observe, result);
+    if (!done)
+        return Error{fmt::format("{}: {}", source, done.error().message)};
+    result.load_after = load_average();
+    progress.clear();
+    return result;
+}
+
+Result<Done> save(const BenchJob& job, std::span<const BenchResult> results) {
+    if (job.json.empty())
+        return Done{};
+    if (job.json != "-")
+        return save_text(bench_json(results), job.json);
+    fmt::print("{}", bench_json(results));
+    return Done{};
+}
+
+Result<int> bench(const BenchJob& job) {
+    const InterruptGuard interrupt;
+    const StopRequest stop = [&] { return interrupt.interrupted(); };
+    const ProgressLine progress;
+    QuietLog log;
+    std::vector<BenchResult> results;
+    for (const std::string& source : job.scenes) {
+        if (stop())
+            break;
+        Result<BenchResult> result = bench_scene(job, source, stop, log.sink(), progress);
+        if (!result)
+            return result.error();
+        if (job.json != "-")
+            fmt::print("{}{}", results.empty() ? "" : "\n", bench_table(*result));
+        std::fflush(stdout);
+        results.push_back(std::move(*result));
+    }
+    if (const Result<Done> saved = save(job, results); !saved)
+        return saved.error();
+    for (const BenchResult& result : results)
+        if (const std::string wrong = wrong_answers(result); !wrong.empty())
+            return Error{wrong};
+    if (!stop())
+        return kExitOk;
+    fmt::print(stderr, "overcast: interrupted; what was measured so far is kept\n");
+    return kExitInterrupted;
+}
+
+} // namespace
+
+Result<int> run_bench(const Arguments& arguments) {
+    CLI::App app{"Times how rays are answered: the plugin certified and fast, and its peers.",
+                 "overcast bench"};
+    BenchWords words;
+    words.add_to(app);
+    app.footer(kExamples);
+    const Result<Parsed> parsed = parse_arguments(app, arguments);
+    if (!parsed)
+        return parsed.error();
+    if (*parsed == Parsed::HelpShown)
+        return kExitOk;
+    const Result<BenchJob> job = understand_bench(words);
+    if (!job)
+        return job.error();
+    return bench(*job);
+}
+
+} // namespace ovc
