@@ -26,7 +26,6 @@ std::vector<uvec4> pack_level1(const Level1& level1) {
     texels.reserve(level1_texels(level1));
     const uint32_t root =
         OVC_LEVEL1_LEAVES + uint32_t(OVC_LEAF_TEXELS) * uint32_t(level1.leaves.size());
-    put_box(texels, level1.bounds.padded(level1.padding));
     texels.push_back({root, 0, 0, 0});
     for (const Leaf& leaf : level1.leaves) {
         put_box(texels, leaf.box);

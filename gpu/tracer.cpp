@@ -72,8 +72,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Dev
       page_data_(pages),
       software_(device.is_software),
       stack_depth_(stack_depth(pages)),
-      rays_(*ledger_, GL_RGBA32UI, sizeof(uvec4), kRowRays * OVC_RAY_TEXELS,
-            plan.batch_rays / kRowRays, "rays"),
+      ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
       answers_(*ledger_, GL_RGBA32UI, sizeof(Answer), kRowRays, plan.batch_rays / kRowRays,
                "answers"),
       framebuffer_(answers_),
@@ -83,6 +82,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Dev
     glNamedBufferSubData(level1_buffer_.id(), 0, GLsizeiptr(table.size() * sizeof(uvec4)),
                          table.data());
     level1_.show(level1_buffer_, GL_RGBA32UI, 0, level1_buffer_.bytes());
+    rays_.show(ray_buffer_, GL_RGBA32UI, 0, ray_buffer_.bytes());
     pages_.show(pool_.buffer(), GL_RGBA32UI, 0, pool_.buffer().bytes());
 }
 
@@ -145,18 +145,19 @@ Result<double> Tracer::pass(const PassOptions& options, std::span<const Travelle
         return program.error();
 
     const GLsizei rows = GLsizei(row_padded(rays.size()) / kRowRays);
-    glTextureSubImage2D(rays_.id(), 0, 0, 0, kRowRays * OVC_RAY_TEXELS, rows, GL_RGBA_INTEGER,
-                        GL_UNSIGNED_INT, rays.data());
+    glNamedBufferSubData(ray_buffer_.id(), 0,
+                         GLsizeiptr(row_padded(rays.size()) * sizeof(Traveller)), rays.data());
 
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);
-    if (config.page_image)
-        glBindImageTexture(OVC_BINDING_PAGE, pages_.id(), 0, GL_FALSE, 0, GL_READ_ONLY,
-                           GL_RGBA32UI);
-    else
-        glBindTextureUnit(OVC_BINDING_PAGE, pages_.id());
-    glBindTextureUnit(OVC_BINDING_RAYS, rays_.id());
-    glBindTextureUnit(OVC_BINDING_LEVEL1, level1_.id());
+    const std::pair<GLuint, GLuint> inputs[] = {{OVC_BINDING_PAGE, pages_.id()},
+                                                {OVC_BINDING_RAYS, rays_.id()},
+                                                {OVC_BINDING_LEVEL1, level1_.id()}};
+    for (const auto& [binding, texture] : inputs)
+        if (config.page_image)
+            glBindImageTexture(binding, texture, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
+        else
+            glBindTextureUnit(binding, texture);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     if (config.compute) {
         static_assert(kRowRays % OVC_GROUP_SIZE == 0);

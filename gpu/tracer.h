@@ -8,6 +8,7 @@
 #include "gpu/kernel.h"
 #include "gpu/ledger.h"
 #include "gpu/pool.h"
+#include "shaders/layout.h"
 
 #include <array>
 #include <bit>
@@ -98,7 +99,7 @@ public:
 
     const Ledger& ledger() const { return *ledger_; }
 
-    static constexpr uint32_t kRowRays = 256; // rays a texture row
+    static constexpr uint32_t kRowRays = OVC_ROW_RAYS;
     /// The size that buffers for n rays or answers must have: whole rows.
     static size_t row_padded(size_t n) { return (n + kRowRays - 1) / kRowRays * kRowRays; }
 
@@ -113,7 +114,8 @@ private:
     std::span<const Page> page_data_;
     bool software_;
     uint32_t stack_depth_;
-    gl::Texture2D rays_;
+    gl::Buffer ray_buffer_;
+    gl::BufferTexture rays_;
     gl::Texture2D answers_;
     gl::Framebuffer framebuffer_;
     gl::VertexArray vertex_array_;

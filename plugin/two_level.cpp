@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <numeric>
 
 namespace ovc {
 namespace {
@@ -91,6 +92,9 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     if (!tracer)
         return tracer.error();
     self->tracer_ = std::move(*tracer);
+    std::vector<uint32_t> all(self->pages_.size());
+    std::iota(all.begin(), all.end(), 0u);
+    self->bring(all); // as many as fit, so that rays need not come and wait first
     statistics.peak_bytes = self->tracer_->ledger().peak;
     return self;
 }
@@ -112,6 +116,15 @@ Result<Done> TwoLevel::share_out() {
             level1_.leaves.size(), statistics_.largest_page_bytes)};
     plan_.pool_bytes = std::min(plan_.pool_bytes - table, statistics_.level2_bytes);
     return Done{};
+}
+
+/// Moves the first pages of `wanted` in, as many as fit; returns how many.
+size_t TwoLevel::bring(std::span<const uint32_t> wanted) {
+    Moved moved;
+    gl_.run([&](GlState&) { moved = tracer_->bring(wanted); });
+    statistics_.pages_in += moved.pages;
+    statistics_.bytes_in += moved.bytes;
+    return moved.pages;
 }
 
 /// Some rays of a call on their way through the leaves, until none is under way any more.
@@ -155,6 +168,7 @@ private:
     };
 
     void start() {
+        const Box scene = s_.level1_.bounds.padded(s_.level1_.padding); // empty: no triangles
         std::vector<uint32_t> all(positions_.size());
         parallel_for(all.size(), kGrain, [&](size_t from, size_t to) {
             for (size_t i = from; i < to; ++i) {
@@ -165,7 +179,7 @@ private:
                     continue;
                 }
                 const PreparedRay p = prepare(query_, first_ + i);
-                if (s_.pages_.empty())
+                if (clip(p, scene, p.ray.t_min, p.ray.t_max).empty())
                     continue;
                 if (can_walk(s_.level1_, p))
                     positions_[i] = {p.ray.t_min, p.ray.t_max, OVC_NO_LEAF, Position::Ready};
@@ -188,13 +202,10 @@ private:
     /// Moves pages in and calls up who waited for them.
     void bring() {
         const std::vector<uint32_t> wanted = waiting_.wanted(s_.pages_);
-        Moved moved;
-        s_.gl_.run([&](GlState&) { moved = s_.tracer_->bring(wanted); });
-        for (size_t i = 0; i < moved.pages; ++i)
+        const size_t moved = s_.bring(wanted);
+        for (size_t i = 0; i < moved; ++i)
             for (const uint32_t ray : waiting_.take(wanted[i]))
                 ready_.push_back(ray);
-        s_.statistics_.pages_in += moved.pages;
-        s_.statistics_.bytes_in += moved.bytes;
     }
 
     /// Walks a batch of the rays that are ready, takes in the answers, and sends the rays on.

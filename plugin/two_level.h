@@ -76,6 +76,7 @@ private:
         : soup_(soup), gl_(gl), options_(options), plan_(plan) {}
 
     Result<Done> share_out();
+    size_t bring(std::span<const uint32_t> wanted);
     uint32_t number_to_skip(TriangleId id) const;
 
     template <class Query>

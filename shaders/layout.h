@@ -25,25 +25,24 @@
 
 // Level 1 is an array of RGBA32UI texels: a header, the leaves, the KD-tree's nodes. A double is two words, low one first.
 //
-// header  texels 0..2: the box of the scene, padded: lo xyz, hi xyz (doubles)
-//         texel 3: texel of the root, 0, 0, 0
+// header  texel of the root, 0, 0, 0
 // leaf    texels 0..2: the leaf's box (doubles); texels 3 and 4: the frame's origin xyz, its scale (doubles)
 //         texel 5: the unit of the pool where the page begins, or OVC_NOT_RESIDENT; 0, 0, 0
 // node    split (double), axis, texel of the node above the split (the one below is next); or
 //         0, 0, 3 | number of leaves << 2, first leaf
-#define OVC_LEVEL1_BOUNDS 0
-#define OVC_LEVEL1_START 3
-#define OVC_LEVEL1_LEAVES 4
+#define OVC_LEVEL1_START 0
+#define OVC_LEVEL1_LEAVES 1
 #define OVC_LEAF_TEXELS 6
 #define OVC_LEAF_PAGE_TEXEL 5
 #define OVC_NOT_RESIDENT 0xffffffffu
 
-// A ray is five RGBA32UI texels side by side: the record of core/ray.h, org, t_min, dir, t_max (doubles; t_max < t_min: no
+// A ray is five RGBA32UI texels: the record of core/ray.h, org, t_min, dir, t_max (doubles; t_max < t_min: no
 // ray here); then the t of the cells it is done with (double), the number of the triangle it does not see or
 // OVC_NO_TRIANGLE, and, where the cell just after that t is one it has been in, the leaf of it to go on with, one past the
 // last where it is done with all; else any leaf of other cells, or OVC_NO_LEAF.
 #define OVC_RAY_TEXELS 5
 #define OVC_NO_LEAF 0xffffffffu
+#define OVC_ROW_RAYS 256 // answers are a texture, so many in a row
 
 // An answer is RGBA32UI; triangles are named by their numbers in the soup. w: the certain nearest hit in leaf z; or
 //   OVC_MISS      none in any leaf on the way

@@ -2,11 +2,17 @@
 // Level 1 in the kernel: where a ray goes next, and the ray in a leaf's frame. In double, the twin of kdtree/restart.cpp.
 // Based on: Foley and Sugerman 2005, section 3.1 (kd-restart); thesis, section 3.4 (algorithm 4).
 
+#if OVC_PAGE_IMAGE
+layout(rgba32ui, binding = OVC_BINDING_LEVEL1) uniform readonly restrict uimageBuffer level1;
+uvec4 level1_texel(int i) { return imageLoad(level1, i); }
+#else
 layout(binding = OVC_BINDING_LEVEL1) uniform usamplerBuffer level1;
+uvec4 level1_texel(int i) { return texelFetch(level1, i); }
+#endif
 
 double double_of(uvec2 words) { return packDouble2x32(words); }
 dvec2 doubles(int texel) {
-    uvec4 words = texelFetch(level1, texel);
+    uvec4 words = level1_texel(texel);
     return dvec2(double_of(words.xy), double_of(words.zw));
 }
 
@@ -58,9 +64,9 @@ struct Cell {
 // of a cell always lands in the next: t grows with every cell, and none comes twice.
 Cell cell_after(WorldRay ray, double t) {
     Cell cell = Cell(0, 0, ray.t_max);
-    int node = int(texelFetch(level1, OVC_LEVEL1_START).x);
+    int node = int(level1_texel(OVC_LEVEL1_START).x);
     for (;;) {
-        uvec4 words = texelFetch(level1, node);
+        uvec4 words = level1_texel(node);
         int axis = int(words.z & 3u);
         if (axis == 3) {
             cell.first = int(words.w);

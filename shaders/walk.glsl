@@ -20,10 +20,6 @@ uvec4 walk(Traveller traveller) {
     uvec4 answer = uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, 0u, OVC_MISS);
     int rounds = 0;
     bool done = ray.t_max < ray.t_min;
-    if (!done) {
-        dvec2 inside = inside_box(ray, OVC_LEVEL1_BOUNDS);
-        done = inside.x > inside.y;
-    }
     while (!done && rounds < OVC_MOST_ROUNDS) {
         // The next leaf whose box the ray meets.
         int leaf = -1;
@@ -47,7 +43,7 @@ uvec4 walk(Traveller traveller) {
         }
         if (leaf >= 0) {
             int texel = OVC_LEVEL1_LEAVES + leaf * OVC_LEAF_TEXELS;
-            uint page = texelFetch(level1, texel + 5).x;
+            uint page = level1_texel(texel + OVC_LEAF_PAGE_TEXEL).x;
             LocalRay local = rebase(ray, texel, inside);
             if (page == OVC_NOT_RESIDENT) {
                 answer = uvec4(unpackDouble2x32(t_cell), uint(leaf), OVC_WAITS);
@@ -70,6 +66,7 @@ uvec4 walk(Traveller traveller) {
                     // Another leaf of the same cell may hold something nearer, and only doubles could tell.
                     bool alone = cell.first == cell.end || (OVC_ANY_HIT != 0 && answer.w < OVC_MAX_TRIANGLES);
                     answer.w = done && !alone ? OVC_FLAGGED : answer.w;
+                    done = done || (last && cell.first == cell.end);
                 }
             }
         }
