@@ -21,7 +21,7 @@ struct ShaderConfig {
     uint32_t stack_depth = 16;
     bool stack_registers = true;
     bool page_image = true;
-    uint32_t most_rounds = 0; // 0: as many as it takes
+    uint32_t most_rounds = 0x7fffffff; // of all loops of a ray
 
     bool operator==(const ShaderConfig&) const = default;
     /// All defines, one a line, in fixed order.

@@ -19,12 +19,13 @@ TEST(ShaderSource, IncludesAreReplacedAndDefinesFollowTheVersion) {
         expand_shader("trace.frag.glsl", ShaderConfig{.any_hit = true}.defines(), files);
     ASSERT_TRUE(source);
     EXPECT_THAT(*source, Not(HasSubstr("#include")));
-    EXPECT_THAT(*source, HasSubstr("uvec4 trace("));
+    EXPECT_THAT(*source, HasSubstr("uvec4 walk("));
     EXPECT_LT(source->find("#version"), source->find("#define OVC_ANY_HIT 1"));
     EXPECT_LT(source->find("#define OVC_ANY_HIT 1"), source->find("#ifndef OVC_ANY_HIT"));
     EXPECT_THAT(files,
                 testing::ElementsAre("trace.frag.glsl", "layout.h", "config.glsl", "page.glsl",
-                                     "box.glsl", "triangle.glsl", "found.glsl", "traverse.glsl"));
+                                     "box.glsl", "triangle.glsl", "found.glsl", "traverse.glsl",
+                                     "level1.glsl", "walk.glsl", "ray.glsl"));
 }
 
 TEST(ShaderSource, AMissingFileIsNamed) {

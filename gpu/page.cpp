@@ -175,10 +175,14 @@ private:
 
 } // namespace
 
-Page build_page(const Soup& soup, const Leaf& leaf) {
+Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf) {
     assert(!leaf.triangles.empty());
     const Box box{leaf.frame.to_local(leaf.box.lo), leaf.frame.to_local(leaf.box.hi)};
-    const std::vector<TrianglePair> pairs = pair_triangles(local_triangles(soup, leaf));
+    std::vector<TrianglePair> pairs = pair_triangles(local_triangles(soup, leaf));
+    for (TrianglePair& pair : pairs) {
+        pair.a = numbers.of(leaf.triangles[pair.a]);
+        pair.b = pair.b == kNone ? kNone : numbers.of(leaf.triangles[pair.b]);
+    }
     // Hits count inside the leaf's box only, so what reaches out of it need not be in the boxes.
     const Boxf inside{vec3(box.lo), vec3(box.hi)};
     std::vector<Boxf> boxes(pairs.size());

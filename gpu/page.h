@@ -3,6 +3,7 @@
 // lives in GPU memory.
 #pragma once
 
+#include "core/numbering.h"
 #include "core/soup.h"
 #include "kdtree/partition.h"
 #include "shaders/layout.h"
@@ -20,7 +21,7 @@ struct Page {
     uint64_t bytes() const { return texels.size() * sizeof(uvec4); }
 };
 
-/// Builds and packs the BVH of a leaf. Triangle i of the page is leaf.triangles[i].
-Page build_page(const Soup& soup, const Leaf& leaf);
+/// Builds and packs the BVH of a leaf. Its triangles go by their numbers.
+Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf);
 
 } // namespace ovc

@@ -23,7 +23,7 @@ TEST(Page, WalkedInDoubleFindsWhatBruteForceFinds) {
             continue;
         ASSERT_EQ(level1.leaves.size(), 1u);
         const Leaf& leaf = level1.leaves[0];
-        const Page page = build_page(soup, leaf);
+        const Page page = build_page(soup, Numbering(soup), leaf);
         const auto rays = test::unpleasant_rays(soup, 77, 800);
         for (size_t i = 0; i < rays.size(); ++i) {
             if (!rays[i].valid())
@@ -33,7 +33,8 @@ TEST(Page, WalkedInDoubleFindsWhatBruteForceFinds) {
             walk_page(
                 page, leaf, p, p.ray.t_min,
                 [&](uint32_t k) {
-                    nearest.offer(soup.triangle(leaf.triangles[k]), leaf.triangles[k]);
+                    const TriangleId id = Numbering(soup).id(k);
+                    nearest.offer(soup.triangle(id), id);
                     return false;
                 },
                 [&] { return nearest.limit(); });
@@ -49,11 +50,11 @@ TEST(Page, WalkedInDoubleFindsWhatBruteForceFinds) {
 TEST(Page, TakesAtMost52BytesATriangleWhereMostPairUpAnd96InASoup) {
     const Soup mesh = test::closed_grid(128);
     const Level1 of_mesh = one_leaf(mesh);
-    EXPECT_LE(double(build_page(mesh, of_mesh.leaves[0]).bytes()),
+    EXPECT_LE(double(build_page(mesh, Numbering(mesh), of_mesh.leaves[0]).bytes()),
               52.0 * double(mesh.triangle_count()));
     const Soup soup = test::random_soup(3, 20000, 0.02);
     const Level1 of_soup = one_leaf(soup);
-    EXPECT_LE(double(build_page(soup, of_soup.leaves[0]).bytes()),
+    EXPECT_LE(double(build_page(soup, Numbering(soup), of_soup.leaves[0]).bytes()),
               96.0 * double(soup.triangle_count()));
 }
 
@@ -62,7 +63,7 @@ TEST(Page, NeedsFewStackWordsEvenWhereNothingCanBeSplit) {
         const Level1 level1 = one_leaf(soup);
         if (level1.leaves.empty())
             continue;
-        EXPECT_LE(build_page(soup, level1.leaves[0]).depth, 24u) << name;
+        EXPECT_LE(build_page(soup, Numbering(soup), level1.leaves[0]).depth, 24u) << name;
     }
 }
 
@@ -89,7 +90,7 @@ TEST(Page, SaysHowManyWordsItsLongestWayCanPush) {
         const Level1 level1 = one_leaf(soup);
         if (level1.leaves.empty())
             continue;
-        const Page page = build_page(soup, level1.leaves[0]);
+        const Page page = build_page(soup, Numbering(soup), level1.leaves[0]);
         EXPECT_EQ(page.depth, longest_way(page, OVC_ROOT_UNIT)) << name;
     }
 }

@@ -13,7 +13,7 @@
 
 namespace ovc {
 
-/// Calls visit(i) -> bool (true: stop) for each triangle leaf.triangles[i] whose packed box,
+/// Calls visit(i) -> bool (true: stop) for the number i of each triangle whose packed box,
 /// widened by the ray's rounding margin, the ray meets within [from, limit()]. Nearest children
 /// first, as in the kernel; t is that of the ray itself. Returns true when visit stopped it.
 template <class Visit, class Limit>

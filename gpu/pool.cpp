@@ -21,19 +21,17 @@ Residency::Range Residency::cheapest_range(uint64_t bytes) const {
     const auto gap_end = [&](size_t i) {
         return i == order_.size() ? bytes_ : slots_[order_[i]].offset;
     };
-    Range best{0, order_.size(), 0};
-    uint64_t best_use = std::numeric_limits<uint64_t>::max();
+    Range best{0, 0, 0, std::numeric_limits<uint64_t>::max()};
     for (size_t first = 0; first <= order_.size(); ++first) {
         const uint64_t begin = gap_begin(first);
         uint64_t use = 0;
         for (size_t last = first; last <= order_.size(); ++last) {
             if (last > first)
                 use = std::max(use, last_use_[order_[last - 1]]);
-            if (use >= best_use)
+            if (use >= best.use)
                 break;
             if (gap_end(last) - begin >= bytes) {
-                best = {first, last, begin};
-                best_use = use;
+                best = {first, last, begin, use};
                 break;
             }
         }
@@ -41,32 +39,29 @@ Residency::Range Residency::cheapest_range(uint64_t bytes) const {
     return best;
 }
 
-Slot Residency::admit(uint32_t leaf, uint64_t bytes) {
+bool Residency::admit(uint32_t leaf, uint64_t bytes, uint64_t keep,
+                      std::vector<uint32_t>& evicted) {
     assert(!resident(leaf));
     bytes = (bytes + alignment_ - 1) / alignment_ * alignment_;
     assert(bytes <= bytes_);
     const Range range = cheapest_range(bytes);
-    for (size_t i = range.first; i < range.last; ++i)
+    if (range.use >= keep)
+        return false;
+    for (size_t i = range.first; i < range.last; ++i) {
         slots_[order_[i]] = {0, 0};
+        evicted.push_back(order_[i]);
+    }
     const auto at = order_.erase(order_.begin() + ptrdiff_t(range.first),
                                  order_.begin() + ptrdiff_t(range.last));
     order_.insert(at, leaf);
     slots_[leaf] = {range.offset, bytes};
     touch(leaf);
-    return slots_[leaf];
+    return true;
 }
 
-Slot Pool::bring(uint32_t leaf, const Page& page, uint64_t& moved) {
-    moved = 0;
-    if (residency_.resident(leaf)) {
-        residency_.touch(leaf);
-        return residency_.slot(leaf);
-    }
-    const Slot slot = residency_.admit(leaf, page.bytes());
-    glNamedBufferSubData(buffer_.id(), GLintptr(slot.offset), GLsizeiptr(page.bytes()),
-                         page.texels.data());
-    moved = page.bytes();
-    return slot;
+void Pool::upload(uint32_t leaf, const Page& page) const {
+    glNamedBufferSubData(buffer_.id(), GLintptr(residency_.slot(leaf).offset),
+                         GLsizeiptr(page.bytes()), page.texels.data());
 }
 
 } // namespace ovc

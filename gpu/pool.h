@@ -29,15 +29,21 @@ public:
     /// Marks the leaf as used now.
     void touch(uint32_t leaf) { last_use_[leaf] = ++clock_; }
 
+    /// Every use so far is before what this returns.
+    uint64_t now() const { return clock_ + 1; }
+
     /// Finds room for the leaf's page, which must fit the pool, and evicts what has to go: the
-    /// least recently used pages that together with the gaps between them make enough room.
-    Slot admit(uint32_t leaf, uint64_t bytes);
+    /// least recently used pages that together with the gaps between them make enough room. Pages
+    /// used at `keep` or later stay: false, and nothing changes, where that leaves no room.
+    /// evicted: receives who went.
+    bool admit(uint32_t leaf, uint64_t bytes, uint64_t keep, std::vector<uint32_t>& evicted);
 
 private:
     struct Range {
         size_t first; // into order_: pages to evict
         size_t last;
         uint64_t offset;
+        uint64_t use; // the latest of them; 0: none goes
     };
     Range cheapest_range(uint64_t bytes) const;
 
@@ -52,14 +58,14 @@ private:
 /// The buffer and its books. Needs the context current.
 class Pool {
 public:
-    Pool(Ledger& ledger, uint64_t bytes, uint64_t alignment, size_t leaves)
-        : buffer_(ledger, bytes, "page pool"), residency_(bytes, alignment, leaves) {}
+    Pool(Ledger& ledger, uint64_t bytes, size_t leaves)
+        : buffer_(ledger, bytes, "page pool"), residency_(bytes, OVC_UNIT_BYTES, leaves) {}
 
-    bool resident(uint32_t leaf) const { return residency_.resident(leaf); }
+    Residency& residency() { return residency_; }
+    const Residency& residency() const { return residency_; }
 
-    /// Makes the page resident, moving it in if it was not; returns where it is. moved: bytes
-    /// uploaded now.
-    Slot bring(uint32_t leaf, const Page& page, uint64_t& moved);
+    /// Moves in the page of a leaf that was admitted.
+    void upload(uint32_t leaf, const Page& page) const;
 
     const gl::Buffer& buffer() const { return buffer_; }
 

@@ -10,6 +10,14 @@
 namespace ovc {
 namespace {
 
+/// Room for the page, whoever has to go.
+void admit(Residency& residency, uint32_t leaf, uint64_t bytes) {
+    std::vector<uint32_t> evicted;
+    ASSERT_TRUE(residency.admit(leaf, bytes, residency.now(), evicted));
+    for (const uint32_t gone : evicted)
+        ASSERT_FALSE(residency.resident(gone));
+}
+
 TEST(Residency, PagesNeverOverlapNorLeaveThePool) {
     constexpr size_t kLeaves = 40;
     constexpr uint64_t kBytes = 10000;
@@ -23,7 +31,7 @@ TEST(Residency, PagesNeverOverlapNorLeaveThePool) {
         if (residency.resident(leaf))
             residency.touch(leaf);
         else
-            residency.admit(leaf, size[leaf]);
+            admit(residency, leaf, size[leaf]);
         ASSERT_TRUE(residency.resident(leaf));
         std::vector<std::pair<uint64_t, uint64_t>> ranges;
         for (uint32_t i = 0; i < kLeaves; ++i)
@@ -39,11 +47,11 @@ TEST(Residency, PagesNeverOverlapNorLeaveThePool) {
 
 TEST(Residency, EvictsTheLeastRecentlyUsed) {
     Residency residency(300, 1, 4);
-    residency.admit(0, 100);
-    residency.admit(1, 100);
-    residency.admit(2, 100);
+    admit(residency, 0, 100);
+    admit(residency, 1, 100);
+    admit(residency, 2, 100);
     residency.touch(0);
-    residency.admit(3, 100);
+    admit(residency, 3, 100);
     EXPECT_TRUE(residency.resident(0));
     EXPECT_FALSE(residency.resident(1));
     EXPECT_TRUE(residency.resident(2));
@@ -51,13 +59,13 @@ TEST(Residency, EvictsTheLeastRecentlyUsed) {
 
 TEST(Residency, EvictsNobodyWhereAGapIsWideEnough) {
     Residency residency(400, 1, 5);
-    residency.admit(0, 100);
-    residency.admit(1, 200);
-    residency.admit(2, 100);
+    admit(residency, 0, 100);
+    admit(residency, 1, 200);
+    admit(residency, 2, 100);
     residency.touch(0);
     residency.touch(2);
-    residency.admit(3, 50); // in place of 1
-    residency.admit(4, 150);
+    admit(residency, 3, 50); // in place of 1
+    admit(residency, 4, 150);
     EXPECT_TRUE(residency.resident(0));
     EXPECT_TRUE(residency.resident(2));
     EXPECT_TRUE(residency.resident(3));
@@ -66,11 +74,26 @@ TEST(Residency, EvictsNobodyWhereAGapIsWideEnough) {
 
 TEST(Residency, TakesAPageAsLargeAsThePool) {
     Residency residency(1000, 16, 3);
-    residency.admit(0, 320);
-    residency.admit(1, 320);
-    EXPECT_EQ(residency.admit(2, 992).offset, 0u);
+    admit(residency, 0, 320);
+    admit(residency, 1, 320);
+    admit(residency, 2, 992);
+    EXPECT_EQ(residency.slot(2).offset, 0u);
     EXPECT_FALSE(residency.resident(0));
     EXPECT_FALSE(residency.resident(1));
+}
+
+TEST(Residency, WhatWasUsedSinceStays) {
+    Residency residency(300, 1, 5);
+    admit(residency, 0, 100);
+    const uint64_t keep = residency.now();
+    admit(residency, 1, 100);
+    admit(residency, 2, 100);
+    std::vector<uint32_t> evicted;
+    EXPECT_TRUE(residency.admit(3, 100, keep, evicted));
+    EXPECT_EQ(evicted, std::vector<uint32_t>{0});
+    EXPECT_FALSE(residency.admit(4, 100, keep, evicted));
+    EXPECT_EQ(evicted.size(), 1u);
+    EXPECT_TRUE(residency.resident(1) && residency.resident(2) && residency.resident(3));
 }
 
 TEST(Ledger, KeepsThePeak) {

@@ -3,6 +3,7 @@
 // object. Based on: thesis, section 3.1.
 #include "gpu/tracer.h"
 
+#include "gpu/level1_table.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>
@@ -14,9 +15,8 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kMaxBatchRows = 512; // half a million rays: beyond, a pass gains nothing more
-/// llvmpipe ends a loop after 65,535 rounds without a word. The kernel's loop comes to each unit of
-/// a page once at most, so smaller pages need no count.
+constexpr uint32_t kMaxBatchRows = 2048; // half a million rays: beyond, a pass gains nothing more
+/// llvmpipe ends the loops of a pixel after 65,535 rounds together, without a word.
 constexpr uint32_t kMostRoundsInSoftware = 65000;
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
@@ -58,23 +58,41 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device) 
     return plan;
 }
 
+static uint32_t stack_depth(std::span<const Page> pages) {
+    uint32_t depth = 1;
+    for (const Page& page : pages)
+        depth = std::max(depth, page.depth);
+    return round_up(depth, 4); // few programs, no register more than needed
+}
+
 Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const DeviceInfo& device,
-               KernelCache& kernels, size_t leaves)
+               KernelCache& kernels, const Level1& level1, std::span<const Page> pages)
     : ledger_(std::move(ledger)),
       kernels_(kernels),
+      page_data_(pages),
       software_(device.is_software),
-      rays_(*ledger_, GL_RGBA32UI, sizeof(uvec4), kRowRays * OVC_RAY_TEXELS,
-            plan.batch_rays / kRowRays, "rays"),
-      answers_(*ledger_, GL_RGBA32UI, sizeof(LocalAnswer), kRowRays, plan.batch_rays / kRowRays,
+      stack_depth_(stack_depth(pages)),
+      ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
+      answers_(*ledger_, GL_RGBA32UI, sizeof(Answer), kRowRays, plan.batch_rays / kRowRays,
                "answers"),
       framebuffer_(answers_),
-      pool_(*ledger_, plan.pool_bytes, device.buffer_alignment, leaves) {}
+      level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
+      pool_(*ledger_, plan.pool_bytes, pages.size()) {
+    const std::vector<uvec4> table = pack_level1(level1);
+    glNamedBufferSubData(level1_buffer_.id(), 0, GLsizeiptr(table.size() * sizeof(uvec4)),
+                         table.data());
+    level1_.show(level1_buffer_, GL_RGBA32UI, 0, level1_buffer_.bytes());
+    rays_.show(ray_buffer_, GL_RGBA32UI, 0, ray_buffer_.bytes());
+    pages_.show(pool_.buffer(), GL_RGBA32UI, 0, pool_.buffer().bytes());
+}
 
 Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const DeviceInfo& device,
-                                               KernelCache& kernels, size_t leaves) {
+                                               KernelCache& kernels, const Level1& level1,
+                                               std::span<const Page> pages) {
     auto ledger = std::make_unique<Ledger>();
     ledger->budget = plan.budget_bytes;
-    std::unique_ptr<Tracer> tracer(new Tracer(std::move(ledger), plan, device, kernels, leaves));
+    std::unique_ptr<Tracer> tracer(
+        new Tracer(std::move(ledger), plan, device, kernels, level1, pages));
     if (Result<Done> ok = check_gl("allocating the page pool and the ray textures"); !ok)
         return ok.error();
     if (!tracer->framebuffer_.complete())
@@ -82,37 +100,64 @@ Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const Dev
     return tracer;
 }
 
-Result<PassResult> Tracer::pass(uint32_t leaf, const Page& page, const PassOptions& options,
-                                std::span<const LocalRay> rays, std::span<LocalAnswer> answers) {
+/// Tells the kernel where the leaf's page is now.
+void Tracer::say_where(uint32_t leaf) {
+    const uint32_t unit = resident(leaf)
+                              ? uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES)
+                              : OVC_NOT_RESIDENT;
+    glNamedBufferSubData(level1_buffer_.id(), GLintptr(page_texel_of(leaf) * sizeof(uvec4)),
+                         sizeof(unit), &unit);
+}
+
+Moved Tracer::bring(std::span<const uint32_t> wanted) {
+    Moved moved;
+    std::vector<uint32_t> evicted;
+    const uint64_t keep = pool_.residency().now();
+    for (const uint32_t leaf : wanted) {
+        const Page& page = page_data_[leaf];
+        if (!pool_.residency().admit(leaf, page.bytes(), keep, evicted))
+            break;
+        pool_.upload(leaf, page);
+        say_where(leaf);
+        moved.pages += 1;
+        moved.bytes += page.bytes();
+    }
+    for (const uint32_t leaf : evicted)
+        say_where(leaf);
+    return moved;
+}
+
+Result<double> Tracer::pass(const PassOptions& options, std::span<const Traveller> rays,
+                            std::span<Answer> answers) {
     assert(!rays.empty() && rays.size() == answers.size());
     const auto start = std::chrono::steady_clock::now();
     ShaderConfig config;
     config.compute = options.compute;
     config.any_hit = options.any_hit;
     config.certify = options.certify;
-    config.stack_depth = round_up(page.depth, 4); // few programs, no register more than needed
+    config.stack_depth = stack_depth_;
     config.stack_registers = software_;
     config.page_image = software_;
-    if (software_ && page.units() > kMostRoundsInSoftware)
+    if (software_)
         config.most_rounds = kMostRoundsInSoftware;
     const Result<GLuint> program = kernels_.program(config);
     if (!program)
         return program.error();
 
-    PassResult result;
-    const Slot slot = pool_.bring(leaf, page, result.bytes_in);
-    page_.show(pool_.buffer(), GL_RGBA32UI, slot.offset, page.bytes());
     const GLsizei rows = GLsizei(row_padded(rays.size()) / kRowRays);
-    glTextureSubImage2D(rays_.id(), 0, 0, 0, kRowRays * OVC_RAY_TEXELS, rows, GL_RGBA_INTEGER,
-                        GL_UNSIGNED_INT, rays.data());
+    glNamedBufferSubData(ray_buffer_.id(), 0,
+                         GLsizeiptr(row_padded(rays.size()) * sizeof(Traveller)), rays.data());
 
-    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, leaf, -1, "pass over a leaf");
+    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);
-    if (config.page_image)
-        glBindImageTexture(OVC_BINDING_PAGE, page_.id(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
-    else
-        glBindTextureUnit(OVC_BINDING_PAGE, page_.id());
-    glBindTextureUnit(OVC_BINDING_RAYS, rays_.id());
+    const std::pair<GLuint, GLuint> inputs[] = {{OVC_BINDING_PAGE, pages_.id()},
+                                                {OVC_BINDING_RAYS, rays_.id()},
+                                                {OVC_BINDING_LEVEL1, level1_.id()}};
+    for (const auto& [binding, texture] : inputs)
+        if (config.page_image)
+            glBindImageTexture(binding, texture, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
+        else
+            glBindTextureUnit(binding, texture);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     if (config.compute) {
         static_assert(kRowRays % OVC_GROUP_SIZE == 0);
@@ -131,9 +176,7 @@ Result<PassResult> Tracer::pass(uint32_t leaf, const Page& page, const PassOptio
     glPopDebugGroup();
     if (Result<Done> ok = check_gl("tracing a pass"); !ok)
         return ok.error();
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return result;
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 } // namespace ovc

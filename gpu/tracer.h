@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tracer: passes of the kernel over one leaf's rays, within a budget of GPU bytes.
+// Tracer: passes of the kernel over rays on their way through the resident leaves, within a budget
+// of GPU bytes.
 #pragma once
 
 #include "core/result.h"
@@ -7,6 +8,7 @@
 #include "gpu/kernel.h"
 #include "gpu/ledger.h"
 #include "gpu/pool.h"
+#include "shaders/layout.h"
 
 #include <array>
 #include <bit>
@@ -16,29 +18,32 @@
 
 namespace ovc {
 
-/// A ray in a leaf's frame, in the layout of shaders/layout.h. Begins at t = 0.
-struct LocalRay {
-    vec3 org;
-    float t_end; // negative: no ray
-    vec3 dir;    // largest component 1 or -1
-    uint32_t skip;
+/// A ray on its way through level 1, in the layout of shaders/layout.h. In the world's coordinates:
+/// finite, of a direction whose reciprocals are finite, as can_walk() of kdtree/restart.h asks.
+struct Traveller {
+    Ray ray;             // t_max < t_min: no ray
+    double t_from;       // the walk begins in the cell after this t; ray.t_min at first
+    uint32_t skip;       // number of a triangle it does not see, or OVC_NO_TRIANGLE
+    uint32_t first_leaf; // of that cell, where the ray has been in it; else OVC_NO_LEAF
 };
-static_assert(sizeof(LocalRay) == 32);
+static_assert(sizeof(Traveller) == 80);
 
-/// What the kernel answers, in the layout of shaders/layout.h. prim is the index of a triangle of
-/// the leaf, OVC_MISS or OVC_FLAGGED.
-struct LocalAnswer {
+/// What the kernel answers, in the layout of shaders/layout.h. prim: the number of a triangle, or
+/// OVC_MISS, OVC_WAITS, OVC_FLAGGED, OVC_CAPPED.
+struct Answer {
     std::array<uint32_t, 3> words;
     uint32_t prim;
 
+    uint32_t leaf() const { return words[2]; }
     /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
     std::span<const uint32_t, 2> rivals() const { return std::span(words).first<2>(); }
+    /// Fast precision: where the hit is. OVC_WAITS: the t of the cells done.
+    double t() const { return std::bit_cast<double>(uint64_t(words[1]) << 32 | words[0]); }
     /// Fast precision.
-    float t() const { return std::bit_cast<float>(words[0]); }
-    float u() const { return std::bit_cast<float>(words[1]); }
-    float v() const { return std::bit_cast<float>(words[2]); }
+    double u() const { return (words[2] & 0xffffu) / 65535.0; }
+    double v() const { return (words[2] >> 16) / 65535.0; }
 };
-static_assert(sizeof(LocalAnswer) == 16);
+static_assert(sizeof(Answer) == 16);
 
 /// What a pass is to find, and how.
 struct PassOptions {
@@ -47,60 +52,77 @@ struct PassOptions {
     bool compute = false; // which kernel: they answer alike
 };
 
-/// How a budget is shared out: pages get what rays and answers leave.
+/// How a budget is shared out: pages get what rays, answers and level 1 leave.
 struct MemoryPlan {
     uint64_t budget_bytes = 0;
     uint32_t batch_rays = 0; // most rays a pass
     uint64_t pool_bytes = 0;
 
     uint64_t ray_bytes() const {
-        return uint64_t(batch_rays) * (sizeof(LocalRay) + sizeof(LocalAnswer));
+        return uint64_t(batch_rays) * (sizeof(Traveller) + sizeof(Answer));
     }
 };
 
-/// The plan for a budget, clamped to the device. Error: a budget below what the smallest page and
-/// batch need, with the number.
+/// The plan for a budget, clamped to the device, level 1 not yet taken off. Error: a budget below
+/// what the smallest page and batch need, with the number.
 Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device);
 
-struct PassResult {
-    uint64_t bytes_in = 0; // 0: the page was resident
-    double seconds = 0;    // from the first command until the answers are here
+/// Pages moved to the GPU.
+struct Moved {
+    uint64_t pages = 0;
+    uint64_t bytes = 0;
 };
 
 /// All calls need the context current.
 class Tracer {
 public:
-    /// kernels outlives the tracer. leaves: how many there are to name pages by.
+    /// kernels outlives the tracer. level1 has leaves, pages[i] belongs to its leaf i; both outlive
+    /// the tracer. The plan's pool holds the largest page.
     static Result<std::unique_ptr<Tracer>> create(const MemoryPlan& plan, const DeviceInfo& device,
-                                                  KernelCache& kernels, size_t leaves);
+                                                  KernelCache& kernels, const Level1& level1,
+                                                  std::span<const Page> pages);
 
-    bool resident(uint32_t leaf) const { return pool_.resident(leaf); }
+    bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
 
-    /// Traces rays (at most plan.batch_rays) in the leaf's page, moving the page in if need be.
-    /// answers: as many as rays. The storage of `rays` is used up to the next multiple of kRowRays:
-    /// see row_padded().
-    Result<PassResult> pass(uint32_t leaf, const Page& page, const PassOptions& options,
-                            std::span<const LocalRay> rays, std::span<LocalAnswer> answers);
+    /// Moves in the pages of `wanted`, leaves that are not resident, in this order, as many as fit
+    /// without pushing each other out: the first at least.
+    Moved bring(std::span<const uint32_t> wanted);
+
+    /// Marks a leaf as used now: others are pushed out before it.
+    void touch(uint32_t leaf) { pool_.residency().touch(leaf); }
+
+    /// Walks the rays (at most plan.batch_rays) through the resident leaves; returns the seconds
+    /// from the first command until the answers are here. answers: as many as rays. The storage of
+    /// both is used up to the next multiple of kRowRays: see row_padded().
+    Result<double> pass(const PassOptions& options, std::span<const Traveller> rays,
+                        std::span<Answer> answers);
 
     const Ledger& ledger() const { return *ledger_; }
 
-    static constexpr uint32_t kRowRays = 1024; // rays a texture row
+    static constexpr uint32_t kRowRays = OVC_ROW_RAYS;
     /// The size that buffers for n rays or answers must have: whole rows.
     static size_t row_padded(size_t n) { return (n + kRowRays - 1) / kRowRays * kRowRays; }
 
 private:
     Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const DeviceInfo& device,
-           KernelCache& kernels, size_t leaves);
+           KernelCache& kernels, const Level1& level1, std::span<const Page> pages);
+
+    void say_where(uint32_t leaf);
 
     std::unique_ptr<Ledger> ledger_; // the objects below keep its address
     KernelCache& kernels_;
+    std::span<const Page> page_data_;
     bool software_;
-    gl::Texture2D rays_;
+    uint32_t stack_depth_;
+    gl::Buffer ray_buffer_;
+    gl::BufferTexture rays_;
     gl::Texture2D answers_;
     gl::Framebuffer framebuffer_;
     gl::VertexArray vertex_array_;
+    gl::Buffer level1_buffer_;
+    gl::BufferTexture level1_;
     Pool pool_;
-    gl::BufferTexture page_;
+    gl::BufferTexture pages_;
 };
 
 } // namespace ovc

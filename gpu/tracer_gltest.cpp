@@ -28,62 +28,57 @@ protected:
     void load(const Soup& soup) {
         Box bounds;
         const auto ids = hittable_triangles(soup, nullptr, &bounds);
+        gl->run([&](GlState&) { tracer.reset(); });
         level1 = partition(soup, ids, bounds, 1u << 30);
         ASSERT_EQ(level1.leaves.size(), 1u);
-        page = build_page(soup, level1.leaves[0]);
+        numbers = Numbering(soup);
+        pages = {build_page(soup, numbers, level1.leaves[0])};
         const Result<MemoryPlan> plan = plan_memory(64u << 20, gl->info());
         ASSERT_TRUE(plan);
+        MemoryPlan shared = *plan;
+        shared.pool_bytes -= 1u << 20; // for level 1
         gl->run([&](GlState& state) {
-            auto created = Tracer::create(*plan, gl->info(), state.kernels, 1);
+            auto created = Tracer::create(shared, gl->info(), state.kernels, level1, pages);
             ASSERT_TRUE(created) << created.error().message;
             tracer = std::move(*created);
+            EXPECT_EQ(tracer->bring(std::vector<uint32_t>{0}).bytes, pages[0].bytes());
         });
     }
 
-    std::vector<LocalAnswer> trace(std::vector<LocalRay> rays, const PassOptions& options) {
-        const size_t count = rays.size();
-        rays.resize(Tracer::row_padded(count),
-                    LocalRay{vec3(0), -1, vec3(0, 0, 1), OVC_NO_TRIANGLE});
-        std::vector<LocalAnswer> answers(rays.size());
+    std::vector<Answer> trace(std::span<const Ray> rays, const PassOptions& options) {
+        const size_t rows = Tracer::row_padded(rays.size());
+        std::vector<Traveller> travellers(rows, {kNoRay, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF});
+        for (size_t i = 0; i < rays.size(); ++i)
+            travellers[i] = {rays[i], rays[i].t_min, OVC_NO_TRIANGLE, OVC_NO_LEAF};
+        std::vector<Answer> answers(rows);
         gl->run([&](GlState&) {
-            const auto pass = tracer->pass(0, page, options, std::span(rays).first(count),
-                                           std::span(answers).first(count));
+            const auto pass = tracer->pass(options, std::span(travellers).first(rays.size()),
+                                           std::span(answers).first(rays.size()));
             ASSERT_TRUE(pass) << pass.error().message;
         });
-        answers.resize(count);
+        answers.resize(rays.size());
         return answers;
     }
 
+    static constexpr Ray kNoRay{dvec3(0), 0, dvec3(0, 0, 1), -1};
     std::unique_ptr<GlThread> gl;
     std::unique_ptr<Tracer> tracer;
     Level1 level1;
-    Page page;
+    Numbering numbers;
+    std::vector<Page> pages;
 };
 
 const Leaf& leaf_of(const Level1& level1) {
     return level1.leaves[0];
 }
 
-/// Rays in the leaf's frame, exact in float: the world's rays are computed from them, so that both
-/// are the same ray.
-LocalRay random_local(test::Random& random, const Leaf& leaf) {
-    const dvec3 half = leaf.box.extent() * 0.5 * leaf.frame.scale;
-    LocalRay ray;
-    ray.org = vec3(random.point(-1, 1) * half);
-    dvec3 dir = random.point(-1, 1);
-    dir /= std::abs(dir[major_axis(dir)]);
-    ray.dir = vec3(dir);
-    ray.t_end = 8;
-    ray.skip = OVC_NO_TRIANGLE;
-    return ray;
+/// From within the leaf's box into all directions.
+Ray random_ray(test::Random& random, const Leaf& leaf) {
+    const dvec3 half = leaf.box.extent() * 0.5;
+    return {leaf.box.center() + random.point(-1, 1) * half, 0, random.point(-1, 1)};
 }
 
-Ray to_world(const LocalRay& ray, const Leaf& leaf) {
-    return {leaf.frame.origin + dvec3(ray.org) / leaf.frame.scale, 0,
-            dvec3(ray.dir) / leaf.frame.scale, ray.t_end};
-}
-
-bool is_certain(const LocalAnswer& answer) {
+bool is_certain(const Answer& answer) {
     return answer.prim != OVC_FLAGGED && answer.rivals()[0] == OVC_NO_TRIANGLE;
 }
 
@@ -95,23 +90,23 @@ TEST_F(KernelGl, WhatItCallsCertainIsTrue) {
         load(soup);
         const Leaf& leaf = leaf_of(level1);
         test::Random random(4);
-        std::vector<LocalRay> rays;
+        std::vector<Ray> rays;
         for (int i = 0; i < 2000; ++i)
-            rays.push_back(random_local(random, leaf));
+            rays.push_back(random_ray(random, leaf));
         const auto nearest = trace(rays, {});
         const auto any = trace(rays, {.any_hit = true});
         for (size_t i = 0; i < rays.size(); ++i) {
-            const Hit expected = test::brute_force(soup, leaf.triangles, to_world(rays[i], leaf));
+            const Hit expected = test::brute_force(soup, leaf.triangles, rays[i]);
             if (is_certain(nearest[i])) {
                 const bool hit = nearest[i].prim != OVC_MISS;
                 // Beyond its box a leaf promises nothing.
-                const bool inside = !expected.is_hit() ||
-                                    leaf.cell.contains(to_world(rays[i], leaf).at(expected.t));
+                const bool inside =
+                    !expected.is_hit() || leaf.cell.contains(rays[i].at(expected.t));
                 if (!inside)
                     continue;
                 ASSERT_EQ(hit, expected.is_hit()) << "ray " << i;
                 if (hit) {
-                    ASSERT_EQ(leaf.triangles[nearest[i].prim], expected.id) << "ray " << i;
+                    ASSERT_EQ(numbers.id(nearest[i].prim), expected.id) << "ray " << i;
                 }
             }
             if (is_certain(any[i])) {
@@ -124,26 +119,20 @@ TEST_F(KernelGl, WhatItCallsCertainIsTrue) {
 TEST_F(KernelGl, FlagsRaysAtSharedEdgesAndVertices) {
     const Soup soup = test::closed_grid(16);
     load(soup);
-    const Leaf& leaf = leaf_of(level1);
-    std::vector<LocalRay> rays;
-    for (const TriangleId id : leaf.triangles) {
-        const dvec3 corner = leaf.frame.to_local(soup.triangle(id)[0]);
-        LocalRay ray{vec3(corner) - vec3(0, 0, 0.25f), 8, vec3(0, 0, 1), OVC_NO_TRIANGLE};
-        rays.push_back(ray);
-    }
-    for (const LocalAnswer& answer : trace(rays, {}))
+    std::vector<Ray> rays;
+    for (const TriangleId id : leaf_of(level1).triangles)
+        rays.push_back({soup.triangle(id)[0] - dvec3(0, 0, 0.25), 0, dvec3(0, 0, 1)});
+    for (const Answer& answer : trace(rays, {}))
         EXPECT_EQ(answer.prim, OVC_FLAGGED);
 }
 
 TEST_F(KernelGl, NamesBothTrianglesAtASharedEdge) {
     const Soup soup = test::closed_grid(16);
     load(soup);
-    const Leaf& leaf = leaf_of(level1);
-    std::vector<LocalRay> rays;
-    for (const TriangleId id : leaf.triangles) {
+    std::vector<Ray> rays;
+    for (const TriangleId id : leaf_of(level1).triangles) {
         const Triangle t = soup.triangle(id);
-        const dvec3 middle = leaf.frame.to_local(0.5 * (t[0] + t[1]));
-        rays.push_back({vec3(middle) - vec3(0, 0, 0.01f), 0.02f, vec3(0, 0, 1), OVC_NO_TRIANGLE});
+        rays.push_back({0.5 * (t[0] + t[1]) - dvec3(0, 0, 0.01), 0, dvec3(0, 0, 1), 0.02});
     }
     const auto answers = trace(rays, {});
     for (size_t i = 0; i < rays.size(); ++i) {
@@ -155,11 +144,28 @@ TEST_F(KernelGl, NamesBothTrianglesAtASharedEdge) {
     }
 }
 
-TEST_F(KernelGl, ANegativeEndIsNoRay) {
+TEST_F(KernelGl, AnEndBeforeTheBeginningIsNoRay) {
     load(test::closed_grid(8));
-    std::vector<LocalRay> rays(3000, LocalRay{vec3(0, 0, -1), -1, vec3(0, 0, 1), OVC_NO_TRIANGLE});
-    for (const LocalAnswer& answer : trace(rays, {}))
+    const std::vector<Ray> rays(3000, Ray{dvec3(0, 0, -4), 0, dvec3(0, 0, 1), -1});
+    for (const Answer& answer : trace(rays, {}))
         EXPECT_EQ(answer.prim, OVC_MISS);
+}
+
+TEST_F(KernelGl, ARayWaitsForALeafThatIsNotInThePool) {
+    const Soup soup = test::closed_grid(8);
+    load(soup);
+    const Ray ray{dvec3(1.01, 0.02, -4), 0, dvec3(0, 0, 1)};
+    EXPECT_LT(trace(std::span(&ray, 1), {})[0].prim, OVC_MAX_TRIANGLES);
+    gl->run([&](GlState& state) {
+        tracer.reset();
+        const Result<MemoryPlan> plan = plan_memory(64u << 20, gl->info());
+        MemoryPlan shared = *plan;
+        shared.pool_bytes -= 1u << 20;
+        tracer = std::move(*Tracer::create(shared, gl->info(), state.kernels, level1, pages));
+    });
+    const Answer answer = trace(std::span(&ray, 1), {})[0];
+    EXPECT_EQ(answer.leaf(), 0u);
+    EXPECT_EQ(answer.t(), 0.0);
 }
 
 } // namespace

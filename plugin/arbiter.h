@@ -4,6 +4,7 @@
 // core/triangle.h every triangle that could be hit.
 #pragma once
 
+#include "core/numbering.h"
 #include "core/triangle.h"
 #include "core/twins.h"
 #include "gpu/page.h"
@@ -18,7 +19,7 @@ namespace ovc {
 /// The nearest hit, or with kAnyHit some hit, of a valid ray. pages[i] belongs to level1.leaves[i];
 /// neither holds the twins that were taken out.
 template <bool kAnyHit>
-Hit arbitrate(const Soup& soup, const Twins& twins, const Level1& level1,
+Hit arbitrate(const Soup& soup, const Numbering& numbers, const Twins& twins, const Level1& level1,
               std::span<const Page> pages, const PreparedRay& p) {
     Nearest nearest(p);
     const auto limit = [&] { return nearest.limit(); };
@@ -27,8 +28,8 @@ Hit arbitrate(const Soup& soup, const Twins& twins, const Level1& level1,
         [&](const KdNode& cell, double, double) {
             for (uint32_t l = cell.first(); l < cell.first() + cell.count(); ++l) {
                 const Leaf& leaf = level1.leaves[l];
-                const auto test = [&](uint32_t i) {
-                    const TriangleId id = twins.seen(leaf.triangles[i], p.skip);
+                const auto test = [&](uint32_t number) {
+                    const TriangleId id = twins.seen(numbers.id(number), p.skip);
                     return nearest.offer(soup.triangle(id), id) && kAnyHit;
                 };
                 if (walk_page(pages[l], leaf, p, p.ray.t_min, test, limit))

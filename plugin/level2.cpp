@@ -27,14 +27,15 @@ struct TooLarge {
 };
 
 /// All pages, or the first page found too large: then the rest is not built.
-TooLarge build_pages(const Soup& soup, uint64_t page_bytes, Levels& levels) {
+TooLarge build_pages(const Soup& soup, const Numbering& numbers, uint64_t page_bytes,
+                     Levels& levels) {
     const std::vector<Leaf>& leaves = levels.level1.leaves;
     levels.pages.clear();
     levels.pages.resize(leaves.size());
     std::atomic<int64_t> too_large{-1};
     parallel_for(leaves.size(), 1, [&](size_t first, size_t last) {
         for (size_t i = first; i < last && too_large < 0; ++i) {
-            levels.pages[i] = build_page(soup, leaves[i]);
+            levels.pages[i] = build_page(soup, numbers, leaves[i]);
             if (levels.pages[i].bytes() > page_bytes)
                 too_large = int64_t(i);
         }
@@ -47,8 +48,9 @@ TooLarge build_pages(const Soup& soup, uint64_t page_bytes, Levels& levels) {
 
 } // namespace
 
-Result<Levels> build_levels(const Soup& soup, std::span<const TriangleId> triangles,
-                            const Box& bounds, uint64_t leaf_triangles, uint64_t page_bytes) {
+Result<Levels> build_levels(const Soup& soup, const Numbering& numbers,
+                            std::span<const TriangleId> triangles, const Box& bounds,
+                            uint64_t leaf_triangles, uint64_t page_bytes) {
     Levels levels;
     uint64_t most = std::min(leaf_triangles, uint64_t(double(page_bytes) / kBytesPerTriangle));
     while (true) {
@@ -60,7 +62,7 @@ Result<Levels> build_levels(const Soup& soup, std::span<const TriangleId> triang
             partition(soup, triangles, bounds, uint32_t(std::min<uint64_t>(most, kNone)));
         levels.seconds_level1 += seconds_since(start);
         start = std::chrono::steady_clock::now();
-        const TooLarge page = build_pages(soup, page_bytes, levels);
+        const TooLarge page = build_pages(soup, numbers, page_bytes, levels);
         levels.seconds_level2 += seconds_since(start);
         if (page.bytes == 0)
             return levels;

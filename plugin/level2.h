@@ -20,7 +20,8 @@ struct Levels {
 
 /// Leaves of at most leaf_triangles (> 0), and fewer where a page would otherwise exceed
 /// page_bytes. Error: a page of a single triangle does not fit.
-Result<Levels> build_levels(const Soup& soup, std::span<const TriangleId> triangles,
-                            const Box& bounds, uint64_t leaf_triangles, uint64_t page_bytes);
+Result<Levels> build_levels(const Soup& soup, const Numbering& numbers,
+                            std::span<const TriangleId> triangles, const Box& bounds,
+                            uint64_t leaf_triangles, uint64_t page_bytes);
 
 } // namespace ovc

@@ -3,11 +3,12 @@
 #include "plugin/two_level.h"
 
 #include "core/parallel.h"
+#include "gpu/level1_table.h"
+#include "kdtree/restart.h"
 #include "plugin/arbiter.h"
 #include "plugin/level2.h"
 #include "plugin/query.h"
-#include "plugin/queues.h"
-#include "plugin/rebase.h"
+#include "plugin/waiting.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <numeric>
 
 namespace ovc {
 namespace {
@@ -23,14 +25,11 @@ constexpr size_t kGrain = 256;         // rays a task
 constexpr size_t kWaveRays = 4u << 20; // rays in flight: bounds the host memory of a call
 constexpr uint64_t kPagesAtOnce =
     3; // a page takes at most this share of the pool, so that some stay resident
+constexpr size_t kFewRays = 4096;       // below, a pass is not worth its start while others wait
 constexpr uint64_t kDefaultLeaves = 10; // thesis, section 4
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-uint64_t align(uint64_t bytes, uint64_t alignment) {
-    return (bytes + alignment - 1) / alignment * alignment;
 }
 
 } // namespace
@@ -45,6 +44,9 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
         return plan.error();
     std::unique_ptr<TwoLevel> self(new TwoLevel(soup, gl, options, *plan));
 
+    if (soup.triangle_count() > OVC_MAX_TRIANGLES)
+        return Error{fmt::format("{} triangles are too many: a scene takes {}",
+                                 soup.triangle_count(), OVC_MAX_TRIANGLES)};
     const auto start = std::chrono::steady_clock::now();
     Box bounds;
     TwoLevelStatistics& statistics = self->statistics_;
@@ -66,38 +68,66 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
                               : std::max<uint64_t>((triangles.size() + parts - 1) / parts, 1);
     const uint64_t page_bytes = std::min<uint64_t>(plan->pool_bytes / kPagesAtOnce,
                                                    uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES);
-    Result<Levels> levels = build_levels(soup, triangles, bounds, most, page_bytes);
+    self->numbers_ = Numbering(soup);
+    Result<Levels> levels = build_levels(soup, self->numbers_, triangles, bounds, most, page_bytes);
     if (!levels)
         return levels.error();
     self->level1_ = std::move(levels->level1);
     self->pages_ = std::move(levels->pages);
     statistics.seconds_level1 += levels->seconds_level1;
     statistics.seconds_level2 += levels->seconds_level2;
-    uint64_t all_pages = gl.info().buffer_alignment; // a pool of nothing is no buffer
     for (const Page& page : self->pages_) {
-        all_pages += align(page.bytes(), gl.info().buffer_alignment);
         statistics.level2_bytes += page.bytes();
         statistics.largest_page_bytes = std::max(statistics.largest_page_bytes, page.bytes());
     }
-
-    self->plan_.pool_bytes = std::min(plan->pool_bytes, all_pages);
+    if (self->pages_.empty())
+        return self; // every ray misses, no GPU needed
+    if (const Result<Done> shared = self->share_out(); !shared)
+        return shared.error();
 
     Result<std::unique_ptr<Tracer>> tracer = Error{};
     gl.run([&](GlState& state) {
-        tracer = Tracer::create(self->plan_, gl.info(), state.kernels, self->pages_.size());
+        tracer = Tracer::create(self->plan_, gl.info(), state.kernels, self->level1_, self->pages_);
     });
     if (!tracer)
         return tracer.error();
     self->tracer_ = std::move(*tracer);
+    std::vector<uint32_t> all(self->pages_.size());
+    std::iota(all.begin(), all.end(), 0u);
+    self->bring(all); // as many as fit, so that rays need not come and wait first
     statistics.peak_bytes = self->tracer_->ledger().peak;
     return self;
 }
 
 TwoLevel::~TwoLevel() {
-    gl_.run([&](GlState&) { tracer_.reset(); });
+    if (tracer_)
+        gl_.run([&](GlState&) { tracer_.reset(); });
 }
 
-/// Some rays of a call on their way through the leaves, until none waits any more.
+/// Takes level 1 off the pool, and what no page needs.
+Result<Done> TwoLevel::share_out() {
+    const uint64_t table = level1_texels(level1_) * sizeof(uvec4);
+    const uint64_t needed = table + statistics_.largest_page_bytes;
+    if (plan_.pool_bytes < needed)
+        return Error{fmt::format(
+            "a GPU budget of {} bytes is too small for this scene: the smallest that works is {} "
+            "bytes ({} for level 1 with {} leaves, {} for the largest page, an eighth for rays)",
+            plan_.budget_bytes, (needed + plan_.ray_bytes()) / 7 * 8 + 8, table,
+            level1_.leaves.size(), statistics_.largest_page_bytes)};
+    plan_.pool_bytes = std::min(plan_.pool_bytes - table, statistics_.level2_bytes);
+    return Done{};
+}
+
+/// Moves the first pages of `wanted` in, as many as fit; returns how many.
+size_t TwoLevel::bring(std::span<const uint32_t> wanted) {
+    Moved moved;
+    gl_.run([&](GlState&) { moved = tracer_->bring(wanted); });
+    statistics_.pages_in += moved.pages;
+    statistics_.bytes_in += moved.bytes;
+    return moved.pages;
+}
+
+/// Some rays of a call on their way through the leaves, until none is under way any more.
 template <class Query>
 class TwoLevel::Wave {
 public:
@@ -106,22 +136,20 @@ public:
           query_(query),
           first_(first),
           positions_(count),
-          next_(count, kNone),
-          queues_(structure.level1_.leaves.size()),
-          rays_(Tracer::row_padded(std::min<size_t>(structure.plan_.batch_rays, count))),
-          answers_(rays_.size()),
-          decidable_(rays_.size()) {}
+          waiting_(structure.level1_.leaves.size()),
+          used_(structure.level1_.leaves.size()),
+          travellers_(Tracer::row_padded(std::min<size_t>(structure.plan_.batch_rays, count))),
+          answers_(travellers_.size()) {}
 
     Result<Done> run() {
         start();
-        for (uint32_t leaf; (leaf = queues_.choose(*s_.tracer_, s_.pages_)) != kNone;) {
-            const std::vector<uint32_t> queue = queues_.take(leaf);
-            const size_t most = s_.plan_.batch_rays;
-            for (size_t at = 0; at < queue.size(); at += most)
-                if (Result<Done> done =
-                        pass(leaf, std::span(queue).subspan(at, std::min(most, queue.size() - at)));
-                    !done)
-                    return done;
+        while (true) {
+            if (ready_.size() < kFewRays && waiting_.count() > 0)
+                bring();
+            if (ready_.empty())
+                break;
+            if (Result<Done> done = pass(); !done)
+                return done;
         }
         s_.statistics_.invalid_rays += invalid_;
         s_.statistics_.flagged += flagged_;
@@ -131,8 +159,16 @@ public:
     }
 
 private:
-    /// Finds the first leaf of each ray.
+    /// Where a ray stands; t_from and leaf as in Traveller. Nothing beyond t_end is of interest.
+    struct Position {
+        double t_from = 0;
+        double t_end = 0;
+        uint32_t leaf = OVC_NO_LEAF;
+        enum : uint32_t { Done, Ready, Waits } state = Done;
+    };
+
     void start() {
+        const Box scene = s_.level1_.bounds.padded(s_.level1_.padding); // empty: no triangles
         std::vector<uint32_t> all(positions_.size());
         parallel_for(all.size(), kGrain, [&](size_t from, size_t to) {
             for (size_t i = from; i < to; ++i) {
@@ -143,168 +179,176 @@ private:
                     continue;
                 }
                 const PreparedRay p = prepare(query_, first_ + i);
-                positions_[i] = {p.ray.t_min};
+                if (clip(p, scene, p.ray.t_min, p.ray.t_max).empty())
+                    continue;
                 if (can_walk(s_.level1_, p))
-                    next_[i] = next_leaf(s_.level1_, p, positions_[i]).leaf;
+                    positions_[i] = {p.ray.t_min, p.ray.t_max, OVC_NO_LEAF, Position::Ready};
                 else
                     decide_in_double(i, p);
             }
         });
-        enqueue(all);
+        send_on(all);
     }
 
-    /// Traces a batch of the leaf's queue and sends its rays on.
-    Result<Done> pass(uint32_t leaf, std::span<const uint32_t> batch) {
-        rebase_all(leaf, batch);
-        Result<PassResult> pass = Error{};
+    void send_on(std::span<const uint32_t> rays) {
+        for (const uint32_t i : rays) {
+            if (positions_[i].state == Position::Ready)
+                ready_.push_back(i);
+            else if (positions_[i].state == Position::Waits)
+                waiting_.push(positions_[i].leaf, i);
+        }
+    }
+
+    /// Moves pages in and calls up who waited for them.
+    void bring() {
+        const std::vector<uint32_t> wanted = waiting_.wanted(s_.pages_);
+        const size_t moved = s_.bring(wanted);
+        for (size_t i = 0; i < moved; ++i)
+            for (const uint32_t ray : waiting_.take(wanted[i]))
+                ready_.push_back(ray);
+    }
+
+    /// Walks a batch of the rays that are ready, takes in the answers, and sends the rays on.
+    Result<Done> pass() {
+        const size_t count = std::min<size_t>(ready_.size(), s_.plan_.batch_rays);
+        const std::vector<uint32_t> batch(ready_.begin(), ready_.begin() + ptrdiff_t(count));
+        ready_.erase(ready_.begin(), ready_.begin() + ptrdiff_t(count));
+        load(batch);
+        Result<double> seconds = Error{};
         s_.gl_.run([&](GlState&) {
-            pass = s_.tracer_->pass(
-                leaf, s_.pages_[leaf], {Query::kAnyHit, s_.options_.certify, s_.options_.compute},
-                std::span(rays_).first(batch.size()), std::span(answers_).first(batch.size()));
+            seconds = s_.tracer_->pass({Query::kAnyHit, s_.options_.certify, s_.options_.compute},
+                                       std::span(travellers_).first(count),
+                                       std::span(answers_).first(count));
         });
-        if (!pass)
-            return pass.error();
-        TwoLevelStatistics& statistics = s_.statistics_;
-        statistics.passes += 1;
-        statistics.pages_in += pass->bytes_in > 0;
-        statistics.bytes_in += pass->bytes_in;
-        statistics.ray_visits += batch.size();
-        statistics.seconds_kernel += pass->seconds;
-        settle_all(leaf, batch);
-        enqueue(batch);
+        if (!seconds)
+            return seconds.error();
+        s_.statistics_.passes += 1;
+        s_.statistics_.ray_visits += count;
+        s_.statistics_.seconds_kernel += *seconds;
+        parallel_for(count, kGrain, [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j)
+                settle(batch[j], answers_[j]);
+        });
+        for (uint32_t leaf = 0; leaf < used_.size(); ++leaf)
+            if (used_[leaf].exchange(0, std::memory_order_relaxed))
+                s_.tracer_->touch(leaf);
+        send_on(batch);
         return Done{};
     }
 
-    void rebase_all(uint32_t leaf, std::span<const uint32_t> batch) {
-        const size_t padded = Tracer::row_padded(batch.size());
+    void load(std::span<const uint32_t> batch) {
         parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j) {
-                PreparedRay p = prepare_rest(query_, first_ + batch[j]);
-                if (s_.twins_.stands_for_others(p.skip))
-                    p.skip = {}; // the others are to be found
-                bool decidable;
-                rays_[j] = rebase(s_.level1_.leaves[leaf], p, decidable);
-                decidable_[j] = decidable;
+                const size_t ray = first_ + batch[j];
+                const Position& at = positions_[batch[j]];
+                Ray rest = query_.rays[ray];
+                rest.t_max = at.t_end;
+                travellers_[j] = {rest, at.t_from, s_.number_to_skip(query_.skipped(ray)), at.leaf};
             }
         });
-        std::fill(rays_.begin() + ptrdiff_t(batch.size()), rays_.begin() + ptrdiff_t(padded),
-                  no_ray());
+        const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
+        std::fill(travellers_.begin() + ptrdiff_t(batch.size()),
+                  travellers_.begin() + ptrdiff_t(Tracer::row_padded(batch.size())), none);
     }
 
-    void settle_all(uint32_t leaf, std::span<const uint32_t> batch) {
-        parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
-            for (size_t j = from; j < to; ++j)
-                settle(leaf, batch[j], answers_[j], decidable_[j]);
-        });
+    /// Takes in the kernel's answer for ray i, and says in positions_[i] where the ray goes from
+    /// here.
+    void settle(uint32_t i, const Answer& answer) {
+        positions_[i].state = Position::Done;
+        if (answer.prim == OVC_WAITS) {
+            positions_[i] = {answer.t(), positions_[i].t_end, answer.leaf(), Position::Waits};
+            return;
+        }
+        const bool decided = answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
+        capped_ += answer.prim == OVC_CAPPED;
+        if (!decided || !(s_.options_.certify ? take_in(i, answer) : take_in_fast(i, answer)))
+            decide_in_double(i, prepare(query_, first_ + i));
     }
 
-    /// Takes in the kernel's answer for ray i, and says in next_[i] where the ray goes from here.
-    void settle(uint32_t leaf, uint32_t i, const LocalAnswer& answer, bool decidable) {
+    /// Enters what the kernel found. False where double does not find what the kernel was certain
+    /// of.
+    bool take_in(uint32_t i, const Answer& answer) {
         const size_t ray = first_ + i;
-        const PreparedRay p = prepare(query_, ray);
-        next_[i] = kNone;
-        capped_ += decidable && answer.prim == OVC_CAPPED;
-        const bool named = decidable && answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
-        switch (named ? take_in(s_.level1_.leaves[leaf], ray, p, answer) : Then::Retrace) {
-        case Then::Retrace:
-            return decide_in_double(i, p);
-        case Then::GoOn:
-            next_[i] = next_leaf(s_.level1_, prepare_rest(query_, ray), positions_[i]).leaf;
-            return;
-        case Then::FinishCell:
-            next_[i] = next_leaf_in_cell(s_.level1_, prepare_rest(query_, ray), positions_[i]).leaf;
-            return;
-        case Then::Stop:
-            return;
-        }
-    }
-
-    /// What becomes of a ray after a leaf. FinishCell: its best hit lies in the leaf's cell, where
-    /// nothing of later cells is nearer, nor as near. Retrace: double does not find what the kernel
-    /// was certain of.
-    enum class Then { GoOn, FinishCell, Stop, Retrace };
-
-    /// Enters what the kernel found in the leaf. A hit beyond the cell is entered too: a nearer one
-    /// in the next leaf will replace it.
-    Then take_in(const Leaf& leaf, size_t ray, const PreparedRay& p, const LocalAnswer& answer) {
-        if (!s_.options_.certify)
-            return take_in_fast(leaf, ray, p, answer);
         const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
+        if (answer.prim == OVC_MISS && !has_rivals)
+            return true;
         flagged_ += has_rivals;
-        if (Query::kAnyHit && !has_rivals && answer.prim != OVC_MISS) {
-            query_.set(ray, Hit{0, 0, 0, leaf.triangles[answer.prim]}); // a certain hit decides
-            return Then::Stop;
+        const uint32_t leaf = answer.leaf();
+        if (used_[leaf].load(std::memory_order_relaxed) == 0)
+            used_[leaf].store(1, std::memory_order_relaxed);
+        if (Query::kAnyHit && !has_rivals) {
+            query_.set(ray, Hit{0, 0, 0, s_.numbers_.id(answer.prim)}); // a certain hit decides
+            return true;
         }
+        const PreparedRay p = prepare(query_, ray);
         Nearest nearest(p);
         if (query_.was_hit(ray))
-            offer(nearest, query_.hit(ray).id, p.skip);
-        if (answer.prim != OVC_MISS && !offer(nearest, leaf.triangles[answer.prim], p.skip))
-            return Then::Retrace;
+            offer(nearest, s_.numbers_.of(query_.hit(ray).id), p.skip);
+        if (answer.prim != OVC_MISS && !offer(nearest, answer.prim, p.skip))
+            return false;
         for (const uint32_t rival : answer.rivals())
             if (rival != OVC_NO_TRIANGLE)
-                offer(nearest, leaf.triangles[rival], p.skip);
+                offer(nearest, rival, p.skip);
         if (nearest.hit().is_hit())
             query_.set(ray, nearest.hit());
-        // limit(): no tie of this hit lies beyond, however t is rounded.
-        return after(leaf, ray, p, nearest.limit());
+        if (!Query::kAnyHit || !nearest.hit().is_hit())
+            go_on_behind(i, leaf, p, nearest.limit());
+        return true;
     }
 
-    Then take_in_fast(const Leaf& leaf, size_t ray, const PreparedRay& p,
-                      const LocalAnswer& answer) {
-        if (answer.prim != OVC_MISS) {
-            const double t = world_t(leaf, prepare_rest(query_, ray), answer.t());
-            const Hit hit = s_.twins_.seen(
-                s_.soup_, {t, answer.u(), answer.v(), leaf.triangles[answer.prim]}, p.skip);
-            if (!query_.was_hit(ray) || hit.nearer_than(query_.hit(ray)))
-                query_.set(ray, hit);
-        }
-        return after(leaf, ray, p, query_.t_max(ray));
+    /// Sends the ray on unless its best hit, which is not beyond `end` however t is rounded, lies
+    /// in the leaf's cell: then nothing of later cells is nearer, nor as near.
+    void go_on_behind(uint32_t i, uint32_t leaf, const PreparedRay& p, double end) {
+        const Box& cell = s_.level1_.leaves[leaf].cell;
+        const Box safe = cell.padded(-p.margin(cell)); // no rounding leads out of the cell
+        const double exit = clip(p, cell, p.ray.t_min, p.ray.t_max).exit;
+        if (end > clip(p, safe, p.ray.t_min, p.ray.t_max).exit && exit < end)
+            positions_[i] = {exit, end, leaf + 1, Position::Ready};
     }
 
-    /// Where a ray goes whose best hit so far, if there is one, lies at t or before.
-    Then after(const Leaf& leaf, size_t ray, const PreparedRay& p, double t) const {
-        if (!query_.was_hit(ray))
-            return Then::GoOn;
-        if (Query::kAnyHit)
-            return Then::Stop;
-        const Box safe =
-            leaf.cell.padded(-p.margin(leaf.cell)); // no rounding leads out of the cell
-        return t <= clip(p, safe, p.ray.t_min, p.ray.t_max).exit ? Then::FinishCell : Then::GoOn;
+    bool take_in_fast(uint32_t i, const Answer& answer) {
+        const size_t ray = first_ + i;
+        if (answer.prim != OVC_MISS)
+            query_.set(ray, s_.twins_.seen(
+                                s_.soup_,
+                                {answer.t(), answer.u(), answer.v(), s_.numbers_.id(answer.prim)},
+                                query_.skipped(ray)));
+        return true;
     }
 
-    /// Offers what stands in the leaf as `id`.
-    bool offer(Nearest& nearest, TriangleId id, TriangleId skip) const {
-        const TriangleId seen = s_.twins_.seen(id, skip);
+    /// Offers what stands in the page as `number`.
+    bool offer(Nearest& nearest, uint32_t number, TriangleId skip) const {
+        const TriangleId seen = s_.twins_.seen(s_.numbers_.id(number), skip);
         return nearest.offer(s_.soup_.triangle(seen), seen);
     }
 
     void decide_in_double(size_t i, const PreparedRay& p) {
-        query_.set(first_ + i,
-                   arbitrate<Query::kAnyHit>(s_.soup_, s_.twins_, s_.level1_, s_.pages_, p));
+        query_.set(first_ + i, arbitrate<Query::kAnyHit>(s_.soup_, s_.numbers_, s_.twins_,
+                                                         s_.level1_, s_.pages_, p));
         ++flagged_;
         ++retraced_;
     }
 
-    void enqueue(std::span<const uint32_t> rays) {
-        for (const uint32_t i : rays)
-            if (next_[i] != kNone)
-                queues_.push(next_[i], i);
-    }
-
     TwoLevel& s_;
     const Query& query_;
-    const size_t first_;                 // of the call's rays; indices below count from it
-    std::vector<RayPosition> positions_; // per ray
-    std::vector<uint32_t> next_;         // per ray: the leaf it goes to
-    Queues queues_;
-    std::vector<LocalRay> rays_; // per ray of a batch, as are the next two
-    std::vector<LocalAnswer> answers_;
-    std::vector<uint8_t> decidable_;
+    const size_t first_;              // of the call's rays; indices below count from it
+    std::vector<Position> positions_; // per ray
+    std::vector<uint32_t> ready_;     // rays for the next passes
+    Waiting waiting_;
+    std::vector<std::atomic<uint8_t>> used_; // per leaf: a ray of the last pass ended there
+    std::vector<Traveller> travellers_;      // per ray of a batch, as are the answers
+    std::vector<Answer> answers_;
     std::atomic<uint64_t> invalid_{0};
     std::atomic<uint64_t> flagged_{0};
     std::atomic<uint64_t> retraced_{0};
     std::atomic<uint64_t> capped_{0};
 };
+
+/// The number of a triangle that a ray shall not see; OVC_NO_TRIANGLE where it stands for others,
+/// which are to be found.
+uint32_t TwoLevel::number_to_skip(TriangleId id) const {
+    return id.mesh == kNone || twins_.stands_for_others(id) ? OVC_NO_TRIANGLE : numbers_.of(id);
+}
 
 template <class Query>
 Result<Done> TwoLevel::trace(const Query& query) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two-level: level 1 on the CPU, a page per leaf, rays that wait in a queue per leaf, passes over
-// the fullest. Based on: thesis, sections 3.3 and 3.4 (algorithms 2, 3 and 4).
+// Two-level: level 1, a page per leaf, passes in which rays walk from leaf to leaf as far as pages
+// are in the pool, and wait for the others. Based on: thesis, sections 3.3 and 3.4 (algorithms 2, 3
+// and 4), with level 1 walked in the kernel.
 #pragma once
 
 #include "core/log.h"
+#include "core/numbering.h"
 #include "core/twins.h"
 #include "gpu/gl_thread.h"
 #include "gpu/page.h"
@@ -73,6 +75,10 @@ private:
     TwoLevel(const Soup& soup, GlThread& gl, const TwoLevelOptions& options, const MemoryPlan& plan)
         : soup_(soup), gl_(gl), options_(options), plan_(plan) {}
 
+    Result<Done> share_out();
+    size_t bring(std::span<const uint32_t> wanted);
+    uint32_t number_to_skip(TriangleId id) const;
+
     template <class Query>
     class Wave;
     template <class Query>
@@ -82,6 +88,7 @@ private:
     GlThread& gl_;
     TwoLevelOptions options_;
     MemoryPlan plan_;
+    Numbering numbers_;
     Twins twins_;
     Level1 level1_; // without them
     std::vector<Page> pages_;

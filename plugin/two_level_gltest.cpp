@@ -46,7 +46,7 @@ std::vector<Variant> variants() {
             {"one leaf", {.leaf_triangles = 1u << 30}},
             {"leaves of 40", {.leaf_triangles = 40}},
             {"compute", {.leaf_triangles = 500, .compute = true}},
-            {"smallest budget", {.budget_bytes = 64u << 10, .leaf_triangles = 100}}};
+            {"smallest budget", {.budget_bytes = 96u << 10, .leaf_triangles = 100}}};
 }
 
 TEST_F(TwoLevelGl, EqualsBruteForceBitForBit) {
@@ -384,8 +384,8 @@ TEST_F(TwoLevelGl, NamesTheSmallestBudgetThatWorks) {
     const auto refused = TwoLevel::build(soup, *gl, {.budget_bytes = 1024}, {});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message,
-              "a GPU budget of 1024 bytes is too small: the smallest that works is 65536 bytes "
-              "(49152 for rays and answers, 16384 for a page)");
+              "a GPU budget of 1024 bytes is too small: the smallest that works is 40960 bytes "
+              "(24576 for rays and answers, 16384 for a page)");
     EXPECT_TRUE(TwoLevel::build(soup, *gl, {.budget_bytes = 65536}, {}));
 }
 

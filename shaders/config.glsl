@@ -18,5 +18,5 @@
 #define OVC_PAGE_IMAGE 1 // 1: imageLoad (inlined on llvmpipe, 5 % faster); 0: texelFetch
 #endif
 #ifndef OVC_MOST_ROUNDS
-#define OVC_MOST_ROUNDS 0 // > 0: the loop ends itself after so many rounds and says so, before the driver ends it silently
+#define OVC_MOST_ROUNDS 0x7fffffff // a ray's loops end after so many rounds and say so, before a driver ends them silently
 #endif

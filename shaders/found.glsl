@@ -75,13 +75,12 @@ vec2 barycentric(Found found) {
     return vec2(u, v);
 }
 
-uvec4 answer_of(Found found, bool any_hit) {
-    if (OVC_CERTIFY == 0)
-        return uvec4(floatBitsToUint(vec3(found.best_lo, barycentric(found))), found.prim);
-    if (any_hit && found.prim != OVC_MISS)
-        return uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, 0u, found.prim);
+// The words of an answer from `leaf`.
+uvec4 answer_of(Found found, bool any_hit, uint leaf) {
+    if (OVC_CERTIFY == 0 || (any_hit && found.prim != OVC_MISS))
+        return uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, leaf, found.prim);
     // A rival counts unless it certainly lies beyond the best; with more than two, none can be named.
     uint first = found.rival_lo[0] <= found.best_hi ? found.rival[0] : OVC_NO_TRIANGLE;
     uint second = found.rival_lo[1] <= found.best_hi ? found.rival[1] : OVC_NO_TRIANGLE;
-    return uvec4(first, second, 0u, found.others_lo <= found.best_hi ? OVC_FLAGGED : found.prim);
+    return uvec4(first, second, leaf, found.others_lo <= found.best_hi ? OVC_FLAGGED : found.prim);
 }

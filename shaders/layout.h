@@ -8,13 +8,13 @@
 //
 // header  texel 0: grid origin xyz (float bits), 0
 //         texel 1: grid cell xyz (float bits), 0
-//         texel 2: the traversal's first state: the root's unit, the empty stack (-1), stack height 0, rounds 0
+//         texel 2: the traversal's first state: the root's unit, the empty stack (-1), stack height 0, 0
 //         texel 3: 0
 // node    texels 0..2: per axis, the 16-bit grid coordinates of four children's boxes: lo0|lo1<<16, lo2|lo3<<16,
 //                      hi0|hi1<<16, hi2|hi3<<16. A missing child has lo = 0xffff > hi = 0.
 //         texel 3: unit of the first child (children are contiguous), 0, 0, 0
 // pair    texels 0..3: corners v0 v1 v2 v3 (float bits) of the triangles A = (v0, v1, v2) and B = (v0, v3, v2);
-//         w of texel 0: id of A; w of texel 1: id of B or OVC_NO_TRIANGLE; w of texel 3: OVC_PAIR;
+//         w of texel 0: number of A; w of texel 1: that of B or OVC_NO_TRIANGLE; w of texel 3: OVC_PAIR;
 //         w of texel 2: which corner of the triangle itself the pair's v0 and v2 are, two bits each, A's then B's
 #define OVC_UNIT_TEXELS 4
 #define OVC_UNIT_BYTES 64
@@ -23,21 +23,45 @@
 #define OVC_NO_TRIANGLE 0xffffffffu
 #define OVC_MAX_UNITS 0x800000 // a stack word has 23 bits for a unit and must not be negative
 
-// A ray is two RGBA32UI texels side by side: origin xyz, end t (float bits; negative: no ray here); direction xyz,
-// scaled so that its largest component is 1 or -1 (float bits), id of the triangle it does not see or OVC_NO_TRIANGLE.
-// It begins at t = 0. Coordinates are those of the leaf's frame, the origin within [-1, 1].
-#define OVC_RAY_TEXELS 2
+// Level 1 is an array of RGBA32UI texels: a header, the leaves, the KD-tree's nodes. A double is two words, low one first.
+//
+// header  texel of the root, 0, 0, 0
+// leaf    texels 0..2: the leaf's box (doubles); texels 3 and 4: the frame's origin xyz, its scale (doubles)
+//         texel 5: the unit of the pool where the page begins, or OVC_NOT_RESIDENT; 0, 0, 0
+// node    split (double), axis, texel of the node above the split (the one below is next); or
+//         0, 0, 3 | number of leaves << 2, first leaf
+#define OVC_LEVEL1_START 0
+#define OVC_LEVEL1_LEAVES 1
+#define OVC_LEAF_TEXELS 6
+#define OVC_LEAF_PAGE_TEXEL 5
+#define OVC_NOT_RESIDENT 0xffffffffu
 
-// An answer is RGBA32UI. w: the id of the certain nearest hit, OVC_MISS where there is none, OVC_FLAGGED where the kernel
-// cannot tell, OVC_CAPPED where its loop was ended before it was done. x, y: up to two rivals, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is
-// none; what is named neither in w nor here is certainly not the answer. In fast precision x, y, z are t, u, v (float bits).
+// A ray is five RGBA32UI texels: the record of core/ray.h, org, t_min, dir, t_max (doubles; t_max < t_min: no
+// ray here); then the t of the cells it is done with (double), the number of the triangle it does not see or
+// OVC_NO_TRIANGLE, and, where the cell just after that t is one it has been in, the leaf of it to go on with, one past the
+// last where it is done with all; else any leaf of other cells, or OVC_NO_LEAF.
+#define OVC_RAY_TEXELS 5
+#define OVC_NO_LEAF 0xffffffffu
+#define OVC_ROW_RAYS 256 // answers are a texture, so many in a row
+
+// An answer is RGBA32UI; triangles are named by their numbers in the soup. w: the certain nearest hit in leaf z; or
+//   OVC_MISS      none in any leaf on the way
+//   OVC_WAITS     the walk stopped before leaf z, which is not in the pool; x, y: the t of the cells done (double)
+//   OVC_FLAGGED   the kernel cannot tell
+//   OVC_CAPPED    a loop was ended before it was done
+// x, y: up to two rivals, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is none; what is
+// named neither in w nor here is certainly not the answer in leaf z.
+// In fast precision x, y: t of the hit (double); z: u and v in 16 bits each.
 #define OVC_MISS 0xffffffffu
 #define OVC_FLAGGED 0xfffffffeu
 #define OVC_CAPPED 0xfffffffdu
+#define OVC_WAITS 0xfffffffcu
+#define OVC_MAX_TRIANGLES 0xfffffff0u
 
 #define OVC_BINDING_PAGE 0
 #define OVC_BINDING_RAYS 1
 #define OVC_BINDING_ANSWERS 2
+#define OVC_BINDING_LEVEL1 3
 
 // Invocations of a work group of the compute kernel; a row of rays is a multiple.
 #define OVC_GROUP_SIZE 64
@@ -47,5 +71,10 @@
 #define OVC_BOUND_UNIT 5.9604644775390625e-8
 #define OVC_BOUND_CONSTANT 6.0
 #define OVC_BOUND_RELATIVE 11.0
+
+// Farther than this from a leaf, in leaf sizes, a ray's place of entry is off by more than 1/64 of a float rounding.
+#define OVC_MOST_LEAF_SIZES 2097152.0
+// Fast precision: of a leaf, by how much a hit may lie beyond the cell; 16 roundings.
+#define OVC_FAST_SLACK 9.5367431640625e-7
 
 #endif

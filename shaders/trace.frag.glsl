@@ -8,13 +8,12 @@
 #include "triangle.glsl"
 #include "found.glsl"
 #include "traverse.glsl"
+#include "level1.glsl"
+#include "walk.glsl"
+#include "ray.glsl"
 
-layout(binding = OVC_BINDING_RAYS) uniform usampler2D rays;
 layout(location = 0) out uvec4 answer;
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    uvec4 org = texelFetch(rays, ivec2(pixel.x * OVC_RAY_TEXELS, pixel.y), 0);
-    uvec4 dir = texelFetch(rays, ivec2(pixel.x * OVC_RAY_TEXELS + 1, pixel.y), 0);
-    answer = trace(uintBitsToFloat(org.xyz), uintBitsToFloat(org.w), uintBitsToFloat(dir.xyz), dir.w);
+    answer = walk(traveller_at(ivec2(gl_FragCoord.xy)));
 }

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbering: the triangles of a soup by one word each.
+#pragma once
+
+#include "core/soup.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <vector>
+
+namespace ovc {
+
+/// Triangles counted from 0 in the order of their ids. The soup's count must fit 32 bits.
+class Numbering {
+public:
+    Numbering() = default;
+    explicit Numbering(const Soup& soup) {
+        first_.reserve(soup.chunks.size());
+        uint32_t count = 0;
+        for (const Chunk& chunk : soup.chunks) {
+            first_.push_back(count);
+            count += chunk.size();
+        }
+    }
+
+    uint32_t of(TriangleId id) const { return first_[id.mesh] + id.prim; }
+
+    TriangleId id(uint32_t number) const {
+        assert(!first_.empty());
+        // The last chunk that begins at or before the number: empty ones before it share its first.
+        const auto after = std::upper_bound(first_.begin(), first_.end(), number);
+        const uint32_t mesh = uint32_t(after - first_.begin()) - 1;
+        return {mesh, number - first_[mesh]};
+    }
+
+private:
+    std::vector<uint32_t> first_; // per chunk
+};
+
+} // namespace ovc

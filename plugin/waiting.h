@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rays that wait for leaves outside the pool, and which leaves are worth moving in.
+#pragma once
+
+#include "gpu/page.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace ovc {
+
+class Waiting {
+public:
+    explicit Waiting(size_t leaves) : queues_(leaves) {}
+
+    void push(uint32_t leaf, uint32_t ray) {
+        queues_[leaf].push_back(ray);
+        ++count_;
+    }
+    std::vector<uint32_t> take(uint32_t leaf) {
+        count_ -= queues_[leaf].size();
+        return std::exchange(queues_[leaf], {});
+    }
+    size_t count() const { return count_; }
+
+    /// The leaves somebody waits for, most rays per byte to move first, but none that is worth less
+    /// than an eighth of the first: its queue may grow until it is.
+    std::vector<uint32_t> wanted(std::span<const Page> pages) const {
+        constexpr double kLeastShare = 1.0 / 8;
+        std::vector<std::pair<double, uint32_t>> leaves;
+        for (uint32_t leaf = 0; leaf < queues_.size(); ++leaf)
+            if (!queues_[leaf].empty())
+                leaves.emplace_back(-double(queues_[leaf].size()) / double(pages[leaf].bytes()),
+                                    leaf);
+        std::sort(leaves.begin(), leaves.end());
+        std::vector<uint32_t> wanted;
+        for (const auto& [minus_worth, leaf] : leaves)
+            if (minus_worth <= leaves.front().first * kLeastShare)
+                wanted.push_back(leaf);
+        return wanted;
+    }
+
+private:
+    std::vector<std::vector<uint32_t>> queues_; // per leaf
+    size_t count_ = 0;
+};
+
+} // namespace ovc
