@@ -25,7 +25,7 @@ constexpr size_t kGrain = 256;         // rays a task
 constexpr size_t kWaveRays = 4u << 20; // rays in flight: bounds the host memory of a call
 constexpr uint64_t kPagesAtOnce =
     3; // a page takes at most this share of the pool, so that some stay resident
-constexpr size_t kFewRays = 4096;       // below, a pass is not worth its start while others wait
+constexpr size_t kFewRays = 4096;       // fewer are not worth a pass while others wait
 constexpr uint64_t kDefaultLeaves = 10; // thesis, section 4
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -143,8 +143,11 @@ public:
 
     Result<Done> run() {
         start();
+        // What is ready goes with the next pass, whose greater part then comes from the pages moved
+        // in: so every pass gets somewhere, though those pages may push out what was ready for.
+        const size_t few = std::min<size_t>(kFewRays, s_.plan_.batch_rays / 4);
         while (true) {
-            if (ready_.size() < kFewRays && waiting_.count() > 0)
+            if (ready_.size() < few && waiting_.count() > 0)
                 bring();
             if (ready_.empty())
                 break;
