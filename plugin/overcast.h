@@ -98,6 +98,17 @@ typedef enum ovc_kernel {
     OVC_KERNEL_COMPUTE = 2
 } ovc_kernel;
 
+/* Experimental: the numbers stay, what is behind those but 0 may change. libovercast.so has two-level alone. libovercast-thesis.so,
+ * of the same ABI, has the others, which two-level is compared with: each keeps the whole scene in GPU memory at once. */
+typedef enum ovc_structure {
+    OVC_STRUCTURE_TWO_LEVEL = 0,
+    OVC_STRUCTURE_SINGLE_TEXTURE = 1, /* one BVH in one texture of at most 4096 x 4096 texels */
+    OVC_STRUCTURE_MULTI_TEXTURE = 2,  /* the same in several textures; `leaves`: in so many at least */
+    OVC_STRUCTURE_GPU_GRID = 3,       /* a uniform grid */
+    OVC_STRUCTURE_GPU_KD_TREE = 4,    /* a KD-tree, walked by restarts */
+    OVC_STRUCTURE_SKIP_BVH = 5        /* a BVH by insertion, walked without a stack in bounded passes */
+} ovc_structure;
+
 typedef struct ovc_scene_config {
     size_t struct_size;
     uint64_t gpu_memory_bytes; /* the budget: pages, rays and hits together stay below it. 0: the device's default */
@@ -105,7 +116,7 @@ typedef struct ovc_scene_config {
     uint32_t leaves;           /* instead of leaf_triangles: about this many leaves. 0: as leaf_triangles says */
     uint32_t precision;        /* ovc_precision */
     uint32_t kernel;           /* ovc_kernel */
-    uint32_t reserved;         /* 0 */
+    uint32_t structure;        /* ovc_structure */
 } ovc_scene_config;
 
 typedef enum ovc_mesh_flags {
