@@ -38,6 +38,9 @@
 #define OVC_BINDING_PAGE 0
 #define OVC_BINDING_RAYS 1
 #define OVC_BINDING_ANSWERS 2
+// The systems of the thesis: where a ray stands between passes (3 textures), and the scene (from here on).
+#define OVC_BINDING_STATE 3
+#define OVC_BINDING_SCENE 6
 
 // Invocations of a work group of the compute kernel; a row of rays is a multiple.
 #define OVC_GROUP_SIZE 64
