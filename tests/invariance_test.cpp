@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One hash for all: the hits of a scene are the same bits whatever the leaf size, the budget, the
-// batch size, the order of the rays, the kernel and the vector width of the software renderer.
+// One hash for all: the hits of a scene are the same bits whatever the system, the leaf size, the
+// budget, the batch size, the order of the rays, the kernel and the vector width of the software
+// renderer.
 #include "core/parallel.h"
 #include "host/backend.h"
 #include "importers/importer.h"
@@ -112,6 +113,26 @@ public:
         }
     }
 
+    /// The systems of the thesis, some in the least memory they take.
+    void other_systems() const {
+        for (const auto& [kind, textures] : {std::pair(BackendKind::SingleTexture, 0u),
+                                             {BackendKind::MultiTexture, 2u},
+                                             {BackendKind::MultiTexture, 4u},
+                                             {BackendKind::GpuGrid, 0u},
+                                             {BackendKind::GpuKdTree, 0u},
+                                             {BackendKind::SkipBvh, 0u}}) {
+            BackendOptions options;
+            options.kind = kind;
+            options.leaves = textures;
+            const std::string what = "structure " + std::to_string(structure_of(kind)) + ", " +
+                                     std::to_string(textures) + " textures";
+            const auto whole = backend(options);
+            expect_same(*whole, what);
+            options.gpu_memory.bytes = whole->statistics().bytes_in + (uint64_t(1) << 18);
+            expect_same(*backend(options), what + ", little memory");
+        }
+    }
+
     void batch_sizes() const {
         const auto whole = backend({});
         for (const size_t batch : {size_t(1), size_t(7), size_t(1000), size_t(1000000)}) {
@@ -190,6 +211,9 @@ Soup dragon(const std::filesystem::path& data) {
 TEST(Invariance, SoupOverLeavesBudgetsAndKernels) {
     Invariance(soup_scene(), 4'000).leaves_budgets_and_kernels();
 }
+TEST(Invariance, SoupOverOtherSystems) {
+    Invariance(soup_scene(), 10'000).other_systems();
+}
 TEST(Invariance, SoupOverBatchSizes) {
     Invariance(soup_scene(), 200'000).batch_sizes();
 }
@@ -203,6 +227,7 @@ TEST(Invariance, Dragon) {
         GTEST_SKIP() << kNoRealData;
     const Invariance scene(dragon(*data), 100'000);
     scene.leaves_budgets_and_kernels();
+    scene.other_systems();
     scene.batch_sizes();
     scene.ray_orders();
 }
@@ -213,6 +238,7 @@ TEST(Invariance, Kitchen) {
         GTEST_SKIP() << kNoRealData;
     const Invariance scene(kitchen(*data), 100'000);
     scene.leaves_budgets_and_kernels();
+    scene.other_systems();
     scene.batch_sizes();
     scene.ray_orders();
 }
@@ -231,8 +257,8 @@ TEST(Invariance, SoupOverVectorWidths) {
           "LP_NATIVE_VECTOR_WIDTH=512 KERNEL=compute"}) {
         const test::CommandResult run = test::run_shell(
             std::string("export MESA_SHADER_CACHE_DISABLE=true ") + setting +
-            "; " OVC_BINARY_DIR "/bin/overcast trace --binary --kernel $KERNEL soup-10 < " +
-            base + " > " + base + ".hits");
+            "; " OVC_BINARY_DIR "/bin/overcast trace --binary --kernel $KERNEL soup-10 < " + base +
+            " > " + base + ".hits");
         EXPECT_EQ(run.exit_code, 0) << setting << ": " << run.output;
         std::vector<Hit> hits(scene.rays().size());
         std::ifstream in(base + ".hits", std::ios::binary);

@@ -3,8 +3,7 @@
 #include "plugin/thesis/comparison.h"
 
 #include "core/parallel.h"
-#include "kdtree/build.h"
-#include "kdtree/traverse.h"
+#include "gpu/page_walk.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>
@@ -36,7 +35,7 @@ Result<std::unique_ptr<Structure>> Comparison::build(const Soup& soup, GlThread&
     std::unique_ptr<Comparison> self(new Comparison(soup, gl, options));
     Dropped dropped;
     Box bounds;
-    const std::vector<TriangleId> triangles = hittable_triangles(soup, &dropped, &bounds);
+    std::vector<TriangleId> triangles = hittable_triangles(soup, &dropped, &bounds);
     if (dropped.total())
         say(log, LogLevel::Warning,
             fmt::format("left out {} triangles with a NaN or infinite corner, {} without area",
@@ -46,6 +45,8 @@ Result<std::unique_ptr<Structure>> Comparison::build(const Soup& soup, GlThread&
     statistics.dropped_not_finite = dropped.not_finite;
     statistics.dropped_degenerate = dropped.degenerate;
     statistics.gpu_budget_bytes = options.budget_bytes;
+    self->twins_ = Twins::take_out(soup, triangles);
+    statistics.twins = self->twins_.count();
     if (!triangles.empty())
         if (const Result<Done> built = self->build_system(triangles, bounds); !built)
             return built.error();
@@ -88,11 +89,6 @@ Comparison::~Comparison() {
     gl_.run([&](GlState&) { runner_.reset(); });
 }
 
-const KdTree& Comparison::reference() {
-    std::call_once(reference_built_, [&] { reference_ = build_kd_tree(soup_); });
-    return reference_;
-}
-
 /// Rays [first, first + count) of a call.
 template <class Query>
 class Comparison::Batch {
@@ -104,7 +100,8 @@ public:
           count_(count),
           rays_(Runner::row_padded(count)),
           answers_(rays_.size()),
-          decidable_(count) {}
+          decidable_(count),
+          retrace_(count) {}
 
     Result<Done> run() {
         each_ray([&](size_t i) { enter(i); });
@@ -119,10 +116,13 @@ public:
             c_.statistics_.seconds_kernel += watch.seconds();
             c_.statistics_.ray_visits += count_;
             each_ray([&](size_t i) { settle(i); });
+            if (retraced_ > 0)
+                retrace();
         }
         c_.statistics_.invalid_rays += invalid_;
         c_.statistics_.flagged += flagged_;
         c_.statistics_.retraced += retraced_;
+        c_.statistics_.capped += capped_;
         return Done{};
     }
 
@@ -144,8 +144,11 @@ private:
             return;
         }
         bool decidable = true;
+        PreparedRay p = prepare(query_, first_ + i);
+        if (c_.twins_.stands_for_others(p.skip))
+            p.skip = {}; // the others are to be found
         if (c_.runner_)
-            rays_[i] = frame_ray(c_.whole_, prepare(query_, first_ + i), decidable);
+            rays_[i] = frame_ray(c_.whole_, p, decidable);
         decidable_[i] = decidable;
     }
 
@@ -154,16 +157,19 @@ private:
         if (decidable_[i] && rays_[i].t_end < 0)
             return; // invalid, or past the scene
         const PreparedRay p = prepare(query_, first_ + i);
-        if (!decidable_[i] || answer.prim == OVC_FLAGGED || !take_in(i, p, answer))
-            decide_in_double(i);
+        capped_ += decidable_[i] && answer.prim == OVC_CAPPED;
+        const bool named = decidable_[i] && answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
+        if (!named || !take_in(i, p, answer)) {
+            retrace_[i] = true;
+            ++retraced_;
+        }
     }
 
     /// False when double does not find what the kernel was certain of.
     bool take_in(size_t i, const PreparedRay& p, const FrameAnswer& answer) {
         if (!c_.options_.certify) {
             if (answer.prim != OVC_MISS)
-                query_.set(first_ + i, Hit{world_t(c_.whole_, p, answer.t()), answer.u(),
-                                           answer.v(), c_.whole_.triangles[answer.prim]});
+                query_.set(first_ + i, fast_hit(p, answer));
             return true;
         }
         const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
@@ -173,26 +179,47 @@ private:
             return true;
         }
         Nearest nearest(p);
-        if (answer.prim != OVC_MISS && !offer(nearest, answer.prim))
+        if (answer.prim != OVC_MISS && !offer(nearest, answer.prim, p.skip))
             return false;
         for (const uint32_t rival : answer.rivals())
             if (rival != OVC_NO_TRIANGLE)
-                offer(nearest, rival);
+                offer(nearest, rival, p.skip);
         query_.set(first_ + i, nearest.hit());
         return true;
     }
 
-    bool offer(Nearest& nearest, uint32_t index) const {
-        const TriangleId id = c_.whole_.triangles[index];
+    Hit fast_hit(const PreparedRay& p, const FrameAnswer& answer) const {
+        const Hit hit{world_t(c_.whole_, p, answer.t()), answer.u(), answer.v(),
+                      c_.whole_.triangles[answer.prim]};
+        return c_.twins_.seen(c_.soup_, hit, p.skip);
+    }
+
+    bool offer(Nearest& nearest, uint32_t index, TriangleId skip) const {
+        const TriangleId id = c_.twins_.seen(c_.whole_.triangles[index], skip);
         return nearest.offer(c_.soup_.triangle(id), id);
     }
 
+    /// Builds the arbiter's page the first time; not within the loop over rays, whose threads would
+    /// wait for it.
+    void retrace() {
+        if (c_.arbiter_.texels.empty())
+            c_.arbiter_ = build_page(c_.soup_, c_.whole_);
+        each_ray([&](size_t i) {
+            if (retrace_[i])
+                decide_in_double(i);
+        });
+        flagged_ += retraced_;
+    }
+
+    /// As the product's arbiter does in each leaf (plugin/arbiter.h).
     void decide_in_double(size_t i) {
-        const Ray& ray = query_.rays[first_ + i];
-        const TriangleId skip = query_.skip.empty() ? TriangleId{} : query_.skip[first_ + i];
-        query_.set(first_ + i, ovc::intersect(c_.reference(), c_.soup_, ray, skip));
-        ++flagged_;
-        ++retraced_;
+        const PreparedRay p = prepare(query_, first_ + i);
+        Nearest nearest(p);
+        const auto test = [&](uint32_t index) {
+            return offer(nearest, index, p.skip) && Query::kAnyHit;
+        };
+        walk_page(c_.arbiter_, c_.whole_, p, p.ray.t_min, test, [&] { return nearest.limit(); });
+        query_.set(first_ + i, nearest.hit());
     }
 
     Comparison& c_;
@@ -202,9 +229,11 @@ private:
     std::vector<FrameRay> rays_; // whole rows, the last one filled up with no rays
     std::vector<FrameAnswer> answers_;
     std::vector<uint8_t> decidable_;
+    std::vector<uint8_t> retrace_;
     std::atomic<uint64_t> invalid_{0};
     std::atomic<uint64_t> flagged_{0};
     std::atomic<uint64_t> retraced_{0};
+    std::atomic<uint64_t> capped_{0};
 };
 
 template <class Query>

@@ -3,12 +3,12 @@
 // answers: the kernel proves what it can, doubles decide the rest.
 #pragma once
 
-#include "kdtree/tree.h"
+#include "core/twins.h"
+#include "gpu/page.h"
 #include "plugin/query.h"
 #include "plugin/structure.h"
 #include "plugin/thesis/runner.h"
 
-#include <mutex>
 #include <vector>
 
 namespace ovc::thesis {
@@ -30,7 +30,6 @@ private:
         : soup_(soup), gl_(gl), options_(options) {}
 
     Result<Done> build_system(const std::vector<TriangleId>& triangles, const Box& bounds);
-    const KdTree& reference();
 
     template <class Query>
     class Batch;
@@ -40,11 +39,11 @@ private:
     const Soup& soup_;
     GlThread& gl_;
     RunnerOptions options_;
-    Leaf whole_;
+    Twins twins_;
+    Leaf whole_; // without them
     uint32_t batch_rays_ = 0;
     std::unique_ptr<Runner> runner_; // made and destroyed on the thread of gl_; none: no triangles
-    std::once_flag reference_built_;
-    KdTree reference_; // the CPU KDT, for the first ray that doubles must trace again
+    Page arbiter_; // walked on the CPU; empty until a ray must be traced again in double
     ovc_statistics statistics_{sizeof(ovc_statistics)};
 };
 

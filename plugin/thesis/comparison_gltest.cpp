@@ -226,6 +226,38 @@ TEST_F(Comparisons, TheSkipPointerBvhTakesMorePassesForLongerWays) {
     }
 }
 
+/// Slivers in a bundle, so that a ray along it passes all of them and hits few.
+Soup bundle(size_t count) {
+    test::Random random(2);
+    std::vector<vec3> corners;
+    for (size_t i = 0; i < count; ++i) {
+        const dvec3 at = random.point(0, 1e-3);
+        corners.insert(corners.end(),
+                       {vec3(at), vec3(at + dvec3(1)), vec3(at + dvec3(1, 1, 1 + 1e-6))});
+    }
+    return test::one_chunk(std::move(corners));
+}
+
+TEST_F(Comparisons, ARayWhoseLoopTheDriverWouldEndIsDecidedInDouble) {
+    if (!gl->info().is_software)
+        GTEST_SKIP() << "no driver of a GPU ends a loop";
+    const Soup soup = bundle(20000);
+    const auto ids = hittable_triangles(soup, nullptr, nullptr);
+    test::Random random(3);
+    std::vector<Ray> rays(40);
+    for (Ray& ray : rays)
+        ray = {random.point(0, 1e-3) - dvec3(0.5), 0, dvec3(1)};
+    for (const ovc_structure structure : {OVC_STRUCTURE_GPU_GRID, OVC_STRUCTURE_GPU_KD_TREE}) {
+        const auto system = build(soup, {"", structure});
+        ASSERT_TRUE(system);
+        std::vector<Hit> hits(rays.size());
+        ASSERT_TRUE(ok(system->intersect(rays, {}, hits)));
+        for (size_t i = 0; i < rays.size(); ++i)
+            EXPECT_TRUE(test::same(hits[i], test::brute_force(soup, ids, rays[i]))) << "ray " << i;
+        EXPECT_GT(system->report().capped, 0u) << name_of(structure);
+    }
+}
+
 std::string refusal(ovc_structure structure, uint32_t leaves, uint64_t leaf_triangles,
                     uint32_t kernel) {
     ovc_scene_config config{sizeof(ovc_scene_config)};

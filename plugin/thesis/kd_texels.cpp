@@ -79,7 +79,7 @@ constexpr size_t kMostCounted = size_t(1) << 30;
 } // namespace
 
 Result<System> build_kd_texels(const Soup& soup, const Leaf& whole) {
-    const KdTree tree = build_kd_tree(soup);
+    const KdTree tree = build_kd_tree(soup, whole.triangles, whole.box, KdBuildOptions{});
     const std::vector<LocalTriangle> triangles = local_triangles(soup, whole);
     const LocalTree local(tree, whole);
     const References references = gather_references(

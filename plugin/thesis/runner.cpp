@@ -17,6 +17,9 @@ namespace {
 
 constexpr uint64_t kMostRows = 512; // half a million rays: beyond, a pass gains nothing more
 
+/// llvmpipe ends a loop after 65,535 rounds without a word.
+constexpr uint32_t kMostRoundsInSoftware = 65000;
+
 uint64_t row_bytes(ovc_structure structure) {
     const uint64_t state = structure == OVC_STRUCTURE_SKIP_BVH ? BoundedPasses::kBytesPerRay : 0;
     return Runner::kRowRays * (sizeof(FrameRay) + sizeof(FrameAnswer) + state);
@@ -55,6 +58,7 @@ Runner::Runner(std::unique_ptr<Ledger> ledger, const RunnerOptions& options, con
       options_(options),
       software_(software),
       stack_depth_(system.stack_depth),
+      most_rounds_(system.most_rounds),
       tile_defines_(plan.tiles.defines()),
       tiles_(*ledger_, plan.tiles, std::move(system.texels)),
       rays_(*ledger_, GL_RGBA32UI, sizeof(uvec4), kRowRays * OVC_RAY_TEXELS, plan.rows, "rays"),
@@ -86,6 +90,8 @@ Result<GLuint> Runner::link(std::optional<gl::Program>& program, const char* fra
     config.certify = options_.certify;
     config.stack_depth = stack_depth_;
     config.stack_registers = software_;
+    if (software_ && most_rounds_ > kMostRoundsInSoftware)
+        config.most_rounds = kMostRoundsInSoftware;
     const std::string defines = config.defines() + tile_defines_ +
                                 fmt::format("#define OVC_STRUCTURE {}\n", int(options_.structure));
     const std::array<ShaderStage, 2> stages = {

@@ -22,11 +22,12 @@ const char* name_of(ovc_structure structure) {
 /// The product's page, over the whole scene.
 static Result<System> build_page_system(const Soup& soup, const Leaf& whole) {
     Page page = build_page(soup, whole);
-    if (page.texels.size() / OVC_UNIT_TEXELS >= OVC_MAX_UNITS)
+    if (page.units() >= OVC_MAX_UNITS)
         return Error{fmt::format("a BVH of {} bytes is more than its nodes can name: {} bytes",
                                  page.bytes(), uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES)};
-    // Few programs, as in gpu/tracer.cpp.
-    return System{std::move(page.texels), whole.triangles.size(), (page.depth + 3) / 4 * 4};
+    const uint32_t depth = (page.depth + 3) / 4 * 4; // few programs
+    const uint64_t units = page.units();
+    return System{std::move(page.texels), whole.triangles.size(), depth, units};
 }
 
 Result<System> build_system(ovc_structure structure, const Soup& soup, const Leaf& whole) {

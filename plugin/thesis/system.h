@@ -11,6 +11,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct System {
     Texels texels;
     uint64_t references = 0;  // triangles counted once in each place they are listed
     uint32_t stack_depth = 4; // of the kernel, where it has a stack
+    uint64_t most_rounds = std::numeric_limits<uint64_t>::max(); // of the kernel's loop for any ray
 };
 
 /// Its name on the command line and in messages.

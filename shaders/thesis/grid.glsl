@@ -9,7 +9,7 @@ uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
     vec3 lo = uintBitsToFloat(scene_texel(0).xyz);
     vec3 size = uintBitsToFloat(scene_texel(1).xyz);
     ivec3 count = ivec3(scene_texel(2).xyz);
-    ivec3 first = ivec3(scene_texel(3).xyz); // texels of cells, of references, of triangles
+    ivec4 first = ivec4(scene_texel(3)); // texels of cells, of references, of triangles
 
     vec3 inv_dir = finite_reciprocal(dir);
     ivec3 onward = ivec3(greaterThan(inv_dir, vec3(0.0))); // from a cell to the plane it is left by
@@ -17,9 +17,10 @@ uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
     float t = 0.0; // where the ray enters the cell
     int reference = 0;
     int end = 0; // of the references of the cell before
+    int rounds = first.w;
     bool done = t_end < 0.0;
-    while (!done) {
-        while (reference >= end && !done) {
+    while (going_on(done, rounds)) {
+        for (int i = 0; i < OVC_WALK_STEPS && reference >= end && !done; ++i) {
             if (t > found.best_hi || any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, count))) {
                 done = true;
             } else {
@@ -41,6 +42,5 @@ uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
         ++reference;
         done = done || (OVC_ANY_HIT != 0 && took);
     }
-    // llvmpipe ends a loop after 65535 rounds without a word: such a ray is not done, and nobody may believe it.
-    return done ? answer_of(found, OVC_ANY_HIT != 0) : uvec4(0u, 0u, 0u, OVC_FLAGGED);
+    return done ? answer_of(found, OVC_ANY_HIT != 0) : uvec4(0u, 0u, 0u, OVC_CAPPED);
 }

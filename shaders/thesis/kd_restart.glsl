@@ -7,7 +7,7 @@
 uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
     Found found = nothing_found(t_end);
     Basis basis = basis_of(dir);
-    ivec3 first = ivec3(scene_texel(0).xyz); // texels of nodes, of references, of triangles
+    ivec4 first = ivec4(scene_texel(0)); // texels of nodes, of references, of triangles
     vec3 inv_dir = finite_reciprocal(dir);
 
     int root = 0;
@@ -17,9 +17,10 @@ uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
     float exit = OVC_NEVER;
     int reference = 0;
     int end = 0; // of the references of the leaf before
+    int rounds = first.w;
     bool done = t_end < 0.0;
-    while (!done) {
-        while (reference >= end && !done) {
+    while (going_on(done, rounds)) {
+        for (int i = 0; i < OVC_WALK_STEPS && reference >= end && !done; ++i) {
             uvec4 two = scene_texel(first.x + (node >> 1));
             uvec2 words = (node & 1) == 0 ? two.xy : two.zw;
             int axis = int(words.y & 3u);
@@ -49,6 +50,5 @@ uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
         ++reference;
         done = done || (reference >= end && t > found.best_hi) || (OVC_ANY_HIT != 0 && took);
     }
-    // llvmpipe ends a loop after 65535 rounds without a word: such a ray is not done, and nobody may believe it.
-    return done ? answer_of(found, OVC_ANY_HIT != 0) : uvec4(0u, 0u, 0u, OVC_FLAGGED);
+    return done ? answer_of(found, OVC_ANY_HIT != 0) : uvec4(0u, 0u, 0u, OVC_CAPPED);
 }

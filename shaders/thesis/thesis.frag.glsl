@@ -7,6 +7,7 @@
 #include "triangle.glsl"
 #include "found.glsl"
 #include "single_triangle.glsl"
+#include "rounds.glsl"
 #if OVC_STRUCTURE == 3
 #include "grid.glsl"
 #elif OVC_STRUCTURE == 4
