@@ -34,28 +34,50 @@ struct Planes {
         const double at = std::floor((x - double(lo[axis])) / double(size[axis]));
         return uint32_t(std::clamp(at, 0.0, double(count[axis] - 1)));
     }
+    uint32_t index(const std::array<uint32_t, 3>& cell) const {
+        return (cell[2] * count[1] + cell[1]) * count[0] + cell[0];
+    }
+    /// From the lower corner of cell `from` to the upper one of `to`.
+    Box block(const std::array<uint32_t, 3>& from, const std::array<uint32_t, 3>& to) const {
+        return {{plane(0, from[0]), plane(1, from[1]), plane(2, from[2])},
+                {plane(0, to[0] + 1), plane(1, to[1] + 1), plane(2, to[2] + 1)}};
+    }
     uint64_t cells() const { return uint64_t(count[0]) * count[1] * count[2]; }
 };
+
+using Cell = std::array<uint32_t, 3>;
+
+/// Appends the cells of the block [from, to] that the triangle touches; it touches the block. By
+/// halves: a large triangle's box holds many cells that it does not come near.
+void find_cells(const Planes& planes, const Triangle& triangle, uint32_t id, const Cell& from,
+                const Cell& to, std::vector<Reference>& out) {
+    int axis = 0;
+    for (int other = 1; other < 3; ++other)
+        if (to[other] - from[other] > to[axis] - from[axis])
+            axis = other;
+    if (from[axis] == to[axis]) {
+        out.push_back({planes.index(from), id});
+        return;
+    }
+    const uint32_t middle = (from[axis] + to[axis]) / 2;
+    Cell below = to, above = from;
+    below[axis] = middle;
+    above[axis] = middle + 1;
+    for (const auto& [first, last] : {std::pair(from, below), {above, to}})
+        if (!clipped_bounds(triangle, planes.block(first, last).padded(kWider)).empty())
+            find_cells(planes, triangle, id, first, last, out);
+}
 
 void find_cells(const Planes& planes, const LocalTriangle& local, uint32_t id,
                 std::vector<Reference>& out) {
     const Triangle triangle = {dvec3(local[0]), dvec3(local[1]), dvec3(local[2])};
-    const Box box = bounds_of(triangle);
-    std::array<uint32_t, 3> from, to;
+    const Box box = bounds_of(triangle).padded(kWider);
+    Cell from, to;
     for (int axis = 0; axis < 3; ++axis) {
-        from[axis] = planes.cell(axis, box.lo[axis] - kWider);
-        to[axis] = planes.cell(axis, box.hi[axis] + kWider);
+        from[axis] = planes.cell(axis, box.lo[axis]);
+        to[axis] = planes.cell(axis, box.hi[axis]);
     }
-    const bool one = from == to;
-    for (uint32_t z = from[2]; z <= to[2]; ++z)
-        for (uint32_t y = from[1]; y <= to[1]; ++y)
-            for (uint32_t x = from[0]; x <= to[0]; ++x) {
-                const Box cell{
-                    {planes.plane(0, x), planes.plane(1, y), planes.plane(2, z)},
-                    {planes.plane(0, x + 1), planes.plane(1, y + 1), planes.plane(2, z + 1)}};
-                if (one || !clipped_bounds(triangle, cell.padded(kWider)).empty())
-                    out.push_back({(z * planes.count[1] + y) * planes.count[0] + x, id});
-            }
+    find_cells(planes, triangle, id, from, to, out);
 }
 
 System pack(const Planes& planes, const References& references,
