@@ -65,6 +65,9 @@ inline void delete_framebuffer(GLuint id) {
 inline void delete_vertex_array(GLuint id) {
     glDeleteVertexArrays(1, &id);
 }
+inline void delete_query(GLuint id) {
+    glDeleteQueries(1, &id);
+}
 inline void delete_shader(GLuint id) {
     glDeleteShader(id);
 }
@@ -164,6 +167,21 @@ private:
         return id;
     }
     Handle<delete_vertex_array> handle_;
+};
+
+/// Counts the samples that pass the depth test.
+class OcclusionQuery {
+public:
+    OcclusionQuery() : handle_(create()) {}
+    GLuint id() const { return handle_.id(); }
+
+private:
+    static GLuint create() {
+        GLuint id = 0;
+        glCreateQueries(GL_SAMPLES_PASSED, 1, &id);
+        return id;
+    }
+    Handle<delete_query> handle_;
 };
 
 } // namespace ovc::gl

@@ -78,29 +78,12 @@ Result<gl::Shader> compile(GLenum stage, std::string_view name, const std::strin
     return shader;
 }
 
-struct Stage {
-    GLenum stage;
-    std::string_view source;
-};
-
 Result<gl::Program> link(const ShaderConfig& config) {
-    const std::vector<Stage> stages =
-        config.compute ? std::vector<Stage>{{GL_COMPUTE_SHADER, "trace.comp.glsl"}}
-                       : std::vector<Stage>{{GL_VERTEX_SHADER, "fullscreen.vert.glsl"},
-                                            {GL_FRAGMENT_SHADER, "trace.frag.glsl"}};
-    gl::Program program(glCreateProgram());
-    for (const Stage& stage : stages) {
-        const Result<gl::Shader> shader = compile(stage.stage, stage.source, config.defines());
-        if (!shader)
-            return shader.error();
-        glAttachShader(program.id(), shader->id());
-    }
-    glLinkProgram(program.id());
-    GLint ok = GL_FALSE;
-    glGetProgramiv(program.id(), GL_LINK_STATUS, &ok);
-    if (!ok)
-        return Error{"the driver does not link the kernel: " + info_log(program.id(), true)};
-    return program;
+    const std::vector<ShaderStage> stages =
+        config.compute ? std::vector<ShaderStage>{{GL_COMPUTE_SHADER, "trace.comp.glsl"}}
+                       : std::vector<ShaderStage>{{GL_VERTEX_SHADER, "fullscreen.vert.glsl"},
+                                                  {GL_FRAGMENT_SHADER, "trace.frag.glsl"}};
+    return link_program(stages, config.defines());
 }
 
 } // namespace
@@ -113,6 +96,22 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_PAGE_IMAGE {:d}\n"
                        "#define OVC_MOST_ROUNDS {}\n",
                        any_hit, certify, stack_depth, stack_registers, page_image, most_rounds);
+}
+
+Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines) {
+    gl::Program program(glCreateProgram());
+    for (const ShaderStage& stage : stages) {
+        const Result<gl::Shader> shader = compile(stage.stage, stage.source, defines);
+        if (!shader)
+            return shader.error();
+        glAttachShader(program.id(), shader->id());
+    }
+    glLinkProgram(program.id());
+    GLint ok = GL_FALSE;
+    glGetProgramiv(program.id(), GL_LINK_STATUS, &ok);
+    if (!ok)
+        return Error{"the driver does not link the kernel: " + info_log(program.id(), true)};
+    return program;
 }
 
 Result<std::string> expand_shader(std::string_view name, const std::string& defines,

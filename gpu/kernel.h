@@ -6,6 +6,7 @@
 #include "gpu/gl_object.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,15 @@ Result<std::string> expand_shader(std::string_view name, const std::string& defi
 
 /// A driver's log with "2:57" or "2(57)" at the start of lines turned into "traverse.glsl:57".
 std::string rewrite_log(const std::string& log, const std::vector<std::string>& files);
+
+struct ShaderStage {
+    GLenum stage;
+    std::string_view source; // "trace.frag.glsl"
+};
+
+/// A program of the stages, each expanded with `defines`. The context must be current. Error: the
+/// driver's log.
+Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines);
 
 class KernelCache {
 public:

@@ -173,15 +173,15 @@ private:
     std::vector<Pending> pending_;
 };
 
-} // namespace
-
-Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf) {
+/// name: index into leaf.triangles -> what the page calls it.
+template <class Name>
+Page build_named(const Soup& soup, const Leaf& leaf, Name&& name) {
     assert(!leaf.triangles.empty());
     const Box box{leaf.frame.to_local(leaf.box.lo), leaf.frame.to_local(leaf.box.hi)};
     std::vector<TrianglePair> pairs = pair_triangles(local_triangles(soup, leaf));
     for (TrianglePair& pair : pairs) {
-        pair.a = numbers.of(leaf.triangles[pair.a]);
-        pair.b = pair.b == kNone ? kNone : numbers.of(leaf.triangles[pair.b]);
+        pair.a = name(pair.a);
+        pair.b = pair.b == kNone ? kNone : name(pair.b);
     }
     // Hits count inside the leaf's box only, so what reaches out of it need not be in the boxes.
     const Boxf inside{vec3(box.lo), vec3(box.hi)};
@@ -197,6 +197,16 @@ Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf) {
     Page page = Packer(nodes, pairs, grid).pack();
     assert(page.texels.size() / OVC_UNIT_TEXELS < OVC_MAX_UNITS);
     return page;
+}
+
+} // namespace
+
+Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf) {
+    return build_named(soup, leaf, [&](uint32_t i) { return numbers.of(leaf.triangles[i]); });
+}
+
+Page build_page(const Soup& soup, const Leaf& leaf) {
+    return build_named(soup, leaf, [](uint32_t i) { return i; });
 }
 
 } // namespace ovc

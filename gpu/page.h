@@ -21,7 +21,10 @@ struct Page {
     uint64_t bytes() const { return texels.size() * sizeof(uvec4); }
 };
 
-/// Builds and packs the BVH of a leaf. Its triangles go by their numbers.
+/// Builds and packs the BVH of a leaf. Its triangles go by their numbers in the soup.
 Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf);
+
+/// The same; triangle i of the page is leaf.triangles[i].
+Page build_page(const Soup& soup, const Leaf& leaf);
 
 } // namespace ovc

@@ -13,17 +13,17 @@ Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOpt
         return make_cpu_backend(soup);
     if (options.kind == BackendKind::Embree)
         return make_embree_backend(soup, EmbreeMode::Robust);
-    const Result<const ovc_api*> api = load_plugin();
+    const Result<const ovc_api*> api =
+        load_plugin(structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL ? kProduct : kThesis);
     if (!api)
         return Error{api.error().message + " (--backend cpu-kdtree works without it)"};
     ovc_result code = OVC_OK;
     Result<PluginDevice> device = PluginDevice::open(*api, options.device, log, &code);
     if (device)
-        return make_two_level_backend(std::move(*device), soup, options);
+        return make_plugin_backend(std::move(*device), soup, options);
     // Whoever named a device or a backend meant it, and a wrong setting is for its owner to mend;
     // where there just is no device, the picture is made, slower, and the reason told.
-    if (options.kind == BackendKind::TwoLevel || !options.device.empty() ||
-        code != OVC_ERROR_NO_DEVICE)
+    if (options.kind != BackendKind::Auto || !options.device.empty() || code != OVC_ERROR_NO_DEVICE)
         return Error{device.error().message + " (--backend cpu-kdtree works without EGL)"};
     say(log, LogLevel::Warning,
         fmt::format("tracing on the CPU KD-tree instead of a GPU: {}", device.error().message));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Backend: what answers rays. The plugin, or what it is compared with: the CPU KD-tree and Embree.
+// Backend: what answers rays. The plugin, or what it is compared with: the systems of
+// the thesis, the CPU KD-tree and Embree.
 #pragma once
 
 #include "core/log.h"
@@ -35,7 +36,26 @@ public:
     virtual std::string renderer() const = 0;
 };
 
-enum class BackendKind { Auto, TwoLevel, CpuKdTree, Embree };
+enum class BackendKind {
+    Auto,
+    TwoLevel,
+    CpuKdTree,
+    Embree,
+    // of libovercast-thesis.so, in the order of ovc_structure
+    SingleTexture,
+    MultiTexture,
+    GpuGrid,
+    GpuKdTree,
+    SkipBvh
+};
+
+/// What the backend is to the ABI: two-level unless it is one of the thesis.
+inline ovc_structure structure_of(BackendKind kind) {
+    return kind < BackendKind::SingleTexture
+               ? OVC_STRUCTURE_TWO_LEVEL
+               : ovc_structure(int(kind) - int(BackendKind::SingleTexture) +
+                               OVC_STRUCTURE_SINGLE_TEXTURE);
+}
 
 struct BackendOptions {
     BackendKind kind = BackendKind::Auto;
@@ -53,8 +73,8 @@ Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOpt
                                               const LogSink& log);
 
 /// The options' device is not looked at again. Through plugin/overcast.h and nothing else.
-Result<std::unique_ptr<Backend>> make_two_level_backend(PluginDevice device, const Soup& soup,
-                                                        const BackendOptions& options);
+Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
+                                                     const BackendOptions& options);
 
 std::unique_ptr<Backend> make_cpu_backend(const Soup& soup);
 

@@ -6,12 +6,16 @@
 #include "host/backend.h"
 
 #include <string>
+#include <string_view>
 
 namespace CLI {
 class App;
 }
 
 namespace ovc {
+
+/// Error: which backends there are, and which one was probably meant.
+Result<BackendKind> parse_backend(std::string_view name);
 
 /// The words as given; empty: not given.
 struct BackendArguments {

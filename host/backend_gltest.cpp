@@ -72,6 +72,35 @@ TEST(TwoLevelBackend, AnswersWhatTheCpuAnswers) {
     EXPECT_GE(statistics.leaves, 4u);
 }
 
+TEST(ThesisBackends, AnswerWhatTheCpuAnswersAndCountPasses) {
+    const Soup soup = random_soup(1, 3000);
+    const std::unique_ptr<Backend> cpu = make_cpu_backend(soup);
+    const std::vector<Ray> rays = random_rays(2, 20000);
+    std::vector<Hit> expected(rays.size()), found(rays.size());
+    ASSERT_TRUE(cpu->intersect(rays, {}, expected));
+    for (const BackendKind kind :
+         {BackendKind::SingleTexture, BackendKind::MultiTexture, BackendKind::GpuGrid,
+          BackendKind::GpuKdTree, BackendKind::SkipBvh}) {
+        BackendOptions options;
+        options.kind = kind;
+        const Result<std::unique_ptr<Backend>> gpu = make_backend(soup, options, {});
+        if (!gpu)
+            GTEST_SKIP() << gpu.error().message;
+        ASSERT_TRUE((*gpu)->intersect(rays, {}, found));
+        for (size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_EQ(expected[i].id, found[i].id) << "backend " << int(kind) << ", ray " << i;
+            ASSERT_EQ(expected[i].t, found[i].t) << "backend " << int(kind) << ", ray " << i;
+        }
+        const ovc_statistics statistics = (*gpu)->statistics();
+        EXPECT_GE(statistics.passes, 1u);
+        EXPECT_GT(statistics.level2_bytes, soup.triangle_count() * 40);
+        options.gpu_memory.bytes = 100000;
+        const Result<std::unique_ptr<Backend>> refused = make_backend(soup, options, {});
+        ASSERT_FALSE(refused);
+        EXPECT_THAT(refused.error().message, testing::HasSubstr("100000 bytes is too small"));
+    }
+}
+
 TEST(EmbreeBackend, AnswersAboutWhatTheCpuAnswers) {
     const Soup soup = random_soup(1, 3000);
     const std::unique_ptr<Backend> cpu = make_cpu_backend(soup);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // overcast report: measurements that prove what the documents claim.
 #include "host/arguments.h"
+#include "host/backend_arguments.h"
 #include "host/command.h"
 #include "host/interrupt.h"
 #include "host/memory_size.h"
@@ -49,6 +50,7 @@ struct ReportArguments {
     std::string only;
     std::string folder;
     std::string data;
+    std::string backend = "two-level";
     std::string device;
     std::string kernel = "auto";
     std::string times;
@@ -95,6 +97,10 @@ Result<StabilityOptions> options_of(const ReportArguments& given) {
             return times.error();
         options.times = *times;
     }
+    const Result<BackendKind> kind = parse_backend(given.backend);
+    if (!kind)
+        return kind.error();
+    options.backend.kind = *kind;
     options.backend.device = given.device;
     constexpr std::string_view kernels[] = {"auto", "fragment", "compute"};
     const auto kernel = std::find(std::begin(kernels), std::end(kernels), given.kernel);
@@ -289,6 +295,9 @@ Result<int> run_report(const Arguments& arguments) {
     app.add_option("--data", given.data,
                    "A folder with meshes/stanford-dragon/dragon_vrip.ply, for cases on the dragon")
         ->type_name("DIR");
+    app.add_option("--backend", given.backend,
+                   "What is asked: two-level (the default) or another that `overcast trace` has")
+        ->type_name("NAME");
     app.add_option("--device", given.device, "A number or a part of a name from `overcast devices`")
         ->type_name("NAME");
     app.add_option("--kernel", given.kernel, "auto (the faster one), fragment or compute")

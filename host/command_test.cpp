@@ -91,7 +91,7 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
         {{"render", "box", "-o", out, "--camera", "1,2"}, "--camera needs"},
         {{"render", "box", "-o", out, "--light", "-1"}, "--light needs x,y,z"},
         {{"render", "box", "-o", out, "--max-depth", "-1"}, "--max-depth needs"},
-        {{"render", "box", "-o", out, "--backend", "gpu-grid"}, "not there yet"},
+        {{"render", "box", "-o", out, "--backend", "gpu-gird"}, "did you mean 'gpu-grid'?"},
         {{"render", "box", "-o", out, "--backend", "embree", "--leaves", "4"}, "means nothing"},
         {{"render", "box", "-o", out, "--frames", "1:2"}, "box has no camera path"},
         {{"render", path("a.ply"), "-o", out, "--frames", "0"}, "a.ply' has no camera path"},

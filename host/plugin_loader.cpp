@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// dlopen of libovercast.so, and its handles.
+// dlopen of the plugin, and its handles.
 #include "host/plugin_loader.h"
 
 #include <dlfcn.h>
@@ -13,8 +13,6 @@
 namespace ovc {
 
 namespace fs = std::filesystem;
-
-static constexpr const char* kLibrary = "libovercast.so";
 
 static std::string sentence_of(const ovc_api* api, ovc_device device, ovc_result result) {
     const std::string sentence = api->last_error(device);
@@ -42,15 +40,15 @@ static Result<const ovc_api*> load_from(const std::string& path) {
     return api;
 }
 
-Result<const ovc_api*> load_plugin() {
-    if (const char* named = std::getenv("OVC_PLUGIN"); named && *named)
+Result<const ovc_api*> load_plugin(const std::string& library) {
+    if (const char* named = std::getenv("OVC_PLUGIN"); named && *named && library == kProduct)
         return load_from(named);
     std::error_code error;
     const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (const fs::path& path : {folder / kLibrary, folder.parent_path() / "lib" / kLibrary})
+    for (const fs::path& path : {folder / library, folder.parent_path() / "lib" / library})
         if (!error && fs::exists(path))
             return load_from(path);
-    return load_from(kLibrary);
+    return load_from(library);
 }
 
 static void forward_log(void* user, ovc_log_level level, const char* message) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plugin from the host's side: finding libovercast.so, and owners for its handles. They add
+// The plugin from the host's side: finding its library, and owners for its handles. They add
 // nothing to the C calls.
 #pragma once
 
@@ -13,10 +13,14 @@
 
 namespace ovc {
 
-/// Loads the plugin: the file that the environment variable OVC_PLUGIN names, or libovercast.so
-/// beside this program, in
-/// ../lib from there, or where the system's loader looks. It stays loaded until the program ends.
-Result<const ovc_api*> load_plugin();
+/// The libraries that speak the ABI: two-level's, and that of the systems it is compared with.
+inline constexpr const char* kProduct = "libovercast.so";
+inline constexpr const char* kThesis = "libovercast-thesis.so";
+
+/// Loads a library: beside this program, in ../lib from there, or where the system's loader looks;
+/// the product from the file that the environment variable OVC_PLUGIN names, if there is one. It
+/// stays loaded until the program ends.
+Result<const ovc_api*> load_plugin(const std::string& library = kProduct);
 
 struct DestroyDevice {
     const ovc_api* api = nullptr;

@@ -159,6 +159,11 @@ uint64_t Level1::reference_count() const {
     return count;
 }
 
+Leaf whole_leaf(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds) {
+    const double padding = padding_of(bounds);
+    return make_leaf(soup, bounds.padded(padding), padding, triangles);
+}
+
 Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                  uint32_t max_leaf_triangles) {
     assert(max_leaf_triangles > 0);

@@ -44,6 +44,9 @@ struct Level1 {
     uint64_t reference_count() const;
 };
 
+/// All of `triangles`, which lie in `bounds`, as one leaf.
+Leaf whole_leaf(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds);
+
 /// Cuts `triangles` of the soup, which lie in `bounds`, into leaves of at most max_leaf_triangles
 /// (> 0).
 Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,

@@ -5,8 +5,9 @@
 #include "core/log.h"
 #include "core/soup.h"
 #include "gpu/gl_thread.h"
+#include "plugin/failure.h"
 #include "plugin/overcast.h"
-#include "plugin/two_level.h"
+#include "plugin/structure.h"
 
 #include <atomic>
 #include <cfenv>
@@ -19,12 +20,6 @@
 #include <thread>
 
 namespace ovc {
-
-/// A failure on its way to the ABI; thrown and caught inside the plugin only.
-struct Failure {
-    ovc_result code;
-    std::string message;
-};
 
 /// The last message per thread.
 class Messages {
@@ -60,9 +55,9 @@ struct ovc_scene_t {
     uint32_t magic = ovc::kSceneMagic;
     ovc_device device = nullptr;
     std::mutex turn; // calls on one scene wait here
-    ovc::TwoLevelOptions options;
+    ovc_scene_config config{sizeof(ovc_scene_config)};
     ovc::Soup soup;
-    std::unique_ptr<ovc::TwoLevel> two_level; // set by commit
+    std::unique_ptr<ovc::Structure> structure; // set by commit
 };
 
 namespace ovc {

@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The C ABI of Overcast: triangles and batches of rays in, nearest hits and occlusion out, for
- * scenes larger than GPU memory.
+/* The C ABI of Overcast: triangles and batches of rays in, nearest hits and occlusion out, for scenes larger than GPU memory.
  *
- * Load libovercast.so, look up ovc_get_api, ask for OVC_ABI_VERSION, and call through the table.
- * C99.
+ * Load libovercast.so, look up ovc_get_api, ask for OVC_ABI_VERSION, and call through the table. C99.
  *
- * Every call returns an ovc_result; on anything but OVC_OK, last_error() has one sentence. Nothing
- * throws, exits, or keeps a pointer of the caller's after it returns, except the positions of a
- * mesh added with OVC_MESH_SHARED. The caller owns every buffer. Structs that go in begin with
- * struct_size = sizeof(the struct); every other field means "default" when zero. Calls may come
- * from any thread; calls on one scene wait their turn. The caller's GL context, floating-point
- * state and environment are left alone: each device has a thread of its own. */
+ * Every call returns an ovc_result; on anything but OVC_OK, last_error() has one sentence. Nothing throws, exits, or keeps a
+ * pointer of the caller's after it returns, except the positions of a mesh added with OVC_MESH_SHARED. The caller owns every
+ * buffer. Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero.
+ * Calls may come from any thread; calls on one scene wait their turn. The caller's GL context, floating-point state and
+ * environment are left alone: each device has a thread of its own. */
 #ifndef OVERCAST_H
 #define OVERCAST_H
 
@@ -29,12 +26,10 @@ typedef struct ovc_scene_t* ovc_scene;
 
 typedef enum ovc_result {
     OVC_OK = 0,
-    OVC_ERROR_INVALID_ARGUMENT =
-        1, /* a null, a wrong struct_size, a number out of range, EGL_PLATFORM set to nonsense */
-    OVC_ERROR_INVALID_STATE = 2, /* tracing before commit, adding after it */
-    OVC_ERROR_NO_DEVICE = 3,     /* EGL or OpenGL is missing, or no device has that name */
-    OVC_ERROR_OUT_OF_BUDGET =
-        4, /* gpu_memory_bytes is too small; the message names the smallest that works */
+    OVC_ERROR_INVALID_ARGUMENT = 1, /* a null, a wrong struct_size, a number out of range, EGL_PLATFORM set to nonsense */
+    OVC_ERROR_INVALID_STATE = 2,    /* tracing before commit, adding after it */
+    OVC_ERROR_NO_DEVICE = 3,        /* EGL or OpenGL is missing, or no device has that name */
+    OVC_ERROR_OUT_OF_BUDGET = 4,    /* gpu_memory_bytes is too small; the message names the smallest that works */
     OVC_ERROR_OUT_OF_MEMORY = 5,
     OVC_ERROR_DEVICE_LOST = 6,
     OVC_ERROR_INTERNAL = 7
@@ -42,9 +37,9 @@ typedef enum ovc_result {
 
 #define OVC_NONE 0xffffffffu
 
-/* The points org + t dir, t_min <= t <= t_max. dir need not be of unit length: t counts in its
- * lengths. A ray with NaN or infinity in it (but t_max may be infinite), a direction that is zero
- * or shorter than 1e-300, or t_min > t_max misses, and is counted. 64 bytes. */
+/* The points org + t dir, t_min <= t <= t_max. dir need not be of unit length: t counts in its lengths. A ray with NaN or
+ * infinity in it (but t_max may be infinite), a direction that is zero or shorter than 1e-300, or t_min > t_max misses, and
+ * is counted. 64 bytes. */
 typedef struct ovc_ray {
     double org[3];
     double t_min;
@@ -52,8 +47,8 @@ typedef struct ovc_ray {
     double t_max;
 } ovc_ray;
 
-/* The nearest hit, at org + t dir = (1-u-v) a + u b + v c of the triangle's corners a, b, c; equal
- * t goes to the smaller (mesh, prim). A miss: mesh = prim = OVC_NONE, t = infinity. 32 bytes. */
+/* The nearest hit, at org + t dir = (1-u-v) a + u b + v c of the triangle's corners a, b, c; equal t goes to the smaller
+ * (mesh, prim). A miss: mesh = prim = OVC_NONE, t = infinity. 32 bytes. */
 typedef struct ovc_hit {
     double t;
     double u;
@@ -68,20 +63,14 @@ typedef struct ovc_triangle {
     uint32_t prim;
 } ovc_triangle;
 
-typedef enum ovc_log_level {
-    OVC_LOG_ERROR = 0,
-    OVC_LOG_WARNING = 1,
-    OVC_LOG_INFO = 2
-} ovc_log_level;
+typedef enum ovc_log_level { OVC_LOG_ERROR = 0, OVC_LOG_WARNING = 1, OVC_LOG_INFO = 2 } ovc_log_level;
 
-/* One sentence without a line end; valid during the call only. May come from the device's thread.
- */
+/* One sentence without a line end; valid during the call only. May come from the device's thread. */
 typedef void (*ovc_log_function)(void* user, ovc_log_level level, const char* message);
 
 typedef struct ovc_device_config {
     size_t struct_size;
-    const char* name; /* NULL: the first GPU, else the software renderer. A number as listed, or a
-                         part of the renderer's name, any case */
+    const char* name; /* NULL: the first GPU, else the software renderer. A number as listed, or a part of the renderer's name, any case */
     ovc_log_function log; /* NULL: silent */
     void* log_user;
 } ovc_device_config;
@@ -92,18 +81,15 @@ typedef struct ovc_device_info {
     char vendor[64];
     char version[128];
     uint32_t is_software;
-    uint32_t max_texture_size;  /* texels a side */
-    uint64_t max_buffer_texels; /* of a buffer texture, after the clamp to what works */
-    uint64_t
-        memory_bytes; /* free GPU memory as the driver reports it; on a software renderer 1 GiB */
-    uint64_t default_budget_bytes; /* what gpu_memory_bytes = 0 means */
+    uint32_t max_texture_size;       /* texels a side */
+    uint64_t max_buffer_texels;      /* of a buffer texture, after the clamp to what works */
+    uint64_t memory_bytes;           /* free GPU memory as the driver reports it; on a software renderer 1 GiB */
+    uint64_t default_budget_bytes;   /* what gpu_memory_bytes = 0 means */
 } ovc_device_info;
 
 typedef enum ovc_precision {
-    OVC_PRECISION_CERTIFIED = 0, /* the answer of double precision, bit for bit: the kernel proves,
-                                    doubles decide the rest */
-    OVC_PRECISION_FAST = 1 /* the kernel's own t, u, v in float32; near edges and near ties another
-                              triangle may be named */
+    OVC_PRECISION_CERTIFIED = 0, /* the answer of double precision, bit for bit: the kernel proves, doubles decide the rest */
+    OVC_PRECISION_FAST = 1       /* the kernel's own t, u, v in float32; near edges and near ties another triangle may be named */
 } ovc_precision;
 
 typedef enum ovc_kernel {
@@ -112,88 +98,88 @@ typedef enum ovc_kernel {
     OVC_KERNEL_COMPUTE = 2
 } ovc_kernel;
 
+/* Experimental: the numbers stay, what is behind those but 0 may change. libovercast.so has two-level alone. libovercast-thesis.so,
+ * of the same ABI, has the others, which two-level is compared with: each keeps the whole scene in GPU memory at once. */
+typedef enum ovc_structure {
+    OVC_STRUCTURE_TWO_LEVEL = 0,
+    OVC_STRUCTURE_SINGLE_TEXTURE = 1, /* one BVH in one texture of at most 4096 x 4096 texels */
+    OVC_STRUCTURE_MULTI_TEXTURE = 2,  /* the same in several textures; `leaves`: in so many at least */
+    OVC_STRUCTURE_GPU_GRID = 3,       /* a uniform grid */
+    OVC_STRUCTURE_GPU_KD_TREE = 4,    /* a KD-tree, walked by restarts */
+    OVC_STRUCTURE_SKIP_BVH = 5        /* a BVH by insertion, walked without a stack in bounded passes */
+} ovc_structure;
+
 typedef struct ovc_scene_config {
     size_t struct_size;
-    uint64_t gpu_memory_bytes; /* the budget: pages, rays and hits together stay below it. 0: the
-                                  device's default */
-    uint64_t leaf_triangles; /* most triangles a level-1 leaf holds. 0: a tenth of the scene, capped
-                                so that pages fit the budget */
-    uint32_t
-        leaves; /* instead of leaf_triangles: about this many leaves. 0: as leaf_triangles says */
-    uint32_t precision; /* ovc_precision */
-    uint32_t kernel;    /* ovc_kernel */
-    uint32_t reserved;  /* 0 */
+    uint64_t gpu_memory_bytes; /* the budget: pages, rays and hits together stay below it. 0: the device's default */
+    uint64_t leaf_triangles;   /* most triangles a level-1 leaf holds. 0: a tenth of the scene, capped so that pages fit the budget */
+    uint32_t leaves;           /* instead of leaf_triangles: about this many leaves. 0: as leaf_triangles says */
+    uint32_t precision;        /* ovc_precision */
+    uint32_t kernel;           /* ovc_kernel */
+    uint32_t structure;        /* ovc_structure */
 } ovc_scene_config;
 
 typedef enum ovc_mesh_flags {
-    OVC_MESH_SHARED = 1 /* positions are used in place, and stay valid and unchanged until the scene
-                           is destroyed. Needs stride 12 and no indices */
+    OVC_MESH_SHARED = 1 /* positions are used in place, and stay valid and unchanged until the scene is destroyed.
+                           Needs stride 12 and no indices */
 } ovc_mesh_flags;
 
 typedef struct ovc_mesh {
     size_t struct_size;
-    const float*
-        positions; /* vertex_count x 3 offsets from origin, stride bytes apart, aligned to 4 */
-    size_t stride; /* bytes from one vertex to the next; 0: 12 */
+    const float* positions;   /* vertex_count x 3 offsets from origin, stride bytes apart, aligned to 4 */
+    size_t stride;            /* bytes from one vertex to the next; 0: 12 */
     uint64_t vertex_count;
-    const uint32_t* indices; /* 3 per triangle, each < vertex_count; NULL: vertices 3i, 3i+1, 3i+2
-                                make triangle i */
-    uint64_t triangle_count; /* 0 without indices: vertex_count / 3 */
-    double origin[3];        /* added to every position, in double */
-    uint32_t flags;          /* ovc_mesh_flags */
-    uint32_t reserved;       /* 0 */
+    const uint32_t* indices;  /* 3 per triangle, each < vertex_count; NULL: vertices 3i, 3i+1, 3i+2 make triangle i */
+    uint64_t triangle_count;  /* 0 without indices: vertex_count / 3 */
+    double origin[3];         /* added to every position, in double */
+    uint32_t flags;           /* ovc_mesh_flags */
+    uint32_t reserved;        /* 0 */
 } ovc_mesh;
 
 typedef struct ovc_query {
     size_t struct_size;
-    const ovc_triangle* skip; /* ray_count, or NULL: the triangle that ray i starts on and therefore
-                                 does not see; {OVC_NONE, OVC_NONE}: none */
+    const ovc_triangle* skip; /* ray_count, or NULL: the triangle that ray i starts on and therefore does not see; {OVC_NONE, OVC_NONE}: none */
 } ovc_query;
 
 typedef struct ovc_statistics {
     size_t struct_size;
-    uint64_t triangles;          /* added */
-    uint64_t dropped_not_finite; /* with a NaN or infinite corner: never hit */
-    uint64_t dropped_degenerate; /* without area: never hit */
-    uint64_t twins; /* with the same three corners as a smaller (mesh, prim), which answers for
-                       them: in no leaf */
+    uint64_t triangles;            /* added */
+    uint64_t dropped_not_finite;   /* with a NaN or infinite corner: never hit */
+    uint64_t dropped_degenerate;   /* without area: never hit */
+    uint64_t twins;                /* with the same three corners as a smaller (mesh, prim), which answers for them: in no leaf */
     uint64_t leaves;
-    uint64_t leaf_references; /* triangles counted once in each leaf they touch */
-    uint64_t level2_bytes;    /* all pages together */
+    uint64_t leaf_references;      /* triangles counted once in each leaf they touch */
+    uint64_t level2_bytes;         /* all pages together */
     uint64_t largest_page_bytes;
     uint64_t gpu_budget_bytes;
-    uint64_t gpu_peak_bytes; /* most bytes of GL buffers and textures alive at once */
-    uint64_t passes;         /* kernel launches */
-    uint64_t pages_in;       /* pages moved to the GPU */
-    uint64_t bytes_in;       /* their bytes */
+    uint64_t gpu_peak_bytes;       /* most bytes of GL buffers and textures alive at once */
+    uint64_t passes;               /* kernel launches */
+    uint64_t pages_in;             /* pages moved to the GPU */
+    uint64_t bytes_in;             /* their bytes */
     uint64_t nearest_rays;
     uint64_t occlusion_rays;
-    uint64_t invalid_rays; /* answered as misses */
-    uint64_t ray_visits;   /* rays counted once in each leaf they were traced in */
-    uint64_t
-        flagged; /* answers the kernel could not decide alone: doubles chose among its candidates */
-    uint64_t retraced; /* of them with too many candidates: the ray was traced again in double */
-    uint64_t capped;   /* of them because the driver ended the kernel's loop early (llvmpipe does
-                          after 65535 rounds) */
-    double seconds_level1; /* building the level-1 tree */
-    double seconds_level2; /* building and packing all pages */
-    double seconds_trace;  /* inside intersect and occluded */
-    double seconds_kernel; /* of it, waiting for the GPU */
+    uint64_t invalid_rays;         /* answered as misses */
+    uint64_t ray_visits;           /* rays counted once in each leaf they were traced in */
+    uint64_t flagged;              /* answers the kernel could not decide alone: doubles chose among its candidates */
+    uint64_t retraced;             /* of them with too many candidates: the ray was traced again in double */
+    uint64_t capped;               /* of them because the driver ended the kernel's loop early (llvmpipe does after 65535 rounds) */
+    double seconds_level1;         /* building the level-1 tree */
+    double seconds_level2;         /* building and packing all pages */
+    double seconds_trace;          /* inside intersect and occluded */
+    double seconds_kernel;         /* of it, waiting for the GPU */
 } ovc_statistics;
 
-/* The table. Fields are only ever appended; struct_size tells how many there are. All of them are
- * stable within an abi. */
+/* The table. Fields are only ever appended; struct_size tells how many there are. All of them are stable within an abi. */
 typedef struct ovc_api {
     size_t struct_size;
     uint32_t abi;
     uint32_t version; /* OVC_VERSION of the library */
 
-    /* The sentence for the last call that failed on this device, or, with NULL, on this thread
-     * without a device. Never NULL; valid until the next call on the device from this thread. */
+    /* The sentence for the last call that failed on this device, or, with NULL, on this thread without a device. Never NULL;
+     * valid until the next call on the device from this thread. */
     const char* (*last_error)(ovc_device device);
 
-    /* Describes up to `capacity` devices into infos (each with struct_size set) and sets *count to
-     * how many there are. */
+    /* Describes up to `capacity` devices into infos (each with struct_size set) and sets *count to how many there are. */
     ovc_result (*list_devices)(ovc_device_info* infos, uint32_t capacity, uint32_t* count);
 
     /* Opens a device and its thread. config may be NULL. */
@@ -206,15 +192,12 @@ typedef struct ovc_api {
     ovc_result (*create_scene)(ovc_device device, const ovc_scene_config* config, ovc_scene* scene);
     /* Meshes are numbered from 0 in the order they are added; mesh_id may be NULL. */
     ovc_result (*add_mesh)(ovc_scene scene, const ovc_mesh* mesh, uint32_t* mesh_id);
-    /* Builds level 1 and level 2. Afterwards the scene takes rays and no more meshes. An empty
-     * scene is fine: all rays miss. */
+    /* Builds level 1 and level 2. Afterwards the scene takes rays and no more meshes. An empty scene is fine: all rays miss. */
     ovc_result (*commit)(ovc_scene scene);
     /* Nearest hits of ray_count rays into hits[ray_count]. query may be NULL. */
-    ovc_result (*intersect)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits,
-                            const ovc_query* query);
+    ovc_result (*intersect)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits, const ovc_query* query);
     /* occluded[i] = 1 when ray i hits anything, else 0. query may be NULL. */
-    ovc_result (*occluded)(ovc_scene scene, const ovc_ray* rays, size_t ray_count,
-                           uint8_t* occluded, const ovc_query* query);
+    ovc_result (*occluded)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded, const ovc_query* query);
     ovc_result (*statistics)(ovc_scene scene, ovc_statistics* statistics);
     /* NULL is nothing to do. */
     void (*destroy_scene)(ovc_scene scene);
@@ -226,8 +209,7 @@ typedef struct ovc_api {
 #define OVC_EXPORT __attribute__((visibility("default")))
 #endif
 
-/* The table for this version of the ABI, or NULL when the library does not have it. Owned by the
- * library. */
+/* The table for this version of the ABI, or NULL when the library does not have it. Owned by the library. */
 OVC_EXPORT const ovc_api* ovc_get_api(uint32_t abi_version);
 typedef const ovc_api* (*ovc_get_api_function)(uint32_t abi_version);
 

@@ -94,11 +94,11 @@ std::span<const TriangleId> skip_of(const ovc_query* query, size_t ray_count) {
     return {reinterpret_cast<const TriangleId*>(query->skip), ray_count};
 }
 
-TwoLevel& committed(ovc_scene scene, const char* call) {
-    if (!scene->two_level)
+Structure& committed(ovc_scene scene, const char* call) {
+    if (!scene->structure)
         throw Failure{OVC_ERROR_INVALID_STATE,
                       fmt::format("{}: the scene is not committed yet", call)};
-    return *scene->two_level;
+    return *scene->structure;
 }
 
 void check_buffers(const char* call, const void* rays, const void* answers, size_t ray_count) {
@@ -137,17 +137,13 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
             if (config->kernel > OVC_KERNEL_COMPUTE)
                 invalid(fmt::format("ovc_scene_config.kernel is {}, expected 0, 1 or 2",
                                     config->kernel));
-            if (config->reserved)
-                invalid("ovc_scene_config.reserved is not 0");
-            created->options = {config->gpu_memory_bytes, config->leaf_triangles, config->leaves,
-                                config->precision != OVC_PRECISION_FAST,
-                                config->kernel == OVC_KERNEL_COMPUTE};
+            if (config->structure > OVC_STRUCTURE_SKIP_BVH)
+                invalid(fmt::format("ovc_scene_config.structure is {}, expected 0 to {}",
+                                    config->structure, int(OVC_STRUCTURE_SKIP_BVH)));
+            created->config = *config;
         }
-        // Known to be too small before anything is added: say so now.
-        const uint64_t budget = created->options.budget_bytes;
-        if (budget)
-            if (const Result<MemoryPlan> plan = plan_memory(budget, device->gl->info()); !plan)
-                throw Failure{OVC_ERROR_OUT_OF_BUDGET, plan.error().message};
+        // Known to be impossible before anything is added: say so now.
+        check_config(created->config, device->gl->info());
         ++device->scenes;
         *scene = created.release();
     });
@@ -157,7 +153,7 @@ ovc_result add_mesh(ovc_scene scene, const ovc_mesh* mesh, uint32_t* mesh_id) {
     return on_scene(scene, "add_mesh", [&] {
         if (!mesh)
             invalid("add_mesh: mesh is NULL");
-        if (scene->two_level)
+        if (scene->structure)
             throw Failure{OVC_ERROR_INVALID_STATE,
                           "add_mesh: the scene is committed; it takes no more meshes"};
         const size_t stride = mesh->stride ? mesh->stride : 12;
@@ -175,13 +171,13 @@ ovc_result add_mesh(ovc_scene scene, const ovc_mesh* mesh, uint32_t* mesh_id) {
 
 ovc_result commit(ovc_scene scene) {
     return on_scene(scene, "commit", [&] {
-        if (scene->two_level)
+        if (scene->structure)
             throw Failure{OVC_ERROR_INVALID_STATE, "commit: the scene is committed already"};
-        Result<std::unique_ptr<TwoLevel>> built =
-            TwoLevel::build(scene->soup, *scene->device->gl, scene->options, scene->device->log);
+        Result<std::unique_ptr<Structure>> built =
+            make_structure(scene->soup, *scene->device->gl, scene->config, scene->device->log);
         if (!built)
             throw Failure{OVC_ERROR_OUT_OF_BUDGET, built.error().message};
-        scene->two_level = std::move(*built);
+        scene->structure = std::move(*built);
     });
 }
 
@@ -213,33 +209,7 @@ ovc_result statistics(ovc_scene scene, ovc_statistics* statistics) {
             invalid(fmt::format(
                 "ovc_statistics.struct_size is {}, expected sizeof(ovc_statistics) = {}",
                 statistics->struct_size, sizeof(ovc_statistics)));
-        const TwoLevel& structure = committed(scene, "statistics");
-        const TwoLevelStatistics& s = structure.statistics();
-        *statistics = {sizeof(ovc_statistics),
-                       scene->soup.triangle_count(),
-                       s.dropped.not_finite,
-                       s.dropped.degenerate,
-                       s.twins,
-                       structure.level1().leaves.size(),
-                       structure.level1().reference_count(),
-                       s.level2_bytes,
-                       s.largest_page_bytes,
-                       structure.plan().budget_bytes,
-                       s.peak_bytes,
-                       s.passes,
-                       s.pages_in,
-                       s.bytes_in,
-                       s.nearest_rays,
-                       s.occlusion_rays,
-                       s.invalid_rays,
-                       s.ray_visits,
-                       s.flagged,
-                       s.retraced,
-                       s.capped,
-                       s.seconds_level1,
-                       s.seconds_level2,
-                       s.seconds_trace,
-                       s.seconds_kernel};
+        *statistics = committed(scene, "statistics").report();
     });
 }
 
@@ -248,7 +218,7 @@ void destroy_scene(ovc_scene scene) {
         return;
     {
         const std::lock_guard turn(scene->turn); // a call that is still running ends first
-        scene->two_level.reset();
+        scene->structure.reset();
     }
     --scene->device->scenes;
     scene->magic = 0;

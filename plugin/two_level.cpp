@@ -269,7 +269,7 @@ private:
     }
 
     /// Enters what the kernel found. False where double does not find what the kernel was certain
-    /// of.
+    /// of, or cannot say where to go on.
     bool take_in(uint32_t i, const Answer& answer) {
         const size_t ray = first_ + i;
         const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
@@ -294,19 +294,23 @@ private:
                 offer(nearest, rival, p.skip);
         if (nearest.hit().is_hit())
             query_.set(ray, nearest.hit());
-        if (!Query::kAnyHit || !nearest.hit().is_hit())
-            go_on_behind(i, leaf, p, nearest.limit());
-        return true;
+        return (Query::kAnyHit && nearest.hit().is_hit()) ||
+               go_on_behind(i, leaf, p, nearest.limit());
     }
 
     /// Sends the ray on unless its best hit, which is not beyond `end` however t is rounded, lies
-    /// in the leaf's cell: then nothing of later cells is nearer, nor as near.
-    void go_on_behind(uint32_t i, uint32_t leaf, const PreparedRay& p, double end) {
+    /// in the leaf's cell: then nothing of later cells is nearer, nor as near. False where rounding
+    /// would send it back: t must grow, or two cells at a corner pass a ray to and fro.
+    bool go_on_behind(uint32_t i, uint32_t leaf, const PreparedRay& p, double end) {
         const Box& cell = s_.level1_.leaves[leaf].cell;
         const Box safe = cell.padded(-p.margin(cell)); // no rounding leads out of the cell
         const double exit = clip(p, cell, p.ray.t_min, p.ray.t_max).exit;
-        if (end > clip(p, safe, p.ray.t_min, p.ray.t_max).exit && exit < end)
-            positions_[i] = {exit, end, leaf + 1, Position::Ready};
+        if (end <= clip(p, safe, p.ray.t_min, p.ray.t_max).exit || exit >= end)
+            return true;
+        if (exit <= positions_[i].t_from)
+            return false;
+        positions_[i] = {exit, end, leaf + 1, Position::Ready};
+        return true;
     }
 
     bool take_in_fast(uint32_t i, const Answer& answer) {

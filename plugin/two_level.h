@@ -12,6 +12,7 @@
 #include "gpu/tracer.h"
 #include "kdtree/partition.h"
 #include "kdtree/restart.h"
+#include "plugin/structure.h"
 
 #include <cstdint>
 #include <memory>
@@ -52,20 +53,19 @@ struct TwoLevelStatistics {
 };
 
 /// Level 1 and level 2 of a soup, and rays through them. One call at a time.
-class TwoLevel {
+class TwoLevel final : public Structure {
 public:
     /// The soup and the thread must outlive it. Error: a budget too small, with the smallest that
     /// works; GL's refusals.
     static Result<std::unique_ptr<TwoLevel>>
     build(const Soup& soup, GlThread& gl, const TwoLevelOptions& options, const LogSink& log);
-    ~TwoLevel();
+    ~TwoLevel() override;
 
-    /// hits[i] for rays[i]; skip: empty, or per ray the triangle it does not see.
     Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
-                           std::span<Hit> hits);
-    /// occluded[i] = 1 or 0 for rays[i].
+                           std::span<Hit> hits) override;
     Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
-                          std::span<uint8_t> occluded);
+                          std::span<uint8_t> occluded) override;
+    ovc_statistics report() const override; // make_two_level.cpp
 
     const TwoLevelStatistics& statistics() const { return statistics_; }
     const MemoryPlan& plan() const { return plan_; }

@@ -62,6 +62,13 @@
 #define OVC_BINDING_RAYS 1
 #define OVC_BINDING_ANSWERS 2
 #define OVC_BINDING_LEVEL1 3
+// The systems of the thesis: a ray is two texels, origin xyz, end t (negative: no ray); direction xyz, the index of the
+// triangle it does not see. It begins at t = 0, in the frame of the whole scene. In fast precision x, y, z of its answer
+// are t, u, v (float bits).
+#define OVC_FRAME_RAY_TEXELS 2
+// Where a ray stands between passes (3 textures), and the scene (from here on).
+#define OVC_BINDING_STATE 3
+#define OVC_BINDING_SCENE 6
 
 // Invocations of a work group of the compute kernel; a row of rays is a multiple.
 #define OVC_GROUP_SIZE 64

@@ -259,6 +259,18 @@ TEST_F(Abi, LeavesTheHostsRoundingModeAlone) {
     EXPECT_EQ(hit.t, 1);
 }
 
+TEST_F(Abi, TheSystemsOfTheThesisAreInALibraryOfTheirOwn) {
+    auto config = sized<ovc_scene_config>();
+    ovc_scene other = nullptr;
+    config.structure = OVC_STRUCTURE_GPU_GRID;
+    EXPECT_EQ(api().create_scene(device, &config, &other), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(error(), HasSubstr("libovercast-thesis.so"));
+    config.structure = 99;
+    EXPECT_EQ(api().create_scene(device, &config, &other), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(error(), "ovc_scene_config.structure is 99, expected 0 to 5");
+    EXPECT_EQ(other, nullptr);
+}
+
 TEST_F(Abi, TwoDevicesAndScenesWorkSideBySide) {
     commit_triangle();
     ovc_device other = nullptr;

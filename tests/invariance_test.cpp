@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One hash for all: the hits of a scene are the same bits whatever the leaf size, the budget, the
-// batch size, the order of the rays, the kernel and the vector width of the software renderer.
+// One hash for all: the hits of a scene are the same bits whatever the system, the leaf size, the
+// budget, the batch size, the order of the rays, the kernel and the vector width of the software
+// renderer.
 #include "core/parallel.h"
 #include "host/backend.h"
 #include "importers/importer.h"
@@ -78,6 +79,16 @@ public:
         return made ? std::move(*made) : nullptr;
     }
 
+    /// With the smallest budget that the error names, where options' is too small.
+    std::unique_ptr<Backend> limited(BackendOptions options) const {
+        if (Result<std::unique_ptr<Backend>> made = make_backend(soup_, options, {}); made)
+            return std::move(*made);
+        else if (const size_t at = made.error().message.find("that works is ");
+                 at != std::string::npos)
+            options.gpu_memory.bytes = std::stoull(made.error().message.substr(at + 14));
+        return backend(options);
+    }
+
     void expect_same(Backend& backend, const std::string& what) const {
         std::vector<Hit> hits(rays_.size());
         const Result<Done> done = backend.intersect(rays_, {}, hits);
@@ -103,12 +114,33 @@ public:
                 options.gpu_memory.bytes =
                     std::max({all.level2_bytes / share, all.largest_page_bytes, uint64_t(1) << 17});
                 options.kernel = share == 4 ? OVC_KERNEL_COMPUTE : OVC_KERNEL_FRAGMENT;
-                const auto limited = backend(options);
-                expect_same(*limited, std::to_string(leaves) + " leaves, " +
-                                          std::to_string(options.gpu_memory.bytes) + " bytes");
-                const ovc_statistics used = limited->statistics();
+                const auto small = limited(options);
+                ASSERT_TRUE(small);
+                expect_same(*small, std::to_string(leaves) + " leaves, " +
+                                        std::to_string(options.gpu_memory.bytes) + " bytes");
+                const ovc_statistics used = small->statistics();
                 EXPECT_LE(used.gpu_peak_bytes, used.gpu_budget_bytes);
             }
+        }
+    }
+
+    /// The systems of the thesis, some in the least memory they take.
+    void other_systems() const {
+        for (const auto& [kind, textures] : {std::pair(BackendKind::SingleTexture, 0u),
+                                             {BackendKind::MultiTexture, 2u},
+                                             {BackendKind::MultiTexture, 4u},
+                                             {BackendKind::GpuGrid, 0u},
+                                             {BackendKind::GpuKdTree, 0u},
+                                             {BackendKind::SkipBvh, 0u}}) {
+            BackendOptions options;
+            options.kind = kind;
+            options.leaves = textures;
+            const std::string what = "structure " + std::to_string(structure_of(kind)) + ", " +
+                                     std::to_string(textures) + " textures";
+            const auto whole = backend(options);
+            expect_same(*whole, what);
+            options.gpu_memory.bytes = whole->statistics().bytes_in + (uint64_t(1) << 18);
+            expect_same(*backend(options), what + ", little memory");
         }
     }
 
@@ -190,6 +222,9 @@ Soup dragon(const std::filesystem::path& data) {
 TEST(Invariance, SoupOverLeavesBudgetsAndKernels) {
     Invariance(soup_scene(), 4'000).leaves_budgets_and_kernels();
 }
+TEST(Invariance, SoupOverOtherSystems) {
+    Invariance(soup_scene(), 10'000).other_systems();
+}
 TEST(Invariance, SoupOverBatchSizes) {
     Invariance(soup_scene(), 200'000).batch_sizes();
 }
@@ -203,6 +238,7 @@ TEST(Invariance, Dragon) {
         GTEST_SKIP() << kNoRealData;
     const Invariance scene(dragon(*data), 100'000);
     scene.leaves_budgets_and_kernels();
+    scene.other_systems();
     scene.batch_sizes();
     scene.ray_orders();
 }
@@ -213,6 +249,7 @@ TEST(Invariance, Kitchen) {
         GTEST_SKIP() << kNoRealData;
     const Invariance scene(kitchen(*data), 100'000);
     scene.leaves_budgets_and_kernels();
+    scene.other_systems();
     scene.batch_sizes();
     scene.ray_orders();
 }

@@ -18,7 +18,8 @@ void BenchWords::add_to(CLI::App& app) {
     app.add_option("SCENE", scenes,
                    fmt::format("Files or test scenes' names; default: {}", kDefaultScene));
     app.add_option("--only", only,
-                   fmt::format("Contenders, or the first words of their names; default: all of {}",
+                   fmt::format("Contenders, or the first words of their names; default: all but "
+                               "the thesis- ones of {}",
                                fmt::join(contender_names(), ", ")))
         ->type_name("NAME,...");
     app.add_option("--size", size, "Pixels, and with them rays; default: 1024x1024")

@@ -38,6 +38,10 @@ TEST(BenchArguments, ChooseContendersByNameOrFirstWord) {
                 testing::ElementsAre("certified-fragment", "certified-compute", "fast-compute"));
     EXPECT_THAT(labels({.only = "embree"}),
                 testing::ElementsAre("embree-default", "embree-robust"));
+    EXPECT_THAT(labels({.only = "thesis"}),
+                testing::ElementsAre("thesis-single-texture", "thesis-multi-texture",
+                                     "thesis-gpu-grid", "thesis-gpu-kdtree", "thesis-skip-bvh"));
+    EXPECT_THAT(labels({}), testing::Not(testing::Contains("thesis-gpu-grid")));
     EXPECT_THAT(error({.only = "fast-comput"}),
                 testing::AllOf(testing::HasSubstr("there is no contender 'fast-comput'"),
                                testing::HasSubstr("did you mean 'fast-compute'?")));

@@ -27,7 +27,7 @@ Json json_of_times(const Measurement& m, const std::vector<double>& seconds) {
 }
 
 Json json_of(const BenchResult& r, const BenchEntrant& e) {
-    const bool pages = e.contender.kind == ContenderKind::TwoLevel;
+    const bool pages = e.contender.on_gpu();
     Json object = {{"name", e.contender.name},
                    {"label", e.contender.label()},
                    {"renderer", e.renderer},
@@ -50,7 +50,7 @@ Json json_of(const BenchResult& r, const BenchEntrant& e) {
 
 Json json_of(const BenchResult& r, const Measurement& m) {
     const Contender& contender = r.entrants[m.entrant].contender;
-    const bool on_gpu = contender.kind == ContenderKind::TwoLevel;
+    const bool on_gpu = contender.on_gpu();
     const Ratios ratios = ratios_of(r, m);
     return {{"workload", r.workloads[m.workload]},
             {"contender", contender.label()},

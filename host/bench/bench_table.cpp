@@ -29,7 +29,7 @@ std::string heading(const BenchResult& r) {
 }
 
 TextRow build_row(const BenchResult& r, const BenchEntrant& e) {
-    const bool pages = e.contender.kind == ContenderKind::TwoLevel;
+    const bool pages = e.contender.on_gpu();
     return {e.contender.label(),
             pages ? human_count(e.built.leaves) : "-",
             pages ? human_bytes(e.built.level2_bytes) : "-",
@@ -77,7 +77,7 @@ TextRow work_header(const std::string& workload, bool sweep) {
 
 TextRow work_row(const BenchResult& r, const Measurement& m, bool sweep) {
     const Contender& contender = r.entrants[m.entrant].contender;
-    const bool on_gpu = contender.kind == ContenderKind::TwoLevel;
+    const bool on_gpu = contender.on_gpu();
     const Spread call = spread_of(m.seconds);
     const Spread kernel = spread_of(m.kernel_seconds);
     const Ratios ratios = ratios_of(r, m);

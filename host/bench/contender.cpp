@@ -12,11 +12,21 @@
 
 namespace ovc {
 
+static Contender thesis(std::string_view name, BackendKind backend, uint32_t textures = 0) {
+    return {
+        .name = name, .kind = ContenderKind::Thesis, .leaves = {textures, ""}, .backend = backend};
+}
+
 static const Contender kContenders[] = {
     {"certified-fragment", ContenderKind::TwoLevel, OVC_PRECISION_CERTIFIED, OVC_KERNEL_FRAGMENT},
     {"certified-compute", ContenderKind::TwoLevel, OVC_PRECISION_CERTIFIED, OVC_KERNEL_COMPUTE},
     {"fast-fragment", ContenderKind::TwoLevel, OVC_PRECISION_FAST, OVC_KERNEL_FRAGMENT},
     {"fast-compute", ContenderKind::TwoLevel, OVC_PRECISION_FAST, OVC_KERNEL_COMPUTE},
+    thesis("thesis-single-texture", BackendKind::SingleTexture),
+    thesis("thesis-multi-texture", BackendKind::MultiTexture, /* textures= */ 4),
+    thesis("thesis-gpu-grid", BackendKind::GpuGrid),
+    thesis("thesis-gpu-kdtree", BackendKind::GpuKdTree),
+    thesis("thesis-skip-bvh", BackendKind::SkipBvh),
     {"cpu-kdtree", ContenderKind::CpuKdTree},
     {.name = "embree-default", .kind = ContenderKind::Embree, .embree = EmbreeMode::Default},
     {.name = "embree-robust", .kind = ContenderKind::Embree, .embree = EmbreeMode::Robust},
@@ -58,7 +68,8 @@ static bool has_embree() {
 
 static bool wanted(const Contender& contender, std::span<const std::string> only) {
     if (only.empty())
-        return contender.kind != ContenderKind::Embree || has_embree();
+        return contender.kind != ContenderKind::Thesis &&
+               (contender.kind != ContenderKind::Embree || has_embree());
     return std::any_of(only.begin(), only.end(),
                        [&](const std::string& word) { return answers_to(contender.name, word); });
 }
@@ -103,7 +114,8 @@ static Result<std::shared_ptr<Backend>> shared(Result<std::unique_ptr<Backend>> 
 Result<std::shared_ptr<Backend>> ContenderBuilder::build(const Contender& contender) {
     switch (contender.kind) {
     case ContenderKind::TwoLevel:
-        return shared(build_two_level(contender));
+    case ContenderKind::Thesis:
+        return shared(build_on_gpu(contender));
     case ContenderKind::Embree:
         return shared(make_embree_backend(soup_, contender.embree));
     case ContenderKind::CpuKdTree:
@@ -124,9 +136,9 @@ Result<uint64_t> ContenderBuilder::all_pages_bytes(BackendOptions options) {
     return pages_bytes_[options.leaves] = (*whole)->statistics().level2_bytes;
 }
 
-Result<std::unique_ptr<Backend>> ContenderBuilder::build_two_level(const Contender& contender) {
+Result<std::unique_ptr<Backend>> ContenderBuilder::build_on_gpu(const Contender& contender) {
     BackendOptions options;
-    options.kind = BackendKind::TwoLevel;
+    options.kind = contender.backend;
     options.device = device_;
     options.precision = contender.precision;
     options.kernel = contender.kernel;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contender: who is timed. The plugin in each precision and kernel, under each of the settings that
-// are swept; and the peers on the CPU.
+// Contender: who is timed. Two-level in each precision and kernel, under each of the settings that
+// are swept; the systems of the thesis; and the peers on the CPU.
 #pragma once
 
 #include "core/result.h"
@@ -15,7 +15,7 @@
 
 namespace ovc {
 
-enum class ContenderKind { TwoLevel, CpuKdTree, Embree };
+enum class ContenderKind { TwoLevel, Thesis, CpuKdTree, Embree };
 
 /// A value of a sweep over the plugin's settings, and the words it was asked for with; empty: not
 /// asked.
@@ -37,19 +37,20 @@ struct Contender {
     EmbreeMode embree = EmbreeMode::Default;
     LeavesChoice leaves;
     BudgetChoice budget;
+    BackendKind backend = BackendKind::TwoLevel; // on the GPU: which
 
     /// The name, and the words of its sweep: "certified-fragment, 8 leaves, budget 12M".
     std::string label() const;
-    bool certified() const {
-        return kind == ContenderKind::TwoLevel && precision == OVC_PRECISION_CERTIFIED;
-    }
+    bool on_gpu() const { return kind == ContenderKind::TwoLevel || kind == ContenderKind::Thesis; }
+    bool certified() const { return on_gpu() && precision == OVC_PRECISION_CERTIFIED; }
 };
 
 /// All names, in the order of the table.
 std::vector<std::string_view> contender_names();
 
 /// only: names, or their first words ("certified", "embree"); empty: all that this program was
-/// built with. Each contender of the plugin comes once for each pair of leaves and budget; both
+/// built with, but the systems of the thesis, some of which take long to build. Each contender of
+/// two-level comes once for each pair of leaves and budget; both
 /// lists have at least one value. Error: a name that there is none of.
 Result<std::vector<Contender>> choose_contenders(std::span<const std::string> only,
                                                  std::span<const LeavesChoice> leaves,
@@ -64,7 +65,7 @@ public:
     Result<std::shared_ptr<Backend>> build(const Contender& contender);
 
 private:
-    Result<std::unique_ptr<Backend>> build_two_level(const Contender& contender);
+    Result<std::unique_ptr<Backend>> build_on_gpu(const Contender& contender);
     Result<uint64_t> all_pages_bytes(BackendOptions options);
 
     const Soup& soup_;

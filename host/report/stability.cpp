@@ -132,7 +132,8 @@ private:
 
     Result<std::unique_ptr<Backend>> plugin(ovc_precision precision, const LogSink& log) const {
         BackendOptions options = options_.backend;
-        options.kind = BackendKind::TwoLevel;
+        if (options.kind == BackendKind::Auto)
+            options.kind = BackendKind::TwoLevel; // and nothing in its place
         options.precision = precision;
         return make_backend(soup_, options, log);
     }

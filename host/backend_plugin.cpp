@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two-level backend: a soup and its rays, handed through the C ABI without a copy.
+// The backends behind the C ABI: a soup and its rays, handed through the C ABI without a copy.
 #include "host/backend.h"
 #include "host/plugin_loader.h"
 
@@ -44,9 +44,9 @@ static ovc_mesh mesh_of(const Chunk& chunk) {
     return mesh;
 }
 
-class TwoLevelBackend final : public Backend {
+class PluginBackend final : public Backend {
 public:
-    TwoLevelBackend(PluginDevice device, std::string renderer, PluginScene scene)
+    PluginBackend(PluginDevice device, std::string renderer, PluginScene scene)
         : device_(std::move(device)), renderer_(std::move(renderer)), scene_(std::move(scene)) {}
 
     Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
@@ -92,8 +92,8 @@ static Result<Done> fill(const PluginDevice& device, ovc_scene scene, const Soup
     return device.checked(device.api()->commit(scene));
 }
 
-Result<std::unique_ptr<Backend>> make_two_level_backend(PluginDevice device, const Soup& soup,
-                                                        const BackendOptions& options) {
+Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
+                                                     const BackendOptions& options) {
     const Result<ovc_device_info> info = device.describe();
     if (!info)
         return info.error();
@@ -107,13 +107,14 @@ Result<std::unique_ptr<Backend>> make_two_level_backend(PluginDevice device, con
     config.leaves = options.leaves;
     config.precision = options.precision;
     config.kernel = options.kernel;
+    config.structure = structure_of(options.kind);
     Result<PluginScene> scene = device.create_scene(config);
     if (!scene)
         return scene.error();
     if (const Result<Done> filled = fill(device, scene->get(), soup); !filled)
         return filled.error();
     return std::unique_ptr<Backend>(
-        std::make_unique<TwoLevelBackend>(std::move(device), info->renderer, std::move(*scene)));
+        std::make_unique<PluginBackend>(std::move(device), info->renderer, std::move(*scene)));
 }
 
 } // namespace ovc

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// The structure of libovercast.so: two-level, and what it counts in the words of the ABI.
+#include "plugin/failure.h"
+#include "plugin/structure.h"
+#include "plugin/two_level.h"
+
+#include <fmt/format.h>
+
+namespace ovc {
+
+void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
+    if (config.structure != OVC_STRUCTURE_TWO_LEVEL)
+        throw Failure{
+            OVC_ERROR_INVALID_ARGUMENT,
+            fmt::format("ovc_scene_config.structure is {}; this library has two-level (0) "
+                        "alone, libovercast-thesis.so has the others",
+                        config.structure)};
+    if (config.gpu_memory_bytes)
+        if (const auto plan = plan_memory(config.gpu_memory_bytes, device); !plan)
+            throw Failure{OVC_ERROR_OUT_OF_BUDGET, plan.error().message};
+}
+
+Result<std::unique_ptr<Structure>>
+make_structure(const Soup& soup, GlThread& gl, const ovc_scene_config& config, const LogSink& log) {
+    const TwoLevelOptions options = {config.gpu_memory_bytes, config.leaf_triangles, config.leaves,
+                                     config.precision != OVC_PRECISION_FAST,
+                                     config.kernel == OVC_KERNEL_COMPUTE};
+    Result<std::unique_ptr<TwoLevel>> built = TwoLevel::build(soup, gl, options, log);
+    if (!built)
+        return built.error();
+    return std::unique_ptr<Structure>(std::move(*built));
+}
+
+ovc_statistics TwoLevel::report() const {
+    const TwoLevelStatistics& s = statistics();
+    return {sizeof(ovc_statistics),
+            soup_.triangle_count(),
+            s.dropped.not_finite,
+            s.dropped.degenerate,
+            s.twins,
+            level1().leaves.size(),
+            level1().reference_count(),
+            s.level2_bytes,
+            s.largest_page_bytes,
+            plan().budget_bytes,
+            s.peak_bytes,
+            s.passes,
+            s.pages_in,
+            s.bytes_in,
+            s.nearest_rays,
+            s.occlusion_rays,
+            s.invalid_rays,
+            s.ray_visits,
+            s.flagged,
+            s.retraced,
+            s.capped,
+            s.seconds_level1,
+            s.seconds_level2,
+            s.seconds_trace,
+            s.seconds_kernel};
+}
+
+} // namespace ovc

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Structure: what answers rays behind the C ABI. Each library has its own two functions below:
+// libovercast.so makes two-level (make_two_level.cpp), libovercast-thesis.so what two-level is
+// compared with (thesis/).
+#pragma once
+
+#include "core/log.h"
+#include "core/ray.h"
+#include "core/result.h"
+#include "core/soup.h"
+#include "gpu/gl_thread.h"
+#include "plugin/overcast.h"
+
+#include <memory>
+#include <span>
+
+namespace ovc {
+
+/// Built over a soup. One call at a time.
+class Structure {
+public:
+    virtual ~Structure() = default;
+
+    /// hits[i] for rays[i]; skip: empty, or per ray the triangle it does not see.
+    virtual Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                                   std::span<Hit> hits) = 0;
+    /// occluded[i] = 1 or 0 for rays[i].
+    virtual Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                                  std::span<uint8_t> occluded) = 0;
+    /// Counted since it was built. What a structure does not have is 0.
+    virtual ovc_statistics report() const = 0;
+};
+
+/// Throws a Failure for what this library cannot do on the device, as far as that can be told
+/// before there are triangles. The config's size and its enumerators are in order.
+void check_config(const ovc_scene_config& config, const DeviceInfo& device);
+
+/// The structure that the config, checked before, asks for. The soup and the thread must outlive
+/// it. Error: a budget too small, with the smallest that works; GL's refusals.
+Result<std::unique_ptr<Structure>>
+make_structure(const Soup& soup, GlThread& gl, const ovc_scene_config& config, const LogSink& log);
+
+} // namespace ovc

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Comparison: a system that two-level is compared with, behind the same interface and with the same
+// answers: the kernel proves what it can, doubles decide the rest.
+#pragma once
+
+#include "core/twins.h"
+#include "gpu/page.h"
+#include "plugin/query.h"
+#include "plugin/structure.h"
+#include "plugin/thesis/runner.h"
+
+#include <vector>
+
+namespace ovc::thesis {
+
+class Comparison final : public Structure {
+public:
+    static Result<std::unique_ptr<Structure>>
+    build(const Soup& soup, GlThread& gl, const RunnerOptions& options, const LogSink& log);
+    ~Comparison() override;
+
+    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                           std::span<Hit> hits) override;
+    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                          std::span<uint8_t> occluded) override;
+    ovc_statistics report() const override { return statistics_; }
+
+private:
+    Comparison(const Soup& soup, GlThread& gl, const RunnerOptions& options)
+        : soup_(soup), gl_(gl), options_(options) {}
+
+    Result<Done> build_system(const std::vector<TriangleId>& triangles, const Box& bounds);
+
+    template <class Query>
+    class Batch;
+    template <class Query>
+    Result<Done> trace(const Query& query);
+
+    const Soup& soup_;
+    GlThread& gl_;
+    RunnerOptions options_;
+    Twins twins_;
+    Leaf whole_; // without them
+    uint32_t batch_rays_ = 0;
+    std::unique_ptr<Runner> runner_; // made and destroyed on the thread of gl_; none: no triangles
+    Page arbiter_; // walked on the CPU; empty until a ray must be traced again in double
+    ovc_statistics statistics_{sizeof(ovc_statistics)};
+};
+
+} // namespace ovc::thesis

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which triangles lie in which place (a cell of a grid, a leaf of a KD-tree), gathered by many
+// threads and sorted by place.
+#pragma once
+
+#include "core/parallel.h"
+#include "core/soup.h"
+#include "plugin/thesis/system.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace ovc::thesis {
+
+struct Reference {
+    uint32_t place;
+    uint32_t triangle;
+};
+
+/// Place p lists triangles[first[p]] up to triangles[first[p + 1]], in order.
+struct References {
+    std::vector<uint32_t> first; // places + 1
+    std::vector<uint32_t> triangles;
+};
+
+/// find(triangle, out) appends the references of one triangle; from several threads at once.
+template <class Find>
+References gather_references(size_t triangles, size_t places, Find&& find) {
+    constexpr size_t kBlock =
+        4096; // lists of their own, so that the order never depends on threads
+    std::vector<std::vector<Reference>> blocks((triangles + kBlock - 1) / kBlock);
+    parallel_for(blocks.size(), 1, [&](size_t from, size_t to) {
+        for (size_t b = from; b < to; ++b)
+            for (size_t i = b * kBlock; i < std::min(triangles, (b + 1) * kBlock); ++i)
+                find(uint32_t(i), blocks[b]);
+    });
+    References sorted;
+    sorted.first.assign(places + 1, 0);
+    for (const auto& block : blocks)
+        for (const Reference& r : block)
+            ++sorted.first[r.place + 1];
+    for (size_t p = 0; p < places; ++p)
+        sorted.first[p + 1] += sorted.first[p];
+    sorted.triangles.resize(sorted.first[places]);
+    std::vector<uint32_t> next(sorted.first.begin(), sorted.first.end() - 1);
+    for (const auto& block : blocks)
+        for (const Reference& r : block)
+            sorted.triangles[next[r.place]++] = r.triangle;
+    return sorted;
+}
+
+/// Appends them four a texel.
+inline void append(Texels& texels, const std::vector<uint32_t>& words) {
+    for (size_t i = 0; i < words.size(); i += 4) {
+        const auto word = [&](size_t k) { return i + k < words.size() ? words[i + k] : 0u; };
+        texels.push_back({word(0), word(1), word(2), word(3)});
+    }
+}
+
+} // namespace ovc::thesis

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Depth-first packing of the tree by insertion.
+#include "plugin/thesis/skip_bvh.h"
+
+#include "plugin/thesis/goldsmith_salmon.h"
+
+namespace ovc::thesis {
+namespace {
+
+constexpr int kShuffles = 10; // thesis, chapter 4
+constexpr uint32_t kTriangle = 0x80000000u;
+constexpr uint32_t kRoot = 1;
+
+class Packer {
+public:
+    Packer(const InsertionTree& tree, const std::vector<LocalTriangle>& triangles)
+        : tree_(tree), triangles_(triangles) {}
+
+    Texels pack() {
+        texels_ = {uvec4(0)};
+        std::vector<Open> open; // inner nodes above, whose skip pointers wait for their end
+        for (uint32_t n = 0; n != kNone || !open.empty();) {
+            if (n == kNone) {
+                texels_[open.back().texel].w = uint32_t(texels_.size());
+                n = tree_.nodes[open.back().node].next_sibling;
+                open.pop_back();
+                continue;
+            }
+            const InsertionNode& node = tree_.nodes[n];
+            if (node.item != kNone) {
+                append(texels_, triangles_[node.item], node.item, kTriangle);
+                n = node.next_sibling;
+                continue;
+            }
+            open.push_back({n, texels_.size()});
+            texels_.push_back(texel(node.box.lo - vec3(float(kWider))));
+            texels_.push_back(texel(node.box.hi + vec3(float(kWider))));
+            n = node.first_child;
+        }
+        texels_[0] = {kRoot, uint32_t(texels_.size()), 0, 0};
+        texels_.push_back(uvec4(0)); // the kernel fetches three texels wherever it stands
+        return std::move(texels_);
+    }
+
+private:
+    struct Open {
+        uint32_t node;
+        size_t texel;
+    };
+
+    const InsertionTree& tree_;
+    const std::vector<LocalTriangle>& triangles_;
+    Texels texels_;
+};
+
+} // namespace
+
+Result<System> build_skip_bvh(const Soup& soup, const Leaf& whole) {
+    const std::vector<LocalTriangle> triangles = local_triangles(soup, whole);
+    std::vector<Boxf> boxes(triangles.size());
+    for (size_t i = 0; i < triangles.size(); ++i)
+        for (const vec3& corner : triangles[i])
+            boxes[i].add(corner);
+    const InsertionTree tree = best_insertion_tree(boxes, kShuffles);
+    if (3 * triangles.size() + 2 * tree.nodes.size() >= kTriangle)
+        return Error{"the BVH has more texels than 31 bits count"};
+    return System{Packer(tree, triangles).pack(), triangles.size()};
+}
+
+} // namespace ovc::thesis

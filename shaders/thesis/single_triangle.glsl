@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// A triangle by itself, as three texels: its corners, and its id in w of the first (its highest bit may mark it).
+
+// Takes the triangle in. Returns true when it is now the best.
+bool take_triangle(inout Found found, uvec4 A, uvec4 B, uvec4 C, bool valid, vec3 org, Basis basis, uint skip) {
+    Corner a = corner(uintBitsToFloat(A.xyz), org, basis);
+    Corner b = corner(uintBitsToFloat(B.xyz), org, basis);
+    Corner c = corner(uintBitsToFloat(C.xyz), org, basis);
+    Candidate hit = candidate(a, b, c, edge(a, b), edge(b, c), edge(c, a), edge_error(a, b), edge_error(b, c),
+                              edge_error(c, a));
+    uint prim = A.w & 0x7fffffffu;
+    // A triangle listed in several cells is offered several times: it is no rival of itself.
+    bool known = prim == found.prim || prim == found.rival[0] || prim == found.rival[1];
+    return take(found, hit, valid && !known && prim != skip, prim, 8u);
+}
+
+// 1 / dir, finite: a component below 1e-18 moves the ray by less than any padding over the whole scene.
+vec3 finite_reciprocal(vec3 dir) {
+    vec3 tiny = mix(vec3(1e-18), vec3(-1e-18), lessThan(dir, vec3(0.0)));
+    return 1.0 / mix(dir, tiny, lessThan(abs(dir), vec3(1e-18)));
+}
