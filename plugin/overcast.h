@@ -159,7 +159,7 @@ typedef struct ovc_statistics {
     uint64_t nearest_rays;
     uint64_t occlusion_rays;
     uint64_t invalid_rays;         /* answered as misses */
-    uint64_t ray_visits;           /* rays counted once in each leaf they were traced in */
+    uint64_t ray_visits;           /* rays counted once in each pass they took part in */
     uint64_t flagged;              /* answers the kernel could not decide alone: doubles chose among its candidates */
     uint64_t retraced;             /* of them with too many candidates: the ray was traced again in double */
     uint64_t capped;               /* of them because the driver ended the kernel's loop early (llvmpipe does after 65535 rounds) */

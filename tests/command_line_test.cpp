@@ -73,7 +73,7 @@ TEST_F(CommandLine, BadInputIsOneSentenceExitOneAndNothingWritten) {
         {"cut.ply", {"cut.ply", "byte"}},
         {"outside.ply", {"outside.ply", "9"}},
         {"scene.xyz", {"scene.xyz", "xyz"}},
-        {"box --gpu-memory 1K", {"1024 bytes is too small", "smallest that works is 65536 bytes"}},
+        {"box --gpu-memory 1K", {"1024 bytes is too small", "smallest that works is 40960 bytes"}},
         {"box --gpu-memory abc", {"--gpu-memory", "abc"}},
         {"box -o nowhere/out.png", {"nowhere", "does not exist"}},
         {"box --device 'no such card'", {"no device is called 'no such card'", "there is 0 '"}},
