@@ -61,7 +61,8 @@ Runner::Runner(std::unique_ptr<Ledger> ledger, const RunnerOptions& options, con
       most_rounds_(system.most_rounds),
       tile_defines_(plan.tiles.defines()),
       tiles_(*ledger_, plan.tiles, std::move(system.texels)),
-      rays_(*ledger_, GL_RGBA32UI, sizeof(uvec4), kRowRays * OVC_FRAME_RAY_TEXELS, plan.rows, "rays"),
+      rays_(*ledger_, GL_RGBA32UI, sizeof(uvec4), kRowRays * OVC_FRAME_RAY_TEXELS, plan.rows,
+            "rays"),
       answers_(*ledger_, GL_RGBA32UI, sizeof(FrameAnswer), kRowRays, plan.rows, "answers"),
       framebuffer_(answers_) {
     if (options.structure == OVC_STRUCTURE_SKIP_BVH)
