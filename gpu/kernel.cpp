@@ -93,9 +93,9 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_CERTIFY {:d}\n"
                        "#define OVC_STACK_DEPTH {}\n"
                        "#define OVC_STACK_REGISTERS {:d}\n"
-                       "#define OVC_PAGE_IMAGE {:d}\n"
+                       "#define OVC_BUFFER_IMAGES {:d}\n"
                        "#define OVC_MOST_ROUNDS {}\n",
-                       any_hit, certify, stack_depth, stack_registers, page_image, most_rounds);
+                       any_hit, certify, stack_depth, stack_registers, buffer_images, most_rounds);
 }
 
 Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines) {

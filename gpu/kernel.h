@@ -13,6 +13,10 @@
 
 namespace ovc {
 
+/// Fewer than the 65,535 rounds, of all loops of a pixel, after which llvmpipe ends them without a
+/// word.
+inline constexpr uint32_t kMostRoundsInSoftware = 65000;
+
 /// Which kernel, and every switch of shaders/config.glsl, by value. Derived from what the query and
 /// the pages need, and from the driver.
 struct ShaderConfig {
@@ -21,7 +25,7 @@ struct ShaderConfig {
     bool certify = true;
     uint32_t stack_depth = 16;
     bool stack_registers = true;
-    bool page_image = true;
+    bool buffer_images = true;
     uint32_t most_rounds = 0x7fffffff; // of all loops of a ray
 
     bool operator==(const ShaderConfig&) const = default;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tracer: rays in by a texture, the kernel over a rectangle of pixels, answers out by a framebuffer
+// Tracer: rays in by a buffer, the kernel over a rectangle of pixels, answers out by a framebuffer
 // object. Based on: thesis, section 3.1.
 #include "gpu/tracer.h"
 
+#include "core/stopwatch.h"
+#include "gpu/gl_check.h"
 #include "gpu/level1_table.h"
 #include "shaders/layout.h"
 
@@ -10,30 +12,22 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 
 namespace ovc {
 namespace {
 
-constexpr uint32_t kMaxBatchRows = 2048; // half a million rays: beyond, a pass gains nothing more
-/// llvmpipe ends the loops of a pixel after 65,535 rounds together, without a word.
-constexpr uint32_t kMostRoundsInSoftware = 65000;
+constexpr uint32_t kMaxBatchRows = 2048;  // half a million rays: beyond, a pass gains nothing more
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
-
-Result<Done> check_gl(const char* doing) {
-    const GLenum error = glGetError();
-    if (error == GL_NO_ERROR)
-        return Done{};
-    while (glGetError() != GL_NO_ERROR) {
-    }
-    if (error == GL_OUT_OF_MEMORY)
-        return Error{
-            fmt::format("the GPU is out of memory while {}; a smaller budget may work", doing)};
-    return Error{fmt::format("OpenGL error 0x{:04x} while {}", error, doing)};
-}
 
 uint32_t round_up(uint32_t n, uint32_t step) {
     return (n + step - 1) / step * step;
+}
+
+uint32_t stack_depth(std::span<const Page> pages) {
+    uint32_t depth = 1;
+    for (const Page& page : pages)
+        depth = std::max(depth, page.depth);
+    return round_up(depth, 4); // few programs, no register more than needed
 }
 
 } // namespace
@@ -56,13 +50,6 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device) 
         (budget_bytes - plan.ray_bytes()) / device.buffer_alignment * device.buffer_alignment;
     plan.pool_bytes = std::min(plan.pool_bytes, device.max_buffer_texels * sizeof(uvec4));
     return plan;
-}
-
-static uint32_t stack_depth(std::span<const Page> pages) {
-    uint32_t depth = 1;
-    for (const Page& page : pages)
-        depth = std::max(depth, page.depth);
-    return round_up(depth, 4); // few programs, no register more than needed
 }
 
 Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const DeviceInfo& device,
@@ -130,14 +117,14 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
 Result<double> Tracer::pass(const PassOptions& options, std::span<const Traveller> rays,
                             std::span<Answer> answers) {
     assert(!rays.empty() && rays.size() == answers.size());
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     ShaderConfig config;
     config.compute = options.compute;
     config.any_hit = options.any_hit;
     config.certify = options.certify;
     config.stack_depth = stack_depth_;
     config.stack_registers = software_;
-    config.page_image = software_;
+    config.buffer_images = software_;
     if (software_)
         config.most_rounds = kMostRoundsInSoftware;
     const Result<GLuint> program = kernels_.program(config);
@@ -154,7 +141,7 @@ Result<double> Tracer::pass(const PassOptions& options, std::span<const Travelle
                                                 {OVC_BINDING_RAYS, rays_.id()},
                                                 {OVC_BINDING_LEVEL1, level1_.id()}};
     for (const auto& [binding, texture] : inputs)
-        if (config.page_image)
+        if (config.buffer_images)
             glBindImageTexture(binding, texture, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
         else
             glBindTextureUnit(binding, texture);
@@ -176,7 +163,7 @@ Result<double> Tracer::pass(const PassOptions& options, std::span<const Travelle
     glPopDebugGroup();
     if (Result<Done> ok = check_gl("tracing a pass"); !ok)
         return ok.error();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return watch.seconds();
 }
 
 } // namespace ovc

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CPU KD-tree as a backend: the baseline, and the reference that certified hits are equal to.
+#include "core/stopwatch.h"
 #include "host/backend.h"
-#include "host/stopwatch.h"
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
 

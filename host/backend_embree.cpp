@@ -3,7 +3,7 @@
 #include "host/backend.h"
 
 #include "core/parallel.h"
-#include "host/stopwatch.h"
+#include "core/stopwatch.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>

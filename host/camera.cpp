@@ -141,4 +141,14 @@ PointLight shoulder_light(const Camera& camera) {
     return {camera.eye + distance * (1.1 * axes.up - 0.9 * axes.right), kDefaultLightColor};
 }
 
+std::vector<PointLight> placed_lights(const std::vector<PointLight>& lights, const Camera& camera) {
+    std::vector<PointLight> placed = lights;
+    for (PointLight& light : placed)
+        if (light.on_camera)
+            light.position += camera.eye;
+    if (placed.empty())
+        placed.push_back(shoulder_light(camera));
+    return placed;
+}
+
 } // namespace ovc

@@ -55,6 +55,10 @@ Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height);
 /// A light above the camera's left shoulder, as far away as the eye is from the target.
 PointLight shoulder_light(const Camera& camera);
 
+/// The lights as they stand for a picture from `camera`: those on it are where it is; none: the
+/// shoulder light.
+std::vector<PointLight> placed_lights(const std::vector<PointLight>& lights, const Camera& camera);
+
 /// What a light has that was only given a position, a little warm: a white surface that faces it
 /// comes out at about 0.8.
 inline constexpr vec3 kDefaultLightColor{2.6f, 2.45f, 2.2f};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // overcast bench: how fast rays are answered, by the plugin certified and fast and by its peers, in
 // turn on the same rays.
+#include "core/stopwatch.h"
 #include "host/bench/bench_arguments.h"
 #include "host/bench/bench_text.h"
 #include "host/camera.h"
@@ -9,7 +10,6 @@
 #include "host/output.h"
 #include "host/scene_source.h"
 #include "host/scene_summary.h"
-#include "host/stopwatch.h"
 
 #include <fmt/format.h>
 #include <stdlib.h>
@@ -81,8 +81,7 @@ Result<Camera> dress(Scene& scene, const ImageSize& size) {
     const Camera camera =
         scene.camera ? *scene.camera
                      : framing_camera(hittable_bounds(scene.soup), size.width, size.height);
-    if (scene.lights.empty())
-        scene.lights.push_back(shoulder_light(camera));
+    scene.lights = placed_lights(scene.lights, camera);
     const Result<Done> fine = check_camera(camera);
     return fine ? Result<Camera>(camera) : fine.error();
 }

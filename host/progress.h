@@ -2,8 +2,8 @@
 // Progress: one line on a terminal that overwrites itself; nothing on a pipe.
 #pragma once
 
+#include "core/stopwatch.h"
 #include "host/backend.h"
-#include "host/stopwatch.h"
 #include "host/whitted_batched.h"
 
 #include <cstdint>

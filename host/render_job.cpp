@@ -2,13 +2,13 @@
 // Rendering: the scene and the structure once, then picture after picture.
 #include "host/render_job.h"
 
+#include "core/stopwatch.h"
 #include "host/camera.h"
 #include "host/frames.h"
 #include "host/interrupt.h"
 #include "host/progress.h"
 #include "host/scene_summary.h"
 #include "host/stats.h"
-#include "host/stopwatch.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,18 +28,6 @@ static Camera still_camera(const Scene& scene, const RenderJob& job) {
     if (scene.camera)
         return *scene.camera;
     return framing_camera(hittable_bounds(scene.soup), job.size.width, job.size.height);
-}
-
-/// The lights as they are placed for one picture: those on the camera are where it is.
-static std::vector<PointLight> lights_for(const std::vector<PointLight>& lights,
-                                          const Camera& camera) {
-    std::vector<PointLight> placed = lights;
-    for (PointLight& light : placed)
-        if (light.on_camera)
-            light.position += camera.eye;
-    if (placed.empty())
-        placed.push_back(shoulder_light(camera));
-    return placed;
 }
 
 /// A run of pictures over one scene and one backend.
@@ -81,7 +69,7 @@ private:
         const ovc_statistics before = backend_.statistics();
         FrameStats frame;
         frame.frame = shot.frame;
-        scene_.lights = lights_for(lights_, shot.camera);
+        scene_.lights = placed_lights(lights_, shot.camera);
         Image image(job_.size.width, job_.size.height);
         if (const Result<RenderReport> report = trace(shot, image); report)
             frame.report = *report;

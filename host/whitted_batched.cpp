@@ -4,9 +4,9 @@
 #include "host/whitted_batched.h"
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "host/camera.h"
 #include "host/shade.h"
-#include "host/stopwatch.h"
 
 #include <algorithm>
 #include <utility>

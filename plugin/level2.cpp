@@ -3,19 +3,15 @@
 #include "plugin/level2.h"
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 
 namespace ovc {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// What a triangle takes in a page where most pair up; soups without shared edges take up to twice
 /// as much.
@@ -57,13 +53,13 @@ Result<Levels> build_levels(const Soup& soup, const Numbering& numbers,
         if (most == 0)
             return Error{
                 fmt::format("a page of one triangle does not fit into {} bytes", page_bytes)};
-        auto start = std::chrono::steady_clock::now();
+        Stopwatch watch;
         levels.level1 =
             partition(soup, triangles, bounds, uint32_t(std::min<uint64_t>(most, kNone)));
-        levels.seconds_level1 += seconds_since(start);
-        start = std::chrono::steady_clock::now();
+        levels.seconds_level1 += watch.seconds();
+        watch = Stopwatch();
         const TooLarge page = build_pages(soup, numbers, page_bytes, levels);
-        levels.seconds_level2 += seconds_since(start);
+        levels.seconds_level2 += watch.seconds();
         if (page.bytes == 0)
             return levels;
         // What this page took a triangle, and a little more, tells how many fit; always fewer than

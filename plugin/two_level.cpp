@@ -3,6 +3,7 @@
 #include "plugin/two_level.h"
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "gpu/level1_table.h"
 #include "kdtree/restart.h"
 #include "plugin/arbiter.h"
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <numeric>
 
 namespace ovc {
@@ -27,10 +27,6 @@ constexpr uint64_t kPagesAtOnce =
     3; // a page takes at most this share of the pool, so that some stay resident
 constexpr size_t kFewRays = 4096;       // fewer are not worth a pass while others wait
 constexpr uint64_t kDefaultLeaves = 10; // thesis, section 4
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 } // namespace
 
@@ -47,7 +43,7 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     if (soup.triangle_count() > OVC_MAX_TRIANGLES)
         return Error{fmt::format("{} triangles are too many: a scene takes {}",
                                  soup.triangle_count(), OVC_MAX_TRIANGLES)};
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     Box bounds;
     TwoLevelStatistics& statistics = self->statistics_;
     std::vector<TriangleId> triangles = hittable_triangles(soup, &statistics.dropped, &bounds);
@@ -60,7 +56,7 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
             fmt::format("left out {} triangles without area", statistics.dropped.degenerate));
     self->twins_ = Twins::take_out(soup, triangles);
     statistics.twins = self->twins_.count();
-    statistics.seconds_level1 = seconds_since(start);
+    statistics.seconds_level1 = watch.seconds();
 
     const uint64_t parts = options.leaves ? options.leaves : kDefaultLeaves;
     const uint64_t most = options.leaf_triangles
@@ -275,7 +271,6 @@ private:
         const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
         if (answer.prim == OVC_MISS && !has_rivals)
             return true;
-        flagged_ += has_rivals;
         const uint32_t leaf = answer.leaf();
         if (used_[leaf].load(std::memory_order_relaxed) == 0)
             used_[leaf].store(1, std::memory_order_relaxed);
@@ -294,8 +289,10 @@ private:
                 offer(nearest, rival, p.skip);
         if (nearest.hit().is_hit())
             query_.set(ray, nearest.hit());
-        return (Query::kAnyHit && nearest.hit().is_hit()) ||
-               go_on_behind(i, leaf, p, nearest.limit());
+        const bool settled =
+            (Query::kAnyHit && nearest.hit().is_hit()) || go_on_behind(i, leaf, p, nearest.limit());
+        flagged_ += settled && has_rivals; // decide_in_double() counts the others
+        return settled;
     }
 
     /// Sends the ray on unless its best hit, which is not beyond `end` however t is rounded, lies
@@ -359,14 +356,14 @@ uint32_t TwoLevel::number_to_skip(TriangleId id) const {
 
 template <class Query>
 Result<Done> TwoLevel::trace(const Query& query) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     for (size_t first = 0; first < query.rays.size(); first += kWaveRays) {
         const size_t count = std::min(kWaveRays, query.rays.size() - first);
         if (Result<Done> done = Wave<Query>(*this, query, first, count).run(); !done)
             return done;
         (Query::kAnyHit ? statistics_.occlusion_rays : statistics_.nearest_rays) += count;
     }
-    statistics_.seconds_trace += seconds_since(start);
+    statistics_.seconds_trace += watch.seconds();
     return Done{};
 }
 

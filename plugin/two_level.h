@@ -11,7 +11,6 @@
 #include "gpu/page.h"
 #include "gpu/tracer.h"
 #include "kdtree/partition.h"
-#include "kdtree/restart.h"
 #include "plugin/structure.h"
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 // Level 1 in the kernel: where a ray goes next, and the ray in a leaf's frame. In double, the twin of kdtree/restart.cpp.
 // Based on: Foley and Sugerman 2005, section 3.1 (kd-restart); thesis, section 3.4 (algorithm 4).
 
-#if OVC_PAGE_IMAGE
+#if OVC_BUFFER_IMAGES
 layout(rgba32ui, binding = OVC_BINDING_LEVEL1) uniform readonly restrict uimageBuffer level1;
 uvec4 level1_texel(int i) { return imageLoad(level1, i); }
 #else

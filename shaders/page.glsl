@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels of the page that the pass runs over.
+// Texels of the pool that pages lie in.
 
-#if OVC_PAGE_IMAGE
+#if OVC_BUFFER_IMAGES
 layout(rgba32ui, binding = OVC_BINDING_PAGE) uniform readonly restrict uimageBuffer page;
 uvec4 page_texel(int i) { return imageLoad(page, i); }
 #else

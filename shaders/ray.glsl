@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rays of a pass: OVC_RAY_TEXELS texels each.
 
-#if OVC_PAGE_IMAGE
+#if OVC_BUFFER_IMAGES
 layout(rgba32ui, binding = OVC_BINDING_RAYS) uniform readonly restrict uimageBuffer rays;
 uvec4 ray_texel(int i) { return imageLoad(rays, i); }
 #else

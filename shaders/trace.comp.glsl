@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compute kernel: an invocation is a ray of the queue; rows as in the fragment kernel.
+// The compute kernel: an invocation is a ray of the pass; rows as in the fragment kernel.
 #version 450 core
 #include "layout.h"
 #include "config.glsl"

@@ -2,7 +2,7 @@
 // Rounds of calls, and what each took.
 #include "host/bench/bench.h"
 
-#include "host/stopwatch.h"
+#include "core/stopwatch.h"
 
 #include <fmt/format.h>
 #include <time.h>

@@ -2,8 +2,8 @@
 // Runs a case of the stability suite and compares.
 #include "host/report/stability.h"
 
+#include "core/stopwatch.h"
 #include "core/triangle.h"
-#include "host/stopwatch.h"
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
 

@@ -3,6 +3,7 @@
 #include "plugin/thesis/comparison.h"
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "gpu/page_walk.h"
 #include "shaders/layout.h"
 
@@ -10,22 +11,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 
 namespace ovc::thesis {
 namespace {
 
 constexpr size_t kGrain = 256; // rays a task
-
-class Stopwatch {
-public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 } // namespace
 
@@ -173,7 +163,6 @@ private:
             return true;
         }
         const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
-        flagged_ += has_rivals;
         if (Query::kAnyHit && !has_rivals && answer.prim != OVC_MISS) {
             query_.set(first_ + i, Hit{0, 0, 0, c_.whole_.triangles[answer.prim]});
             return true;
@@ -185,6 +174,7 @@ private:
             if (rival != OVC_NO_TRIANGLE)
                 offer(nearest, rival, p.skip);
         query_.set(first_ + i, nearest.hit());
+        flagged_ += has_rivals; // retrace() counts the others
         return true;
     }
 

@@ -2,14 +2,13 @@
 // Into the scene's frame, in double, then rounded.
 #include "plugin/thesis/frame_ray.h"
 
+#include "shaders/layout.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace ovc::thesis {
 namespace {
-
-/// Scene sizes from which the place of entry is off by more than 1/64 of a float rounding.
-constexpr double kMostSceneSizes = 0x1p21;
 
 uint32_t index_of(const Leaf& whole, TriangleId id) {
     if (id.mesh == kNone)
@@ -39,7 +38,7 @@ FrameRay frame_ray(const Leaf& whole, const PreparedRay& p, bool& decidable) {
     const double longest = std::abs(p.ray.dir[p.kz]);
     const double length = (stretch.exit - stretch.enter) * longest * whole.frame.scale;
     // Written so that a NaN is not decidable either.
-    decidable = reach * whole.frame.scale <= kMostSceneSizes && std::isfinite(length) &&
+    decidable = reach * whole.frame.scale <= OVC_MOST_LEAF_SIZES && std::isfinite(length) &&
                 std::isnormal(longest * whole.frame.scale);
     if (!decidable)
         return {};

@@ -17,9 +17,6 @@ namespace {
 
 constexpr uint64_t kMostRows = 512; // half a million rays: beyond, a pass gains nothing more
 
-/// llvmpipe ends a loop after 65,535 rounds without a word.
-constexpr uint32_t kMostRoundsInSoftware = 65000;
-
 uint64_t row_bytes(ovc_structure structure) {
     const uint64_t state = structure == OVC_STRUCTURE_SKIP_BVH ? BoundedPasses::kBytesPerRay : 0;
     return Runner::kRowRays * (sizeof(FrameRay) + sizeof(FrameAnswer) + state);

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The walks' loop: a few steps from cell to cell, then one triangle. Where nobody but the driver would end it early, it ends
-// itself (OVC_MOST_ROUNDS of config.glsl); the steps count, as the driver counts them.
+// The walks' loop: a few steps from cell to cell, then one triangle. It ends itself before the driver
+// would (OVC_MOST_ROUNDS of config.glsl); the steps count, as the driver counts them.
 
 const int OVC_WALK_STEPS = 8; // a round, at most
 
 bool going_on(bool done, inout int rounds) {
-#if OVC_MOST_ROUNDS
     ++rounds;
     return !done && rounds <= OVC_MOST_ROUNDS / (OVC_WALK_STEPS + 1);
-#else
-    return !done;
-#endif
 }
