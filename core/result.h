@@ -9,9 +9,13 @@
 
 namespace ovc {
 
+/// What a caller may want to tell apart; most errors are for people alone.
+enum class ErrorKind { Other, OutOfGpuMemory, DeviceLost, Cancelled };
+
 /// One sentence: which file, line or argument, what was found, what was expected.
 struct Error {
     std::string message;
+    ErrorKind kind = ErrorKind::Other;
 };
 
 template <class T>

@@ -40,6 +40,7 @@ private:
 
 inline constexpr uint32_t kDeviceMagic = 0x6f766344;
 inline constexpr uint32_t kSceneMagic = 0x6f766353;
+inline constexpr uint32_t kStreamMagic = 0x6f766354;
 
 } // namespace ovc
 
@@ -58,6 +59,7 @@ struct ovc_scene_t {
     ovc_scene_config config{sizeof(ovc_scene_config)};
     ovc::Soup soup;
     std::unique_ptr<ovc::Structure> structure; // set by commit
+    std::atomic<std::thread::id> streaming;    // the thread that is inside stream(), if any
 };
 
 namespace ovc {

@@ -23,6 +23,7 @@ extern "C" {
 
 typedef struct ovc_device_t* ovc_device;
 typedef struct ovc_scene_t* ovc_scene;
+typedef struct ovc_stream_t* ovc_stream;
 
 typedef enum ovc_result {
     OVC_OK = 0,
@@ -32,7 +33,8 @@ typedef enum ovc_result {
     OVC_ERROR_OUT_OF_BUDGET = 4,    /* gpu_memory_bytes is too small; the message names the smallest that works */
     OVC_ERROR_OUT_OF_MEMORY = 5,
     OVC_ERROR_DEVICE_LOST = 6,
-    OVC_ERROR_INTERNAL = 7
+    OVC_ERROR_INTERNAL = 7,
+    OVC_ERROR_CANCELLED = 8 /* a function of the caller's asked for it */
 } ovc_result;
 
 #define OVC_NONE 0xffffffffu
@@ -169,6 +171,27 @@ typedef struct ovc_statistics {
     double seconds_kernel;         /* of it, waiting for the GPU */
 } ovc_statistics;
 
+/* Answers of a stream, in any order: hits for rays pushed for the nearest, occluded for the others; the other pointer is NULL.
+ * Valid during the call only. */
+typedef struct ovc_stream_answers {
+    size_t struct_size;
+    size_t count;
+    const uint64_t* tokens;  /* count: what each ray was called when it was pushed */
+    const ovc_hit* hits;     /* count, or NULL */
+    const uint8_t* occluded; /* count: 1 or 0, or NULL */
+} ovc_stream_answers;
+
+/* The caller's side of a stream. Both functions are called on the thread that called stream(), may push() rays, may call nothing
+ * else on the scene, and return 0 to go on, anything else to stop. */
+typedef struct ovc_stream_host {
+    size_t struct_size;
+    void* user;
+    /* Asks for rays that come from no answer, such as camera rays: about `wanted` are welcome. None pushed: there are no more,
+     * and it is not called again. */
+    int (*more)(void* user, ovc_stream stream, size_t wanted);
+    int (*answered)(void* user, ovc_stream stream, const ovc_stream_answers* answers);
+} ovc_stream_host;
+
 /* The table. Fields are only ever appended; struct_size tells how many there are. All of them are stable within an abi. */
 typedef struct ovc_api {
     size_t struct_size;
@@ -201,6 +224,15 @@ typedef struct ovc_api {
     ovc_result (*statistics)(ovc_scene scene, ovc_statistics* statistics);
     /* NULL is nothing to do. */
     void (*destroy_scene)(ovc_scene scene);
+
+    /* The mixed form: rays of both kinds are under way together, and what the caller pushes joins them before the next leaves are
+     * moved to the GPU, so that fewer moves serve more rays. Every ray is answered once. Returns when all are and there are no
+     * more; OVC_ERROR_CANCELLED where the caller's functions stopped it. */
+    ovc_result (*stream)(ovc_scene scene, const ovc_stream_host* host);
+    /* Only from within the functions of the stream's host. Copies ray_count rays and their tokens, which come back with the
+     * answers. any_hit: 0 for nearest hits, 1 for occlusion. query may be NULL. The caller bounds how many rays wait. */
+    ovc_result (*push)(ovc_stream stream, const ovc_ray* rays, const uint64_t* tokens, size_t ray_count, uint32_t any_hit,
+                       const ovc_query* query);
 } ovc_api;
 
 #if defined(_WIN32)

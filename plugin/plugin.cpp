@@ -3,13 +3,15 @@
 #include "plugin/device.h"
 #include "plugin/overcast.h"
 #include "plugin/scene.h"
+#include "plugin/stream_call.h"
 
 extern "C" const ovc_api* ovc_get_api(uint32_t abi_version) {
     static constexpr ovc_api api = {
         sizeof(ovc_api),   OVC_ABI_VERSION,    OVC_VERSION,          ovc::last_error,
         ovc::list_devices, ovc::create_device, ovc::describe_device, ovc::destroy_device,
         ovc::create_scene, ovc::add_mesh,      ovc::commit,          ovc::intersect,
-        ovc::occluded,     ovc::statistics,    ovc::destroy_scene,
+        ovc::occluded,     ovc::statistics,    ovc::destroy_scene,   ovc::stream,
+        ovc::push,
     };
     return abi_version == OVC_ABI_VERSION ? &api : nullptr;
 }

@@ -17,6 +17,10 @@ struct NearestQuery {
     std::span<Hit> results;
 
     TriangleId skipped(size_t i) const { return skip.empty() ? TriangleId{} : skip[i]; }
+    NearestQuery part(size_t first, size_t count) const {
+        return {rays.subspan(first, count), skip.empty() ? skip : skip.subspan(first, count),
+                results.subspan(first, count)};
+    }
     void set_miss(size_t i) const { results[i] = Hit{}; }
     void set(size_t i, const Hit& hit) const { results[i] = hit; }
     bool was_hit(size_t i) const { return results[i].is_hit(); }
@@ -30,6 +34,10 @@ struct OcclusionQuery {
     std::span<uint8_t> results;
 
     TriangleId skipped(size_t i) const { return skip.empty() ? TriangleId{} : skip[i]; }
+    OcclusionQuery part(size_t first, size_t count) const {
+        return {rays.subspan(first, count), skip.empty() ? skip : skip.subspan(first, count),
+                results.subspan(first, count)};
+    }
     void set_miss(size_t i) const { results[i] = 0; }
     void set(size_t i, const Hit& hit) const { results[i] = hit.is_hit(); }
     bool was_hit(size_t i) const { return results[i] != 0; }

@@ -3,40 +3,12 @@
 // them.
 #include "plugin/scene.h"
 
-#include "plugin/device.h"
-#include "plugin/handles.h"
+#include "plugin/scene_call.h"
 
-#include <fmt/format.h>
-
-#include <cstddef>
 #include <cstring>
 
 namespace ovc {
 namespace {
-
-// The records of the ABI are the records of core, byte for byte: batches cross without a copy.
-static_assert(sizeof(ovc_ray) == sizeof(Ray) && offsetof(ovc_ray, t_min) == offsetof(Ray, t_min) &&
-              offsetof(ovc_ray, dir) == offsetof(Ray, dir) &&
-              offsetof(ovc_ray, t_max) == offsetof(Ray, t_max));
-static_assert(sizeof(ovc_hit) == sizeof(Hit) && offsetof(ovc_hit, u) == offsetof(Hit, u) &&
-              offsetof(ovc_hit, mesh) == offsetof(Hit, id));
-static_assert(sizeof(ovc_triangle) == sizeof(TriangleId) && OVC_NONE == kNone);
-
-[[noreturn]] void invalid(std::string message) {
-    throw Failure{OVC_ERROR_INVALID_ARGUMENT, std::move(message)};
-}
-
-/// body(scene) with the scene's turn taken.
-template <class Body>
-ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
-    if (!scene || scene->magic != kSceneMagic)
-        return fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
-                                   fmt::format("{}: scene is NULL or not a scene", call).c_str());
-    return guard(scene->device->messages, [&] {
-        const std::lock_guard turn(scene->turn);
-        body();
-    });
-}
 
 void check_mesh(const ovc_mesh& mesh, size_t stride) {
     if (mesh.struct_size != sizeof(ovc_mesh))
@@ -82,33 +54,9 @@ std::vector<vec3> copied_corners(const ovc_mesh& mesh, size_t stride) {
     return corners;
 }
 
-/// The triangles that rays do not see, as a span; empty for none.
-std::span<const TriangleId> skip_of(const ovc_query* query, size_t ray_count) {
-    if (!query)
-        return {};
-    if (query->struct_size != sizeof(ovc_query))
-        invalid(fmt::format("ovc_query.struct_size is {}, expected sizeof(ovc_query) = {}",
-                            query->struct_size, sizeof(ovc_query)));
-    if (!query->skip)
-        return {};
-    return {reinterpret_cast<const TriangleId*>(query->skip), ray_count};
-}
-
-Structure& committed(ovc_scene scene, const char* call) {
-    if (!scene->structure)
-        throw Failure{OVC_ERROR_INVALID_STATE,
-                      fmt::format("{}: the scene is not committed yet", call)};
-    return *scene->structure;
-}
-
 void check_buffers(const char* call, const void* rays, const void* answers, size_t ray_count) {
     if (ray_count && (!rays || !answers))
         invalid(fmt::format("{}: rays or the answers' buffer is NULL", call));
-}
-
-void check(const Result<Done>& result) {
-    if (!result)
-        throw Failure{OVC_ERROR_INTERNAL, result.error().message};
 }
 
 } // namespace
@@ -176,7 +124,8 @@ ovc_result commit(ovc_scene scene) {
         Result<std::unique_ptr<Structure>> built =
             make_structure(scene->soup, *scene->device->gl, scene->config, scene->device->log);
         if (!built)
-            throw Failure{OVC_ERROR_OUT_OF_BUDGET, built.error().message};
+            throw Failure{code_of(built.error().kind, OVC_ERROR_OUT_OF_BUDGET),
+                          built.error().message};
         scene->structure = std::move(*built);
     });
 }

@@ -10,6 +10,7 @@
 #include "core/soup.h"
 #include "gpu/gl_thread.h"
 #include "plugin/overcast.h"
+#include "plugin/stream.h"
 
 #include <memory>
 #include <span>
@@ -27,6 +28,9 @@ public:
     /// occluded[i] = 1 or 0 for rays[i].
     virtual Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
                                   std::span<uint8_t> occluded) = 0;
+    /// Traces what the host pushes until there is no more. Error of the kind Cancelled: the host
+    /// stopped it. Here: batch after batch, for structures that know no better.
+    virtual Result<Done> stream(StreamHost& host);
     /// Counted since it was built. What a structure does not have is 0.
     virtual ovc_statistics report() const = 0;
 };

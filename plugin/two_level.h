@@ -13,6 +13,7 @@
 #include "kdtree/partition.h"
 #include "plugin/structure.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -64,7 +65,8 @@ public:
                            std::span<Hit> hits) override;
     Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
                           std::span<uint8_t> occluded) override;
-    ovc_statistics report() const override; // make_two_level.cpp
+    Result<Done> stream(StreamHost& host) override; // two_level_stream.cpp
+    ovc_statistics report() const override;         // make_two_level.cpp
 
     const TwoLevelStatistics& statistics() const { return statistics_; }
     const MemoryPlan& plan() const { return plan_; }
@@ -78,8 +80,17 @@ private:
     size_t bring(std::span<const uint32_t> wanted);
     uint32_t number_to_skip(TriangleId id) const;
 
+    /// Fewer rays are not worth a pass while others wait.
+    size_t few_rays() const { return std::min<size_t>(4096, plan_.batch_rays / 4); }
+
     template <class Query>
     class Wave;
+    template <class Query>
+    class Lane;
+    class Stream;
+    /// Moves in pages that rays of these waves wait for, and calls those up.
+    template <class... Queries>
+    void bring_for(Wave<Queries>&... waves);
     template <class Query>
     Result<Done> trace(const Query& query);
 

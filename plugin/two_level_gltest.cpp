@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 namespace ovc {
 namespace {
 
@@ -387,6 +389,109 @@ TEST_F(TwoLevelGl, NamesTheSmallestBudgetThatWorks) {
               "a GPU budget of 1024 bytes is too small: the smallest that works is 40960 bytes "
               "(24576 for rays and answers, 16384 for a page)");
     EXPECT_TRUE(TwoLevel::build(soup, *gl, {.budget_bytes = 65536}, {}));
+}
+
+/// Pushes rays a few at a time when asked, and for every hit an occlusion ray from there; keeps all
+/// answers by token.
+class Spawner final : public StreamHost {
+public:
+    Spawner(std::span<const Ray> rays, size_t at_once)
+        : hits_of(rays.size()), blocked(rays.size(), 2), rays_(rays), at_once_(at_once) {}
+
+    bool more(RayStream& stream, size_t) override {
+        const size_t count = std::min(at_once_, rays_.size() - next_);
+        std::vector<uint64_t> tokens(count);
+        std::iota(tokens.begin(), tokens.end(), next_);
+        stream.push({false, rays_.subspan(next_, count), {}, tokens});
+        next_ += count;
+        return true;
+    }
+    bool hits(RayStream& stream, std::span<const uint64_t> tokens,
+              std::span<const Hit> hits) override {
+        std::vector<Ray> spawned;
+        std::vector<TriangleId> skip;
+        std::vector<uint64_t> names;
+        for (size_t i = 0; i < tokens.size(); ++i) {
+            ++answers;
+            hits_of[tokens[i]] = hits[i];
+            if (!hits[i].is_hit())
+                continue;
+            spawned.push_back(from_hit(rays_[tokens[i]], hits[i]));
+            skip.push_back(hits[i].id);
+            names.push_back(tokens[i]);
+        }
+        stream.push({true, spawned, skip, names});
+        return answers < stop_after;
+    }
+    bool occlusions(RayStream&, std::span<const uint64_t> tokens,
+                    std::span<const uint8_t> occluded) override {
+        for (size_t i = 0; i < tokens.size(); ++i)
+            blocked[tokens[i]] = occluded[i];
+        return true;
+    }
+
+    static Ray from_hit(const Ray& ray, const Hit& hit) {
+        return {ray.at(hit.t), 0, dvec3(0.3, 1, -0.2)};
+    }
+
+    std::vector<Hit> hits_of;
+    std::vector<uint8_t> blocked; // 2: never asked
+    size_t answers = 0;
+    size_t stop_after = ~size_t(0);
+
+private:
+    std::span<const Ray> rays_;
+    size_t at_once_;
+    size_t next_ = 0;
+};
+
+TEST_F(TwoLevelGl, AStreamAnswersWhatBatchesAnswer) {
+    for (const auto& [soup_name, soup] : test::unpleasant_soups()) {
+        const auto rays = test::unpleasant_rays(soup, 71, 1500);
+        for (const auto& [name, options] : variants()) {
+            SCOPED_TRACE(soup_name + ", " + name);
+            const auto structure = build(soup, options);
+            std::vector<Hit> expected(rays.size());
+            ASSERT_TRUE(ok(structure->intersect(rays, {}, expected)));
+            std::vector<Ray> second;
+            std::vector<TriangleId> skip;
+            std::vector<size_t> parents;
+            for (size_t i = 0; i < rays.size(); ++i)
+                if (expected[i].is_hit()) {
+                    second.push_back(Spawner::from_hit(rays[i], expected[i]));
+                    skip.push_back(expected[i].id);
+                    parents.push_back(i);
+                }
+            std::vector<uint8_t> occluded(second.size());
+            ASSERT_TRUE(ok(structure->occluded(second, skip, occluded)));
+
+            Spawner host(rays, 400);
+            ASSERT_TRUE(ok(structure->stream(host)));
+            EXPECT_EQ(host.answers, rays.size());
+            size_t differing = 0;
+            for (size_t i = 0; i < rays.size(); ++i)
+                differing += !test::same(host.hits_of[i], expected[i]);
+            EXPECT_EQ(differing, 0u);
+            differing = 0;
+            for (size_t j = 0; j < parents.size(); ++j)
+                differing += host.blocked[parents[j]] != occluded[j];
+            EXPECT_EQ(differing, 0u);
+        }
+    }
+}
+
+TEST_F(TwoLevelGl, AStreamThatIsStoppedSaysSoAndTheStructureGoesOn) {
+    const Soup soup = test::closed_grid(24);
+    const auto rays = test::unpleasant_rays(soup, 5, 1000);
+    const auto structure = build(soup, {.leaf_triangles = 100});
+    Spawner host(rays, 100);
+    host.stop_after = 150;
+    const Result<Done> stopped = structure->stream(host);
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().kind, ErrorKind::Cancelled);
+    Spawner again(rays, 1000);
+    EXPECT_TRUE(ok(structure->stream(again)));
+    EXPECT_EQ(again.answers, rays.size());
 }
 
 } // namespace

@@ -26,26 +26,29 @@ public:
     }
     size_t count() const { return count_; }
 
-    /// The leaves somebody waits for, most rays per byte to move first, but none that is worth less
-    /// than an eighth of the first: its queue may grow until it is.
-    std::vector<uint32_t> wanted(std::span<const Page> pages) const {
-        constexpr double kLeastShare = 1.0 / 8;
-        std::vector<std::pair<double, uint32_t>> leaves;
-        for (uint32_t leaf = 0; leaf < queues_.size(); ++leaf)
-            if (!queues_[leaf].empty())
-                leaves.emplace_back(-double(queues_[leaf].size()) / double(pages[leaf].bytes()),
-                                    leaf);
-        std::sort(leaves.begin(), leaves.end());
-        std::vector<uint32_t> wanted;
-        for (const auto& [minus_worth, leaf] : leaves)
-            if (minus_worth <= leaves.front().first * kLeastShare)
-                wanted.push_back(leaf);
-        return wanted;
-    }
+    size_t count(uint32_t leaf) const { return queues_[leaf].size(); }
 
 private:
     std::vector<std::vector<uint32_t>> queues_; // per leaf
     size_t count_ = 0;
 };
+
+/// Of the leaves that rays wait for, counts[leaf] of them: those worth moving in, most rays per
+/// byte first, but none that is worth less than an eighth of the first: its queue may grow until it
+/// is.
+inline std::vector<uint32_t> worth_moving(std::span<const size_t> counts,
+                                          std::span<const Page> pages) {
+    constexpr double kLeastShare = 1.0 / 8;
+    std::vector<std::pair<double, uint32_t>> leaves;
+    for (uint32_t leaf = 0; leaf < counts.size(); ++leaf)
+        if (counts[leaf] > 0)
+            leaves.emplace_back(-double(counts[leaf]) / double(pages[leaf].bytes()), leaf);
+    std::sort(leaves.begin(), leaves.end());
+    std::vector<uint32_t> wanted;
+    for (const auto& [minus_worth, leaf] : leaves)
+        if (minus_worth <= leaves.front().first * kLeastShare)
+            wanted.push_back(leaf);
+    return wanted;
+}
 
 } // namespace ovc

@@ -15,7 +15,7 @@
                               // indexed writes (llvmpipe: 4 to 25 % faster); 0: a plain array
 #endif
 #ifndef OVC_BUFFER_IMAGES
-#define OVC_BUFFER_IMAGES 1 // pages, level 1 and rays by 1: imageLoad (inlined on llvmpipe, 5 % faster); 0: texelFetch
+#define OVC_BUFFER_IMAGES 1 // pages, level 1, rays: 1: imageLoad (inlined on llvmpipe, 5 % faster); 0: texelFetch
 #endif
 #ifndef OVC_MOST_ROUNDS
 #define OVC_MOST_ROUNDS 0x7fffffff // a ray's loops end after so many rounds and say so, before a driver ends them silently

@@ -292,4 +292,97 @@ TEST_F(Abi, TwoDevicesAndScenesWorkSideBySide) {
     api().destroy_device(other);
 }
 
+/// A host of a stream that asks for each hit whether the way up is free, and counts.
+struct Streamer {
+    const ovc_api* api = nullptr;
+    ovc_scene scene = nullptr;
+    size_t rays = 0;
+    size_t hits = 0;
+    size_t misses = 0;
+    size_t free = 0;
+    ovc_result inner = OVC_OK; // of a call that is not allowed
+    int stop = 0;
+
+    static int more(void* user, ovc_stream stream, size_t wanted) {
+        Streamer& self = *static_cast<Streamer*>(user);
+        EXPECT_GT(wanted, 0u);
+        if (self.rays > 0)
+            return 0; // no more
+        self.rays = 2;
+        const ovc_ray rays[2] = {kDown, {{5, 5, 1}, 0, {0, 0, -1}, HUGE_VAL}};
+        const uint64_t tokens[2] = {70, 71};
+        EXPECT_EQ(self.api->push(stream, rays, tokens, 2, 0, nullptr), OVC_OK);
+        return 0;
+    }
+    static int answered(void* user, ovc_stream stream, const ovc_stream_answers* answers) {
+        Streamer& self = *static_cast<Streamer*>(user);
+        for (size_t i = 0; i < answers->count; ++i) {
+            if (answers->occluded) {
+                EXPECT_EQ(answers->tokens[i], 170u);
+                self.free += answers->occluded[i] == 0;
+                continue;
+            }
+            const bool hit = answers->hits[i].mesh != OVC_NONE;
+            EXPECT_EQ(answers->tokens[i], hit ? 70u : 71u);
+            (hit ? self.hits : self.misses) += 1;
+            if (!hit)
+                continue;
+            const ovc_ray up = {{0.25, 0.25, 0}, 0, {0, 0, 1}, HUGE_VAL};
+            const uint64_t token = 170;
+            const ovc_triangle start = {0, 0};
+            auto query = sized<ovc_query>();
+            query.skip = &start;
+            EXPECT_EQ(self.api->push(stream, &up, &token, 1, 1, &query), OVC_OK);
+        }
+        ovc_hit unused;
+        self.inner = self.api->intersect(self.scene, &kDown, 1, &unused, nullptr);
+        return self.stop;
+    }
+};
+
+TEST_F(Abi, AStreamAnswersEveryRayOnce) {
+    commit_triangle();
+    Streamer streamer{&api(), scene};
+    auto host = sized<ovc_stream_host>();
+    host.user = &streamer;
+    host.more = Streamer::more;
+    host.answered = Streamer::answered;
+    ASSERT_EQ(api().stream(scene, &host), OVC_OK) << error();
+    EXPECT_EQ(streamer.hits, 1u);
+    EXPECT_EQ(streamer.misses, 1u);
+    EXPECT_EQ(streamer.free, 1u);
+    EXPECT_EQ(streamer.inner, OVC_ERROR_INVALID_STATE);
+}
+
+TEST_F(Abi, AStreamIsStoppedByItsHostAndTheSceneGoesOn) {
+    commit_triangle();
+    Streamer streamer{&api(), scene};
+    streamer.stop = 1;
+    auto host = sized<ovc_stream_host>();
+    host.user = &streamer;
+    host.more = Streamer::more;
+    host.answered = Streamer::answered;
+    EXPECT_EQ(api().stream(scene, &host), OVC_ERROR_CANCELLED);
+    EXPECT_THAT(error(), HasSubstr("stopped by its host"));
+    ovc_hit hit;
+    EXPECT_EQ(api().intersect(scene, &kDown, 1, &hit, nullptr), OVC_OK) << error();
+    EXPECT_EQ(hit.mesh, 0u);
+}
+
+TEST_F(Abi, AMisusedStreamIsRefused) {
+    auto host = sized<ovc_stream_host>();
+    host.more = Streamer::more;
+    host.answered = Streamer::answered;
+    EXPECT_EQ(api().stream(nullptr, &host), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().stream(scene, &host), OVC_ERROR_INVALID_STATE); // not committed
+    commit_triangle();
+    EXPECT_EQ(api().stream(scene, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    host.answered = nullptr;
+    EXPECT_EQ(api().stream(scene, &host), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(error(), HasSubstr("answered is NULL"));
+    host.struct_size = 1;
+    EXPECT_EQ(api().stream(scene, &host), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().push(nullptr, &kDown, nullptr, 1, 0, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+}
+
 } // namespace

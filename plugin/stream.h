@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mixed form of tracing, as a structure and its host see it: rays go in at any time, answers
+// come back in any order. Based on: thesis, section 3.5 (algorithm 6).
+#pragma once
+
+#include "core/ray.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace ovc {
+
+/// Rays on their way into a stream.
+struct StreamRays {
+    bool any_hit = false; // occlusion, not the nearest hit
+    std::span<const Ray> rays;
+    std::span<const TriangleId> skip; // empty, or per ray the triangle it does not see
+    std::span<const uint64_t> tokens; // per ray: what its answer is called
+};
+
+/// Where the host's rays go.
+class RayStream {
+public:
+    /// Copies them.
+    virtual void push(const StreamRays& rays) = 0;
+
+protected:
+    ~RayStream() = default;
+};
+
+/// The host of a stream. Each function may push rays; false stops the stream.
+class StreamHost {
+public:
+    /// Asks for rays that nobody has asked for yet, about `wanted` of them. None pushed: there are
+    /// no more, and it is not asked again.
+    virtual bool more(RayStream& stream, size_t wanted) = 0;
+    virtual bool hits(RayStream& stream, std::span<const uint64_t> tokens,
+                      std::span<const Hit> hits) = 0;
+    virtual bool occlusions(RayStream& stream, std::span<const uint64_t> tokens,
+                            std::span<const uint8_t> occluded) = 0;
+
+protected:
+    ~StreamHost() = default;
+};
+
+} // namespace ovc

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Streams: the caller's functions as a StreamHost, and what it pushes.
+#include "plugin/stream_call.h"
+
+#include "plugin/scene_call.h"
+
+/// Lives as long as the call to stream().
+struct ovc_stream_t {
+    uint32_t magic = ovc::kStreamMagic;
+    ovc_device device = nullptr;
+    ovc::RayStream* rays = nullptr; // set while a function of the host runs
+    std::thread::id thread = std::this_thread::get_id();
+};
+
+namespace ovc {
+namespace {
+
+class CallbackHost final : public StreamHost {
+public:
+    CallbackHost(ovc_stream_t& stream, const ovc_stream_host& host, const std::fenv_t& mode)
+        : stream_(stream), host_(host), mode_(mode) {}
+
+    bool more(RayStream& rays, size_t wanted) override {
+        return call(rays, [&] { return host_.more(host_.user, &stream_, wanted); });
+    }
+    bool hits(RayStream& rays, std::span<const uint64_t> tokens,
+              std::span<const Hit> hits) override {
+        return answered(rays, {sizeof(ovc_stream_answers), tokens.size(), tokens.data(),
+                               reinterpret_cast<const ovc_hit*>(hits.data()), nullptr});
+    }
+    bool occlusions(RayStream& rays, std::span<const uint64_t> tokens,
+                    std::span<const uint8_t> occluded) override {
+        return answered(rays, {sizeof(ovc_stream_answers), tokens.size(), tokens.data(), nullptr,
+                               occluded.data()});
+    }
+
+private:
+    bool answered(RayStream& rays, const ovc_stream_answers& answers) {
+        return call(rays, [&] { return host_.answered(host_.user, &stream_, &answers); });
+    }
+
+    /// In the floating-point mode of the host, which may change it.
+    template <class Function>
+    bool call(RayStream& rays, Function&& function) {
+        stream_.rays = &rays;
+        std::fesetenv(&mode_);
+        const int stop = function();
+        std::fegetenv(&mode_);
+        std::fesetenv(FE_DFL_ENV);
+        stream_.rays = nullptr;
+        return stop == 0;
+    }
+
+    ovc_stream_t& stream_;
+    const ovc_stream_host& host_;
+    std::fenv_t mode_;
+};
+
+/// Marks the scene as streaming on this thread while it lives.
+class Streaming {
+public:
+    explicit Streaming(ovc_scene scene) : scene_(scene) {
+        scene_->streaming = std::this_thread::get_id();
+    }
+    ~Streaming() { scene_->streaming = std::thread::id(); }
+    Streaming(const Streaming&) = delete;
+
+private:
+    ovc_scene scene_;
+};
+
+} // namespace
+
+ovc_result stream(ovc_scene scene, const ovc_stream_host* host) {
+    std::fenv_t mode;
+    std::fegetenv(&mode);
+    return on_scene(scene, "stream", [&] {
+        if (!host)
+            invalid("stream: host is NULL");
+        if (host->struct_size != sizeof(ovc_stream_host))
+            invalid(fmt::format(
+                "ovc_stream_host.struct_size is {}, expected sizeof(ovc_stream_host) = {}",
+                host->struct_size, sizeof(ovc_stream_host)));
+        if (!host->more || !host->answered)
+            invalid("ovc_stream_host.more or answered is NULL");
+        Structure& structure = committed(scene, "stream");
+        const Streaming streaming(scene);
+        ovc_stream_t handle;
+        handle.device = scene->device;
+        CallbackHost callbacks(handle, *host, mode);
+        const Result<Done> done = structure.stream(callbacks);
+        handle.magic = 0;
+        check(done);
+    });
+}
+
+ovc_result push(ovc_stream stream, const ovc_ray* rays, const uint64_t* tokens, size_t ray_count,
+                uint32_t any_hit, const ovc_query* query) {
+    if (!stream || stream->magic != kStreamMagic)
+        return fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
+                                   "push: stream is NULL or not a stream");
+    return guard(stream->device->messages, [&] {
+        if (!stream->rays || stream->thread != std::this_thread::get_id())
+            throw Failure{OVC_ERROR_INVALID_STATE,
+                          "push: called from outside of the functions of the stream's host"};
+        if (ray_count && (!rays || !tokens))
+            invalid("push: rays or tokens is NULL");
+        if (any_hit > 1)
+            invalid(fmt::format("push: any_hit is {}, expected 0 or 1", any_hit));
+        stream->rays->push({any_hit == 1,
+                            {reinterpret_cast<const Ray*>(rays), ray_count},
+                            skip_of(query, ray_count),
+                            {tokens, ray_count}});
+    });
+}
+
+} // namespace ovc

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// A stream over a structure that only knows batches: all that is pushed is traced in turn.
+#include "plugin/structure.h"
+
+#include "plugin/backlog.h"
+
+#include <algorithm>
+
+namespace ovc {
+namespace {
+
+constexpr size_t kMostAtOnce = size_t(1) << 20; // rays a batch: bounds the host memory of a stream
+
+class BatchedStream final : public RayStream {
+public:
+    BatchedStream(Structure& structure, StreamHost& host) : structure_(structure), host_(host) {}
+
+    void push(const StreamRays& rays) override { (rays.any_hit ? any_ : nearest_).push(rays); }
+
+    Result<Done> run() {
+        bool more = true;
+        while (true) {
+            if (more && nearest_.size() + any_.size() == 0) {
+                if (!host_.more(*this, kMostAtOnce))
+                    return stopped();
+                more = nearest_.size() + any_.size() > 0;
+            }
+            if (nearest_.size() + any_.size() == 0)
+                return Done{};
+            // Occlusion first: its rays have no children.
+            if (any_.size() > 0) {
+                if (Result<Done> done = trace_any(); !done)
+                    return done;
+            } else if (Result<Done> done = trace_nearest(); !done) {
+                return done;
+            }
+        }
+    }
+
+private:
+    static Error stopped() { return {"the stream was stopped by its host", ErrorKind::Cancelled}; }
+
+    Result<Done> trace_any() {
+        const size_t count = std::min(any_.size(), kMostAtOnce);
+        const StreamRays rays = any_.last(count);
+        occluded_.resize(count);
+        if (Result<Done> done = structure_.occluded(rays.rays, rays.skip, occluded_); !done)
+            return done;
+        const std::vector<uint64_t> tokens(rays.tokens.begin(), rays.tokens.end());
+        any_.drop_last(count);
+        if (!host_.occlusions(*this, tokens, occluded_))
+            return stopped();
+        return Done{};
+    }
+
+    Result<Done> trace_nearest() {
+        const size_t count = std::min(nearest_.size(), kMostAtOnce);
+        const StreamRays rays = nearest_.last(count);
+        hits_.resize(count);
+        if (Result<Done> done = structure_.intersect(rays.rays, rays.skip, hits_); !done)
+            return done;
+        const std::vector<uint64_t> tokens(rays.tokens.begin(), rays.tokens.end());
+        nearest_.drop_last(count);
+        if (!host_.hits(*this, tokens, hits_))
+            return stopped();
+        return Done{};
+    }
+
+    Structure& structure_;
+    StreamHost& host_;
+    Backlog nearest_;
+    Backlog any_;
+    std::vector<Hit> hits_;
+    std::vector<uint8_t> occluded_;
+};
+
+} // namespace
+
+Result<Done> Structure::stream(StreamHost& host) {
+    return BatchedStream(*this, host).run();
+}
+
+} // namespace ovc

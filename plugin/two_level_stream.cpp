@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mixed form over two-level: rays of both kinds are under way together, and what the host
+// spawns joins them before pages are moved. Based on: thesis, section 3.5 (algorithm 6).
+#include "core/stopwatch.h"
+#include "plugin/backlog.h"
+#include "plugin/wave.h"
+
+namespace ovc {
+
+/// Rays of one kind under way in a stream: each has a slot, from when it starts until its answer is
+/// handed over.
+template <class Query>
+class TwoLevel::Lane {
+    using Result = std::remove_reference_t<decltype(Query{}.results[0])>;
+
+public:
+    explicit Lane(TwoLevel& structure) : wave_(structure, Query{}) {}
+
+    Wave<Query>& wave() { return wave_; }
+    void push(const StreamRays& rays) { backlog_.push(rays); }
+    size_t backlog() const { return backlog_.size(); }
+    size_t under_way() const { return rays_.size() - free_.size(); }
+    bool empty() const { return backlog() + under_way() == 0; }
+
+    /// Starts rays of the backlog, as many as there may be at once; returns how many.
+    size_t start() {
+        const size_t count = std::min(backlog_.size(), kSlots - under_way());
+        if (count == 0)
+            return 0;
+        grow(under_way() + count);
+        const StreamRays rays = backlog_.last(count);
+        const std::vector<uint32_t> slots(free_.end() - ptrdiff_t(count), free_.end());
+        free_.resize(free_.size() - count);
+        for (size_t i = 0; i < count; ++i) {
+            rays_[slots[i]] = rays.rays[i];
+            skip_[slots[i]] = rays.skip[i];
+            tokens_[slots[i]] = rays.tokens[i];
+        }
+        backlog_.drop_last(count);
+        wave_.start(slots);
+        return count;
+    }
+
+    /// Hands the answers to hand_over(tokens, results), if there are any; false when that says so.
+    template <class HandOver>
+    bool deliver(HandOver&& hand_over) {
+        const std::vector<uint32_t> finished = wave_.take_finished();
+        if (finished.empty())
+            return true;
+        std::vector<uint64_t> tokens;
+        std::vector<Result> results;
+        for (const uint32_t slot : finished) {
+            tokens.push_back(tokens_[slot]);
+            results.push_back(results_[slot]);
+        }
+        free_.insert(free_.end(), finished.begin(), finished.end());
+        return hand_over(tokens, results);
+    }
+
+    static constexpr size_t kSlots = size_t(1) << 20; // some 150 bytes each
+
+private:
+    /// At least `slots` of them, and twice as many as before where they do not do.
+    void grow(size_t slots) {
+        const size_t before = rays_.size();
+        if (slots <= before)
+            return;
+        const size_t now = std::min(std::max(slots, 2 * before), kSlots);
+        rays_.resize(now);
+        skip_.resize(now);
+        tokens_.resize(now);
+        results_.resize(now);
+        for (size_t slot = now; slot-- > before;)
+            free_.push_back(uint32_t(slot));
+        wave_.show({rays_, skip_, results_});
+    }
+
+    Backlog backlog_;
+    std::vector<Ray> rays_; // per slot, as the next three
+    std::vector<TriangleId> skip_;
+    std::vector<uint64_t> tokens_;
+    std::vector<Result> results_;
+    std::vector<uint32_t> free_;
+    Wave<Query> wave_;
+};
+
+class TwoLevel::Stream final : public RayStream {
+public:
+    Stream(TwoLevel& structure, StreamHost& host)
+        : s_(structure), host_(host), nearest_(structure), any_(structure) {}
+
+    void push(const StreamRays& rays) override {
+        rays.any_hit ? any_.push(rays) : nearest_.push(rays);
+    }
+
+    ovc::Result<Done> run() {
+        while (true) {
+            if (!fill() || !deliver())
+                return Error{"the stream was stopped by its host", ErrorKind::Cancelled};
+            if (nearest_.backlog() + any_.backlog() > 0 && start() > 0)
+                continue; // some may be answered already
+            if (nearest_.empty() && any_.empty())
+                return Done{};
+            const Stopwatch watch;
+            if (std::max(nearest_.wave().ready(), any_.wave().ready()) < s_.few_rays() &&
+                nearest_.wave().waiting() + any_.wave().waiting() > 0)
+                s_.bring_for(nearest_.wave(), any_.wave());
+            ovc::Result<Done> done = any_.wave().ready() > nearest_.wave().ready()
+                                         ? any_.wave().pass()
+                                         : nearest_.wave().pass();
+            s_.statistics_.seconds_trace += watch.seconds();
+            if (!done)
+                return done;
+        }
+    }
+
+private:
+    /// Asks the host for more where half of what may be under way is missing.
+    bool fill() {
+        const size_t under_way = nearest_.under_way() + nearest_.backlog();
+        if (!more_ || under_way > Lane<NearestQuery>::kSlots / 2)
+            return true;
+        const size_t before = nearest_.backlog() + any_.backlog();
+        if (!host_.more(*this, Lane<NearestQuery>::kSlots - under_way))
+            return false;
+        more_ = nearest_.backlog() + any_.backlog() > before;
+        return true;
+    }
+
+    size_t start() {
+        const Stopwatch watch;
+        const size_t nearest = nearest_.start();
+        const size_t any = any_.start();
+        s_.statistics_.nearest_rays += nearest;
+        s_.statistics_.occlusion_rays += any;
+        s_.statistics_.seconds_trace += watch.seconds();
+        return nearest + any;
+    }
+
+    bool deliver() {
+        return any_.deliver([&](std::span<const uint64_t> tokens,
+                                std::span<const uint8_t> occluded) {
+            return host_.occlusions(*this, tokens, occluded);
+        }) && nearest_.deliver([&](std::span<const uint64_t> tokens, std::span<const Hit> hits) {
+            return host_.hits(*this, tokens, hits);
+        });
+    }
+
+    TwoLevel& s_;
+    StreamHost& host_;
+    Lane<NearestQuery> nearest_;
+    Lane<OcclusionQuery> any_;
+    bool more_ = true;
+};
+
+Result<Done> TwoLevel::stream(StreamHost& host) {
+    return Stream(*this, host).run();
+}
+
+} // namespace ovc

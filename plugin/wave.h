@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wave: rays on their way through the leaves. Those in resident leaves are ready for the next pass,
+// the others wait for theirs.
+#pragma once
+
+#include "core/parallel.h"
+#include "kdtree/restart.h"
+#include "plugin/arbiter.h"
+#include "plugin/query.h"
+#include "plugin/two_level.h"
+#include "plugin/waiting.h"
+#include "shaders/layout.h"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+#include <utility>
+
+namespace ovc {
+
+/// The rays of a query, by their numbers in it.
+template <class Query>
+class TwoLevel::Wave {
+    static constexpr size_t kGrain = 256; // rays a task
+
+public:
+    Wave(TwoLevel& structure, const Query& query)
+        : s_(structure),
+          waiting_(structure.level1_.leaves.size()),
+          used_(structure.level1_.leaves.size()) {
+        show(query);
+    }
+    ~Wave() {
+        s_.statistics_.invalid_rays += invalid_;
+        s_.statistics_.flagged += flagged_;
+        s_.statistics_.retraced += retraced_;
+        s_.statistics_.capped += capped_;
+    }
+    Wave(const Wave&) = delete;
+
+    /// The query's arrays have moved, or have more rays than before.
+    void show(const Query& query) {
+        query_ = query;
+        positions_.resize(query.rays.size());
+        travellers_.resize(
+            Tracer::row_padded(std::min<size_t>(s_.plan_.batch_rays, query.rays.size())));
+        answers_.resize(travellers_.size());
+    }
+
+    /// Puts these rays, none of them under way, at the beginning of theirs.
+    void start(std::span<const uint32_t> rays) {
+        const Box scene = s_.level1_.bounds.padded(s_.level1_.padding); // empty: no triangles
+        parallel_for(rays.size(), kGrain, [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j)
+                start_one(rays[j], scene);
+        });
+        send_on(rays);
+    }
+
+    size_t ready() const { return ready_.size(); }
+    size_t waiting() const { return waiting_.count(); }
+    const Waiting& queues() const { return waiting_; }
+
+    /// The leaves are resident now: who waited for them is ready.
+    void call_up(std::span<const uint32_t> leaves) {
+        for (const uint32_t leaf : leaves)
+            for (const uint32_t ray : waiting_.take(leaf))
+                ready_.push_back(ray);
+    }
+
+    /// The rays that were answered since this was asked last.
+    std::vector<uint32_t> take_finished() { return std::exchange(finished_, {}); }
+
+    /// Walks a batch of the rays that are ready, takes in the answers, and sends the rays on.
+    Result<Done> pass() {
+        const size_t count = std::min<size_t>(ready_.size(), s_.plan_.batch_rays);
+        const std::vector<uint32_t> batch(ready_.begin(), ready_.begin() + ptrdiff_t(count));
+        ready_.erase(ready_.begin(), ready_.begin() + ptrdiff_t(count));
+        load(batch);
+        Result<double> seconds = Error{};
+        s_.gl_.run([&](GlState&) {
+            seconds = s_.tracer_->pass({Query::kAnyHit, s_.options_.certify, s_.options_.compute},
+                                       std::span(travellers_).first(count),
+                                       std::span(answers_).first(count));
+        });
+        if (!seconds)
+            return seconds.error();
+        s_.statistics_.passes += 1;
+        s_.statistics_.ray_visits += count;
+        s_.statistics_.seconds_kernel += *seconds;
+        parallel_for(count, kGrain, [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j)
+                settle(batch[j], answers_[j]);
+        });
+        for (uint32_t leaf = 0; leaf < used_.size(); ++leaf)
+            if (used_[leaf].exchange(0, std::memory_order_relaxed))
+                s_.tracer_->touch(leaf);
+        send_on(batch);
+        return Done{};
+    }
+
+private:
+    /// Where a ray stands; t_from and leaf as in Traveller. Nothing beyond t_end is of interest.
+    struct Position {
+        double t_from = 0;
+        double t_end = 0;
+        uint32_t leaf = OVC_NO_LEAF;
+        enum : uint32_t { Done, Ready, Waits } state = Done;
+    };
+
+    void start_one(uint32_t i, const Box& scene) {
+        positions_[i] = {};
+        query_.set_miss(i);
+        if (!query_.rays[i].valid()) {
+            ++invalid_;
+            return;
+        }
+        const PreparedRay p = prepare(query_, i);
+        if (clip(p, scene, p.ray.t_min, p.ray.t_max).empty())
+            return;
+        if (can_walk(s_.level1_, p))
+            positions_[i] = {p.ray.t_min, p.ray.t_max, OVC_NO_LEAF, Position::Ready};
+        else
+            decide_in_double(i, p);
+    }
+
+    void send_on(std::span<const uint32_t> rays) {
+        for (const uint32_t i : rays) {
+            if (positions_[i].state == Position::Ready)
+                ready_.push_back(i);
+            else if (positions_[i].state == Position::Waits)
+                waiting_.push(positions_[i].leaf, i);
+            else
+                finished_.push_back(i);
+        }
+    }
+
+    void load(std::span<const uint32_t> batch) {
+        parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j) {
+                const uint32_t ray = batch[j];
+                const Position& at = positions_[ray];
+                Ray rest = query_.rays[ray];
+                rest.t_max = at.t_end;
+                travellers_[j] = {rest, at.t_from, s_.number_to_skip(query_.skipped(ray)), at.leaf};
+            }
+        });
+        const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
+        std::fill(travellers_.begin() + ptrdiff_t(batch.size()),
+                  travellers_.begin() + ptrdiff_t(Tracer::row_padded(batch.size())), none);
+    }
+
+    /// Takes in the kernel's answer for ray i, and says in positions_[i] where the ray goes from
+    /// here.
+    void settle(uint32_t i, const Answer& answer) {
+        positions_[i].state = Position::Done;
+        if (answer.prim == OVC_WAITS) {
+            positions_[i] = {answer.t(), positions_[i].t_end, answer.leaf(), Position::Waits};
+            return;
+        }
+        const bool decided = answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
+        capped_ += answer.prim == OVC_CAPPED;
+        if (!decided || !(s_.options_.certify ? take_in(i, answer) : take_in_fast(i, answer)))
+            decide_in_double(i, prepare(query_, i));
+    }
+
+    /// Enters what the kernel found. False where double does not find what the kernel was certain
+    /// of, or cannot say where to go on.
+    bool take_in(uint32_t i, const Answer& answer) {
+        const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
+        if (answer.prim == OVC_MISS && !has_rivals)
+            return true;
+        const uint32_t leaf = answer.leaf();
+        if (used_[leaf].load(std::memory_order_relaxed) == 0)
+            used_[leaf].store(1, std::memory_order_relaxed);
+        if (Query::kAnyHit && !has_rivals) {
+            query_.set(i, Hit{0, 0, 0, s_.numbers_.id(answer.prim)}); // a certain hit decides
+            return true;
+        }
+        const PreparedRay p = prepare(query_, i);
+        Nearest nearest(p);
+        if (query_.was_hit(i))
+            offer(nearest, s_.numbers_.of(query_.hit(i).id), p.skip);
+        if (answer.prim != OVC_MISS && !offer(nearest, answer.prim, p.skip))
+            return false;
+        for (const uint32_t rival : answer.rivals())
+            if (rival != OVC_NO_TRIANGLE)
+                offer(nearest, rival, p.skip);
+        if (nearest.hit().is_hit())
+            query_.set(i, nearest.hit());
+        const bool settled =
+            (Query::kAnyHit && nearest.hit().is_hit()) || go_on_behind(i, leaf, p, nearest.limit());
+        flagged_ += settled && has_rivals; // decide_in_double() counts the others
+        return settled;
+    }
+
+    /// Sends the ray on unless its best hit, which is not beyond `end` however t is rounded, lies
+    /// in the leaf's cell: then nothing of later cells is nearer, nor as near. False where rounding
+    /// would send it back: t must grow, or two cells at a corner pass a ray to and fro.
+    bool go_on_behind(uint32_t i, uint32_t leaf, const PreparedRay& p, double end) {
+        const Box& cell = s_.level1_.leaves[leaf].cell;
+        const Box safe = cell.padded(-p.margin(cell)); // no rounding leads out of the cell
+        const double exit = clip(p, cell, p.ray.t_min, p.ray.t_max).exit;
+        if (end <= clip(p, safe, p.ray.t_min, p.ray.t_max).exit || exit >= end)
+            return true;
+        if (exit <= positions_[i].t_from)
+            return false;
+        positions_[i] = {exit, end, leaf + 1, Position::Ready};
+        return true;
+    }
+
+    bool take_in_fast(uint32_t i, const Answer& answer) {
+        if (answer.prim != OVC_MISS)
+            query_.set(
+                i, s_.twins_.seen(s_.soup_,
+                                  {answer.t(), answer.u(), answer.v(), s_.numbers_.id(answer.prim)},
+                                  query_.skipped(i)));
+        return true;
+    }
+
+    /// Offers what stands in the page as `number`.
+    bool offer(Nearest& nearest, uint32_t number, TriangleId skip) const {
+        const TriangleId seen = s_.twins_.seen(s_.numbers_.id(number), skip);
+        return nearest.offer(s_.soup_.triangle(seen), seen);
+    }
+
+    void decide_in_double(uint32_t i, const PreparedRay& p) {
+        query_.set(i, arbitrate<Query::kAnyHit>(s_.soup_, s_.numbers_, s_.twins_, s_.level1_,
+                                                s_.pages_, p));
+        ++flagged_;
+        ++retraced_;
+    }
+
+    TwoLevel& s_;
+    Query query_;
+    std::vector<Position> positions_; // per ray
+    std::vector<uint32_t> ready_;     // rays for the next passes
+    std::vector<uint32_t> finished_;
+    Waiting waiting_;
+    std::vector<std::atomic<uint8_t>> used_; // per leaf: a ray of the last pass ended there
+    std::vector<Traveller> travellers_;      // per ray of a batch, as are the answers
+    std::vector<Answer> answers_;
+    std::atomic<uint64_t> invalid_{0};
+    std::atomic<uint64_t> flagged_{0};
+    std::atomic<uint64_t> retraced_{0};
+    std::atomic<uint64_t> capped_{0};
+};
+
+template <class... Queries>
+void TwoLevel::bring_for(Wave<Queries>&... waves) {
+    std::vector<size_t> counts(pages_.size());
+    for (uint32_t leaf = 0; leaf < counts.size(); ++leaf)
+        counts[leaf] = (waves.queues().count(leaf) + ...);
+    const std::vector<uint32_t> wanted = worth_moving(counts, pages_);
+    const auto moved = std::span(wanted).first(bring(wanted));
+    (waves.call_up(moved), ...);
+}
+
+} // namespace ovc
