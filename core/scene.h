@@ -5,17 +5,53 @@
 
 #include "core/soup.h"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace ovc {
 
+/// How a surface adds up light, as POV-Ray's finish does; shares need not sum to 1. POV-Ray's
+/// pigment is Material::color; a pigment that lets light through has dimmed `ambient` and `diffuse`
+/// already.
+struct Finish {
+    vec3 ambient{0};   // x color: what it sends out in the dark, the scene's ambient light in it
+    float diffuse = 1; // x color x the light that arrives x cosine ^ brilliance
+    float brilliance = 1;
+    float phong = 0; // x the light that arrives x (reflected view . light) ^ phong_size
+    float phong_size = 40;
+    float specular = 0; // x the light that arrives x (half-way . normal) ^ (1 / roughness)
+    float roughness = 0.05f;
+    float metallic = 0; // highlights take the color on, more so away from grazing angles
+    /// Reflected: seen head on, at a grazing angle, and the steepness between the two; or, with
+    /// `fresnel`, between them by the material's ior.
+    vec3 reflection{0};
+    vec3 grazing_reflection{0};
+    float reflection_falloff = 1;
+    bool fresnel = false;
+    float metallic_reflection = 0; // mirror images take the color on, as highlights do
+    bool conserve_energy = false;  // what is reflected is not let through
+
+    bool operator==(const Finish&) const = default;
+};
+
+/// The floor that is `color` and `other` by turns, in unit cubes of the space that `to_cubes` (rows
+/// of a 3 x 4 affine matrix) leads to from the world.
+struct Checker {
+    vec3 other{0};
+    std::array<dvec4, 3> to_cubes{};
+
+    bool operator==(const Checker&) const = default;
+};
+
 /// Whitted's surface, linear RGB in [0, 1]. Of the light that it sends on, `mirror` is the share
 /// reflected as by a mirror and `transmission` the share let through, tinted by `filter` at every
 /// crossing; the rest, at least 0, is the surface's own color. ior: of the inside of a closed mesh
 /// of outward triangles (counterclockwise seen from outside), usable; the outside has 1. An open
-/// mesh is a boundary between the two, met from either side.
+/// mesh is a boundary between the two, met from either side. With a `finish`, parts are added up
+/// instead of shared out: `mirror` only says whether there is a reflection, and `transmission`
+/// takes nothing from the rest.
 struct Material {
     std::string name;
     vec3 color{0.8f};
@@ -23,6 +59,8 @@ struct Material {
     float transmission = 0;
     vec3 filter{1};
     double ior = 1;
+    std::optional<Finish> finish;
+    std::optional<Checker> checker;
 
     bool operator==(const Material&) const = default;
 };
@@ -39,14 +77,44 @@ struct MeshInfo {
     uint32_t material = 0; // index into Scene::materials
     std::vector<vec3>
         normals; // 3 per triangle, unit length, or empty: then the triangle's own normal shades it
+    bool no_shadow = false; // light passes as if it were not there
+};
+
+/// The cone of a spotlight: full light within radius_cosine of the axis, none beyond
+/// falloff_cosine, smooth in between; all of it x cosine ^ tightness. As POV-Ray's.
+struct SpotCone {
+    double radius_cosine = 0.866;
+    double falloff_cosine = 0.707;
+    double tightness = 0;
 };
 
 /// Emits evenly; arrives as color / pi x the cosine, without fall-off, as POV-Ray's light_source
 /// does by default.
-struct PointLight {
+struct Light {
     dvec3 position{0};
     vec3 color{1};
     bool on_camera = false; // position is where it is mounted: an offset from the eye
+    /// The axis of a spotlight, or the way parallel light goes; unit length.
+    dvec3 direction{0, 0, -1};
+    std::optional<SpotCone> cone; // a spotlight
+    /// All light goes along `direction`, from the plane through `position` across it; what is
+    /// behind that plane is lit too, as in POV-Ray.
+    bool parallel = false;
+    bool shadowless = false; // shines through everything, and makes no highlights
+    /// Not 0: arrives x 2 / (1 + (distance / fade_distance) ^ fade_power). Light that falls with
+    /// the square of the distance: a tiny fade_distance D, power 2, and color / (2 D^2).
+    double fade_distance = 0;
+    double fade_power = 0;
+};
+
+/// The image as a window at the end of `direction` from the eye, `right` wide and `up` high,
+/// whatever the image's size; of any handedness. Orthographic: rays begin in the window's plane
+/// through the eye, and all go along `direction`.
+struct ImageWindow {
+    dvec3 direction{0, 0, 1};
+    dvec3 right{1.33, 0, 0};
+    dvec3 up{0, 1, 0};
+    bool orthographic = false;
 };
 
 /// A perspective camera. fov_degrees: the full angle of view along the image's shorter side.
@@ -55,6 +123,14 @@ struct Camera {
     dvec3 target{0};
     dvec3 up{0, 1, 0};
     double fov_degrees = 40;
+    /// Decides instead of target, up and fov_degrees, which then say about the same: they are what
+    /// "up" is for the background and where a light over the shoulder stands.
+    std::optional<ImageWindow> window;
+};
+
+struct ImageSize {
+    uint32_t width = 512;
+    uint32_t height = 512;
 };
 
 /// What a ray that hits nothing sees: a gradient from horizon to zenith along the camera's up,
@@ -69,8 +145,10 @@ struct Scene {
     Soup soup;
     std::vector<MeshInfo> meshes;
     std::vector<Material> materials;
-    std::vector<PointLight> lights; // empty: the host adds one beside the camera
-    std::optional<Camera> camera;   // none: the host frames the bounds
+    std::vector<Light> lights;         // empty: the host adds one beside the camera
+    std::optional<Camera> camera;      // none: the host frames the bounds
+    std::optional<ImageSize> size;     // of the picture that the file asks for
+    std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's
     Background background;
 
     /// Appends a mesh of `material`; returns its number.

@@ -21,6 +21,7 @@ using glm::dmat3;
 using glm::dmat4;
 using glm::dvec2;
 using glm::dvec3;
+using glm::dvec4;
 using glm::uvec4;
 using glm::vec2;
 using glm::vec3;

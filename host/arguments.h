@@ -30,11 +30,6 @@ Result<std::vector<std::string>> translate_pov_words(const std::vector<std::stri
 Result<uint64_t> parse_count(std::string_view option, std::string_view text, uint64_t least,
                              uint64_t most);
 
-struct ImageSize {
-    uint32_t width = 512;
-    uint32_t height = 512;
-};
-
 /// "640x480"; each side from 1 to 65535.
 Result<ImageSize> parse_size(std::string_view text);
 

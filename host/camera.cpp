@@ -35,7 +35,9 @@ static double half_angle_tangent(double fov_degrees) {
 }
 
 Result<Done> check_camera(const Camera& camera) {
-    for (const dvec3& v : {camera.eye, camera.target, camera.up})
+    const ImageWindow window = camera.window.value_or(ImageWindow{});
+    for (const dvec3& v :
+         {camera.eye, camera.target, camera.up, window.direction, window.right, window.up})
         if (!is_finite(v) || max_component(glm::abs(v)) > kFarthest)
             return Error{
                 fmt::format("the camera's numbers are not all finite and within {}", kFarthest)};
@@ -45,6 +47,10 @@ Result<Done> check_camera(const Camera& camera) {
     // Also when they differ by so little that their distance comes out as 0.
     if (!(glm::length(camera.target - camera.eye) > 0))
         return Error{"the camera looks from a point at itself"};
+    const auto unit = [](const dvec3& v) { return v / max_component(glm::abs(v)); };
+    if (!(std::abs(glm::dot(glm::cross(unit(window.right), unit(window.up)),
+                            unit(window.direction))) > 1e-12))
+        return Error{"the camera's direction, right and up lie in one plane"};
     return Done{};
 }
 
@@ -52,20 +58,26 @@ Pinhole::Pinhole(const Camera& camera, uint32_t width, uint32_t height)
     : width_(width), height_(height), eye_(camera.eye) {
     assert(width > 0 && height > 0 && check_camera(camera));
     const ViewAxes axes = view_axes(camera);
-    forward_ = axes.forward;
     right_ = axes.right;
     up_ = axes.up;
+    middle_ = axes.forward;
     const double unit = half_angle_tangent(camera.fov_degrees) / std::min(width, height);
-    half_width_ = unit * width;
-    half_height_ = unit * height;
+    to_right_ = unit * width * right_;
+    to_top_ = unit * height * up_;
+    if (camera.window) {
+        middle_ = camera.window->direction;
+        to_right_ = 0.5 * camera.window->right;
+        to_top_ = 0.5 * camera.window->up;
+        orthographic_ = camera.window->orthographic;
+    }
 }
 
 Ray Pinhole::ray(uint32_t x, uint32_t y) const {
-    const double across = (2 * (x + 0.5) / width_ - 1) * half_width_;
-    const double upward = (1 - 2 * (y + 0.5) / height_) * half_height_;
+    const dvec3 in_plane =
+        (2 * (x + 0.5) / width_ - 1) * to_right_ + (1 - 2 * (y + 0.5) / height_) * to_top_;
     Ray ray;
-    ray.org = eye_;
-    ray.dir = forward_ + across * right_ + upward * up_;
+    ray.org = orthographic_ ? eye_ + in_plane : eye_;
+    ray.dir = orthographic_ ? middle_ : middle_ + in_plane;
     return ray;
 }
 
@@ -135,15 +147,15 @@ Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height) {
     return camera;
 }
 
-PointLight shoulder_light(const Camera& camera) {
+Light shoulder_light(const Camera& camera) {
     const ViewAxes axes = view_axes(camera);
     const double distance = glm::length(camera.target - camera.eye);
     return {camera.eye + distance * (1.1 * axes.up - 0.9 * axes.right), kDefaultLightColor};
 }
 
-std::vector<PointLight> placed_lights(const std::vector<PointLight>& lights, const Camera& camera) {
-    std::vector<PointLight> placed = lights;
-    for (PointLight& light : placed)
+std::vector<Light> placed_lights(const std::vector<Light>& lights, const Camera& camera) {
+    std::vector<Light> placed = lights;
+    for (Light& light : placed)
         if (light.on_camera)
             light.position += camera.eye;
     if (placed.empty())

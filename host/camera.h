@@ -16,8 +16,9 @@ namespace ovc {
 /// The largest coordinate that a camera or a light may have; rays from farther away overflow.
 inline constexpr double kFarthest = 1e100;
 
-/// Whether rays can be made of `camera`: its numbers are finite and no larger than kFarthest, and
-/// the eye is not the target. The error does not say whose camera it is.
+/// Whether rays can be made of `camera`: its numbers are finite and no larger than kFarthest, the
+/// eye is not the target, and its window has an area that is not seen edge on. The error does not
+/// say whose camera it is.
 Result<Done> check_camera(const Camera& camera);
 
 /// A camera made ready for an image of width x height pixels.
@@ -28,7 +29,7 @@ public:
     Pinhole(const Camera& camera, uint32_t width, uint32_t height);
 
     /// Through the centre of pixel (x, y), (0, 0) being top left. dir is not of unit length: t is
-    /// the depth.
+    /// the depth, in a window's case in units of its direction.
     Ray ray(uint32_t x, uint32_t y) const;
 
     uint32_t width() const { return width_; }
@@ -39,8 +40,10 @@ public:
 
 private:
     uint32_t width_, height_;
-    dvec3 eye_, forward_, right_, up_;
-    double half_width_, half_height_; // of the image plane at distance 1
+    dvec3 eye_, right_, up_;
+    // To the middle of the image plane, and from there to its right and upper edge.
+    dvec3 middle_, to_right_, to_top_;
+    bool orthographic_ = false;
 };
 
 /// The pixels y * width + x of an image, each once: tiles of 8 x 8 in Morton order, Morton order
@@ -53,11 +56,11 @@ std::vector<uint32_t> pixel_order(uint32_t width, uint32_t height);
 Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height);
 
 /// A light above the camera's left shoulder, as far away as the eye is from the target.
-PointLight shoulder_light(const Camera& camera);
+Light shoulder_light(const Camera& camera);
 
 /// The lights as they stand for a picture from `camera`: those on it are where it is; none: the
 /// shoulder light.
-std::vector<PointLight> placed_lights(const std::vector<PointLight>& lights, const Camera& camera);
+std::vector<Light> placed_lights(const std::vector<Light>& lights, const Camera& camera);
 
 /// What a light has that was only given a position, a little warm: a white surface that faces it
 /// comes out at about 0.8.

@@ -40,6 +40,32 @@ TEST(Pinhole, OpensTheFieldOfViewAlongTheShorterSide) {
     EXPECT_NEAR(tall.y, 1.99, 1e-12);
 }
 
+/// POV-Ray's camera { location <1,2,3> direction 2*z right -1.6*x up <0,1,0.5> }: left-handed,
+/// sheared, wider than high whatever the image's size.
+static Camera windowed(bool orthographic) {
+    Camera camera;
+    camera.eye = {1, 2, 3};
+    camera.window = ImageWindow{{0, 0, 2}, {-1.6, 0, 0}, {0, 1, 0.5}, orthographic};
+    return camera;
+}
+
+TEST(Pinhole, SeesThroughTheWindowThatTheCameraNames) {
+    const Pinhole pinhole(windowed(false), 4, 2);
+    const Ray first = pinhole.ray(0, 0); // 3/8 of the width to the left, 1/4 of the height up
+    EXPECT_EQ(first.org, dvec3(1, 2, 3));
+    EXPECT_LT(glm::length(first.dir - dvec3(0.6, 0.25, 2.125)), 1e-15);
+    EXPECT_LT(glm::length(pinhole.ray(3, 1).dir - dvec3(-0.6, -0.25, 1.875)), 1e-15);
+}
+
+TEST(Pinhole, AnOrthographicWindowSendsParallelRays) {
+    const Pinhole pinhole(windowed(true), 4, 2);
+    const Ray first = pinhole.ray(0, 0), last = pinhole.ray(3, 1);
+    EXPECT_LT(glm::length(first.org - dvec3(1.6, 2.25, 3.125)), 1e-15);
+    EXPECT_LT(glm::length(last.org - dvec3(0.4, 1.75, 2.875)), 1e-15);
+    EXPECT_EQ(first.dir, dvec3(0, 0, 2));
+    EXPECT_EQ(last.dir, first.dir);
+}
+
 TEST(Pinhole, AcceptsAnUpAlongTheView) {
     Camera camera;
     camera.eye = {0, 5, 0};
@@ -133,6 +159,13 @@ TEST(CheckCamera, RefusesWhatMakesNoRays) {
         ASSERT_FALSE(checked) << c.error;
         EXPECT_EQ(checked.error().message, c.error);
     }
+    Camera flat = windowed(false);
+    flat.window->direction = {1, 1, 0.5};
+    EXPECT_EQ(check_camera(flat).error().message,
+              "the camera's direction, right and up lie in one plane");
+    flat.window->direction = {0, nan, 1};
+    EXPECT_FALSE(check_camera(flat));
+    EXPECT_TRUE(check_camera(windowed(true)));
     for (const double far : {1e-100, 1e100})
         EXPECT_TRUE(Pinhole({{far, far, -far}, {0, 0, 0}}, 4, 4).ray(3, 0).valid()) << far;
 }

@@ -39,12 +39,12 @@ Interrupted with Ctrl-C, it saves what it has (of a sequence, the finished frame
 struct RenderWords {
     SceneArguments scene;
     std::vector<std::string> outputs;
-    std::string size = "512x512";
+    std::string size;
     std::string camera;
     std::string frames;
     std::string camera_path;
     std::vector<std::string> lights;
-    std::string max_depth = "5";
+    std::string max_depth;
     bool no_shadows = false;
     BackendArguments backend;
     std::string stats;
@@ -65,7 +65,8 @@ void RenderWords::add_to(CLI::App& app) {
                    "frame's number; default: out.png, of frames out-####.png")
         ->allow_extra_args(false)
         ->type_name("FILE");
-    app.add_option("--size", size, "Pixels, at most 65535 a side; default: 512x512")
+    app.add_option("--size", size,
+                   "Pixels, at most 65535 a side; default: what the file asks for, else 512x512")
         ->type_name("WxH");
     app.add_option(
            "--camera", camera,
@@ -83,7 +84,8 @@ void RenderWords::add_to(CLI::App& app) {
         ->allow_extra_args(false)
         ->type_name("X,Y,Z");
     app.add_option("--max-depth,--max-trace-level", max_depth,
-                   "Reflections and refractions in a row at most, up to 1000; default: 5")
+                   "Reflections and refractions in a row at most, up to 1000; default: what the "
+                   "file asks for, else 5")
         ->type_name("N");
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
     app.add_option("--stats", stats, "Write statistics as JSON (docs/stats.md)")
@@ -174,10 +176,12 @@ static Result<Done> check_outputs(const RenderWords& words, const RenderJob& job
 }
 
 static Result<Done> understand_view(const RenderWords& words, RenderJob& job) {
-    const Result<ImageSize> size = parse_size(words.size);
-    if (!size)
-        return size.error();
-    job.size = *size;
+    if (!words.size.empty()) {
+        const Result<ImageSize> size = parse_size(words.size);
+        if (!size)
+            return size.error();
+        job.size = *size;
+    }
     if (!words.camera.empty()) {
         const Result<Camera> camera = parse_camera("--camera", words.camera);
         if (!camera)
@@ -194,10 +198,12 @@ static Result<Done> understand_view(const RenderWords& words, RenderJob& job) {
 }
 
 static Result<Done> understand_shading(const RenderWords& words, RenderJob& job) {
-    const Result<uint64_t> depth = parse_count("--max-depth", words.max_depth, 0, 1000);
-    if (!depth)
-        return depth.error();
-    job.whitted.max_depth = uint32_t(*depth);
+    if (!words.max_depth.empty()) {
+        const Result<uint64_t> depth = parse_count("--max-depth", words.max_depth, 0, kMostDepth);
+        if (!depth)
+            return depth.error();
+        job.max_depth = uint32_t(*depth);
+    }
     job.whitted.shadows = !words.no_shadows;
     if (isatty(STDERR_FILENO))
         job.whitted.batch_rays = kWatchedBatchRays;

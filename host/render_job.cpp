@@ -13,12 +13,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace ovc {
 
 /// The camera of a single picture: the one asked for, the scene's, or one that sees all of it.
-static Camera still_camera(const Scene& scene, const RenderJob& job) {
+static Camera still_camera(const Scene& scene, const RenderJob& job, const ImageSize& size) {
     if (job.camera) {
         Camera camera = *job.camera;
         if (scene.camera)
@@ -27,14 +28,23 @@ static Camera still_camera(const Scene& scene, const RenderJob& job) {
     }
     if (scene.camera)
         return *scene.camera;
-    return framing_camera(hittable_bounds(scene.soup), job.size.width, job.size.height);
+    return framing_camera(hittable_bounds(scene.soup), size.width, size.height);
+}
+
+static WhittedOptions whitted_options(const RenderJob& job, const Scene& scene) {
+    WhittedOptions options = job.whitted;
+    options.max_depth = job.max_depth.value_or(scene.max_depth.value_or(options.max_depth));
+    options.max_depth = std::min(options.max_depth, kMostDepth);
+    return options;
 }
 
 /// A run of pictures over one scene and one backend.
 class Rendering {
 public:
-    Rendering(const RenderJob& job, Scene& scene, Backend& backend)
+    Rendering(const RenderJob& job, const ImageSize& size, Scene& scene, Backend& backend)
         : job_(job),
+          size_(size),
+          whitted_(whitted_options(job, scene)),
           scene_(scene),
           lights_(job.lights.empty() ? scene.lights : job.lights),
           backend_(backend) {}
@@ -70,7 +80,7 @@ private:
         FrameStats frame;
         frame.frame = shot.frame;
         scene_.lights = placed_lights(lights_, shot.camera);
-        Image image(job_.size.width, job_.size.height);
+        Image image(size_.width, size_.height);
         if (const Result<RenderReport> report = trace(shot, image); report)
             frame.report = *report;
         else
@@ -92,7 +102,7 @@ private:
             progress.update(report);
             return !interrupt_.interrupted();
         };
-        return render_batched(scene_, shot.camera, backend_, job_.whitted, observe, image);
+        return render_batched(scene_, shot.camera, backend_, whitted_, observe, image);
     }
 
     Result<Done> save_all(const Image& image, uint32_t frame) const {
@@ -105,8 +115,10 @@ private:
     }
 
     const RenderJob& job_;
+    const ImageSize size_;
+    const WhittedOptions whitted_;
     Scene& scene_;
-    const std::vector<PointLight> lights_; // as the scene or the user has them
+    const std::vector<Light> lights_; // as the scene or the user has them
     Backend& backend_;
     const InterruptGuard interrupt_;
 };
@@ -133,12 +145,13 @@ Result<int> render(const RenderJob& job) {
     if (!scene)
         return scene.error();
     stats.scene = job.scene.scene;
-    stats.width = job.size.width;
-    stats.height = job.size.height;
+    const ImageSize size = job.size.value_or(scene->size.value_or(ImageSize{}));
+    stats.width = size.width;
+    stats.height = size.height;
     stats.seconds_import = total.seconds();
 
     const std::vector<Shot> shots =
-        job.shots.empty() ? std::vector<Shot>{{0, still_camera(*scene, job)}} : job.shots;
+        job.shots.empty() ? std::vector<Shot>{{0, still_camera(*scene, job, size)}} : job.shots;
     for (const Shot& shot : shots) // a file's camera is not checked yet
         if (const Result<Done> fine = check_camera(shot.camera); !fine)
             return Error{fmt::format("{}: {}", job.scene.scene, fine.error().message)};
@@ -146,7 +159,7 @@ Result<int> render(const RenderJob& job) {
     if (!backend)
         return backend.error();
 
-    Result<Done> done = Rendering(job, *scene, **backend).run(shots, stats);
+    Result<Done> done = Rendering(job, size, *scene, **backend).run(shots, stats);
     if (!done)
         return done.error();
     stats.tracing = (*backend)->statistics();

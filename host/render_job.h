@@ -13,6 +13,9 @@
 
 namespace ovc {
 
+/// The most that --max-depth may ask for.
+inline constexpr uint32_t kMostDepth = 1000;
+
 /// One picture of a sequence.
 struct Shot {
     uint32_t frame = 0; // in the camera path
@@ -22,11 +25,12 @@ struct Shot {
 struct RenderJob {
     SceneArguments scene;
     std::vector<std::string> outputs; // with a # for each digit of the frame, where there are shots
-    ImageSize size;
+    std::optional<ImageSize> size;    // none: the scene's, else 512 x 512
     std::optional<Camera> camera;
     std::vector<Shot> shots; // empty: one picture, from `camera` or the scene's own
-    std::vector<PointLight> lights;
+    std::vector<Light> lights;
     WhittedOptions whitted;
+    std::optional<uint32_t> max_depth; // none: the scene's, else that of `whitted`
     BackendOptions backend;
     std::string stats;
     bool quiet = false;

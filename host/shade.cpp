@@ -3,6 +3,7 @@
 // sky for ambient light.
 #include "host/shade.h"
 
+#include "host/finish.h"
 #include "host/refract.h"
 
 #include <algorithm>
@@ -27,6 +28,10 @@ static constexpr double kOffset = 0x1p-48;
 static constexpr double kLeastEdgeOffsets = 64, kMostEdgeOffsets = 16384;
 static constexpr double kEdgeShare = 0x1p-20;
 
+/// How far off whole numbers a checker changes: a plane through them keeps to one side, as
+/// POV-Ray's 1e-10 has it for coordinates near 0.
+static constexpr double kCheckerOffset = 1e-6;
+
 /// a b - c d to two units in the last place, however much cancels. Kahan's; Jeannerod, Louvet and
 /// Muller 2013.
 static double difference_of_products(double a, double b, double c, double d) {
@@ -49,6 +54,15 @@ static dvec3 interpolated_normal(const MeshInfo& mesh, const Hit& hit, const dve
     const double length = glm::length(n);
     // Opposite or missing normals cancel out; then the plane's own has to do.
     return length > 1e-6 && std::isfinite(length) ? n / length : fallback;
+}
+
+static vec3 material_color(const Material& material, const dvec3& position) {
+    if (!material.checker)
+        return material.color;
+    double sum = 0;
+    for (const dvec4& row : material.checker->to_cubes)
+        sum += std::floor(glm::dot(dvec3(row), position) + row.w + kCheckerOffset);
+    return std::fmod(sum, 2) == 0 ? material.color : material.checker->other;
 }
 
 static dvec3 facing(const dvec3& normal, const dvec3& towards) {
@@ -80,6 +94,7 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     SurfacePoint s;
     s.material = mesh.material < scene.materials.size() ? &scene.materials[mesh.material] : &kPlain;
     s.entering = glm::dot(outwards, ray.dir) <= 0;
+    s.view = glm::normalize(ray.dir);
     s.geometric_normal = (s.entering ? 1.0 : -1.0) * (outwards / doubled_area);
     s.normal = facing(interpolated_normal(mesh, hit, s.geometric_normal), s.geometric_normal);
 
@@ -92,6 +107,7 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     const dvec3 on_plane = w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
     s.position = on_plane + offset * s.geometric_normal;
     s.beyond = on_plane - offset * s.geometric_normal;
+    s.color = material_color(*s.material, on_plane);
     return s;
 }
 
@@ -101,22 +117,64 @@ vec3 background_color(const Background& background, const vec3& up, const dvec3&
 }
 
 vec3 ambient_light(const Background& background, const vec3& up, const SurfacePoint& surface) {
+    if (surface.material->finish)
+        return surface.color * surface.material->finish->ambient;
     const vec3 ground = kGround * background.horizon;
     const vec3 sky = 0.5f * (background.horizon + background.zenith);
     const float openness = 0.5f + 0.5f * float(glm::dot(surface.normal, dvec3(up)));
-    return surface.material->color * (kAmbient + kSkyShare * glm::mix(ground, sky, openness));
+    return surface.color * (kAmbient + kSkyShare * glm::mix(ground, sky, openness));
 }
 
-vec3 direct_light(const PointLight& light, const SurfacePoint& surface) {
-    const dvec3 towards = glm::normalize(light.position - surface.position);
+/// From the position towards the light, not of unit length: t = 1 is the light.
+static dvec3 towards_light(const Light& light, const dvec3& position) {
+    const dvec3 there = light.position - position;
+    return light.parallel ? std::abs(glm::dot(there, light.direction)) * -light.direction : there;
+}
+
+/// What of the light's color goes this way: the cone and the fall-off. As POV-Ray 3.7's.
+static double attenuation(const Light& light, const dvec3& towards, double distance) {
+    double share = 1;
+    if (light.cone) {
+        const SpotCone& cone = *light.cone;
+        const double cosine = -glm::dot(towards, light.direction);
+        if (!(cosine > 0))
+            return 0;
+        const double x =
+            (cosine - cone.falloff_cosine) / (cone.radius_cosine - cone.falloff_cosine);
+        const double edge = cosine >= cone.radius_cosine ? 1 : std::clamp(x, 0.0, 1.0);
+        share = std::pow(cosine, cone.tightness) * edge * edge * (3 - 2 * edge);
+    }
+    if (light.fade_distance > 0 && light.fade_power > 0)
+        share *= 2 / (1 + std::pow(distance / light.fade_distance, light.fade_power));
+    return share;
+}
+
+vec3 direct_light(const Light& light, const SurfacePoint& surface) {
+    const dvec3 there = towards_light(light, surface.position);
+    const double distance = glm::length(there);
+    const dvec3 towards = distance > 0 ? there / distance : surface.normal;
     const double cosine = glm::dot(surface.normal, towards);
     if (!(cosine > 0) || !(glm::dot(surface.geometric_normal, towards) > 0))
         return vec3(0);
-    return surface.material->color * light.color * (float(cosine) * std::numbers::inv_pi_v<float>);
+    const vec3 arriving = light.color * (float(attenuation(light, towards, distance)) *
+                                         std::numbers::inv_pi_v<float>);
+    if (!surface.material->finish)
+        return surface.color * arriving * float(cosine);
+    return finish_light(surface, towards, arriving, /* highlights= */ !light.shadowless);
 }
 
-Ray shadow_ray(const dvec3& light, const dvec3& position) {
-    return {position, 0, light - position, 1};
+Ray shadow_ray(const Light& light, const dvec3& position) {
+    return {position, 0, towards_light(light, position), 1};
+}
+
+Branches branches(const SurfacePoint& surface, bool total) {
+    const Material& material = *surface.material;
+    if (material.finish)
+        return finish_branches(surface, total);
+    const float through = std::min(material.transmission, 1 - material.mirror);
+    if (total)
+        return {vec3(material.mirror + through), vec3(0), material.mirror + through, 0};
+    return {vec3(material.mirror), through * material.filter, material.mirror, through};
 }
 
 Ray mirror_ray(const Ray& ray, const SurfacePoint& surface) {

@@ -17,7 +17,9 @@ struct SurfacePoint {
     dvec3 beyond;           // just on the other side
     dvec3 geometric_normal; // of the triangle's plane
     dvec3 normal;           // interpolated where the mesh has normals, else the geometric one
+    dvec3 view;             // the ray's direction, of unit length
     const Material* material;
+    vec3 color;    // the material's here
     bool entering; // the ray came from outside: from where the corners run counterclockwise
 };
 
@@ -35,10 +37,22 @@ vec3 background_color(const Background& background, const vec3& up, const dvec3&
 vec3 ambient_light(const Background& background, const vec3& up, const SurfacePoint& surface);
 
 /// What the surface reflects of `light` when nothing is in between; 0 when the light is behind it.
-vec3 direct_light(const PointLight& light, const SurfacePoint& surface);
+vec3 direct_light(const Light& light, const SurfacePoint& surface);
 
 /// From `position` to the light: t = 1 is the light.
-Ray shadow_ray(const dvec3& light, const dvec3& position);
+Ray shadow_ray(const Light& light, const dvec3& position);
+
+/// The light that the rays which leave a surface bring, as shares of it for each color; and what
+/// the surface's own color loses to each ray that is followed.
+struct Branches {
+    vec3 mirror{0};
+    vec3 through{0};
+    float taken_by_mirror = 0;
+    float taken_by_through = 0;
+};
+
+/// total: nothing goes through, all of it is reflected.
+Branches branches(const SurfacePoint& surface, bool total);
 
 /// The mirrored ray; never goes below the triangle's plane.
 Ray mirror_ray(const Ray& ray, const SurfacePoint& surface);

@@ -90,9 +90,9 @@ TEST(SurfacePoint, TheNormalOfASliverIsThatOfExactArithmetic) {
 
 TEST(DirectLight, FollowsTheCosineAndStopsBehindTheSurface) {
     const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
-    const PointLight overhead{{s.position.x, 5, s.position.z}, vec3(std::numbers::pi_v<float>)};
+    const Light overhead{{s.position.x, 5, s.position.z}, vec3(std::numbers::pi_v<float>)};
     EXPECT_NEAR(direct_light(overhead, s).x, 0.5, 1e-6);
-    const PointLight slanting{s.position + dvec3(1, 1, 0), vec3(std::numbers::pi_v<float>)};
+    const Light slanting{s.position + dvec3(1, 1, 0), vec3(std::numbers::pi_v<float>)};
     EXPECT_NEAR(direct_light(slanting, s).x, 0.5 * std::sqrt(0.5), 1e-6);
     EXPECT_EQ(direct_light({{0, -5, 0}, vec3(1)}, s), vec3(0));
 }
@@ -103,10 +103,51 @@ TEST(DirectLight, DoesNotShineThroughTheTriangleOntoATiltedNormal) {
     EXPECT_EQ(direct_light({s.position + dvec3(5, -0.2, 0), vec3(1)}, s), vec3(0));
 }
 
+TEST(DirectLight, OfASpotlightStaysInItsCone) {
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    Light light{s.position + dvec3(0, 4, 0), vec3(std::numbers::pi_v<float>)};
+    light.cone = SpotCone{std::cos(0.2), std::cos(0.4), 2};
+    const auto at_angle = [&](double angle) {
+        light.direction = {std::sin(angle), -std::cos(angle), 0};
+        return direct_light(light, s).x;
+    };
+    EXPECT_NEAR(at_angle(0), 0.5, 1e-6);
+    EXPECT_NEAR(at_angle(0.15), 0.5 * std::pow(std::cos(0.15), 2), 1e-6);
+    EXPECT_GT(at_angle(0.3), 0.05);
+    EXPECT_LT(at_angle(0.3), 0.4);
+    EXPECT_EQ(at_angle(0.41), 0);
+    EXPECT_EQ(at_angle(std::numbers::pi), 0) << "the cone does not open backwards";
+}
+
+TEST(DirectLight, FadesWithDistanceToHalfOfWhatItWouldBeTwiceAsNear) {
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    Light light{s.position + dvec3(0, 3, 0), vec3(std::numbers::pi_v<float>)};
+    light.fade_distance = 3;
+    light.fade_power = 2;
+    EXPECT_NEAR(direct_light(light, s).x, 0.5, 1e-6) << "as it is at fade_distance";
+    light.position.y = s.position.y + 6;
+    EXPECT_NEAR(direct_light(light, s).x, 0.5 * 2 / 5, 1e-6);
+    // The square law, as docs/scenes.md tells an importer to write it: color 12 at distance 6.
+    light.fade_distance = 1e-6;
+    light.color *= 12 / (2 * 1e-12f);
+    EXPECT_NEAR(direct_light(light, s).x, 0.5 * 12 / 36, 1e-5);
+}
+
+TEST(DirectLight, ParallelLightComesFromOneSideEverywhere) {
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    Light light{dvec3(100, 2, 0), vec3(std::numbers::pi_v<float>)};
+    light.parallel = true;
+    light.direction = glm::normalize(dvec3(0, -1, 1));
+    EXPECT_NEAR(direct_light(light, s).x, 0.5 * std::sqrt(0.5), 1e-6);
+    const Ray ray = shadow_ray(light, s.position);
+    EXPECT_LT(glm::length(glm::normalize(ray.dir) + light.direction), 1e-12);
+    EXPECT_NEAR(glm::dot(ray.at(1) - light.position, light.direction), 0, 1e-12);
+}
+
 TEST(ShadowRay, EndsAtTheLight) {
     const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
-    const PointLight light{{3, 4, 5}, vec3(1)};
-    const Ray ray = shadow_ray(light.position, s.position);
+    const Light light{{3, 4, 5}, vec3(1)};
+    const Ray ray = shadow_ray(light, s.position);
     EXPECT_EQ(ray.t_max, 1);
     EXPECT_LT(glm::length(ray.at(1) - light.position), 1e-12);
 }

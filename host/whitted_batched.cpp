@@ -62,11 +62,6 @@ static void select(size_t count, std::vector<uint32_t>& chosen, Keep&& keep) {
             chosen.push_back(uint32_t(i));
 }
 
-/// The share that goes through; what is mirrored does not.
-static float transmitted(const Material& material) {
-    return std::min(material.transmission, 1 - material.mirror);
-}
-
 class BatchedRenderer {
 public:
     BatchedRenderer(const Scene& scene, const Camera& camera, Backend& backend,
@@ -79,7 +74,9 @@ public:
           pinhole_(camera, image.width, image.height),
           up_(glm::normalize(camera.up)),
           glass_(std::any_of(scene.materials.begin(), scene.materials.end(),
-                             [](const Material& m) { return m.transmission > 0; })) {}
+                             [](const Material& m) { return m.transmission > 0; }) ||
+                 std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                             [](const MeshInfo& m) { return m.no_shadow; })) {}
 
     Result<RenderReport> render() {
         const Stopwatch watch;
@@ -107,7 +104,7 @@ private:
             if (!done || !report_.complete)
                 return done;
             shade_hits();
-            for (const PointLight& light : scene_.lights)
+            for (const Light& light : scene_.lights)
                 if (done = add_light(light); !done || !report_.complete)
                     return done;
             add_to_image();
@@ -167,32 +164,30 @@ private:
     void split_weight(size_t k) {
         const uint32_t i = hit_rays_[k];
         Path& path = now_.paths[i];
-        const Material& material = *surfaces_[k].material;
-        float mirror = material.mirror;
-        float through = transmitted(material);
-        if (through > 0 && !refracted_ray(now_.rays[i], surfaces_[k]))
-            mirror += std::exchange(through, 0.0f);
-        const float shares[] = {mirror, through};
-        const vec3 tints[] = {vec3(1), material.filter};
+        const bool total =
+            surfaces_[k].material->transmission > 0 && !refracted_ray(now_.rays[i], surfaces_[k]);
+        const Branches parts = branches(surfaces_[k], total);
+        const vec3 shares[] = {parts.mirror, parts.through};
+        const float taken[] = {parts.taken_by_mirror, parts.taken_by_through};
         const vec3 whole = path.weight;
         for (int kind = 0; kind < 2; ++kind) {
-            const vec3 weight = whole * shares[kind] * tints[kind];
+            const vec3 weight = whole * shares[kind];
             const bool follow =
                 path.depth < options_.max_depth && max_component(weight) >= kLeastWeight;
             child_weights_[2 * k + size_t(kind)] = follow ? weight : vec3(0);
             if (follow)
-                path.weight -= whole * shares[kind];
+                path.weight -= whole * taken[kind];
         }
     }
 
     /// Adds one light to every surface that it reaches.
-    Result<Done> add_light(const PointLight& light) {
+    Result<Done> add_light(const Light& light) {
         arriving_.resize(surfaces_.size());
         parallel_for(surfaces_.size(), kGrain, [&](size_t first, size_t last) {
             for (size_t k = first; k < last; ++k)
                 arriving_[k] = direct_light(light, surfaces_[k]);
         });
-        if (options_.shadows)
+        if (options_.shadows && !light.shadowless)
             if (Result<Done> done = trace_shadows(light); !done || !report_.complete)
                 return done;
         parallel_for(surfaces_.size(), kGrain, [&](size_t first, size_t last) {
@@ -203,13 +198,13 @@ private:
     }
 
     /// Takes from arriving_ what does not reach its surface.
-    Result<Done> trace_shadows(const PointLight& light) {
+    Result<Done> trace_shadows(const Light& light) {
         select(surfaces_.size(), chosen_, [&](size_t k) { return arriving_[k] != vec3(0); });
         shadow_rays_.resize(chosen_.size());
         shadow_skip_.resize(chosen_.size());
         parallel_for(chosen_.size(), kGrain, [&](size_t first, size_t last) {
             for (size_t j = first; j < last; ++j) {
-                shadow_rays_[j] = shadow_ray(light.position, surfaces_[chosen_[j]].position);
+                shadow_rays_[j] = shadow_ray(light, surfaces_[chosen_[j]].position);
                 shadow_skip_[j] = hits_[hit_rays_[chosen_[j]]].id;
             }
         });
@@ -236,7 +231,7 @@ private:
 
     /// Follows the shadow rays to the nearest surface in their way, straight on as POV-Ray does,
     /// and keeps those that light comes through.
-    Result<Done> dim_by_glass(const PointLight& light, uint32_t depth) {
+    Result<Done> dim_by_glass(const Light& light, uint32_t depth) {
         shadow_hits_.resize(chosen_.size());
         Result<Done> done =
             timed([&] { return backend_.intersect(shadow_rays_, shadow_skip_, shadow_hits_); });
@@ -262,13 +257,15 @@ private:
 
     /// Dims the light of shadow ray j by what it hit; true when some is left, and the ray begins
     /// behind it.
-    bool pass_glass(const PointLight& light, uint32_t depth, size_t j) {
+    bool pass_glass(const Light& light, uint32_t depth, size_t j) {
         const SurfacePoint glass = surface_point(scene_, shadow_rays_[j], shadow_hits_[j]);
         vec3& left = arriving_[chosen_[j]];
-        left *= transmitted(*glass.material) * glass.material->filter;
-        if (depth >= options_.max_depth || max_component(left) < kLeastWeight)
-            left = vec3(0);
-        shadow_rays_[j] = shadow_ray(light.position, glass.beyond);
+        if (!scene_.meshes[shadow_hits_[j].id.mesh].no_shadow) {
+            left *= branches(glass, /* total= */ false).through;
+            if (depth >= options_.max_depth || max_component(left) < kLeastWeight)
+                left = vec3(0);
+        }
+        shadow_rays_[j] = shadow_ray(light, glass.beyond);
         return left != vec3(0);
     }
 
@@ -336,7 +333,7 @@ private:
     Image& image_;
     const Pinhole pinhole_;
     const vec3 up_;
-    const bool glass_; // some material lets light through
+    const bool glass_; // light may pass some material or mesh
     RenderReport report_;
 
     // All are kept between rounds so that they are allocated once.

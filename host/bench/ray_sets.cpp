@@ -54,7 +54,7 @@ Result<std::vector<RaySet>> make_ray_sets(const Scene& scene, const Camera& came
         SurfacePoint point = surface_point(scene, primary.rays[i], hits[i]);
         const dvec3 normal(point.geometric_normal);
         point.position += lift * normal;
-        shadow.rays.push_back(shadow_ray(scene.lights.front().position, point.position));
+        shadow.rays.push_back(shadow_ray(scene.lights.front(), point.position));
         Ray bounce;
         bounce.org = point.position;
         bounce.dir = cosine_direction(normal, pixels[i]);

@@ -137,7 +137,7 @@ void add_meshes(Scene& scene, Works works) {
 }
 
 /// The sun, four lamps in rooms of their own, one on the camera.
-std::vector<PointLight> lights_of(const Plan& plan) {
+std::vector<Light> lights_of(const Plan& plan) {
     const double z = kBay * (plan.aisle() + 0.5),
                  upper = kStorey * (std::min(3u, plan.storeys - 1));
     const double west = 0.5 * kBay * plan.first_wall(), east = plan.length() - west;
