@@ -6,6 +6,7 @@
 #include "host/suggestion.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -140,6 +141,15 @@ Result<uint64_t> parse_count(std::string_view option, std::string_view text, uin
         return Error{fmt::format("{} needs a whole number from {} to {}, not '{}'", option, least,
                                  most, text)};
     return value;
+}
+
+Result<size_t> parse_choice(std::string_view option, std::string_view text,
+                            std::span<const std::string_view> names) {
+    const auto known = text.empty() ? names.begin() : std::find(names.begin(), names.end(), text);
+    if (known != names.end())
+        return size_t(known - names.begin());
+    return Error{fmt::format("{}: '{}' is none of {}{}", option, text, fmt::join(names, ", "),
+                             did_you_mean(text, names))};
 }
 
 Result<ImageSize> parse_size(std::string_view text) {

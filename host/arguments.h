@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,10 @@ Result<std::vector<std::string>> translate_pov_words(const std::vector<std::stri
 /// A whole number from least to most. option: named in the error.
 Result<uint64_t> parse_count(std::string_view option, std::string_view text, uint64_t least,
                              uint64_t most);
+
+/// The place of `text` among `names`; 0 where it is empty.
+Result<size_t> parse_choice(std::string_view option, std::string_view text,
+                            std::span<const std::string_view> names);
 
 /// "640x480"; each side from 1 to 65535.
 Result<ImageSize> parse_size(std::string_view text);

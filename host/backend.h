@@ -3,6 +3,7 @@
 // the thesis, the CPU KD-tree and Embree.
 #pragma once
 
+#include "core/batched_stream.h"
 #include "core/log.h"
 #include "core/ray.h"
 #include "core/result.h"
@@ -30,6 +31,9 @@ public:
     /// occluded[i] = 1 when ray i hits anything, else 0.
     virtual Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
                                   std::span<uint8_t> occluded) = 0;
+    /// The mixed form: traces what the host pushes until there is no more. Error of the kind
+    /// Cancelled: it stopped.
+    virtual Result<Done> stream(StreamHost& host) { return stream_in_batches(*this, host); }
     /// Counted since it was built. What a backend does not have is 0.
     virtual ovc_statistics statistics() const = 0;
     /// What does the work, for a person: the GL renderer's name, or the CPU.

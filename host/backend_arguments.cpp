@@ -63,16 +63,6 @@ void BackendArguments::add_to(CLI::App& app) {
         ->type_name("NAME");
 }
 
-/// The place of `value` among `names`; 0 where none was given.
-static Result<size_t> parse_choice(const char* option, const std::string& value,
-                                   std::span<const std::string_view> names) {
-    const auto known = value.empty() ? names.begin() : std::find(names.begin(), names.end(), value);
-    if (known != names.end())
-        return size_t(known - names.begin());
-    return Error{fmt::format("{}: '{}' is none of {}{}", option, value, fmt::join(names, ", "),
-                             did_you_mean(value, names))};
-}
-
 Result<BackendOptions> BackendArguments::resolve() const {
     BackendOptions options;
     const Result<BackendKind> kind = parse_backend(backend);

@@ -33,6 +33,42 @@ static ovc_query query_of(std::span<const TriangleId> skip) {
     return query;
 }
 
+/// A StreamHost as the C ABI calls it, and the stream that it pushes to.
+class CalledBack final : public RayStream {
+public:
+    CalledBack(const ovc_api& api, StreamHost& host) : api_(api), host_(host) {}
+
+    ovc_stream_host as_abi() { return {sizeof(ovc_stream_host), this, more, answered}; }
+
+    void push(const StreamRays& rays) override {
+        const ovc_query query = query_of(rays.skip);
+        refused_ = refused_ || api_.push(stream_, ovc::as_abi(rays.rays), rays.tokens.data(),
+                                         rays.rays.size(), rays.any_hit, &query) != OVC_OK;
+    }
+
+private:
+    static int more(void* user, ovc_stream stream, size_t wanted) {
+        CalledBack& self = *static_cast<CalledBack*>(user);
+        self.stream_ = stream;
+        return self.go_on(self.host_.more(self, wanted));
+    }
+    static int answered(void* user, ovc_stream stream, const ovc_stream_answers* answers) {
+        CalledBack& self = *static_cast<CalledBack*>(user);
+        self.stream_ = stream;
+        const std::span<const uint64_t> tokens(answers->tokens, answers->count);
+        if (answers->hits)
+            return self.go_on(self.host_.hits(
+                self, tokens, {reinterpret_cast<const Hit*>(answers->hits), answers->count}));
+        return self.go_on(self.host_.occlusions(self, tokens, {answers->occluded, answers->count}));
+    }
+    int go_on(bool wanted) const { return wanted && !refused_ ? 0 : 1; }
+
+    const ovc_api& api_;
+    StreamHost& host_;
+    ovc_stream stream_ = nullptr;
+    bool refused_ = false; // a push was
+};
+
 static ovc_mesh mesh_of(const Chunk& chunk) {
     ovc_mesh mesh{};
     mesh.struct_size = sizeof(mesh);
@@ -63,6 +99,12 @@ public:
         const ovc_query query = query_of(skip);
         return device_.checked(
             api().occluded(scene_.get(), as_abi(rays), rays.size(), occluded.data(), &query));
+    }
+
+    Result<Done> stream(StreamHost& host) override {
+        CalledBack called(api(), host);
+        const ovc_stream_host callbacks = called.as_abi();
+        return device_.checked(api().stream(scene_.get(), &callbacks));
     }
 
     ovc_statistics statistics() const override {

@@ -45,6 +45,7 @@ struct RenderWords {
     std::string camera_path;
     std::vector<std::string> lights;
     std::string max_depth;
+    std::string mode = "auto";
     bool no_shadows = false;
     BackendArguments backend;
     std::string stats;
@@ -87,6 +88,12 @@ void RenderWords::add_to(CLI::App& app) {
                    "Reflections and refractions in a row at most, up to 1000; default: what the "
                    "file asks for, else 5")
         ->type_name("N");
+    app.add_option(
+           "--mode", mode,
+           "auto, batched (a call of the backend for all rays of a kind and depth) or mixed "
+           "(what answers spawn joins the rays under way: fewer passes where memory is "
+           "short); the picture is the same")
+        ->type_name("MODE");
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
     app.add_option("--stats", stats, "Write statistics as JSON (docs/stats.md)")
         ->type_name("FILE.json");
@@ -204,6 +211,11 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
             return depth.error();
         job.max_depth = uint32_t(*depth);
     }
+    static constexpr std::string_view modes[] = {"auto", "batched", "mixed"};
+    const Result<size_t> mode = parse_choice("--mode", words.mode, modes);
+    if (!mode)
+        return mode.error();
+    job.mode = RenderMode(*mode);
     job.whitted.shadows = !words.no_shadows;
     if (isatty(STDERR_FILENO))
         job.whitted.batch_rays = kWatchedBatchRays;

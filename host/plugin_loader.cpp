@@ -76,7 +76,8 @@ Result<PluginDevice> PluginDevice::open(const ovc_api* api, const std::string& n
 Result<Done> PluginDevice::checked(ovc_result result) const {
     if (result == OVC_OK)
         return Done{};
-    return Error{sentence_of(api_, device_.get(), result)};
+    return Error{sentence_of(api_, device_.get(), result),
+                 result == OVC_ERROR_CANCELLED ? ErrorKind::Cancelled : ErrorKind::Other};
 }
 
 Result<ovc_device_info> PluginDevice::describe() const {

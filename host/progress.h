@@ -4,7 +4,7 @@
 
 #include "core/stopwatch.h"
 #include "host/backend.h"
-#include "host/whitted_batched.h"
+#include "host/whitted.h"
 
 #include <cstdint>
 #include <string>

@@ -9,6 +9,8 @@
 #include "host/progress.h"
 #include "host/scene_summary.h"
 #include "host/stats.h"
+#include "host/whitted_batched.h"
+#include "host/whitted_mixed.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -102,7 +104,8 @@ private:
             progress.update(report);
             return !interrupt_.interrupted();
         };
-        return render_batched(scene_, shot.camera, backend_, whitted_, observe, image);
+        const auto render = job_.mode == RenderMode::Mixed ? render_mixed : render_batched;
+        return render(scene_, shot.camera, backend_, whitted_, observe, image);
     }
 
     Result<Done> save_all(const Image& image, uint32_t frame) const {

@@ -5,7 +5,7 @@
 #include "host/arguments.h"
 #include "host/backend.h"
 #include "host/scene_source.h"
-#include "host/whitted_batched.h"
+#include "host/whitted.h"
 
 #include <optional>
 #include <string>
@@ -22,6 +22,9 @@ struct Shot {
     Camera camera;
 };
 
+/// Algorithm 5 or 6 of the thesis; auto is the one that was measured faster (docs/benchmarks.md).
+enum class RenderMode { Auto, Batched, Mixed };
+
 struct RenderJob {
     SceneArguments scene;
     std::vector<std::string> outputs; // with a # for each digit of the frame, where there are shots
@@ -31,6 +34,7 @@ struct RenderJob {
     std::vector<Light> lights;
     WhittedOptions whitted;
     std::optional<uint32_t> max_depth; // none: the scene's, else that of `whitted`
+    RenderMode mode = RenderMode::Auto;
     BackendOptions backend;
     std::string stats;
     bool quiet = false;

@@ -2,7 +2,7 @@
 // What a rendering took: as JSON for programs (docs/stats.md) and as a few lines for people.
 #pragma once
 
-#include "host/whitted_batched.h"
+#include "host/whitted.h"
 #include "plugin/overcast.h"
 
 #include <cstdint>

@@ -15,18 +15,6 @@ namespace ovc {
 
 /// Rays per task: some ten microseconds of work.
 static constexpr size_t kGrain = 1024;
-/// A reflection or refraction that adds less than this to its pixel is not followed; an 8-bit image
-/// would not show it. The shares of a pixel's paths add up to at most 1, so it never has more than
-/// 512 of them at a time.
-static constexpr float kLeastWeight = 1 / 512.0f;
-
-/// What a ray is for: the share of its pixel's color that it decides.
-struct Path {
-    uint32_t pixel;
-    uint32_t depth; // reflections and refractions that led here
-    vec3 weight;
-};
-
 /// Rays and what belongs to each of them. The rays of a pixel stand side by side and are all of one
 /// depth, so that a pixel's sum does not depend on what else is traced with it.
 struct Frontier {
@@ -73,10 +61,7 @@ public:
           image_(image),
           pinhole_(camera, image.width, image.height),
           up_(glm::normalize(camera.up)),
-          glass_(std::any_of(scene.materials.begin(), scene.materials.end(),
-                             [](const Material& m) { return m.transmission > 0; }) ||
-                 std::any_of(scene.meshes.begin(), scene.meshes.end(),
-                             [](const MeshInfo& m) { return m.no_shadow; })) {}
+          glass_(lets_light_through(scene)) {}
 
     Result<RenderReport> render() {
         const Stopwatch watch;
@@ -153,31 +138,13 @@ private:
             for (size_t k = first; k < last; ++k) {
                 const uint32_t i = hit_rays_[k];
                 surfaces_[k] = surface_point(scene_, now_.rays[i], hits_[i]);
-                split_weight(k);
+                const Children children =
+                    split_weight(now_.paths[i], now_.rays[i], surfaces_[k], options_.max_depth);
+                child_weights_[2 * k] = children.mirror;
+                child_weights_[2 * k + 1] = children.through;
                 radiance_[i] = ambient_light(scene_.background, up_, surfaces_[k]);
             }
         });
-    }
-
-    /// Divides the weight of the path to surface k among the surface's own color, which keeps
-    /// what is not followed, and the two rays that may leave it.
-    void split_weight(size_t k) {
-        const uint32_t i = hit_rays_[k];
-        Path& path = now_.paths[i];
-        const bool total =
-            surfaces_[k].material->transmission > 0 && !refracted_ray(now_.rays[i], surfaces_[k]);
-        const Branches parts = branches(surfaces_[k], total);
-        const vec3 shares[] = {parts.mirror, parts.through};
-        const float taken[] = {parts.taken_by_mirror, parts.taken_by_through};
-        const vec3 whole = path.weight;
-        for (int kind = 0; kind < 2; ++kind) {
-            const vec3 weight = whole * shares[kind];
-            const bool follow =
-                path.depth < options_.max_depth && max_component(weight) >= kLeastWeight;
-            child_weights_[2 * k + size_t(kind)] = follow ? weight : vec3(0);
-            if (follow)
-                path.weight -= whole * taken[kind];
-        }
     }
 
     /// Adds one light to every surface that it reaches.
@@ -240,7 +207,9 @@ private:
         occluded_.resize(chosen_.size());
         parallel_for(chosen_.size(), kGrain, [&](size_t first, size_t last) {
             for (size_t j = first; j < last; ++j)
-                occluded_[j] = shadow_hits_[j].is_hit() && pass_glass(light, depth, j);
+                occluded_[j] = shadow_hits_[j].is_hit() &&
+                               pass_glass(scene_, light, options_, depth, shadow_hits_[j],
+                                          shadow_rays_[j], arriving_[chosen_[j]]);
         });
         size_t kept = 0;
         for (size_t j = 0; j < chosen_.size(); ++j)
@@ -253,20 +222,6 @@ private:
         shadow_skip_.resize(kept);
         chosen_.resize(kept);
         return done;
-    }
-
-    /// Dims the light of shadow ray j by what it hit; true when some is left, and the ray begins
-    /// behind it.
-    bool pass_glass(const Light& light, uint32_t depth, size_t j) {
-        const SurfacePoint glass = surface_point(scene_, shadow_rays_[j], shadow_hits_[j]);
-        vec3& left = arriving_[chosen_[j]];
-        if (!scene_.meshes[shadow_hits_[j].id.mesh].no_shadow) {
-            left *= branches(glass, /* total= */ false).through;
-            if (depth >= options_.max_depth || max_component(left) < kLeastWeight)
-                left = vec3(0);
-        }
-        shadow_rays_[j] = shadow_ray(light, glass.beyond);
-        return left != vec3(0);
     }
 
     /// A pixel's paths are added in their order, by whoever has the first of them.

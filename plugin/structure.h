@@ -4,13 +4,13 @@
 // compared with (thesis/).
 #pragma once
 
+#include "core/batched_stream.h"
 #include "core/log.h"
 #include "core/ray.h"
 #include "core/result.h"
 #include "core/soup.h"
 #include "gpu/gl_thread.h"
 #include "plugin/overcast.h"
-#include "plugin/stream.h"
 
 #include <memory>
 #include <span>
@@ -30,7 +30,7 @@ public:
                                   std::span<uint8_t> occluded) = 0;
     /// Traces what the host pushes until there is no more. Error of the kind Cancelled: the host
     /// stopped it. Here: batch after batch, for structures that know no better.
-    virtual Result<Done> stream(StreamHost& host);
+    virtual Result<Done> stream(StreamHost& host) { return stream_in_batches(*this, host); }
     /// Counted since it was built. What a structure does not have is 0.
     virtual ovc_statistics report() const = 0;
 };

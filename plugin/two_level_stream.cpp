@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mixed form over two-level: rays of both kinds are under way together, and what the host
 // spawns joins them before pages are moved. Based on: thesis, section 3.5 (algorithm 6).
+#include "core/backlog.h"
 #include "core/stopwatch.h"
-#include "plugin/backlog.h"
 #include "plugin/wave.h"
 
 namespace ovc {

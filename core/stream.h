@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mixed form of tracing, as a structure and its host see it: rays go in at any time, answers
+// The mixed form of tracing, as who traces and who asks see it: rays go in at any time, answers
 // come back in any order. Based on: thesis, section 3.5 (algorithm 6).
 #pragma once
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stream over a structure that only knows batches: all that is pushed is traced in turn.
-#include "plugin/structure.h"
+// A stream over what only knows batches: all that is pushed is traced in turn.
+#pragma once
 
-#include "plugin/backlog.h"
+#include "core/backlog.h"
+#include "core/result.h"
 
 #include <algorithm>
 
 namespace ovc {
-namespace {
 
-constexpr size_t kMostAtOnce = size_t(1) << 20; // rays a batch: bounds the host memory of a stream
-
+/// Batches: has intersect() and occluded() as plugin/structure.h declares them.
+template <class Batches>
 class BatchedStream final : public RayStream {
 public:
-    BatchedStream(Structure& structure, StreamHost& host) : structure_(structure), host_(host) {}
+    BatchedStream(Batches& batches, StreamHost& host) : batches_(batches), host_(host) {}
 
     void push(const StreamRays& rays) override { (rays.any_hit ? any_ : nearest_).push(rays); }
 
@@ -44,7 +44,7 @@ private:
         const size_t count = std::min(any_.size(), kMostAtOnce);
         const StreamRays rays = any_.last(count);
         occluded_.resize(count);
-        if (Result<Done> done = structure_.occluded(rays.rays, rays.skip, occluded_); !done)
+        if (Result<Done> done = batches_.occluded(rays.rays, rays.skip, occluded_); !done)
             return done;
         const std::vector<uint64_t> tokens(rays.tokens.begin(), rays.tokens.end());
         any_.drop_last(count);
@@ -57,7 +57,7 @@ private:
         const size_t count = std::min(nearest_.size(), kMostAtOnce);
         const StreamRays rays = nearest_.last(count);
         hits_.resize(count);
-        if (Result<Done> done = structure_.intersect(rays.rays, rays.skip, hits_); !done)
+        if (Result<Done> done = batches_.intersect(rays.rays, rays.skip, hits_); !done)
             return done;
         const std::vector<uint64_t> tokens(rays.tokens.begin(), rays.tokens.end());
         nearest_.drop_last(count);
@@ -66,7 +66,9 @@ private:
         return Done{};
     }
 
-    Structure& structure_;
+    static constexpr size_t kMostAtOnce = size_t(1) << 20; // rays a batch
+
+    Batches& batches_;
     StreamHost& host_;
     Backlog nearest_;
     Backlog any_;
@@ -74,10 +76,10 @@ private:
     std::vector<uint8_t> occluded_;
 };
 
-} // namespace
-
-Result<Done> Structure::stream(StreamHost& host) {
-    return BatchedStream(*this, host).run();
+/// Traces what the host pushes until there is no more. Error of the kind Cancelled: it stopped.
+template <class Batches>
+Result<Done> stream_in_batches(Batches& batches, StreamHost& host) {
+    return BatchedStream<Batches>(batches, host).run();
 }
 
 } // namespace ovc

@@ -3,7 +3,7 @@
 // first to go, so that children end before their parents' siblings begin and few rays wait.
 #pragma once
 
-#include "plugin/stream.h"
+#include "core/stream.h"
 
 #include <algorithm>
 #include <vector>
