@@ -120,7 +120,6 @@ Result<double> Tracer::pass(const PassOptions& options, std::span<const Travelle
     const Stopwatch watch;
     ShaderConfig config;
     config.compute = options.compute;
-    config.any_hit = options.any_hit;
     config.certify = options.certify;
     config.stack_depth = stack_depth_;
     config.stack_registers = software_;

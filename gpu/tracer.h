@@ -24,7 +24,8 @@ struct Traveller {
     Ray ray;             // t_max < t_min: no ray
     double t_from;       // the walk begins in the cell after this t; ray.t_min at first
     uint32_t skip;       // number of a triangle it does not see, or OVC_NO_TRIANGLE
-    uint32_t first_leaf; // of that cell, where the ray has been in it; else OVC_NO_LEAF
+    uint32_t first_leaf; // of that cell, where the ray has been in it; else OVC_NO_LEAF; with
+                         // OVC_RAY_ANY_HIT added: any hit will do
 };
 static_assert(sizeof(Traveller) == 80);
 
@@ -45,9 +46,8 @@ struct Answer {
 };
 static_assert(sizeof(Answer) == 16);
 
-/// What a pass is to find, and how.
+/// How a pass is made.
 struct PassOptions {
-    bool any_hit = false;
     bool certify = true;  // false: fast precision
     bool compute = false; // which kernel: they answer alike
 };

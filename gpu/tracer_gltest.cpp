@@ -45,14 +45,15 @@ protected:
         });
     }
 
-    std::vector<Answer> trace(std::span<const Ray> rays, const PassOptions& options) {
+    std::vector<Answer> trace(std::span<const Ray> rays, bool any_hit = false) {
         const size_t rows = Tracer::row_padded(rays.size());
         std::vector<Traveller> travellers(rows, {kNoRay, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF});
         for (size_t i = 0; i < rays.size(); ++i)
-            travellers[i] = {rays[i], rays[i].t_min, OVC_NO_TRIANGLE, OVC_NO_LEAF};
+            travellers[i] = {rays[i], rays[i].t_min, OVC_NO_TRIANGLE,
+                             OVC_NO_LEAF | (any_hit ? OVC_RAY_ANY_HIT : 0)};
         std::vector<Answer> answers(rows);
         gl->run([&](GlState&) {
-            const auto pass = tracer->pass(options, std::span(travellers).first(rays.size()),
+            const auto pass = tracer->pass({}, std::span(travellers).first(rays.size()),
                                            std::span(answers).first(rays.size()));
             ASSERT_TRUE(pass) << pass.error().message;
         });
@@ -93,8 +94,8 @@ TEST_F(KernelGl, WhatItCallsCertainIsTrue) {
         std::vector<Ray> rays;
         for (int i = 0; i < 2000; ++i)
             rays.push_back(random_ray(random, leaf));
-        const auto nearest = trace(rays, {});
-        const auto any = trace(rays, {.any_hit = true});
+        const auto nearest = trace(rays);
+        const auto any = trace(rays, /* any_hit= */ true);
         for (size_t i = 0; i < rays.size(); ++i) {
             const Hit expected = test::brute_force(soup, leaf.triangles, rays[i]);
             if (is_certain(nearest[i])) {
@@ -122,7 +123,7 @@ TEST_F(KernelGl, FlagsRaysAtSharedEdgesAndVertices) {
     std::vector<Ray> rays;
     for (const TriangleId id : leaf_of(level1).triangles)
         rays.push_back({soup.triangle(id)[0] - dvec3(0, 0, 0.25), 0, dvec3(0, 0, 1)});
-    for (const Answer& answer : trace(rays, {}))
+    for (const Answer& answer : trace(rays))
         EXPECT_EQ(answer.prim, OVC_FLAGGED);
 }
 
@@ -134,7 +135,7 @@ TEST_F(KernelGl, NamesBothTrianglesAtASharedEdge) {
         const Triangle t = soup.triangle(id);
         rays.push_back({0.5 * (t[0] + t[1]) - dvec3(0, 0, 0.01), 0, dvec3(0, 0, 1), 0.02});
     }
-    const auto answers = trace(rays, {});
+    const auto answers = trace(rays);
     for (size_t i = 0; i < rays.size(); ++i) {
         const auto rivals = answers[i].rivals();
         EXPECT_FALSE(is_certain(answers[i]));
@@ -147,7 +148,7 @@ TEST_F(KernelGl, NamesBothTrianglesAtASharedEdge) {
 TEST_F(KernelGl, AnEndBeforeTheBeginningIsNoRay) {
     load(test::closed_grid(8));
     const std::vector<Ray> rays(3000, Ray{dvec3(0, 0, -4), 0, dvec3(0, 0, 1), -1});
-    for (const Answer& answer : trace(rays, {}))
+    for (const Answer& answer : trace(rays))
         EXPECT_EQ(answer.prim, OVC_MISS);
 }
 
@@ -155,7 +156,7 @@ TEST_F(KernelGl, ARayWaitsForALeafThatIsNotInThePool) {
     const Soup soup = test::closed_grid(8);
     load(soup);
     const Ray ray{dvec3(1.01, 0.02, -4), 0, dvec3(0, 0, 1)};
-    EXPECT_LT(trace(std::span(&ray, 1), {})[0].prim, OVC_MAX_TRIANGLES);
+    EXPECT_LT(trace(std::span(&ray, 1))[0].prim, OVC_MAX_TRIANGLES);
     gl->run([&](GlState& state) {
         tracer.reset();
         const Result<MemoryPlan> plan = plan_memory(64u << 20, gl->info());
@@ -163,7 +164,7 @@ TEST_F(KernelGl, ARayWaitsForALeafThatIsNotInThePool) {
         shared.pool_bytes -= 1u << 20;
         tracer = std::move(*Tracer::create(shared, gl->info(), state.kernels, level1, pages));
     });
-    const Answer answer = trace(std::span(&ray, 1), {})[0];
+    const Answer answer = trace(std::span(&ray, 1))[0];
     EXPECT_EQ(answer.leaf(), 0u);
     EXPECT_EQ(answer.t(), 0.0);
 }

@@ -121,6 +121,27 @@ uint32_t TwoLevel::number_to_skip(TriangleId id) const {
     return id.mesh == kNone || twins_.stands_for_others(id) ? OVC_NO_TRIANGLE : numbers_.of(id);
 }
 
+/// The first `count` travellers on their way; their answers into answers_.
+Result<Done> TwoLevel::pass(size_t count) {
+    const size_t padded = Tracer::row_padded(count);
+    const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
+    travellers_.resize(padded);
+    std::fill(travellers_.begin() + ptrdiff_t(count), travellers_.end(), none);
+    answers_.resize(padded);
+    Result<double> seconds = Error{};
+    gl_.run([&](GlState&) {
+        seconds =
+            tracer_->pass({options_.certify, options_.compute}, std::span(travellers_).first(count),
+                          std::span(answers_).first(count));
+    });
+    if (!seconds)
+        return seconds.error();
+    statistics_.passes += 1;
+    statistics_.ray_visits += count;
+    statistics_.seconds_kernel += *seconds;
+    return Done{};
+}
+
 template <class Query>
 Result<Done> TwoLevel::trace(const Query& query) {
     const Stopwatch watch;
@@ -130,14 +151,9 @@ Result<Done> TwoLevel::trace(const Query& query) {
         std::vector<uint32_t> all(count);
         std::iota(all.begin(), all.end(), 0u);
         wave.start(all);
-        while (true) {
-            if (wave.ready() < few_rays() && wave.waiting() > 0)
-                bring_for(wave);
-            if (wave.ready() == 0)
-                break;
-            if (Result<Done> done = wave.pass(); !done)
+        while (wave.ready() + wave.waiting() > 0)
+            if (Result<Done> done = round(wave); !done)
                 return done;
-        }
         (Query::kAnyHit ? statistics_.occlusion_rays : statistics_.nearest_rays) += count;
     }
     statistics_.seconds_trace += watch.seconds();

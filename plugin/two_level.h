@@ -91,6 +91,10 @@ private:
     /// Moves in pages that rays of these waves wait for, and calls those up.
     template <class... Queries>
     void bring_for(Wave<Queries>&... waves);
+    /// A pass, of rays of all these waves, and pages moved in before it where few are ready.
+    template <class... Queries>
+    Result<Done> round(Wave<Queries>&... waves);
+    Result<Done> pass(size_t count);
     template <class Query>
     Result<Done> trace(const Query& query);
 
@@ -102,7 +106,9 @@ private:
     Twins twins_;
     Level1 level1_; // without them
     std::vector<Page> pages_;
-    std::unique_ptr<Tracer> tracer_; // made and destroyed on the thread of gl_
+    std::unique_ptr<Tracer> tracer_;    // made and destroyed on the thread of gl_
+    std::vector<Traveller> travellers_; // of a pass, as the answers are; kept between calls
+    std::vector<Answer> answers_;
     TwoLevelStatistics statistics_;
 };
 

@@ -102,12 +102,7 @@ public:
             if (nearest_.empty() && any_.empty())
                 return Done{};
             const Stopwatch watch;
-            if (std::max(nearest_.wave().ready(), any_.wave().ready()) < s_.few_rays() &&
-                nearest_.wave().waiting() + any_.wave().waiting() > 0)
-                s_.bring_for(nearest_.wave(), any_.wave());
-            ovc::Result<Done> done = any_.wave().ready() > nearest_.wave().ready()
-                                         ? any_.wave().pass()
-                                         : nearest_.wave().pass();
+            ovc::Result<Done> done = s_.round(any_.wave(), nearest_.wave());
             s_.statistics_.seconds_trace += watch.seconds();
             if (!done)
                 return done;

@@ -42,9 +42,6 @@ public:
     void show(const Query& query) {
         query_ = query;
         positions_.resize(query.rays.size());
-        travellers_.resize(
-            Tracer::row_padded(std::min<size_t>(s_.plan_.batch_rays, query.rays.size())));
-        answers_.resize(travellers_.size());
     }
 
     /// Puts these rays, none of them under way, at the beginning of theirs.
@@ -71,32 +68,33 @@ public:
     /// The rays that were answered since this was asked last.
     std::vector<uint32_t> take_finished() { return std::exchange(finished_, {}); }
 
-    /// Walks a batch of the rays that are ready, takes in the answers, and sends the rays on.
-    Result<Done> pass() {
-        const size_t count = std::min<size_t>(ready_.size(), s_.plan_.batch_rays);
-        const std::vector<uint32_t> batch(ready_.begin(), ready_.begin() + ptrdiff_t(count));
+    /// Puts rays that are ready into `travellers`, as many as there is room for; returns how many.
+    size_t load(std::span<Traveller> travellers) {
+        const size_t count = std::min(ready_.size(), travellers.size());
+        batch_.assign(ready_.begin(), ready_.begin() + ptrdiff_t(count));
         ready_.erase(ready_.begin(), ready_.begin() + ptrdiff_t(count));
-        load(batch);
-        Result<double> seconds = Error{};
-        s_.gl_.run([&](GlState&) {
-            seconds = s_.tracer_->pass({Query::kAnyHit, s_.options_.certify, s_.options_.compute},
-                                       std::span(travellers_).first(count),
-                                       std::span(answers_).first(count));
-        });
-        if (!seconds)
-            return seconds.error();
-        s_.statistics_.passes += 1;
-        s_.statistics_.ray_visits += count;
-        s_.statistics_.seconds_kernel += *seconds;
         parallel_for(count, kGrain, [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j) {
+                const Position& at = positions_[batch_[j]];
+                Ray rest = query_.rays[batch_[j]];
+                rest.t_max = at.t_end;
+                travellers[j] = {rest, at.t_from, s_.number_to_skip(query_.skipped(batch_[j])),
+                                 at.leaf | (Query::kAnyHit ? OVC_RAY_ANY_HIT : 0)};
+            }
+        });
+        return count;
+    }
+
+    /// Takes in the answers for what was loaded last, and sends the rays on.
+    void settle(std::span<const Answer> answers) {
+        parallel_for(answers.size(), kGrain, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j)
-                settle(batch[j], answers_[j]);
+                settle_one(batch_[j], answers[j]);
         });
         for (uint32_t leaf = 0; leaf < used_.size(); ++leaf)
             if (used_[leaf].exchange(0, std::memory_order_relaxed))
                 s_.tracer_->touch(leaf);
-        send_on(batch);
-        return Done{};
+        send_on(batch_);
     }
 
 private:
@@ -135,24 +133,9 @@ private:
         }
     }
 
-    void load(std::span<const uint32_t> batch) {
-        parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
-            for (size_t j = from; j < to; ++j) {
-                const uint32_t ray = batch[j];
-                const Position& at = positions_[ray];
-                Ray rest = query_.rays[ray];
-                rest.t_max = at.t_end;
-                travellers_[j] = {rest, at.t_from, s_.number_to_skip(query_.skipped(ray)), at.leaf};
-            }
-        });
-        const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
-        std::fill(travellers_.begin() + ptrdiff_t(batch.size()),
-                  travellers_.begin() + ptrdiff_t(Tracer::row_padded(batch.size())), none);
-    }
-
     /// Takes in the kernel's answer for ray i, and says in positions_[i] where the ray goes from
     /// here.
-    void settle(uint32_t i, const Answer& answer) {
+    void settle_one(uint32_t i, const Answer& answer) {
         positions_[i].state = Position::Done;
         if (answer.prim == OVC_WAITS) {
             positions_[i] = {answer.t(), positions_[i].t_end, answer.leaf(), Position::Waits};
@@ -235,11 +218,10 @@ private:
     Query query_;
     std::vector<Position> positions_; // per ray
     std::vector<uint32_t> ready_;     // rays for the next passes
+    std::vector<uint32_t> batch_;     // loaded last
     std::vector<uint32_t> finished_;
     Waiting waiting_;
     std::vector<std::atomic<uint8_t>> used_; // per leaf: a ray of the last pass ended there
-    std::vector<Traveller> travellers_;      // per ray of a batch, as are the answers
-    std::vector<Answer> answers_;
     std::atomic<uint64_t> invalid_{0};
     std::atomic<uint64_t> flagged_{0};
     std::atomic<uint64_t> retraced_{0};
@@ -254,6 +236,34 @@ void TwoLevel::bring_for(Wave<Queries>&... waves) {
     const std::vector<uint32_t> wanted = worth_moving(counts, pages_);
     const auto moved = std::span(wanted).first(bring(wanted));
     (waves.call_up(moved), ...);
+}
+
+template <class... Queries>
+Result<Done> TwoLevel::round(Wave<Queries>&... waves) {
+    // What is ready goes with the next pass, whose greater part then comes from the pages moved
+    // in: so every pass gets somewhere, though those pages may push out what was ready for.
+    if ((waves.ready() + ...) < few_rays() && (waves.waiting() + ...) > 0)
+        bring_for(waves...);
+    travellers_.resize(
+        Tracer::row_padded(std::min<size_t>((waves.ready() + ...), plan_.batch_rays)));
+    size_t count = 0;
+    const auto load = [&](auto& wave) {
+        const size_t room = std::min<size_t>(travellers_.size(), plan_.batch_rays) - count;
+        const size_t loaded = wave.load(std::span(travellers_).subspan(count, room));
+        count += loaded;
+        return loaded;
+    };
+    const size_t loaded[] = {load(waves)...};
+    if (Result<Done> done = pass(count); !done)
+        return done;
+    size_t first = 0;
+    size_t k = 0;
+    const auto settle = [&](auto& wave) {
+        wave.settle(std::span(answers_).subspan(first, loaded[k]));
+        first += loaded[k++];
+    };
+    (settle(waves), ...);
+    return Done{};
 }
 
 } // namespace ovc

@@ -9,10 +9,13 @@ struct GridRay {
     bvec3 backward; // the direction is negative: hi is the near plane
 };
 
-GridRay grid_ray(vec3 org, vec3 dir, vec3 grid_org, vec3 grid_cell) {
-    // A component below 1e-18 moves the ray by less than any padding over the whole leaf; its reciprocal stays finite.
+// A component below 1e-18 moves the ray by less than any padding over the whole leaf; its reciprocal stays finite.
+vec3 finite_reciprocal(vec3 dir) {
     vec3 tiny = mix(vec3(1e-18), vec3(-1e-18), lessThan(dir, vec3(0.0)));
-    vec3 inv_dir = 1.0 / mix(dir, tiny, lessThan(abs(dir), vec3(1e-18)));
+    return 1.0 / mix(dir, tiny, lessThan(abs(dir), vec3(1e-18)));
+}
+
+GridRay grid_ray(vec3 org, vec3 inv_dir, vec3 grid_org, vec3 grid_cell) {
     return GridRay(grid_cell * inv_dir, (grid_org - org) * inv_dir, lessThan(inv_dir, vec3(0.0)));
 }
 

@@ -39,9 +39,10 @@
 // A ray is five RGBA32UI texels: the record of core/ray.h, org, t_min, dir, t_max (doubles; t_max < t_min: no
 // ray here); then the t of the cells it is done with (double), the number of the triangle it does not see or
 // OVC_NO_TRIANGLE, and, where the cell just after that t is one it has been in, the leaf of it to go on with, one past the
-// last where it is done with all; else any leaf of other cells, or OVC_NO_LEAF.
+// last where it is done with all; else any leaf of other cells, or OVC_NO_LEAF; with OVC_RAY_ANY_HIT added where any hit will do.
 #define OVC_RAY_TEXELS 5
-#define OVC_NO_LEAF 0xffffffffu
+#define OVC_NO_LEAF 0x7fffffffu
+#define OVC_RAY_ANY_HIT 0x80000000u
 #define OVC_ROW_RAYS 256 // answers are a texture, so many in a row
 
 // An answer is RGBA32UI; triangles are named by their numbers in the soup. w: the certain nearest hit in leaf z; or

@@ -87,7 +87,6 @@ Cell cell_after(WorldRay ray, double t) {
 // A ray in a leaf's frame (docs/numerics.md), and how to come back: world t = enter + t / speed.
 struct LocalRay {
     vec3 org;
-    vec3 dir; // largest component 1 or -1
     float t_end;
     double enter;
     double speed;
@@ -103,22 +102,28 @@ float nearest_float(double d) {
 }
 vec3 nearest_floats(dvec3 d) { return vec3(nearest_float(d.x), nearest_float(d.y), nearest_float(d.z)); }
 
-LocalRay rebase(WorldRay ray, int leaf_texel, dvec2 inside) {
+// The length in which local rays count t: of the direction's longest component, which becomes 1 or -1.
+double longest_component(WorldRay ray) {
+    dvec3 size = abs(ray.dir);
+    return max(size.x, max(size.y, size.z));
+}
+
+vec3 local_direction(WorldRay ray, double longest) {
+    precise dvec3 dir = ray.dir / longest;
+    // Exactly 1 or -1, which the basis builds on and a driver's division need not give.
+    vec3 signs = mix(vec3(1.0), vec3(-1.0), lessThan(ray.dir, dvec3(0.0)));
+    return mix(nearest_floats(dir), signs, equal(abs(ray.dir), dvec3(longest)));
+}
+
+LocalRay rebase(WorldRay ray, double longest, int leaf_texel, dvec2 inside) {
     dvec2 a = doubles(leaf_texel + 3);
     dvec2 b = doubles(leaf_texel + 4);
     double scale = b.y;
-    dvec3 size = abs(ray.dir);
-    double longest = max(size.x, max(size.y, size.z));
     precise dvec3 from_origin = ray.org - dvec3(a, b.x);
     precise dvec3 travelled = ray.dir * inside.x;
     precise dvec3 org = (from_origin + travelled) * scale;
-    precise dvec3 dir = ray.dir / longest;
     LocalRay local;
     local.org = nearest_floats(org);
-    local.dir = nearest_floats(dir);
-    // Exactly 1 or -1, which the basis builds on and a driver's division need not give.
-    vec3 signs = mix(vec3(1.0), vec3(-1.0), lessThan(ray.dir, dvec3(0.0)));
-    local.dir = mix(local.dir, signs, equal(size, dvec3(longest)));
     local.enter = inside.x;
     local.speed = longest * scale;
     double length = (inside.y - inside.x) * local.speed;

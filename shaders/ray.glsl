@@ -24,5 +24,6 @@ Traveller traveller_at(ivec2 pixel) {
     uvec4 e = ray_texel(texel + 4);
     dvec3 dir = dvec3(c, d.x);
     dvec3 inv_dir = 1.0 / mix(dir, dvec3(1.0), equal(dir, dvec3(0.0))); // a still coordinate has none
-    return Traveller(WorldRay(dvec3(a, b.x), dir, inv_dir, b.y, d.y), double_of(e.xy), int(e.w), e.z);
+    return Traveller(WorldRay(dvec3(a, b.x), dir, inv_dir, b.y, d.y), double_of(e.xy), int(e.w & OVC_NO_LEAF), e.z,
+                     (e.w & OVC_RAY_ANY_HIT) != 0u);
 }

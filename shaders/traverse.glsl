@@ -7,13 +7,20 @@ int stack_word(int base, ivec4 keys, int left) {
     return (base << 8) | (left << 6) | (keys.y & 3) | ((keys.z & 3) << 2) | ((keys.w & 3) << 4);
 }
 
+// Of a ray, what is the same in every leaf's frame. dir: the largest component 1 or -1.
+struct Direction {
+    vec3 inv_dir;
+    Basis basis;
+};
+
+Direction direction_of(vec3 dir) { return Direction(finite_reciprocal(dir), basis_of(dir)); }
+
 // Takes into `found` what the ray may hit in the page whose header is the pool's unit `page`. False: the loop was ended before
 // it was done. rounds: of all loops of this ray so far.
-bool traverse(inout Found found, int page, vec3 org, float t_end, vec3 dir, uint skip, inout int rounds) {
-    const bool any_hit = OVC_ANY_HIT != 0;
+bool traverse(inout Found found, int page, vec3 org, float t_end, Direction direction, uint skip, bool any_hit,
+              inout int rounds) {
     int header = page * OVC_UNIT_TEXELS;
-    GridRay grid = grid_ray(org, dir, uintBitsToFloat(page_texel(header).xyz), uintBitsToFloat(page_texel(header + 1).xyz));
-    Basis basis = basis_of(dir);
+    GridRay grid = grid_ray(org, direction.inv_dir, uintBitsToFloat(page_texel(header).xyz), uintBitsToFloat(page_texel(header + 1).xyz));
 
     // Fetched, because a compiler that knows the first values splits the loop's variables into masked copies (llvmpipe).
     ivec4 first = ivec4(page_texel(header + 2));
@@ -38,7 +45,7 @@ bool traverse(inout Found found, int page, vec3 org, float t_end, vec3 dir, uint
         // A pair's bits mean nothing as boxes: an end before the beginning lets none of them through.
         ivec4 keys = child_keys(X, Y, Z, grid, is_pair ? -1.0 : found.best_hi);
         sort_keys(keys);
-        bool took = take_pair(found, X, Y, Z, W, is_pair, org, basis, skip);
+        bool took = take_pair(found, X, Y, Z, W, is_pair, org, direction.basis, skip);
 
         bool descend = keys.x != OVC_NO_CHILD;
         ivec3 hits = mix(ivec3(0), ivec3(1), notEqual(keys.yzw, ivec3(OVC_NO_CHILD)));

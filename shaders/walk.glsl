@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // A ray's way through level 1: from leaf to leaf as long as they are in the pool, until one has an answer for it.
 
-// What a ray comes with (layout.h): itself, where its walk begins, and the triangle it does not see.
+// What a ray comes with (layout.h): itself, where its walk begins, the triangle it does not see, and what it asks.
 struct Traveller {
     WorldRay ray;
     double t_from;
     int first_leaf;
     uint skip;
+    bool any_hit; // occlusion: stop at the first certain hit
 };
 
 // The words of an answer (layout.h).
 uvec4 walk(Traveller traveller) {
     WorldRay ray = traveller.ray;
+    double longest = longest_component(ray);
+    Direction direction = direction_of(local_direction(ray, longest));
     double t = traveller.t_from; // of the cells done
     double t_cell = t;           // before the cell that `cell` is
     Cell cell = Cell(0, 0, ray.t_max);
@@ -44,7 +47,7 @@ uvec4 walk(Traveller traveller) {
         if (leaf >= 0) {
             int texel = OVC_LEVEL1_LEAVES + leaf * OVC_LEAF_TEXELS;
             uint page = level1_texel(texel + OVC_LEAF_PAGE_TEXEL).x;
-            LocalRay local = rebase(ray, texel, inside);
+            LocalRay local = rebase(ray, longest, texel, inside);
             if (page == OVC_NOT_RESIDENT) {
                 answer = uvec4(unpackDouble2x32(t_cell), uint(leaf), OVC_WAITS);
                 done = true;
@@ -53,8 +56,8 @@ uvec4 walk(Traveller traveller) {
                 done = true;
             } else {
                 Found found = nothing_found(local.t_end);
-                if (traverse(found, int(page), local.org, local.t_end, local.dir, traveller.skip, rounds)) {
-                    answer = answer_of(found, OVC_ANY_HIT != 0, uint(leaf));
+                if (traverse(found, int(page), local.org, local.t_end, direction, traveller.skip, traveller.any_hit, rounds)) {
+                    answer = answer_of(found, traveller.any_hit, uint(leaf));
                     done = answer.w != OVC_MISS || answer.x != OVC_NO_TRIANGLE;
 #if !OVC_CERTIFY
                     double t_hit = local.enter + double(found.best_lo) / local.speed;
@@ -64,7 +67,7 @@ uvec4 walk(Traveller traveller) {
                                   : uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, 0u, OVC_MISS);
 #endif
                     // Another leaf of the same cell may hold something nearer, and only doubles could tell.
-                    bool alone = cell.first == cell.end || (OVC_ANY_HIT != 0 && answer.w < OVC_MAX_TRIANGLES);
+                    bool alone = cell.first == cell.end || (traveller.any_hit && answer.w < OVC_MAX_TRIANGLES);
                     answer.w = done && !alone ? OVC_FLAGGED : answer.w;
                     done = done || (last && cell.first == cell.end);
                 }

@@ -6,6 +6,6 @@ uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
     int rounds = int(page_texel(2).w); // 0, fetched
     bool done = t_end < 0.0;
     if (!done)
-        done = traverse(found, 0, org, t_end, dir, skip, rounds);
+        done = traverse(found, 0, org, t_end, direction_of(dir), skip, OVC_ANY_HIT != 0, rounds);
     return done ? frame_answer(found) : uvec4(0u, 0u, 0u, OVC_CAPPED);
 }
