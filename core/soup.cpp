@@ -50,8 +50,10 @@ struct Survey {
     Box bounds;
 };
 
-Survey survey(const Chunk& chunk, uint32_t first, uint32_t last, std::vector<uint8_t>& kept) {
+Survey survey(const Chunk& chunk, uint32_t first, uint32_t last, std::vector<uint8_t>& kept,
+              BuildProgress* progress) {
     Survey found;
+    LoopProgress loop(progress);
     for (uint32_t prim = first; prim < last; ++prim) {
         const Triangle triangle = chunk.triangle(prim);
         const TriangleFault fault = triangle_fault(triangle);
@@ -60,13 +62,16 @@ Survey survey(const Chunk& chunk, uint32_t first, uint32_t last, std::vector<uin
         found.dropped.degenerate += fault == TriangleFault::Degenerate;
         if (fault == TriangleFault::None)
             found.bounds.add(bounds_of(triangle));
+        loop.step();
     }
+    loop.finish();
     return found;
 }
 
 } // namespace
 
-std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, Box* bounds) {
+std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, Box* bounds,
+                                           BuildProgress* progress) {
     std::vector<TriangleId> ids;
     ids.reserve(soup.triangle_count());
     Survey total;
@@ -77,7 +82,7 @@ std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, B
         const Survey found = parallel_reduce(
             chunk.size(), Survey{},
             [&](size_t first, size_t last, Survey sum) {
-                const Survey part = survey(chunk, uint32_t(first), uint32_t(last), kept);
+                const Survey part = survey(chunk, uint32_t(first), uint32_t(last), kept, progress);
                 sum.dropped.not_finite += part.dropped.not_finite;
                 sum.dropped.degenerate += part.dropped.degenerate;
                 sum.bounds.add(part.bounds);

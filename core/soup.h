@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/box.h"
+#include "core/build_progress.h"
 #include "core/ray.h"
 
 #include <array>
@@ -68,8 +69,10 @@ struct Dropped {
 };
 
 /// The ids of all triangles that can be hit, in order, and the box of each is left to the caller.
-/// dropped, bounds: optional, receive what was left out and the box of what was kept.
-std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, Box* bounds);
+/// dropped, bounds: optional, receive what was left out and the box of what was kept. A triangle is
+/// a unit of progress.
+std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, Box* bounds,
+                                           BuildProgress* progress = nullptr);
 
 inline Box bounds_of(const Triangle& t) {
     return {glm::min(glm::min(t[0], t[1]), t[2]), glm::max(glm::max(t[0], t[1]), t[2])};

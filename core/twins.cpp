@@ -63,16 +63,20 @@ struct Suspect {
 
 /// The triangles that share a bit with another, by hash and then id. All twins are among them, and
 /// of triangles without a twin about one in sixteen.
-std::vector<Suspect> suspects(const Soup& soup, const std::vector<TriangleId>& triangles) {
+std::vector<Suspect> suspects(const Soup& soup, const std::vector<TriangleId>& triangles,
+                              BuildProgress* progress) {
     const size_t bits = std::max<size_t>(triangles.size() * 16, 64);
     BitTable once(bits), twice(bits);
     std::vector<uint64_t> hashes(triangles.size());
     parallel_for(triangles.size(), kGrain, [&](size_t first, size_t last) {
+        LoopProgress loop(progress);
         for (size_t i = first; i < last; ++i) {
             hashes[i] = hash(soup.triangle(triangles[i]));
             if (once.set(hashes[i]))
                 twice.set(hashes[i]);
+            loop.step();
         }
+        loop.finish();
     });
     std::vector<Suspect> found;
     for (size_t i = 0; i < triangles.size(); ++i)
@@ -96,11 +100,12 @@ bool same_corners(const Triangle& a, const Triangle& b) {
     return false;
 }
 
-Twins Twins::take_out(const Soup& soup, std::vector<TriangleId>& triangles) {
+Twins Twins::take_out(const Soup& soup, std::vector<TriangleId>& triangles,
+                      BuildProgress* progress) {
     assert(std::is_sorted(triangles.begin(), triangles.end()));
     Twins twins;
     std::vector<TriangleId> out;
-    std::vector<Suspect> all = suspects(soup, triangles);
+    std::vector<Suspect> all = suspects(soup, triangles, progress);
     for (auto first = all.begin(); first != all.end();) {
         // The first of what is left stands for its twins, which come next, in the order of ids;
         // others of the same hash, hardly ever any, follow.

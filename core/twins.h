@@ -19,8 +19,9 @@ bool same_corners(const Triangle& a, const Triangle& b);
 class Twins {
 public:
     /// Takes all but the smallest id of each set out of `triangles`: finite ones, sorted, without
-    /// repetition, and so they stay.
-    static Twins take_out(const Soup& soup, std::vector<TriangleId>& triangles);
+    /// repetition, and so they stay. A triangle is a unit of progress.
+    static Twins take_out(const Soup& soup, std::vector<TriangleId>& triangles,
+                          BuildProgress* progress = nullptr);
 
     /// Which triangle a ray that does not see `skip` meets where `id` stands: `id`, or, where that
     /// is the one it does not see, its twin; `id` still where it has none.

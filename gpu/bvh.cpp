@@ -65,32 +65,45 @@ struct Binning {
 
 class Builder {
 public:
-    Builder(std::vector<Item>& items, std::vector<BvhNode>& nodes) : items_(items), nodes_(nodes) {}
+    Builder(std::vector<Item>& items, std::vector<BvhNode>& nodes, BuildProgress* progress)
+        : items_(items), nodes_(nodes), progress_(progress) {}
 
     void build(uint32_t node, size_t first, size_t last, int depth) {
-        const size_t count = last - first;
+        if (last - first <= kParallelBuild) {
+            build_alone(node, first, last, depth);
+            add(progress_, last - first);
+            return;
+        }
+        add(progress_, 0);
+        const size_t middle = open(node, first, last, depth);
+        parallel_invoke([&] { build(node + 1, first, middle, depth + 1); },
+                        [&] { build(nodes_[node].right, middle, last, depth + 1); });
+    }
+
+private:
+    void build_alone(uint32_t node, size_t first, size_t last, int depth) {
+        const size_t middle = open(node, first, last, depth);
+        if (last - first == 1)
+            return;
+        build_alone(node + 1, first, middle, depth + 1);
+        build_alone(nodes_[node].right, middle, last, depth + 1);
+    }
+
+    /// Fills the node in; returns where its items are divided in two, if they are.
+    size_t open(uint32_t node, size_t first, size_t last, int depth) {
         Bounds bounds = Bounds::empty();
         Bounds centers = Bounds::empty();
         measure(first, last, bounds, centers);
         nodes_[node].box = bounds.box();
-        if (count == 1) {
+        if (last - first == 1) {
             nodes_[node].item = items_[first].index();
-            return;
+            return first;
         }
         const size_t middle = divide(first, last, centers, depth);
-        const uint32_t left = node + 1;
-        const uint32_t right = node + uint32_t(2 * (middle - first));
-        nodes_[node].right = right;
-        if (count > kParallelBuild) {
-            parallel_invoke([&] { build(left, first, middle, depth + 1); },
-                            [&] { build(right, middle, last, depth + 1); });
-        } else {
-            build(left, first, middle, depth + 1);
-            build(right, middle, last, depth + 1);
-        }
+        nodes_[node].right = node + uint32_t(2 * (middle - first));
+        return middle;
     }
 
-private:
     void measure(size_t first, size_t last, Bounds& bounds, Bounds& centers) const {
         for (size_t i = first; i < last; ++i) {
             const Bounds& b = items_[i].bounds;
@@ -167,11 +180,12 @@ private:
 
     std::vector<Item>& items_;
     std::vector<BvhNode>& nodes_;
+    BuildProgress* progress_;
 };
 
 } // namespace
 
-std::vector<BvhNode> build_bvh(std::span<const Boxf> boxes) {
+std::vector<BvhNode> build_bvh(std::span<const Boxf> boxes, BuildProgress* progress) {
     std::vector<BvhNode> nodes;
     if (boxes.empty())
         return nodes;
@@ -182,7 +196,7 @@ std::vector<BvhNode> build_bvh(std::span<const Boxf> boxes) {
                            {b.hi.x, b.hi.y, b.hi.z, 0}};
     }
     nodes.resize(2 * boxes.size() - 1);
-    Builder(items, nodes).build(0, 0, items.size(), 0);
+    Builder(items, nodes, progress).build(0, 0, items.size(), 0);
     return nodes;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/box.h"
+#include "core/build_progress.h"
 
 #include <cstdint>
 #include <span>
@@ -22,8 +23,8 @@ struct BvhNode {
 };
 
 /// The hierarchy over `boxes` (none of them empty), root first; empty for none. Deterministic. At
-/// most kMaxBvhDepth deep.
-std::vector<BvhNode> build_bvh(std::span<const Boxf> boxes);
+/// most kMaxBvhDepth deep. A box is a unit of progress.
+std::vector<BvhNode> build_bvh(std::span<const Boxf> boxes, BuildProgress* progress = nullptr);
 
 /// Inner levels of any tree of build_bvh: where the heuristic would go deeper, halves by count keep
 /// to it.

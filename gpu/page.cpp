@@ -69,8 +69,8 @@ private:
 class Packer {
 public:
     Packer(const std::vector<BvhNode>& nodes, const std::vector<TrianglePair>& pairs,
-           const Grid& grid)
-        : nodes_(nodes), pairs_(pairs), grid_(grid) {}
+           const Grid& grid, BuildProgress* progress)
+        : nodes_(nodes), pairs_(pairs), grid_(grid), progress_(progress) {}
 
     Page pack() {
         add_units(1 + 1);
@@ -80,12 +80,15 @@ public:
         unit(0)[3] = uvec4(0);
         // Even a single pair gets a node above it, so that its box is tested.
         pending_.push_back({0, OVC_ROOT_UNIT, 1});
+        LoopProgress loop(progress_);
         while (!pending_.empty()) {
             const Pending next = pending_.back();
             pending_.pop_back();
             page_.depth = std::max(page_.depth, next.depth);
             pack_node(next);
+            loop.step();
         }
+        loop.finish();
         return std::move(page_);
     }
 
@@ -169,16 +172,17 @@ private:
     const std::vector<BvhNode>& nodes_;
     const std::vector<TrianglePair>& pairs_;
     const Grid& grid_;
+    BuildProgress* progress_;
     Page page_;
     std::vector<Pending> pending_;
 };
 
 /// name: index into leaf.triangles -> what the page calls it.
 template <class Name>
-Page build_named(const Soup& soup, const Leaf& leaf, Name&& name) {
+Page build_named(const Soup& soup, const Leaf& leaf, BuildProgress* progress, Name&& name) {
     assert(!leaf.triangles.empty());
     const Box box{leaf.frame.to_local(leaf.box.lo), leaf.frame.to_local(leaf.box.hi)};
-    std::vector<TrianglePair> pairs = pair_triangles(local_triangles(soup, leaf));
+    std::vector<TrianglePair> pairs = pair_triangles(local_triangles(soup, leaf), progress);
     for (TrianglePair& pair : pairs) {
         pair.a = name(pair.a);
         pair.b = pair.b == kNone ? kNone : name(pair.b);
@@ -192,21 +196,23 @@ Page build_named(const Soup& soup, const Leaf& leaf, Name&& name) {
         boxes[i] = {glm::clamp(boxes[i].lo, inside.lo, inside.hi),
                     glm::clamp(boxes[i].hi, inside.lo, inside.hi)};
     }
-    const std::vector<BvhNode> nodes = build_bvh(boxes);
+    const std::vector<BvhNode> nodes = build_bvh(boxes, progress);
     const Grid grid(box);
-    Page page = Packer(nodes, pairs, grid).pack();
+    Page page = Packer(nodes, pairs, grid, progress).pack();
     assert(page.texels.size() / OVC_UNIT_TEXELS < OVC_MAX_UNITS);
     return page;
 }
 
 } // namespace
 
-Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf) {
-    return build_named(soup, leaf, [&](uint32_t i) { return numbers.of(leaf.triangles[i]); });
+Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf,
+                BuildProgress* progress) {
+    return build_named(soup, leaf, progress,
+                       [&](uint32_t i) { return numbers.of(leaf.triangles[i]); });
 }
 
-Page build_page(const Soup& soup, const Leaf& leaf) {
-    return build_named(soup, leaf, [](uint32_t i) { return i; });
+Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress) {
+    return build_named(soup, leaf, progress, [](uint32_t i) { return i; });
 }
 
 } // namespace ovc

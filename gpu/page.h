@@ -3,6 +3,7 @@
 // lives in GPU memory.
 #pragma once
 
+#include "core/build_progress.h"
 #include "core/numbering.h"
 #include "core/soup.h"
 #include "kdtree/partition.h"
@@ -21,10 +22,12 @@ struct Page {
     uint64_t bytes() const { return texels.size() * sizeof(uvec4); }
 };
 
-/// Builds and packs the BVH of a leaf. Its triangles go by their numbers in the soup.
-Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf);
+/// Builds and packs the BVH of a leaf. Its triangles go by their numbers in the soup. Each is about
+/// two units of progress.
+Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf,
+                BuildProgress* progress = nullptr);
 
 /// The same; triangle i of the page is leaf.triangles[i].
-Page build_page(const Soup& soup, const Leaf& leaf);
+Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress = nullptr);
 
 } // namespace ovc

@@ -82,9 +82,11 @@ private:
 
 /// Up to three neighbours of each triangle, one across each side. An edge joins two triangles;
 /// further ones at it pair up among themselves.
-std::vector<std::array<Neighbour, 3>> neighbours(std::span<const LocalTriangle> triangles) {
+std::vector<std::array<Neighbour, 3>> neighbours(std::span<const LocalTriangle> triangles,
+                                                 BuildProgress* progress) {
     OpenSides open(triangles.size());
     std::vector<std::array<Neighbour, 3>> result(triangles.size());
+    LoopProgress loop(progress);
     for (uint32_t i = 0; i < triangles.size(); ++i) {
         std::array<uint64_t, 3> h;
         for (int k = 0; k < 3; ++k)
@@ -100,7 +102,9 @@ std::vector<std::array<Neighbour, 3>> neighbours(std::span<const LocalTriangle> 
             result[i][k] = {other / 3, k, other % 3};
             result[other / 3][other % 3] = {i, other % 3, k};
         }
+        loop.step();
     }
+    loop.finish();
     return result;
 }
 
@@ -130,8 +134,9 @@ TrianglePair joined(const LocalTriangle& a, uint32_t a_id, const LocalTriangle& 
 
 } // namespace
 
-std::vector<TrianglePair> pair_triangles(std::span<const LocalTriangle> triangles) {
-    const auto candidates = neighbours(triangles);
+std::vector<TrianglePair> pair_triangles(std::span<const LocalTriangle> triangles,
+                                         BuildProgress* progress) {
+    const auto candidates = neighbours(triangles, progress);
     std::vector<uint8_t> used(triangles.size(), 0);
     std::vector<TrianglePair> pairs;
     pairs.reserve(triangles.size() / 2 + triangles.size() / 8);

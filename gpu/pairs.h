@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/box.h"
+#include "core/build_progress.h"
 
 #include <array>
 #include <cstdint>
@@ -27,7 +28,9 @@ struct TrianglePair {
 };
 
 /// Every triangle in exactly one pair. Two are joined where they share an edge bit for bit and the
-/// joint box costs the surface-area heuristic less than two boxes would.
-std::vector<TrianglePair> pair_triangles(std::span<const LocalTriangle> triangles);
+/// joint box costs the surface-area heuristic less than two boxes would. A
+/// triangle is a unit of progress.
+std::vector<TrianglePair> pair_triangles(std::span<const LocalTriangle> triangles,
+                                         BuildProgress* progress = nullptr);
 
 } // namespace ovc

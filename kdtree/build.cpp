@@ -17,6 +17,7 @@ namespace {
 constexpr int kBins = 32;
 constexpr int kMaxDepth = 96;
 constexpr size_t kWorthIsolating = 64;  // triangles
+constexpr size_t kFewestToIsolate = 16; // of a sample: fewer say nothing of where the others are
 constexpr size_t kParallelBuild = 8192; // fragments; below, a task costs more than it saves
 
 /// A triangle within a cell: the box of the part inside. In double, because a float cannot tell the
@@ -62,6 +63,8 @@ public:
     /// Appends the subtree over `fragments` in `cell` to `tree`.
     void build(std::vector<Fragment> fragments, const Box& cell, int depth, KdTree& tree) const {
         tree.depth = std::max(tree.depth, depth);
+        if (fragments.size() >= kWorthIsolating)
+            add(options_.progress, 0);
         const Split split = depth < max_depth_ ? choose_split(fragments, cell) : Split{};
         if (!split.found()) {
             tree.nodes.push_back(
@@ -103,18 +106,18 @@ private:
     }
 
     Split choose_split(const std::vector<Fragment>& fragments, const Box& cell) const {
-        const size_t count = fragments.size();
-        if (count < 2)
+        const size_t count = fragments.size() * options_.stands_for;
+        if (fragments.size() < 2)
             return {};
         // Stopped by count, a leaf is still cut where that saves three quarters of the work: a few
         // far-reaching triangles would otherwise stretch its box until the rest is a dot in it.
         const bool stop = options_.max_leaf_triangles != 0;
         const bool enough = stop && count <= options_.max_leaf_triangles;
-        if (enough && count < kWorthIsolating)
+        if (enough && (count < kWorthIsolating || fragments.size() < kFewestToIsolate))
             return {};
         const Split split =
-            count > kBins ? best_binned(fragments, cell) : best_exact(fragments, cell);
-        const double leaf_cost = options_.intersection_cost * double(count);
+            fragments.size() > kBins ? best_binned(fragments, cell) : best_exact(fragments, cell);
+        const double leaf_cost = options_.intersection_cost * double(fragments.size());
         const double worth = enough ? 0.25 * leaf_cost
                              : stop ? 0.9 * leaf_cost + options_.traversal_cost
                                     : leaf_cost;

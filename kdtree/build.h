@@ -5,6 +5,7 @@
 // splits).
 #pragma once
 
+#include "core/build_progress.h"
 #include "core/soup.h"
 #include "kdtree/tree.h"
 
@@ -17,9 +18,11 @@ struct KdBuildOptions {
     /// 0: split as long as the heuristic says it pays (the CPU KDT). Else: split every cell of more
     /// triangles than this, and no other, as long as a split helps (level 1).
     uint32_t max_leaf_triangles = 0;
+    uint32_t stands_for = 1; // each triangle given is one of so many: counts are multiplied by it
     double traversal_cost = 15; // Wald and Havran 2006, section 5.1
     double intersection_cost = 20;
-    double empty_bonus = 0.8; // factor on the cost of a split that cuts off empty space
+    double empty_bonus = 0.8;          // factor on the cost of a split that cuts off empty space
+    BuildProgress* progress = nullptr; // asked whether to stop
 };
 
 /// The tree over all hittable triangles of the soup.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Level 1: the KD-tree stopped by count, then every cell padded and its triangles gathered again.
+// Level 1: the KD-tree over a sample, stopped by count, then every cell padded and all triangles
+// handed to the cells they touch.
 #include "kdtree/partition.h"
 
 #include "core/parallel.h"
 #include "kdtree/build.h"
-#include "kdtree/clip.h"
+#include "kdtree/cells.h"
+#include "kdtree/sample.h"
 
 #include <algorithm>
 #include <cassert>
@@ -20,110 +22,49 @@ namespace {
 /// (docs/numerics.md).
 constexpr double kMargin = 0x1p-10;
 
-/// A leaf node of the tree, the closed cell it stands for, and the cell with its padding.
-struct Cell {
-    uint32_t node;
-    Box box;
-    Box padded;
-};
-
-/// A few roundings of the coordinates, and enough for rays from a thousand scene sizes away to be
-/// walked in double (can_walk).
-double padding_of(const Box& scene) {
-    const double farthest = max_component(glm::max(glm::abs(scene.lo), glm::abs(scene.hi)));
-    return std::max(0x1p-48 * farthest, 0x1p-36 * max_component(scene.extent()));
-}
-
-void collect_cells(const std::vector<KdNode>& nodes, uint32_t node, const Box& box,
+void collect_cells(std::span<const KdNode> nodes, uint32_t node, const Box& box, double padding,
                    std::vector<Cell>& cells) {
     if (nodes[node].is_leaf()) {
-        cells.push_back({node, box, {}});
+        cells.push_back({node, box, box.padded(padding)});
         return;
     }
     Box below = box;
     Box above = box;
     below.hi[nodes[node].axis()] = above.lo[nodes[node].axis()] = nodes[node].split();
-    collect_cells(nodes, node + 1, below, cells);
-    collect_cells(nodes, nodes[node].above(), above, cells);
+    collect_cells(nodes, node + 1, below, padding, cells);
+    collect_cells(nodes, nodes[node].above(), above, padding, cells);
 }
 
-/// Hands each triangle to every cell whose padded box it touches.
-class Gatherer {
-public:
-    Gatherer(const Soup& soup, const std::vector<KdNode>& nodes, const Box& bounds,
-             const std::vector<Cell>& cells, double padding)
-        : soup_(soup),
-          nodes_(nodes),
-          bounds_(bounds),
-          cells_(cells),
-          padding_(padding),
-          cell_of_node_(nodes.size()) {
-        for (uint32_t i = 0; i < cells.size(); ++i)
-            cell_of_node_[cells[i].node] = i;
-    }
-
-    /// members[c]: the triangles of cell c, in the order of `triangles`.
-    std::vector<std::vector<TriangleId>> gather(std::span<const TriangleId> triangles) const {
-        constexpr size_t kBlocks =
-            64; // each with lists of its own, so that the order never depends on threads
-        const size_t block = triangles.size() / kBlocks + 1;
-        std::vector<std::vector<std::vector<TriangleId>>> parts(kBlocks);
-        parallel_for(kBlocks, 1, [&](size_t first, size_t last) {
-            for (size_t b = first; b < last; ++b) {
-                parts[b].resize(cells_.size());
-                const size_t end = std::min(triangles.size(), (b + 1) * block);
-                for (size_t i = b * block; i < end; ++i)
-                    hand_out(triangles[i], parts[b]);
+/// members[c]: the triangles of cell c, in the order of `triangles`. A triangle is a unit of
+/// progress.
+std::vector<std::vector<TriangleId>> gather(const Soup& soup, const CellFinder& finder,
+                                            size_t cells, std::span<const TriangleId> triangles,
+                                            BuildProgress* progress) {
+    constexpr size_t kBlocks =
+        64; // each with lists of its own, so that the order never depends on threads
+    const size_t block = triangles.size() / kBlocks + 1;
+    std::vector<std::vector<std::vector<TriangleId>>> parts(kBlocks);
+    parallel_for(kBlocks, 1, [&](size_t first, size_t last) {
+        LoopProgress loop(progress);
+        for (size_t b = first; b < last; ++b) {
+            parts[b].resize(cells);
+            const size_t end = std::min(triangles.size(), (b + 1) * block);
+            for (size_t i = b * block; i < end; ++i, loop.step())
+                finder.find(soup.triangle(triangles[i]),
+                            [&](uint32_t c) { parts[b][c].push_back(triangles[i]); });
+        }
+        loop.finish();
+    });
+    std::vector<std::vector<TriangleId>> members(cells);
+    parallel_for(cells, 1, [&](size_t first, size_t last) {
+        for (size_t c = first; c < last; ++c)
+            for (auto& part : parts) {
+                members[c].insert(members[c].end(), part[c].begin(), part[c].end());
+                part[c] = {};
             }
-        });
-        std::vector<std::vector<TriangleId>> members(cells_.size());
-        parallel_for(cells_.size(), 1, [&](size_t first, size_t last) {
-            for (size_t c = first; c < last; ++c)
-                for (auto& part : parts) {
-                    members[c].insert(members[c].end(), part[c].begin(), part[c].end());
-                    part[c] = {};
-                }
-        });
-        return members;
-    }
-
-private:
-    void hand_out(TriangleId id, std::vector<std::vector<TriangleId>>& lists) const {
-        const Triangle triangle = soup_.triangle(id);
-        hand_down(id, triangle, bounds_of(triangle), 0, bounds_, lists);
-    }
-
-    void hand_down(TriangleId id, const Triangle& triangle, const Box& box, uint32_t node,
-                   const Box& cell, std::vector<std::vector<TriangleId>>& lists) const {
-        const KdNode& n = nodes_[node];
-        if (n.is_leaf()) {
-            const uint32_t c = cell_of_node_[node];
-            const Box& padded = cells_[c].padded;
-            const bool inside = padded.contains(box.lo) && padded.contains(box.hi);
-            if (inside || (padded.touches(box) && !clipped_bounds(triangle, padded).empty()))
-                lists[c].push_back(id);
-            return;
-        }
-        const int axis = n.axis();
-        if (box.lo[axis] <= n.split() + padding_) {
-            Box below = cell;
-            below.hi[axis] = n.split();
-            hand_down(id, triangle, box, node + 1, below, lists);
-        }
-        if (box.hi[axis] >= n.split() - padding_) {
-            Box above = cell;
-            above.lo[axis] = n.split();
-            hand_down(id, triangle, box, n.above(), above, lists);
-        }
-    }
-
-    const Soup& soup_;
-    const std::vector<KdNode>& nodes_;
-    const Box& bounds_;
-    const std::vector<Cell>& cells_;
-    const double padding_;
-    std::vector<uint32_t> cell_of_node_;
-};
+    });
+    return members;
+}
 
 Frame frame_of(const Box& box, double reach) {
     // A triangle may reach far out of its leaf; 2^40 leaf sizes still leave the kernel's cubes of
@@ -137,7 +78,7 @@ Frame frame_of(const Box& box, double reach) {
 /// padding: what double rounding may move a ray by; the box must not be missed for it, however
 /// small the leaf is.
 Leaf make_leaf(const Soup& soup, const Box& cell, double padding,
-               std::span<const TriangleId> triangles) {
+               std::vector<TriangleId> triangles) {
     Leaf leaf;
     Box all;
     for (const TriangleId id : triangles)
@@ -146,11 +87,135 @@ Leaf make_leaf(const Soup& soup, const Box& cell, double padding,
     const Box reached = all.intersection(cell);
     leaf.box = reached.padded(std::max(kMargin * max_component(reached.extent()), padding));
     leaf.frame = frame_of(leaf.box, max_component(all.extent()));
-    leaf.triangles.assign(triangles.begin(), triangles.end());
+    leaf.triangles = std::move(triangles);
     return leaf;
 }
 
+/// The triangles of a cell that cannot be cut, for several leaves in one place.
+std::vector<std::vector<TriangleId>> in_parts(std::span<const TriangleId> triangles,
+                                              uint32_t most) {
+    std::vector<std::vector<TriangleId>> parts;
+    for (size_t at = 0; at < triangles.size(); at += most) {
+        const auto part = triangles.subspan(at, std::min<size_t>(most, triangles.size() - at));
+        parts.emplace_back(part.begin(), part.end());
+    }
+    return parts;
+}
+
+/// Writes down a level 1 node by node, in depth-first order.
+class Partitioner {
+public:
+    Partitioner(const Soup& soup, const Box& bounds, BuildProgress* progress)
+        : soup_(soup), progress_(progress) {
+        level1_.bounds = bounds;
+        level1_.padding = padding_of(bounds);
+    }
+
+    /// Appends the tree over `box`, which holds `triangles`, by a sample of them. Cells that hold
+    /// more than the sample made believe are cut again by all they hold.
+    void cut(std::span<const TriangleId> triangles, const Box& box, uint32_t most) {
+        const uint32_t rate = sample_rate(triangles.size(), most);
+        cut(triangles, sample_triangles(soup_, triangles, rate, progress_), rate, box, most);
+    }
+
+    /// A node for a cell of so many leaves; none where it is empty.
+    void add_leaves(const Box& padded_cell, std::vector<std::vector<TriangleId>> lists) {
+        const uint32_t first = leaves();
+        for (std::vector<TriangleId>& list : lists)
+            leaves_.push_back({padded_cell, std::move(list)});
+        level1_.nodes.push_back(KdNode::leaf(first, leaves() - first));
+    }
+
+    uint32_t leaves() const { return uint32_t(leaves_.size()); }
+
+    /// Appends `nodes`, a tree over `box`; put_cell(cell, node) appends what stands for a leaf
+    /// node.
+    template <class PutCell>
+    void copy(std::span<const KdNode> nodes, const Box& box, PutCell&& put_cell) {
+        const std::vector<Cell> cells = cells_of(nodes, box, level1_.padding);
+        std::vector<uint32_t> now_at(nodes.size()); // where each node is, in level1_.nodes
+        auto cell = cells.begin();
+        for (uint32_t node = 0; node < nodes.size(); ++node) {
+            now_at[node] = uint32_t(level1_.nodes.size());
+            if (nodes[node].is_leaf())
+                put_cell(*cell++, nodes[node]);
+            else
+                level1_.nodes.push_back(nodes[node]);
+        }
+        for (uint32_t node = 0; node < nodes.size(); ++node)
+            if (!nodes[node].is_leaf())
+                level1_.nodes[now_at[node]].set_above(now_at[nodes[node].above()]);
+    }
+
+    Level1 finish() {
+        level1_.leaves.resize(leaves_.size());
+        parallel_for(leaves_.size(), 1, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                level1_.leaves[i] = make_leaf(soup_, leaves_[i].cell, level1_.padding,
+                                              std::move(leaves_[i].triangles));
+                add(progress_, 0);
+            }
+        });
+        return std::move(level1_);
+    }
+
+private:
+    void cut(std::span<const TriangleId> triangles, std::span<const TriangleId> sample,
+             uint32_t rate, const Box& box, uint32_t most) {
+        const KdTree tree = cut_sample(soup_, sample, rate, box, most, progress_);
+        const std::vector<Cell> cells = cells_of(tree.nodes, box, level1_.padding);
+        std::vector<std::vector<TriangleId>> members =
+            gather(soup_, CellFinder(tree.nodes, cells, level1_.padding), cells.size(), triangles,
+                   progress_);
+        auto inside = members.begin();
+        copy(tree.nodes, box, [&](const Cell& cell, const KdNode&) {
+            if (inside->size() > most && rate > 1)
+                cut(*inside, *inside, 1, cell.box, most);
+            else
+                add_leaves(cell.padded, in_parts(*inside, most));
+            ++inside;
+        });
+    }
+
+    struct LeafToBe {
+        Box cell;
+        std::vector<TriangleId> triangles;
+    };
+
+    const Soup& soup_;
+    BuildProgress* const progress_;
+    Level1 level1_;
+    std::vector<LeafToBe> leaves_;
+};
+
 } // namespace
+
+double padding_of(const Box& scene) {
+    const double farthest = max_component(glm::max(glm::abs(scene.lo), glm::abs(scene.hi)));
+    return std::max(0x1p-48 * farthest, 0x1p-36 * max_component(scene.extent()));
+}
+
+KdTree cut_sample(const Soup& soup, std::span<const TriangleId> sample, uint32_t rate,
+                  const Box& box, uint32_t max_leaf_triangles, BuildProgress* progress) {
+    KdBuildOptions options;
+    // Of so many in a leaf, chance alone makes more by the root of the number: room for that.
+    const double most = double(max_leaf_triangles);
+    options.max_leaf_triangles =
+        rate == 1 ? max_leaf_triangles : uint32_t(most - std::sqrt(most * rate));
+    options.stands_for = rate;
+    options.progress = progress;
+    KdTree tree = build_kd_tree(soup, sample, box, options);
+    if (tree.nodes.empty()) // no triangle of the sample is in the box
+        tree.nodes.push_back(KdNode::leaf(0, 0));
+    tree.references = {};
+    return tree;
+}
+
+std::vector<Cell> cells_of(std::span<const KdNode> nodes, const Box& bounds, double padding) {
+    std::vector<Cell> cells;
+    collect_cells(nodes, 0, bounds, padding, cells);
+    return cells;
+}
 
 uint64_t Level1::reference_count() const {
     uint64_t count = 0;
@@ -161,40 +226,47 @@ uint64_t Level1::reference_count() const {
 
 Leaf whole_leaf(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds) {
     const double padding = padding_of(bounds);
-    return make_leaf(soup, bounds.padded(padding), padding, triangles);
+    return make_leaf(soup, bounds.padded(padding), padding, {triangles.begin(), triangles.end()});
 }
 
 Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
-                 uint32_t max_leaf_triangles) {
+                 uint32_t max_leaf_triangles, BuildProgress* progress) {
     assert(max_leaf_triangles > 0);
-    KdBuildOptions options;
-    options.max_leaf_triangles = max_leaf_triangles;
-    KdTree tree = build_kd_tree(soup, triangles, bounds, options);
+    if (triangles.empty())
+        return {{}, {}, bounds, 0};
+    Partitioner partitioner(soup, bounds, progress);
+    partitioner.cut(triangles, bounds, max_leaf_triangles);
+    return partitioner.finish();
+}
 
-    Level1 level1;
-    level1.bounds = bounds;
-    if (tree.nodes.empty())
-        return level1;
-    std::vector<Cell> cells;
-    collect_cells(tree.nodes, 0, bounds, cells);
-    level1.padding = padding_of(bounds);
-    for (Cell& cell : cells)
-        cell.padded = cell.box.padded(level1.padding);
-    tree.references = {};
-    const std::vector<std::vector<TriangleId>> members =
-        Gatherer(soup, tree.nodes, bounds, cells, level1.padding).gather(triangles);
-
-    for (size_t i = 0; i < cells.size(); ++i) {
-        const uint32_t first = uint32_t(level1.leaves.size());
-        const std::span<const TriangleId> inside = members[i];
-        for (size_t at = 0; at < inside.size(); at += max_leaf_triangles)
-            level1.leaves.push_back(make_leaf(
-                soup, cells[i].padded, level1.padding,
-                inside.subspan(at, std::min<size_t>(max_leaf_triangles, inside.size() - at))));
-        tree.nodes[cells[i].node] = KdNode::leaf(first, uint32_t(level1.leaves.size()) - first);
-    }
-    level1.nodes = std::move(tree.nodes);
-    return level1;
+Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most,
+                 std::vector<uint32_t>& was, BuildProgress* progress) {
+    assert(most.size() == level1.leaves.size());
+    was.clear();
+    Partitioner partitioner(soup, level1.bounds, progress);
+    partitioner.copy(level1.nodes, level1.bounds, [&](const Cell& cell, const KdNode& node) {
+        const uint32_t first = node.first();
+        const uint32_t limit =
+            *std::min_element(most.begin() + first, most.begin() + first + node.count());
+        std::vector<std::vector<TriangleId>> lists;
+        for (uint32_t i = first; i < first + node.count(); ++i)
+            lists.push_back(std::move(level1.leaves[i].triangles));
+        if (node.count() == 0 || limit == kNone) {
+            for (uint32_t i = first; i < first + node.count(); ++i)
+                was.push_back(i);
+            partitioner.add_leaves(cell.padded, std::move(lists));
+            return;
+        }
+        std::vector<TriangleId> all;
+        for (const auto& list : lists)
+            all.insert(all.end(), list.begin(), list.end());
+        if (node.count() == 1)
+            partitioner.cut(all, cell.box, limit);
+        else
+            partitioner.add_leaves(cell.padded, in_parts(all, limit));
+        was.resize(partitioner.leaves(), kNone);
+    });
+    return partitioner.finish();
 }
 
 } // namespace ovc

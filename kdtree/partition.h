@@ -3,6 +3,7 @@
 // own. Based on: thesis, section 3.3 (algorithm 2).
 #pragma once
 
+#include "core/build_progress.h"
 #include "core/soup.h"
 #include "kdtree/tree.h"
 
@@ -47,9 +48,25 @@ struct Level1 {
 /// All of `triangles`, which lie in `bounds`, as one leaf.
 Leaf whole_leaf(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds);
 
+/// What level 1 pads its cells by: a few roundings of the coordinates, and enough for rays from a
+/// thousand scene sizes away to be walked in double (can_walk).
+double padding_of(const Box& scene);
+
+/// Level 1's planes, without references: the KD-tree over a sample of the triangles in `box`, each
+/// of which stands for `rate` (sample.h), into cells of at most max_leaf_triangles, as far as the
+/// sample tells. At least a root.
+KdTree cut_sample(const Soup& soup, std::span<const TriangleId> sample, uint32_t rate,
+                  const Box& box, uint32_t max_leaf_triangles, BuildProgress* progress = nullptr);
+
 /// Cuts `triangles` of the soup, which lie in `bounds`, into leaves of at most max_leaf_triangles
-/// (> 0).
+/// (> 0). A triangle is about two units of progress.
 Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
-                 uint32_t max_leaf_triangles);
+                 uint32_t max_leaf_triangles, BuildProgress* progress = nullptr);
+
+/// The same level 1 with some leaves cut into smaller ones. most: per leaf the most triangles that
+/// its parts may hold, or kNone: it stays. was: receives for each leaf now which it was, or kNone
+/// for parts.
+Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most,
+                 std::vector<uint32_t>& was, BuildProgress* progress = nullptr);
 
 } // namespace ovc

@@ -1,72 +1,126 @@
 // SPDX-License-Identifier: Apache-2.0
-// Level 1, then all pages in parallel; again with smaller leaves when a page turns out too large.
+// Level 1, then all pages in parallel; again for leaves whose page turns out too large.
 #include "plugin/level2.h"
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "kdtree/sample.h"
+#include "plugin/page_rate.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 
 namespace ovc {
+
+bool LeafLimits::pages_matter() const {
+    return triangles > page_bytes / kMostBytesPerTriangle;
+}
+
+uint32_t LeafLimits::triangles_at(double bytes_per_triangle) const {
+    // A twentieth less than fits on average: most leaves that are worse than that fit as well.
+    const double fit = 0.95 * double(page_bytes - std::min(page_bytes, kPageStart));
+    const uint64_t most = uint64_t(fit / bytes_per_triangle);
+    return uint32_t(std::clamp<uint64_t>(std::min(most, triangles), 1, kNone - 1));
+}
+
+uint32_t LeafLimits::triangles_again(uint64_t triangles_before, uint64_t bytes_before) const {
+    const double rate = double(bytes_before) / double(triangles_before);
+    return uint32_t(std::min<uint64_t>(triangles_at(rate), triangles_before - 1));
+}
+
 namespace {
 
-/// What a triangle takes in a page where most pair up; soups without shared edges take up to twice
-/// as much.
-constexpr double kBytesPerTriangle = 52;
+class LevelsBuilder {
+public:
+    LevelsBuilder(const Soup& soup, const Numbering& numbers, const LeafLimits& limits,
+                  BuildProgress* progress)
+        : soup_(soup), numbers_(numbers), limits_(limits), progress_(progress) {}
 
-struct TooLarge {
-    uint64_t bytes = 0;
-    uint64_t triangles = 1;
-};
-
-/// All pages, or the first page found too large: then the rest is not built.
-TooLarge build_pages(const Soup& soup, const Numbering& numbers, uint64_t page_bytes,
-                     Levels& levels) {
-    const std::vector<Leaf>& leaves = levels.level1.leaves;
-    levels.pages.clear();
-    levels.pages.resize(leaves.size());
-    std::atomic<int64_t> too_large{-1};
-    parallel_for(leaves.size(), 1, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last && too_large < 0; ++i) {
-            levels.pages[i] = build_page(soup, numbers, leaves[i]);
-            if (levels.pages[i].bytes() > page_bytes)
-                too_large = int64_t(i);
+    Result<Levels> build(std::span<const TriangleId> triangles, const Box& bounds) {
+        const Stopwatch watch;
+        begin(progress_, "level 1", 0.35, 2 * triangles.size());
+        const uint32_t most = first_most(triangles);
+        levels_.level1 = partition(soup_, triangles, bounds, most, progress_);
+        levels_.seconds_level1 = watch.seconds();
+        levels_.pages.resize(levels_.level1.leaves.size());
+        begin(progress_, "level 2", 0.5, 2 * levels_.level1.reference_count());
+        build_missing_pages();
+        while (true) {
+            const Result<bool> again = cut_too_large();
+            if (!again)
+                return again.error();
+            if (!*again)
+                return std::move(levels_);
+            build_missing_pages();
         }
-    });
-    if (too_large < 0)
-        return {};
-    const size_t i = size_t(too_large);
-    return {levels.pages[i].bytes(), leaves[i].triangles.size()};
-}
+    }
+
+private:
+    uint32_t first_most(std::span<const TriangleId> triangles) const {
+        if (!limits_.pages_matter() || triangles.empty())
+            return uint32_t(std::min<uint64_t>(limits_.triangles, kNone - 1));
+        const uint32_t rate = sample_rate(triangles.size(), limits_.triangles);
+        const auto sample = sample_triangles(soup_, triangles, rate, progress_);
+        if (sample.empty())
+            return limits_.triangles_at(kMostBytesPerTriangle);
+        return limits_.triangles_at(PageRates(soup_, triangles, sample, rate, progress_).mean());
+    }
+
+    void build_missing_pages() {
+        const Stopwatch watch;
+        parallel_for(levels_.pages.size(), 1, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i)
+                if (levels_.pages[i].texels.empty())
+                    levels_.pages[i] =
+                        build_page(soup_, numbers_, levels_.level1.leaves[i], progress_);
+        });
+        levels_.seconds_level2 += watch.seconds();
+    }
+
+    /// Cuts the leaves whose pages are too large, which are then missing; false where there are
+    /// none.
+    Result<bool> cut_too_large() {
+        const Stopwatch watch;
+        std::vector<uint32_t> most(levels_.pages.size(), kNone);
+        bool any = false;
+        for (size_t i = 0; i < most.size(); ++i) {
+            const uint64_t bytes = levels_.pages[i].bytes();
+            const size_t triangles = levels_.level1.leaves[i].triangles.size();
+            if (bytes <= limits_.page_bytes)
+                continue;
+            if (triangles == 1)
+                return Error{fmt::format("a page of one triangle does not fit into {} bytes",
+                                         limits_.page_bytes)};
+            most[i] = limits_.triangles_again(triangles, bytes);
+            any = true;
+        }
+        if (!any)
+            return false;
+        std::vector<uint32_t> was;
+        levels_.level1 = cut_again(soup_, std::move(levels_.level1), most, was, progress_);
+        std::vector<Page> pages(was.size());
+        for (size_t i = 0; i < was.size(); ++i)
+            if (was[i] != kNone)
+                pages[i] = std::move(levels_.pages[was[i]]);
+        levels_.pages = std::move(pages);
+        levels_.seconds_level1 += watch.seconds();
+        return true;
+    }
+
+    const Soup& soup_;
+    const Numbering& numbers_;
+    const LeafLimits& limits_;
+    BuildProgress* const progress_;
+    Levels levels_;
+};
 
 } // namespace
 
 Result<Levels> build_levels(const Soup& soup, const Numbering& numbers,
                             std::span<const TriangleId> triangles, const Box& bounds,
-                            uint64_t leaf_triangles, uint64_t page_bytes) {
-    Levels levels;
-    uint64_t most = std::min(leaf_triangles, uint64_t(double(page_bytes) / kBytesPerTriangle));
-    while (true) {
-        if (most == 0)
-            return Error{
-                fmt::format("a page of one triangle does not fit into {} bytes", page_bytes)};
-        Stopwatch watch;
-        levels.level1 =
-            partition(soup, triangles, bounds, uint32_t(std::min<uint64_t>(most, kNone)));
-        levels.seconds_level1 += watch.seconds();
-        watch = Stopwatch();
-        const TooLarge page = build_pages(soup, numbers, page_bytes, levels);
-        levels.seconds_level2 += watch.seconds();
-        if (page.bytes == 0)
-            return levels;
-        // What this page took a triangle, and a little more, tells how many fit; always fewer than
-        // before.
-        const double fit = 0.95 * double(page_bytes) / double(page.bytes) * double(page.triangles);
-        most = std::min(most - 1, uint64_t(fit));
-    }
+                            const LeafLimits& limits, BuildProgress* progress) {
+    return LevelsBuilder(soup, numbers, limits, progress).build(triangles, bounds);
 }
 
 } // namespace ovc

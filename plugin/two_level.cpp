@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace ovc {
 namespace {
@@ -22,23 +21,41 @@ constexpr uint64_t kDefaultLeaves = 10; // thesis, section 4
 
 } // namespace
 
+uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device) {
+    return options.budget_bytes ? options.budget_bytes : device.default_budget_bytes();
+}
+
+LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles) {
+    const uint64_t parts = options.leaves ? options.leaves : kDefaultLeaves;
+    return {options.leaf_triangles ? options.leaf_triangles
+                                   : std::max<uint64_t>((triangles + parts - 1) / parts, 1),
+            std::min<uint64_t>(plan.pool_bytes / kPagesAtOnce,
+                               uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES)};
+}
+
+Result<Done> check_count(const Soup& soup) {
+    if (soup.triangle_count() > OVC_MAX_TRIANGLES)
+        return Error{fmt::format("{} triangles are too many: a scene takes {}",
+                                 soup.triangle_count(), OVC_MAX_TRIANGLES)};
+    return Done{};
+}
+
 Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl,
                                                   const TwoLevelOptions& options,
-                                                  const LogSink& log) {
-    const uint64_t budget =
-        options.budget_bytes ? options.budget_bytes : gl.info().default_budget_bytes();
-    const Result<MemoryPlan> plan = plan_memory(budget, gl.info());
+                                                  const LogSink& log, BuildProgress* progress) {
+    const Result<MemoryPlan> plan = plan_memory(budget_of(options, gl.info()), gl.info());
     if (!plan)
         return plan.error();
     std::unique_ptr<TwoLevel> self(new TwoLevel(soup, gl, options, *plan));
 
-    if (soup.triangle_count() > OVC_MAX_TRIANGLES)
-        return Error{fmt::format("{} triangles are too many: a scene takes {}",
-                                 soup.triangle_count(), OVC_MAX_TRIANGLES)};
+    if (const Result<Done> fine = check_count(soup); !fine)
+        return fine.error();
     const Stopwatch watch;
+    begin(progress, "triangles", 0.1, 2 * soup.triangle_count());
     Box bounds;
     TwoLevelStatistics& statistics = self->statistics_;
-    std::vector<TriangleId> triangles = hittable_triangles(soup, &statistics.dropped, &bounds);
+    std::vector<TriangleId> triangles =
+        hittable_triangles(soup, &statistics.dropped, &bounds, progress);
     if (statistics.dropped.not_finite)
         say(log, LogLevel::Warning,
             fmt::format("left out {} triangles with a NaN or infinite corner",
@@ -46,18 +63,13 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     if (statistics.dropped.degenerate)
         say(log, LogLevel::Warning,
             fmt::format("left out {} triangles without area", statistics.dropped.degenerate));
-    self->twins_ = Twins::take_out(soup, triangles);
+    self->twins_ = Twins::take_out(soup, triangles, progress);
     statistics.twins = self->twins_.count();
     statistics.seconds_level1 = watch.seconds();
 
-    const uint64_t parts = options.leaves ? options.leaves : kDefaultLeaves;
-    const uint64_t most = options.leaf_triangles
-                              ? options.leaf_triangles
-                              : std::max<uint64_t>((triangles.size() + parts - 1) / parts, 1);
-    const uint64_t page_bytes = std::min<uint64_t>(plan->pool_bytes / kPagesAtOnce,
-                                                   uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES);
     self->numbers_ = Numbering(soup);
-    Result<Levels> levels = build_levels(soup, self->numbers_, triangles, bounds, most, page_bytes);
+    Result<Levels> levels = build_levels(soup, self->numbers_, triangles, bounds,
+                                         limits_of(options, *plan, triangles.size()), progress);
     if (!levels)
         return levels.error();
     self->level1_ = std::move(levels->level1);
@@ -68,6 +80,9 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
         statistics.level2_bytes += page.bytes();
         statistics.largest_page_bytes = std::max(statistics.largest_page_bytes, page.bytes());
     }
+    statistics.host_bytes =
+        statistics.level2_bytes + self->level1_.reference_count() * sizeof(TriangleId) +
+        self->level1_.leaves.size() * sizeof(Leaf) + self->level1_.nodes.size() * sizeof(KdNode);
     if (self->pages_.empty())
         return self; // every ray misses, no GPU needed
     if (const Result<Done> shared = self->share_out(); !shared)
@@ -80,11 +95,28 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     if (!tracer)
         return tracer.error();
     self->tracer_ = std::move(*tracer);
-    std::vector<uint32_t> all(self->pages_.size());
-    std::iota(all.begin(), all.end(), 0u);
-    self->bring(all); // as many as fit, so that rays need not come and wait first
+    self->bring_first(progress);
     statistics.peak_bytes = self->tracer_->ledger().peak;
     return self;
+}
+
+/// Moves in the first pages, as many as fit, so that rays need not come and wait first.
+void TwoLevel::bring_first(BuildProgress* progress) {
+    constexpr uint64_t kBytesAtOnce = 32 << 20; // between two looks whether to stop
+    begin(progress, "moving pages to the GPU", 0.05, plan_.pool_bytes);
+    uint64_t room = plan_.pool_bytes;
+    for (size_t next = 0; next < pages_.size() && pages_[next].bytes() <= room;) {
+        std::vector<uint32_t> some;
+        uint64_t bytes = 0;
+        for (; next < pages_.size() && pages_[next].bytes() <= room && bytes < kBytesAtOnce;
+             ++next) {
+            some.push_back(uint32_t(next));
+            bytes += pages_[next].bytes();
+            room -= pages_[next].bytes();
+        }
+        bring(some);
+        add(progress, bytes);
+    }
 }
 
 TwoLevel::~TwoLevel() {

@@ -11,6 +11,7 @@
 #include "gpu/page.h"
 #include "gpu/tracer.h"
 #include "kdtree/partition.h"
+#include "plugin/level2.h"
 #include "plugin/structure.h"
 
 #include <algorithm>
@@ -29,6 +30,16 @@ struct TwoLevelOptions {
     bool compute = false;        // which kernel
 };
 
+/// The budget in bytes that the options ask for.
+uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device);
+
+/// What leaves may be under a plan of which level 1 is not yet taken off, where so many triangles
+/// can be hit.
+LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles);
+
+/// Error: more triangles than a scene takes.
+Result<Done> check_count(const Soup& soup);
+
 /// Sums over the life of a structure. Fields as in ovc_statistics.
 struct TwoLevelStatistics {
     Dropped dropped;
@@ -46,6 +57,7 @@ struct TwoLevelStatistics {
     uint64_t retraced = 0;
     uint64_t capped = 0;
     uint64_t peak_bytes = 0;
+    uint64_t host_bytes = 0;
     double seconds_level1 = 0;
     double seconds_level2 = 0;
     double seconds_trace = 0;
@@ -57,8 +69,10 @@ class TwoLevel final : public Structure {
 public:
     /// The soup and the thread must outlive it. Error: a budget too small, with the smallest that
     /// works; GL's refusals.
-    static Result<std::unique_ptr<TwoLevel>>
-    build(const Soup& soup, GlThread& gl, const TwoLevelOptions& options, const LogSink& log);
+    static Result<std::unique_ptr<TwoLevel>> build(const Soup& soup, GlThread& gl,
+                                                   const TwoLevelOptions& options,
+                                                   const LogSink& log,
+                                                   BuildProgress* progress = nullptr);
     ~TwoLevel() override;
 
     Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
@@ -77,6 +91,7 @@ private:
         : soup_(soup), gl_(gl), options_(options), plan_(plan) {}
 
     Result<Done> share_out();
+    void bring_first(BuildProgress* progress);
     size_t bring(std::span<const uint32_t> wanted);
     uint32_t number_to_skip(TriangleId id) const;
 

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rate, and the hash.
+#include "kdtree/sample.h"
+
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+namespace ovc {
+namespace {
+
+// Measured (docs/benchmarks.md, "The plan"): so many keep planes, and with them the number of
+// leaves and the triangles that planes cut, within a few percent of those of all triangles.
+constexpr uint64_t kFewestInAll = 8192;
+constexpr uint64_t kFewestInALeaf = 128;
+constexpr uint64_t kHighestRate = 64; // beyond, a sample costs less than looking for it
+
+uint64_t word(double x) {
+    return std::bit_cast<uint64_t>(x + 0.0); // + 0 turns -0 into 0: they are the same place
+}
+
+uint64_t mixed(uint64_t x) {
+    x ^= x >> 32;
+    x *= 0xd6e8feb86659fd93u;
+    x ^= x >> 32;
+    return x;
+}
+
+/// Of a corner; triangles add theirs up, so that their order does not count.
+uint64_t hash(const dvec3& p) {
+    return mixed(word(p.x) * 0x9e3779b97f4a7c15u + word(p.y) * 0xc2b2ae3d27d4eb4fu +
+                 word(p.z) * 0x165667b19e3779f9u);
+}
+
+} // namespace
+
+uint32_t sample_rate(uint64_t triangles, uint64_t leaf_triangles) {
+    const uint64_t rate =
+        std::min({triangles / kFewestInAll, leaf_triangles / kFewestInALeaf, kHighestRate});
+    return uint32_t(std::bit_floor(std::max<uint64_t>(rate, 1)));
+}
+
+std::vector<TriangleId> sample_triangles(const Soup& soup, std::span<const TriangleId> triangles,
+                                         uint32_t rate, BuildProgress* progress) {
+    assert(std::has_single_bit(rate));
+    if (rate == 1)
+        return {triangles.begin(), triangles.end()};
+    // Blocks with lists of their own, so that the order never depends on threads.
+    constexpr size_t kBlock = 1 << 16;
+    std::vector<std::vector<TriangleId>> parts(triangles.size() / kBlock + 1);
+    parallel_for(parts.size(), 1, [&](size_t first, size_t last) {
+        LoopProgress loop(progress);
+        for (size_t b = first; b < last; ++b) {
+            const size_t end = std::min(triangles.size(), (b + 1) * kBlock);
+            for (size_t i = b * kBlock; i < end; ++i, loop.step()) {
+                const Triangle t = soup.triangle(triangles[i]);
+                if ((mixed(hash(t[0]) + hash(t[1]) + hash(t[2])) & (rate - 1)) == 0)
+                    parts[b].push_back(triangles[i]);
+            }
+        }
+        loop.finish();
+    });
+    std::vector<TriangleId> sample;
+    for (const auto& part : parts)
+        sample.insert(sample.end(), part.begin(), part.end());
+    return sample;
+}
+
+} // namespace ovc

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// What pages take a triangle, told before they are built: by pages of small clusters.
+#pragma once
+
+#include "core/build_progress.h"
+#include "core/soup.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+/// Bytes of a page that do not grow with it: the header and the root.
+inline constexpr uint64_t kPageStart = 128;
+/// No page takes more a triangle: no two in a pair, and a node above every other triangle.
+inline constexpr uint64_t kMostBytesPerTriangle = 128;
+
+/// Pages of some cubes, each with all the triangles that touch it. Cubes lie around triangles of a
+/// sample, so where triangles are many there are many cubes.
+class PageRates {
+public:
+    /// sample: of `triangles`, one in `rate`; not empty. Costs about a sixtieth of building all
+    /// pages, and a look at every triangle, a unit of progress each.
+    PageRates(const Soup& soup, std::span<const TriangleId> triangles,
+              std::span<const TriangleId> sample, uint32_t rate, BuildProgress* progress = nullptr);
+
+    /// Bytes a triangle, on average.
+    double mean() const { return mean_; }
+    /// The same in `box`, by the cubes that lie in it, the average and nothing else where none do.
+    double within(const Box& box) const;
+
+private:
+    struct Cluster {
+        dvec3 center;
+        double rate;
+    };
+    std::vector<Cluster> clusters_;
+    double mean_ = 0;
+};
+
+} // namespace ovc
