@@ -15,6 +15,7 @@ public:
     explicit DebugOutput(LogSink log);
     ~DebugOutput();
     DebugOutput(DebugOutput&&) = default;
+    DebugOutput& operator=(DebugOutput&&) = default;
 
 private:
     std::unique_ptr<LogSink> log_; // the driver keeps its address

@@ -174,22 +174,28 @@ Result<EglContext> EglContext::open(const Platform& platform) {
                 fmt::format("{}: no {}, which headless rendering needs", platform.name, needed)};
     if (!eglBindAPI(EGL_OPENGL_API))
         return Error{fmt::format("{}: no desktop OpenGL: {}", platform.name, egl_error())};
-    const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
-                                           4,
-                                           EGL_CONTEXT_MINOR_VERSION,
-                                           5,
-                                           EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+    const std::array<EGLint, 11> attributes{EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                            EGL_LOSE_CONTEXT_ON_RESET,
+                                            EGL_CONTEXT_MAJOR_VERSION,
+                                            4,
+                                            EGL_CONTEXT_MINOR_VERSION,
+                                            5,
+                                            EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
 #ifdef NDEBUG
-                                           EGL_NONE,
-                                           EGL_NONE,
+                                            EGL_NONE,
+                                            EGL_NONE,
 #else
-                                           EGL_CONTEXT_OPENGL_DEBUG,
-                                           EGL_TRUE,
+                                            EGL_CONTEXT_OPENGL_DEBUG,
+                                            EGL_TRUE,
 #endif
-                                           EGL_NONE};
+                                            EGL_NONE};
+    // With word of resets where the driver can give it: else it ends the process, or says nothing.
     context.context_ =
         eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+    if (context.context_ == EGL_NO_CONTEXT)
+        context.context_ =
+            eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data() + 2);
     if (context.context_ == EGL_NO_CONTEXT)
         return Error{fmt::format("{}: no OpenGL 4.5 core context: {}", platform.name, egl_error())};
     if (!context.make_current())
@@ -279,6 +285,18 @@ EglContext::~EglContext() {
     if (eglGetCurrentContext() == context_)
         eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display_, context_);
+}
+
+bool EglContext::alive() const {
+    return context_ && eglGetCurrentContext() == context_ &&
+           glGetGraphicsResetStatus() == GL_NO_ERROR;
+}
+
+void EglContext::lose() {
+    if (!context_)
+        return;
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display_, std::exchange(context_, nullptr));
 }
 
 bool EglContext::make_current() const {

@@ -51,6 +51,13 @@ public:
 
     const DeviceInfo& info() const { return info_; }
 
+    /// False when it is not current on this thread any more, or the driver says that a reset of the
+    /// GPU has taken it and all that was in it.
+    bool alive() const;
+
+    /// For tests: what a reset does.
+    void lose();
+
 private:
     EglContext() = default;
     struct Platform;

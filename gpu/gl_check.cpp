@@ -16,7 +16,8 @@ Result<Done> check_gl(const char* doing) {
     }
     if (error == GL_OUT_OF_MEMORY)
         return Error{
-            fmt::format("the GPU is out of memory while {}; a smaller budget may work", doing)};
+            fmt::format("the GPU is out of memory while {}; a smaller budget may work", doing),
+            ErrorKind::OutOfGpuMemory};
     return Error{fmt::format("OpenGL error 0x{:04x} while {}", error, doing)};
 }
 

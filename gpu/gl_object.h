@@ -12,18 +12,24 @@
 
 namespace ovc::gl {
 
-/// Owns one GL name. Delete: void(GLuint).
+/// How many contexts this thread has had (GlThread counts): names of an earlier one mean nothing
+/// now.
+inline thread_local uint32_t context_generation = 0;
+
+/// Owns one GL name. Delete: void(GLuint). A name that went with its context is forgotten.
 template <auto Delete>
 class Handle {
 public:
-    explicit Handle(GLuint id) : id_(id) {}
-    Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+    explicit Handle(GLuint id) : id_(id), generation_(context_generation) {}
+    Handle(Handle&& other) noexcept
+        : id_(std::exchange(other.id_, 0)), generation_(other.generation_) {}
     Handle& operator=(Handle&& other) noexcept {
         std::swap(id_, other.id_);
+        std::swap(generation_, other.generation_);
         return *this;
     }
     ~Handle() {
-        if (id_ != 0)
+        if (id_ != 0 && generation_ == context_generation)
             Delete(id_);
     }
 
@@ -31,6 +37,7 @@ public:
 
 private:
     GLuint id_;
+    uint32_t generation_;
 };
 
 /// Bytes entered in a ledger for as long as this lives.
@@ -83,7 +90,8 @@ class Buffer {
 public:
     Buffer(Ledger& ledger, uint64_t bytes, std::string_view label)
         : handle_(create()), entry_(ledger, bytes) {
-        glNamedBufferStorage(id(), GLsizeiptr(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
+        if (ledger.asks_driver(0))
+            glNamedBufferStorage(id(), GLsizeiptr(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
         glObjectLabel(GL_BUFFER, id(), GLsizei(label.size()), label.data());
     }
     GLuint id() const { return handle_.id(); }
@@ -138,7 +146,9 @@ private:
 
 class Framebuffer {
 public:
-    explicit Framebuffer(const Texture2D& color) : handle_(create()) {
+    Framebuffer() : handle_(create()) {}
+    explicit Framebuffer(const Texture2D& color) : Framebuffer() { show(color); }
+    void show(const Texture2D& color) {
         glNamedFramebufferTexture(id(), GL_COLOR_ATTACHMENT0, color.id(), 0);
     }
     GLuint id() const { return handle_.id(); }

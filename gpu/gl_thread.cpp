@@ -7,9 +7,8 @@
 namespace ovc {
 
 Result<std::unique_ptr<GlThread>> GlThread::start(const std::string& device, LogSink log) {
-    std::unique_ptr<GlThread> self(new GlThread);
-    self->thread_ =
-        std::thread([&self = *self, device, log = std::move(log)] { self.serve(device, log); });
+    std::unique_ptr<GlThread> self(new GlThread(device, std::move(log)));
+    self->thread_ = std::thread([&self = *self] { self.serve(); });
     std::unique_lock lock(self->mutex_);
     self->changed_.wait(lock, [&] { return self->started_.has_value(); });
     const Result<Done> started = *self->started_;
@@ -39,15 +38,40 @@ void GlThread::execute(const std::function<void(GlState&)>& work) {
         std::rethrow_exception(std::exchange(thrown_, nullptr));
 }
 
-void GlThread::serve(const std::string& device, const LogSink& log) {
-    Result<EglContext> context = EglContext::create(device, log);
+Result<Done> GlThread::reopen(uint32_t generation) {
+    Result<Done> done = Done{};
+    execute([&](GlState& state) {
+        if (state.generation != generation)
+            return;
+        generation_ = state.generation = ++gl::context_generation;
+        state.kernels = {};
+        state.context.lose();
+        Result<EglContext> context = EglContext::create(device_, {});
+        if (!context) {
+            done = Error{context.error().message, ErrorKind::DeviceLost};
+            return;
+        }
+        if (context->info().renderer != info_.renderer) {
+            done = Error{"'" + info_.renderer + "' is gone; there is '" + context->info().renderer +
+                             "', for which a new device must be created",
+                         ErrorKind::DeviceLost};
+            return;
+        }
+        state.context = std::move(*context);
+        state.debug = DebugOutput(log_);
+    });
+    return done;
+}
+
+void GlThread::serve() {
+    Result<EglContext> context = EglContext::create(device_, log_);
     std::unique_lock lock(mutex_);
     if (!context) {
         started_ = context.error();
         changed_.notify_all();
         return;
     }
-    GlState state{std::move(*context), DebugOutput(log), {}};
+    GlState state{std::move(*context), DebugOutput(log_), {}, gl::context_generation};
     info_ = state.context.info();
     started_ = Done{};
     changed_.notify_all();

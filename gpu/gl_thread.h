@@ -7,6 +7,7 @@
 #include "gpu/egl_context.h"
 #include "gpu/kernel.h"
 
+#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <functional>
@@ -23,6 +24,7 @@ struct GlState {
     EglContext context;
     DebugOutput debug;
     KernelCache kernels;
+    uint32_t generation; // of the context: GlThread::generation()
 };
 
 class GlThread {
@@ -48,11 +50,20 @@ public:
 
     const DeviceInfo& info() const { return info_; }
 
-private:
-    GlThread() = default;
-    void execute(const std::function<void(GlState&)>& work);
-    void serve(const std::string& device, const LogSink& log);
+    /// How often the device has been opened. What was made in an earlier context is gone.
+    uint32_t generation() const { return generation_; }
 
+    /// After work found the context dead: opens the device again, unless somebody has done so since
+    /// `generation`. Error: it cannot be opened.
+    Result<Done> reopen(uint32_t generation);
+
+private:
+    GlThread(std::string device, LogSink log) : device_(std::move(device)), log_(std::move(log)) {}
+    void execute(const std::function<void(GlState&)>& work);
+    void serve();
+
+    const std::string device_;
+    const LogSink log_;
     std::mutex turn_; // one caller at a time
     std::mutex mutex_;
     std::condition_variable changed_;
@@ -61,6 +72,7 @@ private:
     std::optional<Result<Done>> started_;
     bool done_ = false;
     bool stop_ = false;
+    std::atomic<uint32_t> generation_{0};
     DeviceInfo info_;
     std::thread thread_;
 };

@@ -13,6 +13,15 @@ struct Ledger {
     uint64_t budget = 0;
     uint64_t in_use = 0;
     uint64_t peak = 0;
+    /// For tests: a driver that has no more memory than this.
+    uint64_t driver_bytes = ~uint64_t(0);
+    bool refused = false; // by that driver
+
+    /// Whether the driver is to be asked for so many bytes more.
+    bool asks_driver(uint64_t bytes) {
+        refused = refused || in_use + bytes > driver_bytes;
+        return !refused;
+    }
 
     void add(uint64_t bytes) {
         in_use += bytes;

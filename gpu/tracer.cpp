@@ -3,7 +3,6 @@
 // object. Based on: thesis, section 3.1.
 #include "gpu/tracer.h"
 
-#include "core/stopwatch.h"
 #include "gpu/gl_check.h"
 #include "gpu/level1_table.h"
 #include "shaders/layout.h"
@@ -56,21 +55,32 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Dev
                KernelCache& kernels, const Level1& level1, std::span<const Page> pages)
     : ledger_(std::move(ledger)),
       kernels_(kernels),
+      level1_data_(level1),
       page_data_(pages),
       software_(device.is_software),
       stack_depth_(stack_depth(pages)),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
       answers_(*ledger_, GL_RGBA32UI, sizeof(Answer), kRowRays, plan.batch_rays / kRowRays,
                "answers"),
-      framebuffer_(answers_),
       level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
-      pool_(*ledger_, plan.pool_bytes, pages.size()) {
-    const std::vector<uvec4> table = pack_level1(level1);
+      pool_(*ledger_, plan.pool_bytes, pages.size()) {}
+
+/// What needs the memory to be there.
+Result<Done> Tracer::set_up() {
+    if (Result<Done> ok = check_gl("allocating the page pool and the buffers of rays"); !ok)
+        return ok;
+    if (ledger_->refused)
+        return Error{"the GPU is out of memory", ErrorKind::OutOfGpuMemory};
+    const std::vector<uvec4> table = pack_level1(level1_data_);
     glNamedBufferSubData(level1_buffer_.id(), 0, GLsizeiptr(table.size() * sizeof(uvec4)),
                          table.data());
     level1_.show(level1_buffer_, GL_RGBA32UI, 0, level1_buffer_.bytes());
     rays_.show(ray_buffer_, GL_RGBA32UI, 0, ray_buffer_.bytes());
     pages_.show(pool_.buffer(), GL_RGBA32UI, 0, pool_.buffer().bytes());
+    framebuffer_.show(answers_);
+    if (!framebuffer_.complete())
+        return Error{"the driver cannot render to RGBA32UI textures, which answers come back in"};
+    return check_gl("setting up the tracer");
 }
 
 Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const DeviceInfo& device,
@@ -78,12 +88,11 @@ Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const Dev
                                                std::span<const Page> pages) {
     auto ledger = std::make_unique<Ledger>();
     ledger->budget = plan.budget_bytes;
+    ledger->driver_bytes = plan.driver_bytes;
     std::unique_ptr<Tracer> tracer(
         new Tracer(std::move(ledger), plan, device, kernels, level1, pages));
-    if (Result<Done> ok = check_gl("allocating the page pool and the ray textures"); !ok)
+    if (Result<Done> ok = tracer->set_up(); !ok)
         return ok.error();
-    if (!tracer->framebuffer_.complete())
-        return Error{"the driver cannot render to RGBA32UI textures, which answers come back in"};
     return tracer;
 }
 
@@ -114,10 +123,8 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
     return moved;
 }
 
-Result<double> Tracer::pass(const PassOptions& options, std::span<const Traveller> rays,
-                            std::span<Answer> answers) {
-    assert(!rays.empty() && rays.size() == answers.size());
-    const Stopwatch watch;
+Result<Done> Tracer::submit(const PassOptions& options, std::span<const Traveller> rays) {
+    assert(!rays.empty());
     ShaderConfig config;
     config.compute = options.compute;
     config.certify = options.certify;
@@ -158,11 +165,21 @@ Result<double> Tracer::pass(const PassOptions& options, std::span<const Travelle
         glDisable(GL_BLEND);
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
-    glReadPixels(0, 0, kRowRays, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT, answers.data());
     glPopDebugGroup();
-    if (Result<Done> ok = check_gl("tracing a pass"); !ok)
-        return ok.error();
-    return watch.seconds();
+    // llvmpipe (22.3) runs passes on other threads and does not wait for them before it writes to
+    // buffers that they read as images.
+    if (software_)
+        glFinish();
+    else
+        glFlush();
+    return check_gl("starting a pass");
+}
+
+Result<Done> Tracer::collect(std::span<Answer> answers) {
+    const GLsizei rows = GLsizei(row_padded(answers.size()) / kRowRays);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+    glReadPixels(0, 0, kRowRays, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT, answers.data());
+    return check_gl("reading the answers of a pass");
 }
 
 } // namespace ovc

@@ -57,6 +57,7 @@ struct MemoryPlan {
     uint64_t budget_bytes = 0;
     uint32_t batch_rays = 0; // most rays a pass
     uint64_t pool_bytes = 0;
+    uint64_t driver_bytes = ~uint64_t(0); // for tests: what the driver has
 
     uint64_t ray_bytes() const {
         return uint64_t(batch_rays) * (sizeof(Traveller) + sizeof(Answer));
@@ -76,8 +77,9 @@ struct Moved {
 /// All calls need the context current.
 class Tracer {
 public:
-    /// kernels outlives the tracer. level1 has leaves, pages[i] belongs to its leaf i; both outlive
-    /// the tracer. The plan's pool holds the largest page.
+    /// Error of the kind OutOfGpuMemory: the driver refused the plan's bytes; a smaller pool may
+    /// do. kernels outlives the tracer. level1 has leaves, pages[i] belongs to its leaf i; both
+    /// outlive the tracer. The plan's pool holds the largest page.
     static Result<std::unique_ptr<Tracer>> create(const MemoryPlan& plan, const DeviceInfo& device,
                                                   KernelCache& kernels, const Level1& level1,
                                                   std::span<const Page> pages);
@@ -91,11 +93,13 @@ public:
     /// Marks a leaf as used now: others are pushed out before it.
     void touch(uint32_t leaf) { pool_.residency().touch(leaf); }
 
-    /// Walks the rays (at most plan.batch_rays) through the resident leaves; returns the seconds
-    /// from the first command until the answers are here. answers: as many as rays. The storage of
-    /// both is used up to the next multiple of kRowRays: see row_padded().
-    Result<double> pass(const PassOptions& options, std::span<const Traveller> rays,
-                        std::span<Answer> answers);
+    /// Sends the rays (at most plan.batch_rays) on their walk through the leaves that are resident
+    /// now. Pages moved in from here on serve the next pass, and may go over while this one runs.
+    Result<Done> submit(const PassOptions& options, std::span<const Traveller> rays);
+
+    /// Waits for the answers of the pass that was submitted, as many as its rays. The storage of
+    /// rays and answers is used up to the next multiple of kRowRays: see row_padded().
+    Result<Done> collect(std::span<Answer> answers);
 
     const Ledger& ledger() const { return *ledger_; }
 
@@ -107,10 +111,12 @@ private:
     Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const DeviceInfo& device,
            KernelCache& kernels, const Level1& level1, std::span<const Page> pages);
 
+    Result<Done> set_up();
     void say_where(uint32_t leaf);
 
     std::unique_ptr<Ledger> ledger_; // the objects below keep its address
     KernelCache& kernels_;
+    const Level1& level1_data_;
     std::span<const Page> page_data_;
     bool software_;
     uint32_t stack_depth_;

@@ -53,9 +53,10 @@ protected:
                              OVC_NO_LEAF | (any_hit ? OVC_RAY_ANY_HIT : 0)};
         std::vector<Answer> answers(rows);
         gl->run([&](GlState&) {
-            const auto pass = tracer->pass({}, std::span(travellers).first(rays.size()),
-                                           std::span(answers).first(rays.size()));
-            ASSERT_TRUE(pass) << pass.error().message;
+            const Result<Done> sent = tracer->submit({}, std::span(travellers).first(rays.size()));
+            ASSERT_TRUE(sent) << sent.error().message;
+            const Result<Done> back = tracer->collect(std::span(answers).first(rays.size()));
+            ASSERT_TRUE(back) << back.error().message;
         });
         answers.resize(rays.size());
         return answers;

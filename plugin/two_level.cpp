@@ -46,7 +46,8 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     const Result<MemoryPlan> plan = plan_memory(budget_of(options, gl.info()), gl.info());
     if (!plan)
         return plan.error();
-    std::unique_ptr<TwoLevel> self(new TwoLevel(soup, gl, options, *plan));
+    std::unique_ptr<TwoLevel> self(new TwoLevel(soup, gl, options, *plan, log));
+    self->plan_.driver_bytes = options.driver_bytes;
 
     if (const Result<Done> fine = check_count(soup); !fine)
         return fine.error();
@@ -88,16 +89,60 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     if (const Result<Done> shared = self->share_out(); !shared)
         return shared.error();
 
-    Result<std::unique_ptr<Tracer>> tracer = Error{};
-    gl.run([&](GlState& state) {
-        tracer = Tracer::create(self->plan_, gl.info(), state.kernels, self->level1_, self->pages_);
-    });
-    if (!tracer)
-        return tracer.error();
-    self->tracer_ = std::move(*tracer);
-    self->bring_first(progress);
-    statistics.peak_bytes = self->tracer_->ledger().peak;
+    if (const Result<Done> made = self->make_tracer(progress); !made)
+        return made.error();
     return self;
+}
+
+/// The pool and what rays need, in the context there is now; smaller where the driver has no room.
+Result<Done> TwoLevel::make_tracer(BuildProgress* progress) {
+    while (true) {
+        Result<std::unique_ptr<Tracer>> made = Error{};
+        gl_.run([&](GlState& state) {
+            tracer_.reset();
+            tracer_generation_ = state.generation;
+            if (state.context.alive())
+                made = Tracer::create(plan_, gl_.info(), state.kernels, level1_, pages_);
+            else
+                made = Error{"the GPU's context is lost", ErrorKind::DeviceLost};
+        });
+        if (made) {
+            tracer_ = std::move(*made);
+            break;
+        }
+        if (made.error().kind == ErrorKind::DeviceLost)
+            return lost();
+        if (made.error().kind != ErrorKind::OutOfGpuMemory)
+            return made.error();
+        const uint64_t smaller = std::max(plan_.pool_bytes / 2, statistics_.largest_page_bytes);
+        if (smaller == plan_.pool_bytes)
+            return Error{fmt::format("{}: it has no room for the largest page, {} bytes",
+                                     made.error().message, smaller),
+                         ErrorKind::OutOfGpuMemory};
+        say(log_, LogLevel::Warning,
+            fmt::format("the GPU has no room for a pool of {} bytes; going on with {}",
+                        plan_.pool_bytes, smaller));
+        plan_.pool_bytes = smaller;
+    }
+    bring_first(progress);
+    statistics_.peak_bytes = std::max(statistics_.peak_bytes, tracer_->ledger().peak);
+    return Done{};
+}
+
+/// Makes anew what went with an earlier context.
+Result<Done> TwoLevel::ready_device() {
+    if (pages_.empty() || tracer_generation_ == gl_.generation())
+        return Done{};
+    return make_tracer(nullptr);
+}
+
+/// The context is dead: a new one for the calls to come.
+Error TwoLevel::lost() {
+    const Result<Done> again = gl_.reopen(tracer_generation_);
+    return {fmt::format("the GPU's context was lost{}",
+                        again ? "; the device is open again, and the next call will work"
+                              : ", and the device does not open again: " + again.error().message),
+            ErrorKind::DeviceLost};
 }
 
 /// Moves in the first pages, as many as fit, so that rays need not come and wait first.
@@ -141,7 +186,10 @@ Result<Done> TwoLevel::share_out() {
 /// Moves the first pages of `wanted` in, as many as fit; returns how many.
 size_t TwoLevel::bring(std::span<const uint32_t> wanted) {
     Moved moved;
-    gl_.run([&](GlState&) { moved = tracer_->bring(wanted); });
+    gl_.run([&](GlState& state) {
+        if (is_ours(state))
+            moved = tracer_->bring(wanted);
+    });
     statistics_.pages_in += moved.pages;
     statistics_.bytes_in += moved.bytes;
     return moved.pages;
@@ -154,29 +202,46 @@ uint32_t TwoLevel::number_to_skip(TriangleId id) const {
 }
 
 /// The first `count` travellers on their way; their answers into answers_.
-Result<Done> TwoLevel::pass(size_t count) {
+/// Beside them, pages of `wanted` are moved in; returns how many.
+Result<size_t> TwoLevel::pass(size_t count, std::span<const uint32_t> wanted) {
     const size_t padded = Tracer::row_padded(count);
     const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
     travellers_.resize(padded);
     std::fill(travellers_.begin() + ptrdiff_t(count), travellers_.end(), none);
     answers_.resize(padded);
-    Result<double> seconds = Error{};
-    gl_.run([&](GlState&) {
-        seconds =
-            tracer_->pass({options_.certify, options_.compute}, std::span(travellers_).first(count),
-                          std::span(answers_).first(count));
+    const Stopwatch watch;
+    Result<Done> done = Done{};
+    bool alive = false;
+    Moved moved;
+    gl_.run([&](GlState& state) {
+        alive = is_ours(state);
+        if (!alive)
+            return;
+        done = tracer_->submit({options_.certify, options_.compute},
+                               std::span(travellers_).first(count));
+        if (done)
+            moved = tracer_->bring(wanted);
+        if (done)
+            done = tracer_->collect(std::span(answers_).first(count));
+        alive = state.context.alive(); // else what was read is anything
     });
-    if (!seconds)
-        return seconds.error();
+    if (!alive)
+        return lost();
+    if (!done)
+        return done.error();
     statistics_.passes += 1;
     statistics_.ray_visits += count;
-    statistics_.seconds_kernel += *seconds;
-    return Done{};
+    statistics_.seconds_kernel += watch.seconds();
+    statistics_.pages_in += moved.pages;
+    statistics_.bytes_in += moved.bytes;
+    return size_t(moved.pages);
 }
 
 template <class Query>
 Result<Done> TwoLevel::trace(const Query& query) {
     const Stopwatch watch;
+    if (Result<Done> ready = ready_device(); !ready)
+        return ready;
     for (size_t first = 0; first < query.rays.size(); first += kWaveRays) {
         const size_t count = std::min(kWaveRays, query.rays.size() - first);
         Wave<Query> wave(*this, query.part(first, count));

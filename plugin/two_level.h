@@ -23,11 +23,12 @@
 namespace ovc {
 
 struct TwoLevelOptions {
-    uint64_t budget_bytes = 0;   // 0: the device's default
-    uint64_t leaf_triangles = 0; // 0: a tenth of the scene
-    uint64_t leaves = 0;         // instead: about this many
-    bool certify = true;         // false: fast precision, the kernel's own answers
-    bool compute = false;        // which kernel
+    uint64_t budget_bytes = 0;            // 0: the device's default
+    uint64_t leaf_triangles = 0;          // 0: a tenth of the scene
+    uint64_t leaves = 0;                  // instead: about this many
+    bool certify = true;                  // false: fast precision, the kernel's own answers
+    bool compute = false;                 // which kernel
+    uint64_t driver_bytes = ~uint64_t(0); // for tests: as in MemoryPlan
 };
 
 /// The budget in bytes that the options ask for.
@@ -87,11 +88,19 @@ public:
     const Level1& level1() const { return level1_; }
 
 private:
-    TwoLevel(const Soup& soup, GlThread& gl, const TwoLevelOptions& options, const MemoryPlan& plan)
-        : soup_(soup), gl_(gl), options_(options), plan_(plan) {}
+    TwoLevel(const Soup& soup, GlThread& gl, const TwoLevelOptions& options, const MemoryPlan& plan,
+             LogSink log)
+        : soup_(soup), gl_(gl), log_(std::move(log)), options_(options), plan_(plan) {}
 
     Result<Done> share_out();
     void bring_first(BuildProgress* progress);
+    Result<Done> make_tracer(BuildProgress* progress);
+    Result<Done> ready_device();
+    Error lost();
+    /// Whether the context that the tracer lives in is there. On its thread.
+    bool is_ours(const GlState& state) const {
+        return state.generation == tracer_generation_ && state.context.alive();
+    }
     size_t bring(std::span<const uint32_t> wanted);
     uint32_t number_to_skip(TriangleId id) const;
 
@@ -103,18 +112,20 @@ private:
     template <class Query>
     class Lane;
     class Stream;
-    /// Moves in pages that rays of these waves wait for, and calls those up.
+    /// The leaves worth moving in for rays of these waves where few are ready; else none.
     template <class... Queries>
-    void bring_for(Wave<Queries>&... waves);
-    /// A pass, of rays of all these waves, and pages moved in before it where few are ready.
+    std::vector<uint32_t> wanted_by(const Wave<Queries>&... waves) const;
+    /// A pass, of rays of all these waves. Pages that others wait for are moved in before it where
+    /// few rays are ready, and beside it where few are left.
     template <class... Queries>
     Result<Done> round(Wave<Queries>&... waves);
-    Result<Done> pass(size_t count);
+    Result<size_t> pass(size_t count, std::span<const uint32_t> wanted);
     template <class Query>
     Result<Done> trace(const Query& query);
 
     const Soup& soup_;
     GlThread& gl_;
+    const LogSink log_;
     TwoLevelOptions options_;
     MemoryPlan plan_;
     Numbering numbers_;
@@ -122,6 +133,7 @@ private:
     Level1 level1_; // without them
     std::vector<Page> pages_;
     std::unique_ptr<Tracer> tracer_;    // made and destroyed on the thread of gl_
+    uint32_t tracer_generation_ = 0;    // of the context that it was made in
     std::vector<Traveller> travellers_; // of a pass, as the answers are; kept between calls
     std::vector<Answer> answers_;
     TwoLevelStatistics statistics_;

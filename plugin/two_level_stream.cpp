@@ -149,6 +149,8 @@ private:
 };
 
 Result<Done> TwoLevel::stream(StreamHost& host) {
+    if (Result<Done> ready = ready_device(); !ready)
+        return ready;
     return Stream(*this, host).run();
 }
 

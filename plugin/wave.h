@@ -229,21 +229,24 @@ private:
 };
 
 template <class... Queries>
-void TwoLevel::bring_for(Wave<Queries>&... waves) {
+std::vector<uint32_t> TwoLevel::wanted_by(const Wave<Queries>&... waves) const {
+    if ((waves.ready() + ...) >= few_rays() || (waves.waiting() + ...) == 0)
+        return {};
     std::vector<size_t> counts(pages_.size());
     for (uint32_t leaf = 0; leaf < counts.size(); ++leaf)
         counts[leaf] = (waves.queues().count(leaf) + ...);
-    const std::vector<uint32_t> wanted = worth_moving(counts, pages_);
-    const auto moved = std::span(wanted).first(bring(wanted));
-    (waves.call_up(moved), ...);
+    return worth_moving(counts, pages_);
 }
 
 template <class... Queries>
 Result<Done> TwoLevel::round(Wave<Queries>&... waves) {
     // What is ready goes with the next pass, whose greater part then comes from the pages moved
     // in: so every pass gets somewhere, though those pages may push out what was ready for.
-    if ((waves.ready() + ...) < few_rays() && (waves.waiting() + ...) > 0)
-        bring_for(waves...);
+    const std::vector<uint32_t> before = wanted_by(waves...);
+    const auto moved = std::span(before).first(before.empty() ? 0 : bring(before));
+    (waves.call_up(moved), ...);
+    if ((waves.ready() + ...) == 0)
+        return lost(); // nothing could be moved in
     travellers_.resize(
         Tracer::row_padded(std::min<size_t>((waves.ready() + ...), plan_.batch_rays)));
     size_t count = 0;
@@ -254,8 +257,10 @@ Result<Done> TwoLevel::round(Wave<Queries>&... waves) {
         return loaded;
     };
     const size_t loaded[] = {load(waves)...};
-    if (Result<Done> done = pass(count); !done)
-        return done;
+    const std::vector<uint32_t> beside = wanted_by(waves...);
+    const Result<size_t> moved_beside = pass(count, beside);
+    if (!moved_beside)
+        return moved_beside.error();
     size_t first = 0;
     size_t k = 0;
     const auto settle = [&](auto& wave) {
@@ -263,6 +268,7 @@ Result<Done> TwoLevel::round(Wave<Queries>&... waves) {
         first += loaded[k++];
     };
     (settle(waves), ...);
+    (waves.call_up(std::span(beside).first(*moved_beside)), ...);
     return Done{};
 }
 
