@@ -17,17 +17,21 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace ovc {
 
 struct TwoLevelOptions {
-    uint64_t budget_bytes = 0;            // 0: the device's default
-    uint64_t leaf_triangles = 0;          // 0: a tenth of the scene
-    uint64_t leaves = 0;                  // instead: about this many
-    bool certify = true;                  // false: fast precision, the kernel's own answers
-    bool compute = false;                 // which kernel
+    uint64_t budget_bytes = 0;   // 0: the device's default
+    uint64_t leaf_triangles = 0; // 0: a tenth of the scene
+    uint64_t leaves = 0;         // instead: about this many
+    bool certify = true;         // false: fast precision, the kernel's own answers
+    bool compute = false;        // which kernel
+    /// Pages move in beside a pass. Default: on a GPU; a software renderer cannot do two things at
+    /// once, and what is moved before a pass has ended is some 20 % more.
+    std::optional<bool> beside;
     uint64_t driver_bytes = ~uint64_t(0); // for tests: as in MemoryPlan
 };
 

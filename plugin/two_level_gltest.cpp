@@ -48,7 +48,8 @@ std::vector<Variant> variants() {
             {"one leaf", {.leaf_triangles = 1u << 30}},
             {"leaves of 40", {.leaf_triangles = 40}},
             {"compute", {.leaf_triangles = 500, .compute = true}},
-            {"smallest budget", {.budget_bytes = 96u << 10, .leaf_triangles = 100}}};
+            {"smallest budget", {.budget_bytes = 96u << 10, .leaf_triangles = 100}},
+            {"beside", {.budget_bytes = 96u << 10, .leaf_triangles = 100, .beside = true}}};
 }
 
 TEST_F(TwoLevelGl, EqualsBruteForceBitForBit) {

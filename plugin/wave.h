@@ -257,7 +257,9 @@ Result<Done> TwoLevel::round(Wave<Queries>&... waves) {
         return loaded;
     };
     const size_t loaded[] = {load(waves)...};
-    const std::vector<uint32_t> beside = wanted_by(waves...);
+    const std::vector<uint32_t> beside = options_.beside.value_or(!gl_.info().is_software)
+                                             ? wanted_by(waves...)
+                                             : std::vector<uint32_t>();
     const Result<size_t> moved_beside = pass(count, beside);
     if (!moved_beside)
         return moved_beside.error();
