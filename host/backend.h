@@ -50,7 +50,8 @@ enum class BackendKind {
     MultiTexture,
     GpuGrid,
     GpuKdTree,
-    SkipBvh
+    SkipBvh,
+    ThesisTwoLevel
 };
 
 /// What the backend is to the ABI: two-level unless it is one of the thesis.
@@ -69,6 +70,8 @@ struct BackendOptions {
     std::string device;          // empty: the plugin chooses
     ovc_precision precision = OVC_PRECISION_CERTIFIED;
     ovc_kernel kernel = OVC_KERNEL_AUTO;
+    ovc_level1 level1 = OVC_LEVEL1_KD_TREE; // of ThesisTwoLevel, as the next
+    ovc_level1_build level1_build = OVC_LEVEL1_BUILD_TOP_DOWN;
 };
 
 /// Auto is the plugin; where no device opens and none was named it is the CPU KD-tree, and the log

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// --backend, --gpu-memory, --leaf-triangles, --leaves, --device, --precision, --kernel.
+// --backend, --gpu-memory, --leaf-triangles, --leaves, --device, --precision, --kernel, --level1,
+// --level1-build.
 #include "host/backend_arguments.h"
 #include "host/arguments.h"
 #include "host/suggestion.h"
@@ -12,9 +13,9 @@
 namespace ovc {
 
 /// In the order of BackendKind.
-static constexpr std::string_view kBackends[] = {"auto",     "two-level",      "cpu-kdtree",
-                                                 "embree",   "single-texture", "multi-texture",
-                                                 "gpu-grid", "gpu-kdtree",     "skip-bvh"};
+static constexpr std::string_view kBackends[] = {
+    "auto",          "two-level", "cpu-kdtree", "embree",   "single-texture",
+    "multi-texture", "gpu-grid",  "gpu-kdtree", "skip-bvh", "thesis-two-level"};
 
 Result<BackendKind> parse_backend(std::string_view name) {
     const auto known = std::find(std::begin(kBackends), std::end(kBackends), name);
@@ -30,7 +31,9 @@ void BackendArguments::add_to(CLI::App& app) {
            "--backend", backend,
            "auto, two-level (the GPU), cpu-kdtree (the CPU, double precision) or embree (the "
            "CPU, float32, Embree's robust mode); for comparison, the whole scene in GPU memory: "
-           "single-texture, multi-texture, gpu-grid, gpu-kdtree, skip-bvh")
+           "single-texture, multi-texture, gpu-grid, gpu-kdtree, skip-bvh; or leaf by leaf from "
+           "the "
+           "CPU: thesis-two-level")
         ->group(group)
         ->type_name("NAME");
     app.add_option("--gpu-memory", gpu_memory,
@@ -61,6 +64,13 @@ void BackendArguments::add_to(CLI::App& app) {
     app.add_option("--kernel", kernel, "auto, fragment or compute; they answer alike")
         ->group(group)
         ->type_name("NAME");
+    app.add_option("--level1", level1, "Level 1 of thesis-two-level: kd (the default), grid or bvh")
+        ->group(group)
+        ->type_name("NAME");
+    app.add_option("--level1-build", level1_build,
+                   "Its leaves: cut top-down (the default), or merged bottom-up; not for a grid")
+        ->group(group)
+        ->type_name("NAME");
 }
 
 Result<BackendOptions> BackendArguments::resolve() const {
@@ -79,6 +89,13 @@ Result<BackendOptions> BackendArguments::resolve() const {
             if (!value->empty())
                 return Error{fmt::format("{} means nothing to the backend {}, which uses no GPU",
                                          option, backend)};
+    if (options.kind != BackendKind::ThesisTwoLevel)
+        for (const auto& [option, value] :
+             {std::pair{"--level1", &level1}, {"--level1-build", &level1_build}})
+            if (!value->empty())
+                return Error{
+                    fmt::format("{} means nothing to the backend {}; thesis-two-level has it",
+                                option, backend)};
     if (!gpu_memory.empty()) {
         const Result<MemorySize> size = parse_memory_size(gpu_memory);
         if (!size)
@@ -109,6 +126,16 @@ Result<BackendOptions> BackendArguments::resolve() const {
     if (!kernel_choice)
         return kernel_choice.error();
     options.kernel = ovc_kernel(*kernel_choice);
+    static constexpr std::string_view levels[] = {"kd", "grid", "bvh"};
+    const Result<size_t> level1_choice = parse_choice("--level1", level1, levels);
+    if (!level1_choice)
+        return level1_choice.error();
+    options.level1 = ovc_level1(*level1_choice);
+    static constexpr std::string_view builds[] = {"top-down", "bottom-up"};
+    const Result<size_t> build_choice = parse_choice("--level1-build", level1_build, builds);
+    if (!build_choice)
+        return build_choice.error();
+    options.level1_build = ovc_level1_build(*build_choice);
     return options;
 }
 

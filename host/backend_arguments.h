@@ -26,6 +26,8 @@ struct BackendArguments {
     std::string device;
     std::string precision;
     std::string kernel;
+    std::string level1;
+    std::string level1_build;
 
     void add_to(CLI::App& app);
     Result<BackendOptions> resolve() const;

@@ -150,6 +150,8 @@ Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const 
     config.precision = options.precision;
     config.kernel = options.kernel;
     config.structure = structure_of(options.kind);
+    config.level1 = options.level1;
+    config.level1_build = options.level1_build;
     Result<PluginScene> scene = device.create_scene(config);
     if (!scene)
         return scene.error();

@@ -75,22 +75,6 @@ Frame frame_of(const Box& box, double reach) {
     return {box.center(), size > 0 ? std::ldexp(1.0, -exponent) : 1.0};
 }
 
-/// padding: what double rounding may move a ray by; the box must not be missed for it, however
-/// small the leaf is.
-Leaf make_leaf(const Soup& soup, const Box& cell, double padding,
-               std::vector<TriangleId> triangles) {
-    Leaf leaf;
-    Box all;
-    for (const TriangleId id : triangles)
-        all.add(bounds_of(soup.triangle(id)));
-    leaf.cell = cell;
-    const Box reached = all.intersection(cell);
-    leaf.box = reached.padded(std::max(kMargin * max_component(reached.extent()), padding));
-    leaf.frame = frame_of(leaf.box, max_component(all.extent()));
-    leaf.triangles = std::move(triangles);
-    return leaf;
-}
-
 /// The triangles of a cell that cannot be cut, for several leaves in one place.
 std::vector<std::vector<TriangleId>> in_parts(std::span<const TriangleId> triangles,
                                               uint32_t most) {
@@ -159,21 +143,27 @@ public:
         return std::move(level1_);
     }
 
+    /// Appends `nodes`, a tree over `box`, which holds `triangles`; put_cell(cell, inside) appends
+    /// what stands for a cell that those of them touch.
+    template <class PutCell>
+    void fill(std::span<const KdNode> nodes, const Box& box, std::span<const TriangleId> triangles,
+              PutCell&& put_cell) {
+        const std::vector<Cell> cells = cells_of(nodes, box, level1_.padding);
+        std::vector<std::vector<TriangleId>> members = gather(
+            soup_, CellFinder(nodes, cells, level1_.padding), cells.size(), triangles, progress_);
+        auto inside = members.begin();
+        copy(nodes, box, [&](const Cell& cell, const KdNode&) { put_cell(cell, *inside++); });
+    }
+
 private:
     void cut(std::span<const TriangleId> triangles, std::span<const TriangleId> sample,
              uint32_t rate, const Box& box, uint32_t most) {
         const KdTree tree = cut_sample(soup_, sample, rate, box, most, progress_);
-        const std::vector<Cell> cells = cells_of(tree.nodes, box, level1_.padding);
-        std::vector<std::vector<TriangleId>> members =
-            gather(soup_, CellFinder(tree.nodes, cells, level1_.padding), cells.size(), triangles,
-                   progress_);
-        auto inside = members.begin();
-        copy(tree.nodes, box, [&](const Cell& cell, const KdNode&) {
-            if (inside->size() > most && rate > 1)
-                cut(*inside, *inside, 1, cell.box, most);
+        fill(tree.nodes, box, triangles, [&](const Cell& cell, std::span<const TriangleId> inside) {
+            if (inside.size() > most && rate > 1)
+                cut(inside, inside, 1, cell.box, most);
             else
-                add_leaves(cell.padded, in_parts(*inside, most));
-            ++inside;
+                add_leaves(cell.padded, in_parts(inside, most));
         });
     }
 
@@ -189,6 +179,20 @@ private:
 };
 
 } // namespace
+
+Leaf make_leaf(const Soup& soup, const Box& cell, double padding,
+               std::vector<TriangleId> triangles) {
+    Leaf leaf;
+    Box all;
+    for (const TriangleId id : triangles)
+        all.add(bounds_of(soup.triangle(id)));
+    leaf.cell = cell;
+    const Box reached = all.intersection(cell);
+    leaf.box = reached.padded(std::max(kMargin * max_component(reached.extent()), padding));
+    leaf.frame = frame_of(leaf.box, max_component(all.extent()));
+    leaf.triangles = std::move(triangles);
+    return leaf;
+}
 
 double padding_of(const Box& scene) {
     const double farthest = max_component(glm::max(glm::abs(scene.lo), glm::abs(scene.hi)));
@@ -236,6 +240,18 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
         return {{}, {}, bounds, 0};
     Partitioner partitioner(soup, bounds, progress);
     partitioner.cut(triangles, bounds, max_leaf_triangles);
+    return partitioner.finish();
+}
+
+Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
+                  std::span<const KdNode> nodes, uint32_t max_leaf_triangles) {
+    if (nodes.empty())
+        return {{}, {}, bounds, 0};
+    Partitioner partitioner(soup, bounds, nullptr);
+    partitioner.fill(nodes, bounds, triangles,
+                     [&](const Cell& cell, std::span<const TriangleId> inside) {
+                         partitioner.add_leaves(cell.padded, in_parts(inside, max_leaf_triangles));
+                     });
     return partitioner.finish();
 }
 

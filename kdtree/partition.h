@@ -45,6 +45,11 @@ struct Level1 {
     uint64_t reference_count() const;
 };
 
+/// Of `triangles`, sorted, all that touch `cell`, which is padded already. padding: also what
+/// double rounding may move a ray by; the box must not be missed for it, however small the leaf is.
+Leaf make_leaf(const Soup& soup, const Box& cell, double padding,
+               std::vector<TriangleId> triangles);
+
 /// All of `triangles`, which lie in `bounds`, as one leaf.
 Leaf whole_leaf(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds);
 
@@ -62,6 +67,11 @@ KdTree cut_sample(const Soup& soup, std::span<const TriangleId> sample, uint32_t
 /// (> 0). A triangle is about two units of progress.
 Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                  uint32_t max_leaf_triangles, BuildProgress* progress = nullptr);
+
+/// Level 1 in the cells of a tree over `bounds`, whatever its leaf nodes name: each lists the
+/// triangles that touch it, in leaves of at most max_leaf_triangles (> 0).
+Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
+                  std::span<const KdNode> nodes, uint32_t max_leaf_triangles);
 
 /// The same level 1 with some leaves cut into smaller ones. most: per leaf the most triangles that
 /// its parts may hold, or kNone: it stays. was: receives for each leaf now which it was, or kNone

@@ -15,6 +15,10 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
             fmt::format("ovc_scene_config.structure is {}; this library has two-level (0) "
                         "alone, libovercast-thesis.so has the others",
                         config.structure)};
+    if (config.level1 || config.level1_build)
+        throw Failure{OVC_ERROR_INVALID_ARGUMENT,
+                      "ovc_scene_config.level1 and level1_build mean nothing to two-level, whose "
+                      "level 1 is a KD-tree: expected 0"};
     if (config.gpu_memory_bytes)
         if (const auto plan = plan_memory(config.gpu_memory_bytes, device); !plan)
             throw Failure{OVC_ERROR_OUT_OF_BUDGET, plan.error().message};

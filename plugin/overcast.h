@@ -101,15 +101,25 @@ typedef enum ovc_kernel {
 } ovc_kernel;
 
 /* Experimental: the numbers stay, what is behind those but 0 may change. libovercast.so has two-level alone. libovercast-thesis.so,
- * of the same ABI, has the others, which two-level is compared with: each keeps the whole scene in GPU memory at once. */
+ * of the same ABI, has the others, which two-level is compared with; 1 to 5 keep the whole scene in GPU memory at once. */
 typedef enum ovc_structure {
     OVC_STRUCTURE_TWO_LEVEL = 0,
     OVC_STRUCTURE_SINGLE_TEXTURE = 1, /* one BVH in one texture of at most 4096 x 4096 texels */
     OVC_STRUCTURE_MULTI_TEXTURE = 2,  /* the same in several textures; `leaves`: in so many at least */
     OVC_STRUCTURE_GPU_GRID = 3,       /* a uniform grid */
     OVC_STRUCTURE_GPU_KD_TREE = 4,    /* a KD-tree, walked by restarts */
-    OVC_STRUCTURE_SKIP_BVH = 5        /* a BVH by insertion, walked without a stack in bounded passes */
+    OVC_STRUCTURE_SKIP_BVH = 5,       /* a BVH by insertion, walked without a stack in bounded passes */
+    OVC_STRUCTURE_THESIS_TWO_LEVEL = 6 /* two-level as the thesis has it: level 1 walked on the CPU, a queue and a pass for each leaf */
 } ovc_structure;
+
+/* Experimental: level 1 of OVC_STRUCTURE_THESIS_TWO_LEVEL. */
+typedef enum ovc_level1 { OVC_LEVEL1_KD_TREE = 0, OVC_LEVEL1_GRID = 1, OVC_LEVEL1_BVH = 2 } ovc_level1;
+
+/* Experimental: how it is built. */
+typedef enum ovc_level1_build {
+    OVC_LEVEL1_BUILD_TOP_DOWN = 0, /* cut until leaves are small enough */
+    OVC_LEVEL1_BUILD_BOTTOM_UP = 1 /* the leaves of a complete tree merged while they are small enough; not for a grid */
+} ovc_level1_build;
 
 typedef struct ovc_scene_config {
     size_t struct_size;
@@ -119,6 +129,8 @@ typedef struct ovc_scene_config {
     uint32_t precision;        /* ovc_precision */
     uint32_t kernel;           /* ovc_kernel */
     uint32_t structure;        /* ovc_structure */
+    uint32_t level1;           /* ovc_level1; 0 for all other structures */
+    uint32_t level1_build;     /* ovc_level1_build; 0 for all other structures */
 } ovc_scene_config;
 
 typedef enum ovc_mesh_flags {

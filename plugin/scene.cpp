@@ -59,6 +59,11 @@ void check_buffers(const char* call, const void* rays, const void* answers, size
         invalid(fmt::format("{}: rays or the answers' buffer is NULL", call));
 }
 
+void check_choice(const char* field, uint32_t value, uint32_t last) {
+    if (value > last)
+        invalid(fmt::format("ovc_scene_config.{} is {}, expected 0 to {}", field, value, last));
+}
+
 } // namespace
 
 ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_scene* scene) {
@@ -79,15 +84,11 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
             if (config->leaf_triangles && config->leaves)
                 invalid(
                     "ovc_scene_config: leaf_triangles and leaves are both set; one says it all");
-            if (config->precision > OVC_PRECISION_FAST)
-                invalid(fmt::format("ovc_scene_config.precision is {}, expected 0 or 1",
-                                    config->precision));
-            if (config->kernel > OVC_KERNEL_COMPUTE)
-                invalid(fmt::format("ovc_scene_config.kernel is {}, expected 0, 1 or 2",
-                                    config->kernel));
-            if (config->structure > OVC_STRUCTURE_SKIP_BVH)
-                invalid(fmt::format("ovc_scene_config.structure is {}, expected 0 to {}",
-                                    config->structure, int(OVC_STRUCTURE_SKIP_BVH)));
+            check_choice("precision", config->precision, OVC_PRECISION_FAST);
+            check_choice("kernel", config->kernel, OVC_KERNEL_COMPUTE);
+            check_choice("structure", config->structure, OVC_STRUCTURE_THESIS_TWO_LEVEL);
+            check_choice("level1", config->level1, OVC_LEVEL1_BVH);
+            check_choice("level1_build", config->level1_build, OVC_LEVEL1_BUILD_BOTTOM_UP);
             created->config = *config;
         }
         // Known to be impossible before anything is added: say so now.

@@ -64,7 +64,7 @@
 #define OVC_BINDING_ANSWERS 2
 #define OVC_BINDING_LEVEL1 3
 // The systems of the thesis: a ray is two texels, origin xyz, end t (negative: no ray); direction xyz, the index of the
-// triangle it does not see. It begins at t = 0, in the frame of the whole scene. In fast precision x, y, z of its answer
+// triangle it does not see. It begins at t = 0, in the frame of the whole scene, or of a leaf. In fast precision x, y, z of its answer
 // are t, u, v (float bits).
 #define OVC_FRAME_RAY_TEXELS 2
 // Where a ray stands between passes (3 textures), and the scene (from here on).

@@ -267,7 +267,14 @@ TEST_F(Abi, TheSystemsOfTheThesisAreInALibraryOfTheirOwn) {
     EXPECT_THAT(error(), HasSubstr("libovercast-thesis.so"));
     config.structure = 99;
     EXPECT_EQ(api().create_scene(device, &config, &other), OVC_ERROR_INVALID_ARGUMENT);
-    EXPECT_EQ(error(), "ovc_scene_config.structure is 99, expected 0 to 5");
+    EXPECT_EQ(error(), "ovc_scene_config.structure is 99, expected 0 to 6");
+    config.structure = OVC_STRUCTURE_TWO_LEVEL;
+    config.level1 = 3;
+    EXPECT_EQ(api().create_scene(device, &config, &other), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(error(), "ovc_scene_config.level1 is 3, expected 0 to 2");
+    config.level1 = OVC_LEVEL1_GRID;
+    EXPECT_EQ(api().create_scene(device, &config, &other), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(error(), HasSubstr("mean nothing to two-level"));
     EXPECT_EQ(other, nullptr);
 }
 

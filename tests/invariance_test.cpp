@@ -144,6 +144,37 @@ public:
         }
     }
 
+    /// Two-level as the thesis has it, over every level 1, with less and less memory.
+    void queues_of_the_thesis() const {
+        for (const auto& [level1, build] :
+             {std::pair(OVC_LEVEL1_KD_TREE, OVC_LEVEL1_BUILD_TOP_DOWN),
+              {OVC_LEVEL1_KD_TREE, OVC_LEVEL1_BUILD_BOTTOM_UP},
+              {OVC_LEVEL1_GRID, OVC_LEVEL1_BUILD_TOP_DOWN},
+              {OVC_LEVEL1_BVH, OVC_LEVEL1_BUILD_TOP_DOWN},
+              {OVC_LEVEL1_BVH, OVC_LEVEL1_BUILD_BOTTOM_UP}}) {
+            BackendOptions options;
+            options.kind = BackendKind::ThesisTwoLevel;
+            options.leaves = 20;
+            options.level1 = level1;
+            options.level1_build = build;
+            const std::string what = "thesis-two-level, level 1 " + std::to_string(level1) +
+                                     ", build " + std::to_string(build);
+            const auto whole = backend(options);
+            expect_same(*whole, what + ", no limit");
+            const ovc_statistics all = whole->statistics();
+            for (const uint64_t share : {uint64_t(2), uint64_t(4), uint64_t(8), all.leaves}) {
+                options.gpu_memory.bytes =
+                    std::max({all.level2_bytes / share, all.largest_page_bytes, uint64_t(1) << 16});
+                const auto small = limited(options);
+                ASSERT_TRUE(small);
+                expect_same(*small,
+                            what + ", " + std::to_string(options.gpu_memory.bytes) + " bytes");
+                const ovc_statistics used = small->statistics();
+                EXPECT_LE(used.gpu_peak_bytes, used.gpu_budget_bytes);
+            }
+        }
+    }
+
     void batch_sizes() const {
         const auto whole = backend({});
         for (const size_t batch : {size_t(1), size_t(7), size_t(1000), size_t(1000000)}) {
@@ -225,6 +256,9 @@ TEST(Invariance, SoupOverLeavesBudgetsAndKernels) {
 TEST(Invariance, SoupOverOtherSystems) {
     Invariance(soup_scene(), 10'000).other_systems();
 }
+TEST(Invariance, SoupOverQueuesOfTheThesis) {
+    Invariance(soup_scene(), 4'000).queues_of_the_thesis();
+}
 TEST(Invariance, SoupOverBatchSizes) {
     Invariance(soup_scene(), 200'000).batch_sizes();
 }
@@ -239,6 +273,7 @@ TEST(Invariance, Dragon) {
     const Invariance scene(dragon(*data), 100'000);
     scene.leaves_budgets_and_kernels();
     scene.other_systems();
+    scene.queues_of_the_thesis();
     scene.batch_sizes();
     scene.ray_orders();
 }

@@ -40,7 +40,8 @@ TEST(BenchArguments, ChooseContendersByNameOrFirstWord) {
                 testing::ElementsAre("embree-default", "embree-robust"));
     EXPECT_THAT(labels({.only = "thesis"}),
                 testing::ElementsAre("thesis-single-texture", "thesis-multi-texture",
-                                     "thesis-gpu-grid", "thesis-gpu-kdtree", "thesis-skip-bvh"));
+                                     "thesis-gpu-grid", "thesis-gpu-kdtree", "thesis-skip-bvh",
+                                     "thesis-two-level"));
     EXPECT_THAT(labels({}), testing::Not(testing::Contains("thesis-gpu-grid")));
     EXPECT_THAT(error({.only = "fast-comput"}),
                 testing::AllOf(testing::HasSubstr("there is no contender 'fast-comput'"),

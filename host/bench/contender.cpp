@@ -27,6 +27,7 @@ static const Contender kContenders[] = {
     thesis("thesis-gpu-grid", BackendKind::GpuGrid),
     thesis("thesis-gpu-kdtree", BackendKind::GpuKdTree),
     thesis("thesis-skip-bvh", BackendKind::SkipBvh),
+    thesis("thesis-two-level", BackendKind::ThesisTwoLevel),
     {"cpu-kdtree", ContenderKind::CpuKdTree},
     {.name = "embree-default", .kind = ContenderKind::Embree, .embree = EmbreeMode::Default},
     {.name = "embree-robust", .kind = ContenderKind::Embree, .embree = EmbreeMode::Robust},

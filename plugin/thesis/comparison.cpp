@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gpu/page_walk.h"
+#include "plugin/thesis/hittable.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>
@@ -23,22 +24,13 @@ Result<std::unique_ptr<Structure>> Comparison::build(const Soup& soup, GlThread&
                                                      const RunnerOptions& options,
                                                      const LogSink& log) {
     std::unique_ptr<Comparison> self(new Comparison(soup, gl, options));
-    Dropped dropped;
-    Box bounds;
-    std::vector<TriangleId> triangles = hittable_triangles(soup, &dropped, &bounds);
-    if (dropped.total())
-        say(log, LogLevel::Warning,
-            fmt::format("left out {} triangles with a NaN or infinite corner, {} without area",
-                        dropped.not_finite, dropped.degenerate));
     ovc_statistics& statistics = self->statistics_;
-    statistics.triangles = soup.triangle_count();
-    statistics.dropped_not_finite = dropped.not_finite;
-    statistics.dropped_degenerate = dropped.degenerate;
     statistics.gpu_budget_bytes = options.budget_bytes;
-    self->twins_ = Twins::take_out(soup, triangles);
-    statistics.twins = self->twins_.count();
+    Hittable hittable = take_hittable(soup, statistics, log);
+    self->twins_ = std::move(hittable.twins);
+    const std::vector<TriangleId>& triangles = hittable.triangles;
     if (!triangles.empty())
-        if (const Result<Done> built = self->build_system(triangles, bounds); !built)
+        if (const Result<Done> built = self->build_system(triangles, hittable.bounds); !built)
             return built.error();
     return std::unique_ptr<Structure>(std::move(self));
 }

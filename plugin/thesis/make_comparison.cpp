@@ -3,6 +3,7 @@
 #include "plugin/failure.h"
 #include "plugin/structure.h"
 #include "plugin/thesis/comparison.h"
+#include "plugin/thesis/queued_two_level.h"
 
 #include <fmt/format.h>
 
@@ -13,15 +14,40 @@ namespace {
     throw Failure{OVC_ERROR_INVALID_ARGUMENT, std::move(message)};
 }
 
+Result<std::unique_ptr<Structure>> make_queued(const Soup& soup, GlThread& gl,
+                                               const ovc_scene_config& config, const LogSink& log) {
+    const thesis::QueuedOptions options = {config.gpu_memory_bytes,
+                                           config.leaf_triangles,
+                                           config.leaves,
+                                           config.precision != OVC_PRECISION_FAST,
+                                           ovc_level1(config.level1),
+                                           ovc_level1_build(config.level1_build)};
+    auto scene = thesis::build_queued_scene(soup, gl, options, log);
+    if (!scene)
+        return scene.error();
+    return std::unique_ptr<Structure>(std::make_unique<thesis::QueuedTwoLevel>(std::move(*scene)));
+}
+
 } // namespace
 
-void check_config(const ovc_scene_config& config, const DeviceInfo&) {
+void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
     if (config.structure == OVC_STRUCTURE_TWO_LEVEL)
         refuse("ovc_scene_config.structure is 0, two-level, which libovercast.so has; this library "
-               "has 1 to 5");
+               "has 1 to 6");
     const char* name = thesis::name_of(ovc_structure(config.structure));
     if (config.kernel == OVC_KERNEL_COMPUTE)
         refuse(fmt::format("{} has no compute kernel", name));
+    if (config.structure == OVC_STRUCTURE_THESIS_TWO_LEVEL) {
+        if (config.level1 == OVC_LEVEL1_GRID && config.level1_build != OVC_LEVEL1_BUILD_TOP_DOWN)
+            refuse(fmt::format("{}: a grid is built top-down; it has no leaves to merge", name));
+        if (config.gpu_memory_bytes)
+            if (const auto plan = thesis::plan_leaf_passes(config.gpu_memory_bytes, device); !plan)
+                throw Failure{OVC_ERROR_OUT_OF_BUDGET, plan.error().message};
+        return;
+    }
+    if (config.level1 || config.level1_build)
+        refuse(fmt::format("{} has no level 1: level1 is {} and level1_build {}, expected 0", name,
+                           config.level1, config.level1_build));
     if (config.leaf_triangles)
         refuse(fmt::format("{} has no leaves: leaf_triangles is {}, expected 0", name,
                            config.leaf_triangles));
@@ -34,6 +60,8 @@ void check_config(const ovc_scene_config& config, const DeviceInfo&) {
 
 Result<std::unique_ptr<Structure>>
 make_structure(const Soup& soup, GlThread& gl, const ovc_scene_config& config, const LogSink& log) {
+    if (config.structure == OVC_STRUCTURE_THESIS_TWO_LEVEL)
+        return make_queued(soup, gl, config, log);
     thesis::RunnerOptions options;
     options.structure = ovc_structure(config.structure);
     options.budget_bytes =

@@ -14,8 +14,8 @@
 namespace ovc::thesis {
 
 const char* name_of(ovc_structure structure) {
-    constexpr const char* names[] = {"two-level", "single-texture", "multi-texture",
-                                     "gpu-grid",  "gpu-kdtree",     "skip-bvh"};
+    constexpr const char* names[] = {"two-level",  "single-texture", "multi-texture",   "gpu-grid",
+                                     "gpu-kdtree", "skip-bvh",       "thesis-two-level"};
     return names[structure];
 }
 

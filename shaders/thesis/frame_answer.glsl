@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words of an answer in the frame of the whole scene (layout.h).
+// The words of an answer in the frame of the whole scene, or of a leaf (layout.h).
 
-uvec4 frame_answer(Found found) {
+uvec4 frame_answer(Found found, bool any_hit) {
     if (OVC_CERTIFY == 0)
         return uvec4(floatBitsToUint(vec3(found.best_lo, barycentric(found))), found.prim);
-    return answer_of(found, OVC_ANY_HIT != 0, 0u);
+    return answer_of(found, any_hit, 0u);
 }
+uvec4 frame_answer(Found found) { return frame_answer(found, OVC_ANY_HIT != 0); }

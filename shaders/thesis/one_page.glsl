@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The product's page over the whole scene: its traversal (traverse.glsl), once.
+// The product's page: its traversal (traverse.glsl), once.
 
-uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
+// The words of an answer (layout.h) from the page whose header is unit `page`.
+uvec4 trace_page(int page, vec3 org, float t_end, vec3 dir, uint skip, bool any_hit) {
     Found found = nothing_found(t_end);
-    int rounds = int(page_texel(2).w); // 0, fetched
+    int rounds = int(page_texel(page * OVC_UNIT_TEXELS + 2).w); // 0, fetched
     bool done = t_end < 0.0;
     if (!done)
-        done = traverse(found, 0, org, t_end, direction_of(dir), skip, OVC_ANY_HIT != 0, rounds);
-    return done ? frame_answer(found) : uvec4(0u, 0u, 0u, OVC_CAPPED);
+        done = traverse(found, page, org, t_end, direction_of(dir), skip, any_hit, rounds);
+    return done ? frame_answer(found, any_hit) : uvec4(0u, 0u, 0u, OVC_CAPPED);
+}
+
+// The whole scene is one page.
+uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
+    return trace_page(0, org, t_end, dir, skip, OVC_ANY_HIT != 0);
 }

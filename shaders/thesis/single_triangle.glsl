@@ -13,9 +13,3 @@ bool take_triangle(inout Found found, uvec4 A, uvec4 B, uvec4 C, bool valid, vec
     bool known = prim == found.prim || prim == found.rival[0] || prim == found.rival[1];
     return take(found, hit, valid && !known && prim != skip, prim, 8u);
 }
-
-// 1 / dir, finite: a component below 1e-18 moves the ray by less than any padding over the whole scene.
-vec3 finite_reciprocal(vec3 dir) {
-    vec3 tiny = mix(vec3(1e-18), vec3(-1e-18), lessThan(dir, vec3(0.0)));
-    return 1.0 / mix(dir, tiny, lessThan(abs(dir), vec3(1e-18)));
-}

@@ -5,6 +5,7 @@
 #include "layout.h"
 #include "config.glsl"
 #include "scene_texels.glsl"
+#include "box.glsl"
 #include "triangle.glsl"
 #include "found.glsl"
 #include "single_triangle.glsl"

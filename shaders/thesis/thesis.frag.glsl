@@ -4,6 +4,7 @@
 #include "layout.h"
 #include "config.glsl"
 #include "scene_texels.glsl"
+#include "box.glsl"
 #include "triangle.glsl"
 #include "found.glsl"
 #include "single_triangle.glsl"
@@ -14,7 +15,6 @@
 #elif OVC_STRUCTURE == 4
 #include "kd_restart.glsl"
 #else
-#include "box.glsl"
 #include "traverse.glsl"
 #include "one_page.glsl"
 #endif

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// LeafPasses: the page into the pool, rays in by a texture, answers out by a framebuffer object.
+// Based on: thesis, sections 3.1 and 3.4.
+#include "plugin/thesis/leaf_passes.h"
+
+#include "core/stopwatch.h"
+#include "gpu/gl_check.h"
+#include "gpu/kernel.h"
+#include "shaders/layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+namespace ovc::thesis {
+namespace {
+
+constexpr uint64_t kMostRows = 2048;      // half a million rays: beyond, a pass gains nothing more
+constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
+
+/// Of uniforms in leaf.frag.glsl.
+constexpr GLint kPageUnit = 0;
+constexpr GLint kFirstOcclusionRay = 1;
+
+} // namespace
+
+Result<LeafPlan> plan_leaf_passes(uint64_t budget_bytes, const DeviceInfo& device) {
+    LeafPlan plan;
+    plan.budget_bytes = budget_bytes;
+    plan.batch_rays = LeafPasses::kRowRays;
+    const uint64_t smallest = plan.ray_bytes() + kSmallestPool;
+    if (budget_bytes < smallest)
+        return Error{fmt::format("a GPU budget of {} bytes is too small: the smallest that works "
+                                 "is {} bytes ({} for rays and answers, {} for a page)",
+                                 budget_bytes, smallest, plan.ray_bytes(), kSmallestPool)};
+    const uint64_t rows = budget_bytes / 8 / plan.ray_bytes();
+    plan.batch_rays *= uint32_t(
+        std::clamp<uint64_t>(rows, 1, std::min<uint64_t>(kMostRows, device.max_texture_size)));
+    plan.pool_bytes = std::min((budget_bytes - plan.ray_bytes()) / OVC_UNIT_BYTES * OVC_UNIT_BYTES,
+                               device.max_buffer_texels * sizeof(uvec4));
+    return plan;
+}
+
+LeafPasses::LeafPasses(std::unique_ptr<Ledger> ledger, const LeafPlan& plan,
+                       const DeviceInfo& device, std::span<const Page> pages, bool certify)
+    : ledger_(std::move(ledger)),
+      pages_(pages),
+      software_(device.is_software),
+      certify_(certify),
+      rays_(*ledger_, GL_RGBA32UI, sizeof(uvec4), kRowRays * OVC_FRAME_RAY_TEXELS,
+            plan.batch_rays / kRowRays, "rays"),
+      answers_(*ledger_, GL_RGBA32UI, sizeof(FrameAnswer), kRowRays, plan.batch_rays / kRowRays,
+               "answers"),
+      framebuffer_(answers_),
+      pool_(*ledger_, plan.pool_bytes, pages.size()) {
+    page_texels_.show(pool_.buffer(), GL_RGBA32UI, 0, pool_.buffer().bytes());
+}
+
+Result<std::unique_ptr<LeafPasses>> LeafPasses::create(const LeafPlan& plan,
+                                                       const DeviceInfo& device,
+                                                       std::span<const Page> pages, bool certify) {
+    auto ledger = std::make_unique<Ledger>();
+    ledger->budget = plan.budget_bytes;
+    std::unique_ptr<LeafPasses> passes(
+        new LeafPasses(std::move(ledger), plan, device, pages, certify));
+    if (Result<Done> ok = check_gl("allocating the page pool and the ray textures"); !ok)
+        return ok.error();
+    if (!passes->framebuffer_.complete())
+        return Error{"the driver cannot render to RGBA32UI textures, which answers come back in"};
+    return passes;
+}
+
+/// One for all pages: compiled for the deepest.
+Result<GLuint> LeafPasses::kernel() {
+    if (kernel_)
+        return kernel_->id();
+    uint32_t depth = 1;
+    uint64_t units = 0;
+    for (const Page& page : pages_) {
+        depth = std::max(depth, page.depth);
+        units = std::max(units, page.units());
+    }
+    ShaderConfig config;
+    config.certify = certify_;
+    config.stack_depth = (depth + 3) / 4 * 4;
+    config.stack_registers = software_;
+    config.buffer_images = software_;
+    if (software_ && units > kMostRoundsInSoftware)
+        config.most_rounds = kMostRoundsInSoftware;
+    const std::array<ShaderStage, 2> stages = {
+        {{GL_VERTEX_SHADER, "fullscreen.vert.glsl"}, {GL_FRAGMENT_SHADER, "leaf.frag.glsl"}}};
+    Result<gl::Program> linked = link_program(stages, config.defines());
+    if (!linked)
+        return linked.error();
+    return kernel_.emplace(std::move(*linked)).id();
+}
+
+/// Bytes moved.
+uint64_t LeafPasses::bring(uint32_t leaf) {
+    Residency& residency = pool_.residency();
+    if (residency.resident(leaf)) {
+        residency.touch(leaf);
+        return 0;
+    }
+    std::vector<uint32_t> evicted;
+    residency.admit(leaf, pages_[leaf].bytes(), residency.now(), evicted); // keeps nobody
+    pool_.upload(leaf, pages_[leaf]);
+    return pages_[leaf].bytes();
+}
+
+Result<LeafPass> LeafPasses::run(uint32_t leaf, std::span<const FrameRay> rays,
+                                 size_t first_occlusion, std::span<FrameAnswer> answers) {
+    assert(!rays.empty() && rays.size() == answers.size() && rays.size() % kRowRays == 0);
+    const Stopwatch watch;
+    const Result<GLuint> program = kernel();
+    if (!program)
+        return program.error();
+    LeafPass pass;
+    pass.bytes_in = bring(leaf);
+    const GLsizei rows = GLsizei(rays.size() / kRowRays);
+    glTextureSubImage2D(rays_.id(), 0, 0, 0, kRowRays * OVC_FRAME_RAY_TEXELS, rows, GL_RGBA_INTEGER,
+                        GL_UNSIGNED_INT, rays.data());
+
+    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, leaf, -1, "pass over a leaf");
+    glProgramUniform1i(*program, kPageUnit,
+                       GLint(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES));
+    glProgramUniform1i(*program, kFirstOcclusionRay, GLint(first_occlusion));
+    glUseProgram(*program);
+    if (software_) // as config.buffer_images says
+        glBindImageTexture(OVC_BINDING_PAGE, page_texels_.id(), 0, GL_FALSE, 0, GL_READ_ONLY,
+                           GL_RGBA32UI);
+    else
+        glBindTextureUnit(OVC_BINDING_PAGE, page_texels_.id());
+    glBindTextureUnit(OVC_BINDING_RAYS, rays_.id());
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+    glBindVertexArray(vertex_array_.id());
+    glViewport(0, 0, kRowRays, rows);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glReadPixels(0, 0, kRowRays, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT, answers.data());
+    glPopDebugGroup();
+    if (Result<Done> ok = check_gl("tracing a pass"); !ok)
+        return ok.error();
+    pass.seconds = watch.seconds();
+    return pass;
+}
+
+} // namespace ovc::thesis

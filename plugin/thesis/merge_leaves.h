@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Level 1 from the bottom up: the leaves of a complete KD-tree merged until they are as large as
+// leaves may be. Based on: thesis, section 3.3.
+#pragma once
+
+#include "kdtree/tree.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace ovc::thesis {
+
+/// The nodes of `full`, each subtree of at most `most` (> 0) different triangles merged into one
+/// leaf node. What leaf nodes name means nothing: fill_cells() of kdtree/partition.h says it anew.
+std::vector<KdNode> merge_leaves(const KdTree& full, uint32_t most);
+
+} // namespace ovc::thesis
