@@ -21,11 +21,12 @@ constexpr size_t kGrain = 256; // rays a task
 
 Result<std::unique_ptr<Structure>> Comparison::build(const Soup& soup, GlThread& gl,
                                                      const RunnerOptions& options,
-                                                     const LogSink& log) {
+                                                     const LogSink& log, BuildProgress* progress) {
+    begin(progress, "triangles", 0.05, 2 * soup.triangle_count());
     std::unique_ptr<Comparison> self(new Comparison(soup, gl, options));
     Dropped dropped;
     Box bounds;
-    std::vector<TriangleId> triangles = hittable_triangles(soup, &dropped, &bounds);
+    std::vector<TriangleId> triangles = hittable_triangles(soup, &dropped, &bounds, progress);
     if (dropped.total())
         say(log, LogLevel::Warning,
             fmt::format("left out {} triangles with a NaN or infinite corner, {} without area",
@@ -35,22 +36,25 @@ Result<std::unique_ptr<Structure>> Comparison::build(const Soup& soup, GlThread&
     statistics.dropped_not_finite = dropped.not_finite;
     statistics.dropped_degenerate = dropped.degenerate;
     statistics.gpu_budget_bytes = options.budget_bytes;
-    self->twins_ = Twins::take_out(soup, triangles);
+    self->twins_ = Twins::take_out(soup, triangles, progress);
     statistics.twins = self->twins_.count();
     if (!triangles.empty())
-        if (const Result<Done> built = self->build_system(triangles, bounds); !built)
+        if (const Result<Done> built = self->build_system(triangles, bounds, progress); !built)
             return built.error();
     return std::unique_ptr<Structure>(std::move(self));
 }
 
-Result<Done> Comparison::build_system(const std::vector<TriangleId>& triangles, const Box& bounds) {
+Result<Done> Comparison::build_system(const std::vector<TriangleId>& triangles, const Box& bounds,
+                                      BuildProgress* progress) {
+    begin(progress, thesis::name_of(options_.structure), 0.9,
+          work_of(options_.structure, triangles.size()));
     const Stopwatch watch;
     whole_ = whole_leaf(soup_, triangles, bounds);
     // What cannot fit is not built.
     const uint64_t least = least_bytes(options_.structure, triangles.size()) / sizeof(uvec4);
     if (const Result<MemoryPlan> plan = plan_memory(options_, least, "at least "); !plan)
         return plan.error();
-    Result<System> system = thesis::build_system(options_.structure, soup_, whole_);
+    Result<System> system = thesis::build_system(options_.structure, soup_, whole_, progress);
     if (!system)
         return system.error();
     const Result<MemoryPlan> plan = plan_memory(options_, system->texels.size());
@@ -64,6 +68,7 @@ Result<Done> Comparison::build_system(const std::vector<TriangleId>& triangles, 
     statistics_.pages_in = plan->tiles.count();
     statistics_.bytes_in = plan->tiles.bytes();
     statistics_.seconds_level2 = watch.seconds();
+    begin(progress, "moving it to the GPU", 0.05, 1);
     Result<std::unique_ptr<Runner>> runner = Error{};
     gl_.run([&](GlState&) {
         runner = Runner::create(options_, *plan, std::move(*system), gl_.info().is_software);

@@ -32,15 +32,23 @@ void check_config(const ovc_scene_config& config, const DeviceInfo&) {
                            config.leaves, thesis::kMostTextures));
 }
 
-Result<std::unique_ptr<Structure>>
-make_structure(const Soup& soup, GlThread& gl, const ovc_scene_config& config, const LogSink& log) {
+Result<ovc_plan> plan_structure(const Soup&, const DeviceInfo&, const ovc_scene_config& config,
+                                BuildProgress*) {
+    refuse(fmt::format("plan: what {} takes is known only once it is built; two-level "
+                       "(libovercast.so) can tell before",
+                       thesis::name_of(ovc_structure(config.structure))));
+}
+
+Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
+                                                  const ovc_scene_config& config,
+                                                  const LogSink& log, BuildProgress* progress) {
     thesis::RunnerOptions options;
     options.structure = ovc_structure(config.structure);
     options.budget_bytes =
         config.gpu_memory_bytes ? config.gpu_memory_bytes : gl.info().default_budget_bytes();
     options.textures = std::max(config.leaves, 1u);
     options.certify = config.precision != OVC_PRECISION_FAST;
-    return thesis::Comparison::build(soup, gl, options, log);
+    return thesis::Comparison::build(soup, gl, options, log, progress);
 }
 
 } // namespace ovc
