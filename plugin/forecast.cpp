@@ -31,12 +31,10 @@ struct Sizes {
     std::vector<uint64_t> pages; // bytes, in the order of leaves
     uint64_t references = 0;
     uint64_t nodes = 0;
+    uint64_t largest_page = 0;
 
     uint64_t level2_bytes() const {
         return std::accumulate(pages.begin(), pages.end(), uint64_t(0));
-    }
-    uint64_t largest_page() const {
-        return pages.empty() ? 0 : *std::max_element(pages.begin(), pages.end());
     }
 };
 
@@ -48,8 +46,10 @@ Result<Sizes> sizes_built(const Soup& soup, std::vector<TriangleId>& triangles, 
     if (!levels)
         return levels.error();
     Sizes sizes;
-    for (const Page& page : levels->pages)
+    for (const Page& page : levels->pages) {
         sizes.pages.push_back(page.bytes());
+        sizes.largest_page = std::max(sizes.largest_page, page.bytes());
+    }
     sizes.references = levels->level1.reference_count();
     sizes.nodes = levels->level1.nodes.size();
     return sizes;
@@ -133,8 +133,13 @@ private:
         }
         sizes_.nodes += parts > 1 ? 2 * (parts - 1) : 0;
         sizes_.references += count;
-        if (parts > 0)
-            sizes_.pages.insert(sizes_.pages.end(), parts, page());
+        if (parts == 0)
+            return;
+        sizes_.pages.insert(sizes_.pages.end(), parts, page());
+        const double worst =
+            double(kPageStart) + rates_->worst_within(cell) * double(count) / double(parts);
+        sizes_.largest_page =
+            std::max(sizes_.largest_page, std::min(uint64_t(worst), limits.page_bytes));
     }
 
     const Soup& soup_;
@@ -235,7 +240,7 @@ Result<Forecast> forecast(const Soup& soup, const TwoLevelOptions& options,
     f.leaves = sizes.pages.size();
     f.references = sizes.references;
     f.level2_bytes = sizes.level2_bytes();
-    f.largest_page_bytes = sizes.largest_page();
+    f.largest_page_bytes = sizes.largest_page;
     f.level1_bytes = (OVC_LEVEL1_LEAVES + OVC_LEAF_TEXELS * f.leaves + sizes.nodes) * sizeof(uvec4);
     growth.nodes_per_leaf = double(sizes.nodes) / double(f.leaves);
     growth.cut = (double(f.references) / growth.triangles - 1) * std::sqrt(most);

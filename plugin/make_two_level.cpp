@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The structure of libovercast.so: two-level, and what it counts in the words of the ABI.
 #include "plugin/failure.h"
+#include "plugin/forecast.h"
 #include "plugin/structure.h"
 #include "plugin/two_level.h"
 
@@ -24,15 +25,46 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
             throw Failure{OVC_ERROR_OUT_OF_BUDGET, plan.error().message};
 }
 
-Result<std::unique_ptr<Structure>>
-make_structure(const Soup& soup, GlThread& gl, const ovc_scene_config& config, const LogSink& log) {
-    const TwoLevelOptions options = {config.gpu_memory_bytes, config.leaf_triangles, config.leaves,
-                                     config.precision != OVC_PRECISION_FAST,
-                                     config.kernel == OVC_KERNEL_COMPUTE};
-    Result<std::unique_ptr<TwoLevel>> built = TwoLevel::build(soup, gl, options, log);
+static TwoLevelOptions options_of(const ovc_scene_config& config) {
+    return {config.gpu_memory_bytes, config.leaf_triangles, config.leaves,
+            config.precision != OVC_PRECISION_FAST, config.kernel == OVC_KERNEL_COMPUTE};
+}
+
+Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
+                                                  const ovc_scene_config& config,
+                                                  const LogSink& log, BuildProgress* progress) {
+    Result<std::unique_ptr<TwoLevel>> built =
+        TwoLevel::build(soup, gl, options_of(config), log, progress);
     if (!built)
         return built.error();
     return std::unique_ptr<Structure>(std::move(*built));
+}
+
+Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
+                                const ovc_scene_config& config, BuildProgress* progress) {
+    const TwoLevelOptions options = options_of(config);
+    const Result<Forecast> told = forecast(soup, options, device, progress);
+    if (!told)
+        return told.error();
+    const MemoryPlan memory = *plan_memory(budget_of(options, device), device);
+    ovc_plan plan{};
+    plan.struct_size = sizeof(plan);
+    plan.triangles = soup.triangle_count();
+    plan.hittable = told->triangles;
+    plan.leaves = told->leaves;
+    plan.leaf_references = told->references;
+    plan.level2_bytes = told->level2_bytes;
+    plan.largest_page_bytes = told->largest_page_bytes;
+    plan.gpu_budget_bytes = memory.budget_bytes;
+    plan.smallest_budget_bytes = told->smallest_budget_bytes;
+    plan.ray_bytes = memory.ray_bytes();
+    plan.level1_bytes = told->level1_bytes;
+    plan.pool_bytes = told->pool_bytes;
+    plan.resident_pages = told->resident_pages;
+    plan.host_bytes = told->host_bytes;
+    plan.batch_rays = memory.batch_rays;
+    plan.fits = told->fits;
+    return plan;
 }
 
 ovc_statistics TwoLevel::report() const {
@@ -61,7 +93,8 @@ ovc_statistics TwoLevel::report() const {
             s.seconds_level1,
             s.seconds_level2,
             s.seconds_trace,
-            s.seconds_kernel};
+            s.seconds_kernel,
+            s.host_bytes};
 }
 
 } // namespace ovc

@@ -121,6 +121,12 @@ typedef enum ovc_level1_build {
     OVC_LEVEL1_BUILD_BOTTOM_UP = 1 /* the leaves of a complete tree merged while they are small enough; not for a grid */
 } ovc_level1_build;
 
+/* How far a commit or a plan is: done from 0 to 1, never less than before; stage: what is being done, valid during the call only.
+ * Called fifty times a second at most, from any thread, but never from two at once. Must return soon and call nothing on the
+ * scene. 0: go on; anything else: stop, and the call returns OVC_ERROR_CANCELLED within a tenth of a second or so. */
+typedef int (*ovc_progress_function)(void* user, double done, const char* stage);
+
+/* Fields are only ever appended; the struct_size of an earlier header is fine, and what it lacks is the default. */
 typedef struct ovc_scene_config {
     size_t struct_size;
     uint64_t gpu_memory_bytes; /* the budget: pages, rays and hits together stay below it. 0: the device's default */
@@ -131,6 +137,8 @@ typedef struct ovc_scene_config {
     uint32_t structure;        /* ovc_structure */
     uint32_t level1;           /* ovc_level1; 0 for all other structures */
     uint32_t level1_build;     /* ovc_level1_build; 0 for all other structures */
+    ovc_progress_function progress; /* NULL: silent, and not to be stopped */
+    void* progress_user;
 } ovc_scene_config;
 
 typedef enum ovc_mesh_flags {
@@ -155,6 +163,30 @@ typedef struct ovc_query {
     const ovc_triangle* skip; /* ray_count, or NULL: the triangle that ray i starts on and therefore does not see; {OVC_NONE, OVC_NONE}: none */
 } ovc_query;
 
+/* What commit would make of the meshes added so far, told without making it. Numbers of leaves, bytes and pages are estimates:
+ * within 10 % of what commit then makes, or one whole leaf or page. */
+typedef struct ovc_plan {
+    size_t struct_size;
+    uint64_t triangles;            /* added */
+    uint64_t hittable;             /* of them not dropped */
+    uint64_t leaves;
+    uint64_t leaf_references;      /* triangles counted once in each leaf they touch */
+    uint64_t level2_bytes;         /* all pages together: to move every page once */
+    uint64_t largest_page_bytes;
+    uint64_t gpu_budget_bytes;
+    uint64_t smallest_budget_bytes; /* that works; exact to a tenth */
+    uint64_t ray_bytes;            /* of the budget, for rays and answers */
+    uint64_t level1_bytes;         /* of the budget, for level 1 */
+    uint64_t pool_bytes;           /* of the budget, for pages: what rays and level 1 leave, and no more than pages take */
+    uint64_t resident_pages;       /* pages that are in the pool at once when commit returns */
+    uint64_t host_bytes;           /* level 1 and level 2 in host memory */
+    uint64_t batch_rays;           /* most rays a pass */
+    uint32_t fits;                 /* 0: the budget is too small; commit would be OVC_ERROR_OUT_OF_BUDGET */
+    uint32_t reserved;             /* 0 */
+    double seconds;                /* what it took to tell */
+} ovc_plan;
+
+/* The struct_size of an earlier header is fine: what it lacks is not filled in. */
 typedef struct ovc_statistics {
     size_t struct_size;
     uint64_t triangles;            /* added */
@@ -181,6 +213,7 @@ typedef struct ovc_statistics {
     double seconds_level2;         /* building and packing all pages */
     double seconds_trace;          /* inside intersect and occluded */
     double seconds_kernel;         /* of it, waiting for the GPU */
+    uint64_t host_bytes;           /* level 1 and level 2 in host memory */
 } ovc_statistics;
 
 /* Answers of a stream, in any order: hits for rays pushed for the nearest, occluded for the others; the other pointer is NULL.
@@ -227,7 +260,8 @@ typedef struct ovc_api {
     ovc_result (*create_scene)(ovc_device device, const ovc_scene_config* config, ovc_scene* scene);
     /* Meshes are numbered from 0 in the order they are added; mesh_id may be NULL. */
     ovc_result (*add_mesh)(ovc_scene scene, const ovc_mesh* mesh, uint32_t* mesh_id);
-    /* Builds level 1 and level 2. Afterwards the scene takes rays and no more meshes. An empty scene is fine: all rays miss. */
+    /* Builds level 1 and level 2. Afterwards the scene takes rays and no more meshes. An empty scene is fine: all rays miss.
+     * Where it fails or is cancelled (ovc_scene_config.progress) it leaves nothing behind and may be called again. */
     ovc_result (*commit)(ovc_scene scene);
     /* Nearest hits of ray_count rays into hits[ray_count]. query may be NULL. */
     ovc_result (*intersect)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits, const ovc_query* query);
@@ -245,6 +279,10 @@ typedef struct ovc_api {
      * answers. any_hit: 0 for nearest hits, 1 for occlusion. query may be NULL. The caller bounds how many rays wait. */
     ovc_result (*push)(ovc_stream stream, const ovc_ray* rays, const uint64_t* tokens, size_t ray_count, uint32_t any_hit,
                        const ovc_query* query);
+
+    /* Tells what commit makes, or has made, of the scene; a small part of its work. Before or after it. OVC_ERROR_INVALID_ARGUMENT
+     * for structures that cannot tell. */
+    ovc_result (*plan)(ovc_scene scene, ovc_plan* plan);
 } ovc_api;
 
 #if defined(_WIN32)

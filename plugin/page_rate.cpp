@@ -155,18 +155,33 @@ PageRates::PageRates(const Soup& soup, std::span<const TriangleId> triangles,
                 {chosen[c].center(), double(bytes[c] - kPageStart) / double(members[c].size())});
     for (const Cluster& cluster : clusters_)
         mean_ += cluster.rate / double(clusters_.size());
+    double squares = 0;
+    for (const Cluster& cluster : clusters_)
+        squares += (cluster.rate - mean_) * (cluster.rate - mean_);
+    spread_ = clusters_.size() > 1 ? std::sqrt(squares / double(clusters_.size() - 1)) : 0;
 }
 
-double PageRates::within(const Box& box) const {
-    // One cube alone says little of a whole leaf: the average counts as another one.
-    double sum = mean_;
-    double count = 1;
+size_t PageRates::cubes_in(const Box& box, double& sum) const {
+    size_t count = 0;
     for (const Cluster& cluster : clusters_)
         if (box.contains(cluster.center)) {
             sum += cluster.rate;
             ++count;
         }
-    return sum / count;
+    return count;
+}
+
+double PageRates::within(const Box& box) const {
+    // One cube alone says little of a whole leaf: the average counts as another one.
+    double sum = mean_;
+    const size_t cubes = cubes_in(box, sum);
+    return sum / double(cubes + 1);
+}
+
+double PageRates::worst_within(const Box& box) const {
+    double sum = mean_;
+    const size_t cubes = cubes_in(box, sum);
+    return cubes ? sum / double(cubes + 1) : mean_ + spread_;
 }
 
 } // namespace ovc

@@ -29,14 +29,20 @@ public:
     double mean() const { return mean_; }
     /// The same in `box`, by the cubes that lie in it, the average and nothing else where none do.
     double within(const Box& box) const;
+    /// What the worst of many such boxes may take: where no cube lies, one may be worse than the
+    /// average by as much as cubes differ.
+    double worst_within(const Box& box) const;
 
 private:
+    size_t cubes_in(const Box& box, double& sum) const;
+
     struct Cluster {
         dvec3 center;
         double rate;
     };
     std::vector<Cluster> clusters_;
     double mean_ = 0;
+    double spread_ = 0; // standard deviation
 };
 
 } // namespace ovc

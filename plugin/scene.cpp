@@ -3,8 +3,11 @@
 // them.
 #include "plugin/scene.h"
 
+#include "core/build_progress.h"
+#include "core/stopwatch.h"
 #include "plugin/scene_call.h"
 
+#include <cstddef>
 #include <cstring>
 
 namespace ovc {
@@ -64,6 +67,32 @@ void check_choice(const char* field, uint32_t value, uint32_t last) {
         invalid(fmt::format("ovc_scene_config.{} is {}, expected 0 to {}", field, value, last));
 }
 
+/// A struct of this header, or of an earlier one, which had `least` bytes at least.
+template <class T>
+void check_size(const char* name, size_t size, size_t least) {
+    if (size < least || size > sizeof(T))
+        invalid(fmt::format("{}.struct_size is {}, expected sizeof({}) = {}", name, size, name,
+                            sizeof(T)));
+}
+
+/// body(progress), told to the config's function; body's Cancelled becomes a code.
+template <class Body>
+void with_progress(const ovc_scene_config& config, const char* call, Body&& body) {
+    if (!config.progress) {
+        body(nullptr);
+        return;
+    }
+    BuildProgress progress([&](double done, const char* stage) {
+        return config.progress(config.progress_user, done, stage) == 0;
+    });
+    try {
+        body(&progress);
+    } catch (const Cancelled&) {
+        throw Failure{OVC_ERROR_CANCELLED,
+                      fmt::format("{}: cancelled by ovc_scene_config.progress", call)};
+    }
+}
+
 } // namespace
 
 ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_scene* scene) {
@@ -77,10 +106,8 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
         auto created = std::make_unique<ovc_scene_t>();
         created->device = device;
         if (config) {
-            if (config->struct_size != sizeof(ovc_scene_config))
-                invalid(fmt::format(
-                    "ovc_scene_config.struct_size is {}, expected sizeof(ovc_scene_config) = {}",
-                    config->struct_size, sizeof(ovc_scene_config)));
+            check_size<ovc_scene_config>("ovc_scene_config", config->struct_size,
+                                         offsetof(ovc_scene_config, progress));
             if (config->leaf_triangles && config->leaves)
                 invalid(
                     "ovc_scene_config: leaf_triangles and leaves are both set; one says it all");
@@ -89,7 +116,8 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
             check_choice("structure", config->structure, OVC_STRUCTURE_THESIS_TWO_LEVEL);
             check_choice("level1", config->level1, OVC_LEVEL1_BVH);
             check_choice("level1_build", config->level1_build, OVC_LEVEL1_BUILD_BOTTOM_UP);
-            created->config = *config;
+            std::memcpy(&created->config, config, config->struct_size);
+            created->config.struct_size = sizeof(ovc_scene_config);
         }
         // Known to be impossible before anything is added: say so now.
         check_config(created->config, device->gl->info());
@@ -122,12 +150,16 @@ ovc_result commit(ovc_scene scene) {
     return on_scene(scene, "commit", [&] {
         if (scene->structure)
             throw Failure{OVC_ERROR_INVALID_STATE, "commit: the scene is committed already"};
-        Result<std::unique_ptr<Structure>> built =
-            make_structure(scene->soup, *scene->device->gl, scene->config, scene->device->log);
-        if (!built)
-            throw Failure{code_of(built.error().kind, OVC_ERROR_OUT_OF_BUDGET),
-                          built.error().message};
-        scene->structure = std::move(*built);
+        with_progress(scene->config, "commit", [&](BuildProgress* progress) {
+            Result<std::unique_ptr<Structure>> built = make_structure(
+                scene->soup, *scene->device->gl, scene->config, scene->device->log, progress);
+            if (!built)
+                throw Failure{code_of(built.error().kind, OVC_ERROR_OUT_OF_BUDGET),
+                              built.error().message};
+            if (progress)
+                progress->finish(); // the last chance to be cancelled
+            scene->structure = std::move(*built);
+        });
     });
 }
 
@@ -155,11 +187,28 @@ ovc_result statistics(ovc_scene scene, ovc_statistics* statistics) {
     return on_scene(scene, "statistics", [&] {
         if (!statistics)
             invalid("statistics: statistics is NULL");
-        if (statistics->struct_size != sizeof(ovc_statistics))
-            invalid(fmt::format(
-                "ovc_statistics.struct_size is {}, expected sizeof(ovc_statistics) = {}",
-                statistics->struct_size, sizeof(ovc_statistics)));
-        *statistics = committed(scene, "statistics").report();
+        const size_t size = statistics->struct_size;
+        check_size<ovc_statistics>("ovc_statistics", size, offsetof(ovc_statistics, host_bytes));
+        ovc_statistics all = committed(scene, "statistics").report();
+        all.struct_size = size;
+        std::memcpy(statistics, &all, size);
+    });
+}
+
+ovc_result plan(ovc_scene scene, ovc_plan* plan) {
+    return on_scene(scene, "plan", [&] {
+        if (!plan)
+            invalid("plan: plan is NULL");
+        check_size<ovc_plan>("ovc_plan", plan->struct_size, sizeof(ovc_plan));
+        const Stopwatch watch;
+        with_progress(scene->config, "plan", [&](BuildProgress* progress) {
+            const Result<ovc_plan> told =
+                plan_structure(scene->soup, scene->device->gl->info(), scene->config, progress);
+            if (!told)
+                throw Failure{OVC_ERROR_OUT_OF_BUDGET, told.error().message};
+            *plan = *told;
+        });
+        plan->seconds = watch.seconds();
     });
 }
 

@@ -14,6 +14,7 @@ ovc_result intersect(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc
 ovc_result occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded,
                     const ovc_query* query);
 ovc_result statistics(ovc_scene scene, ovc_statistics* statistics);
+ovc_result plan(ovc_scene scene, ovc_plan* plan);
 void destroy_scene(ovc_scene scene);
 
 } // namespace ovc

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/batched_stream.h"
+#include "core/build_progress.h"
 #include "core/log.h"
 #include "core/ray.h"
 #include "core/result.h"
@@ -40,8 +41,16 @@ public:
 void check_config(const ovc_scene_config& config, const DeviceInfo& device);
 
 /// The structure that the config, checked before, asks for. The soup and the thread must outlive
-/// it. Error: a budget too small, with the smallest that works; GL's refusals.
-Result<std::unique_ptr<Structure>>
-make_structure(const Soup& soup, GlThread& gl, const ovc_scene_config& config, const LogSink& log);
+/// it. Error: a budget too small, with the smallest that works; GL's refusals. Throws Cancelled
+/// when told to stop.
+Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
+                                                  const ovc_scene_config& config,
+                                                  const LogSink& log,
+                                                  BuildProgress* progress = nullptr);
+
+/// What make_structure() would make, but for seconds. Throws as it does. Error: a budget too small
+/// for anything, or a structure that cannot tell.
+Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
+                                const ovc_scene_config& config, BuildProgress* progress = nullptr);
 
 } // namespace ovc

@@ -22,27 +22,31 @@ constexpr size_t kGrain = 256; // rays a task
 
 Result<std::unique_ptr<Structure>> Comparison::build(const Soup& soup, GlThread& gl,
                                                      const RunnerOptions& options,
-                                                     const LogSink& log) {
+                                                     const LogSink& log, BuildProgress* progress) {
+    begin(progress, "triangles", 0.05, 2 * soup.triangle_count());
     std::unique_ptr<Comparison> self(new Comparison(soup, gl, options));
     ovc_statistics& statistics = self->statistics_;
     statistics.gpu_budget_bytes = options.budget_bytes;
-    Hittable hittable = take_hittable(soup, statistics, log);
+    Hittable hittable = take_hittable(soup, statistics, log, progress);
     self->twins_ = std::move(hittable.twins);
     const std::vector<TriangleId>& triangles = hittable.triangles;
     if (!triangles.empty())
-        if (const Result<Done> built = self->build_system(triangles, hittable.bounds); !built)
+        if (const Result<Done> built = self->build_system(triangles, hittable.bounds, progress); !built)
             return built.error();
     return std::unique_ptr<Structure>(std::move(self));
 }
 
-Result<Done> Comparison::build_system(const std::vector<TriangleId>& triangles, const Box& bounds) {
+Result<Done> Comparison::build_system(const std::vector<TriangleId>& triangles, const Box& bounds,
+                                      BuildProgress* progress) {
+    begin(progress, thesis::name_of(options_.structure), 0.9,
+          work_of(options_.structure, triangles.size()));
     const Stopwatch watch;
     whole_ = whole_leaf(soup_, triangles, bounds);
     // What cannot fit is not built.
     const uint64_t least = least_bytes(options_.structure, triangles.size()) / sizeof(uvec4);
     if (const Result<MemoryPlan> plan = plan_memory(options_, least, "at least "); !plan)
         return plan.error();
-    Result<System> system = thesis::build_system(options_.structure, soup_, whole_);
+    Result<System> system = thesis::build_system(options_.structure, soup_, whole_, progress);
     if (!system)
         return system.error();
     const Result<MemoryPlan> plan = plan_memory(options_, system->texels.size());
@@ -56,6 +60,7 @@ Result<Done> Comparison::build_system(const std::vector<TriangleId>& triangles, 
     statistics_.pages_in = plan->tiles.count();
     statistics_.bytes_in = plan->tiles.bytes();
     statistics_.seconds_level2 = watch.seconds();
+    begin(progress, "moving it to the GPU", 0.05, 1);
     Result<std::unique_ptr<Runner>> runner = Error{};
     gl_.run([&](GlState&) {
         runner = Runner::create(options_, *plan, std::move(*system), gl_.info().is_software);

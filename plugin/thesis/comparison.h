@@ -15,8 +15,10 @@ namespace ovc::thesis {
 
 class Comparison final : public Structure {
 public:
-    static Result<std::unique_ptr<Structure>>
-    build(const Soup& soup, GlThread& gl, const RunnerOptions& options, const LogSink& log);
+    static Result<std::unique_ptr<Structure>> build(const Soup& soup, GlThread& gl,
+                                                    const RunnerOptions& options,
+                                                    const LogSink& log,
+                                                    BuildProgress* progress = nullptr);
     ~Comparison() override;
 
     Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
@@ -29,7 +31,8 @@ private:
     Comparison(const Soup& soup, GlThread& gl, const RunnerOptions& options)
         : soup_(soup), gl_(gl), options_(options) {}
 
-    Result<Done> build_system(const std::vector<TriangleId>& triangles, const Box& bounds);
+    Result<Done> build_system(const std::vector<TriangleId>& triangles, const Box& bounds,
+                              BuildProgress* progress);
 
     template <class Query>
     class Batch;

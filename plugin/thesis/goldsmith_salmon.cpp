@@ -137,22 +137,29 @@ std::vector<uint32_t> shuffled(size_t count, uint32_t seed) {
 
 } // namespace
 
-InsertionTree insert_in_order(std::span<const Boxf> boxes, std::span<const uint32_t> order) {
+InsertionTree insert_in_order(std::span<const Boxf> boxes, std::span<const uint32_t> order,
+                              BuildProgress* progress) {
     if (boxes.empty())
         return {};
     Inserter inserter(boxes);
-    for (const uint32_t item : order)
+    LoopProgress loop(progress);
+    for (const uint32_t item : order) {
         inserter.insert(item);
+        loop.step();
+    }
+    loop.finish();
     return inserter.take();
 }
 
-InsertionTree best_insertion_tree(std::span<const Boxf> boxes, int shuffles) {
+InsertionTree best_insertion_tree(std::span<const Boxf> boxes, int shuffles,
+                                  BuildProgress* progress) {
     InsertionTree best;
     size_t best_seed = 0;
     std::mutex mutex;
     parallel_for(size_t(shuffles), 1, [&](size_t first, size_t last) {
         for (size_t seed = first; seed < last; ++seed) {
-            InsertionTree tree = insert_in_order(boxes, shuffled(boxes.size(), uint32_t(seed) + 1));
+            InsertionTree tree =
+                insert_in_order(boxes, shuffled(boxes.size(), uint32_t(seed) + 1), progress);
             const std::lock_guard lock(mutex);
             const bool better =
                 tree.cost < best.cost || (tree.cost == best.cost && seed < best_seed);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/box.h"
+#include "core/build_progress.h"
 
 #include <cstdint>
 #include <span>
@@ -30,10 +31,13 @@ struct InsertionTree {
     double cost = 0;
 };
 
-/// The tree by inserting boxes[order[0]], boxes[order[1]], … (none of them empty).
-InsertionTree insert_in_order(std::span<const Boxf> boxes, std::span<const uint32_t> order);
+/// The tree by inserting boxes[order[0]], boxes[order[1]], … (none of them empty). A box
+/// is a unit of progress.
+InsertionTree insert_in_order(std::span<const Boxf> boxes, std::span<const uint32_t> order,
+                              BuildProgress* progress = nullptr);
 
 /// The one of least cost over `shuffles` (> 0) random orders, the same on every run.
-InsertionTree best_insertion_tree(std::span<const Boxf> boxes, int shuffles);
+InsertionTree best_insertion_tree(std::span<const Boxf> boxes, int shuffles,
+                                  BuildProgress* progress = nullptr);
 
 } // namespace ovc::thesis

@@ -115,12 +115,12 @@ std::array<uint32_t, 3> grid_resolution(const dvec3& extent, uint64_t triangles)
     return cells;
 }
 
-Result<System> build_grid(const Soup& soup, const Leaf& whole) {
+Result<System> build_grid(const Soup& soup, const Leaf& whole, BuildProgress* progress) {
     const std::vector<LocalTriangle> triangles = local_triangles(soup, whole);
     const Planes planes({whole.frame.to_local(whole.box.lo), whole.frame.to_local(whole.box.hi)},
                         triangles.size());
     const References references = gather_references(
-        triangles.size(), planes.cells(),
+        triangles.size(), planes.cells(), progress,
         [&](uint32_t i, std::vector<Reference>& out) { find_cells(planes, triangles[i], i, out); });
     return pack(planes, references, triangles);
 }

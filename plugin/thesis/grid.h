@@ -20,6 +20,6 @@ std::array<uint32_t, 3> grid_resolution(const dvec3& extent, uint64_t triangles)
 
 /// Every triangle is listed in each cell that it touches when the cell is wider by kWider. Error:
 /// more references than 32 bits count.
-Result<System> build_grid(const Soup& soup, const Leaf& whole);
+Result<System> build_grid(const Soup& soup, const Leaf& whole, BuildProgress* progress = nullptr);
 
 } // namespace ovc::thesis

@@ -2,6 +2,7 @@
 // The triangles of a soup that a structure is built over, and the count of those left out.
 #pragma once
 
+#include "core/build_progress.h"
 #include "core/log.h"
 #include "core/soup.h"
 #include "core/twins.h"
@@ -18,6 +19,7 @@ struct Hittable {
 };
 
 /// Counts what is left out in `statistics`, and warns of it.
-Hittable take_hittable(const Soup& soup, ovc_statistics& statistics, const LogSink& log);
+Hittable take_hittable(const Soup& soup, ovc_statistics& statistics, const LogSink& log,
+                       BuildProgress* progress = nullptr);
 
 } // namespace ovc::thesis

@@ -78,12 +78,14 @@ constexpr size_t kMostCounted = size_t(1) << 30;
 
 } // namespace
 
-Result<System> build_kd_texels(const Soup& soup, const Leaf& whole) {
-    const KdTree tree = build_kd_tree(soup, whole.triangles, whole.box, KdBuildOptions{});
+Result<System> build_kd_texels(const Soup& soup, const Leaf& whole, BuildProgress* progress) {
+    KdBuildOptions options;
+    options.progress = progress;
+    const KdTree tree = build_kd_tree(soup, whole.triangles, whole.box, options);
     const std::vector<LocalTriangle> triangles = local_triangles(soup, whole);
     const LocalTree local(tree, whole);
     const References references = gather_references(
-        triangles.size(), local.size(),
+        triangles.size(), local.size(), progress,
         [&](uint32_t i, std::vector<Reference>& out) { local.find_leaves(triangles[i], i, out); });
     if (local.size() >= kMostCounted || references.triangles.size() >= kMostCounted)
         return Error{"the KD-tree has more nodes or references than 30 bits count"};

@@ -15,14 +15,15 @@ namespace {
 }
 
 Result<std::unique_ptr<Structure>> make_queued(const Soup& soup, GlThread& gl,
-                                               const ovc_scene_config& config, const LogSink& log) {
+                                               const ovc_scene_config& config, const LogSink& log,
+                                               BuildProgress* progress) {
     const thesis::QueuedOptions options = {config.gpu_memory_bytes,
                                            config.leaf_triangles,
                                            config.leaves,
                                            config.precision != OVC_PRECISION_FAST,
                                            ovc_level1(config.level1),
                                            ovc_level1_build(config.level1_build)};
-    auto scene = thesis::build_queued_scene(soup, gl, options, log);
+    auto scene = thesis::build_queued_scene(soup, gl, options, log, progress);
     if (!scene)
         return scene.error();
     return std::unique_ptr<Structure>(std::make_unique<thesis::QueuedTwoLevel>(std::move(*scene)));
@@ -58,17 +59,25 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
                            config.leaves, thesis::kMostTextures));
 }
 
-Result<std::unique_ptr<Structure>>
-make_structure(const Soup& soup, GlThread& gl, const ovc_scene_config& config, const LogSink& log) {
+Result<ovc_plan> plan_structure(const Soup&, const DeviceInfo&, const ovc_scene_config& config,
+                                BuildProgress*) {
+    refuse(fmt::format("plan: what {} takes is known only once it is built; two-level "
+                       "(libovercast.so) can tell before",
+                       thesis::name_of(ovc_structure(config.structure))));
+}
+
+Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
+                                                  const ovc_scene_config& config,
+                                                  const LogSink& log, BuildProgress* progress) {
     if (config.structure == OVC_STRUCTURE_THESIS_TWO_LEVEL)
-        return make_queued(soup, gl, config, log);
+        return make_queued(soup, gl, config, log, progress);
     thesis::RunnerOptions options;
     options.structure = ovc_structure(config.structure);
     options.budget_bytes =
         config.gpu_memory_bytes ? config.gpu_memory_bytes : gl.info().default_budget_bytes();
     options.textures = std::max(config.leaves, 1u);
     options.certify = config.precision != OVC_PRECISION_FAST;
-    return thesis::Comparison::build(soup, gl, options, log);
+    return thesis::Comparison::build(soup, gl, options, log, progress);
 }
 
 } // namespace ovc

@@ -29,13 +29,13 @@ uint64_t most_triangles(const QueuedOptions& options, uint64_t triangles) {
 }
 
 /// All pages. Returns the number of the largest.
-size_t build_pages(QueuedScene& scene) {
+size_t build_pages(QueuedScene& scene, BuildProgress* progress) {
     std::vector<Page>& pages = scene.pages;
     pages.clear();
     pages.resize(scene.level1.leaves.size());
     parallel_for(pages.size(), 1, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
-            pages[i] = build_page(scene.soup, scene.numbers, scene.level1.leaves[i]);
+            pages[i] = build_page(scene.soup, scene.numbers, scene.level1.leaves[i], progress);
     });
     const auto largest = std::max_element(pages.begin(), pages.end(),
                                           [](auto& a, auto& b) { return a.bytes() < b.bytes(); });
@@ -43,16 +43,18 @@ size_t build_pages(QueuedScene& scene) {
 }
 
 /// Both levels, again with smaller leaves where a page turns out too large.
-Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint64_t most) {
+Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint64_t most,
+                          BuildProgress* progress) {
     const uint64_t page_bytes = std::min<uint64_t>(scene.plan.pool_bytes / kPagesAtOnce,
                                                    uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES);
     most = std::clamp<uint64_t>(std::min(most, page_bytes / kBytesPerTriangle), 1, kNone);
+    begin(progress, "levels 1 and 2", 0.8, 3 * scene.soup.triangle_count());
     while (true) {
         Stopwatch watch;
         scene.level1 = builder.cut(uint32_t(most), scene.walk);
         scene.statistics.seconds_level1 += watch.seconds();
         watch = Stopwatch();
-        const size_t largest = build_pages(scene);
+        const size_t largest = build_pages(scene, progress);
         scene.statistics.seconds_level2 += watch.seconds();
         const uint64_t bytes = scene.pages[largest].bytes();
         if (bytes <= page_bytes)
@@ -99,7 +101,8 @@ QueuedScene::~QueuedScene() {
 
 Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThread& gl,
                                                         const QueuedOptions& options,
-                                                        const LogSink& log) {
+                                                        const LogSink& log,
+                                                        BuildProgress* progress) {
     if (soup.triangle_count() > OVC_MAX_TRIANGLES)
         return Error{fmt::format("{} triangles are too many: a scene takes {}",
                                  soup.triangle_count(), OVC_MAX_TRIANGLES)};
@@ -111,7 +114,8 @@ Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThre
     scene->plan = *plan;
     scene->statistics.gpu_budget_bytes = plan->budget_bytes;
     scene->numbers = Numbering(soup);
-    Hittable hittable = take_hittable(soup, scene->statistics, log);
+    begin(progress, "triangles", 0.1, 2 * soup.triangle_count());
+    Hittable hittable = take_hittable(soup, scene->statistics, log, progress);
     scene->twins = std::move(hittable.twins);
     if (hittable.triangles.empty())
         return scene;
@@ -120,7 +124,7 @@ Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThre
                                 options.build);
     scene->statistics.seconds_level1 = watch.seconds();
     if (Result<Done> built =
-            build_levels(*scene, builder, most_triangles(options, hittable.triangles.size()));
+            build_levels(*scene, builder, most_triangles(options, hittable.triangles.size()), progress);
         !built)
         return built.error();
     count(*scene);

@@ -49,6 +49,7 @@ struct QueuedScene {
 /// works; GL's refusals.
 Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThread& gl,
                                                         const QueuedOptions& options,
-                                                        const LogSink& log);
+                                                        const LogSink& log,
+                                                        BuildProgress* progress = nullptr);
 
 } // namespace ovc::thesis

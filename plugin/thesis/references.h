@@ -24,16 +24,20 @@ struct References {
     std::vector<uint32_t> triangles;
 };
 
-/// find(triangle, out) appends the references of one triangle; from several threads at once.
+/// find(triangle, out) appends the references of one triangle; from several threads at once. A
+/// triangle is a unit of progress.
 template <class Find>
-References gather_references(size_t triangles, size_t places, Find&& find) {
+References gather_references(size_t triangles, size_t places, BuildProgress* progress,
+                             Find&& find) {
     constexpr size_t kBlock =
         4096; // lists of their own, so that the order never depends on threads
     std::vector<std::vector<Reference>> blocks((triangles + kBlock - 1) / kBlock);
     parallel_for(blocks.size(), 1, [&](size_t from, size_t to) {
-        for (size_t b = from; b < to; ++b)
+        for (size_t b = from; b < to; ++b) {
             for (size_t i = b * kBlock; i < std::min(triangles, (b + 1) * kBlock); ++i)
                 find(uint32_t(i), blocks[b]);
+            add(progress, kBlock);
+        }
     });
     References sorted;
     sorted.first.assign(places + 1, 0);

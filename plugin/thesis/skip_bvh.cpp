@@ -7,7 +7,6 @@
 namespace ovc::thesis {
 namespace {
 
-constexpr int kShuffles = 10; // thesis, chapter 4
 constexpr uint32_t kTriangle = 0x80000000u;
 constexpr uint32_t kRoot = 1;
 
@@ -55,13 +54,13 @@ private:
 
 } // namespace
 
-Result<System> build_skip_bvh(const Soup& soup, const Leaf& whole) {
+Result<System> build_skip_bvh(const Soup& soup, const Leaf& whole, BuildProgress* progress) {
     const std::vector<LocalTriangle> triangles = local_triangles(soup, whole);
     std::vector<Boxf> boxes(triangles.size());
     for (size_t i = 0; i < triangles.size(); ++i)
         for (const vec3& corner : triangles[i])
             boxes[i].add(corner);
-    const InsertionTree tree = best_insertion_tree(boxes, kShuffles);
+    const InsertionTree tree = best_insertion_tree(boxes, kShuffles, progress);
     if (3 * triangles.size() + 2 * tree.nodes.size() >= kTriangle)
         return Error{"the BVH has more texels than 31 bits count"};
     return System{Packer(tree, triangles).pack(), triangles.size()};

@@ -20,8 +20,9 @@ const char* name_of(ovc_structure structure) {
 }
 
 /// The product's page, over the whole scene.
-static Result<System> build_page_system(const Soup& soup, const Leaf& whole) {
-    Page page = build_page(soup, whole);
+static Result<System> build_page_system(const Soup& soup, const Leaf& whole,
+                                        BuildProgress* progress) {
+    Page page = build_page(soup, whole, progress);
     if (page.units() >= OVC_MAX_UNITS)
         return Error{fmt::format("a BVH of {} bytes is more than its nodes can name: {} bytes",
                                  page.bytes(), uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES)};
@@ -30,16 +31,29 @@ static Result<System> build_page_system(const Soup& soup, const Leaf& whole) {
     return System{std::move(page.texels), whole.triangles.size(), depth, units};
 }
 
-Result<System> build_system(ovc_structure structure, const Soup& soup, const Leaf& whole) {
+Result<System> build_system(ovc_structure structure, const Soup& soup, const Leaf& whole,
+                            BuildProgress* progress) {
     switch (structure) {
     case OVC_STRUCTURE_GPU_GRID:
-        return build_grid(soup, whole);
+        return build_grid(soup, whole, progress);
     case OVC_STRUCTURE_GPU_KD_TREE:
-        return build_kd_texels(soup, whole);
+        return build_kd_texels(soup, whole, progress);
     case OVC_STRUCTURE_SKIP_BVH:
-        return build_skip_bvh(soup, whole);
+        return build_skip_bvh(soup, whole, progress);
     default:
-        return build_page_system(soup, whole);
+        return build_page_system(soup, whole, progress);
+    }
+}
+
+uint64_t work_of(ovc_structure structure, uint64_t triangles) {
+    switch (structure) {
+    case OVC_STRUCTURE_GPU_GRID:
+    case OVC_STRUCTURE_GPU_KD_TREE:
+        return triangles;
+    case OVC_STRUCTURE_SKIP_BVH:
+        return kShuffles * triangles;
+    default:
+        return 2 * triangles;
     }
 }
 

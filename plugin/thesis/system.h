@@ -3,6 +3,7 @@
 // holds the whole scene, in one frame, as one array of texels.
 #pragma once
 
+#include "core/build_progress.h"
 #include "core/result.h"
 #include "core/soup.h"
 #include "gpu/pairs.h"
@@ -33,7 +34,11 @@ const char* name_of(ovc_structure structure);
 uint64_t least_bytes(ovc_structure structure, uint64_t triangles);
 
 /// Builds it over the triangles of `whole` (not none). Error: more than its kernel can count.
-Result<System> build_system(ovc_structure structure, const Soup& soup, const Leaf& whole);
+Result<System> build_system(ovc_structure structure, const Soup& soup, const Leaf& whole,
+                            BuildProgress* progress = nullptr);
+
+/// The units of progress it makes of it, about.
+uint64_t work_of(ovc_structure structure, uint64_t triangles);
 
 /// Boxes, cells and planes are this much wider in the frame, whose half-extent is 1: 2^-18 = 64u.
 /// The kernels' own roundings move a point of a ray by at most 21u against a plane: the origin u,

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// A soup behind the C ABI, for tests: handles with owners, structs with their size set.
+#pragma once
+
+#include "core/soup.h"
+#include "plugin/overcast.h"
+
+#include <memory>
+#include <string>
+
+namespace ovc::test {
+
+inline const ovc_api& api() {
+    return *ovc_get_api(OVC_ABI_VERSION);
+}
+
+template <class T>
+T sized() {
+    T value{};
+    value.struct_size = sizeof(T);
+    return value;
+}
+
+struct DestroyDevice {
+    void operator()(ovc_device device) const { api().destroy_device(device); }
+};
+using Device = std::unique_ptr<ovc_device_t, DestroyDevice>;
+
+/// Null where there is none.
+inline Device open_device() {
+    ovc_device device = nullptr;
+    api().create_device(nullptr, &device);
+    return Device(device);
+}
+
+struct DestroyScene {
+    void operator()(ovc_scene scene) const { api().destroy_scene(scene); }
+};
+using AbiScene = std::unique_ptr<ovc_scene_t, DestroyScene>;
+
+/// The soup's meshes, shared with it, not committed. Null where the config is refused.
+inline AbiScene add_soup(const Device& device, const Soup& soup, const ovc_scene_config& config) {
+    ovc_scene scene = nullptr;
+    if (api().create_scene(device.get(), &config, &scene) != OVC_OK)
+        return nullptr;
+    AbiScene owner(scene);
+    for (const Chunk& chunk : soup.chunks) {
+        auto mesh = sized<ovc_mesh>();
+        mesh.positions = &chunk.corners().data()->x;
+        mesh.vertex_count = chunk.corners().size();
+        for (int axis = 0; axis < 3; ++axis)
+            mesh.origin[axis] = chunk.origin()[axis];
+        mesh.flags = OVC_MESH_SHARED;
+        if (api().add_mesh(scene, &mesh, nullptr) != OVC_OK)
+            return nullptr;
+    }
+    return owner;
+}
+
+} // namespace ovc::test
