@@ -265,8 +265,10 @@ private:
             if (depth >= options_.max_depth || max_component(left) < kLeastWeight)
                 left = vec3(0);
         }
+        const dvec3 there = shadow_rays_[j].dir;
         shadow_rays_[j] = shadow_ray(light, glass.beyond);
-        return left != vec3(0);
+        // A light that lies in the surface has been reached; going back to it might never end.
+        return left != vec3(0) && glm::dot(shadow_rays_[j].dir, there) > 0;
     }
 
     /// A pixel's paths are added in their order, by whoever has the first of them.

@@ -9,6 +9,9 @@ namespace ovc::pbrt {
 
 namespace {
 
+/// How far above its surface a spot stands, in lengths of that: not in it, or it would light it.
+constexpr double kHeight = 1e-4;
+
 /// A triangle as light sees it.
 struct Patch {
     dvec3 middle;
@@ -89,7 +92,7 @@ Surface surface_of(const std::vector<Patch>& patches, Part part) {
 /// Shines from one side, by the cosine to its normal.
 Light lambert_spot(const Surface& s, const dvec3& normal, const vec3& intensity) {
     Light light;
-    light.position = s.middle;
+    light.position = s.middle + kHeight * std::sqrt(s.area) * normal;
     light.direction = normal;
     light.cone = SpotCone{1e-3, 0, 1};
     set_falloff(light, intensity);

@@ -35,7 +35,7 @@ uint32_t steps_for(const std::vector<Patch>& patches) {
     double steps = 1;
     for (const Patch& patch : patches) {
         const double allowed = kTolerance * patch.size();
-        if (allowed > 0 && patch.bulge() > 1e-9 * patch.size())
+        if (allowed > 0 && allowed < 1e300 && patch.bulge() > 1e-9 * patch.size())
             steps = std::max(steps, std::ceil(std::sqrt(patch.bulge() / allowed)));
     }
     return uint32_t(std::min(steps, kMostSteps));

@@ -2,6 +2,7 @@
 // Interpreter: shapes, materials, lights, camera.
 #include "importers/pbrt/interpreter.h"
 
+#include "importers/pbrt/exposure.h"
 #include "importers/text.h"
 
 #include <fmt/format.h>
@@ -20,7 +21,9 @@ bool Interpreter::shape() {
     std::optional<Mesh> mesh = make_shape(request);
     if (diagnostics_.failed())
         return false;
-    if (!mesh || textures_.number(parameters, "alpha", 1) == 0)
+    const bool is_hidden =
+        !textures_.is_pattern(parameters, "alpha") && textures_.number(parameters, "alpha", 1) == 0;
+    if (!mesh || is_hidden)
         return true;
     return add_shape(std::move(*mesh));
 }
@@ -156,7 +159,8 @@ void Interpreter::fill(Scene& scene) {
         scene.size = film_.size;
     if (camera_)
         scene.camera = make_camera(*camera_, film_, diagnostics_);
-    lights_.finish(scene.camera ? scene.camera->up : dvec3(0, 1, 0), film_.exposure, scene);
+    lights_.finish(scene.camera ? scene.camera->up : dvec3(0, 1, 0), scene);
+    expose(scene, film_.exposure);
 }
 
 } // namespace ovc::pbrt

@@ -137,7 +137,7 @@ void Lights::add_area(const Shape& shape, const Emission& emission) {
         area_lights_.push_back(light);
 }
 
-void Lights::finish(const dvec3& view_up, float exposure, Scene& scene) {
+void Lights::finish(const dvec3& view_up, Scene& scene) {
     if (!any_)
         return;
     if (area_lights_.size() > kMostAreaLights) {
@@ -168,13 +168,6 @@ void Lights::finish(const dvec3& view_up, float exposure, Scene& scene) {
             if (material.finish && material.finish->diffuse > 0)
                 material.finish->ambient += kSkyAmbient * sky_mean_;
     }
-    for (Light& light : scene.lights)
-        light.color *= exposure;
-    scene.background.horizon *= exposure;
-    scene.background.zenith *= exposure;
-    for (Material& material : scene.materials)
-        if (material.finish && material.finish->diffuse == 0)
-            material.finish->ambient *= exposure;
 }
 
 } // namespace ovc::pbrt

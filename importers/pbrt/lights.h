@@ -26,8 +26,8 @@ public:
     /// A shape that emits, in world coordinates.
     void add_area(const Shape& shape, const Emission& emission);
 
-    /// Moves all into the scene. view_up: up in the picture; exposure: Film's.
-    void finish(const dvec3& view_up, float exposure, Scene& scene);
+    /// Moves all into the scene. view_up: up in the picture.
+    void finish(const dvec3& view_up, Scene& scene);
 
 private:
     vec3 scaled(const Parameters& parameters, std::string_view color, const vec3& otherwise) const;

@@ -203,7 +203,8 @@ Material make_shiny_metal(const Context& c) {
 }
 
 Material make_uber(const Context& c) {
-    const vec3 opacity = c.color("opacity", 1);
+    const bool is_masked = c.textures.is_pattern(c.p, "opacity");
+    const vec3 opacity = is_masked ? vec3(1) : c.color("opacity", 1);
     Material m;
     m.color = c.color("Kd", 0.25f) * opacity;
     m.finish = plain_finish();

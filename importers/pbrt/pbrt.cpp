@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // PBRT: the scene descriptions of pbrt-v1 to v4. docs/pbrt.md says what is read and how.
 #include "importers/pbrt/assembly.h"
+#include "importers/pbrt/exposure.h"
 #include "importers/pbrt/interpreter.h"
 #include "importers/readers.h"
 
@@ -29,6 +30,12 @@ Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& 
     for (MeshInfo& mesh : scene.meshes) {
         const Material& material = scene.materials[mesh.material];
         mesh.no_shadow = pbrt::is_emitter(material) || pbrt::is_invisible(material);
+    }
+    if (const float exposure = pbrt::fitting_exposure(scene); exposure != 1) {
+        say(options.log, LogLevel::Info,
+            fmt::format("{}: light times {:.3g}, to fit a picture that ends at white",
+                        path.string(), exposure));
+        pbrt::expose(scene, exposure);
     }
     scene.instancing = {census.unique, census.instances};
     if (scene.soup.triangle_count() == 0)

@@ -35,9 +35,13 @@ double steps_round(bool is_curved) {
     return 4 * std::ceil(steps / 4);
 }
 
+/// From 1 to kMostSteps; 1 for what is no number.
+size_t whole_steps(double steps) {
+    return steps > 1 ? size_t(std::ceil(std::min(steps, kMostSteps))) : 1;
+}
+
 size_t steps_for(double share_of_circle, bool is_curved) {
-    const double steps = std::ceil(share_of_circle * steps_round(is_curved) - 1e-9);
-    return size_t(std::clamp(steps, 1.0, kMostSteps));
+    return whole_steps(share_of_circle * steps_round(is_curved) - 1e-9);
 }
 
 /// About z; exact at quarter turns.
@@ -90,6 +94,8 @@ double clamped(const Parameters& p, std::string_view name, double otherwise, dou
 Profile sphere(const Parameters& p) {
     const double radius = std::abs(p.number("radius", 1));
     const double z0 = clamped(p, "zmin", -radius, radius), z1 = clamped(p, "zmax", radius, radius);
+    if (!(radius > 0) || !(z0 != z1))
+        return {};
     const double low = std::asin(std::min(z0, z1) / radius);
     const double high = std::asin(std::max(z0, z1) / radius);
     Profile profile;
@@ -146,7 +152,7 @@ Profile paraboloid(const Parameters& p) {
     const double first = std::sqrt(bottom / top);
     // A chord over a step s of the share of the radius lies top s^2 / 4 off the parabola.
     const double step = 2 * std::sqrt(kTolerance * radius / top);
-    const size_t steps = size_t(std::clamp(std::ceil((1 - first) / step), 1.0, kMostSteps));
+    const size_t steps = whole_steps((1 - first) / step);
     for (size_t i = 0; i <= steps; ++i) {
         const double share = i == steps ? 1 : first + (1 - first) * double(i) / double(steps);
         profile.add({radius * share, 0, top * share * share}, {2 * top * share, 0, -radius});

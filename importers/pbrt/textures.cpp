@@ -10,7 +10,19 @@ namespace ovc::pbrt {
 
 void Textures::define(const std::string& name, const std::string& type,
                       const Parameters& parameters, const Place& place) {
-    means_[name] = mean(type, parameters, place);
+    const bool is_plain = type == "constant" || type == "scale" || type == "mix";
+    bool is_made_of_patterns = false;
+    for (const Parameter& p : parameters.all())
+        is_made_of_patterns = is_made_of_patterns || is_pattern(parameters, p.name);
+    means_[name] = {mean(type, parameters, place), !is_plain || is_made_of_patterns};
+}
+
+bool Textures::is_pattern(const Parameters& parameters, std::string_view name) const {
+    const Parameter* p = parameters.find(name);
+    if (!p || (p->kind != Kind::Texture && p->kind != Kind::String) || p->strings.empty())
+        return false;
+    const auto at = means_.find(p->strings[0]);
+    return at != means_.end() && at->second.is_pattern;
 }
 
 vec3 Textures::mean(const std::string& type, const Parameters& p, const Place& place) const {
@@ -44,7 +56,7 @@ vec3 Textures::color(const Parameters& parameters, std::string_view name,
     if (p->kind == Kind::Texture || p->kind == Kind::String) {
         const auto at = p->strings.empty() ? means_.end() : means_.find(p->strings[0]);
         if (at != means_.end())
-            return at->second;
+            return at->second.color;
         diagnostics_.missing("texture of that name", p->place,
                              fmt::format("there is no texture {}",
                                          ovc::quoted(p->strings.empty() ? "" : p->strings[0])));

@@ -109,10 +109,12 @@ bool Tokens::read_text(std::string_view& rest) {
             return true;
         }
         if (c == '\\' && i + 1 < rest.size()) {
-            const char escaped = rest[++i];
-            constexpr std::string_view kLetters = "bfnrt", kMeanings = "\b\f\n\r\t";
-            const size_t at = kLetters.find(escaped);
-            c = at == kLetters.npos ? escaped : kMeanings[at];
+            constexpr std::string_view kLetters = "bfnrt\\\"'/", kMeanings = "\b\f\n\r\t\\\"'/";
+            // Anything else is a path of Windows'.
+            if (const size_t at = kLetters.find(rest[i + 1]); at != kLetters.npos) {
+                c = kMeanings[at];
+                ++i;
+            }
         }
         token_.text += c;
     }
