@@ -78,6 +78,9 @@ struct MeshInfo {
     std::vector<vec3>
         normals; // 3 per triangle, unit length, or empty: then the triangle's own normal shades it
     bool no_shadow = false; // light passes as if it were not there
+    /// Instances share normals: this mesh has those of that one, in the same order, turned.
+    uint32_t normals_from = kNone;
+    dmat3 turn{1}; // what `normals` are multiplied by; their length does not matter then
 };
 
 /// The cone of a spotlight: full light within radius_cosine of the axis, none beyond
@@ -140,6 +143,12 @@ struct Background {
     vec3 zenith{0.35f, 0.5f, 0.8f};
 };
 
+/// What a scene was before its instances were expanded.
+struct Instancing {
+    uint64_t unique_triangles = 0;
+    uint64_t instances = 0;
+};
+
 struct Scene {
     std::string name;
     Soup soup;
@@ -150,6 +159,12 @@ struct Scene {
     std::optional<ImageSize> size;     // of the picture that the file asks for
     std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's
     Background background;
+    std::optional<Instancing> instancing; // none: every triangle is its own
+
+    /// 3 per triangle, to be turned by MeshInfo::turn; empty: the mesh has none.
+    const std::vector<vec3>& normals_of(const MeshInfo& mesh) const {
+        return mesh.normals_from == kNone ? mesh.normals : meshes[mesh.normals_from].normals;
+    }
 
     /// Appends a mesh of `material`; returns its number.
     uint32_t add_mesh(std::string mesh_name, uint32_t material, Chunk chunk,

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -31,6 +32,11 @@ public:
     std::span<const vec3> corners() const { return corners_; }
     uint32_t size() const { return uint32_t(corners_.size() / 3); }
     uint64_t owned_bytes() const { return owned_.capacity() * sizeof(vec3); }
+    /// Takes the corners out of an owning chunk, which is empty then.
+    std::vector<vec3> take_corners() {
+        corners_ = {};
+        return std::exchange(owned_, {});
+    }
 
     Triangle triangle(uint32_t prim) const {
         const vec3* c = corners_.data() + size_t(prim) * 3;

@@ -48,11 +48,11 @@ static std::string info_json(const Scene& scene, const SceneSummary& s) {
     Json left_out = Json::array();
     for (const LeftOut& item : s.left_out)
         left_out.push_back({{"what", item.what}, {"bytes", item.bytes}});
-    // Nothing is instanced in a soup: every triangle is its own.
+    const Instancing instancing = scene.instancing.value_or(Instancing{s.triangles, 0});
     Json document = {
         {"triangles", s.triangles},
-        {"unique_triangles", s.triangles},
-        {"instances", 0},
+        {"unique_triangles", instancing.unique_triangles},
+        {"instances", instancing.instances},
         {"dropped", {{"not_finite", s.dropped.not_finite}, {"degenerate", s.dropped.degenerate}}},
         {"bounds", nullptr},
         {"meshes", s.meshes},
@@ -97,6 +97,10 @@ static std::string info_text(const std::string& source, const Scene& scene, cons
     std::string text =
         fmt::format("  scene      {}\n  triangles  {} in {} mesh{}\n", source,
                     human_count(s.triangles), human_count(s.meshes), s.meshes == 1 ? "" : "es");
+    if (scene.instancing && scene.instancing->instances > 0)
+        text += fmt::format("  instances  {} of {} unique triangles\n",
+                            human_count(scene.instancing->instances),
+                            human_count(scene.instancing->unique_triangles));
     if (s.dropped.total() > 0)
         text += fmt::format("  dropped    {} ({} not finite, {} without area)\n",
                             human_count(s.dropped.total()), human_count(s.dropped.not_finite),

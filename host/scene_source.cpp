@@ -15,15 +15,30 @@
 namespace ovc {
 
 void SceneArguments::add_to(CLI::App& app, const char* name) {
-    app.add_option(name, scene,
-                   "A file (.ply .obj, also .gz, or what Assimp reads) or a test scene's name")
+    app.add_option(
+           name, scene,
+           "A file (.ply .obj .pbrt, also .gz, or what Assimp reads) or a test scene's name")
         ->required();
     app.add_option("--model", model,
                    "For dragons-N and dragonball: the model they show instead of a generated one")
         ->type_name("FILE");
+    app.add_flag("--strict", strict,
+                 "For .pbrt: what is unknown, missing or unusable is an error, not a warning");
+    app.add_option("--max-triangles", max_triangles,
+                   "For .pbrt: refuse a scene of more once its instances are expanded; default: "
+                   "100000000")
+        ->type_name("N");
+}
+
+static Result<uint64_t> triangle_limit(const std::string& text) {
+    if (text.empty())
+        return kDefaultMostTriangles;
+    return parse_count("--max-triangles", text, 1, 4294967294);
 }
 
 Result<Done> SceneArguments::check() const {
+    if (const Result<uint64_t> limit = triangle_limit(max_triangles); !limit)
+        return limit.error();
     if (model.empty() || (is_test_scene(scene) && test_scene_entry(scene).takes_model))
         return Done{};
     return Error{fmt::format(
@@ -40,18 +55,25 @@ std::vector<NamedFile> SceneArguments::files() const {
     return files;
 }
 
-static Result<Scene> make_with_model(const std::string& name, const LogSink& log,
+static Result<Scene> make_with_model(const std::string& name, const ImportOptions& options,
                                      const std::string& model) {
-    const Result<Scene> loaded = load(model, {log});
+    const Result<Scene> loaded = load(model, options);
     if (!loaded)
         return loaded.error();
     Result<Scene> scene = make_test_scene(name, &loaded->soup);
     return scene ? std::move(scene) : Error{fmt::format("{}: {}", model, scene.error().message)};
 }
 
-Result<Scene> open_scene(const std::string& source, const LogSink& log, const std::string& model) {
+Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log) {
+    ImportOptions options{log, arguments.strict};
+    options.max_triangles = *triangle_limit(arguments.max_triangles);
+    return open_scene(arguments.scene, options, arguments.model);
+}
+
+Result<Scene> open_scene(const std::string& source, const ImportOptions& options,
+                         const std::string& model) {
     if (is_test_scene(source))
-        return model.empty() ? make_test_scene(source) : make_with_model(source, log, model);
+        return model.empty() ? make_test_scene(source) : make_with_model(source, options, model);
     std::error_code ignored;
     if (std::filesystem::is_directory(source, ignored))
         return Error{fmt::format("'{}' is a directory, expected a file or a test scene", source)};
@@ -63,7 +85,7 @@ Result<Scene> open_scene(const std::string& source, const LogSink& log, const st
                     : Error{fmt::format("there is no file '{}', and {}", source,
                                         none.error().message)};
     }
-    return load(source, {log});
+    return load(source, options);
 }
 
 LogSink standard_error_log(bool chatty) {

@@ -6,6 +6,7 @@
 #include "core/result.h"
 #include "core/scene.h"
 #include "host/output.h"
+#include "importers/importer.h"
 
 #include <string>
 #include <vector>
@@ -20,10 +21,12 @@ namespace ovc {
 struct SceneArguments {
     std::string scene;
     std::string model; // empty: not given
+    bool strict = false;
+    std::string max_triangles; // empty: not given
 
     /// name: what the help calls the scene.
     void add_to(CLI::App& app, const char* name = "SCENE");
-    /// Whether --model goes with this scene; before anything is read.
+    /// Whether the words make sense, and --model goes with this scene; before anything is read.
     Result<Done> check() const;
     /// The files it reads.
     std::vector<NamedFile> files() const;
@@ -31,11 +34,14 @@ struct SceneArguments {
 
 /// The name of a test scene makes that scene; everything else is a file (./plants is a file even if
 /// plants is not). model: a file whose triangles a test scene shows instead of its own; or empty.
-Result<Scene> open_scene(const std::string& source, const LogSink& log,
+Result<Scene> open_scene(const std::string& source, const ImportOptions& options,
                          const std::string& model = {});
-inline Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log) {
-    return open_scene(arguments.scene, log, arguments.model);
+inline Result<Scene> open_scene(const std::string& source, const LogSink& log,
+                                const std::string& model = {}) {
+    return open_scene(source, ImportOptions{log}, model);
 }
+/// check() has accepted them.
+Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log);
 
 /// Writes warnings and errors, and Info if `chatty`, to standard error, one line each.
 LogSink standard_error_log(bool chatty);

@@ -44,7 +44,7 @@ static Census count(const Chunk& chunk) {
 static uint64_t triangles_without_normals(const Scene& scene) {
     uint64_t triangles = 0;
     for (size_t m = 0; m < scene.meshes.size(); ++m)
-        if (scene.meshes[m].normals.empty())
+        if (scene.normals_of(scene.meshes[m]).empty())
             triangles += scene.soup.chunks[m].size();
     return triangles;
 }

@@ -45,12 +45,24 @@ static dvec3 cross(const dvec3& a, const dvec3& b) {
             difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-static dvec3 interpolated_normal(const MeshInfo& mesh, const Hit& hit, const dvec3& fallback) {
-    if (mesh.normals.empty())
+/// Of unit length: an instance may be stretched.
+static dvec3 turned(const dmat3& turn, const vec3& normal) {
+    const dvec3 n = turn * dvec3(normal);
+    const double length = glm::length(n);
+    return length > 0 ? n / length : n;
+}
+
+static dvec3 interpolated_normal(const Scene& scene, const MeshInfo& mesh, const Hit& hit,
+                                 const dvec3& fallback) {
+    const std::vector<vec3>& normals = scene.normals_of(mesh);
+    if (normals.empty())
         return fallback;
-    const vec3* corner = mesh.normals.data() + size_t(hit.id.prim) * 3;
-    const dvec3 n = (1 - hit.u - hit.v) * dvec3(corner[0]) + hit.u * dvec3(corner[1]) +
-                    hit.v * dvec3(corner[2]);
+    const vec3* corner = normals.data() + size_t(hit.id.prim) * 3;
+    dvec3 corners[3] = {dvec3(corner[0]), dvec3(corner[1]), dvec3(corner[2])};
+    if (mesh.turn != dmat3(1))
+        for (int i = 0; i < 3; ++i)
+            corners[i] = turned(mesh.turn, corner[i]);
+    const dvec3 n = (1 - hit.u - hit.v) * corners[0] + hit.u * corners[1] + hit.v * corners[2];
     const double length = glm::length(n);
     // Opposite or missing normals cancel out; then the plane's own has to do.
     return length > 1e-6 && std::isfinite(length) ? n / length : fallback;
@@ -96,7 +108,8 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     s.entering = glm::dot(outwards, ray.dir) <= 0;
     s.view = glm::normalize(ray.dir);
     s.geometric_normal = (s.entering ? 1.0 : -1.0) * (outwards / doubled_area);
-    s.normal = facing(interpolated_normal(mesh, hit, s.geometric_normal), s.geometric_normal);
+    s.normal =
+        facing(interpolated_normal(scene, mesh, hit, s.geometric_normal), s.geometric_normal);
 
     // From the corners the position errs by a few ulp of their coordinates, however far away the
     // ray began.

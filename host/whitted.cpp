@@ -38,8 +38,10 @@ bool pass_glass(const Scene& scene, const Light& light, const WhittedOptions& op
         if (depth >= options.max_depth || max_component(left) < kLeastWeight)
             left = vec3(0);
     }
+    const dvec3 there = ray.dir;
     ray = shadow_ray(light, glass.beyond);
-    return left != vec3(0);
+    // A light that lies in the surface has been reached; going back to it might never end.
+    return left != vec3(0) && glm::dot(ray.dir, there) > 0;
 }
 
 } // namespace ovc

@@ -21,7 +21,8 @@ struct Format {
     Result<Done> (*write)(const Scene&, const std::filesystem::path&); // null: only read
 };
 
-constexpr Format kFormats[] = {{"obj", read_obj, write_obj}, {"ply", read_ply, write_ply}};
+constexpr Format kFormats[] = {
+    {"obj", read_obj, write_obj}, {"pbrt", read_pbrt, nullptr}, {"ply", read_ply, write_ply}};
 
 const Format* format_of(std::string_view extension) {
     for (const Format& format : kFormats)
@@ -65,16 +66,22 @@ size_t distance(std::string_view a, std::string_view b) {
 }
 
 Error unknown_extension(const std::filesystem::path& path, const std::string& extension,
-                        std::string_view also) {
+                        bool to_write) {
     std::string guess;
-    for (const Format& format : kFormats)
+    std::vector<std::string_view> known;
+    for (const Format& format : kFormats) {
+        if (to_write && !format.write)
+            continue;
+        known.push_back(format.extension);
         if (!extension.empty() && extension.size() <= 8 &&
             distance(extension, format.extension) == 1)
             guess = fmt::format("; did you mean .{}?", format.extension);
+    }
     return {
         fmt::format("{}: found {}, expected .{}{}{}", path.string(),
                     extension.empty() ? "no extension" : fmt::format("extension .{}", extension),
-                    fmt::join(own_extensions(), ", ."), also, guess)};
+                    fmt::join(known, ", ."),
+                    to_write ? "" : " or one that Assimp reads, such as .stl, .off, .glb", guess)};
 }
 
 } // namespace
@@ -88,8 +95,7 @@ Result<Scene> load(const std::filesystem::path& path, const ImportOptions& optio
         return Error{fmt::format("{}: no such file", path.string())};
     if (!extension.empty() && assimp_reads(extension))
         return read_assimp(path, options);
-    return unknown_extension(path, extension,
-                             " or one that Assimp reads, such as .stl, .off, .glb");
+    return unknown_extension(path, extension, /* to_write= */ false);
 } catch (const std::bad_alloc&) {
     return Error{fmt::format("{}: found a model larger than the memory", path.string())};
 }
@@ -98,7 +104,7 @@ Result<Done> save(const Scene& scene, const std::filesystem::path& path) {
     const std::string extension = extension_of(lower_name(path));
     const Format* format = format_of(extension);
     if (!format || !format->write)
-        return unknown_extension(path, extension, "");
+        return unknown_extension(path, extension, /* to_write= */ true);
     return format->write(scene, path);
 }
 

@@ -13,6 +13,7 @@ inline constexpr uint64_t kMostTriangles = 0xfffffffe;
 
 Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& options);
 Result<Scene> read_obj(const std::filesystem::path& path, const ImportOptions& options);
+Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& options);
 Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions& options);
 
 /// Whether Assimp names this extension (without the dot, lower case) as one it reads.

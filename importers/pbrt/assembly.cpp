@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+// Assembly: runs of shapes, their place, their corners.
+#include "importers/pbrt/assembly.h"
+
+#include "core/parallel.h"
+#include "importers/origin.h"
+
+#include <algorithm>
+
+namespace ovc::pbrt {
+
+namespace {
+
+/// Shapes of more triangles stay meshes of their own; and what a mesh of smaller ones grows to.
+constexpr uint64_t kSmall = 4096, kLargestRun = uint64_t(1) << 20;
+
+/// Shapes that become one mesh.
+struct Run {
+    size_t first, last; // among the object's shapes
+    uint32_t triangles = 0;
+    uint32_t material = 0;
+    bool has_normals = false;
+    uint64_t last_size = 0;        // triangles of the last shape
+    uint32_t normals_from = kNone; // the first mesh made of it, where the normals are
+};
+
+bool belongs(const Run& run, const Shape& shape) {
+    return run.material == shape.material && run.has_normals == !shape.mesh.normals.empty() &&
+           run.triangles + shape.mesh.size() <= kLargestRun && shape.mesh.size() <= kSmall &&
+           run.last_size <= kSmall;
+}
+
+std::vector<Run> runs_of(const Object& object) {
+    std::vector<Run> runs;
+    for (size_t i = 0; i < object.shapes.size(); ++i) {
+        const Shape& shape = object.shapes[i];
+        if (shape.mesh.size() == 0)
+            continue;
+        if (runs.empty() || !belongs(runs.back(), shape))
+            runs.push_back({i, i, 0, shape.material, !shape.mesh.normals.empty()});
+        runs.back().last = i + 1;
+        runs.back().last_size = shape.mesh.size();
+        runs.back().triangles += uint32_t(shape.mesh.size());
+    }
+    return runs;
+}
+
+Box bounds_of(const Object& object) {
+    Box bounds;
+    for (const Shape& shape : object.shapes)
+        bounds.add(parallel_reduce(
+            shape.mesh.size() * 3, Box{},
+            [&](size_t first, size_t last, Box box) {
+                for (size_t c = first; c < last; ++c)
+                    if (const dvec3 p = point_through(shape.to_object, shape.mesh.corner(c));
+                        ovc::is_finite(p))
+                        box.add(p);
+                return box;
+            },
+            [](Box a, const Box& b) {
+                a.add(b);
+                return a;
+            }));
+    return bounds;
+}
+
+Box moved(const Box& box, const dmat4& by) {
+    Box result;
+    for (int i = 0; i < 8 && !box.empty(); ++i) {
+        const dvec3 corner(i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y,
+                           i & 4 ? box.hi.z : box.lo.z);
+        if (const dvec3 p = point_through(by, corner); ovc::is_finite(p))
+            result.add(p);
+    }
+    return result;
+}
+
+/// How corners in double become offsets in float.
+struct Frame {
+    dvec3 origin{0};
+    double lattice = 0; // 0: as floats are
+
+    vec3 offset(const dvec3& p) const {
+        const dvec3 offset = p - origin;
+        return vec3(lattice > 0 ? glm::round(offset / lattice) * lattice : offset);
+    }
+};
+
+/// The size of an instance, the same however it is turned: at least half of any extent.
+double size_of(const Box& local, const dmat4& place) {
+    double squares = 0;
+    for (int column = 0; column < 3; ++column)
+        squares += glm::dot(dvec3(place[column]), dvec3(place[column]));
+    return glm::length(local.extent()) * std::sqrt(squares / 3);
+}
+
+Frame frame_of(const Box& local, const dmat4& place, const dvec3& common) {
+    const Frame shared{common};
+    const Box box = moved(local, place);
+    const double size = size_of(local, place);
+    if (box.empty() || !(size > 1e-200) || !(size < 1e200))
+        return shared;
+    const dvec3 middle = box.center();
+    if (max_component(glm::abs(middle - common)) <= kFar * max_component(box.extent()))
+        return shared;
+    // 2^24 steps reach over an offset, which is no larger than `size`. A little more, for instances
+    // whose sizes differ by a rounding.
+    const double lattice = std::ldexp(1.0, std::ilogb(size * 1.000001) + 1 - 24);
+    return {glm::round(middle / lattice) * lattice, lattice};
+}
+
+struct Placement {
+    uint32_t object;
+    dmat4 place;
+};
+
+/// All instances in all instances, outermost first.
+std::vector<Placement> placements_of(const World& world, const Census& census) {
+    std::vector<Placement> found;
+    std::vector<Placement> open;
+    const auto add = [&](const Object& object, const dmat4& place) {
+        for (auto i = object.instances.rbegin(); i != object.instances.rend(); ++i)
+            if (census.within[i->object] > 0)
+                open.push_back({i->object, place * i->to_parent});
+    };
+    add(world.top, dmat4(1));
+    while (!open.empty()) {
+        const Placement next = open.back();
+        open.pop_back();
+        if (!world.objects[next.object].shapes.empty())
+            found.push_back(next);
+        add(world.objects[next.object], next.place);
+    }
+    return found;
+}
+
+/// The corners 0, 1, 2, or 0, 2, 1.
+size_t nth_corner(size_t triangle, size_t i, bool flipped) {
+    return 3 * triangle + (flipped && i > 0 ? 3 - i : i);
+}
+
+/// to: three a triangle, from the run's first one on.
+void write_corners(const Shape& shape, const dmat4& place, const Frame& frame, vec3* to) {
+    const dmat4 m = place * shape.to_object;
+    const bool mirrored = swaps_handedness(m);
+    parallel_for(shape.mesh.size(), 1024, [&](size_t first, size_t last) {
+        for (size_t t = first; t < last; ++t) {
+            const bool flipped = is_flipped(shape, t) != mirrored;
+            vec3 corners[3]; // the target may be the source
+            for (size_t i = 0; i < 3; ++i)
+                corners[i] =
+                    frame.offset(point_through(m, shape.mesh.corner(nth_corner(t, i, flipped))));
+            std::copy(corners, corners + 3, to + 3 * t);
+        }
+    });
+}
+
+/// In the object's coordinates, in the order of write_corners().
+void write_normals(const Shape& shape, bool mirrored_place, vec3* to) {
+    const dmat3 turn = normal_matrix(shape.to_object);
+    const bool mirrored = swaps_handedness(shape.to_object) != mirrored_place;
+    const auto usable = [](const dvec3& n) { return ovc::is_finite(n) && glm::dot(n, n) > 0; };
+    for (size_t t = 0; t < shape.mesh.size(); ++t) {
+        const bool flipped = is_flipped(shape, t) != mirrored;
+        for (size_t i = 0; i < 3; ++i) {
+            dvec3 n = turn * dvec3(shape.mesh.normal(nth_corner(t, i, flipped)));
+            if (!usable(n)) {
+                const dvec3 a = shape.mesh.corner(3 * t);
+                n = turn *
+                    glm::cross(shape.mesh.corner(3 * t + 1) - a, shape.mesh.corner(3 * t + 2) - a);
+            }
+            to[3 * t + i] = usable(n) ? vec3(glm::normalize(n)) : vec3(0);
+        }
+    }
+}
+
+std::vector<vec3> normals_of(const Object& object, const Run& run, bool mirrored_place) {
+    std::vector<vec3> normals(run.has_normals ? size_t(run.triangles) * 3 : 0);
+    vec3* to = normals.data();
+    for (size_t i = run.first; i < run.last && run.has_normals; ++i) {
+        write_normals(object.shapes[i], mirrored_place, to);
+        to += 3 * object.shapes[i].mesh.size();
+    }
+    return normals;
+}
+
+std::vector<vec3> corners_of(const Object& object, const Run& run, const dmat4& place,
+                             const Frame& frame) {
+    std::vector<vec3> corners(size_t(run.triangles) * 3);
+    vec3* to = corners.data();
+    for (size_t i = run.first; i < run.last; ++i) {
+        write_corners(object.shapes[i], place, frame, to);
+        to += 3 * object.shapes[i].mesh.size();
+    }
+    return corners;
+}
+
+const std::string& name_of(const Object& object, const Run& run) {
+    const std::string& name = object.shapes[run.first].mesh.name;
+    return run.last == run.first + 1 && !name.empty() ? name : object.name;
+}
+
+/// Every shape's memory is the soup's, or is given back, before the next is taken.
+void add_top(Object& top, const Frame& frame, Scene& scene) {
+    for (const Run& run : runs_of(top)) {
+        std::string name = name_of(top, run);
+        std::vector<vec3> normals = normals_of(top, run, /* mirrored_place= */ false);
+        std::vector<vec3> corners;
+        Mesh& first = top.shapes[run.first].mesh;
+        if (run.last == run.first + 1 && !first.is_indexed()) {
+            write_corners(top.shapes[run.first], dmat4(1), frame, first.corners.data());
+            corners = std::move(first.corners);
+        } else {
+            corners = corners_of(top, run, dmat4(1), frame);
+        }
+        for (size_t i = run.first; i < run.last; ++i)
+            top.shapes[i].mesh = {};
+        scene.add_mesh(std::move(name), run.material,
+                       Chunk::owning(frame.origin, std::move(corners)), std::move(normals));
+    }
+}
+
+void add_instance(const Object& object, std::vector<Run>& runs, const Placement& placement,
+                  const Frame& frame, Scene& scene) {
+    const bool mirrored = swaps_handedness(placement.place);
+    dmat3 turn = normal_matrix(placement.place);
+    const double largest =
+        std::max({max_component(glm::abs(turn[0])), max_component(glm::abs(turn[1])),
+                  max_component(glm::abs(turn[2]))});
+    turn = largest > 0 && largest < 1e300 ? turn / largest : dmat3(1);
+    for (Run& run : runs) {
+        const bool shares = run.has_normals && !mirrored && run.normals_from != kNone;
+        const uint32_t mesh = scene.add_mesh(
+            name_of(object, run), run.material,
+            Chunk::owning(frame.origin, corners_of(object, run, placement.place, frame)),
+            shares ? std::vector<vec3>() : normals_of(object, run, mirrored));
+        if (!run.has_normals)
+            continue;
+        scene.meshes[mesh].turn = turn;
+        if (shares)
+            scene.meshes[mesh].normals_from = run.normals_from;
+        else if (!mirrored)
+            run.normals_from = mesh;
+    }
+}
+
+} // namespace
+
+void assemble(World world, const Census& census, Scene& scene) {
+    const std::vector<Placement> placements = placements_of(world, census);
+    std::vector<Box> boxes;
+    std::vector<std::vector<Run>> runs;
+    for (const Object& object : world.objects) {
+        boxes.push_back(bounds_of(object));
+        runs.push_back(runs_of(object));
+    }
+    Box bounds = bounds_of(world.top);
+    for (const Placement& p : placements)
+        bounds.add(moved(boxes[p.object], p.place));
+    const Frame common{chunk_origin(bounds, kFar)};
+
+    add_top(world.top, common, scene);
+    for (const Placement& p : placements)
+        add_instance(world.objects[p.object], runs[p.object], p,
+                     frame_of(boxes[p.object], p.place, common.origin), scene);
+}
+
+} // namespace ovc::pbrt

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Census: sums along the order in which objects were completed.
+#include "importers/pbrt/census.h"
+
+#include "importers/available_memory.h"
+#include "importers/readers.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace ovc::pbrt {
+
+namespace {
+
+constexpr uint64_t kSaturated = std::numeric_limits<uint64_t>::max();
+
+/// What the soup takes: a triangle's corners; an instance's chunk, mesh and place.
+constexpr uint64_t kTriangleBytes = 36, kInstanceBytes = 512;
+
+uint64_t plus(uint64_t a, uint64_t b) {
+    return a > kSaturated - b ? kSaturated : a + b;
+}
+
+uint64_t times(uint64_t a, uint64_t b) {
+    return b != 0 && a > kSaturated / b ? kSaturated : a * b;
+}
+
+uint64_t own_triangles(const Object& object) {
+    uint64_t count = 0;
+    for (const Shape& shape : object.shapes)
+        count += shape.mesh.size();
+    return count;
+}
+
+uint64_t expanded(const Object& object, const std::vector<uint64_t>& within) {
+    uint64_t count = own_triangles(object);
+    for (const Instance& instance : object.instances)
+        count = plus(count, within[instance.object]);
+    return count;
+}
+
+void place(const Object& object, uint64_t copies, std::vector<uint64_t>& placed) {
+    for (const Instance& instance : object.instances)
+        placed[instance.object] = plus(placed[instance.object], copies);
+}
+
+std::string shown(uint64_t count) {
+    return count == kSaturated ? "more than 18446744073709551614" : fmt::format("{}", count);
+}
+
+} // namespace
+
+Census take_census(const World& world) {
+    Census census;
+    for (const Object& object : world.objects)
+        census.within.push_back(expanded(object, census.within));
+    census.triangles = expanded(world.top, census.within);
+    census.unique = own_triangles(world.top);
+
+    // An object comes before all that contain it: from the last to the first, every count is final
+    // when it is used.
+    std::vector<uint64_t> placed(world.objects.size(), 0);
+    place(world.top, 1, placed);
+    for (size_t i = world.objects.size(); i-- > 0;) {
+        census.unique += own_triangles(world.objects[i]);
+        if (placed[i] == 0)
+            continue;
+        place(world.objects[i], placed[i], placed);
+        census.instances = plus(census.instances, placed[i]);
+    }
+    return census;
+}
+
+Result<Done> check_census(const Census& census, uint64_t most) {
+    const std::string what =
+        fmt::format("{} triangles once {} instances of {} are expanded", shown(census.triangles),
+                    shown(census.instances), shown(census.unique));
+    if (census.triangles > most)
+        return Error{
+            fmt::format("found {}, expected at most {}; --max-triangles allows more", what, most)};
+    if (census.triangles > kMostTriangles)
+        return Error{fmt::format("found {}, expected at most {}", what, kMostTriangles)};
+    const uint64_t bytes =
+        plus(times(census.triangles, kTriangleBytes),
+             times(std::min(census.instances, census.triangles), kInstanceBytes));
+    const uint64_t available = available_memory();
+    if (bytes > available)
+        return Error{fmt::format("found {}, which take {} MiB where {} MiB of memory are free",
+                                 what, bytes >> 20, available >> 20)};
+    return Done{};
+}
+
+} // namespace ovc::pbrt

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// fuzz_pbrt: through a file in memory, for the reader takes files.
+#include "importers/pbrt/fuzz.h"
+
+#include "importers/readers.h"
+
+#include <cstdlib>
+#include <string>
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+namespace ovc {
+
+/// More takes time, and finds nothing.
+static constexpr uint64_t kMostFuzzed = 20000;
+
+static void require(bool condition) {
+    if (!condition)
+        std::abort();
+}
+
+static void check_scene(const Scene& scene) {
+    require(scene.meshes.size() == scene.soup.chunks.size());
+    require(scene.soup.triangle_count() <= kMostFuzzed);
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        const MeshInfo& mesh = scene.meshes[m];
+        require(mesh.material < scene.materials.size());
+        require(mesh.normals_from == kNone || mesh.normals_from < m);
+        const size_t normals = scene.normals_of(mesh).size();
+        require(normals == 0 || normals == scene.soup.chunks[m].corners().size());
+    }
+}
+
+void fuzz_pbrt(const uint8_t* data, size_t size) {
+    static const int file = memfd_create("fuzz.pbrt", MFD_CLOEXEC);
+    require(file >= 0 && ftruncate(file, 0) == 0);
+    require(pwrite(file, data, size, 0) == ssize_t(size));
+    const std::string path = "/proc/self/fd/" + std::to_string(file);
+    for (const bool strict : {false, true}) {
+        ImportOptions options;
+        options.strict = strict;
+        options.max_triangles = kMostFuzzed;
+        const Result<Scene> scene = read_pbrt(path, options);
+        if (scene)
+            check_scene(*scene);
+        else
+            require(!scene.error().message.empty());
+    }
+}
+
+} // namespace ovc

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// What becomes of PBRT's materials, spectra, lights, cameras and films.
+#include "importers/pbrt/spectrum.h"
+#include "importers/test_files.h"
+
+#include <numbers>
+
+namespace ovc {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr const char* kMesh =
+    " Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0  1 0 0  0 1 0]\n";
+
+Scene scene_of(const std::string& text) {
+    const TestFolder folder;
+    Result<Scene> scene = load(folder.write("a.pbrt", text));
+    EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
+    return scene ? std::move(*scene) : Scene{};
+}
+
+Material material_of(const std::string& text) {
+    const Scene scene = scene_of(text + kMesh);
+    return scene.meshes.empty() ? Material{} : scene.materials[scene.meshes[0].material];
+}
+
+void expect_color(const vec3& found, const vec3& expected, float tolerance, const char* what) {
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(found[i], expected[i], tolerance) << what << " " << i;
+}
+
+TEST(PbrtMapping, MatteNamesOfAllVersions) {
+    const vec3 color(0.1f, 0.2f, 0.3f);
+    for (const char* text :
+         {"Material \"matte\" \"color Kd\" [.1 .2 .3]", "Material \"matte\" \"rgb Kd\" [.1 .2 .3]",
+          "Material \"diffuse\" \"rgb reflectance\" [.1 .2 .3]",
+          "MakeNamedMaterial \"m\" \"string type\" \"diffuse\" \"rgb reflectance\" [.1 .2 .3] "
+          "NamedMaterial \"m\"",
+          "Texture \"t\" \"spectrum\" \"constant\" \"rgb value\" [.2 .4 .6] Texture \"u\" "
+          "\"spectrum\" "
+          "\"scale\" \"texture tex\" \"t\" \"float scale\" .5 Material \"diffuse\" \"texture "
+          "reflectance\" \"u\"",
+          "Texture \"t\" \"color\" \"checkerboard\" \"color tex1\" [.2 .4 .6] \"color tex2\" [0 0 "
+          "0] "
+          "Material \"matte\" \"texture Kd\" \"t\"",
+          "Material \"plastic\" \"color Kd\" [.1 .2 .3] \"color Ks\" [0 0 0]",
+          "Material \"uber\" \"color Kd\" [.1 .2 .3]",
+          "Material \"coateddiffuse\" \"rgb reflectance\" [.1 .2 .3] \"float roughness\" .4"}) {
+        const Material m = material_of(text);
+        expect_color(m.color, color, 1e-6f, text);
+        ASSERT_TRUE(m.finish) << text;
+        EXPECT_EQ(m.finish->diffuse, 1) << text;
+        EXPECT_EQ(m.transmission, 0) << text;
+        EXPECT_EQ(m.mirror, 0) << text;
+    }
+}
+
+TEST(PbrtMapping, MirrorGlassMetalAndHoles) {
+    const Material mirror = material_of("Material \"mirror\" \"color Kr\" [.7 .8 .9]");
+    expect_color(mirror.finish->reflection, {0.7f, 0.8f, 0.9f}, 1e-6f, "mirror");
+    EXPECT_GT(mirror.mirror, 0);
+    for (const char* text :
+         {"Material \"glass\" \"float index\" 1.3", "Material \"dielectric\" \"float eta\" 1.3",
+          "Material \"glass\" \"float eta\" 1.3"}) {
+        const Material glass = material_of(text);
+        EXPECT_NEAR(glass.ior, 1.3, 1e-6) << text;
+        EXPECT_EQ(glass.transmission, 1) << text;
+        EXPECT_TRUE(glass.finish->fresnel) << text;
+    }
+    EXPECT_NEAR(material_of("Material \"dielectric\" \"spectrum eta\" \"glass-SF11\"").ior, 1.7847,
+                1e-6);
+    EXPECT_EQ(material_of("Material \"thindielectric\"").ior, 1);
+    const Material gold = material_of("Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\"");
+    EXPECT_GT(gold.finish->reflection.x, 2 * gold.finish->reflection.z);
+    const Material silver = material_of("Material \"conductor\" \"spectrum k\" \"spds/Ag.k.spd\"");
+    EXPECT_NEAR(silver.finish->reflection.x, silver.finish->reflection.z, 0.1);
+    const Material uber = material_of("Material \"uber\" \"color opacity\" [.25 .25 .25]");
+    EXPECT_EQ(uber.transmission, 1);
+    EXPECT_NEAR(uber.filter.x, 0.75f, 1e-6f);
+    EXPECT_EQ(uber.ior, 1);
+    EXPECT_TRUE(scene_of(std::string("Material \"interface\"") + kMesh).meshes[0].no_shadow);
+}
+
+TEST(PbrtMapping, SpectraBecomeTheirColors) {
+    using pbrt::color_of_samples;
+    const double flat[] = {400, 0.5, 700, 0.5};
+    expect_color(color_of_samples(flat), vec3(0.5f), 1e-5f, "flat");
+    const double red[] = {300, 0, 599, 0, 601, 1, 800, 1};
+    const vec3 r = color_of_samples(red);
+    EXPECT_GT(r.x, 4 * r.y);
+    EXPECT_GT(r.x, 4 * r.z);
+    // The black bodies of sRGB's white, and of a candle: Charity, "What color is a blackbody?".
+    expect_color(pbrt::black_body(6500), vec3(1.03f, 0.99f, 1.0f), 0.06f, "6500 K");
+    const vec3 candle = pbrt::black_body(1900);
+    EXPECT_GT(candle.x, 1.8f * candle.y);
+    EXPECT_LT(candle.z, 0.1f);
+    for (const double kelvin : {1000.0, 3000.0, 6000.0, 20000.0}) {
+        const vec3 c = pbrt::black_body(kelvin);
+        EXPECT_NEAR(0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z, 1, 0.12) << kelvin;
+    }
+    // Gold at 580 nm: Johnson and Christy 1972.
+    EXPECT_NEAR(pbrt::metal_color(vec3(0.27f), vec3(2.9f)).x, 0.89f, 0.01f);
+}
+
+/// What the light brings to a place whose normal faces it, in W/m2 and its like.
+double irradiance(const Light& light, const dvec3& at) {
+    const dvec3 there = light.parallel ? -light.direction : light.position - at;
+    const double distance = glm::length(there);
+    double share = 1;
+    if (light.cone) {
+        const double cosine = -glm::dot(there / distance, light.direction);
+        share = cosine > light.cone->falloff_cosine ? std::pow(cosine, light.cone->tightness) : 0;
+    }
+    if (light.fade_distance > 0)
+        share *= 2 / (1 + std::pow(distance / light.fade_distance, light.fade_power));
+    return share * light.color.x;
+}
+
+/// A camera that sees nothing, so that light is let be.
+TEST(PbrtMapping, LightsBringWhatPbrtsDo) {
+    const struct {
+        const char* text;
+        dvec3 at;
+        double expected;
+    } cases[] = {
+        {"LightSource \"point\" \"color I\" [8 8 8]", {0, 0, 2}, 2},
+        {"Translate 0 0 2 LightSource \"point\" \"rgb I\" [8 8 8] \"point from\" [0 0 2]",
+         {0, 0, 2},
+         2},
+        {"LightSource \"point\" \"rgb I\" [2 2 2] \"float scale\" 3", {1, 0, 0}, 6},
+        {"LightSource \"distant\" \"color L\" [3 3 3] \"point from\" [0 0 9]", {1, 2, 3}, 3},
+        {"LightSource \"spot\" \"color I\" [8 8 8] \"float coneangle\" 30", {0, 0, 2}, 2},
+        {"LightSource \"spot\" \"color I\" [8 8 8] \"float coneangle\" 30", {0, 2, 2}, 0},
+    };
+    for (const auto& test : cases) {
+        const Scene scene = scene_of(test.text);
+        ASSERT_EQ(scene.lights.size(), 1u) << test.text;
+        EXPECT_NEAR(irradiance(scene.lights[0], test.at), test.expected, 1e-4) << test.text;
+    }
+}
+
+TEST(PbrtMapping, AreaLightsSendOutTheirLight) {
+    const auto sum = [](const Scene& scene, const dvec3& at) {
+        double total = 0;
+        for (const Light& light : scene.lights)
+            total += irradiance(light, at);
+        return total;
+    };
+    // A disk of radius 1 seen from 10 away: L A / d^2, and nothing behind it.
+    const std::string disk = "AreaLightSource \"diffuse\" \"rgb L\" [5 5 5] ";
+    const Scene one = scene_of(disk + "Shape \"disk\"");
+    EXPECT_NEAR(sum(one, {0, 0, 10}), 5 * kPi / 100, 0.005);
+    EXPECT_EQ(sum(one, {0, 0, -10}), 0);
+    EXPECT_NEAR(sum(scene_of("ReverseOrientation " + disk + "Shape \"disk\""), {0, 0, -10}),
+                5 * kPi / 100, 0.005);
+    EXPECT_NEAR(sum(scene_of("AreaLightSource \"diffuse\" \"rgb L\" [5 5 5] \"bool twosided\" true "
+                             "Shape \"disk\""),
+                    {0, 0, -10}),
+                5 * kPi / 100, 0.005);
+    // A sphere: L pi r^2 / d^2 all ways; its surface is seen, and casts no shadow of its own.
+    const Scene ball = scene_of(disk + "Shape \"sphere\"");
+    for (const dvec3& at : {dvec3(10, 0, 0), dvec3(0, -10, 0), dvec3(0, 0, 10)})
+        EXPECT_NEAR(sum(ball, at), 5 * kPi / 100, 0.005);
+    EXPECT_TRUE(ball.meshes[0].no_shadow);
+    EXPECT_EQ(ball.materials[ball.meshes[0].material].finish->ambient, vec3(5));
+    // Many of them: few lights, all of the light.
+    std::string many;
+    for (int i = 0; i < 100; ++i)
+        many += disk + "Translate 0.001 0 0 Shape \"sphere\" \"float radius\" 0.1\n";
+    const Scene lamps = scene_of(many);
+    EXPECT_EQ(lamps.lights.size(), 32u);
+    EXPECT_NEAR(sum(lamps, {0, 0, 10}), 100 * 5 * kPi * 0.01 / 100, 0.005);
+}
+
+TEST(PbrtMapping, TheSkyIsABackground) {
+    const Scene scene = scene_of("LightSource \"infinite\" \"rgb L\" [.1 .2 .3] \"float scale\" 2");
+    expect_color(scene.background.horizon, {0.2f, 0.4f, 0.6f}, 1e-6f, "sky");
+    EXPECT_EQ(scene_of("LightSource \"point\"").background.zenith, vec3(0)) << "no sky is black";
+    EXPECT_EQ(scene_of(kMesh).background.horizon, Background{}.horizon) << "no light at all: ours";
+}
+
+TEST(PbrtMapping, CamerasSeeWhatPbrtsSee) {
+    // pbrt is left-handed: looking along +z with +y up, +x is on the right.
+    const Scene scene =
+        scene_of("Film \"image\" \"integer xresolution\" 200 \"integer yresolution\" 100 "
+                 "LookAt 1 2 3  1 2 9  0 1 0 Camera \"perspective\" \"float fov\" 90");
+    ASSERT_TRUE(scene.camera && scene.camera->window);
+    ASSERT_TRUE(scene.size);
+    EXPECT_EQ(scene.size->width, 200u);
+    EXPECT_EQ(scene.size->height, 100u);
+    const ImageWindow& w = *scene.camera->window;
+    EXPECT_LT(glm::length(scene.camera->eye - dvec3(1, 2, 3)), 1e-12);
+    EXPECT_LT(glm::length(w.direction - dvec3(0, 0, 1)), 1e-12);
+    EXPECT_LT(glm::length(w.right - dvec3(4, 0, 0)), 1e-12) << "90 degrees along the shorter side";
+    EXPECT_LT(glm::length(w.up - dvec3(0, 2, 0)), 1e-12);
+
+    const Scene mirrored = scene_of("Scale -1 1 1 LookAt 0 0 0 0 0 1 0 1 0 Camera \"perspective\"");
+    EXPECT_LT(mirrored.camera->window->right.x, 0);
+    const Scene flat =
+        scene_of("Translate 0 0 5 Camera \"orthographic\" \"float screenwindow\" [0 4 0 2]");
+    EXPECT_TRUE(flat.camera->window->orthographic);
+    EXPECT_LT(glm::length(flat.camera->eye - dvec3(2, 1, -5)), 1e-12);
+    EXPECT_LT(glm::length(flat.camera->window->right - dvec3(4, 0, 0)), 1e-12);
+    EXPECT_TRUE(scene_of("Camera \"environment\"").camera);
+    EXPECT_FALSE(scene_of("Scale 0 1 1 Camera \"perspective\"").camera);
+    EXPECT_FALSE(scene_of(kMesh).camera);
+}
+
+TEST(PbrtMapping, LightIsFittedToThePicture) {
+    const std::string view = "Camera \"perspective\" WorldBegin Translate 0 0 2 ";
+    const std::string wall =
+        "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [-1 -1 0 1 "
+        "-1 0 0 1 0] ";
+    const auto brightness = [&](const std::string& intensity) {
+        const Scene scene =
+            scene_of(view + "LightSource \"point\" \"point from\" [0 0 -1] \"color I\" [" +
+                     intensity + "] " + wall);
+        return irradiance(scene.lights[0], {0, 0, 2});
+    };
+    EXPECT_NEAR(brightness("1 1 1"), 1, 1e-3) << "let be";
+    const double dimmed = brightness("1000 1000 1000"), raised = brightness("1e-3 1e-3 1e-3");
+    EXPECT_LT(dimmed, 20);
+    EXPECT_GT(raised, 0.5);
+    EXPECT_NEAR(dimmed, raised, 0.01 * raised);
+}
+
+} // namespace
+} // namespace ovc

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// PBRT: the scene descriptions of pbrt-v1 to v4. docs/pbrt.md says what is read and how.
+#include "importers/pbrt/assembly.h"
+#include "importers/pbrt/exposure.h"
+#include "importers/pbrt/interpreter.h"
+#include "importers/readers.h"
+
+#include <fmt/format.h>
+
+namespace ovc {
+
+Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& options) {
+    pbrt::Diagnostics diagnostics(options.log, options.strict);
+    pbrt::Tokens tokens(path.parent_path(), diagnostics);
+    pbrt::Interpreter interpreter(tokens, diagnostics, options);
+    if (!tokens.open(path) || !interpreter.run())
+        return diagnostics.error();
+
+    Scene scene;
+    scene.name = path.stem().string();
+    interpreter.fill(scene);
+    if (diagnostics.failed())
+        return diagnostics.error();
+    pbrt::World world = interpreter.take_world();
+    world.top.name = scene.name;
+    const pbrt::Census census = pbrt::take_census(world);
+    if (const Result<Done> fine = pbrt::check_census(census, options.max_triangles); !fine)
+        return Error{fmt::format("{}: {}", path.string(), fine.error().message)};
+    pbrt::assemble(std::move(world), census, scene);
+    for (MeshInfo& mesh : scene.meshes) {
+        const Material& material = scene.materials[mesh.material];
+        mesh.no_shadow = pbrt::is_emitter(material) || pbrt::is_invisible(material);
+    }
+    if (const float exposure = pbrt::fitting_exposure(scene); exposure != 1) {
+        say(options.log, LogLevel::Info,
+            fmt::format("{}: light times {:.3g}, to fit a picture that ends at white",
+                        path.string(), exposure));
+        pbrt::expose(scene, exposure);
+    }
+    scene.instancing = {census.unique, census.instances};
+    if (scene.soup.triangle_count() == 0)
+        say(options.log, LogLevel::Warning, fmt::format("{}: it has no triangles", path.string()));
+    return scene;
+}
+
+} // namespace ovc
