@@ -150,6 +150,7 @@ struct Scene {
     std::optional<ImageSize> size;     // of the picture that the file asks for
     std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's
     Background background;
+    double gamma = 1; // what is rendered ^ gamma is linear light: POV-Ray's assumed_gamma
 
     /// Appends a mesh of `material`; returns its number.
     uint32_t add_mesh(std::string mesh_name, uint32_t material, Chunk chunk,

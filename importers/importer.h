@@ -14,6 +14,8 @@ namespace ovc {
 
 struct ImportOptions {
     LogSink log; // warnings: what a file asks for and Overcast leaves out, one per kind
+    /// Of the picture to come, where that is known: scenes of POV-Ray may ask for it.
+    std::optional<ImageSize> size = {};
 };
 
 /// Reads a scene. The reader is chosen by the extension, a trailing .gz taken off first; any case.

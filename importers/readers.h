@@ -13,7 +13,12 @@ inline constexpr uint64_t kMostTriangles = 0xfffffffe;
 
 Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& options);
 Result<Scene> read_obj(const std::filesystem::path& path, const ImportOptions& options);
+Result<Scene> read_pov(const std::filesystem::path& path, const ImportOptions& options);
 Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions& options);
+
+/// read_pov() of a text; path: whose it is said to be, and beside which includes are looked for.
+Result<Scene> parse_pov(std::string text, const std::filesystem::path& path,
+                        const ImportOptions& options);
 
 /// Whether Assimp names this extension (without the dot, lower case) as one it reads.
 bool assimp_reads(std::string_view extension);
