@@ -36,8 +36,7 @@ int main(int count, char** words) {
         for (uint32_t x = 0; x < size.width; ++x)
             rays.push_back(pinhole.ray(x, y));
     std::vector<Hit> hits(rays.size());
-    Result<std::unique_ptr<Backend>> backend =
-        make_embree_backend(scene->soup, EmbreeMode::Robust);
+    Result<std::unique_ptr<Backend>> backend = make_embree_backend(scene->soup, EmbreeMode::Robust);
     if (!backend)
         backend = make_cpu_backend(scene->soup);
     if (const Result<Done> done = (*backend)->intersect(rays, {}, hits); !done) {

@@ -81,8 +81,8 @@ Number call_float_function(Reader& reader, const Token& token) {
                                              token.name->text, function.count));
     const double result = function.call(values);
     if (!std::isfinite(result))
-        reader.fail(token.place, fmt::format("found {} of {}, which is no number",
-                                             token.name->text, values[0]));
+        reader.fail(token.place,
+                    fmt::format("found {} of {}, which is no number", token.name->text, values[0]));
     return Number::of(result);
 }
 
@@ -166,7 +166,8 @@ const Array& parse_array(Reader& reader, const Token& token) {
     const Token name = reader.next();
     const auto* array = named<std::shared_ptr<Array>>(reader, name);
     if (!array)
-        reader.fail(name.place, fmt::format("found {}, expected the name of an array", found(name)));
+        reader.fail(name.place,
+                    fmt::format("found {}, expected the name of an array", found(name)));
     return **array;
 }
 
@@ -207,8 +208,8 @@ Number extent(Reader& reader, const Token& token) {
     const Token name = reader.peek();
     const auto object = take_named<std::shared_ptr<const Object>>(reader);
     if (!object)
-        reader.fail(name.place, fmt::format("found {}, expected the name of an object",
-                                            found(name)));
+        reader.fail(name.place,
+                    fmt::format("found {}, expected the name of an object", found(name)));
     reader.expect(')', token.name->text);
     const Box box = bounds_of(**object);
     return Number::of(token.is("min_extent") ? box.lo : box.hi);
@@ -227,9 +228,18 @@ const std::unordered_map<std::string_view, Builtin> kBuiltins = {
     {"x", axis<1, 0, 0>},
     {"y", axis<0, 1, 0>},
     {"z", axis<0, 0, 1>},
-    {"u", [](Reader&, const Token&) { return Number{{1, 0}, 2}; }},
-    {"v", [](Reader&, const Token&) { return Number{{0, 1}, 2}; }},
-    {"t", [](Reader&, const Token&) { return Number{{0, 0, 0, 1}, 4}; }},
+    {"u",
+     [](Reader&, const Token&) {
+         return Number{{1, 0}, 2};
+     }},
+    {"v",
+     [](Reader&, const Token&) {
+         return Number{{0, 1}, 2};
+     }},
+    {"t",
+     [](Reader&, const Token&) {
+         return Number{{0, 0, 0, 1}, 4};
+     }},
     {"pi", [](Reader&, const Token&) { return Number::of(std::numbers::pi); }},
     {"tau", [](Reader&, const Token&) { return Number::of(2 * std::numbers::pi); }},
     {"true", [](Reader&, const Token&) { return Number::of(1); }},

@@ -10,6 +10,7 @@ import argparse
 import collections
 import concurrent.futures
 import hashlib
+import math
 import os
 import pathlib
 import re
@@ -25,7 +26,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def sky(key):
-    return ('\n#version 3.7;\nglobal_settings { assumed_gamma 1 }\nsky_sphere { pigment { color rgb <%g, %g, %g> } }\n' % key)
+    return ('\n#version 3.7;\nsky_sphere { pigment { color rgb <%g, %g, %g> } }\n' % key)
 
 
 def read_ppm(path):
@@ -39,6 +40,14 @@ def read_ppm(path):
         at = end + 1
     assert fields[0] == b"P6" and fields[3] == b"65535", fields
     return data[at:]
+
+
+def is_key(pixel):
+    """The key, raised to whatever power the scene's assumed_gamma makes of it."""
+    if min(pixel) == 0 or pixel[0] == 65535:
+        return False
+    power = math.log(pixel[0] / 65535) / math.log(KEY[0])
+    return 0.2 < power < 5 and all(abs(p - 65535 * k ** power) <= 4 + 0.001 * p for p, k in zip(pixel, KEY))
 
 
 def povray_mask(scene, cache, limit):
@@ -67,10 +76,8 @@ def povray_mask(scene, cache, limit):
         return None, error
     pixels = read_ppm(picture)
     picture.unlink()
-    key = [round(c * 65535) for c in KEY]
     values = [256 * pixels[i] + pixels[i + 1] for i in range(0, len(pixels), 2)]
-    mask = bytes(0 if all(abs(values[3 * i + c] - key[c]) <= 3 for c in range(3)) else 1
-                 for i in range(WIDTH * HEIGHT))
+    mask = bytes(0 if is_key(values[3 * i:3 * i + 3]) else 1 for i in range(WIDTH * HEIGHT))
     kept.write_bytes(mask)
     return mask, ""
 

@@ -27,10 +27,10 @@ using Ring = std::vector<uint32_t>;
 /// Joins `hole` (clockwise) to `ring` by a bridge from its rightmost point to the right.
 /// Based on: Eberly, "Triangulation by Ear Clipping", section 4.
 void join(Ring& ring, const Ring& hole, const std::vector<dvec2>& points) {
-    const size_t start = size_t(
-        std::max_element(hole.begin(), hole.end(),
-                         [&](uint32_t a, uint32_t b) { return points[a].x < points[b].x; }) -
-        hole.begin());
+    const size_t start =
+        size_t(std::max_element(hole.begin(), hole.end(),
+                                [&](uint32_t a, uint32_t b) { return points[a].x < points[b].x; }) -
+               hole.begin());
     const dvec2 m = points[hole[start]];
     double nearest = std::numeric_limits<double>::infinity();
     size_t bridge = 0;

@@ -58,8 +58,8 @@ void Reader::obey(const Token& at) {
         {"write", [](Reader& r, const Token&) { r.pass_over_parentheses(); }}};
     const auto action = kActions.find(at.name->text);
     if (action == kActions.end())
-        fail(at.place, fmt::format("found #{}, expected a directive that Overcast knows",
-                                   at.name->text));
+        fail(at.place,
+             fmt::format("found #{}, expected a directive that Overcast knows", at.name->text));
     action->second(*this, at);
 }
 
@@ -67,8 +67,8 @@ Name* Reader::raw_name(std::string_view after) {
     const Token token = raw();
     last_ = token.place;
     if (token.kind != TokenKind::Name)
-        fail(token.place, fmt::format("found {} after {}, expected an identifier", found(token),
-                                      after));
+        fail(token.place,
+             fmt::format("found {} after {}, expected an identifier", found(token), after));
     if (token.name->is_keyword)
         fail(token.place, fmt::format("found {} after {}, which is a word of the language, "
                                       "expected an identifier",
@@ -133,8 +133,8 @@ void Reader::do_include() {
         value = hooks_.value(*this);
     const std::string* name = std::get_if<std::string>(&value);
     if (!name)
-        fail(at, fmt::format("found {} after #include, expected the name of a file",
-                             kind_of(value)));
+        fail(at,
+             fmt::format("found {} after #include, expected the name of a file", kind_of(value)));
     if (frames_.size() >= limits.nesting)
         fail(at, fmt::format("found macros and includes more than {} deep in each other: {} does "
                              "not end",
@@ -177,11 +177,11 @@ bool Reader::is_defined() {
     raw_expect('(', "#ifdef");
     const Token token = raw();
     if (token.kind != TokenKind::Name)
-        fail(token.place, fmt::format("found {} after #ifdef, expected an identifier",
-                                      found(token)));
+        fail(token.place,
+             fmt::format("found {} after #ifdef, expected an identifier", found(token)));
     Slot* slot = find(token.name);
-    bool defined = token.name->is_keyword ||
-                   (slot && !std::holds_alternative<std::monostate>(slot->value));
+    bool defined =
+        token.name->is_keyword || (slot && !std::holds_alternative<std::monostate>(slot->value));
     if (peek_raw().is('[')) {
         const auto* array = slot ? std::get_if<std::shared_ptr<Array>>(&slot->value) : nullptr;
         if (!array)

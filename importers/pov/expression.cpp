@@ -44,9 +44,11 @@ double as_float(Reader& reader, const Number& n) {
 }
 
 int component(std::string_view name) {
-    static constexpr std::string_view kNames[][3] = {
-        {"x", "u", "red"}, {"y", "v", "green"}, {"z", "blue", ""}, {"t", "filter", ""},
-        {"transmit", "", ""}};
+    static constexpr std::string_view kNames[][3] = {{"x", "u", "red"},
+                                                     {"y", "v", "green"},
+                                                     {"z", "blue", ""},
+                                                     {"t", "filter", ""},
+                                                     {"transmit", "", ""}};
     for (int i = 0; i < 5; ++i)
         for (const std::string_view n : kNames[i])
             if (!n.empty() && n == name)
@@ -61,8 +63,8 @@ Number parse_member(Reader& reader, const Number& whole) {
         return Number::of(0.297 * v[0] + 0.589 * v[1] + 0.114 * v[2]);
     const int i = name.kind == TokenKind::Name ? component(name.name->text) : -1;
     if (i < 0)
-        reader.fail(name.place, fmt::format("found {} after '.', expected a component such as x",
-                                            found(name)));
+        reader.fail(name.place,
+                    fmt::format("found {} after '.', expected a component such as x", found(name)));
     // The filter of a plain vector is 0; a float is as long as one likes.
     if (whole.size == 1)
         return Number::of(v[0]);
@@ -352,8 +354,8 @@ Number resized(Reader& reader, const Number& number, int size) {
     else if (n.size < size)
         std::fill(n.v.begin() + n.size, n.v.end(), 0.0);
     else if (n.size > size && !(n.is_color || size >= 3))
-        reader.fail(reader.place(), fmt::format("found a vector of {}, expected one of {}", n.size,
-                                                size));
+        reader.fail(reader.place(),
+                    fmt::format("found a vector of {}, expected one of {}", n.size, size));
     n.size = size;
     n.is_color = size == 5;
     return n;
@@ -402,9 +404,8 @@ bool parse_flag(Reader& reader) {
 }
 
 bool starts_color(const Token& token) {
-    return token.kind == TokenKind::Name &&
-           (token.is("color") || token.is("colour") || is_rgb(token.name->text) ||
-            channel(token) >= 0);
+    return token.kind == TokenKind::Name && (token.is("color") || token.is("colour") ||
+                                             is_rgb(token.name->text) || channel(token) >= 0);
 }
 
 bool starts_text(const Reader& reader, const Token& token) {
@@ -420,8 +421,7 @@ bool starts_number(const Reader& reader, const Token& token) {
         return token.is('<') || token.is('(') || token.is('-') || token.is('+') || token.is('!');
     case TokenKind::Name:
         if (const auto* array = named<std::shared_ptr<Array>>(reader, token))
-            return !(*array)->items.empty() &&
-                   std::holds_alternative<Number>((*array)->items[0]);
+            return !(*array)->items.empty() && std::holds_alternative<Number>((*array)->items[0]);
         return starts_color(token) || find_builtin(token.name->text) ||
                named<Number>(reader, token) ||
                named<std::shared_ptr<const Function>>(reader, token) ||

@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 
 /// Where Debian's povray-includes and a build of one's own install them.
 static constexpr const char* kLibraries[] = {
-    "/usr/share/povray-3.7/include", "/usr/share/povray/include", "/usr/local/share/povray-3.7/include",
-    "/usr/local/share/povray-3.8/include"};
+    "/usr/share/povray-3.7/include", "/usr/share/povray/include",
+    "/usr/local/share/povray-3.7/include", "/usr/local/share/povray-3.8/include"};
 
 static std::string lower(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(),

@@ -61,8 +61,8 @@ private:
         Finish finish = texture.surface.finish;
         const float opacity = std::clamp(color.opacity(), 0.0f, 1.0f);
         finish.diffuse *= opacity;
-        finish.ambient = opacity * (texture.surface.ambient * look_.ambient_light +
-                                    texture.surface.emission);
+        finish.ambient =
+            opacity * (texture.surface.ambient * look_.ambient_light + texture.surface.emission);
         material.color = color.rgb;
         material.mirror =
             std::max(max_component(finish.reflection), max_component(finish.grazing_reflection));
@@ -177,8 +177,8 @@ double triangles_at(const std::vector<Placed>& placed, int segments) {
 
 int choose_segments(const std::vector<Placed>& placed) {
     int segments = kMostSegments;
-    while (segments > 8 && triangles_at(placed, segments) - triangles_at(placed, 0) >
-                               kMostRoundTriangles)
+    while (segments > 8 &&
+           triangles_at(placed, segments) - triangles_at(placed, 0) > kMostRoundTriangles)
         segments = std::max(8, segments * 3 / 4 / 4 * 4);
     return segments;
 }

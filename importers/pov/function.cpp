@@ -117,8 +117,8 @@ private:
     double parse_number_operand() {
         const Token token = reader_.next();
         if (token.kind != TokenKind::Number)
-            reader_.fail(token.place, fmt::format("found {} in a function, expected a formula",
-                                                  found(token)));
+            reader_.fail(token.place,
+                         fmt::format("found {} in a function, expected a formula", found(token)));
         return token.number;
     }
 
@@ -141,8 +141,8 @@ private:
             reader_.put_back(token);
             return constant(parse_constant());
         }
-        reader_.fail(token.place, fmt::format("found {} in a function, expected a formula",
-                                              found(token)));
+        reader_.fail(token.place,
+                     fmt::format("found {} in a function, expected a formula", found(token)));
     }
 
     double parse_constant() {
@@ -180,9 +180,9 @@ private:
         const std::vector<Formula> given = arguments(token);
         const bool any = function.count < 0;
         if (given.empty() || (!any && given.size() != size_t(function.count)) || given.size() > 8)
-            reader_.fail(token.place, fmt::format("found {} arguments to {}, expected {}",
-                                                  given.size(), token.name->text,
-                                                  any ? 2 : function.count));
+            reader_.fail(token.place,
+                         fmt::format("found {} arguments to {}, expected {}", given.size(),
+                                     token.name->text, any ? 2 : function.count));
         if (any) // min and max: of two at a time
             return [given, call = function.call](std::span<const double> x) {
                 double pair[2] = {given[0](x), 0};
@@ -281,8 +281,7 @@ Number call(const Reader& reader, const Token& name, const Function& function,
     if (function.spline)
         return at(*function.spline, arguments.empty() ? 0 : arguments[0]);
     const auto argument = [&](size_t i) { return i < arguments.size() ? arguments[i] : 0; };
-    return Number::of(
-        dvec3(*function.transform * dvec4(argument(0), argument(1), argument(2), 1)));
+    return Number::of(dvec3(*function.transform * dvec4(argument(0), argument(1), argument(2), 1)));
 }
 
 } // namespace ovc::pov

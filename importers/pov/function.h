@@ -13,10 +13,10 @@ using Formula = std::function<double(std::span<const double>)>;
 
 struct Function {
     size_t parameters = 3;
-    Formula formula;                          // or
-    std::optional<dmat4> transform;           // or
-    std::shared_ptr<const Spline> spline;     // or
-    std::string refused;                      // why it cannot be called
+    Formula formula;                      // or
+    std::optional<dmat4> transform;       // or
+    std::shared_ptr<const Spline> spline; // or
+    std::string refused;                  // why it cannot be called
 };
 
 /// Behind the word `function`: `(a, b) { formula }`.

@@ -10,8 +10,8 @@ namespace ovc::pov {
 
 /// A shape in its own space.
 struct Shape {
-    /// Cuts it with circles of `segments` straight pieces, a multiple of 4, at least 8; open: without
-    /// the caps at its ends.
+    /// Cuts it with circles of `segments` straight pieces, a multiple of 4, at least 8; open:
+    /// without the caps at its ends.
     std::function<void(int segments, bool open, Facets& out)> cut;
     /// How many triangles that gives: fixed, or per_segment x segments ^ power.
     double fixed = 0;
@@ -44,7 +44,7 @@ struct Object {
     /// Why it cannot be cut into triangles; empty: it can. Told only where it is to be seen.
     std::string refused;
 
-    dmat4 placed{1}; // from its own space to that of what it is a part of
+    dmat4 placed{1};                // from its own space to that of what it is a part of
     std::optional<Texture> texture; // none: its parent's
     std::optional<Interior> interior;
     bool no_shadow = false;

@@ -24,11 +24,11 @@ void look_at(Reader& reader, CameraValue& camera, const dvec3& target) {
     const dvec3 way = target - camera.location;
     if (!(glm::length(way) > 0))
         reader.fail(reader.place(), "the camera looks from a point at itself");
-    camera.look_at = target;
+    camera.distance = glm::length(way);
     camera.direction = glm::normalize(way);
     dvec3 right = glm::cross(camera.sky, camera.direction);
-    if (!(glm::length(right) > 1e-10)) // straight along the sky
-        right = std::abs(camera.direction.x) < 0.9 ? dvec3(1, 0, 0) : dvec3(0, 0, 1);
+    if (!(glm::length(right) > 1e-10)) // straight along the sky: what was right stays right
+        right = camera.right;
     right = glm::normalize(right);
     camera.up = glm::cross(camera.direction, right) * up_length;
     camera.direction *= direction_length;
@@ -36,13 +36,13 @@ void look_at(Reader& reader, CameraValue& camera, const dvec3& target) {
 }
 
 void set_angle(Reader& reader, CameraValue& camera, double degrees) {
-    if (!(degrees > 0 && degrees < 360))
+    if (!(degrees > 0 && degrees <= 360))
         reader.fail(reader.place(), fmt::format("found a camera's angle of {}", degrees));
     camera.angle = degrees;
     if (degrees < 180 && glm::length(camera.direction) > 0)
-        camera.direction = glm::normalize(camera.direction) *
-                           (0.5 * glm::length(camera.right) /
-                            std::tan(degrees * std::numbers::pi / 360));
+        camera.direction =
+            glm::normalize(camera.direction) *
+            (0.5 * glm::length(camera.right) / std::tan(degrees * std::numbers::pi / 360));
 }
 
 void apply(CameraValue& camera, const dmat4& m) {
@@ -52,8 +52,8 @@ void apply(CameraValue& camera, const dmat4& m) {
 }
 
 bool is_other_projection(const Token& token) {
-    static constexpr std::string_view kWords[] = {"fisheye",   "ultra_wide_angle", "omnimax",
-                                                  "panoramic", "cylinder",         "spherical",
+    static constexpr std::string_view kWords[] = {"fisheye",    "ultra_wide_angle", "omnimax",
+                                                  "panoramic",  "cylinder",         "spherical",
                                                   "mesh_camera"};
     return token.kind == TokenKind::Name &&
            std::find(std::begin(kWords), std::end(kWords), token.name->text) != std::end(kWords);
@@ -64,6 +64,9 @@ bool is_other_projection(const Token& token) {
 std::shared_ptr<const CameraValue> parse_camera(Reader& reader) {
     const Deeper deeper(reader);
     CameraValue camera;
+    std::optional<dvec3> target;
+    std::optional<double> angle;
+    dmat4 placed(1);
     reader.expect('{', "camera");
     if (const auto other = take_named_if<std::shared_ptr<const CameraValue>>(reader))
         camera = **other;
@@ -80,9 +83,9 @@ std::shared_ptr<const CameraValue> parse_camera(Reader& reader) {
         else if (reader.take("sky"))
             camera.sky = parse_vector(reader);
         else if (reader.take("look_at"))
-            look_at(reader, camera, parse_vector(reader));
+            target = parse_vector(reader);
         else if (reader.take("angle")) {
-            set_angle(reader, camera, parse_float(reader));
+            angle = parse_float(reader);
             if (reader.take(','))
                 parse_float(reader);
         } else if (reader.take("orthographic"))
@@ -90,7 +93,7 @@ std::shared_ptr<const CameraValue> parse_camera(Reader& reader) {
         else if (reader.take("perspective"))
             camera.orthographic = false;
         else if (const auto m = take_transform(reader))
-            apply(camera, *m);
+            placed = *m * placed;
         else if (token.kind == TokenKind::Name) {
             reader.next();
             if (is_other_projection(token))
@@ -104,6 +107,11 @@ std::shared_ptr<const CameraValue> parse_camera(Reader& reader) {
         } else if (!reader.take(','))
             reader.fail_here("'}' or a part of a camera");
     }
+    if (target)
+        look_at(reader, camera, *target);
+    if (angle)
+        set_angle(reader, camera, *angle);
+    apply(camera, placed);
     return std::make_shared<const CameraValue>(camera);
 }
 
@@ -112,16 +120,14 @@ Camera camera_of(const CameraValue& c) {
     camera.eye = c.location;
     camera.window = ImageWindow{c.direction, c.right, c.up, c.orthographic};
     // With an angle, an orthographic camera shows at look_at what a perspective one would.
-    if (c.orthographic && c.angle > 0 && c.look_at) {
-        const double scale = glm::length(*c.look_at - c.location) / glm::length(c.direction);
+    if (c.orthographic && c.angle > 0 && c.distance) {
+        const double scale = *c.distance / glm::length(c.direction);
         camera.window->right *= scale;
         camera.window->up *= scale;
     }
     camera.up = glm::length(c.sky) > 0 ? c.sky : c.up;
     const double depth = glm::length(c.direction);
-    camera.target = c.look_at.value_or(c.location + c.direction);
-    if (camera.target == camera.eye)
-        camera.target = camera.eye + c.direction;
+    camera.target = c.location + c.direction * (c.distance && depth > 0 ? *c.distance / depth : 1);
     const double side = std::min(glm::length(c.right), glm::length(c.up));
     camera.fov_degrees =
         depth > 0 ? std::clamp(std::atan(0.5 * side / depth) * 360 / std::numbers::pi, 1.0, 179.0)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// camera { }: its vectors as POV-Ray makes them from what is said, in the order it is said.
+// camera { }: its vectors as POV-Ray makes them: whatever the order they are named in, look_at
+// turns them, then the angle sets the direction's length, then transformations move all.
 #pragma once
 
 #include "importers/pov/expression.h"
@@ -12,7 +13,7 @@ struct CameraValue {
     dvec3 up{0, 1, 0};
     dvec3 right{4 / 3.0, 0, 0};
     dvec3 sky{0, 1, 0};
-    std::optional<dvec3> look_at;
+    std::optional<double> distance; // to what it looks at
     bool orthographic = false;
     double angle = 0; // of the field of view, degrees; 0: not said
 };

@@ -32,7 +32,8 @@ bool parse_light_part(Reader& reader, Words& words, Light& light) {
         words.spot = true;
     else if (reader.take("cylinder")) {
         words.cylinder = true;
-        reader.warn("cylinder light", token.place, "a cylinder of light is taken for parallel light");
+        reader.warn("cylinder light", token.place,
+                    "a cylinder of light is taken for parallel light");
     } else if (reader.take("parallel"))
         light.parallel = true;
     else if (reader.take("point_at"))

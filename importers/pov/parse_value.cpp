@@ -38,7 +38,8 @@ void fill(Reader& reader, Array& array, size_t dimension, size_t first, size_t c
 Value parse_array(Reader& reader) {
     auto array = std::make_shared<Array>();
     double count = 1;
-    while (reader.take('[')) {
+    while (reader.peek_operator().is('[')) {
+        reader.next();
         const int size = parse_int(reader, 1, 1 << 30, "the size of an array");
         array->sizes.push_back(size_t(size));
         reader.expect(']', "the size of an array");
@@ -124,9 +125,8 @@ std::optional<Value> take_whole(Reader& reader) {
             return item;
         return item;
     }
-    const bool is_callable =
-        std::holds_alternative<std::shared_ptr<const Function>>(slot->value) ||
-        std::holds_alternative<std::shared_ptr<const Spline>>(slot->value);
+    const bool is_callable = std::holds_alternative<std::shared_ptr<const Function>>(slot->value) ||
+                             std::holds_alternative<std::shared_ptr<const Spline>>(slot->value);
     const Value value = slot->value;
     if (is_callable && reader.peek_operator().is('(')) {
         reader.put_back(token);
@@ -157,9 +157,9 @@ Value parse_value(Reader& reader) {
 
 std::string kind_of(const Value& value) {
     static constexpr const char* kKindNames[] = {
-        "nothing",   "a number",       "a text",   "an object", "a texture", "a pigment",
-        "a finish",  "an interior",    "a material", "a color map", "a transform", "an array",
-        "a macro",   "a function",     "a spline", "a camera",  "a block"};
+        "nothing",  "a number",    "a text",     "an object",   "a texture",   "a pigment",
+        "a finish", "an interior", "a material", "a color map", "a transform", "an array",
+        "a macro",  "a function",  "a spline",   "a camera",    "a block"};
     static_assert(std::size(kKindNames) == std::variant_size_v<Value>);
     return kKindNames[value.index()];
 }

@@ -92,10 +92,10 @@ private:
             reader_.next();
             const bool is_undeclared = token.kind == TokenKind::Name && !token.name->is_keyword &&
                                        !reader_.find(token.name);
-            reader_.fail(token.place, fmt::format("found {}{}, expected an object or a statement "
-                                                  "such as camera",
-                                                  found(token),
-                                                  is_undeclared ? ", which is not declared" : ""));
+            reader_.fail(token.place,
+                         fmt::format("found {}{}, expected an object or a statement "
+                                     "such as camera",
+                                     found(token), is_undeclared ? ", which is not declared" : ""));
         }
     }
 

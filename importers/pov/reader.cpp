@@ -61,8 +61,9 @@ void Reader::put_back(const Token& token) {
 }
 
 static bool is_flow(std::string_view directive) {
-    static constexpr std::string_view kFlow[] = {"if",   "ifdef", "ifndef", "else",  "elseif", "end",
-                                                 "case", "range", "switch", "break", "while",  "for"};
+    static constexpr std::string_view kFlow[] = {"if",     "ifdef", "ifndef", "else",
+                                                 "elseif", "end",   "case",   "range",
+                                                 "switch", "break", "while",  "for"};
     return std::find(std::begin(kFlow), std::end(kFlow), directive) != std::end(kFlow);
 }
 
@@ -92,8 +93,8 @@ Token Reader::step(bool hold_declarations) {
 
 Token Reader::raw() {
     if (++run_over_ > limits.tokens)
-        fail(last_, fmt::format("stopped after {} words: a loop or a macro does not end",
-                                limits.tokens));
+        fail(last_,
+             fmt::format("stopped after {} words: a loop or a macro does not end", limits.tokens));
     while (!frames_.empty() && frame().at >= frame().end) {
         if (!frame().open.empty())
             fail(frame().open.back().place, "found no #end to this");
@@ -207,8 +208,8 @@ void Reader::call(const Token& at, const std::shared_ptr<const Macro>& macro) {
         if (i > 0)
             take_comma();
         if (peek().is(')'))
-            fail(at.place, fmt::format("found {} arguments to {}, expected {}", i,
-                                       kept->name->text, kept->parameters.size()));
+            fail(at.place, fmt::format("found {} arguments to {}, expected {}", i, kept->name->text,
+                                       kept->parameters.size()));
         arguments.push_back(argument());
     }
     expect(')', "the arguments of " + kept->name->text);

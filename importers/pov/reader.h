@@ -41,10 +41,10 @@ public:
     /// What directives need of those who parse: expressions.cpp, scene.cpp.
     struct Hooks {
         std::function<Value(Reader&)> value;
-        std::function<double(Reader&)> number;    // a float expression
-        std::function<double(Reader&)> condition; // one that may compare, between parentheses
-        std::function<Value*(Reader&, Array&)> item;  // of an array, from the first [ on
-        std::function<void(Reader&)> defaults;    // of #default
+        std::function<double(Reader&)> number;       // a float expression
+        std::function<double(Reader&)> condition;    // one that may compare, between parentheses
+        std::function<Value*(Reader&, Array&)> item; // of an array, from the first [ on
+        std::function<void(Reader&)> defaults;       // of #default
     };
 
     Reader(Hooks hooks, LogSink log, std::string main_folder);
@@ -95,7 +95,7 @@ private:
     struct Condition {
         enum class Kind { If, While, For, Switch };
         Kind kind;
-        size_t start = 0;       // While: of the condition; For: of the body
+        size_t start = 0;        // While: of the condition; For: of the body
         Slot* counter = nullptr; // For
         double last = 0, step = 0;
         double value = 0; // Switch

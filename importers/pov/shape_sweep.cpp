@@ -55,8 +55,7 @@ std::vector<Contour> prism_contours(Curve curve, const std::vector<dvec2>& point
         bool closed = false;
         for (; !closed && piece + points_of_a_piece(curve) <= points.size(); piece += stride) {
             for (int i = 0; i < steps; ++i)
-                contour.push_back(
-                    curve_point(curve, &points[piece], double(i) / steps, nullptr));
+                contour.push_back(curve_point(curve, &points[piece], double(i) / steps, nullptr));
             closed = same(curve_point(curve, &points[piece], 1, nullptr), first);
         }
         if (contour.size() >= 3)
@@ -196,8 +195,8 @@ Shape parse_sor(Reader& reader) {
                 const double c2 = 3 * (r1 - r0) - 2 * m0 - m1, c3 = 2 * (r0 - r1) + m0 + m1;
                 const double square = std::max(0.0, r0 + t * (m0 + t * (c2 + t * c3)));
                 const double slope = (m0 + t * (2 * c2 + t * 3 * c3)) / h;
-                profile.push_back({{std::sqrt(square), a.y + t * h},
-                                   {slope / 2, std::sqrt(square)}});
+                profile.push_back(
+                    {{std::sqrt(square), a.y + t * h}, {slope / 2, std::sqrt(square)}});
             }
         }
         revolve(profile, segments, out);

@@ -23,21 +23,22 @@ bool is_one_of(const Token& token, const std::string_view (&words)[N]) {
 
 /// Patterns of a list of colors, pigments or textures.
 bool is_list_pattern(const Token& token) {
-    static constexpr std::string_view kWords[] = {"brick",      "checker", "cubic",  "hexagon",
-                                                  "square",     "tiles",   "object", "triangular",
-                                                  "tiling_list"};
+    static constexpr std::string_view kWords[] = {"brick",   "checker",    "cubic",
+                                                  "hexagon", "square",     "tiles",
+                                                  "object",  "triangular", "tiling_list"};
     return is_one_of(token, kWords);
 }
 
 /// Patterns of a map; without one they run from black to white.
 bool is_map_pattern(const Token& token) {
     static constexpr std::string_view kWords[] = {
-        "agate",       "aoi",         "average", "boxed",  "bozo",      "bumps",    "cells",
-        "crackle",     "cylindrical", "dents",   "facets", "gradient",  "granite",  "julia",
-        "leopard",     "magnet",      "mandel",  "marble", "onion",     "pavement", "pigment_pattern",
-        "planar",      "potential",   "quilted", "radial", "ripples",   "slope",    "spherical",
-        "spiral1",     "spiral2",     "spotted", "tiling", "waves",     "wood",     "wrinkles",
-        "density_file", "function",   "image_pattern"};
+        "agate",    "aoi",          "average",         "boxed",     "bozo",      "bumps",
+        "cells",    "crackle",      "cylindrical",     "dents",     "facets",    "gradient",
+        "granite",  "julia",        "leopard",         "magnet",    "mandel",    "marble",
+        "onion",    "pavement",     "pigment_pattern", "planar",    "potential", "quilted",
+        "radial",   "ripples",      "slope",           "spherical", "spiral1",   "spiral2",
+        "spotted",  "tiling",       "waves",           "wood",      "wrinkles",  "density_file",
+        "function", "image_pattern"};
     return is_one_of(token, kWords);
 }
 
@@ -152,9 +153,9 @@ Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
             pigment = *named_pigment;
         } else if (const auto m = take_transform(reader)) {
             pigment.placed = *m * pigment.placed;
-        } else if (starts_color(token) || (token.kind == TokenKind::Name &&
-                                           !token.name->is_keyword &&
-                                           starts_number(reader, token))) {
+        } else if (starts_color(token) ||
+                   (token.kind == TokenKind::Name && !token.name->is_keyword &&
+                    starts_number(reader, token))) {
             pigment.color = parse_color(reader);
             pigment.other.reset();
         } else if (is_color_map(token)) {
@@ -210,8 +211,8 @@ Color average_of(std::vector<MapEntry> entries) {
     entries.push_back({1, entries.back().color});
     Mean mean;
     for (size_t i = 0; i + 1 < entries.size(); ++i) {
-        const float width = float(std::clamp(entries[i + 1].at, 0.0, 1.0) -
-                                  std::clamp(entries[i].at, 0.0, 1.0));
+        const float width =
+            float(std::clamp(entries[i + 1].at, 0.0, 1.0) - std::clamp(entries[i].at, 0.0, 1.0));
         mean.add(entries[i].color, 0.5f * width);
         mean.add(entries[i + 1].color, 0.5f * width);
     }
@@ -316,8 +317,8 @@ ColorMap parse_map(Reader& reader) {
         }
         reader.expect('[', "a map's brace");
         // Entries of `average` may come without a number.
-        const bool has_number = starts_number(reader, reader.peek()) &&
-                                !starts_color(reader.peek());
+        const bool has_number =
+            starts_number(reader, reader.peek()) && !starts_color(reader.peek());
         const double at = has_number ? parse_float(reader) : double(entries.size());
         reader.take_comma();
         const Token token = reader.peek();
