@@ -16,7 +16,7 @@ namespace ovc {
 
 void SceneArguments::add_to(CLI::App& app, const char* name) {
     app.add_option(name, scene,
-                   "A file (.ply .obj, also .gz, or what Assimp reads) or a test scene's name")
+                   "A file (.ply .obj .pov, also .gz, or what Assimp reads) or a test scene's name")
         ->required();
     app.add_option("--model", model,
                    "For dragons-N and dragonball: the model they show instead of a generated one")
@@ -49,7 +49,8 @@ static Result<Scene> make_with_model(const std::string& name, const LogSink& log
     return scene ? std::move(scene) : Error{fmt::format("{}: {}", model, scene.error().message)};
 }
 
-Result<Scene> open_scene(const std::string& source, const LogSink& log, const std::string& model) {
+Result<Scene> open_scene(const std::string& source, const LogSink& log, const std::string& model,
+                         std::optional<ImageSize> size) {
     if (is_test_scene(source))
         return model.empty() ? make_test_scene(source) : make_with_model(source, log, model);
     std::error_code ignored;
@@ -63,7 +64,7 @@ Result<Scene> open_scene(const std::string& source, const LogSink& log, const st
                     : Error{fmt::format("there is no file '{}', and {}", source,
                                         none.error().message)};
     }
-    return load(source, {log});
+    return load(source, {log, size});
 }
 
 LogSink standard_error_log(bool chatty) {

@@ -31,10 +31,12 @@ struct SceneArguments {
 
 /// The name of a test scene makes that scene; everything else is a file (./plants is a file even if
 /// plants is not). model: a file whose triangles a test scene shows instead of its own; or empty.
+/// size: of the picture to come, where that is known.
 Result<Scene> open_scene(const std::string& source, const LogSink& log,
-                         const std::string& model = {});
-inline Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log) {
-    return open_scene(arguments.scene, log, arguments.model);
+                         const std::string& model = {}, std::optional<ImageSize> size = {});
+inline Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
+                                std::optional<ImageSize> size = {}) {
+    return open_scene(arguments.scene, log, arguments.model, size);
 }
 
 /// Writes warnings and errors, and Info if `chatty`, to standard error, one line each.

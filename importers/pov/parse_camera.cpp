@@ -51,12 +51,22 @@ void apply(CameraValue& camera, const dmat4& m) {
     camera.location = dvec3(m * dvec4(camera.location, 1));
 }
 
-bool is_other_projection(const Token& token) {
-    static constexpr std::string_view kWords[] = {"fisheye",    "ultra_wide_angle", "omnimax",
-                                                  "panoramic",  "cylinder",         "spherical",
-                                                  "mesh_camera"};
-    return token.kind == TokenKind::Name &&
-           std::find(std::begin(kWords), std::end(kWords), token.name->text) != std::end(kWords);
+/// fisheye, cylinder 2 and the like; taken where it is next.
+bool take_bend(Reader& reader, CameraValue& camera) {
+    using Bend = ImageWindow::Bend;
+    static constexpr std::pair<std::string_view, Bend> kWords[] = {
+        {"fisheye", Bend::Fisheye},     {"ultra_wide_angle", Bend::UltraWide},
+        {"omnimax", Bend::Omnimax},     {"panoramic", Bend::Panoramic},
+        {"spherical", Bend::Spherical}, {"cylinder", Bend::Cylinder1}};
+    for (const auto& [word, bend] : kWords)
+        if (reader.take(word)) {
+            camera.bend = bend;
+            if (bend == Bend::Cylinder1)
+                camera.bend =
+                    Bend(int(bend) + parse_int(reader, 1, 4, "the kind of a cylinder") - 1);
+            return true;
+        }
+    return false;
 }
 
 } // namespace
@@ -86,9 +96,11 @@ std::shared_ptr<const CameraValue> parse_camera(Reader& reader) {
             target = parse_vector(reader);
         else if (reader.take("angle")) {
             angle = parse_float(reader);
-            if (reader.take(','))
-                parse_float(reader);
-        } else if (reader.take("orthographic"))
+            if (reader.take(',') && starts_number(reader, reader.peek()))
+                camera.vertical_angle = parse_float(reader);
+        } else if (take_bend(reader, camera))
+            ;
+        else if (reader.take("orthographic"))
             camera.orthographic = true;
         else if (reader.take("perspective"))
             camera.orthographic = false;
@@ -96,7 +108,7 @@ std::shared_ptr<const CameraValue> parse_camera(Reader& reader) {
             placed = *m * placed;
         else if (token.kind == TokenKind::Name) {
             reader.next();
-            if (is_other_projection(token))
+            if (token.is("mesh_camera"))
                 reader.warn("projection", token.place,
                             fmt::format("the camera {} is taken for a perspective one",
                                         ovc::quoted(token.name->text)));
@@ -119,6 +131,11 @@ Camera camera_of(const CameraValue& c) {
     Camera camera;
     camera.eye = c.location;
     camera.window = ImageWindow{c.direction, c.right, c.up, c.orthographic};
+    camera.window->bend = c.bend;
+    const bool all_around = c.bend == ImageWindow::Bend::Spherical;
+    camera.window->angle = c.angle > 0 ? c.angle : all_around ? 360 : 90;
+    camera.window->vertical_angle =
+        c.vertical_angle > 0 ? c.vertical_angle : 0.5 * camera.window->angle;
     // With an angle, an orthographic camera shows at look_at what a perspective one would.
     if (c.orthographic && c.angle > 0 && c.distance) {
         const double scale = *c.distance / glm::length(c.direction);

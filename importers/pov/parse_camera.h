@@ -15,6 +15,8 @@ struct CameraValue {
     dvec3 sky{0, 1, 0};
     std::optional<double> distance; // to what it looks at
     bool orthographic = false;
+    ImageWindow::Bend bend = ImageWindow::Bend::Flat;
+    double vertical_angle = 0;
     double angle = 0; // of the field of view, degrees; 0: not said
 };
 
