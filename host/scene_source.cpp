@@ -64,7 +64,10 @@ Result<Scene> open_scene(const std::string& source, const LogSink& log, const st
                     : Error{fmt::format("there is no file '{}', and {}", source,
                                         none.error().message)};
     }
-    return load(source, {log, size});
+    ImportOptions options;
+    options.log = log;
+    options.size = size;
+    return load(source, options);
 }
 
 LogSink standard_error_log(bool chatty) {

@@ -12,8 +12,16 @@
 
 namespace ovc {
 
+/// What a scene of instances may become where nothing else is said: 3.6 GB of soup.
+inline constexpr uint64_t kDefaultMostTriangles = 100'000'000;
+
 struct ImportOptions {
     LogSink log; // warnings: what a file asks for and Overcast leaves out, one per kind
+    /// Scene descriptions (.pbrt): what is unknown, missing or unusable is an error, not a warning.
+    bool strict = false;
+    /// Scene descriptions: more triangles than this, instances expanded, are refused before they
+    /// are made.
+    uint64_t max_triangles = kDefaultMostTriangles;
     /// Of the picture to come, where that is known: scenes of POV-Ray may ask for it.
     std::optional<ImageSize> size = {};
 };

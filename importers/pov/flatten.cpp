@@ -152,8 +152,12 @@ public:
                               materials_.number(texture, from.texture_placed, from.interior),
                               from.no_shadow});
         }
-        if (++visited_ > 100'000'000)
-            throw ParseError(object.place, "stopped after 100,000,000 objects in the scene");
+        // Groups of groups may be more than any memory holds: what is placed has two triangles.
+        if (++visited_ > look_.most_triangles / 2)
+            throw ParseError(object.place,
+                             fmt::format("found more than {} objects in the scene, expected at "
+                                         "most as many as half of the triangles allowed",
+                                         look_.most_triangles / 2));
         for (const ObjectPtr& child : object.children)
             gather(*child, from);
     }
@@ -260,9 +264,12 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
         gatherer.gather(*object, {});
     const std::vector<Placed>& placed = gatherer.placed;
 
+    const int segments = choose_segments(placed);
+    if (const double count = triangles_at(placed, segments); count > double(look.most_triangles))
+        throw ParseError({}, fmt::format("found about {:.0f} triangles, expected at most {}", count,
+                                         look.most_triangles));
     const Box box = box_of(placed, 8);
     const dvec3 origin = chunk_origin(box, 16);
-    const int segments = choose_segments(placed);
     std::map<std::pair<uint32_t, bool>, Batch> batches;
     Facets facets;
     for (const Placed& p : placed)

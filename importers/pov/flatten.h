@@ -2,6 +2,7 @@
 // From objects to triangles, materials and lights.
 #pragma once
 
+#include "importers/importer.h"
 #include "importers/pov/object.h"
 
 namespace ovc::pov {
@@ -10,6 +11,7 @@ namespace ovc::pov {
 struct Look {
     Texture defaults;
     vec3 ambient_light{1};
+    uint64_t most_triangles = kDefaultMostTriangles;
     std::optional<dvec3> eye; // planes reach as far as it can see them
 };
 

@@ -44,9 +44,11 @@ Texture factory_default() {
 
 class SceneParser {
 public:
-    SceneParser(const ImportOptions& options, const std::string& folder)
-        : reader_({parse_value, parse_float, parse_condition, parse_item, parse_defaults},
+    SceneParser(const ImportOptions& options, const std::string& folder, uint64_t most_words)
+        : options_(options),
+          reader_({parse_value, parse_float, parse_condition, parse_item, parse_defaults},
                   options.log, folder) {
+        reader_.limits.tokens = most_words;
         reader_.defaults = factory_default();
         reader_.picture = options.size.value_or(reader_.picture);
     }
@@ -59,9 +61,10 @@ public:
             parse_statement(scene);
         camera_ = camera_ ? camera_ : std::make_shared<const CameraValue>();
         scene.camera = camera_of(*camera_);
-        scene.size = size_of(*camera_);
+        scene.size = options_.size.value_or(size_of(*camera_));
         look_.eye = camera_->location;
         look_.defaults = reader_.defaults;
+        look_.most_triangles = options_.max_triangles;
         flatten(objects_, look_, scene);
         return scene;
     }
@@ -145,6 +148,7 @@ private:
         return {uint32_t(std::lround(480 * ratio)), 480};
     }
 
+    const ImportOptions& options_;
     Reader reader_;
     Look look_;
     std::vector<ObjectPtr> objects_;
@@ -174,12 +178,12 @@ Result<Scene> read_pov(const std::filesystem::path& path, const ImportOptions& o
 }
 
 Result<Scene> parse_pov(std::string text, const std::filesystem::path& path,
-                        const ImportOptions& options) {
+                        const ImportOptions& options, uint64_t most_words) {
     auto file = std::make_unique<pov::SourceFile>();
     file->name = path.string();
     file->folder = path.parent_path().string();
     file->text = std::move(text);
-    pov::SceneParser parser(options, file->folder);
+    pov::SceneParser parser(options, file->folder, most_words);
     try {
         Scene scene = parser.parse(std::move(file));
         scene.name = path.stem().string();

@@ -15,8 +15,8 @@ namespace ovc::pov {
 
 /// Bounds on what a scene may make a reader do, each far beyond what scenes do.
 struct Limits {
-    uint64_t tokens = 2'000'000'000; // run over in all: about a minute
-    size_t nesting = 1000;           // includes and macros inside each other
+    uint64_t tokens = 0;   // run over in all
+    size_t nesting = 1000; // includes and macros inside each other
     uint64_t objects = 20'000'000;
     uint64_t array_items = 50'000'000;
     size_t depth = 400; // blocks and parentheses inside each other: the C++ stack holds as many
@@ -87,7 +87,7 @@ public:
     ImageSize picture{640, 480};
     Texture defaults; // of #default
     std::vector<uint32_t> random_streams;
-    const Limits limits;
+    Limits limits;
     uint64_t objects = 0;
 
 private:
