@@ -114,10 +114,28 @@ struct Light {
 /// whatever the image's size; of any handedness. Orthographic: rays begin in the window's plane
 /// through the eye, and all go along `direction`.
 struct ImageWindow {
+    /// How the picture is bent, as POV-Ray's cameras of these names do it; Flat: not at all. All
+    /// others are seen over `angle` and `vertical_angle` and take `right` and `up` for shape only.
+    enum class Bend {
+        Flat,
+        Fisheye,
+        UltraWide,
+        Omnimax,
+        Panoramic,
+        Spherical,
+        Cylinder1,
+        Cylinder2,
+        Cylinder3,
+        Cylinder4
+    };
+
     dvec3 direction{0, 0, 1};
     dvec3 right{1.33, 0, 0};
     dvec3 up{0, 1, 0};
     bool orthographic = false;
+    Bend bend = Bend::Flat;
+    double angle = 90; // degrees, across the picture
+    double vertical_angle = 90;
 };
 
 /// A perspective camera. fov_degrees: the full angle of view along the image's shorter side.
@@ -159,6 +177,7 @@ struct Scene {
     std::optional<ImageSize> size;     // of the picture that the file asks for
     std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's
     Background background;
+    double gamma = 1; // what is rendered ^ gamma is linear light: POV-Ray's assumed_gamma
     std::optional<Instancing> instancing; // none: every triangle is its own
 
     /// 3 per triangle, to be turned by MeshInfo::turn; empty: the mesh has none.

@@ -2,6 +2,8 @@
 // Pinhole rays, Morton order and automatic framing.
 #include "host/camera.h"
 
+#include "host/bent_window.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -69,10 +71,14 @@ Pinhole::Pinhole(const Camera& camera, uint32_t width, uint32_t height)
         to_right_ = 0.5 * camera.window->right;
         to_top_ = 0.5 * camera.window->up;
         orthographic_ = camera.window->orthographic;
+        if (camera.window->bend != ImageWindow::Bend::Flat)
+            bent_ = *camera.window;
     }
 }
 
 Ray Pinhole::ray(uint32_t x, uint32_t y) const {
+    if (bent_)
+        return bent_ray(*bent_, eye_, {(x + 0.5) / width_ - 0.5, 0.5 - (y + 0.5) / height_});
     const dvec3 in_plane =
         (2 * (x + 0.5) / width_ - 1) * to_right_ + (1 - 2 * (y + 0.5) / height_) * to_top_;
     Ray ray;

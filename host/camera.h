@@ -9,6 +9,7 @@
 #include "core/scene.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace ovc {
@@ -28,6 +29,7 @@ public:
     /// not.
     Pinhole(const Camera& camera, uint32_t width, uint32_t height);
 
+    /// A pixel that a bent picture leaves out gets a ray that hits nothing: its dir is 0.
     /// Through the centre of pixel (x, y), (0, 0) being top left. dir is not of unit length: t is
     /// the depth, in a window's case in units of its direction.
     Ray ray(uint32_t x, uint32_t y) const;
@@ -44,6 +46,7 @@ private:
     // To the middle of the image plane, and from there to its right and upper edge.
     dvec3 middle_, to_right_, to_top_;
     bool orthographic_ = false;
+    std::optional<ImageWindow> bent_;
 };
 
 /// The pixels y * width + x of an image, each once: tiles of 8 x 8 in Morton order, Morton order

@@ -16,6 +16,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace ovc {
@@ -87,6 +88,8 @@ private:
             frame.report = *report;
         else
             return report.error();
+        if (scene_.gamma != 1)
+            to_linear(image);
         frame.tracing = counted_between(before, backend_.statistics());
         const Stopwatch output;
         if (frame.report.complete || !is_sequence())
@@ -95,6 +98,13 @@ private:
         frame.seconds_output = output.seconds();
         frame.seconds = watch.seconds();
         return frame;
+    }
+
+    /// From the light of a scene with an assumed_gamma to what files hold.
+    void to_linear(Image& image) const {
+        for (vec4& pixel : image.pixels)
+            for (int i = 0; i < 3; ++i)
+                pixel[i] = std::pow(std::max(pixel[i], 0.0f), float(scene_.gamma));
     }
 
     Result<RenderReport> trace(const Shot& shot, Image& image) {
@@ -144,7 +154,7 @@ Result<int> render(const RenderJob& job) {
     const Stopwatch total;
     const LogSink log = standard_error_log(/* chatty= */ !job.quiet);
     RenderStats stats;
-    Result<Scene> scene = open_scene(job.scene, log);
+    Result<Scene> scene = open_scene(job.scene, log, job.size);
     if (!scene)
         return scene.error();
     stats.scene = job.scene.scene;

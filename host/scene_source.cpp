@@ -17,7 +17,7 @@ namespace ovc {
 void SceneArguments::add_to(CLI::App& app, const char* name) {
     app.add_option(
            name, scene,
-           "A file (.ply .obj .pbrt, also .gz, or what Assimp reads) or a test scene's name")
+           "A file (.ply .obj .pbrt .pov, also .gz, or what Assimp reads) or a test scene's name")
         ->required();
     app.add_option("--model", model,
                    "For dragons-N and dragonball: the model they show instead of a generated one")
@@ -64,8 +64,10 @@ static Result<Scene> make_with_model(const std::string& name, const ImportOption
     return scene ? std::move(scene) : Error{fmt::format("{}: {}", model, scene.error().message)};
 }
 
-Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log) {
+Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
+                         std::optional<ImageSize> size) {
     ImportOptions options{log, arguments.strict};
+    options.size = size;
     options.max_triangles = *triangle_limit(arguments.max_triangles);
     return open_scene(arguments.scene, options, arguments.model);
 }

@@ -40,8 +40,9 @@ inline Result<Scene> open_scene(const std::string& source, const LogSink& log,
                                 const std::string& model = {}) {
     return open_scene(source, ImportOptions{log}, model);
 }
-/// check() has accepted them.
-Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log);
+/// check() has accepted them. size: of the picture to come, where that is known.
+Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
+                         std::optional<ImageSize> size = {});
 
 /// Writes warnings and errors, and Info if `chatty`, to standard error, one line each.
 LogSink standard_error_log(bool chatty);

@@ -22,7 +22,10 @@ struct Format {
 };
 
 constexpr Format kFormats[] = {
-    {"obj", read_obj, write_obj}, {"pbrt", read_pbrt, nullptr}, {"ply", read_ply, write_ply}};
+    {"obj", read_obj, write_obj},
+    {"pbrt", read_pbrt, nullptr},
+    {"ply", read_ply, write_ply},
+    {"pov", read_pov, nullptr}};
 
 const Format* format_of(std::string_view extension) {
     for (const Format& format : kFormats)

@@ -22,6 +22,8 @@ struct ImportOptions {
     /// Scene descriptions: more triangles than this, instances expanded, are refused before they
     /// are made.
     uint64_t max_triangles = kDefaultMostTriangles;
+    /// Of the picture to come, where that is known: scenes of POV-Ray may ask for it.
+    std::optional<ImageSize> size = {};
 };
 
 /// Reads a scene. The reader is chosen by the extension, a trailing .gz taken off first; any case.

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: POV-Ray 3.7 reference, section 3.4.1.2, "Types of Projection"; the formulas are those
+// that its pictures follow.
+#include "host/bent_window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace ovc {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// By the angle off the axis that a distance from the middle stands for; 1 is the rim.
+template <class OffAxis>
+dvec3 around_the_axis(const ImageWindow& w, const dvec2& at, OffAxis off_axis) {
+    const dvec2 p(2 * at.x * glm::length(w.right), 2 * at.y * glm::length(w.up));
+    const double distance = glm::length(p);
+    if (distance > 1)
+        return dvec3(0);
+    const double angle = off_axis(distance);
+    const dvec2 way = distance > 0 ? p / distance : dvec2(0);
+    return std::sin(angle) * (way.x * glm::normalize(w.right) + way.y * glm::normalize(w.up)) +
+           std::cos(angle) * glm::normalize(w.direction);
+}
+
+/// POV-Ray's polynomial for the dome's lens.
+double omnimax(double r) {
+    return r * (1.411269 + r * r * (-0.09439 + r * r * 0.25674));
+}
+
+} // namespace
+
+Ray bent_ray(const ImageWindow& w, const dvec3& eye, const dvec2& at) {
+    using Bend = ImageWindow::Bend;
+    const dvec3 right = glm::normalize(w.right), up = glm::normalize(w.up);
+    const dvec3 forward = glm::normalize(w.direction);
+    const double across = at.x * w.angle * kPi / 180;
+    const double upward = at.y * w.angle * kPi / 180;
+    Ray ray;
+    ray.org = eye;
+    switch (w.bend) {
+    case Bend::Fisheye:
+        ray.dir = around_the_axis(w, at, [&](double r) { return r * w.angle * kPi / 360; });
+        break;
+    case Bend::Omnimax:
+        ray.dir = around_the_axis(w, at, omnimax);
+        break;
+    case Bend::UltraWide:
+        ray.dir = std::sin(across) * right + std::sin(upward) * up +
+                  std::cos(across) * std::cos(upward) * forward;
+        break;
+    case Bend::Panoramic: {
+        const double turn = at.x * kPi, rise = std::clamp(at.y * kPi, -1.57, 1.57);
+        ray.dir = std::sin(turn) * right + std::tan(rise) * up + std::cos(turn) * forward;
+        break;
+    }
+    case Bend::Spherical: {
+        const double rise = at.y * w.vertical_angle * kPi / 180;
+        ray.dir = std::cos(rise) * (std::sin(across) * right + std::cos(across) * forward) +
+                  std::sin(rise) * up;
+        break;
+    }
+    case Bend::Cylinder1:
+        ray.dir = std::sin(across) * right + at.y * w.up + std::cos(across) * forward;
+        break;
+    case Bend::Cylinder2:
+        ray.dir = at.x * w.right + std::sin(upward) * up + std::cos(upward) * forward;
+        break;
+    case Bend::Cylinder3:
+        ray.org = eye + at.y * w.up;
+        ray.dir = std::sin(across) * right + std::cos(across) * forward;
+        break;
+    case Bend::Cylinder4:
+        ray.org = eye + at.x * w.right;
+        ray.dir = std::sin(upward) * up + std::cos(upward) * forward;
+        break;
+    case Bend::Flat:
+        break;
+    }
+    return ray;
+}
+
+} // namespace ovc

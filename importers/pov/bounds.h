@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The box around an object: min_extent() and max_extent().
+#pragma once
+
+#include "core/box.h"
+#include "importers/pov/object.h"
+
+namespace ovc::pov {
+
+/// Of its triangles, in the space that it stands in; empty: the box is all of space, as POV-Ray has
+/// it for what is endless.
+Box bounds_of(const Object& object);
+
+} // namespace ovc::pov

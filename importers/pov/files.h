@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the files are that a scene names.
+#pragma once
+
+#include "core/result.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ovc::pov {
+
+/// The first file of this name in `folders`, then in the folder of POV-Ray's include files; empty:
+/// none. `\` counts as `/`; where no file has exactly this name, capital and small letters are the
+/// same.
+std::filesystem::path find_file(std::string name, const std::vector<std::string>& folders);
+
+/// The whole of a file, unpacked; lines end with LF.
+Result<std::string> read_text(const std::filesystem::path& path);
+
+} // namespace ovc::pov

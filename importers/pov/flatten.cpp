@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+// First every visible shape with what it inherits, then how finely to cut, then the cutting.
+#include "importers/pov/flatten.h"
+
+#include "importers/origin.h"
+#include "importers/pov/bounds.h"
+#include "importers/readers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+namespace ovc::pov {
+
+namespace {
+
+/// A shape as it stands in the world.
+struct Placed {
+    const Object* object;
+    dmat4 placed;
+    bool inverse;
+    uint32_t material;
+    bool no_shadow;
+};
+
+/// What is handed down from parents.
+struct Inherited {
+    dmat4 placed{1};
+    const Texture* texture = nullptr;
+    dmat4 texture_placed{1}; // on top of the texture's own
+    const Interior* interior = nullptr;
+    bool no_shadow = false;
+    bool inverse = false;
+};
+
+/// Materials that are alike become one.
+class MaterialTable {
+public:
+    MaterialTable(const Look& look, Scene& scene) : look_(look), scene_(scene) {}
+
+    uint32_t number(const Texture& texture, const dmat4& placed, const Interior* interior) {
+        ovc::Material material = made(texture, placed, interior);
+        std::vector<double> key = key_of(material);
+        const auto [at, is_new] =
+            numbers_.try_emplace(std::move(key), uint32_t(scene_.materials.size()));
+        if (is_new) {
+            material.name = fmt::format("material {}", scene_.materials.size() + 1);
+            scene_.materials.push_back(std::move(material));
+        }
+        return at->second;
+    }
+
+private:
+    ovc::Material made(const Texture& texture, const dmat4& placed,
+                       const Interior* interior) const {
+        const Color& color = texture.pigment.color;
+        ovc::Material material;
+        Finish finish = texture.surface.finish;
+        const float opacity = std::clamp(color.opacity(), 0.0f, 1.0f);
+        finish.diffuse *= opacity;
+        finish.ambient =
+            opacity * (texture.surface.ambient * look_.ambient_light + texture.surface.emission);
+        material.color = color.rgb;
+        material.mirror =
+            std::max(max_component(finish.reflection), max_component(finish.grazing_reflection));
+        const vec3 through = color.filter * color.rgb + vec3(color.transmit);
+        material.transmission = std::clamp(max_component(through), 0.0f, 1.0f);
+        if (material.transmission > 0)
+            material.filter = glm::clamp(through / material.transmission, 0.0f, 1.0f);
+        material.ior = interior && is_usable_ior(interior->ior) ? interior->ior : 1;
+        material.finish = finish;
+        if (texture.pigment.other) {
+            const dmat4 whole = placed * texture.pigment.placed;
+            const dmat4 back = glm::inverse(whole);
+            Checker checker;
+            checker.other = texture.pigment.other->rgb;
+            for (int row = 0; row < 3; ++row)
+                for (int column = 0; column < 4; ++column)
+                    checker.to_cubes[size_t(row)][column] = back[column][row];
+            material.checker = checker;
+        }
+        return material;
+    }
+
+    static std::vector<double> key_of(const ovc::Material& m) {
+        std::vector<double> key;
+        const auto add = [&](const vec3& v) {
+            for (int i = 0; i < 3; ++i)
+                key.push_back(v[i]);
+        };
+        add(m.color);
+        add(m.filter);
+        add(m.finish->ambient);
+        add(m.finish->reflection);
+        add(m.finish->grazing_reflection);
+        const Finish& f = *m.finish;
+        for (const double value :
+             {double(m.transmission), m.ior, double(f.diffuse), double(f.brilliance),
+              double(f.phong), double(f.phong_size), double(f.specular), double(f.roughness),
+              double(f.metallic), double(f.reflection_falloff), double(f.fresnel),
+              double(f.metallic_reflection), double(f.conserve_energy)})
+            key.push_back(value);
+        if (m.checker) {
+            add(m.checker->other);
+            for (const dvec4& row : m.checker->to_cubes)
+                for (int i = 0; i < 4; ++i)
+                    key.push_back(row[i]);
+        }
+        for (double& value : key)
+            value = std::isnan(value) ? 0 : value; // a key must be equal to itself
+        return key;
+    }
+
+    const Look& look_;
+    Scene& scene_;
+    std::map<std::vector<double>, uint32_t> numbers_;
+};
+
+void add_light(const LightSource& source, const dmat4& placed, Scene& scene) {
+    Light light = source.light;
+    light.position = dvec3(placed * dvec4(light.position, 1));
+    const dvec3 way(placed * dvec4(light.direction, 0));
+    if (glm::length(way) > 0)
+        light.direction = glm::normalize(way);
+    scene.lights.push_back(light);
+}
+
+class Gatherer {
+public:
+    Gatherer(const Look& look, Scene& scene)
+        : look_(look), scene_(scene), materials_(look, scene) {}
+
+    void gather(const Object& object, Inherited from) {
+        if (object.no_image)
+            return;
+        if (!object.refused.empty())
+            throw ParseError(object.place, object.refused);
+        from.texture_placed = object.texture ? from.placed : from.texture_placed;
+        from.texture = object.texture ? &*object.texture : from.texture;
+        from.placed = from.placed * object.placed;
+        from.interior = object.interior ? &*object.interior : from.interior;
+        from.no_shadow = from.no_shadow || object.no_shadow;
+        from.inverse = from.inverse != object.inverse;
+        if (const auto* light = std::get_if<LightSource>(&object.shape))
+            add_light(*light, from.placed, scene_);
+        else if (!std::holds_alternative<std::monostate>(object.shape)) {
+            const Texture& texture = from.texture ? *from.texture : look_.defaults;
+            placed.push_back({&object, from.placed, from.inverse,
+                              materials_.number(texture, from.texture_placed, from.interior),
+                              from.no_shadow});
+        }
+        // Groups of groups may be more than any memory holds: what is placed has two triangles.
+        if (++visited_ > look_.most_triangles / 2)
+            throw ParseError(object.place,
+                             fmt::format("found more than {} objects in the scene, expected at "
+                                         "most as many as half of the triangles allowed",
+                                         look_.most_triangles / 2));
+        for (const ObjectPtr& child : object.children)
+            gather(*child, from);
+    }
+
+    std::vector<Placed> placed;
+
+private:
+    const Look& look_;
+    Scene& scene_;
+    MaterialTable materials_;
+    uint64_t visited_ = 0;
+};
+
+double triangles_at(const std::vector<Placed>& placed, int segments) {
+    double sum = 0;
+    for (const Placed& p : placed)
+        if (const Shape* shape = std::get_if<Shape>(&p.object->shape))
+            sum += shape->triangles(segments);
+    return sum;
+}
+
+int choose_segments(const std::vector<Placed>& placed) {
+    int segments = kMostSegments;
+    while (segments > 8 &&
+           triangles_at(placed, segments) - triangles_at(placed, 0) > kMostRoundTriangles)
+        segments = std::max(8, segments * 3 / 4 / 4 * 4);
+    return segments;
+}
+
+Box box_of(const std::vector<Placed>& placed, int segments) {
+    Box box;
+    Facets facets;
+    for (const Placed& p : placed)
+        if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
+            facets.corners.clear();
+            shape->cut(segments, p.object->open, facets);
+            for (const Corner& corner : facets.corners)
+                if (const dvec3 at(p.placed * dvec4(corner.position, 1)); is_finite(at))
+                    box.add(at);
+        }
+    return box;
+}
+
+/// The triangles of one material.
+struct Batch {
+    std::vector<vec3> corners, normals;
+    bool smooth = false;
+};
+
+void add_corners(const Facets& facets, const Placed& p, const dvec3& origin, Batch& batch) {
+    const dmat3 turned = glm::transpose(glm::inverse(dmat3(p.placed)));
+    const bool mirrored = (glm::determinant(dmat3(p.placed)) < 0) != p.inverse;
+    const double outward = p.inverse ? -1 : 1;
+    const size_t order[3] = {0, mirrored ? size_t(2) : 1, mirrored ? size_t(1) : 2};
+    for (size_t t = 0; t + 2 < facets.corners.size(); t += 3) {
+        dvec3 at[3], normal[3];
+        for (size_t i = 0; i < 3; ++i) {
+            const Corner& corner = facets.corners[t + order[i]];
+            at[i] = dvec3(p.placed * dvec4(corner.position, 1));
+            normal[i] = outward * (turned * corner.normal);
+        }
+        const dvec3 flat = glm::cross(at[1] - at[0], at[2] - at[0]);
+        for (size_t i = 0; i < 3; ++i) {
+            batch.corners.push_back(vec3(at[i] - origin));
+            const dvec3& n = glm::dot(normal[i], normal[i]) > 0 ? normal[i] : flat;
+            const double length = glm::length(n);
+            batch.normals.push_back(length > 0 && std::isfinite(length) ? vec3(n / length)
+                                                                        : vec3(0));
+        }
+    }
+    batch.smooth = batch.smooth || facets.smooth;
+}
+
+/// Squares around the point of the plane nearest to the scene; that point is a corner of each, so
+/// that floats keep the plane in place there.
+void add_plane(const Placed& p, const dvec3& center, double reach, Scene& scene) {
+    const PlaneShape& plane = std::get<PlaneShape>(p.object->shape);
+    const dmat3 turned = glm::transpose(glm::inverse(dmat3(p.placed)));
+    const dvec3 normal = glm::normalize(turned * plane.normal) * (p.inverse ? -1.0 : 1.0);
+    const dvec3 on_plane(p.placed * dvec4(plane.distance * plane.normal, 1));
+    if (!is_finite(normal) || !is_finite(on_plane))
+        return;
+    const dvec3 origin = center + glm::dot(on_plane - center, normal) * normal;
+    const int major = major_axis(normal);
+    dvec3 u(0);
+    u[(major + 1) % 3] = 1;
+    u = glm::normalize(u - glm::dot(u, normal) * normal);
+    const dvec3 v = glm::cross(normal, u);
+    const double r = kPlaneReach * std::max(reach, glm::length(origin - center));
+    std::vector<vec3> corners;
+    const dvec3 rim[4] = {r * (u + v), r * (v - u), -r * (u + v), r * (u - v)};
+    for (int i = 0; i < 4; ++i)
+        corners.insert(corners.end(), {vec3(0), vec3(rim[i]), vec3(rim[(i + 1) % 4])});
+    const uint32_t mesh =
+        scene.add_mesh("plane", p.material, Chunk::owning(origin, std::move(corners)));
+    scene.meshes[mesh].no_shadow = p.no_shadow;
+}
+
+} // namespace
+
+void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& scene) {
+    Gatherer gatherer(look, scene);
+    for (const ObjectPtr& object : objects)
+        gatherer.gather(*object, {});
+    const std::vector<Placed>& placed = gatherer.placed;
+
+    const int segments = choose_segments(placed);
+    if (const double count = triangles_at(placed, segments); count > double(look.most_triangles))
+        throw ParseError({}, fmt::format("found about {:.0f} triangles, expected at most {}", count,
+                                         look.most_triangles));
+    const Box box = box_of(placed, 8);
+    const dvec3 origin = chunk_origin(box, 16);
+    std::map<std::pair<uint32_t, bool>, Batch> batches;
+    Facets facets;
+    for (const Placed& p : placed)
+        if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
+            facets.corners.clear();
+            facets.smooth = false;
+            shape->cut(segments, p.object->open, facets);
+            add_corners(facets, p, origin, batches[{p.material, p.no_shadow}]);
+        }
+    for (auto& [key, batch] : batches) {
+        if (batch.corners.empty())
+            continue;
+        if (batch.corners.size() / 3 > kMostTriangles)
+            throw ParseError({}, fmt::format("found {} triangles of one material, expected at "
+                                             "most {}",
+                                             batch.corners.size() / 3, kMostTriangles));
+        const uint32_t mesh =
+            scene.add_mesh(scene.materials[key.first].name, key.first,
+                           Chunk::owning(origin, std::move(batch.corners)),
+                           batch.smooth ? std::move(batch.normals) : std::vector<vec3>());
+        scene.meshes[mesh].no_shadow = key.second;
+    }
+
+    Box world = box;
+    if (look.eye)
+        world.add(*look.eye);
+    if (world.empty())
+        world.add(dvec3(0));
+    for (const Placed& p : placed)
+        if (std::holds_alternative<PlaneShape>(p.object->shape))
+            add_plane(p, world.center(), std::max(1.0, 0.5 * glm::length(world.extent())), scene);
+}
+
+Box bounds_of(const Object& object) {
+    Scene scene;
+    const Look look;
+    Gatherer gatherer(look, scene);
+    gatherer.gather(object, {});
+    for (const Placed& p : gatherer.placed)
+        if (std::holds_alternative<PlaneShape>(p.object->shape))
+            return {dvec3(-1e10), dvec3(1e10)};
+    Box box = box_of(gatherer.placed, 32);
+    if (box.empty())
+        box.add(dvec3(0));
+    return box;
+}
+
+} // namespace ovc::pov

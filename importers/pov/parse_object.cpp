@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/pov/parse_object.h"
+
+#include "importers/pov/block.h"
+#include "importers/pov/shape.h"
+#include "importers/pov/texture.h"
+#include "importers/pov/transform.h"
+#include "importers/text.h"
+
+#include <fmt/format.h>
+
+#include <unordered_map>
+
+namespace ovc::pov {
+
+namespace {
+
+using ParseShape = Shape (*)(Reader&);
+const std::unordered_map<std::string_view, ParseShape> kShapes = {
+    {"sphere", parse_sphere},
+    {"box", parse_box},
+    {"cylinder", parse_cylinder},
+    {"cone", parse_cone},
+    {"torus", parse_torus},
+    {"disc", parse_disc},
+    {"triangle", parse_triangle},
+    {"smooth_triangle", parse_smooth_triangle},
+    {"polygon", parse_polygon},
+    {"prism", parse_prism},
+    {"lathe", parse_lathe},
+    {"sor", parse_sor},
+    {"superellipsoid", parse_superellipsoid},
+    {"bicubic_patch", parse_bicubic_patch}};
+
+using ParseWhole = void (*)(Reader&, Object&);
+void parse_plane(Reader& reader, Object& object);
+void parse_group(Reader& reader, Object& object);
+void parse_wrapped(Reader& reader, Object& object);
+void parse_refused(Reader& reader, Object& object);
+
+const std::unordered_map<std::string_view, ParseWhole> kWholes = {
+    {"plane", parse_plane},           {"mesh", parse_mesh},
+    {"mesh2", parse_mesh2},           {"light_source", parse_light_source},
+    {"object", parse_wrapped},        {"union", parse_group},
+    {"merge", parse_group},           {"difference", parse_group},
+    {"intersection", parse_group},    {"light_group", parse_group},
+    {"blob", parse_refused},          {"cubic", parse_refused},
+    {"height_field", parse_refused},  {"isosurface", parse_refused},
+    {"julia_fractal", parse_refused}, {"parametric", parse_refused},
+    {"poly", parse_refused},          {"polynomial", parse_refused},
+    {"quadric", parse_refused},       {"quartic", parse_refused},
+    {"sphere_sweep", parse_refused},  {"text", parse_refused}};
+
+void parse_plane(Reader& reader, Object& object) {
+    PlaneShape plane;
+    plane.normal = parse_vector(reader);
+    reader.take_comma();
+    const double length = glm::length(plane.normal);
+    if (!(length > 0))
+        reader.fail(reader.place(), "found a plane whose normal is 0");
+    plane.normal /= length;
+    plane.distance = parse_float(reader);
+    object.shape = plane;
+    parse_modifiers(reader, object);
+}
+
+void parse_children(Reader& reader, Object& object) {
+    for (;;) {
+        const Token token = reader.peek();
+        if (starts_object(token))
+            object.children.push_back(parse_object(reader));
+        else if (auto named_object = take_named_if<ObjectPtr>(reader))
+            object.children.push_back(std::move(*named_object));
+        else if (!reader.take(';'))
+            return;
+    }
+}
+
+void parse_group(Reader& reader, Object& object) {
+    parse_children(reader, object);
+    if (object.kind == "difference" || object.kind == "intersection")
+        object.refused = fmt::format("{} is not supported", object.kind);
+    if (object.kind == "merge")
+        reader.warn("merge", object.place,
+                    "merge is taken for union: where it lets light through, inner surfaces show");
+    parse_modifiers(reader, object);
+}
+
+/// object { NAME … } or object { sphere { … } … }.
+void parse_wrapped(Reader& reader, Object& object) {
+    if (!starts_object(reader.peek()))
+        reader.fail_here("an object or the name of one");
+    const ObjectPtr inside = parse_object(reader);
+    const Place at = object.place;
+    object = *inside;
+    object.place = at;
+    parse_modifiers(reader, object);
+}
+
+void parse_refused(Reader& reader, Object& object) {
+    object.refused = fmt::format("{} is not supported", object.kind);
+    skip_block(reader);
+}
+
+void add_texture(Object& object, const Texture& texture) {
+    object.texture = object.texture ? layered(texture, *object.texture) : texture;
+}
+
+/// The texture that a pigment or finish of its own changes.
+Texture& own_texture(Reader& reader, Object& object) {
+    if (!object.texture)
+        object.texture = reader.defaults;
+    return *object.texture;
+}
+
+bool parse_look(Reader& reader, Object& object) {
+    const Token token = reader.peek();
+    if (reader.take("texture"))
+        add_texture(object, parse_texture(reader));
+    else if (reader.take("pigment")) {
+        Texture& texture = own_texture(reader, object);
+        texture.pigment = parse_pigment(reader, texture.pigment);
+    } else if (reader.take("finish")) {
+        Texture& texture = own_texture(reader, object);
+        texture.surface = parse_finish(reader, texture.surface);
+    } else if (reader.take("normal")) {
+        own_texture(reader, object);
+        reader.warn("normal", token.place, "normal patterns are left out");
+        skip_braces(reader, "normal");
+    } else if (reader.take("material")) {
+        const Material material = parse_material(reader);
+        if (material.texture)
+            add_texture(object, *material.texture);
+        if (material.interior)
+            object.interior = material.interior;
+    } else if (reader.take("interior"))
+        object.interior = parse_interior(reader, object.interior.value_or(Interior{}));
+    else
+        return false;
+    return true;
+}
+
+bool parse_switch(Reader& reader, Object& object) {
+    if (reader.take("no_shadow"))
+        object.no_shadow = parse_flag(reader);
+    else if (reader.take("no_image"))
+        object.no_image = parse_flag(reader);
+    else if (reader.take("inverse"))
+        object.inverse = !object.inverse;
+    else if (reader.take("open"))
+        object.open = parse_flag(reader);
+    else if (reader.take("hollow") || reader.take("no_reflection") || reader.take("sturm") ||
+             reader.take("hierarchy") || reader.take("double_illuminate") ||
+             reader.take("split_union") || reader.take("no_radiosity"))
+        parse_flag(reader);
+    else
+        return false;
+    return true;
+}
+
+} // namespace
+
+bool starts_object(const Token& token) {
+    return token.kind == TokenKind::Name && token.name->is_keyword &&
+           (kShapes.contains(token.name->text) || kWholes.contains(token.name->text));
+}
+
+void place(Object& object, const dmat4& by) {
+    object.placed = by * object.placed;
+    if (object.texture)
+        object.texture->pigment.placed = by * object.texture->pigment.placed;
+}
+
+ObjectPtr parse_object(Reader& reader) {
+    const Deeper deeper(reader);
+    const Token keyword = reader.next();
+    if (++reader.objects > reader.limits.objects)
+        reader.fail(keyword.place, fmt::format("stopped after {} objects: a loop or a macro does "
+                                               "not end",
+                                               reader.limits.objects));
+    auto object = std::make_shared<Object>();
+    object->kind = keyword.name->text; // names live as long as the reader
+    object->place = keyword.place;
+    reader.expect('{', object->kind);
+    // Any kind may begin with the name of an object.
+    const bool is_group = kWholes.contains(object->kind) && object->kind != "object" &&
+                          object->kind != "light_source" && object->kind != "mesh" &&
+                          object->kind != "mesh2";
+    if (!is_group) {
+        if (const auto other = take_named_if<ObjectPtr>(reader)) {
+            const Place at = object->place;
+            *object = **other;
+            object->place = at;
+            parse_modifiers(reader, *object);
+            return object;
+        }
+    }
+    if (const auto shape = kShapes.find(object->kind); shape != kShapes.end()) {
+        object->shape = shape->second(reader);
+        parse_modifiers(reader, *object);
+    } else
+        kWholes.at(object->kind)(reader, *object);
+    return object;
+}
+
+void parse_modifiers(Reader& reader, Object& object) {
+    while (!reader.take('}')) {
+        const Token token = reader.peek();
+        if (parse_look(reader, object) || parse_switch(reader, object))
+            continue;
+        if (const auto m = take_transform(reader))
+            place(object, *m);
+        else if (reader.take("clipped_by")) {
+            object.refused = "clipped_by is not supported";
+            skip_braces(reader, "clipped_by");
+        } else if (const auto texture = take_named_if<Texture>(reader))
+            add_texture(object, *texture); // as old scenes have it
+        else if (token.kind == TokenKind::Name && token.name->is_keyword && !starts_object(token)) {
+            reader.next(); // bounded_by, interior_texture, photons, uv_mapping and the like
+            skip_arguments(reader);
+        } else if (!reader.take(',') && !reader.take(';'))
+            reader.fail_here(fmt::format("'}}' or a modifier of {}", object.kind));
+    }
+}
+
+} // namespace ovc::pov

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// The POV-Ray reader: statements of a scene, and the errors it ends with. docs/pov.md says what is
+// read.
+#include "importers/pov/block.h"
+#include "importers/pov/files.h"
+#include "importers/pov/flatten.h"
+#include "importers/pov/parse_camera.h"
+#include "importers/pov/parse_object.h"
+#include "importers/pov/parse_value.h"
+#include "importers/pov/texture.h"
+#include "importers/readers.h"
+#include "importers/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ovc::pov {
+
+namespace {
+
+/// #default { texture { … } pigment { … } finish { … } }
+void parse_defaults(Reader& reader) {
+    reader.expect('{', "#default");
+    while (!reader.take('}')) {
+        if (reader.take("texture"))
+            reader.defaults = parse_texture(reader);
+        else if (reader.take("pigment"))
+            reader.defaults.pigment = parse_pigment(reader, reader.defaults.pigment);
+        else if (reader.take("finish"))
+            reader.defaults.surface = parse_finish(reader, reader.defaults.surface);
+        else if (reader.take("normal") || reader.take("camera") || reader.take("radiosity"))
+            skip_braces(reader, "#default");
+        else
+            reader.fail_here("a texture, pigment or finish");
+    }
+}
+
+Texture factory_default() {
+    Texture texture;
+    texture.surface.finish.diffuse = 0.6f;
+    return texture;
+}
+
+class SceneParser {
+public:
+    SceneParser(const ImportOptions& options, const std::string& folder, uint64_t most_words)
+        : options_(options),
+          reader_({parse_value, parse_float, parse_condition, parse_item, parse_defaults},
+                  options.log, folder) {
+        reader_.limits.tokens = most_words;
+        reader_.defaults = factory_default();
+        reader_.picture = options.size.value_or(reader_.picture);
+    }
+
+    Scene parse(std::unique_ptr<SourceFile> file) {
+        Scene scene;
+        scene.background = {vec3(0), vec3(0)}; // POV-Ray's
+        reader_.open(std::move(file));
+        while (reader_.peek().kind != TokenKind::End)
+            parse_statement(scene);
+        camera_ = camera_ ? camera_ : std::make_shared<const CameraValue>();
+        scene.camera = camera_of(*camera_);
+        scene.size = options_.size.value_or(size_of(*camera_));
+        look_.eye = camera_->location;
+        look_.defaults = reader_.defaults;
+        look_.most_triangles = options_.max_triangles;
+        flatten(objects_, look_, scene);
+        return scene;
+    }
+
+private:
+    void parse_statement(Scene& scene) {
+        const Token token = reader_.peek();
+        if (starts_object(token))
+            objects_.push_back(parse_object(reader_));
+        else if (reader_.take("camera"))
+            camera_ = parse_camera(reader_);
+        else if (reader_.take("background"))
+            parse_background(scene);
+        else if (reader_.take("global_settings"))
+            parse_settings(scene);
+        else if (reader_.take("sky_sphere"))
+            parse_sky(token, scene);
+        else if (token.is("fog") || token.is("media") || token.is("rainbow") ||
+                 token.is("photons") || token.is("radiosity")) {
+            reader_.next();
+            reader_.warn(token.name->text, token.place, token.name->text + " is left out");
+            skip_braces(reader_, token.name->text);
+        } else if (auto object = take_named_if<ObjectPtr>(reader_))
+            objects_.push_back(std::move(*object));
+        else if (const auto camera = take_named_if<std::shared_ptr<const CameraValue>>(reader_))
+            camera_ = *camera;
+        else if (!reader_.take(';')) {
+            reader_.next();
+            const bool is_undeclared = token.kind == TokenKind::Name && !token.name->is_keyword &&
+                                       !reader_.find(token.name);
+            reader_.fail(token.place,
+                         fmt::format("found {}{}, expected an object or a statement "
+                                     "such as camera",
+                                     found(token), is_undeclared ? ", which is not declared" : ""));
+        }
+    }
+
+    void parse_background(Scene& scene) {
+        reader_.expect('{', "background");
+        scene.background.horizon = scene.background.zenith = parse_color(reader_).rgb;
+        reader_.expect('}', "background");
+    }
+
+    void parse_sky(const Token& at, Scene& scene) {
+        reader_.expect('{', "sky_sphere");
+        while (!reader_.take('}')) {
+            if (reader_.take("pigment")) {
+                const Pigment pigment = parse_pigment(reader_, reader_.defaults.pigment);
+                scene.background.horizon = scene.background.zenith = pigment.color.rgb;
+            } else if (reader_.next().kind == TokenKind::End)
+                reader_.fail(at.place, "found no '}' to sky_sphere");
+            else
+                skip_arguments(reader_);
+        }
+        reader_.warn("sky_sphere", at.place, "sky_sphere is drawn by its average color");
+    }
+
+    void parse_settings(Scene& scene) {
+        reader_.expect('{', "global_settings");
+        while (!reader_.take('}')) {
+            if (reader_.take("assumed_gamma")) {
+                reader_.gamma = std::clamp(parse_float(reader_), 0.1, 10.0);
+                scene.gamma = reader_.gamma;
+            } else if (reader_.take("max_trace_level"))
+                scene.max_depth = uint32_t(parse_int(reader_, 0, 256, "max_trace_level"));
+            else if (reader_.take("ambient_light"))
+                look_.ambient_light = parse_color(reader_).rgb;
+            else if (const Token token = reader_.next(); token.kind == TokenKind::Name)
+                skip_arguments(reader_);
+            else
+                reader_.fail(token.place, fmt::format("found {}, expected a part of "
+                                                      "global_settings",
+                                                      found(token)));
+        }
+    }
+
+    /// 480 high, and as wide as the camera's window is.
+    ImageSize size_of(const CameraValue& camera) const {
+        const double high = glm::length(camera.up), wide = glm::length(camera.right);
+        const double ratio = high > 0 && wide > 0 ? std::clamp(wide / high, 0.1, 10.0) : 4 / 3.0;
+        return {uint32_t(std::lround(480 * ratio)), 480};
+    }
+
+    const ImportOptions& options_;
+    Reader reader_;
+    Look look_;
+    std::vector<ObjectPtr> objects_;
+    std::shared_ptr<const CameraValue> camera_;
+};
+
+/// "FILE:LINE:COLUMN: sentence", and the line.
+Error error_at(const Place& place, const std::string& sentence, const std::string& fallback) {
+    if (!place.file)
+        return {fmt::format("{}: {}", fallback, sentence)};
+    const std::string shown = excerpt(place);
+    return {fmt::format("{}:{}:{}: {}{}{}", place.file->name, place.line, place.column, sentence,
+                        shown.empty() ? "" : "\n", shown)};
+}
+
+} // namespace
+
+} // namespace ovc::pov
+
+namespace ovc {
+
+Result<Scene> read_pov(const std::filesystem::path& path, const ImportOptions& options) {
+    Result<std::string> text = pov::read_text(path);
+    if (!text)
+        return text.error();
+    return parse_pov(std::move(*text), path, options);
+}
+
+Result<Scene> parse_pov(std::string text, const std::filesystem::path& path,
+                        const ImportOptions& options, uint64_t most_words) {
+    auto file = std::make_unique<pov::SourceFile>();
+    file->name = path.string();
+    file->folder = path.parent_path().string();
+    file->text = std::move(text);
+    pov::SceneParser parser(options, file->folder, most_words);
+    try {
+        Scene scene = parser.parse(std::move(file));
+        scene.name = path.stem().string();
+        if (scene.soup.triangle_count() == 0)
+            say(options.log, LogLevel::Warning,
+                fmt::format("{}: it has no triangles", path.string()));
+        return scene;
+    } catch (const pov::ParseError& error) {
+        return pov::error_at(error.place, error.what(), path.string());
+    }
+}
+
+} // namespace ovc

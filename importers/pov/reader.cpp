@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stream of tokens: frames of files and macros, scopes of variables. directives.cpp obeys.
+#include "importers/pov/reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ovc::pov {
+
+Deeper::Deeper(Reader& reader) : reader_(reader) {
+    if (++reader_.depth_ > reader_.limits.depth) {
+        --reader_.depth_;
+        reader_.fail(reader_.place(), fmt::format("found blocks more than {} deep in each other",
+                                                  reader_.limits.depth));
+    }
+}
+
+Deeper::~Deeper() {
+    --reader_.depth_;
+}
+
+Reader::Reader(Hooks hooks, LogSink log, std::string main_folder)
+    : limits{}, hooks_(std::move(hooks)), log_(std::move(log)), folder_(std::move(main_folder)) {
+    push_scope(); // of the scene: what #declare makes
+}
+
+void Reader::open(std::unique_ptr<SourceFile> file) {
+    files_.push_back(std::move(file));
+    SourceFile* opened = files_.back().get();
+    tokenize(*opened, names_);
+    const uint32_t scope = push_scope();
+    frames_.push_back({opened, 0, opened->tokens.size() - 1, false, scope, {}, last_});
+}
+
+Token Reader::next() {
+    if (back_.empty())
+        return step(/* hold_declarations= */ false);
+    const Token token = back_.back();
+    back_.pop_back();
+    return token;
+}
+
+const Token& Reader::peek() {
+    if (back_.empty())
+        back_.push_back(step(/* hold_declarations= */ false));
+    return back_.back();
+}
+
+Token Reader::peek_operator() {
+    if (!back_.empty())
+        return back_.back();
+    const Token token = step(/* hold_declarations= */ true);
+    if (token.kind != TokenKind::Directive)
+        back_.push_back(token);
+    return token;
+}
+
+void Reader::put_back(const Token& token) {
+    back_.push_back(token);
+}
+
+static bool is_flow(std::string_view directive) {
+    static constexpr std::string_view kFlow[] = {"if",     "ifdef", "ifndef", "else",
+                                                 "elseif", "end",   "case",   "range",
+                                                 "switch", "break", "while",  "for"};
+    return std::find(std::begin(kFlow), std::end(kFlow), directive) != std::end(kFlow);
+}
+
+Token Reader::step(bool hold_declarations) {
+    for (;;) {
+        Token token = raw();
+        last_ = token.place;
+        if (token.kind == TokenKind::Directive) {
+            if (hold_declarations && !is_flow(token.name->text)) {
+                --frame().at;
+                return token;
+            }
+            obey(token);
+            if (!back_.empty()) // what ended the directive's expression
+                return next();
+            continue;
+        }
+        if (token.kind == TokenKind::Name && !token.name->is_keyword)
+            if (const Slot* slot = find(token.name))
+                if (const auto* macro = std::get_if<std::shared_ptr<const Macro>>(&slot->value)) {
+                    call(token, *macro);
+                    continue;
+                }
+        return token;
+    }
+}
+
+Token Reader::raw() {
+    if (++run_over_ > limits.tokens)
+        fail(last_,
+             fmt::format("stopped after {} words: a loop or a macro does not end", limits.tokens));
+    while (!frames_.empty() && frame().at >= frame().end) {
+        if (!frame().open.empty())
+            fail(frame().open.back().place, "found no #end to this");
+        if (frames_.size() == 1)
+            return frame().file->tokens.back();
+        pop_frame();
+    }
+    return frame().file->tokens[frame().at++];
+}
+
+const Token& Reader::peek_raw() const {
+    const Frame& now = frames_.back();
+    return now.at < now.end ? now.file->tokens[now.at] : now.file->tokens.back();
+}
+
+void Reader::pop_frame() {
+    frames_.pop_back();
+    pop_scope();
+}
+
+uint32_t Reader::push_scope() {
+    scopes_.emplace_back();
+    return uint32_t(scopes_.size() - 1);
+}
+
+void Reader::pop_scope() {
+    for (Name* name : scopes_.back().names)
+        if (!name->bound.empty() && name->bound.back().scope + 1 == scopes_.size())
+            name->bound.pop_back();
+    scopes_.pop_back();
+}
+
+Slot* Reader::find(const Name* name) const {
+    return name->bound.empty() ? nullptr : name->bound.back().slot;
+}
+
+void Reader::bind(Name* name, uint32_t scope, Slot* slot) {
+    auto at = name->bound.end();
+    while (at != name->bound.begin() && (at - 1)->scope > scope)
+        --at;
+    if (at != name->bound.begin() && (at - 1)->scope == scope)
+        (at - 1)->slot = slot;
+    else {
+        name->bound.insert(at, {scope, slot});
+        scopes_[scope].names.push_back(name);
+    }
+}
+
+Slot& Reader::declare(Name* name, bool local) {
+    const uint32_t scope = local ? uint32_t(scopes_.size() - 1) : 0;
+    if (!name->bound.empty() && (!local || name->bound.back().scope == scope))
+        return *name->bound.back().slot;
+    scopes_[scope].slots.push_back(std::make_unique<Slot>());
+    bind(name, scope, scopes_[scope].slots.back().get());
+    return *name->bound.back().slot;
+}
+
+void Reader::undefine(Name* name) {
+    if (!name->bound.empty())
+        name->bound.pop_back();
+}
+
+void Reader::expect(char c, std::string_view after) {
+    const Token token = next();
+    if (!token.is(c))
+        fail(token.place, fmt::format("found {} after {}, expected '{}'", found(token), after, c));
+}
+
+bool Reader::take(char c) {
+    if (!peek().is(c))
+        return false;
+    back_.pop_back();
+    return true;
+}
+
+bool Reader::take(std::string_view word) {
+    if (!peek().is(word))
+        return false;
+    back_.pop_back();
+    return true;
+}
+
+void Reader::fail(const Place& at, const std::string& sentence) const {
+    throw ParseError(at, sentence);
+}
+
+void Reader::fail_here(const std::string& expected) {
+    const Token token = next();
+    fail(token.place, fmt::format("found {}, expected {}", found(token), expected));
+}
+
+void Reader::warn(const std::string& kind, const Place& at, const std::string& sentence) {
+    if (!warned_.insert(kind).second)
+        return;
+    const std::string shown = excerpt(at);
+    say(log_, LogLevel::Warning,
+        fmt::format("{}:{}:{}: {}{}{}", at.file ? at.file->name : "", at.line, at.column, sentence,
+                    shown.empty() ? "" : "\n", shown));
+}
+
+void Reader::call(const Token& at, const std::shared_ptr<const Macro>& macro) {
+    const Deeper deeper(*this);
+    if (frames_.size() >= limits.nesting)
+        fail(at.place, fmt::format("found macros and includes more than {} deep in each other: "
+                                   "{} does not end",
+                                   limits.nesting, macro->name->text));
+    const std::shared_ptr<const Macro> kept = macro; // an argument may declare it anew
+    std::vector<std::pair<Slot*, Value>> arguments;
+    expect('(', macro->name->text);
+    for (size_t i = 0; i < kept->parameters.size(); ++i) {
+        if (i > 0)
+            take_comma();
+        if (peek().is(')'))
+            fail(at.place, fmt::format("found {} arguments to {}, expected {}", i, kept->name->text,
+                                       kept->parameters.size()));
+        arguments.push_back(argument());
+    }
+    expect(')', "the arguments of " + kept->name->text);
+    const uint32_t scope = push_scope();
+    for (size_t i = 0; i < arguments.size(); ++i) {
+        Slot* slot = arguments[i].first;
+        if (!slot) {
+            scopes_[scope].slots.push_back(std::make_unique<Slot>(std::move(arguments[i].second)));
+            slot = scopes_[scope].slots.back().get();
+        }
+        bind(kept->parameters[i], scope, slot);
+    }
+    frames_.push_back({kept->file, kept->first, kept->last, true, scope, {}, at.place});
+}
+
+std::pair<Slot*, Value> Reader::argument() {
+    const Token first = next();
+    if (first.kind == TokenKind::Name && !first.name->is_keyword) {
+        const Token after = next();
+        put_back(after);
+        if (after.is(',') || after.is(')')) {
+            if (Slot* slot = find(first.name))
+                return {slot, {}};
+            return {&declare(first.name, /* local= */ true), {}};
+        }
+    }
+    put_back(first);
+    return {nullptr, hooks_.value(*this)};
+}
+
+} // namespace ovc::pov

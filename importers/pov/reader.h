@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reader: the tokens of a scene in the order in which they count: directives obeyed, includes and
+// macros put in.
+#pragma once
+
+#include "core/log.h"
+#include "core/scene.h"
+#include "importers/pov/value.h"
+
+#include <filesystem>
+#include <functional>
+#include <set>
+
+namespace ovc::pov {
+
+/// Bounds on what a scene may make a reader do, each far beyond what scenes do.
+struct Limits {
+    uint64_t tokens = 0;   // run over in all
+    size_t nesting = 1000; // includes and macros inside each other
+    uint64_t objects = 20'000'000;
+    uint64_t array_items = 50'000'000;
+    size_t depth = 400; // blocks and parentheses inside each other: the C++ stack holds as many
+};
+
+class Reader;
+
+/// Counts how deep the parser stands in itself; throws ParseError beyond Limits::depth.
+class Deeper {
+public:
+    explicit Deeper(Reader& reader);
+    ~Deeper();
+    Deeper(const Deeper&) = delete;
+    Deeper& operator=(const Deeper&) = delete;
+
+private:
+    Reader& reader_;
+};
+
+class Reader {
+public:
+    /// What directives need of those who parse: expressions.cpp, scene.cpp.
+    struct Hooks {
+        std::function<Value(Reader&)> value;
+        std::function<double(Reader&)> number;       // a float expression
+        std::function<double(Reader&)> condition;    // one that may compare, between parentheses
+        std::function<Value*(Reader&, Array&)> item; // of an array, from the first [ on
+        std::function<void(Reader&)> defaults;       // of #default
+    };
+
+    Reader(Hooks hooks, LogSink log, std::string main_folder);
+
+    /// The scene itself.
+    void open(std::unique_ptr<SourceFile> file);
+
+    /// The next token that is no directive; macros are put in. End: the scene is over.
+    Token next();
+    const Token& peek();
+    void put_back(const Token& token);
+    /// The next token where it may be an operator: a directive that declares or includes something
+    /// ends an expression and is not obeyed yet. Taken by next(), unless it is such a directive.
+    Token peek_operator();
+
+    /// The sign `c`, or ParseError.
+    void expect(char c, std::string_view after);
+    /// True, and taken, where the next token is that.
+    bool take(char c);
+    bool take(std::string_view word);
+    void take_comma() { take(','); }
+
+    [[noreturn]] void fail(const Place& at, const std::string& sentence) const;
+    [[noreturn]] void fail_here(const std::string& expected);
+    /// Once for each `kind`.
+    void warn(const std::string& kind, const Place& at, const std::string& sentence);
+
+    /// The variable, or null.
+    Slot* find(const Name* name) const;
+    /// A variable in the scope of the running macro or include (local) or of the scene; what was
+    /// there is replaced.
+    Slot& declare(Name* name, bool local);
+    void undefine(Name* name);
+
+    std::filesystem::path find_file(const std::string& name) const; // empty: none
+    Names& names() { return names_; }
+    const Place& place() const { return last_; } // of the token read last
+    double version = 3.7;
+    double gamma = 1; // assumed_gamma: what srgb colors are converted to
+    ImageSize picture{640, 480};
+    Texture defaults; // of #default
+    std::vector<uint32_t> random_streams;
+    Limits limits;
+    uint64_t objects = 0;
+
+private:
+    friend class Deeper;
+    struct Condition {
+        enum class Kind { If, While, For, Switch };
+        Kind kind;
+        size_t start = 0;        // While: of the condition; For: of the body
+        Slot* counter = nullptr; // For
+        double last = 0, step = 0;
+        double value = 0; // Switch
+        bool matched = false;
+        Place place;
+    };
+    struct Frame {
+        const SourceFile* file;
+        size_t at, end;
+        bool is_macro;
+        uint32_t scope;
+        std::vector<Condition> open;
+        Place called;
+    };
+    struct Scope {
+        std::vector<Name*> names;
+        std::vector<std::unique_ptr<Slot>> slots;
+    };
+
+    Token raw();
+    const Token& peek_raw() const;
+    Token step(bool hold_declarations);
+    Name* raw_name(std::string_view after);
+    void raw_expect(char c, std::string_view after);
+    void take_semicolon();
+    void pop_frame();
+    void obey(const Token& directive);
+    void do_declare(bool local);
+    void do_undef();
+    void do_include();
+    void do_if(bool condition, const Place& at);
+    void do_else(const Token& at);
+    void do_end(const Token& at);
+    void do_while(const Token& at);
+    void test_while(Condition& loop);
+    void do_for(const Token& at);
+    bool test_for(const Condition& loop) const;
+    void do_switch(const Token& at);
+    void next_case();
+    bool case_matches(std::string_view directive, double value);
+    bool is_defined();
+    void do_break(const Token& at);
+    void do_macro();
+    void do_message(const Token& at);
+    void do_version();
+    void pass_over_parentheses();
+    bool condition();
+    /// Passes over tokens up to the #end that belongs to the innermost open block, or to an #else,
+    /// #elseif, #case or #range of it where that is asked for; that directive is taken. Its name.
+    std::string_view skip(bool stop_at_else, bool stop_at_case);
+    void call(const Token& at, const std::shared_ptr<const Macro>& macro);
+    void bind(Name* name, uint32_t scope, Slot* slot);
+    /// The value where it is given, or the caller's variable.
+    std::pair<Slot*, Value> argument();
+    Frame& frame() { return frames_.back(); }
+    uint32_t push_scope();
+    void pop_scope();
+
+    Hooks hooks_;
+    LogSink log_;
+    Names names_;
+    std::string folder_;
+    std::vector<std::unique_ptr<SourceFile>> files_;
+    std::map<std::string, SourceFile*> by_path_;
+    std::vector<Frame> frames_;
+    std::vector<Scope> scopes_;
+    std::vector<Token> back_;
+    std::set<std::string> warned_;
+    Place last_;
+    uint64_t run_over_ = 0;
+    size_t depth_ = 0;
+};
+
+} // namespace ovc::pov

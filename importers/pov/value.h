@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an identifier of the scene language can stand for.
+#pragma once
+
+#include "core/scene.h"
+#include "importers/pov/token.h"
+
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace ovc::pov {
+
+struct Object;
+struct Array;
+struct Macro;
+struct Function;
+struct Spline;
+
+/// A float (size 1), a vector of 2 to 4, or five: a color (red, green, blue, filter, transmit) or a
+/// vector of five.
+struct Number {
+    std::array<double, 5> v{};
+    int size = 1;
+    bool is_color = false;
+
+    static Number of(double x) { return {{x}, 1, false}; }
+    static Number of(const dvec3& p) { return {{p.x, p.y, p.z}, 3, false}; }
+};
+
+/// A color with what it lets through: light x color x filter + light x transmit.
+struct Color {
+    vec3 rgb{0};
+    float filter = 0;
+    float transmit = 0;
+
+    float opacity() const { return 1 - filter - transmit; }
+};
+
+/// A color, the average of a pattern, or a checker of two of them.
+struct Pigment {
+    Color color;
+    std::optional<Color> other; // of a checker
+    dmat4 placed{1};            // where a checker stands
+};
+
+/// A finish, and what it is without the scene: ambient and emission are still apart.
+struct Surface {
+    Finish finish;
+    vec3 ambient{0.1f};
+    vec3 emission{0};
+};
+
+/// All layers of a texture, drawn together.
+struct Texture {
+    Pigment pigment;
+    Surface surface;
+};
+
+struct Interior {
+    double ior = 1;
+};
+
+struct Material {
+    std::optional<Texture> texture;
+    std::optional<Interior> interior;
+};
+
+/// A color_map or any other map, drawn together: the average over [0, 1] of its values.
+struct ColorMap {
+    Color average;
+};
+
+/// Something that has a name and is of no use here: a media, a fog, a normal.
+struct Opaque {
+    std::string kind;
+};
+
+struct CameraValue;
+
+using Value =
+    std::variant<std::monostate, Number, std::string, std::shared_ptr<const Object>, Texture,
+                 Pigment, Surface, Interior, Material, ColorMap, dmat4, std::shared_ptr<Array>,
+                 std::shared_ptr<const Macro>, std::shared_ptr<const Function>,
+                 std::shared_ptr<const Spline>, std::shared_ptr<const CameraValue>, Opaque>;
+
+/// "a float", "an object": what a message calls it.
+std::string kind_of(const Value& value);
+
+/// A variable. A parameter that a macro takes by reference is bound to the caller's.
+struct Slot {
+    Value value;
+};
+
+struct Array {
+    std::vector<size_t> sizes; // of the dimensions
+    std::vector<Value> items;  // the last index counts fastest
+};
+
+/// The tokens [first, last) of a file, run in the place of a call.
+struct Macro {
+    Name* name = nullptr;
+    std::vector<Name*> parameters;
+    const SourceFile* file = nullptr;
+    size_t first = 0;
+    size_t last = 0;
+};
+
+/// The points of a spline { }, by their clock.
+struct Spline {
+    enum class Kind { Linear, Quadratic, Cubic, Natural };
+    Kind kind = Kind::Linear;
+    std::map<double, Number> points;
+};
+
+} // namespace ovc::pov
