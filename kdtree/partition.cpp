@@ -238,6 +238,11 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
     assert(max_leaf_triangles > 0);
     if (triangles.empty())
         return {{}, {}, bounds, 0};
+    if (triangles.size() <= max_leaf_triangles) { // a sample might make believe they are more
+        Level1 level1{{KdNode::leaf(0, 1)}, {}, bounds, padding_of(bounds)};
+        level1.leaves.push_back(whole_leaf(soup, triangles, bounds));
+        return level1;
+    }
     Partitioner partitioner(soup, bounds, progress);
     partitioner.cut(triangles, bounds, max_leaf_triangles);
     return partitioner.finish();

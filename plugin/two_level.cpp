@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ovc {
 namespace {
@@ -26,9 +27,13 @@ uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device) {
 }
 
 LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles) {
-    const uint64_t parts = options.leaves ? options.leaves : kDefaultLeaves;
+    // Halving ends between half full and full: this much on average gives about so many leaves.
+    constexpr double kFull = 0.7;
+    double most = double(triangles) / double(kDefaultLeaves);
+    if (options.leaves)
+        most = double(triangles) / (options.leaves == 1 ? 1 : kFull * options.leaves);
     return {options.leaf_triangles ? options.leaf_triangles
-                                   : std::max<uint64_t>((triangles + parts - 1) / parts, 1),
+                                   : std::max<uint64_t>(uint64_t(std::ceil(most)), 1),
             std::min<uint64_t>(plan.pool_bytes / kPagesAtOnce,
                                uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES)};
 }
