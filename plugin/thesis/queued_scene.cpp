@@ -113,13 +113,13 @@ Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThre
     scene->plan = *plan;
     scene->statistics.gpu_budget_bytes = plan->budget_bytes;
     scene->numbers = Numbering(soup);
+    const Stopwatch watch;
     begin(progress, "triangles", 0.1, 2 * soup.triangle_count());
     Hittable hittable = take_hittable(soup, scene->statistics, log, progress);
     scene->twins = std::move(hittable.twins);
     if (hittable.triangles.empty())
         return scene;
     begin(progress, "levels 1 and 2", 0.9, 5 * hittable.triangles.size());
-    const Stopwatch watch;
     const Level1Builder builder(soup, hittable.triangles, hittable.bounds, options.level1,
                                 options.build, progress);
     scene->statistics.seconds_level1 = watch.seconds();
