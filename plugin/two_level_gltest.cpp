@@ -80,6 +80,23 @@ TEST_F(TwoLevelGl, EqualsBruteForceBitForBit) {
     }
 }
 
+/// Every coordinate of these rays is exact at the corner, and none is along the way.
+TEST_F(TwoLevelGl, ARayFromFarAwayMeetsTheCornerOfTheScene) {
+    const Soup soup = test::one_chunk({vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)});
+    const auto structure = build(soup, {});
+    ASSERT_TRUE(structure);
+    test::Random random(1);
+    std::vector<Ray> rays(3000);
+    for (Ray& ray : rays) {
+        ray.dir = glm::floor(random.point(1, 50)) * dvec3(1, 1, -1);
+        ray.org = -std::floor(random(1e8, 1e9)) * ray.dir;
+    }
+    std::vector<Hit> hits(rays.size());
+    ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+    for (size_t i = 0; i < rays.size(); ++i)
+        EXPECT_TRUE(hits[i].is_hit()) << "ray " << i;
+}
+
 TEST_F(TwoLevelGl, FewOrdinaryRaysAreFlagged) {
     const Soup soup = test::closed_grid(200);
     const auto structure = build(soup, {});

@@ -114,12 +114,11 @@ private:
             return;
         }
         const PreparedRay p = prepare(query_, i);
-        if (clip(p, scene, p.ray.t_min, p.ray.t_max).empty())
-            return;
-        if (can_walk(s_.level1_, p))
-            positions_[i] = {p.ray.t_min, p.ray.t_max, OVC_NO_LEAF, Position::Ready};
-        else
+        // First: from where double cannot walk, rounding may carry a ray past the whole scene.
+        if (!can_walk(s_.level1_, p))
             decide_in_double(i, p);
+        else if (!clip(p, scene, p.ray.t_min, p.ray.t_max).empty())
+            positions_[i] = {p.ray.t_min, p.ray.t_max, OVC_NO_LEAF, Position::Ready};
     }
 
     void send_on(std::span<const uint32_t> rays) {

@@ -31,7 +31,8 @@ Result<std::unique_ptr<Structure>> Comparison::build(const Soup& soup, GlThread&
     self->twins_ = std::move(hittable.twins);
     const std::vector<TriangleId>& triangles = hittable.triangles;
     if (!triangles.empty())
-        if (const Result<Done> built = self->build_system(triangles, hittable.bounds, progress); !built)
+        if (const Result<Done> built = self->build_system(triangles, hittable.bounds, progress);
+            !built)
             return built.error();
     return std::unique_ptr<Structure>(std::move(self));
 }

@@ -124,15 +124,15 @@ std::vector<Boxf> rough_boxes(const Soup& soup, const Leaf& whole) {
 } // namespace
 
 CompleteBvh::CompleteBvh(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
-                         ovc_level1_build build)
+                         ovc_level1_build build, BuildProgress* progress)
     : soup_(soup), triangles_(triangles.begin(), triangles.end()), bounds_(bounds) {
     if (triangles.empty())
         return;
     const std::vector<Boxf> boxes = rough_boxes(soup, whole_leaf(soup, triangles, bounds));
     if (build == OVC_LEVEL1_BUILD_TOP_DOWN)
-        nodes_ = build_bvh(boxes);
+        nodes_ = build_bvh(boxes, progress);
     else
-        insertion_ = best_insertion_tree(boxes, kShuffles);
+        insertion_ = best_insertion_tree(boxes, kShuffles, progress);
 }
 
 Level1 CompleteBvh::cut(uint32_t max_leaf_triangles, std::vector<BvhEntry>& entries) const {

@@ -26,7 +26,7 @@ class CompleteBvh {
 public:
     /// Top-down: by the surface-area heuristic. Bottom-up: by insertion, Goldsmith and Salmon's.
     CompleteBvh(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
-                ovc_level1_build build);
+                ovc_level1_build build, BuildProgress* progress = nullptr);
 
     /// Leaves of at most max_leaf_triangles (> 0), each triangle in one of them. Bottom-up,
     /// siblings that are small enough together become one. The nodes of level 1 are one cell that

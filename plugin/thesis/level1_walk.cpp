@@ -48,13 +48,19 @@ Visit next_leaf_in_cell(const Level1& level1, const PreparedRay& p, RayPlace& pl
 }
 
 Level1Builder::Level1Builder(const Soup& soup, std::span<const TriangleId> triangles,
-                             const Box& bounds, ovc_level1 kind, ovc_level1_build build)
-    : soup_(soup), triangles_(triangles), bounds_(bounds), kind_(kind), build_(build) {
+                             const Box& bounds, ovc_level1 kind, ovc_level1_build build,
+                             BuildProgress* progress)
+    : soup_(soup),
+      triangles_(triangles),
+      bounds_(bounds),
+      kind_(kind),
+      build_(build),
+      progress_(progress) {
     assert(kind != OVC_LEVEL1_GRID || build == OVC_LEVEL1_BUILD_TOP_DOWN);
     if (kind == OVC_LEVEL1_BVH)
-        bvh_ = std::make_unique<CompleteBvh>(soup, triangles, bounds, build);
+        bvh_ = std::make_unique<CompleteBvh>(soup, triangles, bounds, build, progress);
     else if (build == OVC_LEVEL1_BUILD_BOTTOM_UP)
-        full_ = build_kd_tree(soup, triangles, bounds, {});
+        full_ = build_kd_tree(soup, triangles, bounds, {.progress = progress});
 }
 
 Level1 Level1Builder::cut(uint32_t max_leaf_triangles, Level1Walk& walk) const {
@@ -66,7 +72,7 @@ Level1 Level1Builder::cut(uint32_t max_leaf_triangles, Level1Walk& walk) const {
     if (build_ == OVC_LEVEL1_BUILD_BOTTOM_UP)
         return fill_cells(soup_, triangles_, bounds_, merge_leaves(full_, max_leaf_triangles),
                           max_leaf_triangles);
-    return partition(soup_, triangles_, bounds_, max_leaf_triangles);
+    return partition(soup_, triangles_, bounds_, max_leaf_triangles, progress_);
 }
 
 } // namespace ovc::thesis

@@ -44,7 +44,7 @@ class Level1Builder {
 public:
     /// triangles of the soup, which lie in `bounds`; all must outlive it. A grid is built top-down.
     Level1Builder(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
-                  ovc_level1 kind, ovc_level1_build build);
+                  ovc_level1 kind, ovc_level1_build build, BuildProgress* progress = nullptr);
 
     /// Leaves of at most max_leaf_triangles (> 0).
     Level1 cut(uint32_t max_leaf_triangles, Level1Walk& walk) const;
@@ -55,6 +55,7 @@ private:
     const Box& bounds_;
     ovc_level1 kind_;
     ovc_level1_build build_;
+    BuildProgress* progress_;
     KdTree full_; // KD-tree, bottom-up
     std::unique_ptr<CompleteBvh> bvh_;
 };

@@ -48,7 +48,6 @@ Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint
     const uint64_t page_bytes = std::min<uint64_t>(scene.plan.pool_bytes / kPagesAtOnce,
                                                    uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES);
     most = std::clamp<uint64_t>(std::min(most, page_bytes / kBytesPerTriangle), 1, kNone);
-    begin(progress, "levels 1 and 2", 0.8, 3 * scene.soup.triangle_count());
     while (true) {
         Stopwatch watch;
         scene.level1 = builder.cut(uint32_t(most), scene.walk);
@@ -114,17 +113,18 @@ Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThre
     scene->plan = *plan;
     scene->statistics.gpu_budget_bytes = plan->budget_bytes;
     scene->numbers = Numbering(soup);
+    const Stopwatch watch;
     begin(progress, "triangles", 0.1, 2 * soup.triangle_count());
     Hittable hittable = take_hittable(soup, scene->statistics, log, progress);
     scene->twins = std::move(hittable.twins);
     if (hittable.triangles.empty())
         return scene;
-    const Stopwatch watch;
+    begin(progress, "levels 1 and 2", 0.9, 5 * hittable.triangles.size());
     const Level1Builder builder(soup, hittable.triangles, hittable.bounds, options.level1,
-                                options.build);
+                                options.build, progress);
     scene->statistics.seconds_level1 = watch.seconds();
-    if (Result<Done> built =
-            build_levels(*scene, builder, most_triangles(options, hittable.triangles.size()), progress);
+    if (Result<Done> built = build_levels(
+            *scene, builder, most_triangles(options, hittable.triangles.size()), progress);
         !built)
         return built.error();
     count(*scene);
