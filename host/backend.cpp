@@ -30,4 +30,17 @@ Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOpt
     return make_cpu_backend(soup);
 }
 
+Result<ovc_plan> make_plan(const Soup& soup, const BackendOptions& options, const LogSink& log) {
+    if (options.kind == BackendKind::CpuKdTree || options.kind == BackendKind::Embree)
+        return Error{"a backend on the CPU has no plan: it uses no GPU memory"};
+    const Result<const ovc_api*> api =
+        load_plugin(structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL ? kProduct : kThesis);
+    if (!api)
+        return api.error();
+    const Result<PluginDevice> device = PluginDevice::open(*api, options.device, log);
+    if (!device)
+        return device.error();
+    return make_plugin_plan(*device, soup, options);
+}
+
 } // namespace ovc

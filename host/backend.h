@@ -62,6 +62,10 @@ inline ovc_structure structure_of(BackendKind kind) {
                                OVC_STRUCTURE_SINGLE_TEXTURE);
 }
 
+/// Whether Ctrl-C cancels the plugin's building, which then is an Error of the kind Cancelled, and
+/// a line on a terminal says how far it is. Not while another InterruptGuard lives.
+enum class BuildWatching { None, Silent, Shown };
+
 struct BackendOptions {
     BackendKind kind = BackendKind::Auto;
     MemorySize gpu_memory;
@@ -72,6 +76,7 @@ struct BackendOptions {
     ovc_kernel kernel = OVC_KERNEL_AUTO;
     ovc_level1 level1 = OVC_LEVEL1_KD_TREE; // of ThesisTwoLevel, as the next
     ovc_level1_build level1_build = OVC_LEVEL1_BUILD_TOP_DOWN;
+    BuildWatching watching = BuildWatching::None;
 };
 
 /// Auto is the plugin; where no device opens and none was named it is the CPU KD-tree, and the log
@@ -79,9 +84,16 @@ struct BackendOptions {
 Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOptions& options,
                                               const LogSink& log);
 
+/// What make_backend() would make of the soup, told by the plugin before anything is built. Error:
+/// no plugin or no device; a backend that cannot tell.
+Result<ovc_plan> make_plan(const Soup& soup, const BackendOptions& options, const LogSink& log);
+
 /// The options' device is not looked at again. Through plugin/overcast.h and nothing else.
 Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
                                                      const BackendOptions& options);
+
+Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
+                                  const BackendOptions& options);
 
 std::unique_ptr<Backend> make_cpu_backend(const Soup& soup);
 

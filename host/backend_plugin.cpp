@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The backends behind the C ABI: a soup and its rays, handed through the C ABI without a copy.
 #include "host/backend.h"
+#include "host/build_watch.h"
 #include "host/plugin_loader.h"
 
 #include <fmt/format.h>
 
 #include <cassert>
+#include <optional>
 
 namespace ovc {
 
@@ -124,27 +126,24 @@ private:
     PluginScene scene_; // after device_: destroyed before it
 };
 
-static Result<Done> fill(const PluginDevice& device, ovc_scene scene, const Soup& soup) {
+static Result<Done> add_meshes(const PluginDevice& device, ovc_scene scene, const Soup& soup) {
     for (const Chunk& chunk : soup.chunks) {
         const ovc_mesh mesh = mesh_of(chunk);
         const Result<Done> added = device.checked(device.api()->add_mesh(scene, &mesh, nullptr));
         if (!added)
             return added;
     }
-    return device.checked(device.api()->commit(scene));
+    return Done{};
 }
 
-Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
-                                                     const BackendOptions& options) {
-    const Result<ovc_device_info> info = device.describe();
-    if (!info)
-        return info.error();
+static Result<ovc_scene_config> config_of(const BackendOptions& options,
+                                          const ovc_device_info& info) {
     ovc_scene_config config{};
     config.struct_size = sizeof(config);
-    config.gpu_memory_bytes = options.gpu_memory.of(info->memory_bytes);
+    config.gpu_memory_bytes = options.gpu_memory.of(info.memory_bytes);
     if (options.gpu_memory.share > 0 && config.gpu_memory_bytes == 0)
         return Error{fmt::format("--gpu-memory: {}% of the device's {} is less than one byte",
-                                 100 * options.gpu_memory.share, human_bytes(info->memory_bytes))};
+                                 100 * options.gpu_memory.share, human_bytes(info.memory_bytes))};
     config.leaf_triangles = options.leaf_triangles;
     config.leaves = options.leaves;
     config.precision = options.precision;
@@ -152,13 +151,49 @@ Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const 
     config.structure = structure_of(options.kind);
     config.level1 = options.level1;
     config.level1_build = options.level1_build;
-    Result<PluginScene> scene = device.create_scene(config);
+    return config;
+}
+
+Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
+                                                     const BackendOptions& options) {
+    const Result<ovc_device_info> info = device.describe();
+    if (!info)
+        return info.error();
+    Result<ovc_scene_config> config = config_of(options, *info);
+    if (!config)
+        return config.error();
+    std::optional<BuildWatch> watch;
+    if (options.watching != BuildWatching::None)
+        watch.emplace(options.watching == BuildWatching::Shown).watch(*config);
+    Result<PluginScene> scene = device.create_scene(*config);
     if (!scene)
         return scene.error();
-    if (const Result<Done> filled = fill(device, scene->get(), soup); !filled)
-        return filled.error();
+    if (const Result<Done> added = add_meshes(device, scene->get(), soup); !added)
+        return added.error();
+    if (const Result<Done> done = device.checked(device.api()->commit(scene->get())); !done)
+        return done.error();
     return std::unique_ptr<Backend>(
         std::make_unique<PluginBackend>(std::move(device), info->renderer, std::move(*scene)));
+}
+
+Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
+                                  const BackendOptions& options) {
+    const Result<ovc_device_info> info = device.describe();
+    if (!info)
+        return info.error();
+    const Result<ovc_scene_config> config = config_of(options, *info);
+    if (!config)
+        return config.error();
+    const Result<PluginScene> scene = device.create_scene(*config);
+    if (!scene)
+        return scene.error();
+    if (const Result<Done> added = add_meshes(device, scene->get(), soup); !added)
+        return added.error();
+    ovc_plan plan{};
+    plan.struct_size = sizeof(plan);
+    if (const Result<Done> done = device.checked(device.api()->plan(scene->get(), &plan)); !done)
+        return done.error();
+    return plan;
 }
 
 } // namespace ovc

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // overcast info: what a scene consists of, for a person or as JSON.
 #include "host/arguments.h"
+#include "host/backend_arguments.h"
 #include "host/command.h"
 #include "host/interrupt.h"
 #include "host/memory_size.h"
@@ -18,7 +19,9 @@ using Json = nlohmann::ordered_json;
 
 static constexpr const char* kExamples = R"(Examples:
   overcast info dragon.ply
-  overcast info plants --json | jq .triangles)";
+  overcast info plants --json | jq .triangles
+  overcast info dragons-10 --gpu-memory 128M
+      how many leaves, how much level 2, and how much of it fits at once)";
 
 static Json as_json(const dvec3& v) {
     return {v.x, v.y, v.z};
@@ -44,7 +47,53 @@ static Json materials_json(const Scene& scene) {
     return list;
 }
 
-static std::string info_json(const Scene& scene, const SceneSummary& s) {
+/// docs/stats.md says what the keys mean; null where nothing can tell.
+static Json plan_json(const Result<ovc_plan>& plan) {
+    if (!plan)
+        return nullptr;
+    return {{"leaves", plan->leaves},
+            {"leaf_references", plan->leaf_references},
+            {"level2_bytes", plan->level2_bytes},
+            {"largest_page_bytes", plan->largest_page_bytes},
+            {"gpu_budget_bytes", plan->gpu_budget_bytes},
+            {"smallest_budget_bytes", plan->smallest_budget_bytes},
+            {"fits", plan->fits != 0},
+            {"ray_bytes", plan->ray_bytes},
+            {"batch_rays", plan->batch_rays},
+            {"level1_bytes", plan->level1_bytes},
+            {"pool_bytes", plan->pool_bytes},
+            {"resident_pages", plan->resident_pages},
+            {"sweep_bytes", plan->level2_bytes},
+            {"host_bytes", plan->host_bytes},
+            {"seconds", plan->seconds}};
+}
+
+static std::string plan_text(const Result<ovc_plan>& plan) {
+    if (!plan)
+        return fmt::format("  plan       none: {}\n", plan.error().message);
+    const ovc_plan& p = *plan;
+    std::string text =
+        fmt::format("  plan       {} leaves, {} of level 2, {} the largest page, {} on the host\n",
+                    human_count(p.leaves), human_bytes(p.level2_bytes),
+                    human_bytes(p.largest_page_bytes), human_bytes(p.host_bytes));
+    if (!p.fits)
+        return text + fmt::format("  budget     {} is too small: about {} is the smallest that "
+                                  "works\n",
+                                  human_bytes(p.gpu_budget_bytes),
+                                  human_bytes(p.smallest_budget_bytes));
+    text += fmt::format("  budget     {}: {} for rays, {} for level 1, {} for pages; {} would do\n",
+                        human_bytes(p.gpu_budget_bytes), human_bytes(p.ray_bytes),
+                        human_bytes(p.level1_bytes), human_bytes(p.pool_bytes),
+                        human_bytes(p.smallest_budget_bytes));
+    if (p.resident_pages == p.leaves)
+        return text + "  pages      all fit at once: each is moved once\n";
+    return text + fmt::format("  pages      {} of {} fit at once; to move every page once is {}\n",
+                              human_count(p.resident_pages), human_count(p.leaves),
+                              human_bytes(p.level2_bytes));
+}
+
+static std::string info_json(const Scene& scene, const SceneSummary& s,
+                             const Result<ovc_plan>& plan) {
     Json left_out = Json::array();
     for (const LeftOut& item : s.left_out)
         left_out.push_back({{"what", item.what}, {"bytes", item.bytes}});
@@ -64,8 +113,11 @@ static std::string info_json(const Scene& scene, const SceneSummary& s) {
           {"texture_coordinates", s.needs.texture_coordinates},
           {"reflection", s.needs.reflection},
           {"refraction", s.needs.refraction},
-          {"shadows", s.needs.shadows}}},
-        {"left_out", left_out}};
+          {"shadows", s.needs.shadows},
+          {"several_leaves", s.needs.several_leaves},
+          {"certified", s.needs.certified}}},
+        {"left_out", left_out},
+        {"plan", plan_json(plan)}};
     if (!s.bounds.empty())
         document["bounds"] = {{"min", as_json(s.bounds.lo)}, {"max", as_json(s.bounds.hi)}};
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -78,22 +130,17 @@ static std::string needs_text(const Needs& needs) {
         {needs.texture_coordinates, "texture coordinates"},
         {needs.reflection, "reflection"},
         {needs.refraction, "refraction"},
-        {needs.shadows, "shadows"}};
+        {needs.shadows, "shadows"},
+        {needs.several_leaves, "several leaves"},
+        {needs.certified, "certified answers"}};
     for (const auto& [needed, name] : all)
         if (needed)
             names.push_back(name);
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-static std::string left_out_text(const std::vector<LeftOut>& left_out) {
-    std::vector<std::string> items;
-    for (const LeftOut& item : left_out)
-        items.push_back(item.bytes ? fmt::format("{} ({})", item.what, human_bytes(item.bytes))
-                                   : item.what);
-    return fmt::format("{}", fmt::join(items, ", "));
-}
-
-static std::string info_text(const std::string& source, const Scene& scene, const SceneSummary& s) {
+static std::string info_text(const std::string& source, const Scene& scene, const SceneSummary& s,
+                             const Result<ovc_plan>& plan) {
     std::string text =
         fmt::format("  scene      {}\n  triangles  {} in {} mesh{}\n", source,
                     human_count(s.triangles), human_count(s.meshes), s.meshes == 1 ? "" : "es");
@@ -117,15 +164,19 @@ static std::string info_text(const std::string& source, const Scene& scene, cons
         scene.camera ? "given" : "none; render frames the scene");
     text += fmt::format("  needs      {}\n  left out   {}\n", needs_text(s.needs),
                         left_out_text(s.left_out));
-    return text;
+    return text + plan_text(plan);
 }
 
 Result<int> run_info(const Arguments& arguments) {
-    CLI::App app{"Says what a scene consists of, what it needs, and what is left out of it.",
-                 "overcast info"};
+    CLI::App app{
+        "Says what a scene consists of, what it needs, what is left out of it, and, before "
+        "anything is built, how it would be traced.",
+        "overcast info"};
     SceneArguments source;
     bool json = false;
     source.add_to(app);
+    BackendArguments backend;
+    backend.add_to(app);
     app.add_flag("--json", json, "As JSON, for a program");
     app.footer(kExamples);
     const Result<Parsed> parsed = parse_arguments(app, arguments);
@@ -136,11 +187,21 @@ Result<int> run_info(const Arguments& arguments) {
 
     if (const Result<Done> fine = source.check(); !fine)
         return fine.error();
+    const Result<BackendOptions> options = backend.resolve();
+    if (!options)
+        return options.error();
     const Result<Scene> scene = open_scene(source, standard_error_log(/* chatty= */ false));
     if (!scene)
         return scene.error();
-    const SceneSummary summary = summarize(*scene);
-    fmt::print("{}", json ? info_json(*scene, summary) : info_text(source.scene, *scene, summary));
+    SceneSummary summary = summarize(*scene);
+    const Result<ovc_plan> plan =
+        make_plan(scene->soup, *options, standard_error_log(/* chatty= */ false));
+    summary.needs =
+        needs_of(*scene, {/* shadows= */ true, options->precision == OVC_PRECISION_CERTIFIED,
+                          plan ? plan->leaves : 2});
+    summary.left_out = left_out_of(*scene, summary.needs);
+    fmt::print("{}", json ? info_json(*scene, summary, plan)
+                          : info_text(source.scene, *scene, summary, plan));
     return kExitOk;
 }
 

@@ -46,6 +46,7 @@ struct RenderWords {
     std::vector<std::string> lights;
     std::string max_depth;
     std::string mode = "auto";
+    std::string aov;
     bool no_shadows = false;
     BackendArguments backend;
     std::string stats;
@@ -94,6 +95,10 @@ void RenderWords::add_to(CLI::App& app) {
            "(what answers spawn joins the rays under way: fewer passes where memory is "
            "short); the picture is the same")
         ->type_name("MODE");
+    app.add_option("--aov", aov,
+                   "Layers of the .exr files, of what the camera's rays hit, separated by commas: "
+                   "depth, normal, id (mesh and triangle)")
+        ->type_name("NAMES");
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
     app.add_option("--stats", stats, "Write statistics as JSON (docs/stats.md)")
         ->type_name("FILE.json");
@@ -222,6 +227,19 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
     return Done{};
 }
 
+static Result<Done> understand_aovs(const RenderWords& words, RenderJob& job) {
+    if (words.aov.empty())
+        return Done{};
+    const Result<Aovs> aovs = parse_aovs(words.aov);
+    if (!aovs)
+        return aovs.error();
+    job.aovs = *aovs;
+    for (const std::string& output : job.outputs)
+        if (takes_layers(output))
+            return Done{};
+    return Error{"--aov needs an output that holds layers: -o FILE.exr"};
+}
+
 /// Everything that can be wrong before anything but a camera path is read.
 static Result<RenderJob> understand(const RenderWords& words) {
     RenderJob job;
@@ -242,6 +260,8 @@ static Result<RenderJob> understand(const RenderWords& words) {
     if (const Result<Done> fine = understand_view(words, job); !fine)
         return fine.error();
     if (const Result<Done> fine = understand_shading(words, job); !fine)
+        return fine.error();
+    if (const Result<Done> fine = understand_aovs(words, job); !fine)
         return fine.error();
     const Result<BackendOptions> backend = words.backend.resolve();
     if (!backend)

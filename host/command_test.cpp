@@ -275,7 +275,7 @@ TEST_F(CommandTest, InfoIsJsonForPrograms) {
     std::fflush(stdout);
     const nlohmann::json info = nlohmann::json::parse(testing::internal::GetCapturedStdout());
     for (const char* key : {"triangles", "unique_triangles", "instances", "dropped", "bounds",
-                            "meshes", "needs", "left_out"})
+                            "meshes", "needs", "left_out", "plan"})
         EXPECT_TRUE(info.contains(key)) << key;
     EXPECT_EQ(info["triangles"], 30);
     EXPECT_EQ(info["bounds"]["min"].size(), 3u);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenEXR out: linear light, float channels R, G, B, A. The only file that sees OpenEXR.
+// OpenEXR out: linear light, float channels R, G, B, A, and layers. The only file that sees
+// OpenEXR.
 #include "host/output.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -31,7 +32,7 @@ private:
     size_t at_ = 0;
 };
 
-Result<std::string> encode_exr(const Image& image) {
+Result<std::string> encode_exr(const Image& image, std::span<const Layer> layers) {
     try {
         Imf::Header header(int(image.width), int(image.height));
         header.compression() = Imf::ZIP_COMPRESSION;
@@ -45,6 +46,13 @@ Result<std::string> encode_exr(const Image& image) {
                 const_cast<char*>(reinterpret_cast<const char*>(&image.pixels[0][channel]));
             frame.insert(name,
                          Imf::Slice(Imf::FLOAT, first, sizeof(vec4), sizeof(vec4) * image.width));
+        }
+        for (const Layer& layer : layers) {
+            const Imf::PixelType type = layer.type == Layer::Type::Float ? Imf::FLOAT : Imf::UINT;
+            header.channels().insert(layer.name, Imf::Channel(type));
+            char* first = const_cast<char*>(reinterpret_cast<const char*>(layer.values.data()));
+            frame.insert(layer.name,
+                         Imf::Slice(type, first, sizeof(uint32_t), sizeof(uint32_t) * image.width));
         }
         std::string bytes;
         MemoryStream stream(bytes);

@@ -18,12 +18,15 @@ static volatile std::sig_atomic_t interrupt_seen = 0;
 /// Whether a progress line or the terminal's ^C may stand before the message.
 static volatile std::sig_atomic_t on_terminal = 0;
 
-static void say(std::string_view line) {
+static void say_on(std::string_view text) {
     // Nothing can be done about a failed write here.
-    [[maybe_unused]] ssize_t written = 0;
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+}
+
+static void say(std::string_view line) {
     if (on_terminal)
-        written = write(STDERR_FILENO, "\n", 1);
-    written = write(STDERR_FILENO, line.data(), line.size());
+        say_on("\n");
+    say_on(line);
 }
 
 static void leave(int) {
@@ -32,11 +35,16 @@ static void leave(int) {
     _exit(kExitInterrupted);
 }
 
+/// What is said to be done about it; set before the handler is.
+static const char* doing_now = "";
+
 static void remember(int) {
     const int errno_before = errno;
     interrupt_seen = 1;
     std::signal(SIGINT, leave);
-    say("overcast: interrupted; finishing this batch and saving (press again to give up)\n");
+    say("overcast: interrupted; ");
+    say_on(doing_now);
+    say_on(" (press again to give up)\n");
     errno = errno_before;
 }
 
@@ -45,8 +53,9 @@ void exit_on_interrupt() {
     std::signal(SIGINT, leave);
 }
 
-InterruptGuard::InterruptGuard() {
+InterruptGuard::InterruptGuard(const char* doing) {
     interrupt_seen = 0;
+    doing_now = doing;
     on_terminal = isatty(STDERR_FILENO);
     std::signal(SIGINT, remember);
 }

@@ -13,11 +13,12 @@ inline constexpr int kExitInterrupted = 2;
 /// one being written is removed, so nothing half done remains.
 void exit_on_interrupt();
 
-/// While it lives, the first SIGINT only says so and sets interrupted(); a second one exits as
-/// above. At most one at a time.
+/// While it lives, the first SIGINT only says so and what is being done about it, and sets
+/// interrupted(); a second one exits as above. At most one at a time.
 class InterruptGuard {
 public:
-    InterruptGuard();
+    /// doing: a literal.
+    explicit InterruptGuard(const char* doing = "finishing this batch and saving");
     ~InterruptGuard();
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;

@@ -15,10 +15,16 @@ namespace fs = std::filesystem;
 
 struct ImageFormat {
     std::string_view extension;
-    Result<std::string> (*encode)(const Image&);
+    bool layers;
+    Result<std::string> (*encode)(const Image&, std::span<const Layer>);
 };
 
-static constexpr ImageFormat kFormats[] = {{".png", encode_png}, {".exr", encode_exr}};
+static Result<std::string> encode_png_alone(const Image& image, std::span<const Layer>) {
+    return encode_png(image);
+}
+
+static constexpr ImageFormat kFormats[] = {{".png", false, encode_png_alone},
+                                           {".exr", true, encode_exr}};
 
 static const ImageFormat* format_of(const fs::path& path) {
     std::string extension = path.extension();
@@ -55,12 +61,17 @@ Result<Done> check_distinct(std::span<const NamedFile> files) {
     return Done{};
 }
 
-Result<Done> save_image(const Image& image, const fs::path& path) {
+bool takes_layers(const fs::path& path) {
+    const ImageFormat* format = format_of(path);
+    return format && format->layers;
+}
+
+Result<Done> save_image(const Image& image, const fs::path& path, std::span<const Layer> layers) {
     const ImageFormat* format = format_of(path);
     if (!format)
         return Error{
             fmt::format("the output file '{}' ends in neither .png nor .exr", path.string())};
-    const Result<std::string> bytes = format->encode(image);
+    const Result<std::string> bytes = format->encode(image, layers);
     if (!bytes)
         return Error{
             fmt::format("{}: cannot be written: {}", path.string(), bytes.error().message)};

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ovc {
 
@@ -29,15 +30,29 @@ struct NamedFile {
 /// Whether no two of the files are the same, whatever links lead there.
 Result<Done> check_distinct(std::span<const NamedFile> files);
 
+/// A channel besides the picture's, a word a pixel, in the order of its pixels.
+struct Layer {
+    enum class Type { Float, Uint };
+
+    std::string name; // as OpenEXR has it: "depth.Z"
+    Type type = Type::Float;
+    std::vector<uint32_t> values; // of a Float its bits
+};
+
+/// Whether files of this name hold layers.
+bool takes_layers(const std::filesystem::path& path);
+
 /// Writes `image` in the format of the extension. On an error what was at `path` stays, and nothing
 /// else remains; so it is with save_text.
-Result<Done> save_image(const Image& image, const std::filesystem::path& path);
+/// layers: further channels, which .png has no room for.
+Result<Done> save_image(const Image& image, const std::filesystem::path& path,
+                        std::span<const Layer> layers = {});
 
 /// Writes `text`.
 Result<Done> save_text(std::string_view text, const std::filesystem::path& path);
 
 /// The bytes of a file in one format each; the error says only what went wrong.
 Result<std::string> encode_png(const Image& image);
-Result<std::string> encode_exr(const Image& image);
+Result<std::string> encode_exr(const Image& image, std::span<const Layer> layers = {});
 
 } // namespace ovc

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -36,9 +37,10 @@ void Progress::update(const RenderReport& report) {
                100.0 * double(report.pixels_done) / double(pixel_count_),
                human_count(report.rays.total()), double(report.rays.total()) / seconds * 1e-6);
     if (statistics.level2_bytes > 0)
-        fmt::print(stderr, ", {} of {} at most on the GPU, {} moved",
-                   human_bytes(statistics.gpu_peak_bytes), human_bytes(statistics.level2_bytes),
-                   human_bytes(statistics.bytes_in));
+        fmt::print(stderr, ", {} of {} resident at most, {} moved, budget {}",
+                   human_bytes(std::min(statistics.gpu_peak_bytes, statistics.level2_bytes)),
+                   human_bytes(statistics.level2_bytes), human_bytes(statistics.bytes_in),
+                   human_bytes(statistics.gpu_budget_bytes));
     std::fflush(stderr);
 }
 

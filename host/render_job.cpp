@@ -93,7 +93,7 @@ private:
         frame.tracing = counted_between(before, backend_.statistics());
         const Stopwatch output;
         if (frame.report.complete || !is_sequence())
-            if (const Result<Done> saved = save_all(image, shot.frame); !saved)
+            if (const Result<Done> saved = save_all(image, shot); !saved)
                 return saved.error();
         frame.seconds_output = output.seconds();
         frame.seconds = watch.seconds();
@@ -118,10 +118,18 @@ private:
         return render(scene_, shot.camera, backend_, whitted_, observe, image);
     }
 
-    Result<Done> save_all(const Image& image, uint32_t frame) const {
+    Result<Done> save_all(const Image& image, const Shot& shot) {
+        std::vector<Layer> layers;
+        if (job_.aovs.any()) {
+            Result<std::vector<Layer>> traced =
+                trace_aovs(scene_, shot.camera, backend_, job_.aovs, image.width, image.height);
+            if (!traced)
+                return traced.error();
+            layers = std::move(*traced);
+        }
         for (const std::string& output : job_.outputs)
-            if (const Result<Done> saved =
-                    save_image(image, is_sequence() ? frame_file(output, frame) : output);
+            if (const Result<Done> saved = save_image(
+                    image, is_sequence() ? frame_file(output, shot.frame) : output, layers);
                 !saved)
                 return saved;
         return Done{};
@@ -168,7 +176,13 @@ Result<int> render(const RenderJob& job) {
     for (const Shot& shot : shots) // a file's camera is not checked yet
         if (const Result<Done> fine = check_camera(shot.camera); !fine)
             return Error{fmt::format("{}: {}", job.scene.scene, fine.error().message)};
-    const Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, job.backend, log);
+    BackendOptions options = job.backend;
+    options.watching = job.quiet ? BuildWatching::Silent : BuildWatching::Shown;
+    const Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, options, log);
+    if (!backend && backend.error().kind == ErrorKind::Cancelled) {
+        fmt::print(stderr, "overcast: interrupted while building; nothing was rendered\n");
+        return kExitInterrupted;
+    }
     if (!backend)
         return backend.error();
 
@@ -177,6 +191,10 @@ Result<int> render(const RenderJob& job) {
         return done.error();
     stats.tracing = (*backend)->statistics();
     stats.renderer = (*backend)->renderer();
+    stats.left_out =
+        left_out_of(*scene, needs_of(*scene, {job.whitted.shadows,
+                                              job.backend.precision == OVC_PRECISION_CERTIFIED,
+                                              stats.tracing.leaves}));
     stats.seconds_total = total.seconds();
     if (!job.stats.empty())
         if (done = save_text(stats_json(stats), job.stats); !done)

@@ -2,6 +2,7 @@
 // RenderJob: what `overcast render` was asked for, understood and checked; and its execution.
 #pragma once
 
+#include "host/aov.h"
 #include "host/arguments.h"
 #include "host/backend.h"
 #include "host/scene_source.h"
@@ -36,6 +37,7 @@ struct RenderJob {
     std::optional<uint32_t> max_depth; // none: the scene's, else that of `whitted`
     RenderMode mode = RenderMode::Auto;
     BackendOptions backend;
+    Aovs aovs; // in the outputs that take layers
     std::string stats;
     bool quiet = false;
 };

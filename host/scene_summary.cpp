@@ -3,6 +3,10 @@
 #include "host/scene_summary.h"
 
 #include "core/parallel.h"
+#include "host/memory_size.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace ovc {
 
@@ -67,21 +71,48 @@ SceneSummary summarize(const Scene& scene) {
     summary.dropped = census.dropped;
     summary.bounds = census.bounds;
 
-    const uint64_t flat = triangles_without_normals(scene);
-    summary.needs.vertex_normals = flat < summary.triangles;
-    summary.needs.refraction =
-        any_material(scene, [](const Material& m) { return m.transmission > 0; });
-    // Where light is let through it may be reflected totally.
-    summary.needs.reflection = summary.needs.refraction ||
-                               any_material(scene, [](const Material& m) { return m.mirror > 0; });
-    if (flat > 0)
-        summary.left_out.push_back({"vertex normals", flat * 3 * sizeof(vec3)});
-    summary.left_out.push_back({"texture coordinates", summary.triangles * 3 * sizeof(vec2)});
-    if (!summary.needs.reflection)
-        summary.left_out.push_back({"reflection rays", 0});
-    if (!summary.needs.refraction)
-        summary.left_out.push_back({"refraction rays", 0});
+    summary.needs = needs_of(scene);
+    summary.left_out = left_out_of(scene, summary.needs);
     return summary;
+}
+
+Needs needs_of(const Scene& scene, const Query& query) {
+    Needs needs;
+    needs.vertex_normals = triangles_without_normals(scene) < scene.soup.triangle_count();
+    needs.refraction = any_material(scene, [](const Material& m) { return m.transmission > 0; });
+    // Where light is let through it may be reflected totally.
+    needs.reflection =
+        needs.refraction || any_material(scene, [](const Material& m) { return m.mirror > 0; });
+    needs.shadows = query.shadows;
+    needs.certified = query.certified;
+    needs.several_leaves = query.leaves > 1;
+    return needs;
+}
+
+std::vector<LeftOut> left_out_of(const Scene& scene, const Needs& needs) {
+    std::vector<LeftOut> left_out;
+    const auto unless = [&](bool needed, const char* what, uint64_t bytes) {
+        if (!needed)
+            left_out.push_back({what, bytes});
+    };
+    const uint64_t flat = triangles_without_normals(scene);
+    unless(flat == 0, "vertex normals", flat * 3 * sizeof(vec3));
+    unless(needs.texture_coordinates, "texture coordinates",
+           scene.soup.triangle_count() * 3 * sizeof(vec2));
+    unless(needs.reflection, "reflection rays", 0);
+    unless(needs.refraction, "refraction rays", 0);
+    unless(needs.shadows, "shadow rays", 0);
+    unless(needs.several_leaves, "queues of rays", 0);
+    unless(needs.certified, "proofs of answers", 0);
+    return left_out;
+}
+
+std::string left_out_text(const std::vector<LeftOut>& left_out) {
+    std::vector<std::string> items;
+    for (const LeftOut& item : left_out)
+        items.push_back(item.bytes ? fmt::format("{} ({})", item.what, human_bytes(item.bytes))
+                                   : item.what);
+    return fmt::format("{}", fmt::join(items, ", "));
 }
 
 Box hittable_bounds(const Soup& soup) {

@@ -18,12 +18,21 @@ struct Needs {
     bool reflection = false;
     bool refraction = false;
     bool shadows = true;
+    bool several_leaves = true; // rays walk from leaf to leaf, and wait for some
+    bool certified = true;      // answers are proven and settled in double
+};
+
+/// What the scene itself does not say.
+struct Query {
+    bool shadows = true;
+    bool certified = true;
+    uint64_t leaves = 2; // of level 1, as far as known
 };
 
 /// Something a renderer commonly keeps and this scene goes without.
 struct LeftOut {
     std::string what;
-    uint64_t bytes; // what it would take in host memory
+    uint64_t bytes; // what it would take in host memory; 0: time, and code of the kernel
 };
 
 struct SceneSummary {
@@ -36,6 +45,15 @@ struct SceneSummary {
 };
 
 SceneSummary summarize(const Scene& scene);
+
+/// By its meshes and materials alone, whose triangles are not looked at.
+Needs needs_of(const Scene& scene, const Query& query = {});
+
+/// All that is not needed, with what it would take.
+std::vector<LeftOut> left_out_of(const Scene& scene, const Needs& needs);
+
+/// In one line: "vertex normals (1.0 KiB), reflection rays".
+std::string left_out_text(const std::vector<LeftOut>& left_out);
 
 /// SceneSummary::bounds alone.
 Box hittable_bounds(const Soup& soup);

@@ -52,6 +52,30 @@ TEST(SceneSummary, GlassNeedsReflectionTooAsItMayReflectTotally) {
         EXPECT_EQ(item.what.find("rays"), std::string::npos) << item.what;
 }
 
+TEST(SceneSummary, ListsAllThatIsLeftOutAndNothingThatIsNeeded) {
+    Scene scene;
+    scene.materials = {{"dull"}, {"glass", vec3(1), 0, 0.5f}};
+    const std::vector<vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    scene.add_mesh("flat", 0, Chunk::owning(dvec3(0), corners));
+    const auto text = [&](const Query& query) {
+        return left_out_text(left_out_of(scene, needs_of(scene, query)));
+    };
+    EXPECT_EQ(text({}),
+              "vertex normals (36 bytes), texture coordinates (24 bytes), reflection rays, "
+              "refraction rays");
+    EXPECT_EQ(text({false, false, 1}),
+              "vertex normals (36 bytes), texture coordinates (24 bytes), reflection rays, "
+              "refraction rays, shadow rays, queues of rays, proofs of answers");
+    // Half of the triangles are flat, and the others need their normals; glass needs both rays.
+    scene.add_mesh("smooth", 1, Chunk::owning(dvec3(0), corners),
+                   std::vector<vec3>(3, vec3(0, 0, 1)));
+    EXPECT_EQ(text({}), "vertex normals (36 bytes), texture coordinates (48 bytes)");
+    const Needs needs = needs_of(scene);
+    EXPECT_TRUE(needs.vertex_normals && needs.reflection && needs.refraction && needs.shadows &&
+                needs.several_leaves && needs.certified);
+    EXPECT_FALSE(needs.texture_coordinates);
+}
+
 TEST(SceneSummary, OfNothingHasNoBounds) {
     EXPECT_TRUE(summarize(Scene{}).bounds.empty());
 }

@@ -69,6 +69,13 @@ static Json frames_of(const RenderStats& s) {
     return frames;
 }
 
+static Json left_out_of(const RenderStats& s) {
+    Json list = Json::array();
+    for (const LeftOut& item : s.left_out)
+        list.push_back({{"what", item.what}, {"bytes", item.bytes}});
+    return list;
+}
+
 static Json times_of(const RenderStats& s) {
     return {{"import", s.seconds_import},         {"level1", s.tracing.seconds_level1},
             {"level2", s.tracing.seconds_level2}, {"trace", s.report.seconds_trace},
@@ -103,6 +110,7 @@ std::string stats_json(const RenderStats& s) {
         {"flagged", t.flagged},
         {"retraced", t.retraced},
         {"capped", t.capped},
+        {"left_out", left_out_of(s)},
         {"time", times_of(s)},
         {"frames", frames_of(s)}};
     // A name of a file or a driver need not be UTF-8; what is not is replaced rather than thrown
@@ -150,6 +158,8 @@ std::string stats_summary(const RenderStats& s) {
         text += fmt::format(
             "  flagged    {} answers, decided in double precision; {} of them traced again\n",
             human_count(t.flagged), human_count(t.retraced));
+    if (!s.left_out.empty())
+        text += fmt::format("  left out   {}\n", left_out_text(s.left_out));
     text += fmt::format("  host       {} at most\n", human_bytes(host_peak_bytes()));
     text +=
         fmt::format("  seconds    {:.2f}: import {:.2f}, build {:.2f}, trace {:.2f}, shade {:.2f}, "

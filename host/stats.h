@@ -2,6 +2,7 @@
 // What a rendering took: as JSON for programs (docs/stats.md) and as a few lines for people.
 #pragma once
 
+#include "host/scene_summary.h"
 #include "host/whitted.h"
 #include "plugin/overcast.h"
 
@@ -32,6 +33,7 @@ struct RenderStats {
     ovc_statistics tracing{};
     std::vector<FrameStats> frames; // those that are finished, and for a single picture also a part
     std::string renderer;
+    std::vector<LeftOut> left_out;
     double seconds_import = 0;
     double seconds_output = 0;
     double seconds_total = 0;

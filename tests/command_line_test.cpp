@@ -135,6 +135,49 @@ TEST_F(CommandLine, TheDragonInTwelveMegabytesIsTheSamePicture) {
     EXPECT_THAT(bytes("s.json"), HasSubstr("\"gpu_budget_bytes\": 12582912"));
 }
 
+TEST_F(CommandLine, InfoTellsThePlanThatRenderThenKeepsTo) {
+    const auto info = overcast("info plants-1 --json --gpu-memory 2M 2>/dev/null");
+    ASSERT_EQ(info.exit_code, 0) << info.output;
+    const auto render =
+        overcast("render plants-1 --quiet --size 64x48 --gpu-memory 2M --stats s.json");
+    ASSERT_EQ(render.exit_code, 0) << render.output;
+    const auto number = [](const std::string& text, const std::string& key) {
+        const size_t at = text.find("\"" + key + "\": ");
+        return at == std::string::npos ? -1.0 : std::stod(text.substr(at + key.size() + 4));
+    };
+    const std::string stats = bytes("s.json");
+    for (const char* key : {"leaves", "level2_bytes", "largest_page_bytes", "gpu_budget_bytes"})
+        EXPECT_NEAR(number(info.output, key) / number(stats, key), 1, 0.1) << key;
+    EXPECT_LT(number(info.output, "resident_pages"), number(info.output, "leaves"));
+    EXPECT_GT(number(info.output, "smallest_budget_bytes"), 40960);
+    const auto text = overcast("info plants-1 --gpu-memory 64K 2>/dev/null");
+    EXPECT_THAT(text.output, HasSubstr("64.0 KiB is too small"));
+    const auto cpu = overcast("info box --backend cpu-kdtree");
+    EXPECT_THAT(cpu.output, HasSubstr("plan       none: a backend on the CPU has no plan"));
+    const auto thesis = overcast("info box --backend skip-bvh 2>/dev/null");
+    EXPECT_THAT(thesis.output, HasSubstr("what skip-bvh takes is known only once it is built"));
+}
+
+TEST_F(CommandLine, CtrlCDuringABuildEndsItSoon) {
+    // Long enough to be building, whatever the machine: the signal comes once the scene is there.
+    const auto run = test::run_shell(OVC_BINARY_DIR "/bin/overcast render dragons-5 --quiet -o '" +
+                                     folder.string() +
+                                     "/never.png' & pid=$!; sleep 2; kill -INT $pid; wait $pid");
+    EXPECT_EQ(run.exit_code, 2) << run.output;
+    EXPECT_THAT(run.output, HasSubstr("interrupted"));
+    EXPECT_FALSE(fs::exists(folder / "never.png")) << run.output;
+}
+
+TEST_F(CommandLine, LayersOfWhatTheCameraSees) {
+    EXPECT_EQ(overcast("render box --aov depth,normal,id -o a.exr --quiet --size 20x20").exit_code,
+              0);
+    EXPECT_THAT(bytes("a.exr"), HasSubstr("depth.Z"));
+    EXPECT_THAT(bytes("a.exr"), HasSubstr("id.prim"));
+    const auto png = overcast("render box --aov depth -o a.png");
+    EXPECT_EQ(png.exit_code, 1);
+    EXPECT_THAT(png.output, HasSubstr("--aov needs an output that holds layers: -o FILE.exr"));
+}
+
 TEST_F(CommandLine, TraceAnswersOneLineARay) {
     const auto run = test::run_shell("printf '0 0 5 0 0 -1\\n0 0 5 0 0 1\\n' | " OVC_BINARY_DIR
                                      "/bin/overcast trace sphere-0 2>/dev/null");

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// AOVs: what the camera's rays hit, as further channels of an OpenEXR file.
+#pragma once
+
+#include "core/result.h"
+#include "core/scene.h"
+#include "host/backend.h"
+#include "host/output.h"
+
+#include <string_view>
+#include <vector>
+
+namespace ovc {
+
+/// Which of them are wanted.
+struct Aovs {
+    bool depth = false;  // depth.Z: t of the pixel's ray, which is the distance along the view;
+                         // infinity where nothing is hit
+    bool normal = false; // normal.X, .Y, .Z: of unit length in the world, towards the eye; 0
+    bool id = false;     // id.mesh, id.prim: whole numbers; 0xffffffff
+
+    bool any() const { return depth || normal || id; }
+};
+
+/// "depth,normal,id". Error: an unknown name, one twice, or one that no backend can tell yet.
+Result<Aovs> parse_aovs(std::string_view text);
+
+/// One ray through the middle of each pixel, apart from those of the picture.
+Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Camera& camera, Backend& backend,
+                                      const Aovs& aovs, uint32_t width, uint32_t height);
+
+} // namespace ovc
