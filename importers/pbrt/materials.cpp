@@ -23,6 +23,7 @@ struct Context {
     const Textures& textures;
     const Parameters& p;
     Diagnostics& diagnostics;
+    Place place;
 
     vec3 color(std::string_view name, float otherwise) const {
         return glm::clamp(textures.color(p, name, vec3(otherwise)), vec3(0), vec3(1));
@@ -226,9 +227,27 @@ Material make_uber(const Context& c) {
 
 Material make_translucent(const Context& c) {
     Material m = c.p.find("reflectance") ? matte(c, "reflectance") : matte(c, "Kd");
-    c.diagnostics.approximate("translucent", c.p.all().empty() ? Place{} : c.p.all()[0].place,
+    c.diagnostics.approximate("translucent", c.place,
                               "light that surfaces let through in all directions is left out");
     return m;
+}
+
+/// Disney's: its metallic share decides between metal and paint, spectrans between that and glass.
+Material make_disney(const Context& c) {
+    if (c.number("spectrans", 0) > 0.5)
+        return make_glass(c, c.p.flag("thin", false));
+    if (c.number("metallic", 0) > 0.5)
+        return metal(c.color("color", 0.5f), roughness_of(c, 0.5));
+    Material m = matte(c, "color");
+    add_highlight(*m.finish, 0.04f, roughness_of(c, 0.5));
+    return m;
+}
+
+/// Tables in files of their own.
+Material make_tabulated(const Context& c) {
+    c.diagnostics.approximate("tabulated", c.place,
+                              "materials from tables and models of hair become matte grey");
+    return matte(c, "reflectance");
 }
 
 Material make_invisible(const Context&) {
@@ -271,6 +290,10 @@ constexpr Family kFamilies[] = {{"matte", make_matte},
                                 {"diffusetransmission", make_translucent},
                                 {"subsurface", make_translucent},
                                 {"kdsubsurface", make_translucent},
+                                {"disney", make_disney},
+                                {"fourier", make_tabulated},
+                                {"measured", make_tabulated},
+                                {"hair", make_tabulated},
                                 {"none", make_invisible},
                                 {"interface", make_invisible},
                                 {"", make_invisible},
@@ -319,10 +342,10 @@ Material Materials::mapped(const std::string& type, const Parameters& parameters
         return mix(parameters, place);
     for (const Family& family : kFamilies)
         if (family.name == type)
-            return family.make({textures_, parameters, diagnostics_});
+            return family.make({textures_, parameters, diagnostics_, place});
     diagnostics_.missing("material " + type, place,
                          fmt::format("materials {} become matte", ovc::quoted(type)));
-    return make_matte({textures_, parameters, diagnostics_});
+    return make_matte({textures_, parameters, diagnostics_, place});
 }
 
 /// Part by part; the metal, glass or coat of the larger share decides what cannot be mixed.
