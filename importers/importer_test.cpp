@@ -43,7 +43,7 @@ TEST(Importer, TheExtensionChoosesTheReader) {
                  {"a.STL.gz", gzip(kStl)}};
     for (const auto& test : cases)
         EXPECT_EQ(triangles_of(load(folder.write(test.name, test.contents))), kOne) << test.name;
-    EXPECT_EQ(own_extensions(), (std::vector<std::string>{"obj", "pbrt", "ply"}));
+    EXPECT_EQ(own_extensions(), (std::vector<std::string>{"obj", "pbrt", "ply", "pov"}));
 }
 
 TEST(Importer, ErrorsNameTheFileAndWhatWasExpected) {
@@ -53,7 +53,7 @@ TEST(Importer, ErrorsNameTheFileAndWhatWasExpected) {
         folder.write(name, "x");
     folder.write("empty.stl", "");
     const std::string reads =
-        ", expected .obj, .pbrt, .ply or one that Assimp reads, such as .stl, .off, .glb";
+        ", expected .obj, .pbrt, .ply, .pov or one that Assimp reads, such as .stl, .off, .glb";
     EXPECT_EQ(folder.failure("gone.ply"), "gone.ply: no such file");
     EXPECT_EQ(folder.failure("gone.plyx"), "gone.plyx: no such file");
     EXPECT_EQ(folder.failure("gone"), "gone: no such file");
