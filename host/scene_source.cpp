@@ -25,7 +25,7 @@ void SceneArguments::add_to(CLI::App& app, const char* name) {
     app.add_flag("--strict", strict,
                  "For .pbrt: what is unknown, missing or unusable is an error, not a warning");
     app.add_option("--max-triangles", max_triangles,
-                   "For .pbrt: refuse a scene of more once its instances are expanded; default: "
+                   "For .pbrt and .pov: refuse a scene of more, instances expanded; default: "
                    "100000000")
         ->type_name("N");
 }

@@ -75,7 +75,8 @@ Children split_weight(Path& path, const Ray& ray, const SurfacePoint& surface, u
 bool lets_light_through(const Scene& scene);
 
 /// Dims the light `left` of a shadow ray by the surface it hit, the `depth`th in its way, and moves
-/// the ray behind that; false when nothing is left.
+/// the ray behind that. False: it ends here; what is left of the light arrives, and is not 0 only
+/// where the light lies in that surface.
 bool pass_glass(const Scene& scene, const Light& light, const WhittedOptions& options,
                 uint32_t depth, const Hit& hit, Ray& ray, vec3& left);
 

@@ -238,6 +238,8 @@ private:
                        shadow.arriving)) {
             ++shadow.depth;
             shadows.set(place, shadow, hit.id);
+        } else if (shadow.arriving != vec3(0)) {
+            arrive(shadow);
         }
     }
 

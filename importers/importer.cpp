@@ -21,11 +21,10 @@ struct Format {
     Result<Done> (*write)(const Scene&, const std::filesystem::path&); // null: only read
 };
 
-constexpr Format kFormats[] = {
-    {"obj", read_obj, write_obj},
-    {"pbrt", read_pbrt, nullptr},
-    {"ply", read_ply, write_ply},
-    {"pov", read_pov, nullptr}};
+constexpr Format kFormats[] = {{"obj", read_obj, write_obj},
+                               {"pbrt", read_pbrt, nullptr},
+                               {"ply", read_ply, write_ply},
+                               {"pov", read_pov, nullptr}};
 
 const Format* format_of(std::string_view extension) {
     for (const Format& format : kFormats)

@@ -71,6 +71,10 @@ bool Interpreter::run() {
         diagnostics_.missing(
             "unclosed", tokens_.place(),
             fmt::format("the file ends inside {} AttributeBegin or its like", state_.depth()));
+    if (!building_.empty())
+        diagnostics_.missing("unclosed object", tokens_.place(),
+                             fmt::format("the object {} left out: the file ends inside it",
+                                         ovc::quoted(building_.back().name)));
     return bind_late_instances() && !diagnostics_.failed();
 }
 

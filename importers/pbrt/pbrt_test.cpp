@@ -250,6 +250,7 @@ TEST(Pbrt, StrictMakesWhatIsMissingAnError) {
                              "LightSource \"laser\"",
                              "AttributeEnd",
                              "AttributeBegin",
+                             "ObjectBegin \"x\"",
                              "Shape \"trianglemesh\"",
                              "Shape \"sphere\" \"money radius\" 3"};
     for (const char* text : missing) {
