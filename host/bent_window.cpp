@@ -39,6 +39,7 @@ Ray bent_ray(const ImageWindow& w, const dvec3& eye, const dvec2& at) {
     const dvec3 forward = glm::normalize(w.direction);
     const double across = at.x * w.angle * kPi / 180;
     const double upward = at.y * w.angle * kPi / 180;
+    const double ratio = glm::length(w.up) / glm::length(w.right);
     Ray ray;
     ray.org = eye;
     switch (w.bend) {
@@ -49,12 +50,12 @@ Ray bent_ray(const ImageWindow& w, const dvec3& eye, const dvec2& at) {
         ray.dir = around_the_axis(w, at, omnimax);
         break;
     case Bend::UltraWide:
-        ray.dir = std::sin(across) * right + std::sin(upward) * up +
-                  std::cos(across) * std::cos(upward) * forward;
+        ray.dir = std::sin(across) * right + std::sin(upward * ratio) * up +
+                  std::cos(across) * std::cos(upward * ratio) * forward;
         break;
     case Bend::Panoramic: {
         const double turn = at.x * kPi, rise = std::clamp(at.y * kPi, -1.57, 1.57);
-        ray.dir = std::sin(turn) * right + std::tan(rise) * up + std::cos(turn) * forward;
+        ray.dir = std::sin(turn) * w.right + std::tan(rise) * w.up + std::cos(turn) * forward;
         break;
     }
     case Bend::Spherical: {

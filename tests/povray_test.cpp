@@ -2,6 +2,7 @@
 // Glass, mirrors and shadows through glass look as POV-Ray draws them: its own spheres, our
 // triangles.
 #include "host/whitted_batched.h"
+#include "importers/importer.h"
 #include "tests/run_command.h"
 #include "testscenes/catalog.h"
 
@@ -43,41 +44,69 @@ std::optional<Image> read_ppm(const std::filesystem::path& path) {
     return image;
 }
 
-TEST(Povray, DrawsGlassAndMirrorsAsWeDo) {
-    if (test::run_shell("command -v povray").exit_code != 0)
-        GTEST_SKIP() << "povray is not installed";
+/// What POV-Ray makes of a scene, linear; nothing, and the test fails or is skipped, where it does
+/// not.
+std::optional<Image> drawn_by_povray(const std::string& scene) {
     const std::filesystem::path ppm =
         std::filesystem::temp_directory_path() / fmt::format("ovc-povray-{}.ppm", getpid());
-    const test::CommandResult drawn = test::run_shell(fmt::format(
-        "povray +I{}/testscenes/glass.pov +O{} +W{} +H{} +FP16 File_Gamma=1.0 -A -D -GA",
-        OVC_SOURCE_DIR, ppm.string(), kSize, kSize));
-    ASSERT_EQ(drawn.exit_code, 0) << drawn.output;
-    const std::optional<Image> theirs = read_ppm(ppm);
+    const test::CommandResult drawn =
+        test::run_shell(fmt::format("povray +I{} +O{} +W{} +H{} +FP16 File_Gamma=1.0 -A -D -GA",
+                                    scene, ppm.string(), kSize, kSize));
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.output;
+    std::optional<Image> image = read_ppm(ppm);
     std::filesystem::remove(ppm);
-    ASSERT_TRUE(theirs && theirs->width == kSize && theirs->height == kSize);
+    EXPECT_TRUE(image && image->width == kSize && image->height == kSize);
+    return image;
+}
 
-    const Result<Scene> scene = make_test_scene("glass");
-    ASSERT_TRUE(scene);
+/// mean: of the difference over colors and pixels; unlike: the share of pixels more than 0.02 off.
+void expect_alike(const Scene& scene, uint32_t max_depth, const Image& theirs, double mean,
+                  double unlike_share) {
     Image ours(kSize, kSize);
     WhittedOptions options;
-    options.max_depth = 12;
-    const std::unique_ptr<Backend> backend = make_cpu_backend(scene->soup);
-    ASSERT_TRUE(render_batched(*scene, *scene->camera, *backend, options, {}, ours));
-
+    options.max_depth = max_depth;
+    const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
+    ASSERT_TRUE(render_batched(scene, *scene.camera, *backend, options, {}, ours));
     double sum = 0;
     size_t unlike = 0;
     for (size_t i = 0; i < ours.pixels.size(); ++i) {
         // What is brighter than white POV-Ray cuts off.
-        const vec3 off =
-            glm::abs(glm::min(vec3(ours.pixels[i]), vec3(1)) - vec3(theirs->pixels[i]));
+        const vec3 off = glm::abs(glm::min(vec3(ours.pixels[i]), vec3(1)) - vec3(theirs.pixels[i]));
         sum += double(off.x + off.y + off.z) / 3;
         unlike += max_component(off) > 0.02f;
     }
     std::printf("mean difference %.5f, %zu of %zu pixels unlike\n",
                 sum / double(ours.pixels.size()), unlike, ours.pixels.size());
     // Where edges of squares and balls cross a pixel's middle, facets and spheres may disagree.
-    EXPECT_LT(sum / double(ours.pixels.size()), 0.001);
-    EXPECT_LT(unlike, ours.pixels.size() / 250);
+    EXPECT_LT(sum / double(ours.pixels.size()), mean);
+    EXPECT_LT(double(unlike), unlike_share * double(ours.pixels.size()));
+}
+
+bool has_povray() {
+    return test::run_shell("command -v povray").exit_code == 0;
+}
+
+TEST(Povray, DrawsGlassAndMirrorsAsWeDo) {
+    if (!has_povray())
+        GTEST_SKIP() << "povray is not installed";
+    const std::optional<Image> theirs = drawn_by_povray(OVC_SOURCE_DIR "/testscenes/glass.pov");
+    ASSERT_TRUE(theirs);
+    const Result<Scene> scene = make_test_scene("glass");
+    ASSERT_TRUE(scene);
+    expect_alike(*scene, 12, *theirs, 0.001, 1 / 250.0);
+}
+
+TEST(Povray, DrawsLightsAndFinishesAsWeDoFromTheSameFile) {
+    if (!has_povray())
+        GTEST_SKIP() << "povray is not installed";
+    const std::string file = OVC_SOURCE_DIR "/testscenes/lights.pov";
+    const std::optional<Image> theirs = drawn_by_povray(file);
+    ASSERT_TRUE(theirs);
+    ImportOptions options;
+    options.size = ImageSize{kSize, kSize};
+    const Result<Scene> scene = load(file, options);
+    ASSERT_TRUE(scene) << scene.error().message;
+    expect_alike(*scene, *scene->max_depth, *theirs, 0.002, 1 / 100.0);
 }
 
 } // namespace
