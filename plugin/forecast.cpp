@@ -93,7 +93,8 @@ public:
                                       : uint32_t(std::min<uint64_t>(limits.triangles, kNone - 1));
         if (const uint32_t rate = sample_rate(distinct(), most_); rate != rate_)
             draw(rate);
-        const KdTree tree = cut_sample(soup_, sample_, rate_, bounds_, distinct() <= most_ ? kNone - 1 : most_, progress_);
+        const KdTree tree = cut_sample(soup_, sample_, rate_, bounds_,
+                                       distinct() <= most_ ? kNone - 1 : most_, progress_);
         const double padding = padding_of(bounds_);
         const std::vector<Cell> cells = cells_of(tree.nodes, bounds_, padding);
         const std::vector<uint64_t> counts = counted(soup_, CellFinder(tree.nodes, cells, padding),
