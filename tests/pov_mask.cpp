@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // pov_mask SCENE WIDTH HEIGHT: which pixels' middles the scene covers, a byte of 0 or 1 each, on
-// stdout. For importers/pov/compare.py.
+// stdout; 2 where a bent picture shows nothing. For importers/pov/compare.py.
 #include "host/backend.h"
 #include "host/camera.h"
 #include "importers/importer.h"
@@ -43,7 +43,7 @@ int main(int count, char** words) {
         std::fprintf(stderr, "%s\n", done.error().message.c_str());
         return 1;
     }
-    for (const Hit& hit : hits)
-        std::putchar(hit.is_hit() ? 1 : 0);
+    for (size_t i = 0; i < hits.size(); ++i)
+        std::putchar(rays[i].dir == dvec3(0) ? 2 : hits[i].is_hit() ? 1 : 0);
     return 0;
 }

@@ -17,6 +17,9 @@ namespace ovc::pov {
 
 namespace {
 
+/// A placed object takes as much memory as a few triangles; most are cut into more than this.
+constexpr uint64_t kTrianglesAnObject = 20;
+
 /// A shape as it stands in the world.
 struct Placed {
     const Object* object;
@@ -152,12 +155,12 @@ public:
                               materials_.number(texture, from.texture_placed, from.interior),
                               from.no_shadow});
         }
-        // Groups of groups may be more than any memory holds: what is placed has two triangles.
-        if (++visited_ > look_.most_triangles / 2)
+        // Groups of groups may be more than any memory holds.
+        if (++visited_ > look_.most_triangles / kTrianglesAnObject)
             throw ParseError(object.place,
                              fmt::format("found more than {} objects in the scene, expected at "
-                                         "most as many as half of the triangles allowed",
-                                         look_.most_triangles / 2));
+                                         "most that",
+                                         look_.most_triangles / kTrianglesAnObject));
         for (const ObjectPtr& child : object.children)
             gather(*child, from);
     }

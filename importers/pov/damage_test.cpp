@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fuzzer's seeds, cut off everywhere and with bytes changed: what the fuzzer does for longer.
+#include "importers/pov/fuzz.h"
+#include "importers/readers.h"
+#include "importers/test_files.h"
+
+#include <random>
+
+namespace ovc {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> seeds() {
+    std::vector<std::string> texts;
+    for (const auto& entry : fs::directory_iterator(OVC_SOURCE_DIR "/importers/pov/corpus")) {
+        std::ifstream file(entry.path(), std::ios::binary);
+        texts.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    }
+    return texts;
+}
+
+void survives(const std::string& text) {
+    fuzz_pov(reinterpret_cast<const uint8_t*>(text.data()), text.size());
+}
+
+TEST(PovDamage, SeedsAreScenes) {
+    ASSERT_EQ(seeds().size(), 2u);
+    for (const std::string& text : seeds())
+        EXPECT_GT(triangles_of(parse_pov(text, "seed.pov", {})).size(), 1000u);
+}
+
+TEST(PovDamage, EveryBeginningIsASceneOrASentence) {
+    for (const std::string& text : seeds())
+        for (size_t length = 0; length < text.size(); length += 5)
+            survives(text.substr(0, length));
+}
+
+TEST(PovDamage, AnyByteMayBeAnyOther) {
+    constexpr std::string_view kOdd = "\"{}<>()[]#-.,;=9eE \n\\\0\xff/*";
+    for (const std::string& text : seeds()) {
+        std::mt19937 random(uint32_t(text.size()));
+        for (int i = 0; i < 400; ++i) {
+            std::string damaged = text;
+            for (uint32_t n = random() % 3; n < 3; ++n)
+                damaged[random() % text.size()] = kOdd[random() % kOdd.size()];
+            survives(damaged);
+        }
+    }
+}
+
+TEST(PovDamage, LoopsRecursionAndGroupsThatDoNotEndAreStopped) {
+    const struct {
+        const char* text;
+        const char* sentence;
+    } cases[] = {
+        {"#while (1) #end", "stopped after 100000 words: a loop or a macro does not end"},
+        {"#macro M() M() #end M()", "does not end"},
+        {"#macro M() #local A = M(); #end M()", "deep in each other"},
+        {"#declare A = sphere { 0, 1 }\n#declare I = 0;\n#while (I < 40)\n"
+         "#declare A = union { object { A } object { A } }\n#declare I = I + 1;\n#end object { A }",
+         "found more than 50000 objects in the scene"},
+        {"#declare A = array[100000][100000]", "found an array of 10000000000 items"},
+    };
+    ImportOptions options;
+    options.max_triangles = 1'000'000;
+    for (const auto& c : cases) {
+        const Result<Scene> scene = parse_pov(c.text, "x.pov", options, 100'000);
+        ASSERT_FALSE(scene) << c.text;
+        EXPECT_NE(scene.error().message.find(c.sentence), std::string::npos)
+            << scene.error().message;
+    }
+    std::string deep = "sphere { ";
+    for (int i = 0; i < 100'000; ++i)
+        deep += "(";
+    EXPECT_FALSE(parse_pov(deep, "x.pov", {}));
+}
+
+} // namespace
+} // namespace ovc

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// POV-Ray's scene language: values, directives, errors. importers/pov/compare.py and
+// tests/povray_test.cpp ask POV-Ray itself.
+#include "importers/readers.h"
+#include "importers/test_files.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ovc {
+namespace {
+
+Result<Scene> parse(const std::string& text) {
+    return parse_pov(text, "x.pov", {});
+}
+
+/// What an expression comes to, as the upper corner of a box says.
+dvec3 value(const std::string& expression, const std::string& before = "") {
+    const Result<Scene> scene = parse(before + "\nbox { -1e6, (" + expression + ") * <1, 1, 1> }");
+    if (!scene) {
+        ADD_FAILURE() << scene.error().message;
+        return dvec3(0);
+    }
+    dvec3 hi(-1e9);
+    for (const Triangle& t : triangles_of(scene))
+        for (const dvec3& corner : t)
+            hi = glm::max(hi, corner);
+    return hi;
+}
+
+#define EXPECT_VALUE(expected, ...)                                                                \
+    do {                                                                                           \
+        const dvec3 found_value = value(__VA_ARGS__), expected_value(expected);                    \
+        EXPECT_LT(glm::length(found_value - expected_value),                                       \
+                  1e-7 * (1 + glm::length(expected_value)))                                        \
+            << found_value.x << " " << found_value.y << " " << found_value.z;                      \
+    } while (false)
+
+TEST(PovExpression, FollowsTheOrderOfOperations) {
+    EXPECT_VALUE(7, "1 + 2 * 3");
+    EXPECT_VALUE(-3, "-(1 + 2)");
+    EXPECT_VALUE(dvec3(3, 4, 6), "<1, 2, 4> + 2");
+    EXPECT_VALUE(dvec3(2, 3, 4), "2*x + 3*y + 4*z");
+    EXPECT_VALUE(4, "<1, 2, 4>.z");
+    EXPECT_VALUE(1, "(1 < 2 & !(3 >= 4)) | 0");
+    EXPECT_VALUE(5, "(2 > 3 ? 4 : 5)");
+    EXPECT_VALUE(0.25, "rgbf <1, 1, 1, 0.25>.filter");
+}
+
+TEST(PovExpression, KnowsTheFunctions) {
+    EXPECT_VALUE(5, "vlength(<3, 4, 0>)");
+    EXPECT_VALUE(dvec3(0, 0, 1), "vcross(x, y)");
+    EXPECT_VALUE(dvec3(0, 1, 0), "vrotate(x, 90*z)");
+    EXPECT_VALUE(dvec3(0, 1, 0), "vaxis_rotate(x, z, 90)");
+    EXPECT_VALUE(-1, "min(3, -1, 2)");
+    EXPECT_VALUE(3, "int(3.7)");
+    EXPECT_VALUE(12, "strlen(concat(\"a\", str(1.5, 8, 3), chr(65), \"\\\"z\"))");
+    EXPECT_VALUE(2.5, "val(substr(\"x2.5y\", 2, 3))");
+    EXPECT_VALUE(3, "select(-1, 3, 4, 5)");
+    EXPECT_VALUE(8, "F(2, 3)", "#declare F = function (a, b) { a * b + select(b - 3, 0, 2, 0) }");
+    EXPECT_VALUE(2, "max_extent(S).y", "#declare S = sphere { y, 1 scale <3, 1, 1> };");
+    EXPECT_VALUE(dvec3(5, 0, 0), "T(0, 1, 0)",
+                 "#declare T = function { transform { rotate -90*z scale 5 } }");
+}
+
+/// What povray 3.7.0.10 prints for #debug str(rand(seed(1)), 0, 9) and the next.
+TEST(PovExpression, RandomNumbersAreThoseOfPovRay) {
+    const std::string stream = "#declare R = seed(1);";
+    EXPECT_VALUE((1812433253u * 1u + 12345u) / 4294967295.0, "rand(R)", stream);
+    EXPECT_VALUE((1812433253u * (1812433253u + 12345u) + 12345u) / 4294967295.0, "rand(R)",
+                 stream + "#declare Q = rand(R);");
+}
+
+/// As povray 3.7.0.10 prints them.
+TEST(PovExpression, SplinesAreThoseOfPovRay) {
+    const auto spline = [](const std::string& kind) {
+        return "#declare S = spline { " + kind +
+               " 0, <0, 0, 0>, 1, <1, 2, 0>, 2, <0, 3, 0>, 3, <4, 4, 0> }";
+    };
+    EXPECT_VALUE(dvec3(0.3125, 2.5625, 0), "S(1.5)", spline("cubic_spline"));
+    EXPECT_VALUE(dvec3(0.275, 2.575, 0), "S(1.5)", spline("natural_spline"));
+    EXPECT_VALUE(dvec3(0.75, 2.625, 0), "S(1.5)", spline("quadratic_spline"));
+    EXPECT_VALUE(dvec3(0.5, 2.5, 0), "S(1.5)", spline("linear_spline"));
+}
+
+TEST(PovDirectives, MacrosTakeValuesAndVariables) {
+    EXPECT_VALUE(6, "Twice(3)", "#macro Twice(A) (2 * A) #end");
+    EXPECT_VALUE(9, "Out", "#macro Set(A, B) #declare A = B * B; #end Set(Out, 3)");
+    EXPECT_VALUE(3, "I", "#declare I = 3; #macro M() #local I = 7; #end M()");
+    EXPECT_VALUE(24, "Factorial(4)",
+                 "#macro Factorial(N) #if (N <= 1) 1 #else (N * Factorial(N - 1)) #end #end");
+}
+
+TEST(PovDirectives, LoopsAndConditionsNest) {
+    EXPECT_VALUE(10, "Sum", "#declare Sum = 0; #for (I, 1, 4) #declare Sum = Sum + I; #end");
+    EXPECT_VALUE(3, "N",
+                 "#declare N = 0; #while (1) #declare N = N + 1; #if (N = 3) #break #end #end");
+    EXPECT_VALUE(20, "V",
+                 "#switch (3) #case (1) #declare V = 10; #break #range (2, 4) #declare V = 20; "
+                 "#break #else #declare V = 30; #end");
+    EXPECT_VALUE(2, "V",
+                 "#ifdef (Nothing) #declare V = 1; #elseif (0) #error \"no\" #else #declare V = 2; "
+                 "#end");
+    EXPECT_VALUE(7, "A[1][0]", "#declare A = array[2][2]; #declare A[1][0] = 7;");
+    EXPECT_VALUE(4, "dimension_size(A, 1)", "#declare A = array[4] { 1, 2, 3, 4 }");
+}
+
+TEST(PovDirectives, DeclarationsNeedNoSemicolon) {
+    EXPECT_VALUE(5, "B", "#declare A = 5\n#declare B = A\n");
+    EXPECT_VALUE(1, "1", "declare Old = 3 /* a /* nested */ comment */");
+}
+
+TEST(PovDirectives, IncludesAreFoundWhateverTheirLettersAndSlashes) {
+    const TestFolder folder;
+    std::filesystem::create_directories(folder / "Geom");
+    folder.write("Geom/Ball.INC", "#local R = 2; #declare Ball = sphere { 0, R }");
+    const auto scene = load(
+        folder.write("main.pov", "#include \"geom\\ball.inc\"\nobject { Ball }\n#ifdef (R) #error "
+                                 "\"a #local of an include is seen outside\" #end"));
+    EXPECT_GT(triangles_of(scene).size(), 100u);
+    std::filesystem::remove_all(folder / "Geom");
+}
+
+TEST(PovErrors, NameTheLineAndShowIt) {
+    const struct {
+        const char* text;
+        const char* message;
+    } cases[] = {
+        {"sphere { 0 1 }\nbox { 0, Side }",
+         "x.pov:2:10: found 'Side', which is not declared\n    box { 0, Side }\n             ^"},
+        {"\n  difference { sphere { 0, 1 } box { 0, 1 } }",
+         "x.pov:2:3: difference is not supported\n      difference { sphere { 0, 1 } box { 0, 1 } "
+         "}\n      ^"},
+        {"#if (1)", "x.pov:1:1: found no #end to this\n    #if (1)\n    ^"},
+        {"#include \"none.inc\"",
+         "x.pov:1:1: there is no file 'none.inc', neither beside the scene nor among POV-Ray's "
+         "include files\n    #include \"none.inc\"\n    ^"},
+        {"#error concat(\"bad \", str(2, 0, 0))",
+         "x.pov:1:1: the scene stops with #error: bad 2\n    #error concat(\"bad \", str(2, 0, "
+         "0))\n    ^"},
+        {"box { 0, 1 / 0 }", "x.pov:1:12: found a division by zero\n    box { 0, 1 / 0 }\n         "
+                             "      ^"},
+        {"sphere { 0, 1", "x.pov:1:14: found the end of the file, expected '}' or a modifier of "
+                          "sphere\n    sphere { 0, 1\n                 ^"},
+    };
+    for (const auto& c : cases) {
+        const Result<Scene> scene = parse(c.text);
+        ASSERT_FALSE(scene) << c.text;
+        EXPECT_EQ(scene.error().message, c.message);
+    }
+}
+
+TEST(PovErrors, WhatIsDeclaredAndNotSeenMayBeUnsupported) {
+    EXPECT_TRUE(parse("#declare D = difference { sphere { 0, 1 } box { 0, 1 } } sphere { 0, 1 }"));
+}
+
+TEST(PovWarnings, ComeOncePerKind) {
+    std::vector<std::string> messages;
+    const auto scene =
+        parse_pov("sphere { 0, 1 pigment { bozo } }\nsphere { 0, 1 pigment { wood } }\n"
+                  "sphere { 0, 1 normal { bumps 1 } }",
+                  "x.pov", gather(messages));
+    EXPECT_TRUE(scene);
+    ASSERT_EQ(messages.size(), 2u);
+    EXPECT_EQ(messages[0],
+              "x.pov:1:25: patterns such as 'bozo' are drawn by their average "
+              "color\n    sphere { 0, 1 pigment { bozo } }\n                            "
+              "^");
+}
+
+TEST(PovScene, ReadsLightsCameraAndSettings) {
+    const Result<Scene> scene = parse(
+        "camera { location <0, 0, -5> direction 2*z right -x*2 up y }\n"
+        "light_source { <1, 2, 3> rgb <0.5, 1, 1> spotlight point_at <1, 0, 3> radius 10 falloff "
+        "20 }\n"
+        "global_settings { max_trace_level 9 ambient_light 2 }\nbackground { rgb <0, 0, 1> }\n"
+        "sphere { 0, 1 pigment { rgbt <1, 0, 0, 0.5> } finish { ambient 0.1 diffuse 0.8 reflection "
+        "0.3 } interior { ior 1.4 } no_shadow }");
+    ASSERT_TRUE(scene) << scene.error().message;
+    EXPECT_EQ(scene->camera->eye, dvec3(0, 0, -5));
+    EXPECT_EQ(scene->camera->window->right, dvec3(-2, 0, 0));
+    EXPECT_EQ(scene->camera->window->direction, dvec3(0, 0, 2));
+    ASSERT_EQ(scene->lights.size(), 1u);
+    EXPECT_LT(glm::length(scene->lights[0].direction - dvec3(0, -1, 0)), 1e-12);
+    EXPECT_NEAR(scene->lights[0].cone->falloff_cosine, std::cos(20 * 3.14159265358979 / 180), 1e-9);
+    EXPECT_EQ(scene->max_depth, 9u);
+    EXPECT_EQ(scene->background.zenith, vec3(0, 0, 1));
+    ASSERT_EQ(scene->materials.size(), 1u);
+    const Material& material = scene->materials[0];
+    EXPECT_NEAR(material.finish->diffuse, 0.4, 1e-6) << "half of the light goes through";
+    EXPECT_NEAR(material.finish->ambient.x, 0.1, 1e-6);
+    EXPECT_EQ(material.finish->reflection, vec3(0.3f));
+    EXPECT_NEAR(material.transmission, 0.5, 1e-6);
+    EXPECT_EQ(material.ior, 1.4);
+    EXPECT_TRUE(scene->meshes[0].no_shadow);
+}
+
+TEST(PovScene, ThingsInheritTheLookOfTheirGroup) {
+    const Result<Scene> scene =
+        parse("union { sphere { 0, 1 } sphere { x, 1 pigment { rgb y } } pigment { rgb x } }");
+    ASSERT_TRUE(scene);
+    ASSERT_EQ(scene->materials.size(), 2u);
+    EXPECT_EQ(scene->materials[0].color, vec3(1, 0, 0));
+    EXPECT_EQ(scene->materials[1].color, vec3(0, 1, 0));
+}
+
+} // namespace
+} // namespace ovc
