@@ -2,11 +2,13 @@
 // What --aov takes, and that the layers of a file say what the camera's rays hit.
 #include "host/aov.h"
 
+#include "core/triangle.h"
 #include "host/camera.h"
 #include "testscenes/catalog.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <gtest/gtest.h>
 
@@ -77,16 +79,13 @@ TEST(Aovs, OfAFileAreWhatEachPixelsRayHits) {
     for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
         const Ray ray = pinhole.ray(i % kWidth, i / kWidth);
         // By the triangle that is named, and none is nearer: each of the scene's is asked.
-        double nearest = INFINITY;
-        TriangleId id;
+        const PreparedRay prepared(ray);
+        Nearest offered(prepared);
         for (uint32_t m = 0; m < scene->soup.chunks.size(); ++m)
             for (uint32_t p = 0; p < scene->soup.chunks[m].size(); ++p)
-                if (const auto found =
-                        intersect(PreparedRay(ray), scene->soup.triangle({m, p}), TriangleId{m, p}))
-                    if (found->t < nearest) {
-                        nearest = found->t;
-                        id = {m, p};
-                    }
+                offered.offer(scene->soup.triangle({m, p}), {m, p});
+        const double nearest = offered.hit().t;
+        const TriangleId id = offered.hit().id;
         EXPECT_EQ(mesh[i], id.mesh) << i;
         EXPECT_EQ(prim[i], id.prim) << i;
         EXPECT_EQ(std::bit_cast<float>(depth[i]), float(nearest)) << i;
