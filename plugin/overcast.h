@@ -172,7 +172,7 @@ typedef struct ovc_plan {
     uint64_t leaves;
     uint64_t leaf_references;      /* triangles counted once in each leaf they touch */
     uint64_t level2_bytes;         /* all pages together: to move every page once */
-    uint64_t largest_page_bytes;
+    uint64_t largest_page_bytes;   /* what it may come to: up to three tenths more than it does */
     uint64_t gpu_budget_bytes;
     uint64_t smallest_budget_bytes; /* that works; exact to a tenth */
     uint64_t ray_bytes;            /* of the budget, for rays and answers */

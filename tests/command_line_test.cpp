@@ -146,7 +146,7 @@ TEST_F(CommandLine, InfoTellsThePlanThatRenderThenKeepsTo) {
         return at == std::string::npos ? -1.0 : std::stod(text.substr(at + key.size() + 4));
     };
     const std::string stats = bytes("s.json");
-    for (const char* key : {"leaves", "level2_bytes", "largest_page_bytes", "gpu_budget_bytes"})
+    for (const char* key : {"leaves", "level2_bytes", "gpu_budget_bytes"})
         EXPECT_NEAR(number(info.output, key) / number(stats, key), 1, 0.1) << key;
     EXPECT_LT(number(info.output, "resident_pages"), number(info.output, "leaves"));
     EXPECT_GT(number(info.output, "smallest_budget_bytes"), 40960);

@@ -51,7 +51,9 @@ protected:
         near("leaves", plan.leaves, made.leaves, 1);
         near("references", plan.leaf_references, made.leaf_references);
         near("bytes of level 2", plan.level2_bytes, made.level2_bytes);
-        near("bytes of the largest page", plan.largest_page_bytes, made.largest_page_bytes);
+        // The most of many is told from above: what the worst leaf may be.
+        EXPECT_GE(double(plan.largest_page_bytes), 0.9 * double(made.largest_page_bytes));
+        EXPECT_LE(double(plan.largest_page_bytes), 1.3 * double(made.largest_page_bytes));
         near("pages resident", plan.resident_pages, made.pages_in, 1);
         near("host bytes", plan.host_bytes, made.host_bytes);
         EXPECT_EQ(plan.gpu_budget_bytes, made.gpu_budget_bytes);

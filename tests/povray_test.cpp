@@ -106,7 +106,8 @@ TEST(Povray, DrawsLightsAndFinishesAsWeDoFromTheSameFile) {
     options.size = ImageSize{kSize, kSize};
     const Result<Scene> scene = load(file, options);
     ASSERT_TRUE(scene) << scene.error().message;
-    expect_alike(*scene, *scene->max_depth, *theirs, 0.002, 1 / 100.0);
+    expect_alike(*scene, *scene->max_depth, *theirs, 0.003,
+                 1 / 60.0); // the floor's far squares are smaller than pixels
 }
 
 } // namespace
