@@ -90,7 +90,7 @@ class Buffer {
 public:
     Buffer(Ledger& ledger, uint64_t bytes, std::string_view label)
         : handle_(create()), entry_(ledger, bytes) {
-        if (ledger.asks_driver(0))
+        if (ledger.driver_has_room())
             glNamedBufferStorage(id(), GLsizeiptr(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
         glObjectLabel(GL_BUFFER, id(), GLsizei(label.size()), label.data());
     }

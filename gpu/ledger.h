@@ -17,9 +17,9 @@ struct Ledger {
     uint64_t driver_bytes = ~uint64_t(0);
     bool refused = false; // by that driver
 
-    /// Whether the driver is to be asked for so many bytes more.
-    bool asks_driver(uint64_t bytes) {
-        refused = refused || in_use + bytes > driver_bytes;
+    /// Whether that driver has room for what is entered.
+    bool driver_has_room() {
+        refused = refused || in_use > driver_bytes;
         return !refused;
     }
 
