@@ -22,7 +22,7 @@ public:
         while (true) {
             if (more && nearest_.size() + any_.size() == 0) {
                 if (!host_.more(*this, kMostAtOnce))
-                    return stopped();
+                    return stopped_by_host();
                 more = nearest_.size() + any_.size() > 0;
             }
             if (nearest_.size() + any_.size() == 0)
@@ -38,8 +38,6 @@ public:
     }
 
 private:
-    static Error stopped() { return {"the stream was stopped by its host", ErrorKind::Cancelled}; }
-
     Result<Done> trace_any() {
         const size_t count = std::min(any_.size(), kMostAtOnce);
         const StreamRays rays = any_.last(count);
@@ -49,7 +47,7 @@ private:
         const std::vector<uint64_t> tokens(rays.tokens.begin(), rays.tokens.end());
         any_.drop_last(count);
         if (!host_.occlusions(*this, tokens, occluded_))
-            return stopped();
+            return stopped_by_host();
         return Done{};
     }
 
@@ -62,7 +60,7 @@ private:
         const std::vector<uint64_t> tokens(rays.tokens.begin(), rays.tokens.end());
         nearest_.drop_last(count);
         if (!host_.hits(*this, tokens, hits_))
-            return stopped();
+            return stopped_by_host();
         return Done{};
     }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/ray.h"
+#include "core/result.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -43,5 +44,10 @@ public:
 protected:
     ~StreamHost() = default;
 };
+
+/// What a stream ends with when its host says false.
+inline Error stopped_by_host() {
+    return {"the stream was stopped by its host", ErrorKind::Cancelled};
+}
 
 } // namespace ovc

@@ -215,4 +215,12 @@ Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress) {
     return build_named(soup, leaf, progress, [](uint32_t i) { return i; });
 }
 
+uint32_t stack_depth(std::span<const Page> pages) {
+    constexpr uint32_t kStep = 4;
+    uint32_t depth = 1;
+    for (const Page& page : pages)
+        depth = std::max(depth, page.depth);
+    return (depth + kStep - 1) / kStep * kStep;
+}
+
 } // namespace ovc

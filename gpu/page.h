@@ -10,6 +10,7 @@
 #include "shaders/layout.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace ovc {
@@ -21,6 +22,10 @@ struct Page {
     uint64_t units() const { return texels.size() / OVC_UNIT_TEXELS; }
     uint64_t bytes() const { return texels.size() * sizeof(uvec4); }
 };
+
+/// Stack words that the kernel needs for all of these pages, rounded up: few programs, and no
+/// register more than needed.
+uint32_t stack_depth(std::span<const Page> pages);
 
 /// Builds and packs the BVH of a leaf. Its triangles go by their numbers in the soup. Each is about
 /// two units of progress.

@@ -18,21 +18,12 @@ namespace {
 constexpr uint32_t kMaxBatchRows = 2048;  // half a million rays: beyond, a pass gains nothing more
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
-uint32_t round_up(uint32_t n, uint32_t step) {
-    return (n + step - 1) / step * step;
-}
-
-uint32_t stack_depth(std::span<const Page> pages) {
-    uint32_t depth = 1;
-    for (const Page& page : pages)
-        depth = std::max(depth, page.depth);
-    return round_up(depth, 4); // few programs, no register more than needed
-}
-
 } // namespace
 
-Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device) {
+Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
+                               uint64_t bytes_per_ray) {
     MemoryPlan plan;
+    plan.bytes_per_ray = bytes_per_ray;
     plan.budget_bytes = budget_bytes;
     plan.batch_rays = Tracer::kRowRays;
     const uint64_t smallest = plan.ray_bytes() + kSmallestPool;

@@ -57,16 +57,17 @@ struct MemoryPlan {
     uint64_t budget_bytes = 0;
     uint32_t batch_rays = 0; // most rays a pass
     uint64_t pool_bytes = 0;
+    uint64_t bytes_per_ray = sizeof(Traveller) + sizeof(Answer);
     uint64_t driver_bytes = ~uint64_t(0); // for tests: what the driver has
 
-    uint64_t ray_bytes() const {
-        return uint64_t(batch_rays) * (sizeof(Traveller) + sizeof(Answer));
-    }
+    uint64_t ray_bytes() const { return batch_rays * bytes_per_ray; }
 };
 
 /// The plan for a budget, clamped to the device, level 1 not yet taken off. Error: a budget below
 /// what the smallest page and batch need, with the number.
-Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device);
+/// bytes_per_ray: of a ray and its answer.
+Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
+                               uint64_t bytes_per_ray = sizeof(Traveller) + sizeof(Answer));
 
 /// Pages moved to the GPU.
 struct Moved {
@@ -83,8 +84,6 @@ public:
     static Result<std::unique_ptr<Tracer>> create(const MemoryPlan& plan, const DeviceInfo& device,
                                                   KernelCache& kernels, const Level1& level1,
                                                   std::span<const Page> pages);
-
-    bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
 
     /// Moves in the pages of `wanted`, leaves that are not resident, in this order, as many as fit
     /// without pushing each other out: the first at least.
@@ -111,6 +110,7 @@ private:
     Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const DeviceInfo& device,
            KernelCache& kernels, const Level1& level1, std::span<const Page> pages);
 
+    bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
     Result<Done> set_up();
     void say_where(uint32_t leaf);
 

@@ -2,24 +2,16 @@
 // The kernel alone: what it calls certain is true, what it cannot know it flags.
 #include "gpu/tracer.h"
 
-#include "gpu/gl_thread.h"
+#include "gpu/test_gl.h"
 #include "kdtree/test_soups.h"
 #include "shaders/layout.h"
-
-#include <gtest/gtest.h>
 
 namespace ovc {
 namespace {
 
 /// One leaf of a soup, and a tracer on it.
-class KernelGl : public testing::Test {
+class KernelGl : public test::OnGl {
 protected:
-    void SetUp() override {
-        Result<std::unique_ptr<GlThread>> started = GlThread::start("", {});
-        if (!started)
-            GTEST_SKIP() << started.error().message;
-        gl = std::move(*started);
-    }
     void TearDown() override {
         if (gl)
             gl->run([&](GlState&) { tracer.reset(); });
@@ -63,7 +55,6 @@ protected:
     }
 
     static constexpr Ray kNoRay{dvec3(0), 0, dvec3(0, 0, 1), -1};
-    std::unique_ptr<GlThread> gl;
     std::unique_ptr<Tracer> tracer;
     Level1 level1;
     Numbering numbers;

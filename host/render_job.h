@@ -23,7 +23,8 @@ struct Shot {
     Camera camera;
 };
 
-/// Algorithm 5 or 6 of the thesis; auto is the one that was measured faster (docs/benchmarks.md).
+/// Algorithm 5 or 6 of the thesis. Auto is batched, which shades faster where all is resident
+/// (docs/benchmarks.md).
 enum class RenderMode { Auto, Batched, Mixed };
 
 struct RenderJob {

@@ -3,40 +3,25 @@
 // what testing every triangle in double answers.
 #include "plugin/two_level.h"
 
+#include "gpu/test_gl.h"
 #include "kdtree/build.h"
-#include "kdtree/test_soups.h"
 #include "kdtree/traverse.h"
-
-#include <gtest/gtest.h>
-
-#include <numeric>
+#include "plugin/test_structures.h"
 
 namespace ovc {
 namespace {
 
-class TwoLevelGl : public testing::Test {
-protected:
-    void SetUp() override {
-        Result<std::unique_ptr<GlThread>> started = GlThread::start("", {});
-        if (!started)
-            GTEST_SKIP() << started.error().message;
-        gl = std::move(*started);
-    }
+using test::ok;
+using test::Spawner;
 
+class TwoLevelGl : public test::OnGl {
+protected:
     std::unique_ptr<TwoLevel> build(const Soup& soup, const TwoLevelOptions& options) {
         Result<std::unique_ptr<TwoLevel>> built = TwoLevel::build(soup, *gl, options, {});
         EXPECT_TRUE(built) << built.error().message;
         return built ? std::move(*built) : nullptr;
     }
-
-    std::unique_ptr<GlThread> gl;
 };
-
-testing::AssertionResult ok(const Result<Done>& result) {
-    if (result)
-        return testing::AssertionSuccess();
-    return testing::AssertionFailure() << result.error().message;
-}
 
 struct Variant {
     std::string name;
@@ -54,25 +39,13 @@ std::vector<Variant> variants() {
 
 TEST_F(TwoLevelGl, EqualsBruteForceBitForBit) {
     for (const auto& [soup_name, soup] : test::unpleasant_soups()) {
-        const auto ids = hittable_triangles(soup, nullptr, nullptr);
         const auto rays = test::unpleasant_rays(soup, 33, 1500);
-        std::vector<Hit> expected;
-        for (const Ray& ray : rays)
-            expected.push_back(test::brute_force(soup, ids, ray));
+        const std::vector<Hit> expected = test::brute_force(soup, rays);
         for (const auto& [name, options] : variants()) {
             SCOPED_TRACE(soup_name + ", " + name);
             const auto structure = build(soup, options);
             ASSERT_TRUE(structure);
-            std::vector<Hit> hits(rays.size());
-            std::vector<uint8_t> shadows(rays.size());
-            ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
-            ASSERT_TRUE(ok(structure->occluded(rays, {}, shadows)));
-            for (size_t i = 0; i < rays.size(); ++i) {
-                ASSERT_TRUE(test::same(expected[i], hits[i]))
-                    << "ray " << i << ": " << test::describe(expected[i]) << " but found "
-                    << test::describe(hits[i]);
-                ASSERT_EQ(expected[i].is_hit(), shadows[i] != 0) << "ray " << i;
-            }
+            test::expect_answers(*structure, rays, expected);
             const TwoLevelStatistics& s = structure->statistics();
             EXPECT_LE(s.peak_bytes, structure->plan().budget_bytes);
             EXPECT_EQ(s.nearest_rays, rays.size());
@@ -101,12 +74,7 @@ TEST_F(TwoLevelGl, FewOrdinaryRaysAreFlagged) {
     const Soup soup = test::closed_grid(200);
     const auto structure = build(soup, {});
     ASSERT_TRUE(structure);
-    test::Random random(5);
-    std::vector<Ray> rays(100000);
-    for (Ray& ray : rays) {
-        ray.org = random.point(-1, 1) + dvec3(0, 0, 4);
-        ray.dir = random.point(-1, 1) - ray.org;
-    }
+    const auto rays = test::rays_from_outside(5, 100000);
     std::vector<Hit> hits(rays.size());
     ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
     EXPECT_LE(structure->statistics().flagged, rays.size() / 100);
@@ -117,15 +85,7 @@ TEST_F(TwoLevelGl, RaysThatStartOnASurfaceAreNotFlaggedForIt) {
     const Soup soup = test::closed_grid(200);
     const auto structure = build(soup, {});
     ASSERT_TRUE(structure);
-    test::Random random(6);
-    std::vector<Ray> rays;
-    std::vector<TriangleId> skip;
-    for (uint32_t prim = 0; prim < soup.triangle_count(); ++prim) {
-        const Triangle t = soup.triangle({0, prim});
-        const double u = random(0, 0.5), v = random(0, 0.5);
-        rays.push_back({t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]), 0, random.point(-1, 1)});
-        skip.push_back({0, prim});
-    }
+    const auto [rays, skip] = test::RaysOnTriangles(soup, 1);
     std::vector<Hit> hits(rays.size());
     ASSERT_TRUE(ok(structure->intersect(rays, skip, hits)));
     EXPECT_LE(structure->statistics().flagged, rays.size() / 50);
@@ -408,60 +368,6 @@ TEST_F(TwoLevelGl, NamesTheSmallestBudgetThatWorks) {
               "(24576 for rays and answers, 16384 for a page)");
     EXPECT_TRUE(TwoLevel::build(soup, *gl, {.budget_bytes = 65536}, {}));
 }
-
-/// Pushes rays a few at a time when asked, and for every hit an occlusion ray from there; keeps all
-/// answers by token.
-class Spawner final : public StreamHost {
-public:
-    Spawner(std::span<const Ray> rays, size_t at_once)
-        : hits_of(rays.size()), blocked(rays.size(), 2), rays_(rays), at_once_(at_once) {}
-
-    bool more(RayStream& stream, size_t) override {
-        const size_t count = std::min(at_once_, rays_.size() - next_);
-        std::vector<uint64_t> tokens(count);
-        std::iota(tokens.begin(), tokens.end(), next_);
-        stream.push({false, rays_.subspan(next_, count), {}, tokens});
-        next_ += count;
-        return true;
-    }
-    bool hits(RayStream& stream, std::span<const uint64_t> tokens,
-              std::span<const Hit> hits) override {
-        std::vector<Ray> spawned;
-        std::vector<TriangleId> skip;
-        std::vector<uint64_t> names;
-        for (size_t i = 0; i < tokens.size(); ++i) {
-            ++answers;
-            hits_of[tokens[i]] = hits[i];
-            if (!hits[i].is_hit())
-                continue;
-            spawned.push_back(from_hit(rays_[tokens[i]], hits[i]));
-            skip.push_back(hits[i].id);
-            names.push_back(tokens[i]);
-        }
-        stream.push({true, spawned, skip, names});
-        return answers < stop_after;
-    }
-    bool occlusions(RayStream&, std::span<const uint64_t> tokens,
-                    std::span<const uint8_t> occluded) override {
-        for (size_t i = 0; i < tokens.size(); ++i)
-            blocked[tokens[i]] = occluded[i];
-        return true;
-    }
-
-    static Ray from_hit(const Ray& ray, const Hit& hit) {
-        return {ray.at(hit.t), 0, dvec3(0.3, 1, -0.2)};
-    }
-
-    std::vector<Hit> hits_of;
-    std::vector<uint8_t> blocked; // 2: never asked
-    size_t answers = 0;
-    size_t stop_after = ~size_t(0);
-
-private:
-    std::span<const Ray> rays_;
-    size_t at_once_;
-    size_t next_ = 0;
-};
 
 TEST_F(TwoLevelGl, AStreamAnswersWhatBatchesAnswer) {
     for (const auto& [soup_name, soup] : test::unpleasant_soups()) {

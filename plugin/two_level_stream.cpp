@@ -96,7 +96,7 @@ public:
     ovc::Result<Done> run() {
         while (true) {
             if (!fill() || !deliver())
-                return Error{"the stream was stopped by its host", ErrorKind::Cancelled};
+                return stopped_by_host();
             if (nearest_.backlog() + any_.backlog() > 0 && start() > 0)
                 continue; // some may be answered already
             if (nearest_.empty() && any_.empty())

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The twin rule for the systems of the thesis: each answers bit for bit what testing every triangle
 // in double answers.
-#include "kdtree/test_soups.h"
+#include "gpu/test_gl.h"
 #include "plugin/failure.h"
-#include "plugin/structure.h"
+#include "plugin/test_structures.h"
 #include "plugin/thesis/runner.h"
 
 #include <gmock/gmock.h>
@@ -11,6 +11,8 @@
 namespace ovc::thesis {
 namespace {
 
+using test::ok;
+using test::rays_from_outside;
 using testing::HasSubstr;
 
 struct Variant {
@@ -28,15 +30,8 @@ const std::vector<Variant>& variants() {
     return all;
 }
 
-class Comparisons : public testing::Test {
+class Comparisons : public test::OnGl {
 protected:
-    void SetUp() override {
-        Result<std::unique_ptr<GlThread>> started = GlThread::start("", {});
-        if (!started)
-            GTEST_SKIP() << started.error().message;
-        gl = std::move(*started);
-    }
-
     Result<std::unique_ptr<Structure>> make(const Soup& soup, const Variant& variant,
                                             uint64_t budget = 0, bool certify = true) {
         ovc_scene_config config{sizeof(ovc_scene_config)};
@@ -53,54 +48,18 @@ protected:
         EXPECT_TRUE(made) << made.error().message;
         return made ? std::move(*made) : nullptr;
     }
-
-    std::unique_ptr<GlThread> gl;
 };
-
-testing::AssertionResult ok(const Result<Done>& result) {
-    if (result)
-        return testing::AssertionSuccess();
-    return testing::AssertionFailure() << result.error().message;
-}
-
-std::vector<Ray> rays_from_outside(uint64_t seed, size_t count) {
-    test::Random random(seed);
-    std::vector<Ray> rays(count);
-    for (Ray& ray : rays) {
-        ray.org = random.point(-1, 1) + dvec3(0, 0, 4);
-        ray.dir = random.point(-1, 1) - ray.org;
-    }
-    return rays;
-}
 
 TEST_F(Comparisons, EqualBruteForceBitForBit) {
     for (const auto& [soup_name, soup] : test::unpleasant_soups()) {
-        const auto ids = hittable_triangles(soup, nullptr, nullptr);
         const auto rays = test::unpleasant_rays(soup, 41, 1500);
-        std::vector<Hit> expected;
-        for (const Ray& ray : rays)
-            expected.push_back(test::brute_force(soup, ids, ray));
+        const std::vector<Hit> expected = test::brute_force(soup, rays);
         for (const Variant& variant : variants()) {
             SCOPED_TRACE(soup_name + ", " + variant.name);
             const auto structure = build(soup, variant);
             ASSERT_TRUE(structure);
-            std::vector<Hit> hits(rays.size());
-            std::vector<uint8_t> shadows(rays.size());
-            ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
-            ASSERT_TRUE(ok(structure->occluded(rays, {}, shadows)));
-            for (size_t i = 0; i < rays.size(); ++i) {
-                ASSERT_TRUE(test::same(expected[i], hits[i]))
-                    << "ray " << i << ": " << test::describe(expected[i]) << " but found "
-                    << test::describe(hits[i]);
-                ASSERT_EQ(expected[i].is_hit(), shadows[i] != 0) << "ray " << i;
-            }
-            const ovc_statistics s = structure->report();
-            EXPECT_EQ(s.nearest_rays, rays.size());
-            EXPECT_EQ(s.occlusion_rays, rays.size());
-            EXPECT_EQ(s.invalid_rays,
-                      2 * size_t(std::count_if(rays.begin(), rays.end(),
-                                               [](auto& r) { return !r.valid(); })));
-            EXPECT_LE(s.gpu_peak_bytes, s.gpu_budget_bytes);
+            test::expect_answers(*structure, rays, expected);
+            test::expect_counts(structure->report(), rays);
         }
     }
 }
@@ -124,15 +83,7 @@ TEST_F(Comparisons, DecideNearlyAllOrdinaryRaysOnTheGpu) {
 TEST_F(Comparisons, DoNotSeeTheTriangleThatARayStartsOn) {
     const Soup soup = test::closed_grid(60);
     const auto ids = hittable_triangles(soup, nullptr, nullptr);
-    test::Random random(6);
-    std::vector<Ray> rays;
-    std::vector<TriangleId> skip;
-    for (uint32_t prim = 0; prim < soup.triangle_count(); prim += 5) {
-        const Triangle t = soup.triangle({0, prim});
-        const double u = random(0, 0.5), v = random(0, 0.5);
-        rays.push_back({t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]), 0, random.point(-1, 1)});
-        skip.push_back({0, prim});
-    }
+    const auto [rays, skip] = test::RaysOnTriangles(soup, 5);
     for (const Variant& variant : variants()) {
         const auto structure = build(soup, variant);
         ASSERT_TRUE(structure);

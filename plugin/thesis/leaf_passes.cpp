@@ -17,33 +17,13 @@
 namespace ovc::thesis {
 namespace {
 
-constexpr uint64_t kMostRows = 2048;      // half a million rays: beyond, a pass gains nothing more
-constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
-
 /// Of uniforms in leaf.frag.glsl.
 constexpr GLint kPageUnit = 0;
 constexpr GLint kFirstOcclusionRay = 1;
 
 } // namespace
 
-Result<LeafPlan> plan_leaf_passes(uint64_t budget_bytes, const DeviceInfo& device) {
-    LeafPlan plan;
-    plan.budget_bytes = budget_bytes;
-    plan.batch_rays = LeafPasses::kRowRays;
-    const uint64_t smallest = plan.ray_bytes() + kSmallestPool;
-    if (budget_bytes < smallest)
-        return Error{fmt::format("a GPU budget of {} bytes is too small: the smallest that works "
-                                 "is {} bytes ({} for rays and answers, {} for a page)",
-                                 budget_bytes, smallest, plan.ray_bytes(), kSmallestPool)};
-    const uint64_t rows = budget_bytes / 8 / plan.ray_bytes();
-    plan.batch_rays *= uint32_t(
-        std::clamp<uint64_t>(rows, 1, std::min<uint64_t>(kMostRows, device.max_texture_size)));
-    plan.pool_bytes = std::min((budget_bytes - plan.ray_bytes()) / OVC_UNIT_BYTES * OVC_UNIT_BYTES,
-                               device.max_buffer_texels * sizeof(uvec4));
-    return plan;
-}
-
-LeafPasses::LeafPasses(std::unique_ptr<Ledger> ledger, const LeafPlan& plan,
+LeafPasses::LeafPasses(std::unique_ptr<Ledger> ledger, const ovc::MemoryPlan& plan,
                        const DeviceInfo& device, std::span<const Page> pages, bool certify)
     : ledger_(std::move(ledger)),
       pages_(pages),
@@ -58,7 +38,7 @@ LeafPasses::LeafPasses(std::unique_ptr<Ledger> ledger, const LeafPlan& plan,
     page_texels_.show(pool_.buffer(), GL_RGBA32UI, 0, pool_.buffer().bytes());
 }
 
-Result<std::unique_ptr<LeafPasses>> LeafPasses::create(const LeafPlan& plan,
+Result<std::unique_ptr<LeafPasses>> LeafPasses::create(const ovc::MemoryPlan& plan,
                                                        const DeviceInfo& device,
                                                        std::span<const Page> pages, bool certify) {
     auto ledger = std::make_unique<Ledger>();
@@ -76,15 +56,12 @@ Result<std::unique_ptr<LeafPasses>> LeafPasses::create(const LeafPlan& plan,
 Result<GLuint> LeafPasses::kernel() {
     if (kernel_)
         return kernel_->id();
-    uint32_t depth = 1;
     uint64_t units = 0;
-    for (const Page& page : pages_) {
-        depth = std::max(depth, page.depth);
+    for (const Page& page : pages_)
         units = std::max(units, page.units());
-    }
     ShaderConfig config;
     config.certify = certify_;
-    config.stack_depth = (depth + 3) / 4 * 4;
+    config.stack_depth = stack_depth(pages_);
     config.stack_registers = software_;
     config.buffer_images = software_;
     if (software_ && units > kMostRoundsInSoftware)

@@ -7,6 +7,7 @@
 #include "gpu/egl_context.h"
 #include "gpu/ledger.h"
 #include "gpu/pool.h"
+#include "gpu/tracer.h"
 #include "plugin/thesis/frame_ray.h"
 
 #include <memory>
@@ -16,21 +17,6 @@
 
 namespace ovc::thesis {
 
-/// How a budget is shared out: an eighth for rays and answers, the rest for pages.
-struct LeafPlan {
-    uint64_t budget_bytes = 0;
-    uint32_t batch_rays = 0; // most rays a pass
-    uint64_t pool_bytes = 0;
-
-    uint64_t ray_bytes() const {
-        return uint64_t(batch_rays) * (sizeof(FrameRay) + sizeof(FrameAnswer));
-    }
-};
-
-/// The plan for a budget, clamped to the device. Error: a budget below what the smallest page and
-/// batch need, with the number.
-Result<LeafPlan> plan_leaf_passes(uint64_t budget_bytes, const DeviceInfo& device);
-
 struct LeafPass {
     uint64_t bytes_in = 0; // 0: the page was resident
     double seconds = 0;    // from the first command until the answers are here
@@ -39,8 +25,9 @@ struct LeafPass {
 /// All calls need the context current.
 class LeafPasses {
 public:
-    /// pages outlive it. The plan's pool holds the largest. certify = false: fast precision.
-    static Result<std::unique_ptr<LeafPasses>> create(const LeafPlan& plan,
+    /// pages outlive it. plan: of kBytesPerRay. Its pool holds the largest. certify = false: fast
+    /// precision.
+    static Result<std::unique_ptr<LeafPasses>> create(const ovc::MemoryPlan& plan,
                                                       const DeviceInfo& device,
                                                       std::span<const Page> pages, bool certify);
 
@@ -54,12 +41,13 @@ public:
 
     const Ledger& ledger() const { return *ledger_; }
 
-    static size_t row_padded(size_t n) { return (n + kRowRays - 1) / kRowRays * kRowRays; }
-    static constexpr uint32_t kRowRays = OVC_ROW_RAYS;
+    static constexpr uint32_t kRowRays = Tracer::kRowRays;
+    static size_t row_padded(size_t n) { return Tracer::row_padded(n); }
+    static constexpr uint64_t kBytesPerRay = sizeof(FrameRay) + sizeof(FrameAnswer);
 
 private:
-    LeafPasses(std::unique_ptr<Ledger> ledger, const LeafPlan& plan, const DeviceInfo& device,
-               std::span<const Page> pages, bool certify);
+    LeafPasses(std::unique_ptr<Ledger> ledger, const ovc::MemoryPlan& plan,
+               const DeviceInfo& device, std::span<const Page> pages, bool certify);
     Result<GLuint> kernel();
     uint64_t bring(uint32_t leaf);
 

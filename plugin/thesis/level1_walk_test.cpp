@@ -6,6 +6,7 @@
 #include "kdtree/build.h"
 #include "kdtree/test_soups.h"
 #include "plugin/thesis/merge_leaves.h"
+#include "plugin/thesis/test_kinds.h"
 
 #include <gtest/gtest.h>
 
@@ -14,22 +15,6 @@
 namespace ovc::thesis {
 namespace {
 
-struct Variant {
-    std::string name;
-    ovc_level1 kind;
-    ovc_level1_build build;
-};
-
-const std::vector<Variant>& variants() {
-    static const std::vector<Variant> all = {
-        {"kd-tree from the top", OVC_LEVEL1_KD_TREE, OVC_LEVEL1_BUILD_TOP_DOWN},
-        {"kd-tree from the bottom", OVC_LEVEL1_KD_TREE, OVC_LEVEL1_BUILD_BOTTOM_UP},
-        {"grid", OVC_LEVEL1_GRID, OVC_LEVEL1_BUILD_TOP_DOWN},
-        {"BVH from the top", OVC_LEVEL1_BVH, OVC_LEVEL1_BUILD_TOP_DOWN},
-        {"BVH from the bottom", OVC_LEVEL1_BVH, OVC_LEVEL1_BUILD_BOTTOM_UP}};
-    return all;
-}
-
 /// Level 1 of a soup, and its triangles.
 struct Built {
     Box bounds;
@@ -37,9 +22,9 @@ struct Built {
     Level1Walk walk;
     Level1 level1;
 
-    Built(const Soup& soup, const Variant& variant, uint32_t most)
+    Built(const Soup& soup, const Kind& kind, uint32_t most)
         : ids(hittable_triangles(soup, nullptr, &bounds)) {
-        level1 = Level1Builder(soup, ids, bounds, variant.kind, variant.build).cut(most, walk);
+        level1 = Level1Builder(soup, ids, bounds, kind.level1, kind.build).cut(most, walk);
     }
     bool can_walk(const Ray& ray) const { return ovc::can_walk(level1, PreparedRay(ray)); }
 };
@@ -80,10 +65,10 @@ Hit trace(const Built& built, const Soup& soup, const Ray& ray) {
 
 TEST(Level1, LeavesKeepToTheCountAndHoldEveryTriangle) {
     for (const auto& [name, soup] : test::unpleasant_soups())
-        for (const Variant& variant : variants())
+        for (const Kind& kind : kinds())
             for (const uint32_t most : {1000u, 50u, 7u}) {
-                SCOPED_TRACE(name + ", " + variant.name + ", " + std::to_string(most));
-                const Built built(soup, variant, most);
+                SCOPED_TRACE(name + ", " + kind.name + ", " + std::to_string(most));
+                const Built built(soup, kind, most);
                 std::set<TriangleId> all;
                 for (const Leaf& leaf : built.level1.leaves) {
                     EXPECT_LE(leaf.triangles.size(), most);
@@ -92,7 +77,7 @@ TEST(Level1, LeavesKeepToTheCountAndHoldEveryTriangle) {
                     all.insert(leaf.triangles.begin(), leaf.triangles.end());
                 }
                 EXPECT_EQ(all, std::set(built.ids.begin(), built.ids.end()));
-                if (variant.kind == OVC_LEVEL1_BVH) {
+                if (kind.level1 == OVC_LEVEL1_BVH) {
                     EXPECT_EQ(built.level1.reference_count(), built.ids.size());
                 }
             }
@@ -100,8 +85,8 @@ TEST(Level1, LeavesKeepToTheCountAndHoldEveryTriangle) {
 
 TEST(Level1, EachPointOfATriangleFindsItInALeafWhoseCellHoldsThePoint) {
     for (const auto& [name, soup] : test::unpleasant_soups())
-        for (const Variant& variant : variants()) {
-            const Built built(soup, variant, 40);
+        for (const Kind& kind : kinds()) {
+            const Built built(soup, kind, 40);
             test::Random random(7);
             for (const TriangleId id : built.ids) {
                 const Triangle t = soup.triangle(id);
@@ -112,7 +97,7 @@ TEST(Level1, EachPointOfATriangleFindsItInALeafWhoseCellHoldsThePoint) {
                     found = found ||
                             (leaf.box.contains(point) && leaf.cell.contains(point) &&
                              std::binary_search(leaf.triangles.begin(), leaf.triangles.end(), id));
-                EXPECT_TRUE(found) << name << ", " << variant.name;
+                EXPECT_TRUE(found) << name << ", " << kind.name;
             }
         }
 }
@@ -124,15 +109,15 @@ TEST(Level1, WalkingLeavesFindsWhatBruteForceFinds) {
         std::vector<Hit> expected;
         for (const Ray& ray : rays)
             expected.push_back(test::brute_force(soup, ids, ray));
-        for (const Variant& variant : variants())
+        for (const Kind& kind : kinds())
             for (const uint32_t most : {100000u, 300u, 40u}) {
-                const Built built(soup, variant, most);
+                const Built built(soup, kind, most);
                 for (size_t i = 0; i < rays.size(); ++i)
                     if (rays[i].valid() && built.can_walk(rays[i])) {
                         const Hit found = trace(built, soup, rays[i]);
                         ASSERT_TRUE(test::same(expected[i], found))
-                            << name << ", " << variant.name << ", leaves of " << most << ", ray "
-                            << i << ": " << test::describe(expected[i]) << " but found "
+                            << name << ", " << kind.name << ", leaves of " << most << ", ray " << i
+                            << ": " << test::describe(expected[i]) << " but found "
                             << test::describe(found);
                     }
             }
@@ -159,8 +144,8 @@ TEST(Level1, TheGridsWalkIsThatOfRestartsInTheSameCells) {
 /// No leaf whose inside the ray passes through is left out, whatever the kind.
 TEST(Level1, NoRayMissesALeaf) {
     for (const auto& [name, soup] : test::unpleasant_soups())
-        for (const Variant& variant : variants()) {
-            const Built built(soup, variant, 60);
+        for (const Kind& kind : kinds()) {
+            const Built built(soup, kind, 60);
             const auto rays = test::unpleasant_rays(soup, 13, 300);
             for (size_t i = 0; i < rays.size(); ++i) {
                 if (!rays[i].valid() || !built.can_walk(rays[i]))
@@ -177,7 +162,7 @@ TEST(Level1, NoRayMissesALeaf) {
                         clip(p, inner.intersection(leaf.box), p.ray.t_min, p.ray.t_max);
                     const bool passes_through = !inner.empty() && inside.enter < inside.exit;
                     EXPECT_TRUE(met.contains(l) || !passes_through)
-                        << name << ", " << variant.name << ", ray " << i << ", leaf " << l;
+                        << name << ", " << kind.name << ", ray " << i << ", leaf " << l;
                 }
             }
         }

@@ -1,35 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two-level as the thesis has it answers bit for bit what testing every triangle in double answers,
 // whatever its level 1, the size of leaves, the budget, in batches and in streams.
-#include "kdtree/test_soups.h"
+#include "gpu/test_gl.h"
 #include "plugin/failure.h"
-#include "plugin/structure.h"
+#include "plugin/test_structures.h"
 #include "plugin/thesis/queues.h"
+#include "plugin/thesis/test_kinds.h"
 
 #include <gmock/gmock.h>
-
-#include <numeric>
 
 namespace ovc::thesis {
 namespace {
 
+using test::ok;
+using test::rays_from_outside;
+using test::Spawner;
 using testing::HasSubstr;
-
-struct Kind {
-    std::string name;
-    ovc_level1 level1;
-    ovc_level1_build build;
-};
-
-const std::vector<Kind>& kinds() {
-    static const std::vector<Kind> all = {
-        {"kd-tree from the top", OVC_LEVEL1_KD_TREE, OVC_LEVEL1_BUILD_TOP_DOWN},
-        {"kd-tree from the bottom", OVC_LEVEL1_KD_TREE, OVC_LEVEL1_BUILD_BOTTOM_UP},
-        {"grid", OVC_LEVEL1_GRID, OVC_LEVEL1_BUILD_TOP_DOWN},
-        {"BVH from the top", OVC_LEVEL1_BVH, OVC_LEVEL1_BUILD_TOP_DOWN},
-        {"BVH from the bottom", OVC_LEVEL1_BVH, OVC_LEVEL1_BUILD_BOTTOM_UP}};
-    return all;
-}
 
 struct Limits {
     uint64_t leaf_triangles = 0;
@@ -46,15 +32,8 @@ ovc_scene_config config_of(const Kind& kind, const Limits& limits = {}) {
     return config;
 }
 
-class Queued : public testing::Test {
+class Queued : public test::OnGl {
 protected:
-    void SetUp() override {
-        Result<std::unique_ptr<GlThread>> started = GlThread::start("", {});
-        if (!started)
-            GTEST_SKIP() << started.error().message;
-        gl = std::move(*started);
-    }
-
     std::unique_ptr<Structure> build(const Soup& soup, const ovc_scene_config& config) {
         Result<std::unique_ptr<Structure>> made = make_structure(soup, *gl, config, {});
         EXPECT_TRUE(made) << made.error().message;
@@ -64,81 +43,12 @@ protected:
                                      const Limits& limits = {}) {
         return build(soup, config_of(kind, limits));
     }
-
-    std::unique_ptr<GlThread> gl;
-};
-
-testing::AssertionResult ok(const Result<Done>& result) {
-    if (result)
-        return testing::AssertionSuccess();
-    return testing::AssertionFailure() << result.error().message;
-}
-
-std::vector<Ray> rays_from_outside(uint64_t seed, size_t count) {
-    test::Random random(seed);
-    std::vector<Ray> rays(count);
-    for (Ray& ray : rays) {
-        ray.org = random.point(-1, 1) + dvec3(0, 0, 4);
-        ray.dir = random.point(-1, 1) - ray.org;
-    }
-    return rays;
-}
-
-/// Asks for the hits of rays, some at a time, and for what lies between each hit and a light.
-class Spawner final : public StreamHost {
-public:
-    Spawner(std::span<const Ray> rays, size_t at_once)
-        : hits_of(rays.size()), blocked(rays.size(), 2), rays_(rays), at_once_(at_once) {}
-
-    static Ray to_light(const Ray& ray, const Hit& hit) {
-        return {ray.at(hit.t), 0, dvec3(0.3, 1, -0.2)};
-    }
-
-    bool more(RayStream& stream, size_t) override {
-        const size_t count = std::min(at_once_, rays_.size() - next_);
-        std::vector<uint64_t> tokens(count);
-        std::iota(tokens.begin(), tokens.end(), next_);
-        stream.push({false, rays_.subspan(next_, count), {}, tokens});
-        next_ += count;
-        return true;
-    }
-    bool hits(RayStream& stream, std::span<const uint64_t> tokens,
-              std::span<const Hit> hits) override {
-        for (size_t i = 0; i < tokens.size(); ++i) {
-            ++answers;
-            hits_of[tokens[i]] = hits[i];
-            if (!hits[i].is_hit())
-                continue;
-            const Ray spawned = to_light(rays_[tokens[i]], hits[i]);
-            stream.push({true, {&spawned, 1}, {&hits[i].id, 1}, {&tokens[i], 1}});
-        }
-        return answers < stop_after;
-    }
-    bool occlusions(RayStream&, std::span<const uint64_t> tokens,
-                    std::span<const uint8_t> occluded) override {
-        for (size_t i = 0; i < tokens.size(); ++i)
-            blocked[tokens[i]] = occluded[i];
-        return true;
-    }
-
-    std::vector<Hit> hits_of;
-    std::vector<uint8_t> blocked; // 2: never asked
-    size_t answers = 0;
-    size_t stop_after = ~size_t(0);
-
-private:
-    std::span<const Ray> rays_;
-    size_t at_once_;
-    size_t next_ = 0;
 };
 
 TEST_F(Queued, EqualsBruteForceBitForBit) {
     for (const auto& [soup_name, soup] : test::unpleasant_soups()) {
-        const auto ids = hittable_triangles(soup, nullptr, nullptr);
         const auto rays = test::unpleasant_rays(soup, 43, 1200);
-        std::vector<Hit> expected;
-        for (const Ray& ray : rays)
-            expected.push_back(test::brute_force(soup, ids, ray));
+        const std::vector<Hit> expected = test::brute_force(soup, rays);
         for (const Kind& kind : kinds())
             for (const Limits& limits :
                  {Limits{}, Limits{1u << 30}, Limits{40}, Limits{100, 32u << 10}}) {
@@ -146,23 +56,8 @@ TEST_F(Queued, EqualsBruteForceBitForBit) {
                              std::to_string(limits.leaf_triangles));
                 const auto structure = build(soup, kind, limits);
                 ASSERT_TRUE(structure);
-                std::vector<Hit> hits(rays.size());
-                std::vector<uint8_t> shadows(rays.size());
-                ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
-                ASSERT_TRUE(ok(structure->occluded(rays, {}, shadows)));
-                for (size_t i = 0; i < rays.size(); ++i) {
-                    ASSERT_TRUE(test::same(expected[i], hits[i]))
-                        << "ray " << i << ": " << test::describe(expected[i]) << " but found "
-                        << test::describe(hits[i]);
-                    ASSERT_EQ(expected[i].is_hit(), shadows[i] != 0) << "ray " << i;
-                }
-                const ovc_statistics s = structure->report();
-                EXPECT_LE(s.gpu_peak_bytes, s.gpu_budget_bytes);
-                EXPECT_EQ(s.nearest_rays, rays.size());
-                EXPECT_EQ(s.occlusion_rays, rays.size());
-                EXPECT_EQ(s.invalid_rays,
-                          2 * size_t(std::count_if(rays.begin(), rays.end(),
-                                                   [](auto& r) { return !r.valid(); })));
+                test::expect_answers(*structure, rays, expected);
+                test::expect_counts(structure->report(), rays);
             }
     }
 }
@@ -184,7 +79,7 @@ TEST_F(Queued, AStreamAnswersEveryRayOnceAsABatchDoes) {
             std::vector<TriangleId> skip;
             for (size_t i = 0; i < rays.size(); ++i) {
                 ASSERT_TRUE(test::same(hits[i], host.hits_of[i])) << "ray " << i;
-                spawned.push_back(hits[i].is_hit() ? Spawner::to_light(rays[i], hits[i]) : Ray{});
+                spawned.push_back(hits[i].is_hit() ? Spawner::from_hit(rays[i], hits[i]) : Ray{});
                 skip.push_back(hits[i].id);
             }
             std::vector<uint8_t> blocked(rays.size());
@@ -213,7 +108,7 @@ public:
             skip.clear();
             for (size_t i = 0; i < rays.size(); ++i)
                 if (hits[i].is_hit()) {
-                    shadows.push_back(Spawner::to_light(rays[i], hits[i]));
+                    shadows.push_back(Spawner::from_hit(rays[i], hits[i]));
                     reflected.push_back(reflect(rays[i], hits[i]));
                     skip.push_back(hits[i].id);
                 }
@@ -238,7 +133,7 @@ public:
             if (!hits[i].is_hit())
                 continue;
             const auto [ray, generation] = paths_[tokens[i]];
-            const Ray shadow = Spawner::to_light(ray, hits[i]);
+            const Ray shadow = Spawner::from_hit(ray, hits[i]);
             stream.push({true, {&shadow, 1}, {&hits[i].id, 1}, {&tokens[i], 1}});
             if (generation + 1 == kGenerations)
                 continue;
@@ -316,15 +211,7 @@ TEST_F(Queued, DecidesNearlyAllOrdinaryRaysOnTheGpu) {
 TEST_F(Queued, DoesNotSeeTheTriangleThatARayStartsOn) {
     const Soup soup = test::closed_grid(60);
     const auto ids = hittable_triangles(soup, nullptr, nullptr);
-    test::Random random(6);
-    std::vector<Ray> rays;
-    std::vector<TriangleId> skip;
-    for (uint32_t prim = 0; prim < soup.triangle_count(); prim += 5) {
-        const Triangle t = soup.triangle({0, prim});
-        const double u = random(0, 0.5), v = random(0, 0.5);
-        rays.push_back({t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]), 0, random.point(-1, 1)});
-        skip.push_back({0, prim});
-    }
+    const auto [rays, skip] = test::RaysOnTriangles(soup, 5);
     std::vector<Hit> expected;
     for (size_t i = 0; i < rays.size(); ++i)
         expected.push_back(test::brute_force(soup, ids, rays[i], skip[i]));

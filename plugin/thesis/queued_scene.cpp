@@ -106,8 +106,9 @@ Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThre
         return Error{fmt::format("{} triangles are too many: a scene takes {}",
                                  soup.triangle_count(), OVC_MAX_TRIANGLES)};
     auto scene = std::make_unique<QueuedScene>(soup, gl, options.certify);
-    const Result<LeafPlan> plan = plan_leaf_passes(
-        options.budget_bytes ? options.budget_bytes : gl.info().default_budget_bytes(), gl.info());
+    const Result<ovc::MemoryPlan> plan = ovc::plan_memory(
+        options.budget_bytes ? options.budget_bytes : gl.info().default_budget_bytes(), gl.info(),
+        LeafPasses::kBytesPerRay);
     if (!plan)
         return plan.error();
     scene->plan = *plan;

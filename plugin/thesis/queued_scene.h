@@ -35,7 +35,7 @@ struct QueuedScene {
     const Soup& soup;
     GlThread& gl;
     bool certify;
-    LeafPlan plan;
+    ovc::MemoryPlan plan;
     Numbering numbers;
     Twins twins;
     Level1 level1; // without them

@@ -38,10 +38,10 @@ public:
         while (true) {
             do {
                 if (!fill())
-                    return stopped();
+                    return stopped_by_host();
                 start();
                 if (!deliver())
-                    return stopped();
+                    return stopped_by_host();
             } while (may_start());
             if (!flights_.waiting())
                 return Done{};
@@ -54,8 +54,6 @@ public:
     }
 
 private:
-    static Error stopped() { return {"the stream was stopped by its host", ErrorKind::Cancelled}; }
-
     size_t backlog() const { return nearest_.size() + any_.size(); }
 
     /// Asks the host for more where half of what may be under way is missing.
