@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 namespace ovc {
 
@@ -58,5 +59,13 @@ struct Hit {
     }
 };
 static_assert(sizeof(Hit) == 32 && offsetof(Hit, id) == 24);
+
+/// What two-level can tell of rays besides their hits. Each is empty, or one per ray.
+struct RayNotes {
+    std::span<uint32_t> leaf;   // of level 1, in which the hit lies; kNone: a miss
+    std::span<uint32_t> passes; // that the ray took part in
+
+    bool any() const { return !leaf.empty() || !passes.empty(); }
+};
 
 } // namespace ovc

@@ -23,6 +23,7 @@ struct ShaderConfig {
     bool compute = false; // which wrapper; no switch of config.glsl
     bool any_hit = false;
     bool certify = true;
+    bool linked = false;
     uint32_t stack_depth = 16;
     bool stack_registers = true;
     bool buffer_images = true;

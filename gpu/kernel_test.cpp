@@ -25,7 +25,7 @@ TEST(ShaderSource, IncludesAreReplacedAndDefinesFollowTheVersion) {
     EXPECT_THAT(files,
                 testing::ElementsAre("trace.frag.glsl", "layout.h", "config.glsl", "page.glsl",
                                      "box.glsl", "triangle.glsl", "found.glsl", "traverse.glsl",
-                                     "level1.glsl", "walk.glsl", "ray.glsl"));
+                                     "level1.glsl", "ray.glsl", "linked.glsl", "walk.glsl"));
 }
 
 TEST(ShaderSource, AMissingFileIsNamed) {

@@ -19,6 +19,13 @@ void put_box(std::vector<uvec4>& texels, const Box& box) {
     texels.push_back(words(box.hi.y, box.hi.z));
 }
 
+void put_leaf(std::vector<uvec4>& texels, const Leaf& leaf) {
+    put_box(texels, leaf.box);
+    texels.push_back(words(leaf.frame.origin.x, leaf.frame.origin.y));
+    texels.push_back(words(leaf.frame.origin.z, leaf.frame.scale));
+    texels.push_back({OVC_NOT_RESIDENT, 0, 0, 0});
+}
+
 } // namespace
 
 std::vector<uvec4> pack_level1(const Level1& level1) {
@@ -26,19 +33,16 @@ std::vector<uvec4> pack_level1(const Level1& level1) {
     texels.reserve(level1_texels(level1));
     const uint32_t root =
         OVC_LEVEL1_LEAVES + uint32_t(OVC_LEAF_TEXELS) * uint32_t(level1.leaves.size());
-    texels.push_back({root, 0, 0, 0});
-    for (const Leaf& leaf : level1.leaves) {
-        put_box(texels, leaf.box);
-        texels.push_back(words(leaf.frame.origin.x, leaf.frame.origin.y));
-        texels.push_back(words(leaf.frame.origin.z, leaf.frame.scale));
-        texels.push_back({OVC_NOT_RESIDENT, 0, 0, 0});
-    }
+    texels.push_back({root, uint32_t(scene_texel_of(level1)), 0, 0});
+    for (const Leaf& leaf : level1.leaves)
+        put_leaf(texels, leaf);
     for (const KdNode& node : level1.nodes) {
         uvec4 texel = words(node.is_leaf() ? 0 : node.split(), 0);
         texel.z = node.is_leaf() ? 3 | node.count() << 2 : uint32_t(node.axis());
         texel.w = node.is_leaf() ? node.first() : root + node.above();
         texels.push_back(texel);
     }
+    put_leaf(texels, scene_leaf(level1.bounds));
     return texels;
 }
 

@@ -3,6 +3,7 @@
 #include "gpu/page.h"
 
 #include "gpu/bvh.h"
+#include "gpu/packer.h"
 #include "gpu/pairs.h"
 #include "shaders/layout.h"
 
@@ -14,10 +15,6 @@
 
 namespace ovc {
 namespace {
-
-uint32_t bits(float x) {
-    return std::bit_cast<uint32_t>(x);
-}
 
 std::vector<LocalTriangle> local_triangles(const Soup& soup, const Leaf& leaf) {
     std::vector<LocalTriangle> triangles(leaf.triangles.size());
@@ -66,116 +63,14 @@ private:
     vec3 cell_;
 };
 
-class Packer {
-public:
-    Packer(const std::vector<BvhNode>& nodes, const std::vector<TrianglePair>& pairs,
-           const Grid& grid, BuildProgress* progress)
-        : nodes_(nodes), pairs_(pairs), grid_(grid), progress_(progress) {}
-
-    Page pack() {
-        add_units(1 + 1);
-        unit(0)[0] = {bits(grid_.org().x), bits(grid_.org().y), bits(grid_.org().z), 0};
-        unit(0)[1] = {bits(grid_.cell().x), bits(grid_.cell().y), bits(grid_.cell().z), 0};
-        unit(0)[2] = {OVC_ROOT_UNIT, 0xffffffffu, 0, 0};
-        unit(0)[3] = uvec4(0);
-        // Even a single pair gets a node above it, so that its box is tested.
-        pending_.push_back({0, OVC_ROOT_UNIT, 1});
-        LoopProgress loop(progress_);
-        while (!pending_.empty()) {
-            const Pending next = pending_.back();
-            pending_.pop_back();
-            page_.depth = std::max(page_.depth, next.depth);
-            pack_node(next);
-            loop.step();
-        }
-        loop.finish();
-        return std::move(page_);
+void put_pair(const TrianglePair& pair, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
+    const std::array<uint32_t, 4> w{pair.a, pair.b == kNone ? OVC_NO_TRIANGLE : pair.b, pair.order,
+                                    OVC_PAIR};
+    for (int i = 0; i < 4; ++i) {
+        const vec3& c = pair.corners[i];
+        unit[i] = {bits(c.x), bits(c.y), bits(c.z), w[i]};
     }
-
-private:
-    struct Pending {
-        uint32_t node; // of the BVH
-        uint32_t unit;
-        uint32_t depth;
-    };
-
-    uvec4* unit(uint32_t index) { return &page_.texels[size_t(index) * OVC_UNIT_TEXELS]; }
-
-    uint32_t add_units(uint32_t count) {
-        const size_t first = page_.texels.size() / OVC_UNIT_TEXELS;
-        page_.texels.resize(page_.texels.size() + size_t(count) * OVC_UNIT_TEXELS, uvec4(0));
-        return uint32_t(first);
-    }
-
-    /// Up to four descendants that together hold the node's boxes: the widest inner one is opened
-    /// until four are found.
-    int children(uint32_t node, std::array<uint32_t, 4>& found) const {
-        if (nodes_[node].is_leaf()) {
-            found[0] = node;
-            return 1;
-        }
-        int count = 2;
-        found[0] = node + 1;
-        found[1] = nodes_[node].right;
-        while (count < 4) {
-            int widest = -1;
-            float area = -1;
-            for (int i = 0; i < count; ++i) {
-                const BvhNode& n = nodes_[found[i]];
-                if (!n.is_leaf() && n.box.half_area() > area) {
-                    area = n.box.half_area();
-                    widest = i;
-                }
-            }
-            if (widest < 0)
-                break;
-            const uint32_t opened = found[widest];
-            found[widest] = opened + 1;
-            found[count++] = nodes_[opened].right;
-        }
-        return count;
-    }
-
-    void pack_node(const Pending& at) {
-        std::array<uint32_t, 4> child;
-        const int count = children(at.node, child);
-        const uint32_t base = add_units(uint32_t(count));
-        for (int axis = 0; axis < 3; ++axis) {
-            std::array<uint32_t, 4> lo{0xffff, 0xffff, 0xffff, 0xffff};
-            std::array<uint32_t, 4> hi{0, 0, 0, 0};
-            for (int i = 0; i < count; ++i) {
-                lo[i] = grid_.lo(nodes_[child[i]].box, axis);
-                hi[i] = grid_.hi(nodes_[child[i]].box, axis);
-            }
-            unit(at.unit)[axis] = {lo[0] | lo[1] << 16, lo[2] | lo[3] << 16, hi[0] | hi[1] << 16,
-                                   hi[2] | hi[3] << 16};
-        }
-        unit(at.unit)[3] = {base, 0, 0, 0};
-        for (int i = 0; i < count; ++i) {
-            const BvhNode& node = nodes_[child[i]];
-            if (node.is_leaf())
-                pack_pair(pairs_[node.item], base + uint32_t(i));
-            else
-                pending_.push_back({child[i], base + uint32_t(i), at.depth + 1});
-        }
-    }
-
-    void pack_pair(const TrianglePair& pair, uint32_t index) {
-        const std::array<uint32_t, 4> w{pair.a, pair.b == kNone ? OVC_NO_TRIANGLE : pair.b,
-                                        pair.order, OVC_PAIR};
-        for (int i = 0; i < 4; ++i) {
-            const vec3& c = pair.corners[i];
-            unit(index)[i] = {bits(c.x), bits(c.y), bits(c.z), w[i]};
-        }
-    }
-
-    const std::vector<BvhNode>& nodes_;
-    const std::vector<TrianglePair>& pairs_;
-    const Grid& grid_;
-    BuildProgress* progress_;
-    Page page_;
-    std::vector<Pending> pending_;
-};
+}
 
 /// name: index into leaf.triangles -> what the page calls it.
 template <class Name>
@@ -197,8 +92,12 @@ Page build_named(const Soup& soup, const Leaf& leaf, BuildProgress* progress, Na
                     glm::clamp(boxes[i].hi, inside.lo, inside.hi)};
     }
     const std::vector<BvhNode> nodes = build_bvh(boxes, progress);
-    const Grid grid(box);
-    Page page = Packer(nodes, pairs, grid, progress).pack();
+    const Grid grid({leaf.frame.to_local(leaf.grid.lo), leaf.frame.to_local(leaf.grid.hi)});
+    const GridHeader header{grid.org(), grid.cell()};
+    const auto put = [&](uint32_t pair, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
+        put_pair(pairs[pair], unit);
+    };
+    Page page = Packer(nodes, header, grid, put, progress).pack();
     assert(page.texels.size() / OVC_UNIT_TEXELS < OVC_MAX_UNITS);
     return page;
 }
@@ -215,12 +114,16 @@ Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress) {
     return build_named(soup, leaf, progress, [](uint32_t i) { return i; });
 }
 
-uint32_t stack_depth(std::span<const Page> pages) {
+uint32_t stack_depth(uint32_t depth) {
     constexpr uint32_t kStep = 4;
+    return (depth + kStep - 1) / kStep * kStep;
+}
+
+uint32_t stack_depth(std::span<const Page> pages) {
     uint32_t depth = 1;
     for (const Page& page : pages)
         depth = std::max(depth, page.depth);
-    return (depth + kStep - 1) / kStep * kStep;
+    return stack_depth(depth);
 }
 
 } // namespace ovc

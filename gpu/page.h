@@ -26,6 +26,7 @@ struct Page {
 /// Stack words that the kernel needs for all of these pages, rounded up: few programs, and no
 /// register more than needed.
 uint32_t stack_depth(std::span<const Page> pages);
+uint32_t stack_depth(uint32_t depth);
 
 /// Builds and packs the BVH of a leaf. Its triangles go by their numbers in the soup. Each is about
 /// two units of progress.

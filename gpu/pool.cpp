@@ -59,9 +59,9 @@ bool Residency::admit(uint32_t leaf, uint64_t bytes, uint64_t keep,
     return true;
 }
 
-void Pool::upload(uint32_t leaf, const Page& page) const {
-    glNamedBufferSubData(buffer_.id(), GLintptr(residency_.slot(leaf).offset),
-                         GLsizeiptr(page.bytes()), page.texels.data());
+void Pool::upload(uint64_t offset, const Page& page) const {
+    glNamedBufferSubData(buffer_.id(), GLintptr(offset), GLsizeiptr(page.bytes()),
+                         page.texels.data());
 }
 
 } // namespace ovc

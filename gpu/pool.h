@@ -64,8 +64,8 @@ public:
     Residency& residency() { return residency_; }
     const Residency& residency() const { return residency_; }
 
-    /// Moves in the page of a leaf that was admitted.
-    void upload(uint32_t leaf, const Page& page) const;
+    /// Writes the page at `offset`, in bytes.
+    void upload(uint64_t offset, const Page& page) const;
 
     const gl::Buffer& buffer() const { return buffer_; }
 

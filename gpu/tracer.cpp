@@ -15,8 +15,17 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kMaxBatchRows = 2048;  // half a million rays: beyond, a pass gains nothing more
+constexpr uint32_t kMostBlocks = 2048;    // half a million rays: beyond, a pass gains nothing more
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
+
+/// The pixel of a ray's answer, row by row: the twin of pixel_of() in shaders/ray.glsl.
+size_t pixel_of(size_t ray) {
+    constexpr size_t kTile = OVC_TILE, kTilesInRow = OVC_ROW_RAYS / OVC_TILE;
+    const size_t tile = ray / (kTile * kTile);
+    const size_t x = tile % kTilesInRow * kTile + ray % kTile;
+    const size_t y = tile / kTilesInRow * kTile + ray / kTile % kTile;
+    return y * OVC_ROW_RAYS + x;
+}
 
 } // namespace
 
@@ -25,7 +34,7 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
     MemoryPlan plan;
     plan.bytes_per_ray = bytes_per_ray;
     plan.budget_bytes = budget_bytes;
-    plan.batch_rays = Tracer::kRowRays;
+    plan.batch_rays = Tracer::kBlockRays;
     const uint64_t smallest = plan.ray_bytes() + kSmallestPool;
     if (budget_bytes < smallest)
         return Error{fmt::format("a GPU budget of {} bytes is too small: the smallest that works "
@@ -33,9 +42,9 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
                                  budget_bytes, smallest, plan.ray_bytes(), kSmallestPool)};
     // An eighth for rays: batches of ten thousand and more already run at full speed, and pages
     // want the rest.
-    const uint64_t rows = budget_bytes / 8 / plan.ray_bytes();
-    plan.batch_rays *= uint32_t(
-        std::clamp<uint64_t>(rows, 1, std::min<uint64_t>(kMaxBatchRows, device.max_texture_size)));
+    const uint64_t blocks = budget_bytes / 8 / plan.ray_bytes();
+    plan.batch_rays *= uint32_t(std::clamp<uint64_t>(
+        blocks, 1, std::min<uint64_t>(kMostBlocks, device.max_texture_size / OVC_TILE)));
     plan.pool_bytes =
         (budget_bytes - plan.ray_bytes()) / device.buffer_alignment * device.buffer_alignment;
     plan.pool_bytes = std::min(plan.pool_bytes, device.max_buffer_texels * sizeof(uvec4));
@@ -49,9 +58,10 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Dev
       level1_data_(level1),
       page_data_(pages),
       software_(device.is_software),
-      stack_depth_(stack_depth(pages)),
+      linked_(link_pages(level1, pages, plan.pool_bytes)),
+      stack_depth_(linked_ ? stack_depth(linked_->depth) : stack_depth(pages)),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
-      answers_(*ledger_, GL_RGBA32UI, sizeof(Answer), kRowRays, plan.batch_rays / kRowRays,
+      answers_(*ledger_, GL_RGBA32UI, sizeof(Answer), OVC_ROW_RAYS, plan.batch_rays / OVC_ROW_RAYS,
                "answers"),
       level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
       pool_(*ledger_, plan.pool_bytes, pages.size()) {}
@@ -87,16 +97,38 @@ Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const Dev
     return tracer;
 }
 
-/// Tells the kernel where the leaf's page is now.
+/// Tells the kernel by a texel of level 1 at which unit of the pool a page is now.
+void Tracer::say_where(uint64_t texel, uint32_t unit) {
+    glNamedBufferSubData(level1_buffer_.id(), GLintptr(texel * sizeof(uvec4)), sizeof(unit), &unit);
+}
+
 void Tracer::say_where(uint32_t leaf) {
-    const uint32_t unit = resident(leaf)
-                              ? uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES)
-                              : OVC_NOT_RESIDENT;
-    glNamedBufferSubData(level1_buffer_.id(), GLintptr(page_texel_of(leaf) * sizeof(uvec4)),
-                         sizeof(unit), &unit);
+    say_where(page_texel_of(leaf),
+              resident(leaf) ? uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES)
+                             : OVC_NOT_RESIDENT);
+}
+
+Moved Tracer::bring_linked(std::span<const uint32_t> wanted) {
+    Moved moved;
+    const auto put = [&](const Page& page, uint32_t unit) {
+        pool_.upload(uint64_t(unit) * OVC_UNIT_BYTES, relocated(page, unit));
+        moved.bytes += page.bytes();
+    };
+    for (const uint32_t leaf : wanted) {
+        put(page_data_[leaf], linked_->first_unit[leaf]);
+        linked_->moved += 1;
+    }
+    moved.pages = wanted.size();
+    if (linked_->moved == page_data_.size()) {
+        put(linked_->top, linked_->top_unit);
+        say_where(scene_texel_of(level1_data_) + OVC_LEAF_PAGE_TEXEL, linked_->top_unit);
+    }
+    return moved;
 }
 
 Moved Tracer::bring(std::span<const uint32_t> wanted) {
+    if (linked_)
+        return bring_linked(wanted);
     Moved moved;
     std::vector<uint32_t> evicted;
     const uint64_t keep = pool_.residency().now();
@@ -104,7 +136,7 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
         const Page& page = page_data_[leaf];
         if (!pool_.residency().admit(leaf, page.bytes(), keep, evicted))
             break;
-        pool_.upload(leaf, page);
+        pool_.upload(pool_.residency().slot(leaf).offset, page);
         say_where(leaf);
         moved.pages += 1;
         moved.bytes += page.bytes();
@@ -119,6 +151,7 @@ Result<Done> Tracer::submit(const PassOptions& options, std::span<const Travelle
     ShaderConfig config;
     config.compute = options.compute;
     config.certify = options.certify;
+    config.linked = linked_.has_value();
     config.stack_depth = stack_depth_;
     config.stack_registers = software_;
     config.buffer_images = software_;
@@ -128,9 +161,9 @@ Result<Done> Tracer::submit(const PassOptions& options, std::span<const Travelle
     if (!program)
         return program.error();
 
-    const GLsizei rows = GLsizei(row_padded(rays.size()) / kRowRays);
-    glNamedBufferSubData(ray_buffer_.id(), 0,
-                         GLsizeiptr(row_padded(rays.size()) * sizeof(Traveller)), rays.data());
+    const GLsizei rows = GLsizei(padded(rays.size()) / OVC_ROW_RAYS);
+    glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(padded(rays.size()) * sizeof(Traveller)),
+                         rays.data());
 
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);
@@ -144,14 +177,14 @@ Result<Done> Tracer::submit(const PassOptions& options, std::span<const Travelle
             glBindTextureUnit(binding, texture);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     if (config.compute) {
-        static_assert(kRowRays % OVC_GROUP_SIZE == 0);
+        static_assert(kBlockRays % OVC_GROUP_SIZE == 0);
         glBindImageTexture(OVC_BINDING_ANSWERS, answers_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
                            GL_RGBA32UI);
-        glDispatchCompute(kRowRays / OVC_GROUP_SIZE, GLuint(rows), 1);
+        glDispatchCompute(GLuint(padded(rays.size()) / OVC_GROUP_SIZE), 1, 1);
         glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
     } else {
         glBindVertexArray(vertex_array_.id());
-        glViewport(0, 0, kRowRays, rows);
+        glViewport(0, 0, OVC_ROW_RAYS, rows);
         glDisable(GL_DEPTH_TEST);
         glDisable(GL_BLEND);
         glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -167,10 +200,15 @@ Result<Done> Tracer::submit(const PassOptions& options, std::span<const Travelle
 }
 
 Result<Done> Tracer::collect(std::span<Answer> answers) {
-    const GLsizei rows = GLsizei(row_padded(answers.size()) / kRowRays);
+    read_.resize(padded(answers.size()));
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-    glReadPixels(0, 0, kRowRays, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT, answers.data());
-    return check_gl("reading the answers of a pass");
+    glReadPixels(0, 0, OVC_ROW_RAYS, GLsizei(read_.size() / OVC_ROW_RAYS), GL_RGBA_INTEGER,
+                 GL_UNSIGNED_INT, read_.data());
+    if (Result<Done> ok = check_gl("reading the answers of a pass"); !ok)
+        return ok;
+    for (size_t ray = 0; ray < answers.size(); ++ray)
+        answers[ray] = read_[pixel_of(ray)];
+    return Done{};
 }
 
 } // namespace ovc

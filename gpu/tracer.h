@@ -7,6 +7,7 @@
 #include "gpu/egl_context.h"
 #include "gpu/kernel.h"
 #include "gpu/ledger.h"
+#include "gpu/linked.h"
 #include "gpu/pool.h"
 #include "shaders/layout.h"
 
@@ -14,7 +15,9 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
+#include <vector>
 
 namespace ovc {
 
@@ -86,7 +89,8 @@ public:
                                                   std::span<const Page> pages);
 
     /// Moves in the pages of `wanted`, leaves that are not resident, in this order, as many as fit
-    /// without pushing each other out: the first at least.
+    /// without pushing each other out: the first at least. Where all leaves share a frame and all
+    /// pages fit, they are linked once the last is there, and none leaves again.
     Moved bring(std::span<const uint32_t> wanted);
 
     /// Marks a leaf as used now: others are pushed out before it.
@@ -97,14 +101,15 @@ public:
     Result<Done> submit(const PassOptions& options, std::span<const Traveller> rays);
 
     /// Waits for the answers of the pass that was submitted, as many as its rays. The storage of
-    /// rays and answers is used up to the next multiple of kRowRays: see row_padded().
+    /// rays is used up to the next whole block: see padded().
     Result<Done> collect(std::span<Answer> answers);
 
     const Ledger& ledger() const { return *ledger_; }
 
-    static constexpr uint32_t kRowRays = OVC_ROW_RAYS;
-    /// The size that buffers for n rays or answers must have: whole rows.
-    static size_t row_padded(size_t n) { return (n + kRowRays - 1) / kRowRays * kRowRays; }
+    /// Rays come in blocks: a row of tiles.
+    static constexpr uint32_t kBlockRays = OVC_ROW_RAYS * OVC_TILE;
+    /// The size that a buffer for n rays must have: whole blocks.
+    static size_t padded(size_t n) { return (n + kBlockRays - 1) / kBlockRays * kBlockRays; }
 
 private:
     Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const DeviceInfo& device,
@@ -112,13 +117,16 @@ private:
 
     bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
     Result<Done> set_up();
+    void say_where(uint64_t texel, uint32_t unit);
     void say_where(uint32_t leaf);
+    Moved bring_linked(std::span<const uint32_t> wanted);
 
     std::unique_ptr<Ledger> ledger_; // the objects below keep its address
     KernelCache& kernels_;
     const Level1& level1_data_;
     std::span<const Page> page_data_;
     bool software_;
+    std::optional<LinkedPages> linked_; // where all pages are to be in the pool
     uint32_t stack_depth_;
     gl::Buffer ray_buffer_;
     gl::BufferTexture rays_;
@@ -129,6 +137,7 @@ private:
     gl::BufferTexture level1_;
     Pool pool_;
     gl::BufferTexture pages_;
+    std::vector<Answer> read_; // as the texture has them
 };
 
 } // namespace ovc

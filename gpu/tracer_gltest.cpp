@@ -38,7 +38,7 @@ protected:
     }
 
     std::vector<Answer> trace(std::span<const Ray> rays, bool any_hit = false) {
-        const size_t rows = Tracer::row_padded(rays.size());
+        const size_t rows = Tracer::padded(rays.size());
         std::vector<Traveller> travellers(rows, {kNoRay, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF});
         for (size_t i = 0; i < rays.size(); ++i)
             travellers[i] = {rays[i], rays[i].t_min, OVC_NO_TRIANGLE,

@@ -36,6 +36,19 @@ public:
         for (const char* name : {"id.mesh", "id.prim"})
             if (aovs.id)
                 all_.push_back(layer(name, Layer::Type::Uint, pixels));
+        if (aovs.leaf)
+            all_.push_back(layer("leaf", Layer::Type::Uint, pixels));
+        if (aovs.passes)
+            all_.push_back(layer("passes", Layer::Type::Uint, pixels));
+    }
+
+    /// Where the backend writes its notes of the rays of these pixels.
+    RayNotes notes(size_t first, size_t count) {
+        const auto values = [&](size_t from_last) {
+            return std::span(all_[all_.size() - from_last].values).subspan(first, count);
+        };
+        return {aovs_.leaf ? values(aovs_.passes ? 2 : 1) : std::span<uint32_t>(),
+                aovs_.passes ? values(1) : std::span<uint32_t>()};
     }
 
     void set(size_t pixel, const Scene& scene, const Ray& ray, const Hit& hit) {
@@ -71,9 +84,9 @@ Result<Aovs> parse_aovs(std::string_view text) {
         bool* const wanted = name == "depth"    ? &aovs.depth
                              : name == "normal" ? &aovs.normal
                              : name == "id"     ? &aovs.id
+                             : name == "leaf"   ? &aovs.leaf
+                             : name == "passes" ? &aovs.passes
                                                 : nullptr;
-        if (name == "leaf" || name == "passes")
-            return Error{fmt::format("--aov: {} is not there yet; depth, normal and id are", name)};
         if (!wanted)
             return Error{fmt::format("--aov: '{}' is none of {}{}", name, fmt::join(kNames, ", "),
                                      did_you_mean(name, kNames))};
@@ -100,7 +113,9 @@ Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Camera& camera, 
             for (size_t i = first; i < last; ++i)
                 rays[i] = pinhole.ray(uint32_t((start + i) % width), uint32_t((start + i) / width));
         });
-        if (const Result<Done> done = backend.intersect(rays, {}, hits); !done)
+        if (const Result<Done> done =
+                backend.intersect_noted(rays, {}, hits, layers.notes(start, rays.size()));
+            !done)
             return done.error();
         parallel_for(rays.size(), kGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)

@@ -18,14 +18,17 @@ struct Aovs {
                          // infinity where nothing is hit
     bool normal = false; // normal.X, .Y, .Z: of unit length in the world, towards the eye; 0
     bool id = false;     // id.mesh, id.prim: whole numbers; 0xffffffff
+    bool leaf = false;   // leaf: of level 1, in which the hit lies; 0xffffffff
+    bool passes = false; // passes: that the pixel's ray took part in
 
-    bool any() const { return depth || normal || id; }
+    bool any() const { return depth || normal || id || leaf || passes; }
 };
 
-/// "depth,normal,id". Error: an unknown name, one twice, or one that no backend can tell yet.
+/// "depth,normal,id,leaf,passes". Error: an unknown name, or one twice.
 Result<Aovs> parse_aovs(std::string_view text);
 
-/// One ray through the middle of each pixel, apart from those of the picture.
+/// One ray through the middle of each pixel, apart from those of the picture. Error: leaf or passes
+/// of a backend that has none.
 Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Camera& camera, Backend& backend,
                                       const Aovs& aovs, uint32_t width, uint32_t height);
 

@@ -30,9 +30,9 @@ std::string error_of(std::string_view text) {
 TEST(Aovs, AreNamedInAnyOrderOnceEach) {
     const Result<Aovs> aovs = parse_aovs("id,depth");
     ASSERT_TRUE(aovs);
-    EXPECT_TRUE(aovs->id && aovs->depth && !aovs->normal);
+    EXPECT_TRUE(aovs->id && aovs->depth && !aovs->normal && !aovs->leaf && !aovs->passes);
+    EXPECT_TRUE(parse_aovs("leaf,passes")->leaf);
     EXPECT_EQ(error_of("depth,depth"), "--aov: depth is given twice");
-    EXPECT_EQ(error_of("leaf"), "--aov: leaf is not there yet; depth, normal and id are");
     EXPECT_NE(error_of("norml").find("did you mean 'normal'"), std::string::npos)
         << error_of("norml");
     EXPECT_NE(error_of(""), "");
@@ -106,6 +106,17 @@ TEST(Aovs, OfAFileAreWhatEachPixelsRayHits) {
     }
     EXPECT_GT(hit, 100u);
     EXPECT_GT(missed, 0u);
+}
+
+TEST(Aovs, LeafAndPassesAreRefusedByABackendWithoutLeaves) {
+    const Result<Scene> scene = make_test_scene("box");
+    ASSERT_TRUE(scene);
+    const auto backend = make_cpu_backend(scene->soup);
+    Aovs aovs;
+    aovs.passes = true;
+    const auto layers = trace_aovs(*scene, Camera{dvec3(3, 2, 6), dvec3(0)}, *backend, aovs, 4, 4);
+    ASSERT_FALSE(layers);
+    EXPECT_EQ(layers.error().message, "leaf and passes can be told by --backend two-level alone");
 }
 
 } // namespace

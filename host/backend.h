@@ -34,6 +34,13 @@ public:
     /// The mixed form: traces what the host pushes until there is no more. Error of the kind
     /// Cancelled: it stopped.
     virtual Result<Done> stream(StreamHost& host) { return stream_in_batches(*this, host); }
+    /// intersect() with notes. Error: a backend without leaves.
+    virtual Result<Done> intersect_noted(std::span<const Ray> rays,
+                                         std::span<const TriangleId> skip, std::span<Hit> hits,
+                                         const RayNotes& notes) {
+        return notes.any() ? Error{"leaf and passes can be told by --backend two-level alone"}
+                           : intersect(rays, skip, hits);
+    }
     /// Counted since it was built. What a backend does not have is 0.
     virtual ovc_statistics statistics() const = 0;
     /// What does the work, for a person: the GL renderer's name, or the CPU.

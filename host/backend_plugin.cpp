@@ -89,8 +89,15 @@ public:
 
     Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
                            std::span<Hit> hits) override {
+        return intersect_noted(rays, skip, hits, {});
+    }
+
+    Result<Done> intersect_noted(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                                 std::span<Hit> hits, const RayNotes& notes) override {
         assert(hits.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
-        const ovc_query query = query_of(skip);
+        ovc_query query = query_of(skip);
+        query.leaf = notes.leaf.empty() ? nullptr : notes.leaf.data();
+        query.passes = notes.passes.empty() ? nullptr : notes.passes.data();
         return device_.checked(api().intersect(scene_.get(), as_abi(rays), rays.size(),
                                                reinterpret_cast<ovc_hit*>(hits.data()), &query));
     }

@@ -97,7 +97,8 @@ void RenderWords::add_to(CLI::App& app) {
         ->type_name("MODE");
     app.add_option("--aov", aov,
                    "Layers of the .exr files, of what the camera's rays hit, separated by commas: "
-                   "depth, normal, id (mesh and triangle)")
+                   "depth, normal, id (mesh and triangle), leaf (of level 1), passes (that the "
+                   "ray took part in)")
         ->type_name("NAMES");
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
     app.add_option("--stats", stats, "Write statistics as JSON (docs/stats.md)")

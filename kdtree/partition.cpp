@@ -190,8 +190,28 @@ Leaf make_leaf(const Soup& soup, const Box& cell, double padding,
     const Box reached = all.intersection(cell);
     leaf.box = reached.padded(std::max(kMargin * max_component(reached.extent()), padding));
     leaf.frame = frame_of(leaf.box, max_component(all.extent()));
+    leaf.grid = leaf.box;
     leaf.triangles = std::move(triangles);
     return leaf;
+}
+
+Leaf scene_leaf(const Box& bounds) {
+    const double padding = padding_of(bounds);
+    Leaf leaf;
+    leaf.cell = bounds.padded(padding);
+    leaf.box = bounds.padded(std::max(kMargin * max_component(bounds.extent()), padding));
+    leaf.frame = frame_of(leaf.box, max_component(bounds.extent()));
+    leaf.grid = leaf.box;
+    return leaf;
+}
+
+void share_frame(Level1& level1) {
+    const Leaf scene = scene_leaf(level1.bounds);
+    for (Leaf& leaf : level1.leaves) {
+        leaf.frame = scene.frame;
+        leaf.grid = scene.grid;
+    }
+    level1.shares_frame = true;
 }
 
 double padding_of(const Box& scene) {
@@ -237,9 +257,9 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
                  uint32_t max_leaf_triangles, BuildProgress* progress) {
     assert(max_leaf_triangles > 0);
     if (triangles.empty())
-        return {{}, {}, bounds, 0};
+        return {{}, {}, bounds, 0, false};
     if (triangles.size() <= max_leaf_triangles) { // a sample might make believe they are more
-        Level1 level1{{KdNode::leaf(0, 1)}, {}, bounds, padding_of(bounds)};
+        Level1 level1{{KdNode::leaf(0, 1)}, {}, bounds, padding_of(bounds), false};
         level1.leaves.push_back(whole_leaf(soup, triangles, bounds));
         return level1;
     }
@@ -251,13 +271,26 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
 Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                   std::span<const KdNode> nodes, uint32_t max_leaf_triangles) {
     if (nodes.empty())
-        return {{}, {}, bounds, 0};
+        return {{}, {}, bounds, 0, false};
     Partitioner partitioner(soup, bounds, nullptr);
     partitioner.fill(nodes, bounds, triangles,
                      [&](const Cell& cell, std::span<const TriangleId> inside) {
                          partitioner.add_leaves(cell.padded, in_parts(inside, max_leaf_triangles));
                      });
     return partitioner.finish();
+}
+
+uint32_t leaf_at(const Level1& level1, const dvec3& point, TriangleId id) {
+    uint32_t node = 0;
+    while (!level1.nodes[node].is_leaf()) {
+        const KdNode& n = level1.nodes[node];
+        node = point[n.axis()] <= n.split() ? node + 1 : n.above();
+    }
+    const KdNode& cell = level1.nodes[node];
+    for (uint32_t leaf = cell.first(); leaf < cell.first() + cell.count(); ++leaf)
+        if (std::ranges::binary_search(level1.leaves[leaf].triangles, id))
+            return leaf;
+    return cell.count() > 0 ? cell.first() : kNone;
 }
 
 Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most,

@@ -25,11 +25,13 @@ struct Frame {
 /// A level-1 leaf. Every triangle that touches `cell` is listed. `box` holds the part of the cell
 /// that they reach, and a margin around it: within it rays are traced, so that what is hit in the
 /// cell is clear of the ends of the ray's stretch. A hit counts only where the ray is in the cell;
-/// beyond, nearer triangles may be in the next leaf.
+/// beyond, nearer triangles may be in the next leaf. `grid` is what the 16-bit boxes of its page
+/// count over: the box, or that of the scene where leaves share a frame.
 struct Leaf {
     Box cell;
     Box box;
     Frame frame;
+    Box grid;
     std::vector<TriangleId> triangles; // sorted
 };
 
@@ -41,6 +43,7 @@ struct Level1 {
     Box bounds;
     double padding =
         0; // of every cell, so that what rounding moves across a plane is on both sides
+    bool shares_frame = false; // all leaves have the frame and the grid of scene_leaf()
 
     uint64_t reference_count() const;
 };
@@ -49,6 +52,12 @@ struct Level1 {
 /// double rounding may move a ray by; the box must not be missed for it, however small the leaf is.
 Leaf make_leaf(const Soup& soup, const Box& cell, double padding,
                std::vector<TriangleId> triangles);
+
+/// A scene in `bounds` as one leaf, without its triangles.
+Leaf scene_leaf(const Box& bounds);
+
+/// Gives all leaves the frame and the grid of scene_leaf().
+void share_frame(Level1& level1);
 
 /// All of `triangles`, which lie in `bounds`, as one leaf.
 Leaf whole_leaf(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds);
@@ -72,6 +81,10 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
 /// triangles that touch it, in leaves of at most max_leaf_triangles (> 0).
 Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                   std::span<const KdNode> nodes, uint32_t max_leaf_triangles);
+
+/// The leaf around a point of the triangle, one that lists it where there is one: those at a cell's
+/// border differ by rounding. kNone: the point lies in an empty cell.
+uint32_t leaf_at(const Level1& level1, const dvec3& point, TriangleId id);
 
 /// The same level 1 with some leaves cut into smaller ones. most: per leaf the most triangles that
 /// its parts may hold, or kNone: it stays. was: receives for each leaf now which it was, or kNone

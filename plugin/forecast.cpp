@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "core/twins.h"
 #include "gpu/level1_table.h"
+#include "gpu/linked.h"
 #include "kdtree/cells.h"
 #include "kdtree/sample.h"
 #include "plugin/page_rate.h"
@@ -168,7 +169,7 @@ struct Growth {
         return triangles * (1 + cut / std::sqrt(most)) / (fill * most);
     }
     double level1_bytes(double most) const {
-        return 16 * (1 + leaves(most) * (OVC_LEAF_TEXELS + nodes_per_leaf));
+        return 16 * (1 + OVC_LEAF_TEXELS + leaves(most) * (OVC_LEAF_TEXELS + nodes_per_leaf));
     }
 };
 
@@ -242,7 +243,7 @@ Result<Forecast> forecast(const Soup& soup, const TwoLevelOptions& options,
     f.references = sizes.references;
     f.level2_bytes = sizes.level2_bytes();
     f.largest_page_bytes = sizes.largest_page;
-    f.level1_bytes = (OVC_LEVEL1_LEAVES + OVC_LEAF_TEXELS * f.leaves + sizes.nodes) * sizeof(uvec4);
+    f.level1_bytes = level1_texels(f.leaves, sizes.nodes) * sizeof(uvec4);
     growth.nodes_per_leaf = double(sizes.nodes) / double(f.leaves);
     growth.cut = (double(f.references) / growth.triangles - 1) * std::sqrt(most);
     growth.fill = f.leaves < kMany ? kFill : double(f.references) / (double(f.leaves) * most);
@@ -251,7 +252,8 @@ Result<Forecast> forecast(const Soup& soup, const TwoLevelOptions& options,
         [&](const MemoryPlan& p) { return limits_of(options, p, uint64_t(growth.triangles)); });
     f.fits = f.level1_bytes + f.largest_page_bytes <= plan->pool_bytes;
     if (f.fits)
-        f.pool_bytes = std::min(plan->pool_bytes - f.level1_bytes, f.level2_bytes);
+        f.pool_bytes = std::min(plan->pool_bytes - f.level1_bytes,
+                                most_linked_bytes(f.level2_bytes, f.leaves));
     f.resident_pages = fitting(sizes.pages, f.pool_bytes);
     f.host_bytes = f.level2_bytes + f.references * sizeof(TriangleId) + f.leaves * sizeof(Leaf) +
                    sizes.nodes * sizeof(KdNode);

@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "gpu/linked.h"
 #include "kdtree/sample.h"
 #include "plugin/page_rate.h"
 
@@ -42,6 +43,7 @@ public:
         begin(progress_, "level 1", 0.35, 2 * triangles.size());
         const uint32_t most = first_most(triangles);
         levels_.level1 = partition(soup_, triangles, bounds, most, progress_);
+        share_frame_where_it_suits(triangles);
         levels_.seconds_level1 = watch.seconds();
         levels_.pages.resize(levels_.level1.leaves.size());
         begin(progress_, "level 2", 0.5, 2 * levels_.level1.reference_count());
@@ -65,6 +67,16 @@ private:
         if (sample.empty())
             return limits_.triangles_at(kMostBytesPerTriangle);
         return limits_.triangles_at(PageRates(soup_, triangles, sample, rate, progress_).mean());
+    }
+
+    /// Where all pages will be in the pool, and small triangles are not lost in the scene.
+    void share_frame_where_it_suits(std::span<const TriangleId> triangles) {
+        Level1& level1 = levels_.level1;
+        const uint64_t least = level1.reference_count() * kLeastBytesPerTriangle;
+        if (level1.leaves.size() == 1 ||
+            (least <= limits_.pool_bytes &&
+             doubtful_share(soup_, triangles, scene_leaf(level1.bounds).frame) <= kMostDoubtful))
+            share_frame(level1);
     }
 
     void build_missing_pages() {
@@ -98,7 +110,10 @@ private:
         if (!any)
             return false;
         std::vector<uint32_t> was;
+        const bool shares_frame = levels_.level1.shares_frame;
         levels_.level1 = cut_again(soup_, std::move(levels_.level1), most, was, progress_);
+        if (shares_frame)
+            share_frame(levels_.level1);
         std::vector<Page> pages(was.size());
         for (size_t i = 0; i < was.size(); ++i)
             if (was[i] != kNone)

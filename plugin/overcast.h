@@ -158,9 +158,13 @@ typedef struct ovc_mesh {
     uint32_t reserved;        /* 0 */
 } ovc_mesh;
 
+/* The struct_size of an earlier header is fine. */
 typedef struct ovc_query {
     size_t struct_size;
     const ovc_triangle* skip; /* ray_count, or NULL: the triangle that ray i starts on and therefore does not see; {OVC_NONE, OVC_NONE}: none */
+    /* Experimental. Written by intersect of OVC_STRUCTURE_TWO_LEVEL alone; NULL for all else. */
+    uint32_t* leaf;   /* ray_count, or NULL: the level-1 leaf that the hit of ray i lies in; OVC_NONE: a miss */
+    uint32_t* passes; /* ray_count, or NULL: kernel launches that ray i took part in; 0: it meets no leaf's box, or doubles alone could walk it */
 } ovc_query;
 
 /* What commit would make of the meshes added so far, told without making it. Numbers of leaves, bytes and pages are estimates:

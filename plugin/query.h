@@ -15,11 +15,17 @@ struct NearestQuery {
     std::span<const Ray> rays;
     std::span<const TriangleId> skip; // empty, or one per ray
     std::span<Hit> results;
+    std::span<uint32_t> passes; // empty, or counts each ray's
 
     TriangleId skipped(size_t i) const { return skip.empty() ? TriangleId{} : skip[i]; }
     NearestQuery part(size_t first, size_t count) const {
         return {rays.subspan(first, count), skip.empty() ? skip : skip.subspan(first, count),
-                results.subspan(first, count)};
+                results.subspan(first, count),
+                passes.empty() ? passes : passes.subspan(first, count)};
+    }
+    void count_pass(size_t i) const {
+        if (!passes.empty())
+            ++passes[i];
     }
     void set_miss(size_t i) const { results[i] = Hit{}; }
     void set(size_t i, const Hit& hit) const { results[i] = hit; }
@@ -38,6 +44,7 @@ struct OcclusionQuery {
         return {rays.subspan(first, count), skip.empty() ? skip : skip.subspan(first, count),
                 results.subspan(first, count)};
     }
+    void count_pass(size_t) const {}
     void set_miss(size_t i) const { results[i] = 0; }
     void set(size_t i, const Hit& hit) const { results[i] = hit.is_hit(); }
     bool was_hit(size_t i) const { return results[i] != 0; }

@@ -167,9 +167,13 @@ ovc_result intersect(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc
                      const ovc_query* query) {
     return on_scene(scene, "intersect", [&] {
         check_buffers("intersect", rays, hits, ray_count);
-        check(committed(scene, "intersect")
-                  .intersect({reinterpret_cast<const Ray*>(rays), ray_count},
-                             skip_of(query, ray_count), {reinterpret_cast<Hit*>(hits), ray_count}));
+        Structure& structure = committed(scene, "intersect");
+        const auto skip = skip_of(query, ray_count);
+        const RayNotes notes = notes_of(query, ray_count);
+        if (notes.any() && !structure.takes_notes())
+            invalid("intersect: this structure cannot tell ovc_query.leaf or passes");
+        check(structure.intersect_noted({reinterpret_cast<const Ray*>(rays), ray_count}, skip,
+                                        {reinterpret_cast<Hit*>(hits), ray_count}, notes));
     });
 }
 
@@ -177,6 +181,7 @@ ovc_result occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint
                     const ovc_query* query) {
     return on_scene(scene, "occluded", [&] {
         check_buffers("occluded", rays, occluded, ray_count);
+        refuse_notes("occluded", query, ray_count);
         check(committed(scene, "occluded")
                   .occluded({reinterpret_cast<const Ray*>(rays), ray_count},
                             skip_of(query, ray_count), {occluded, ray_count}));

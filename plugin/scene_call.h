@@ -44,12 +44,27 @@ ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
 inline std::span<const TriangleId> skip_of(const ovc_query* query, size_t ray_count) {
     if (!query)
         return {};
-    if (query->struct_size != sizeof(ovc_query))
+    if (query->struct_size != sizeof(ovc_query) && query->struct_size != offsetof(ovc_query, leaf))
         invalid(fmt::format("ovc_query.struct_size is {}, expected sizeof(ovc_query) = {}",
                             query->struct_size, sizeof(ovc_query)));
     if (!query->skip)
         return {};
     return {reinterpret_cast<const TriangleId*>(query->skip), ray_count};
+}
+
+/// What else is to be told of rays. The query's size is in order: see skip_of().
+inline RayNotes notes_of(const ovc_query* query, size_t ray_count) {
+    if (!query || query->struct_size <= offsetof(ovc_query, leaf))
+        return {};
+    const auto span = [&](uint32_t* notes) {
+        return notes ? std::span(notes, ray_count) : std::span<uint32_t>();
+    };
+    return {span(query->leaf), span(query->passes)};
+}
+
+inline void refuse_notes(const char* call, const ovc_query* query, size_t ray_count) {
+    if (notes_of(query, ray_count).any())
+        invalid(fmt::format("{}: ovc_query.leaf and passes are for intersect", call));
 }
 
 inline Structure& committed(ovc_scene scene, const char* call) {

@@ -107,6 +107,7 @@ ovc_result push(ovc_stream stream, const ovc_ray* rays, const uint64_t* tokens, 
             invalid("push: rays or tokens is NULL");
         if (any_hit > 1)
             invalid(fmt::format("push: any_hit is {}, expected 0 or 1", any_hit));
+        refuse_notes("push", query, ray_count);
         stream->rays->push({any_hit == 1,
                             {reinterpret_cast<const Ray*>(rays), ray_count},
                             skip_of(query, ray_count),

@@ -13,6 +13,7 @@
 #include "gpu/gl_thread.h"
 #include "plugin/overcast.h"
 
+#include <cassert>
 #include <memory>
 #include <span>
 
@@ -32,6 +33,14 @@ public:
     /// Traces what the host pushes until there is no more. Error of the kind Cancelled: the host
     /// stopped it. Here: batch after batch, for structures that know no better.
     virtual Result<Done> stream(StreamHost& host) { return stream_in_batches(*this, host); }
+    /// intersect(), which fills in the notes as well. Only where takes_notes().
+    virtual Result<Done> intersect_noted(std::span<const Ray> rays,
+                                         std::span<const TriangleId> skip, std::span<Hit> hits,
+                                         [[maybe_unused]] const RayNotes& notes) {
+        assert(!notes.any());
+        return intersect(rays, skip, hits);
+    }
+    virtual bool takes_notes() const { return false; }
     /// Counted since it was built. What a structure does not have is 0.
     virtual ovc_statistics report() const = 0;
 };

@@ -4,6 +4,7 @@
 
 #include "core/stopwatch.h"
 #include "gpu/level1_table.h"
+#include "gpu/linked.h"
 #include "plugin/level2.h"
 #include "plugin/wave.h"
 
@@ -35,7 +36,8 @@ LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uin
     return {options.leaf_triangles ? options.leaf_triangles
                                    : std::max<uint64_t>(uint64_t(std::ceil(most)), 1),
             std::min<uint64_t>(plan.pool_bytes / kPagesAtOnce,
-                               uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES)};
+                               uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES),
+            plan.pool_bytes};
 }
 
 Result<Done> check_count(const Soup& soup) {
@@ -184,7 +186,8 @@ Result<Done> TwoLevel::share_out() {
             "bytes ({} for level 1 with {} leaves, {} for the largest page, an eighth for rays)",
             plan_.budget_bytes, (needed + plan_.ray_bytes()) / 7 * 8 + 8, table,
             level1_.leaves.size(), statistics_.largest_page_bytes)};
-    plan_.pool_bytes = std::min(plan_.pool_bytes - table, statistics_.level2_bytes);
+    plan_.pool_bytes = std::min(plan_.pool_bytes - table,
+                                most_linked_bytes(statistics_.level2_bytes, pages_.size()));
     return Done{};
 }
 
@@ -209,7 +212,7 @@ uint32_t TwoLevel::number_to_skip(TriangleId id) const {
 /// The first `count` travellers on their way; their answers into answers_.
 /// Beside them, pages of `wanted` are moved in; returns how many.
 Result<size_t> TwoLevel::pass(size_t count, std::span<const uint32_t> wanted) {
-    const size_t padded = Tracer::row_padded(count);
+    const size_t padded = Tracer::padded(count);
     const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
     travellers_.resize(padded);
     std::fill(travellers_.begin() + ptrdiff_t(count), travellers_.end(), none);
@@ -264,7 +267,20 @@ Result<Done> TwoLevel::trace(const Query& query) {
 
 Result<Done> TwoLevel::intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
                                  std::span<Hit> hits) {
-    return trace(NearestQuery{rays, skip, hits});
+    return trace(NearestQuery{rays, skip, hits, {}});
+}
+
+Result<Done> TwoLevel::intersect_noted(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                                       std::span<Hit> hits, const RayNotes& notes) {
+    std::fill(notes.passes.begin(), notes.passes.end(), 0);
+    if (Result<Done> done = trace(NearestQuery{rays, skip, hits, notes.passes}); !done)
+        return done;
+    parallel_for(notes.leaf.size(), 1024, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            notes.leaf[i] =
+                hits[i].is_hit() ? leaf_at(level1_, rays[i].at(hits[i].t), hits[i].id) : kNone;
+    });
+    return Done{};
 }
 
 Result<Done> TwoLevel::occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,

@@ -84,6 +84,9 @@ public:
                            std::span<Hit> hits) override;
     Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
                           std::span<uint8_t> occluded) override;
+    Result<Done> intersect_noted(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                                 std::span<Hit> hits, const RayNotes& notes) override;
+    bool takes_notes() const override { return true; }
     Result<Done> stream(StreamHost& host) override; // two_level_stream.cpp
     ovc_statistics report() const override;         // make_two_level.cpp
 

@@ -304,6 +304,33 @@ TEST_F(TwoLevelGl, KeepsToTheBudgetByMovingPages) {
     EXPECT_GE(s.bytes_in, s.level2_bytes);
 }
 
+TEST_F(TwoLevelGl, TellsTheLeafOfAHitAndThePassesOfARay) {
+    const Soup soup = test::random_soup(8, 60000, 0.01);
+    const auto rays = test::rays_from_outside(12, 30000);
+    const uint64_t all = build(soup, {})->statistics().level2_bytes;
+    for (const uint64_t budget : {uint64_t(0), all / 4}) {
+        const auto structure = build(soup, {.budget_bytes = budget});
+        ASSERT_TRUE(structure);
+        std::vector<Hit> hits(rays.size());
+        std::vector<uint32_t> leaf(rays.size()), passes(rays.size(), 7);
+        ASSERT_TRUE(ok(structure->intersect_noted(rays, {}, hits, {leaf, passes})));
+        uint64_t visits = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            visits += passes[i];
+            ASSERT_EQ(hits[i].is_hit(), leaf[i] != kNone) << "ray " << i;
+            if (!hits[i].is_hit())
+                continue;
+            const Leaf& told = structure->level1().leaves[leaf[i]];
+            EXPECT_TRUE(std::ranges::binary_search(told.triangles, hits[i].id)) << "ray " << i;
+            EXPECT_TRUE(told.cell.contains(rays[i].at(hits[i].t))) << "ray " << i;
+            EXPECT_GE(passes[i], 1u) << "ray " << i;
+        }
+        EXPECT_EQ(visits, structure->statistics().ray_visits);
+        const uint32_t most = *std::ranges::max_element(passes);
+        EXPECT_EQ(most == 1, budget == 0) << most << " passes";
+    }
+}
+
 TEST_F(TwoLevelGl, FastPrecisionIsCloseAndFlagsNothing) {
     const Soup soup = test::closed_grid(100);
     const auto ids = hittable_triangles(soup, nullptr, nullptr);

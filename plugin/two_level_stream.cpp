@@ -72,7 +72,11 @@ private:
         results_.resize(now);
         for (size_t slot = now; slot-- > before;)
             free_.push_back(uint32_t(slot));
-        wave_.show({rays_, skip_, results_});
+        Query query{};
+        query.rays = rays_;
+        query.skip = skip_;
+        query.results = results_;
+        wave_.show(query);
     }
 
     Backlog backlog_;

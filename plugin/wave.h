@@ -76,6 +76,7 @@ public:
         parallel_for(count, kGrain, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j) {
                 const Position& at = positions_[batch_[j]];
+                query_.count_pass(batch_[j]);
                 Ray rest = query_.rays[batch_[j]];
                 rest.t_max = at.t_end;
                 travellers[j] = {rest, at.t_from, s_.number_to_skip(query_.skipped(batch_[j])),
@@ -153,7 +154,8 @@ private:
         if (answer.prim == OVC_MISS && !has_rivals)
             return true;
         const uint32_t leaf = answer.leaf();
-        if (used_[leaf].load(std::memory_order_relaxed) == 0)
+        const bool in_scene = leaf == OVC_NO_LEAF; // linked pages: no other leaf is left
+        if (!in_scene && used_[leaf].load(std::memory_order_relaxed) == 0)
             used_[leaf].store(1, std::memory_order_relaxed);
         if (Query::kAnyHit && !has_rivals) {
             query_.set(i, Hit{0, 0, 0, s_.numbers_.id(answer.prim)}); // a certain hit decides
@@ -170,8 +172,8 @@ private:
                 offer(nearest, rival, p.skip);
         if (nearest.hit().is_hit())
             query_.set(i, nearest.hit());
-        const bool settled =
-            (Query::kAnyHit && nearest.hit().is_hit()) || go_on_behind(i, leaf, p, nearest.limit());
+        const bool settled = in_scene || (Query::kAnyHit && nearest.hit().is_hit()) ||
+                             go_on_behind(i, leaf, p, nearest.limit());
         flagged_ += settled && has_rivals; // decide_in_double() counts the others
         return settled;
     }
@@ -246,8 +248,7 @@ Result<Done> TwoLevel::round(Wave<Queries>&... waves) {
     (waves.call_up(moved), ...);
     if ((waves.ready() + ...) == 0)
         return lost(); // nothing could be moved in
-    travellers_.resize(
-        Tracer::row_padded(std::min<size_t>((waves.ready() + ...), plan_.batch_rays)));
+    travellers_.resize(Tracer::padded(std::min<size_t>((waves.ready() + ...), plan_.batch_rays)));
     size_t count = 0;
     const auto load = [&](auto& wave) {
         const size_t room = std::min<size_t>(travellers_.size(), plan_.batch_rays) - count;

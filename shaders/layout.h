@@ -23,11 +23,14 @@
 #define OVC_NO_TRIANGLE 0xffffffffu
 #define OVC_MAX_UNITS 0x800000 // a stack word has 23 bits for a unit and must not be negative
 
-// Level 1 is an array of RGBA32UI texels: a header, the leaves, the KD-tree's nodes. A double is two words, low one first.
+// Where pages are linked (gpu/linked.h) units count from the pool's first; else from the page's own.
+
+// Level 1 is an array of RGBA32UI texels: a header, the leaves, the KD-tree's nodes, the scene as one more leaf. A double is two
+// words, low one first.
 //
-// header  texel of the root, 0, 0, 0
+// header  texel of the root, texel of the scene, 0, 0
 // leaf    texels 0..2: the leaf's box (doubles); texels 3 and 4: the frame's origin xyz, its scale (doubles)
-//         texel 5: the unit of the pool where the page begins, or OVC_NOT_RESIDENT; 0, 0, 0
+//         texel 5: the unit of the pool where the page begins, or OVC_NOT_RESIDENT; 0, 0, 0. Of the scene: of linked pages
 // node    split (double), axis, texel of the node above the split (the one below is next); or
 //         0, 0, 3 | number of leaves << 2, first leaf
 #define OVC_LEVEL1_START 0
@@ -43,9 +46,13 @@
 #define OVC_RAY_TEXELS 5
 #define OVC_NO_LEAF 0x7fffffffu
 #define OVC_RAY_ANY_HIT 0x80000000u
-#define OVC_ROW_RAYS 256 // answers are a texture, so many in a row
+// Answers are a texture. Rays lie in it in tiles of 4 x 4, in rows of tiles: fragments that a driver shades together are rays
+// that came one after the other.
+#define OVC_ROW_RAYS 64
+#define OVC_TILE 4
 
-// An answer is RGBA32UI; triangles are named by their numbers in the soup. w: the certain nearest hit in leaf z; or
+// An answer is RGBA32UI; triangles are named by their numbers in the soup. w: the certain nearest hit in leaf z, or where z is
+// OVC_NO_LEAF in the scene; or
 //   OVC_MISS      none in any leaf on the way
 //   OVC_WAITS     the walk stopped before leaf z, which is not in the pool; x, y: the t of the cells done (double)
 //   OVC_FLAGGED   the kernel cannot tell
@@ -67,6 +74,7 @@
 // triangle it does not see. It begins at t = 0, in the frame of the whole scene, or of a leaf. In fast precision x, y, z of its answer
 // are t, u, v (float bits).
 #define OVC_FRAME_RAY_TEXELS 2
+#define OVC_QUEUE_ROW_RAYS 256 // the thesis' two-level: rays lie in rows of so many
 // Where a ray stands between passes (3 textures), and the scene (from here on).
 #define OVC_BINDING_STATE 3
 #define OVC_BINDING_SCENE 6

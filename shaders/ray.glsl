@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rays of a pass: OVC_RAY_TEXELS texels each.
+// The rays of a pass: OVC_RAY_TEXELS texels each, and the pixels of their answers.
 
 #if OVC_BUFFER_IMAGES
 layout(rgba32ui, binding = OVC_BINDING_RAYS) uniform readonly restrict uimageBuffer rays;
@@ -14,9 +14,29 @@ dvec2 ray_doubles(int texel) {
     return dvec2(double_of(words.xy), double_of(words.zw));
 }
 
-// Rays lie in rows, as their answers do.
-Traveller traveller_at(ivec2 pixel) {
-    int texel = (pixel.y * OVC_ROW_RAYS + pixel.x) * OVC_RAY_TEXELS;
+// What a ray comes with (layout.h): itself, where its walk begins, the triangle it does not see, and what it asks.
+struct Traveller {
+    WorldRay ray;
+    double t_from;
+    int first_leaf;
+    uint skip;
+    bool any_hit; // occlusion: stop at the first certain hit
+};
+
+// The number of the ray whose answer goes to `pixel`.
+int ray_at(ivec2 pixel) {
+    ivec2 tile = pixel / OVC_TILE;
+    ivec2 inside = pixel % OVC_TILE;
+    return ((tile.y * (OVC_ROW_RAYS / OVC_TILE) + tile.x) * OVC_TILE + inside.y) * OVC_TILE + inside.x;
+}
+ivec2 pixel_of(int ray) {
+    ivec2 inside = ivec2(ray % OVC_TILE, ray / OVC_TILE % OVC_TILE);
+    int tile = ray / (OVC_TILE * OVC_TILE);
+    return ivec2(tile % (OVC_ROW_RAYS / OVC_TILE), tile / (OVC_ROW_RAYS / OVC_TILE)) * OVC_TILE + inside;
+}
+
+Traveller traveller(int ray) {
+    int texel = ray * OVC_RAY_TEXELS;
     dvec2 a = ray_doubles(texel);
     dvec2 b = ray_doubles(texel + 1);
     dvec2 c = ray_doubles(texel + 2);

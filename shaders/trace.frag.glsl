@@ -9,11 +9,13 @@
 #include "found.glsl"
 #include "traverse.glsl"
 #include "level1.glsl"
-#include "walk.glsl"
 #include "ray.glsl"
+#include "linked.glsl"
+#include "walk.glsl"
 
 layout(location = 0) out uvec4 answer;
 
 void main() {
-    answer = walk(traveller_at(ivec2(gl_FragCoord.xy)));
+    Traveller traveller = traveller(ray_at(ivec2(gl_FragCoord.xy)));
+    answer = OVC_LINKED != 0 ? trace_linked(traveller) : walk(traveller);
 }

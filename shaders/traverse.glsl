@@ -15,9 +15,9 @@ struct Direction {
 
 Direction direction_of(vec3 dir) { return Direction(finite_reciprocal(dir), basis_of(dir)); }
 
-// Takes into `found` what the ray may hit in the page whose header is the pool's unit `page`. False: the loop was ended before
-// it was done. rounds: of all loops of this ray so far.
-bool traverse(inout Found found, int page, vec3 org, float t_end, Direction direction, uint skip, bool any_hit,
+// Takes into `found` what the ray may hit in the page whose header is the pool's unit `page`, and whose units count from the unit
+// `first_unit`. False: the loop was ended before it was done. rounds: of all loops of this ray so far.
+bool traverse(inout Found found, int page, int first_unit, vec3 org, float t_end, Direction direction, uint skip, bool any_hit,
               inout int rounds) {
     int header = page * OVC_UNIT_TEXELS;
     GridRay grid = grid_ray(org, direction.inv_dir, uintBitsToFloat(page_texel(header).xyz), uintBitsToFloat(page_texel(header + 1).xyz));
@@ -35,7 +35,7 @@ bool traverse(inout Found found, int page, vec3 org, float t_end, Direction dire
     // that left early; what the rest of the body computed it computes again, for the lanes that go on.
     bool done = first.w != 0;
     while (!done && rounds < OVC_MOST_ROUNDS) {
-        int at = header + unit * OVC_UNIT_TEXELS;
+        int at = (first_unit + unit) * OVC_UNIT_TEXELS;
         uvec4 X = page_texel(at);
         uvec4 Y = page_texel(at + 1);
         uvec4 Z = page_texel(at + 2);

@@ -1,15 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A ray's way through level 1: from leaf to leaf as long as they are in the pool, until one has an answer for it.
 
-// What a ray comes with (layout.h): itself, where its walk begins, the triangle it does not see, and what it asks.
-struct Traveller {
-    WorldRay ray;
-    double t_from;
-    int first_leaf;
-    uint skip;
-    bool any_hit; // occlusion: stop at the first certain hit
-};
-
 // The words of an answer (layout.h).
 uvec4 walk(Traveller traveller) {
     WorldRay ray = traveller.ray;
@@ -56,7 +47,7 @@ uvec4 walk(Traveller traveller) {
                 done = true;
             } else {
                 Found found = nothing_found(local.t_end);
-                if (traverse(found, int(page), local.org, local.t_end, direction, traveller.skip, traveller.any_hit, rounds)) {
+                if (traverse(found, int(page), int(page), local.org, local.t_end, direction, traveller.skip, traveller.any_hit, rounds)) {
                     answer = answer_of(found, traveller.any_hit, uint(leaf));
                     done = answer.w != OVC_MISS || answer.x != OVC_NO_TRIANGLE;
 #if !OVC_CERTIFY

@@ -41,8 +41,9 @@ public:
 
     const Ledger& ledger() const { return *ledger_; }
 
-    static constexpr uint32_t kRowRays = Tracer::kRowRays;
-    static size_t row_padded(size_t n) { return Tracer::row_padded(n); }
+    static constexpr uint32_t kRowRays = OVC_QUEUE_ROW_RAYS;
+    static_assert(Tracer::kBlockRays % kRowRays == 0); // as plan_memory() counts them
+    static size_t row_padded(size_t n) { return (n + kRowRays - 1) / kRowRays * kRowRays; }
     static constexpr uint64_t kBytesPerRay = sizeof(FrameRay) + sizeof(FrameAnswer);
 
 private:

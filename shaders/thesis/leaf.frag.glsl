@@ -22,6 +22,6 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     uvec4 org = texelFetch(rays, ivec2(pixel.x * OVC_FRAME_RAY_TEXELS, pixel.y), 0);
     uvec4 dir = texelFetch(rays, ivec2(pixel.x * OVC_FRAME_RAY_TEXELS + 1, pixel.y), 0);
-    bool any_hit = pixel.y * OVC_ROW_RAYS + pixel.x >= first_occlusion_ray;
+    bool any_hit = pixel.y * OVC_QUEUE_ROW_RAYS + pixel.x >= first_occlusion_ray;
     answer = trace_page(page_unit, uintBitsToFloat(org.xyz), uintBitsToFloat(org.w), uintBitsToFloat(dir.xyz), dir.w, any_hit);
 }

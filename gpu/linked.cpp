@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Linked pages: a BVH over the roots of all pages, on the grid that they share.
+#include "gpu/linked.h"
+
+#include "gpu/packer.h"
+#include "shaders/layout.h"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+
+namespace ovc {
+namespace {
+
+/// Boxes that are in grid coordinates already.
+struct Counted {
+    uint32_t lo(const Boxf& box, int axis) const { return uint32_t(box.lo[axis]); }
+    uint32_t hi(const Boxf& box, int axis) const { return uint32_t(box.hi[axis]); }
+};
+
+/// The box of all children of a page's root, in grid coordinates.
+Boxf root_box(const Page& page) {
+    Boxf box;
+    for (int axis = 0; axis < 3; ++axis) {
+        const uvec4& words = page.texels[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + size_t(axis)];
+        // A missing child has the greatest lo and the least hi.
+        box.lo[axis] =
+            float(std::min({words.x & 0xffff, words.x >> 16, words.y & 0xffff, words.y >> 16}));
+        box.hi[axis] =
+            float(std::max({words.z & 0xffff, words.z >> 16, words.w & 0xffff, words.w >> 16}));
+    }
+    return box;
+}
+
+GridHeader header_of(const Page& page) {
+    const auto vector = [&](size_t i) {
+        const uvec4& t = page.texels[i];
+        return vec3(std::bit_cast<float>(t.x), std::bit_cast<float>(t.y),
+                    std::bit_cast<float>(t.z));
+    };
+    return {vector(0), vector(1)};
+}
+
+bool is_pair(const Page& page, uint64_t unit) {
+    return page.texels[unit * OVC_UNIT_TEXELS + 3].w == OVC_PAIR;
+}
+
+} // namespace
+
+double doubtful_share(const Soup& soup, std::span<const TriangleId> triangles, const Frame& frame) {
+    constexpr size_t kSample = 4096;
+    // Of a corner as far off as the frame is wide, its neighbours close to the ray.
+    constexpr double kBound = OVC_BOUND_UNIT * (OVC_BOUND_CONSTANT + OVC_BOUND_RELATIVE);
+    const size_t step = triangles.size() / kSample + 1;
+    double sum = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < triangles.size(); i += step, ++count) {
+        const Triangle t = soup.triangle(triangles[i]);
+        const double around =
+            glm::length(t[1] - t[0]) + glm::length(t[2] - t[1]) + glm::length(t[0] - t[2]);
+        const double area = glm::length(glm::cross(t[1] - t[0], t[2] - t[0])) / 2;
+        const double band = kBound / frame.scale * around;
+        sum += band < area ? band / area : 1;
+    }
+    return count > 0 ? sum / double(count) : 0;
+}
+
+uint64_t most_linked_bytes(uint64_t level2_bytes, uint64_t leaves) {
+    // A header, the pages' roots, and nodes of two children at least.
+    return level2_bytes + (leaves > 1 ? (2 * leaves + 1) * OVC_UNIT_BYTES : 0);
+}
+
+std::optional<LinkedPages> link_pages(const Level1& level1, std::span<const Page> pages,
+                                      uint64_t pool_bytes) {
+    if (!level1.shares_frame || pages.empty())
+        return {};
+    LinkedPages linked;
+    uint64_t units = 0;
+    uint32_t deepest = 0;
+    for (const Page& page : pages) {
+        linked.first_unit.push_back(uint32_t(units));
+        units += page.units();
+        deepest = std::max(deepest, page.depth);
+        if (units >= OVC_MAX_UNITS || units * OVC_UNIT_BYTES > pool_bytes)
+            return {};
+    }
+    if (pages.size() == 1) { // is under a tree already
+        linked.top_unit = 0;
+        linked.depth = deepest;
+    } else {
+        linked.top_unit = uint32_t(units);
+        std::vector<Boxf> boxes;
+        for (const Page& page : pages)
+            boxes.push_back(root_box(page));
+        const auto put = [&](uint32_t leaf, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
+            const auto root = std::span(pages[leaf].texels)
+                                  .subspan<OVC_ROOT_UNIT * OVC_UNIT_TEXELS, OVC_UNIT_TEXELS>();
+            std::copy(root.begin(), root.end(), unit.begin());
+            // Counted from the top's first unit, like its own.
+            unit[3].x += linked.first_unit[leaf] - linked.top_unit;
+        };
+        const std::vector<BvhNode> nodes = build_bvh(boxes, nullptr);
+        linked.top = Packer(nodes, header_of(pages[0]), Counted(), put, nullptr).pack();
+        linked.depth = linked.top.depth + deepest;
+    }
+    units += linked.top.units();
+    if (units >= OVC_MAX_UNITS || units * OVC_UNIT_BYTES > pool_bytes)
+        return {};
+    return linked;
+}
+
+Page relocated(const Page& page, uint32_t first_unit) {
+    Page moved = page;
+    if (moved.texels.empty())
+        return moved;
+    moved.texels[2].x += first_unit;
+    for (uint64_t unit = OVC_ROOT_UNIT; unit < moved.units(); ++unit)
+        if (!is_pair(moved, unit))
+            moved.texels[unit * OVC_UNIT_TEXELS + 3].x += first_unit;
+    return moved;
+}
+
+} // namespace ovc

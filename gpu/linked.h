@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Linked pages: all pages of a scene in the pool at once, under one tree. A ray is traced in one
+// frame from the scene's root down, and level 1 costs it nothing. Shared by all leaves, the frame
+// must suit them: the smaller the triangles in it, the more rays float32 leaves in doubt.
+#pragma once
+
+#include "gpu/page.h"
+#include "kdtree/partition.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+/// What of the rays that hit the triangles float32 would leave in doubt in the frame, roughly: the
+/// share of a triangle that lies within the error bound of its sides (docs/numerics.md), on average
+/// over a sample.
+double doubtful_share(const Soup& soup, std::span<const TriangleId> triangles, const Frame& frame);
+
+/// Up to this share a frame suits all leaves.
+inline constexpr double kMostDoubtful = 1.0 / 64;
+
+/// Where linked pages lie: one behind the other from the pool's first byte on, `top` behind them.
+struct LinkedPages {
+    std::vector<uint32_t> first_unit; // of the pool, per page
+    Page top;              // nodes over the pages, the lowest copies of their roots; none for one
+    uint32_t top_unit = 0; // where a traversal begins
+    uint32_t depth = 0;    // stack words it needs
+    uint64_t moved = 0;    // pages in the pool
+};
+
+/// Bytes that linked pages of `level2_bytes` take in the pool, at most.
+uint64_t most_linked_bytes(uint64_t level2_bytes, uint64_t leaves);
+
+/// The pages of leaves that share a frame, linked; none where the pool has no room for all or their
+/// units cannot be counted in a stack word.
+std::optional<LinkedPages> link_pages(const Level1& level1, std::span<const Page> pages,
+                                      uint64_t pool_bytes);
+
+/// The page as it must be where it begins at `first_unit`: its units count from the pool's first.
+Page relocated(const Page& page, uint32_t first_unit);
+
+} // namespace ovc

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Linked pages, walked on the CPU from their top, offer every triangle of every leaf that a ray
+// hits; a frame in which triangles are too small for float32 is told.
+#include "gpu/linked.h"
+
+#include "gpu/page_walk.h"
+#include "kdtree/test_soups.h"
+
+#include <gtest/gtest.h>
+
+namespace ovc {
+namespace {
+
+struct Built {
+    std::vector<TriangleId> triangles;
+    Level1 level1;
+    std::vector<Page> pages;
+};
+
+Built build(const Soup& soup, size_t leaves, bool shared) {
+    Built built;
+    Box bounds;
+    built.triangles = hittable_triangles(soup, nullptr, &bounds);
+    built.level1 = partition(soup, built.triangles, bounds,
+                             uint32_t(std::max<size_t>(built.triangles.size() / leaves, 1)));
+    if (shared)
+        share_frame(built.level1);
+    const Numbering numbers(soup);
+    for (const Leaf& leaf : built.level1.leaves)
+        built.pages.push_back(build_page(soup, numbers, leaf));
+    return built;
+}
+
+/// What the pool holds, as one page: its root is that of the top.
+Page pool_of(const Built& built, const LinkedPages& linked) {
+    Page pool;
+    const auto put = [&](const Page& page, uint32_t unit) {
+        EXPECT_EQ(pool.units(), unit);
+        const Page moved = relocated(page, unit);
+        pool.texels.insert(pool.texels.end(), moved.texels.begin(), moved.texels.end());
+    };
+    for (size_t i = 0; i < built.pages.size(); ++i)
+        put(built.pages[i], linked.first_unit[i]);
+    if (built.pages.size() > 1)
+        put(linked.top, linked.top_unit);
+    const uint32_t root = pool.texels[size_t(linked.top_unit) * OVC_UNIT_TEXELS + 2].x;
+    for (size_t i = 0; i < OVC_UNIT_TEXELS; ++i)
+        pool.texels[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + i] =
+            pool.texels[size_t(root) * OVC_UNIT_TEXELS + i];
+    return pool;
+}
+
+class Linked : public testing::TestWithParam<size_t> {};
+INSTANTIATE_TEST_SUITE_P(Leaves, Linked, testing::Values(1, 2, 9, 60));
+
+TEST_P(Linked, WalkedFromTheTopFindsWhatBruteForceFinds) {
+    for (const auto& [name, soup] : test::unpleasant_soups()) {
+        const Built built = build(soup, GetParam(), /* shared= */ true);
+        if (built.pages.empty())
+            continue;
+        const auto linked = link_pages(built.level1, built.pages, 1u << 30);
+        ASSERT_TRUE(linked) << name;
+        const Page pool = pool_of(built, *linked);
+        const Leaf scene = scene_leaf(built.level1.bounds);
+        const Numbering numbers(soup);
+        for (const Ray& ray : test::unpleasant_rays(soup, 78, 400)) {
+            if (!ray.valid())
+                continue;
+            const PreparedRay p(ray);
+            Nearest nearest(p);
+            walk_page(
+                pool, scene, p, p.ray.t_min,
+                [&](uint32_t number) {
+                    const TriangleId id = numbers.id(number);
+                    nearest.offer(soup.triangle(id), id);
+                    return false;
+                },
+                [&] { return nearest.limit(); });
+            const Hit expected = test::brute_force(soup, built.triangles, ray);
+            ASSERT_TRUE(test::same(expected, nearest.hit()))
+                << name << ": " << test::describe(expected) << " but found "
+                << test::describe(nearest.hit());
+        }
+    }
+}
+
+TEST_P(Linked, TakeNoMoreThanTold) {
+    const Soup soup = test::closed_grid(24);
+    const Built built = build(soup, GetParam(), /* shared= */ true);
+    uint64_t bytes = 0;
+    for (const Page& page : built.pages)
+        bytes += page.bytes();
+    const uint64_t most = most_linked_bytes(bytes, built.pages.size());
+    EXPECT_TRUE(link_pages(built.level1, built.pages, most));
+    EXPECT_FALSE(link_pages(built.level1, built.pages, bytes - 1)) << "not all pages fit";
+}
+
+TEST(LinkedPages, NeedAFrameThatAllLeavesShare) {
+    const Built built = build(test::closed_grid(24), 9, /* shared= */ false);
+    EXPECT_FALSE(link_pages(built.level1, built.pages, 1u << 30));
+}
+
+TEST(DoubtfulShare, GrowsAsTrianglesShrinkInTheFrame) {
+    const auto share = [](const Soup& soup) {
+        Box bounds;
+        const auto triangles = hittable_triangles(soup, nullptr, &bounds);
+        return doubtful_share(soup, triangles, scene_leaf(bounds).frame);
+    };
+    const double coarse = share(test::closed_grid(16));
+    EXPECT_GT(coarse, 0);
+    EXPECT_NEAR(share(test::closed_grid(32)) / coarse, 2, 0.2);
+
+    EXPECT_LT(share(test::closed_grid(32)), kMostDoubtful);
+    EXPECT_GT(share(test::random_soup(3, 1000, 1e-7)), kMostDoubtful);
+}
+
+} // namespace
+} // namespace ovc
