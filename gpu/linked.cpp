@@ -45,6 +45,17 @@ bool is_pair(const Page& page, uint64_t unit) {
     return page.texels[unit * OVC_UNIT_TEXELS + 3].w == OVC_PAIR;
 }
 
+Page shifted(const Page& page, uint32_t units) {
+    Page moved = page;
+    if (moved.texels.empty())
+        return moved;
+    moved.texels[2].x += units;
+    for (uint64_t unit = OVC_ROOT_UNIT; unit < moved.units(); ++unit)
+        if (!is_pair(moved, unit))
+            moved.texels[unit * OVC_UNIT_TEXELS + 3].x += units;
+    return moved;
+}
+
 } // namespace
 
 double doubtful_share(const Soup& soup, std::span<const TriangleId> triangles, const Frame& frame) {
@@ -98,6 +109,7 @@ std::optional<LinkedPages> link_pages(const Level1& level1, std::span<const Page
             std::copy(root.begin(), root.end(), unit.begin());
             // Counted from the top's first unit, like its own.
             unit[3].x += linked.first_unit[leaf] - linked.top_unit;
+            unit[3].y = leaf + 1;
         };
         const std::vector<BvhNode> nodes = build_bvh(boxes, nullptr);
         linked.top = Packer(nodes, header_of(pages[0]), Counted(), put, nullptr).pack();
@@ -109,15 +121,14 @@ std::optional<LinkedPages> link_pages(const Level1& level1, std::span<const Page
     return linked;
 }
 
-Page relocated(const Page& page, uint32_t first_unit) {
-    Page moved = page;
-    if (moved.texels.empty())
-        return moved;
-    moved.texels[2].x += first_unit;
-    for (uint64_t unit = OVC_ROOT_UNIT; unit < moved.units(); ++unit)
-        if (!is_pair(moved, unit))
-            moved.texels[unit * OVC_UNIT_TEXELS + 3].x += first_unit;
+Page relocated(const Page& page, uint32_t first_unit, uint32_t leaf) {
+    Page moved = shifted(page, first_unit);
+    moved.texels[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + 3].y = leaf + 1;
     return moved;
+}
+
+Page relocated_top(const LinkedPages& linked) {
+    return shifted(linked.top, linked.top_unit);
 }
 
 } // namespace ovc

@@ -39,7 +39,9 @@ uint64_t most_linked_bytes(uint64_t level2_bytes, uint64_t leaves);
 std::optional<LinkedPages> link_pages(const Level1& level1, std::span<const Page> pages,
                                       uint64_t pool_bytes);
 
-/// The page as it must be where it begins at `first_unit`: its units count from the pool's first.
-Page relocated(const Page& page, uint32_t first_unit);
+/// The page of a leaf, or the top, as it must be where it begins at `first_unit`: its units count
+/// from the pool's first, and its root says whose it is.
+Page relocated(const Page& page, uint32_t first_unit, uint32_t leaf);
+Page relocated_top(const LinkedPages& linked);
 
 } // namespace ovc

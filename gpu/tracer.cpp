@@ -64,7 +64,10 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Dev
       answers_(*ledger_, GL_RGBA32UI, sizeof(Answer), OVC_ROW_RAYS, plan.batch_rays / OVC_ROW_RAYS,
                "answers"),
       level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
-      pool_(*ledger_, plan.pool_bytes, pages.size()) {}
+      pool_(*ledger_, plan.pool_bytes, pages.size()) {
+    if (plan.active_bytes > 0)
+        active_buffer_.emplace(*ledger_, plan.active_bytes, "active leaves");
+}
 
 /// What needs the memory to be there.
 Result<Done> Tracer::set_up() {
@@ -78,6 +81,10 @@ Result<Done> Tracer::set_up() {
     level1_.show(level1_buffer_, GL_RGBA32UI, 0, level1_buffer_.bytes());
     rays_.show(ray_buffer_, GL_RGBA32UI, 0, ray_buffer_.bytes());
     pages_.show(pool_.buffer(), GL_RGBA32UI, 0, pool_.buffer().bytes());
+    if (active_buffer_) {
+        active_.show(*active_buffer_, GL_R32UI, 0, active_buffer_->bytes());
+        take_active(); // clears it
+    }
     framebuffer_.show(answers_);
     if (!framebuffer_.complete())
         return Error{"the driver cannot render to RGBA32UI textures, which answers come back in"};
@@ -111,16 +118,17 @@ void Tracer::say_where(uint32_t leaf) {
 Moved Tracer::bring_linked(std::span<const uint32_t> wanted) {
     Moved moved;
     const auto put = [&](const Page& page, uint32_t unit) {
-        pool_.upload(uint64_t(unit) * OVC_UNIT_BYTES, relocated(page, unit));
+        pool_.upload(uint64_t(unit) * OVC_UNIT_BYTES, page);
         moved.bytes += page.bytes();
     };
     for (const uint32_t leaf : wanted) {
-        put(page_data_[leaf], linked_->first_unit[leaf]);
+        const uint32_t unit = linked_->first_unit[leaf];
+        put(relocated(page_data_[leaf], unit, leaf), unit);
         linked_->moved += 1;
     }
     moved.pages = wanted.size();
     if (linked_->moved == page_data_.size()) {
-        put(linked_->top, linked_->top_unit);
+        put(relocated_top(*linked_), linked_->top_unit);
         say_where(scene_texel_of(level1_data_) + OVC_LEAF_PAGE_TEXEL, linked_->top_unit);
     }
     return moved;
@@ -152,6 +160,7 @@ Result<Done> Tracer::submit(const PassOptions& options, std::span<const Travelle
     config.compute = options.compute;
     config.certify = options.certify;
     config.linked = linked_.has_value();
+    config.tell_active = active_buffer_.has_value();
     config.stack_depth = stack_depth_;
     config.stack_registers = software_;
     config.buffer_images = software_;
@@ -175,6 +184,9 @@ Result<Done> Tracer::submit(const PassOptions& options, std::span<const Travelle
             glBindImageTexture(binding, texture, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
         else
             glBindTextureUnit(binding, texture);
+    if (config.tell_active)
+        glBindImageTexture(OVC_BINDING_ACTIVE, active_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
+                           GL_R32UI);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     if (config.compute) {
         static_assert(kBlockRays % OVC_GROUP_SIZE == 0);
@@ -197,6 +209,18 @@ Result<Done> Tracer::submit(const PassOptions& options, std::span<const Travelle
     else
         glFlush();
     return check_gl("starting a pass");
+}
+
+std::vector<uint32_t> Tracer::take_active() {
+    if (!active_buffer_)
+        return {};
+    std::vector<uint32_t> active(active_buffer_->bytes() / sizeof(uint32_t));
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetNamedBufferSubData(active_buffer_->id(), 0, GLsizeiptr(active_buffer_->bytes()),
+                            active.data());
+    const uint32_t none = 0;
+    glClearNamedBufferData(active_buffer_->id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+    return active;
 }
 
 Result<Done> Tracer::collect(std::span<Answer> answers) {

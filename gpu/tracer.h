@@ -60,6 +60,7 @@ struct MemoryPlan {
     uint64_t budget_bytes = 0;
     uint32_t batch_rays = 0; // most rays a pass
     uint64_t pool_bytes = 0;
+    uint64_t active_bytes = 0; // 4 a leaf, or 0: passes mark which pages rays are traced through
     uint64_t bytes_per_ray = sizeof(Traveller) + sizeof(Answer);
     uint64_t driver_bytes = ~uint64_t(0); // for tests: what the driver has
 
@@ -104,6 +105,10 @@ public:
     /// rays is used up to the next whole block: see padded().
     Result<Done> collect(std::span<Answer> answers);
 
+    /// Per leaf, whether rays were traced through its page since this was asked last; none where
+    /// the plan has no active_bytes.
+    std::vector<uint32_t> take_active();
+
     const Ledger& ledger() const { return *ledger_; }
 
     /// Rays come in blocks: a row of tiles.
@@ -135,6 +140,8 @@ private:
     gl::VertexArray vertex_array_;
     gl::Buffer level1_buffer_;
     gl::BufferTexture level1_;
+    std::optional<gl::Buffer> active_buffer_;
+    gl::BufferTexture active_;
     Pool pool_;
     gl::BufferTexture pages_;
     std::vector<Answer> read_; // as the texture has them

@@ -12,6 +12,7 @@
 #include "plugin/overcast.h"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -41,6 +42,9 @@ public:
         return notes.any() ? Error{"leaf and passes can be told by --backend two-level alone"}
                            : intersect(rays, skip, hits);
     }
+    /// The pages that rays went through since this was asked last; none where the options did not
+    /// ask for it or the backend cannot tell.
+    virtual std::optional<ovc_active> take_active() { return {}; }
     /// Counted since it was built. What a backend does not have is 0.
     virtual ovc_statistics statistics() const = 0;
     /// What does the work, for a person: the GL renderer's name, or the CPU.
@@ -83,6 +87,7 @@ struct BackendOptions {
     ovc_kernel kernel = OVC_KERNEL_AUTO;
     ovc_level1 level1 = OVC_LEVEL1_KD_TREE; // of ThesisTwoLevel, as the next
     ovc_level1_build level1_build = OVC_LEVEL1_BUILD_TOP_DOWN;
+    bool tell_active = false; // of two-level: take_active() is asked
     BuildWatching watching = BuildWatching::None;
 };
 

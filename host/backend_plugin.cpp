@@ -116,6 +116,12 @@ public:
         return device_.checked(api().stream(scene_.get(), &callbacks));
     }
 
+    std::optional<ovc_active> take_active() override {
+        ovc_active active{};
+        active.struct_size = sizeof(active);
+        return api().active(scene_.get(), &active) == OVC_OK ? std::optional(active) : std::nullopt;
+    }
+
     ovc_statistics statistics() const override {
         ovc_statistics statistics{};
         statistics.struct_size = sizeof(statistics);
@@ -158,6 +164,7 @@ static Result<ovc_scene_config> config_of(const BackendOptions& options,
     config.structure = structure_of(options.kind);
     config.level1 = options.level1;
     config.level1_build = options.level1_build;
+    config.tell_active = options.tell_active && config.structure == OVC_STRUCTURE_TWO_LEVEL;
     return config;
 }
 

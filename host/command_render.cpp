@@ -48,6 +48,7 @@ struct RenderWords {
     std::string mode = "auto";
     std::string aov;
     bool no_shadows = false;
+    bool working_set = false;
     BackendArguments backend;
     std::string stats;
     bool quiet = false;
@@ -103,6 +104,9 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
     app.add_option("--stats", stats, "Write statistics as JSON (docs/stats.md)")
         ->type_name("FILE.json");
+    app.add_flag("--working-set", working_set,
+                 "The statistics tell which pages each frame's rays go through; takes up to half "
+                 "as long again");
     app.add_flag("--quiet", quiet, "Print nothing but warnings and errors");
     backend.add_to(app);
 }
@@ -268,6 +272,11 @@ static Result<RenderJob> understand(const RenderWords& words) {
     if (!backend)
         return backend.error();
     job.backend = *backend;
+    if (words.working_set && job.stats.empty())
+        return Error{"--working-set is told in the statistics: --stats FILE.json"};
+    if (words.working_set && structure_of(job.backend.kind) != OVC_STRUCTURE_TWO_LEVEL)
+        return Error{"--working-set can be told by --backend two-level alone"};
+    job.backend.tell_active = words.working_set;
     return job;
 }
 

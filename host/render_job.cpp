@@ -91,12 +91,14 @@ private:
         if (scene_.gamma != 1)
             to_linear(image);
         frame.tracing = counted_between(before, backend_.statistics());
+        frame.active = backend_.take_active();
         const Stopwatch output;
         if (frame.report.complete || !is_sequence())
             if (const Result<Done> saved = save_all(image, shot); !saved)
                 return saved.error();
         frame.seconds_output = output.seconds();
         frame.seconds = watch.seconds();
+        frame.host_peak_bytes = host_peak_bytes();
         return frame;
     }
 

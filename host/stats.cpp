@@ -25,7 +25,7 @@ ovc_statistics counted_between(const ovc_statistics& before, const ovc_statistic
          {&ovc_statistics::passes, &ovc_statistics::pages_in, &ovc_statistics::bytes_in,
           &ovc_statistics::nearest_rays, &ovc_statistics::occlusion_rays,
           &ovc_statistics::invalid_rays, &ovc_statistics::ray_visits, &ovc_statistics::flagged,
-          &ovc_statistics::retraced})
+          &ovc_statistics::retraced, &ovc_statistics::queues, &ovc_statistics::queued_rays})
         counted.*count -= before.*count;
     counted.seconds_trace -= before.seconds_trace;
     counted.seconds_kernel -= before.seconds_kernel;
@@ -48,6 +48,19 @@ static Json rays_of(const RayCounts& rays) {
             {"refraction", rays.refraction}};
 }
 
+static Json queues_of(const ovc_statistics& t) {
+    return {{"count", t.queues}, {"rays", t.queued_rays}, {"longest", t.longest_queue}};
+}
+
+static Json active_of(const std::optional<ovc_active>& active) {
+    if (!active)
+        return nullptr;
+    return {{"pages", active->pages},
+            {"bytes", active->bytes},
+            {"new_pages", active->new_pages},
+            {"new_bytes", active->new_bytes}};
+}
+
 static Json frames_of(const RenderStats& s) {
     Json frames = Json::array();
     for (const FrameStats& f : s.frames)
@@ -60,6 +73,10 @@ static Json frames_of(const RenderStats& s) {
                           {"ray_visits", f.tracing.ray_visits},
                           {"flagged", f.tracing.flagged},
                           {"retraced", f.tracing.retraced},
+                          {"queues", queues_of(f.tracing)},
+                          {"active", active_of(f.active)},
+                          {"gpu_peak_bytes", f.tracing.gpu_peak_bytes},
+                          {"host_peak_bytes", f.host_peak_bytes},
                           {"time",
                            {{"trace", f.report.seconds_trace},
                             {"kernel", f.tracing.seconds_kernel},
@@ -110,6 +127,7 @@ std::string stats_json(const RenderStats& s) {
         {"flagged", t.flagged},
         {"retraced", t.retraced},
         {"capped", t.capped},
+        {"queues", queues_of(t)},
         {"left_out", left_out_of(s)},
         {"time", times_of(s)},
         {"frames", frames_of(s)}};

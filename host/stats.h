@@ -7,6 +7,7 @@
 #include "plugin/overcast.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct FrameStats {
     uint32_t frame = 0; // its number in the camera path; 0 for a picture without one
     RenderReport report;
     ovc_statistics tracing{}; // what was counted for this frame alone
+    std::optional<ovc_active> active;
+    uint64_t host_peak_bytes = 0; // of the process, up to its end
     double seconds_output = 0;
     double seconds = 0; // from its first ray to its last file
 };

@@ -26,8 +26,12 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
 }
 
 static TwoLevelOptions options_of(const ovc_scene_config& config) {
-    return {config.gpu_memory_bytes, config.leaf_triangles, config.leaves,
-            config.precision != OVC_PRECISION_FAST, config.kernel == OVC_KERNEL_COMPUTE};
+    return {config.gpu_memory_bytes,
+            config.leaf_triangles,
+            config.leaves,
+            config.precision != OVC_PRECISION_FAST,
+            config.kernel == OVC_KERNEL_COMPUTE,
+            config.tell_active == 1};
 }
 
 Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
@@ -94,7 +98,10 @@ ovc_statistics TwoLevel::report() const {
             s.seconds_level2,
             s.seconds_trace,
             s.seconds_kernel,
-            s.host_bytes};
+            s.host_bytes,
+            s.queues,
+            s.queued_rays,
+            s.longest_queue};
 }
 
 } // namespace ovc

@@ -139,6 +139,8 @@ typedef struct ovc_scene_config {
     uint32_t level1_build;     /* ovc_level1_build; 0 for all other structures */
     ovc_progress_function progress; /* NULL: silent, and not to be stopped */
     void* progress_user;
+    uint32_t tell_active; /* experimental. 1: active() tells which pages rays go through, for some percent of time; not for all structures. 0 */
+    uint32_t reserved;    /* 0 */
 } ovc_scene_config;
 
 typedef enum ovc_mesh_flags {
@@ -218,7 +220,19 @@ typedef struct ovc_statistics {
     double seconds_trace;          /* inside intersect and occluded */
     double seconds_kernel;         /* of it, waiting for the GPU */
     uint64_t host_bytes;           /* level 1 and level 2 in host memory */
+    uint64_t queues;               /* of rays that waited for a leaf until its page was moved in */
+    uint64_t queued_rays;          /* in them, all together */
+    uint64_t longest_queue;        /* rays */
 } ovc_statistics;
+
+/* The pages that rays went through since this was asked last, or since the commit; experimental. */
+typedef struct ovc_active {
+    size_t struct_size;
+    uint64_t pages;
+    uint64_t bytes;     /* of them: the working set */
+    uint64_t new_pages; /* not among those told the time before */
+    uint64_t new_bytes;
+} ovc_active;
 
 /* Answers of a stream, in any order: hits for rays pushed for the nearest, occluded for the others; the other pointer is NULL.
  * Valid during the call only. */
@@ -287,6 +301,10 @@ typedef struct ovc_api {
     /* Tells what commit makes, or has made, of the scene; a small part of its work. Before or after it. OVC_ERROR_INVALID_ARGUMENT
      * for structures that cannot tell. */
     ovc_result (*plan)(ovc_scene scene, ovc_plan* plan);
+
+    /* Which pages are active: asked at the end of each picture, its working set. OVC_ERROR_INVALID_ARGUMENT where the scene's
+     * config did not ask for it (tell_active) or its structure cannot tell. Experimental. */
+    ovc_result (*active)(ovc_scene scene, ovc_active* active);
 } ovc_api;
 
 #if defined(_WIN32)

@@ -64,7 +64,8 @@ void check_buffers(const char* call, const void* rays, const void* answers, size
 
 void check_choice(const char* field, uint32_t value, uint32_t last) {
     if (value > last)
-        invalid(fmt::format("ovc_scene_config.{} is {}, expected 0 to {}", field, value, last));
+        invalid(fmt::format("ovc_scene_config.{} is {}, expected {}{}", field, value,
+                            last ? "0 to " : "", last));
 }
 
 /// A struct of this header, or of an earlier one, which had `least` bytes at least.
@@ -118,6 +119,8 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
             check_choice("level1_build", config->level1_build, OVC_LEVEL1_BUILD_BOTTOM_UP);
             std::memcpy(&created->config, config, config->struct_size);
             created->config.struct_size = sizeof(ovc_scene_config);
+            check_choice("tell_active", created->config.tell_active, 1);
+            check_choice("reserved", created->config.reserved, 0);
         }
         // Known to be impossible before anything is added: say so now.
         check_config(created->config, device->gl->info());
@@ -214,6 +217,20 @@ ovc_result plan(ovc_scene scene, ovc_plan* plan) {
             *plan = *told;
         });
         plan->seconds = watch.seconds();
+    });
+}
+
+ovc_result active(ovc_scene scene, ovc_active* active) {
+    return on_scene(scene, "active", [&] {
+        if (!active)
+            invalid("active: active is NULL");
+        check_size<ovc_active>("ovc_active", active->struct_size, sizeof(ovc_active));
+        const Result<ovc_active> told = committed(scene, "active").take_active();
+        if (!told)
+            throw Failure{code_of(told.error().kind, OVC_ERROR_INVALID_ARGUMENT),
+                          "active: " + told.error().message};
+        *active = *told;
+        active->struct_size = sizeof(ovc_active);
     });
 }
 

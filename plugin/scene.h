@@ -15,6 +15,7 @@ ovc_result occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint
                     const ovc_query* query);
 ovc_result statistics(ovc_scene scene, ovc_statistics* statistics);
 ovc_result plan(ovc_scene scene, ovc_plan* plan);
+ovc_result active(ovc_scene scene, ovc_active* active);
 void destroy_scene(ovc_scene scene);
 
 } // namespace ovc

@@ -41,6 +41,11 @@ public:
         return intersect(rays, skip, hits);
     }
     virtual bool takes_notes() const { return false; }
+    /// The pages that rays were traced through since this was asked last. Error: a structure that
+    /// cannot tell, or was not asked to when it was built.
+    virtual Result<ovc_active> take_active() {
+        return Error{"this structure does not tell which pages are active"};
+    }
     /// Counted since it was built. What a structure does not have is 0.
     virtual ovc_statistics report() const = 0;
 };

@@ -178,7 +178,8 @@ TwoLevel::~TwoLevel() {
 
 /// Takes level 1 off the pool, and what no page needs.
 Result<Done> TwoLevel::share_out() {
-    const uint64_t table = level1_texels(level1_) * sizeof(uvec4);
+    plan_.active_bytes = options_.tell_active ? pages_.size() * sizeof(uint32_t) : 0;
+    const uint64_t table = level1_texels(level1_) * sizeof(uvec4) + plan_.active_bytes;
     const uint64_t needed = table + statistics_.largest_page_bytes;
     if (plan_.pool_bytes < needed)
         return Error{fmt::format(
@@ -263,6 +264,30 @@ Result<Done> TwoLevel::trace(const Query& query) {
     }
     statistics_.seconds_trace += watch.seconds();
     return Done{};
+}
+
+Result<ovc_active> TwoLevel::take_active() {
+    if (!options_.tell_active)
+        return Error{"which pages are active is told where ovc_scene_config.tell_active is 1"};
+    if (Result<Done> ready = ready_device(); !ready)
+        return ready.error();
+    std::vector<uint32_t> now(pages_.size());
+    gl_.run([&](GlState& state) {
+        if (tracer_ && is_ours(state))
+            now = tracer_->take_active();
+    });
+    ovc_active active{};
+    was_active_.resize(pages_.size());
+    for (size_t leaf = 0; leaf < now.size(); ++leaf) {
+        if (now[leaf]) {
+            active.pages += 1;
+            active.bytes += pages_[leaf].bytes();
+            active.new_pages += !was_active_[leaf];
+            active.new_bytes += was_active_[leaf] ? 0 : pages_[leaf].bytes();
+        }
+        was_active_[leaf] = now[leaf] != 0;
+    }
+    return active;
 }
 
 Result<Done> TwoLevel::intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,

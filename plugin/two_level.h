@@ -29,6 +29,7 @@ struct TwoLevelOptions {
     uint64_t leaves = 0;         // instead: about this many
     bool certify = true;         // false: fast precision, the kernel's own answers
     bool compute = false;        // which kernel
+    bool tell_active = false;    // passes mark the pages that rays are traced through
     /// Pages move in beside a pass. Default: on a GPU; a software renderer cannot do two things at
     /// once, and what is moved before a pass has ended is some 20 % more.
     std::optional<bool> beside;
@@ -61,6 +62,9 @@ struct TwoLevelStatistics {
     uint64_t flagged = 0;
     uint64_t retraced = 0;
     uint64_t capped = 0;
+    uint64_t queues = 0; // of rays waiting for a leaf that was moved in
+    uint64_t queued_rays = 0;
+    uint64_t longest_queue = 0;
     uint64_t peak_bytes = 0;
     uint64_t host_bytes = 0;
     double seconds_level1 = 0;
@@ -89,6 +93,7 @@ public:
     bool takes_notes() const override { return true; }
     Result<Done> stream(StreamHost& host) override; // two_level_stream.cpp
     ovc_statistics report() const override;         // make_two_level.cpp
+    Result<ovc_active> take_active() override;
 
     const TwoLevelStatistics& statistics() const { return statistics_; }
     const MemoryPlan& plan() const { return plan_; }
@@ -139,6 +144,7 @@ private:
     Twins twins_;
     Level1 level1_; // without them
     std::vector<Page> pages_;
+    std::vector<uint8_t> was_active_;   // per leaf: when take_active() was asked last
     std::unique_ptr<Tracer> tracer_;    // made and destroyed on the thread of gl_
     uint32_t tracer_generation_ = 0;    // of the context that it was made in
     std::vector<Traveller> travellers_; // of a pass, as the answers are; kept between calls

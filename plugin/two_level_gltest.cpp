@@ -331,6 +331,45 @@ TEST_F(TwoLevelGl, TellsTheLeafOfAHitAndThePassesOfARay) {
     }
 }
 
+TEST_F(TwoLevelGl, TellsThePagesThatRaysWentThrough) {
+    const Soup soup = test::random_soup(8, 60000, 0.01);
+    const auto aimed = test::rays_from_outside(12, 5000);
+    const std::vector<Ray> few(aimed.begin(), aimed.begin() + 3);
+    const uint64_t all = build(soup, {})->statistics().level2_bytes;
+    for (const bool compute : {false, true})
+        for (const uint64_t budget : {uint64_t(0), all / 4}) {
+            const auto structure = build(
+                soup,
+                {.budget_bytes = budget, .leaves = 60, .compute = compute, .tell_active = true});
+            ASSERT_TRUE(structure);
+            const auto trace = [&](std::span<const Ray> rays) {
+                std::vector<Hit> hits(rays.size());
+                std::vector<uint32_t> leaf(rays.size());
+                EXPECT_TRUE(ok(structure->intersect_noted(rays, {}, hits, {leaf, {}})));
+                std::ranges::sort(leaf);
+                const auto end = std::ranges::unique(leaf).begin();
+                return size_t(end - leaf.begin()) - (leaf.back() == kNone); // leaves that were hit
+            };
+            const size_t hit = trace(aimed);
+            const Result<ovc_active> active = structure->take_active();
+            ASSERT_TRUE(active) << active.error().message;
+            EXPECT_GE(active->pages, hit);
+            EXPECT_LE(active->bytes, structure->statistics().level2_bytes);
+            EXPECT_EQ(active->pages, active->new_pages);
+            // Fewer rays: no page is new.
+            trace(few);
+            const Result<ovc_active> less = structure->take_active();
+            ASSERT_TRUE(less);
+            EXPECT_GT(less->pages, 0u);
+            EXPECT_LT(less->pages, active->pages);
+            EXPECT_EQ(less->new_pages, 0u);
+            EXPECT_EQ(structure->take_active()->pages, 0u) << "no rays since";
+            EXPECT_EQ(structure->statistics().queues > 0, budget > 0);
+            EXPECT_GE(structure->statistics().queued_rays, structure->statistics().longest_queue);
+        }
+    EXPECT_FALSE(build(soup, {})->take_active());
+}
+
 TEST_F(TwoLevelGl, FastPrecisionIsCloseAndFlagsNothing) {
     const Soup soup = test::closed_grid(100);
     const auto ids = hittable_triangles(soup, nullptr, nullptr);

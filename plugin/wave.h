@@ -60,9 +60,14 @@ public:
 
     /// The leaves are resident now: who waited for them is ready.
     void call_up(std::span<const uint32_t> leaves) {
-        for (const uint32_t leaf : leaves)
-            for (const uint32_t ray : waiting_.take(leaf))
-                ready_.push_back(ray);
+        for (const uint32_t leaf : leaves) {
+            const std::vector<uint32_t> queue = waiting_.take(leaf);
+            ready_.insert(ready_.end(), queue.begin(), queue.end());
+            s_.statistics_.queues += !queue.empty();
+            s_.statistics_.queued_rays += queue.size();
+            s_.statistics_.longest_queue =
+                std::max<uint64_t>(s_.statistics_.longest_queue, queue.size());
+        }
     }
 
     /// The rays that were answered since this was asked last.

@@ -10,6 +10,9 @@
 #ifndef OVC_LINKED
 #define OVC_LINKED 0 // 1: all pages are in the pool, under one tree, and units count from the pool's first
 #endif
+#ifndef OVC_TELL_ACTIVE
+#define OVC_TELL_ACTIVE 0 // 1: pages that rays are traced through are marked
+#endif
 #ifndef OVC_STACK_DEPTH
 #define OVC_STACK_DEPTH 16 // words; must be at least the page's depth. A register each on llvmpipe: 15 -> 32 costs 7 %
 #endif

@@ -12,7 +12,7 @@
 //         texel 3: 0
 // node    texels 0..2: per axis, the 16-bit grid coordinates of four children's boxes: lo0|lo1<<16, lo2|lo3<<16,
 //                      hi0|hi1<<16, hi2|hi3<<16. A missing child has lo = 0xffff > hi = 0.
-//         texel 3: unit of the first child (children are contiguous), 0, 0, 0
+//         texel 3: unit of the first child (children are contiguous), 0 or for a root of linked pages 1 + its leaf, 0, 0
 // pair    texels 0..3: corners v0 v1 v2 v3 (float bits) of the triangles A = (v0, v1, v2) and B = (v0, v3, v2);
 //         w of texel 0: number of A; w of texel 1: that of B or OVC_NO_TRIANGLE; w of texel 3: OVC_PAIR;
 //         w of texel 2: which corner of the triangle itself the pair's v0 and v2 are, two bits each, A's then B's
@@ -70,6 +70,8 @@
 #define OVC_BINDING_RAYS 1
 #define OVC_BINDING_ANSWERS 2
 #define OVC_BINDING_LEVEL1 3
+// A word a leaf, not 0 where a ray was traced through its page.
+#define OVC_BINDING_ACTIVE 4
 // The systems of the thesis: a ray is two texels, origin xyz, end t (negative: no ray); direction xyz, the index of the
 // triangle it does not see. It begins at t = 0, in the frame of the whole scene, or of a leaf. In fast precision x, y, z of its answer
 // are t, u, v (float bits).

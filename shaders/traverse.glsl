@@ -41,6 +41,10 @@ bool traverse(inout Found found, int page, int first_unit, vec3 org, float t_end
         uvec4 Z = page_texel(at + 2);
         uvec4 W = page_texel(at + 3);
         bool is_pair = int(W.w) < 0;
+#if OVC_TELL_ACTIVE && OVC_LINKED
+        if (!is_pair && W.y != 0u)
+            mark_active(int(W.y) - 1);
+#endif
 
         // A pair's bits mean nothing as boxes: an end before the beginning lets none of them through.
         ivec4 keys = child_keys(X, Y, Z, grid, is_pair ? -1.0 : found.best_hi);

@@ -46,6 +46,9 @@ uvec4 walk(Traveller traveller) {
                 answer = uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, uint(leaf), OVC_FLAGGED);
                 done = true;
             } else {
+#if OVC_TELL_ACTIVE
+                mark_active(leaf);
+#endif
                 Found found = nothing_found(local.t_end);
                 if (traverse(found, int(page), int(page), local.org, local.t_end, direction, traveller.skip, traveller.any_hit, rounds)) {
                     answer = answer_of(found, traveller.any_hit, uint(leaf));

@@ -231,6 +231,42 @@ TEST_F(Abi, IndicesStridesOriginsAndSharingGiveTheSameTriangle) {
     EXPECT_EQ(hit.v, 0.25);
 }
 
+TEST_F(Abi, TellsLeafPassesAndActivePagesWhereItWasAskedTo) {
+    commit_triangle();
+    ovc_hit hit{};
+    uint32_t leaf = 7, passes = 7;
+    auto query = sized<ovc_query>();
+    query.leaf = &leaf;
+    query.passes = &passes;
+    ASSERT_EQ(api().intersect(scene, &kDown, 1, &hit, &query), OVC_OK);
+    EXPECT_EQ(leaf, 0u);
+    EXPECT_EQ(passes, 1u);
+    uint8_t occluded = 0;
+    EXPECT_EQ(api().occluded(scene, &kDown, 1, &occluded, &query), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(error(), "occluded: ovc_query.leaf and passes are for intersect");
+    // A host of an earlier header, whose query ends before `leaf`.
+    query.struct_size = offsetof(ovc_query, leaf);
+    leaf = 7;
+    ASSERT_EQ(api().intersect(scene, &kDown, 1, &hit, &query), OVC_OK);
+    EXPECT_EQ(leaf, 7u);
+
+    auto active = sized<ovc_active>();
+    EXPECT_EQ(api().active(scene, &active), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(error(), HasSubstr("tell_active"));
+    auto config = sized<ovc_scene_config>();
+    config.tell_active = 1;
+    ovc_scene telling = nullptr;
+    ASSERT_EQ(api().create_scene(device, &config, &telling), OVC_OK);
+    const ovc_mesh mesh = triangle();
+    ASSERT_EQ(api().add_mesh(telling, &mesh, nullptr), OVC_OK);
+    ASSERT_EQ(api().commit(telling), OVC_OK);
+    ASSERT_EQ(api().intersect(telling, &kDown, 1, &hit, nullptr), OVC_OK);
+    ASSERT_EQ(api().active(telling, &active), OVC_OK);
+    EXPECT_EQ(active.pages, 1u);
+    EXPECT_EQ(active.new_bytes, active.bytes);
+    api().destroy_scene(telling);
+}
+
 TEST_F(Abi, ThirtyTwoThreadsTakeTurns) {
     commit_triangle();
     std::atomic<int> wrong{0};

@@ -135,16 +135,18 @@ TEST_F(CommandLine, TheDragonInTwelveMegabytesIsTheSamePicture) {
     EXPECT_THAT(bytes("s.json"), HasSubstr("\"gpu_budget_bytes\": 12582912"));
 }
 
+/// The first number of that key in a JSON text; -1: none.
+double number(const std::string& text, const std::string& key) {
+    const size_t at = text.find("\"" + key + "\": ");
+    return at == std::string::npos ? -1.0 : std::stod(text.substr(at + key.size() + 4));
+}
+
 TEST_F(CommandLine, InfoTellsThePlanThatRenderThenKeepsTo) {
     const auto info = overcast("info plants-1 --json --gpu-memory 2M 2>/dev/null");
     ASSERT_EQ(info.exit_code, 0) << info.output;
     const auto render =
         overcast("render plants-1 --quiet --size 64x48 --gpu-memory 2M --stats s.json");
     ASSERT_EQ(render.exit_code, 0) << render.output;
-    const auto number = [](const std::string& text, const std::string& key) {
-        const size_t at = text.find("\"" + key + "\": ");
-        return at == std::string::npos ? -1.0 : std::stod(text.substr(at + key.size() + 4));
-    };
     const std::string stats = bytes("s.json");
     for (const char* key : {"leaves", "level2_bytes", "gpu_budget_bytes"})
         EXPECT_NEAR(number(info.output, key) / number(stats, key), 1, 0.1) << key;
@@ -173,9 +175,29 @@ TEST_F(CommandLine, LayersOfWhatTheCameraSees) {
               0);
     EXPECT_THAT(bytes("a.exr"), HasSubstr("depth.Z"));
     EXPECT_THAT(bytes("a.exr"), HasSubstr("id.prim"));
+    EXPECT_EQ(
+        overcast("render knot --aov leaf,passes -o b.exr --quiet --size 64x64 --gpu-memory 12M")
+            .exit_code,
+        0);
+    EXPECT_THAT(bytes("b.exr"), HasSubstr("passes"));
     const auto png = overcast("render box --aov depth -o a.png");
     EXPECT_EQ(png.exit_code, 1);
     EXPECT_THAT(png.output, HasSubstr("--aov needs an output that holds layers: -o FILE.exr"));
+}
+
+TEST_F(CommandLine, TellsTheWorkingSetOfEachFrame) {
+    const auto run = overcast("render plants-1 --quiet --size 64x48 --leaves 30 --frames 0:1 -o "
+                              "'p-##.png' --working-set --stats s.json");
+    ASSERT_EQ(run.exit_code, 0) << run.output;
+    const std::string stats = bytes("s.json");
+    const double active = number(stats, "pages");
+    EXPECT_GT(active, 0);
+    EXPECT_LE(active, number(stats, "leaves"));
+    EXPECT_THAT(stats, HasSubstr("\"new_bytes\""));
+    const auto without = overcast("render box --working-set -o a.png");
+    EXPECT_EQ(without.exit_code, 1);
+    EXPECT_THAT(without.output,
+                HasSubstr("--working-set is told in the statistics: --stats FILE.json"));
 }
 
 TEST_F(CommandLine, TraceAnswersOneLineARay) {

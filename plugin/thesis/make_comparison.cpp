@@ -36,6 +36,8 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
         refuse("ovc_scene_config.structure is 0, two-level, which libovercast.so has; this library "
                "has 1 to 6");
     const char* name = thesis::name_of(ovc_structure(config.structure));
+    if (config.tell_active)
+        refuse(fmt::format("{} does not tell which pages are active", name));
     if (config.kernel == OVC_KERNEL_COMPUTE)
         refuse(fmt::format("{} has no compute kernel", name));
     if (config.structure == OVC_STRUCTURE_THESIS_TWO_LEVEL) {
