@@ -135,6 +135,8 @@ Moved Tracer::bring_linked(std::span<const uint32_t> wanted) {
 }
 
 Moved Tracer::bring(std::span<const uint32_t> wanted) {
+    if (wanted.empty())
+        return {};
     if (linked_)
         return bring_linked(wanted);
     Moved moved;
