@@ -300,12 +300,13 @@ Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most
     Partitioner partitioner(soup, level1.bounds, progress);
     partitioner.copy(level1.nodes, level1.bounds, [&](const Cell& cell, const KdNode& node) {
         const uint32_t first = node.first();
-        const uint32_t limit =
-            *std::min_element(most.begin() + first, most.begin() + first + node.count());
+        uint32_t limit = kNone; // an empty cell stays as it is
         std::vector<std::vector<TriangleId>> lists;
-        for (uint32_t i = first; i < first + node.count(); ++i)
+        for (uint32_t i = first; i < first + node.count(); ++i) {
+            limit = std::min(limit, most[i]);
             lists.push_back(std::move(level1.leaves[i].triangles));
-        if (node.count() == 0 || limit == kNone) {
+        }
+        if (limit == kNone) {
             for (uint32_t i = first; i < first + node.count(); ++i)
                 was.push_back(i);
             partitioner.add_leaves(cell.padded, std::move(lists));
