@@ -51,7 +51,7 @@ struct Part {
 };
 
 /// The surface of the result. Where the operands are closed so are the parts together: edges that
-/// meet have the same corners, bit for bit. Corners are off by at most 2^-39 of the size of all
+/// meet have the same corners, bit for bit. Corners are off by at most 2^-36 of the size of all
 /// operands. Of surfaces that coincide and look the same way the first one is kept; those that look
 /// opposite ways are both dropped. A corner that is not finite makes its triangle drop out.
 std::vector<Part> evaluate(const Tree& tree);

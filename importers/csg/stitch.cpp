@@ -20,6 +20,17 @@ struct HashOfRounded {
     }
 };
 
+/// Corners are rounded to 2^-36 of the size of all operands. Lines that should meet in one point
+/// meet in several a little apart, where the operands' corners were rounded: here they are one
+/// again. That leaves edges as they match, whichever corners fall together.
+constexpr int kSnappedBits = 3 + kFractionBits;
+
+Rounded snapped(Rounded p) {
+    for (int64_t& x : p)
+        x = (x + (int64_t(1) << (kSnappedBits - 1))) >> kSnappedBits << kSnappedBits;
+    return p;
+}
+
 /// A corner and the straight line that goes on from it: corners in line have the same one.
 struct Corner {
     uint32_t vertex;
@@ -49,9 +60,10 @@ public:
 
 private:
     uint32_t number(const Point& p) {
-        const auto [at, is_new] = numbers_.try_emplace(p.rounded, uint32_t(vertices_.size()));
+        const Rounded place = snapped(p.rounded);
+        const auto [at, is_new] = numbers_.try_emplace(place, uint32_t(vertices_.size()));
         if (is_new)
-            vertices_.push_back(p.rounded);
+            vertices_.push_back(place);
         return at->second;
     }
 
@@ -108,11 +120,11 @@ private:
         }
     }
 
-    /// Ends that lie on the way from a to b, in order. Their points do so exactly; rounded, they
-    /// are off by less than a unit in each coordinate, as a and b are.
+    /// Ends that lie on the way from a to b, in order. Their points do so exactly; snapped, they
+    /// are off by at most half a unit in each coordinate, as a and b are.
     std::vector<uint32_t> between(uint32_t a, uint32_t b, const BoxTree& tree,
                                   const std::vector<uint32_t>& ends) const {
-        constexpr double kOff = 4;
+        constexpr double kOff = 2 << kSnappedBits;
         const dvec3 from = place(a), way = place(b) - from;
         const double square = glm::dot(way, way);
         Box box;

@@ -41,6 +41,9 @@ struct Object {
     Place place;
     std::variant<std::monostate, Shape, PlaneShape, LightSource> shape; // none: its children's
     std::vector<ObjectPtr> children;
+    /// What bounds it where it is seen (clipped_by), and what may be tested first (bounded_by); in
+    /// the space that the object stands in.
+    std::vector<ObjectPtr> clips, bounds;
     /// Why it cannot be cut into triangles; empty: it can. Told only where it is to be seen.
     std::string refused;
 
@@ -51,6 +54,7 @@ struct Object {
     bool no_image = false;
     bool inverse = false;
     bool open = false;
+    bool has_inside = true; // else it is a sheet that solids have no use for
 };
 
 } // namespace ovc::pov

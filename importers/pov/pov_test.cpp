@@ -129,9 +129,8 @@ TEST(PovErrors, NameTheLineAndShowIt) {
     } cases[] = {
         {"sphere { 0 1 }\nbox { 0, Side }",
          "x.pov:2:10: found 'Side', which is not declared\n    box { 0, Side }\n             ^"},
-        {"\n  difference { sphere { 0, 1 } box { 0, 1 } }",
-         "x.pov:2:3: difference is not supported\n      difference { sphere { 0, 1 } box { 0, 1 } "
-         "}\n      ^"},
+        {"\n  julia_fractal { <0, 0, 0, 0> }", "x.pov:2:3: julia_fractal is not supported\n      "
+                                               "julia_fractal { <0, 0, 0, 0> }\n      ^"},
         {"#if (1)", "x.pov:1:1: found no #end to this\n    #if (1)\n    ^"},
         {"#include \"none.inc\"",
          "x.pov:1:1: there is no file 'none.inc', neither beside the scene nor among POV-Ray's "
@@ -152,7 +151,7 @@ TEST(PovErrors, NameTheLineAndShowIt) {
 }
 
 TEST(PovErrors, WhatIsDeclaredAndNotSeenMayBeUnsupported) {
-    EXPECT_TRUE(parse("#declare D = difference { sphere { 0, 1 } box { 0, 1 } } sphere { 0, 1 }"));
+    EXPECT_TRUE(parse("#declare D = julia_fractal { <0, 0, 0, 0> } sphere { 0, 1 }"));
 }
 
 TEST(PovWarnings, ComeOncePerKind) {

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/pov/solid.h"
+
+#include "importers/pov/shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ovc::pov {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const Box kEverywhere{dvec3(-kInfinity), dvec3(kInfinity)};
+
+/// An operand's triangles, with what each is of.
+struct CutLeaf {
+    csg::Operand operand;
+    std::vector<std::array<dvec3, 3>> normals; // 0: the triangle's own
+    std::vector<uint32_t> materials;
+    Box box;
+};
+
+/// Corners that a shape has when it is open, among those that it has when it is closed.
+std::vector<uint8_t> hidden_caps(const Shape& shape, int segments, const Facets& closed) {
+    const auto key = [](const Facets& facets, size_t t) {
+        std::array<double, 9> all;
+        for (size_t i = 0; i < 9; ++i)
+            all[i] = facets.corners[t + i / 3].position[int(i % 3)];
+        return all;
+    };
+    Facets open;
+    shape.cut(segments, /* open= */ true, open);
+    std::map<std::array<double, 9>, int> shown;
+    for (size_t t = 0; t < open.corners.size(); t += 3)
+        ++shown[key(open, t)];
+    std::vector<uint8_t> hidden;
+    for (size_t t = 0; t < closed.corners.size(); t += 3)
+        hidden.push_back(!shown.contains(key(closed, t)));
+    return hidden;
+}
+
+/// Adds facets as they stand in the solid's space, outward.
+void add(const Facets& facets, const dmat4& placed, uint32_t material, CutLeaf& leaf) {
+    const dmat3 turned = glm::transpose(glm::inverse(dmat3(placed)));
+    const bool mirrored = glm::determinant(dmat3(placed)) < 0;
+    const size_t order[3] = {0, mirrored ? size_t(2) : 1, mirrored ? size_t(1) : 2};
+    for (size_t t = 0; t + 2 < facets.corners.size(); t += 3) {
+        std::array<dvec3, 3> at, normals;
+        for (size_t i = 0; i < 3; ++i) {
+            const Corner& corner = facets.corners[t + order[i]];
+            at[i] = dvec3(placed * dvec4(corner.position, 1));
+            const dvec3 n = turned * corner.normal;
+            const double length = glm::length(n);
+            normals[i] = length > 0 && std::isfinite(length) ? n / length : dvec3(0);
+            if (is_finite(at[i]))
+                leaf.box.add(at[i]);
+        }
+        leaf.operand.triangles.push_back(at);
+        leaf.normals.push_back(normals);
+        leaf.materials.push_back(material);
+    }
+}
+
+/// A half-space as far as the box reaches, and beyond: its surface, and walls that are not shown.
+void cut_plane(const PlaneShape& plane, const Box& box, Facets& out) {
+    const dvec3 center = box.center();
+    const double far = 2 * std::max(glm::length(box.extent()), 1e-9);
+    const dvec3& n = plane.normal;
+    // A plane beyond the box leaves it whole, or nothing of it, wherever it is.
+    const double height = std::clamp(plane.distance - glm::dot(n, center), -far, far);
+    const int major = major_axis(n);
+    dvec3 u(0);
+    u[(major + 1) % 3] = 1;
+    u = glm::normalize(u - glm::dot(u, n) * n);
+    const dvec3 v = glm::cross(n, u), top = center + height * n, down = -3 * far * n;
+    const dvec3 rim[4] = {top + far * (u + v), top + far * (v - u), top - far * (u + v),
+                          top + far * (u - v)};
+    out.add_quad(rim[0], rim[1], rim[2], rim[3]);
+    for (int i = 0; i < 4; ++i) {
+        const dvec3 &a = rim[i], &b = rim[(i + 1) % 4];
+        out.add_quad(a, a + down, b + down, b);
+    }
+    out.add_quad(rim[3] + down, rim[2] + down, rim[1] + down, rim[0] + down);
+}
+
+bool is_endless(const SolidLeaf& leaf) {
+    return std::holds_alternative<PlaneShape>(leaf.skins[0].object->shape);
+}
+
+Box moved(const Box& box, const dmat4& by) {
+    Box all;
+    for (int i = 0; i < 8; ++i)
+        all.add(dvec3(by * dvec4(i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y,
+                                 i & 4 ? box.hi.z : box.lo.z, 1)));
+    return all;
+}
+
+/// A mesh's triangles may run the other way around: outside is where the volume is above 0.
+void turn_outward(CutLeaf& leaf) {
+    double volume = 0;
+    const dvec3 center = leaf.box.empty() ? dvec3(0) : leaf.box.center();
+    for (const auto& t : leaf.operand.triangles)
+        volume += glm::dot(t[0] - center, glm::cross(t[1] - center, t[2] - center));
+    if (volume < 0)
+        for (size_t i = 0; i < leaf.operand.triangles.size(); ++i) {
+            std::swap(leaf.operand.triangles[i][1], leaf.operand.triangles[i][2]);
+            std::swap(leaf.normals[i][1], leaf.normals[i][2]);
+        }
+}
+
+CutLeaf cut_leaf(const SolidLeaf& leaf, int segments, const Box& reach) {
+    CutLeaf cut;
+    for (const SolidLeaf::Skin& skin : leaf.skins) {
+        Facets facets;
+        std::vector<uint8_t> hidden;
+        if (const auto* shape = std::get_if<Shape>(&skin.object->shape)) {
+            shape->cut(segments, /* open= */ false, facets);
+            if (skin.object->open)
+                hidden = hidden_caps(*shape, segments, facets);
+        } else if (const auto* plane = std::get_if<PlaneShape>(&skin.object->shape)) {
+            cut_plane(*plane, moved(reach, glm::inverse(leaf.placed)), facets);
+            hidden.assign(facets.corners.size() / 3, 1);
+            hidden[0] = hidden[1] = 0;
+        }
+        add(facets, leaf.placed, skin.material, cut);
+        hidden.resize(facets.corners.size() / 3, 0);
+        cut.operand.hidden.insert(cut.operand.hidden.end(), hidden.begin(), hidden.end());
+    }
+    if (leaf.has_inside)
+        turn_outward(cut);
+    cut.operand.solid = leaf.has_inside;
+    cut.operand.inverse = leaf.inverse;
+    return cut;
+}
+
+/// A half-space ends on one side where it looks along an axis.
+Box bounds_of_plane(const PlaneShape& plane, const SolidLeaf& leaf) {
+    const dvec3 n = glm::transpose(glm::inverse(dmat3(leaf.placed))) * plane.normal *
+                    (leaf.inverse ? -1.0 : 1.0);
+    const dvec3 on(leaf.placed * dvec4(plane.distance * plane.normal, 1));
+    const int axis = major_axis(n);
+    Box box = kEverywhere;
+    if (n[(axis + 1) % 3] == 0 && n[(axis + 2) % 3] == 0)
+        (n[axis] > 0 ? box.hi : box.lo)[axis] = on[axis];
+    return box;
+}
+
+Box bounds_of_node(const Solid& solid, uint32_t number, const std::vector<Box>& leaves) {
+    const csg::Node& node = solid.nodes[number];
+    if (node.kind == csg::Kind::Operand)
+        return leaves[node.operand];
+    const bool all = node.kind == csg::Kind::Intersection || node.kind == csg::Kind::Clip;
+    Box box = all ? kEverywhere : Box();
+    for (const uint32_t child : node.children) {
+        const Box one = bounds_of_node(solid, child, leaves);
+        if (all)
+            box = box.intersection(one);
+        else
+            box.add(one);
+    }
+    return box.empty() ? Box() : box;
+}
+
+bool is_finite_box(const Box& box) {
+    return is_finite(box.lo) && is_finite(box.hi);
+}
+
+/// The solid in triangles: endless operands are cut where `reach` ends.
+struct Evaluated {
+    std::vector<CutLeaf> leaves;
+    std::vector<csg::Part> parts;
+    Box box;
+};
+
+Evaluated evaluate_within(const Solid& solid, int segments, const Box& reach) {
+    Evaluated result;
+    csg::Tree tree;
+    tree.nodes = solid.nodes;
+    for (const SolidLeaf& leaf : solid.leaves) {
+        result.leaves.push_back(cut_leaf(leaf, segments, reach));
+        tree.operands.push_back(std::move(result.leaves.back().operand));
+    }
+    result.parts = csg::evaluate(tree);
+    for (const csg::Part& part : result.parts)
+        for (const dvec3& corner : part.corners)
+            result.box.add(corner);
+    for (size_t i = 0; i < tree.operands.size(); ++i)
+        result.leaves[i].operand = std::move(tree.operands[i]);
+    return result;
+}
+
+/// The normal that a whole triangle has at one of its points.
+dvec3 normal_at(const CutLeaf& leaf, uint32_t triangle, const dvec3& p) {
+    const auto& t = leaf.operand.triangles[triangle];
+    const auto& n = leaf.normals[triangle];
+    const dvec3 flat = glm::cross(t[1] - t[0], t[2] - t[0]);
+    const double square = glm::dot(flat, flat);
+    if ((n[0] == dvec3(0) && n[1] == dvec3(0) && n[2] == dvec3(0)) || !(square > 0))
+        return dvec3(0);
+    dvec3 sum(0);
+    for (size_t i = 0; i < 3; ++i) {
+        const dvec3 &a = t[(i + 1) % 3], &b = t[(i + 2) % 3];
+        const double weight = glm::dot(glm::cross(a - p, b - p), flat) / square;
+        sum += std::clamp(weight, 0.0, 1.0) * (n[i] == dvec3(0) ? flat / std::sqrt(square) : n[i]);
+    }
+    return sum;
+}
+
+} // namespace
+
+bool is_solid(const Object& object) {
+    return object.kind == "difference" || object.kind == "intersection" || object.kind == "merge" ||
+           !object.clips.empty();
+}
+
+csg::Kind kind_of(const Object& object, bool inverse) {
+    const bool all = object.kind == "difference" || object.kind == "intersection";
+    if (all == inverse)
+        return object.kind == "merge" || inverse ? csg::Kind::Merge : csg::Kind::Union;
+    return csg::Kind::Intersection;
+}
+
+std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& reach) {
+    Box box = bounds_of(solid, segments);
+    if (box.empty())
+        return {};
+    if (!is_finite_box(box)) {
+        // Planes at odd angles may still bound it: that shows when it is cut.
+        box = reach;
+        if (std::any_of(solid.leaves.begin(), solid.leaves.end(), is_endless)) {
+            const Box found = evaluate_within(solid, 8, reach).box;
+            const Box middle{reach.center() - 0.25 * reach.extent(),
+                             reach.center() + 0.25 * reach.extent()};
+            if (!found.empty() && middle.contains(found.lo) && middle.contains(found.hi))
+                box = found.padded(0.25 * glm::length(found.extent()));
+        }
+    }
+    Evaluated cut = evaluate_within(solid, segments, box);
+    std::map<uint32_t, Facets> by_material;
+    for (const csg::Part& part : cut.parts) {
+        const CutLeaf& leaf = cut.leaves[part.operand];
+        Facets& facets = by_material[leaf.materials[part.triangle]];
+        for (const dvec3& corner : part.corners) {
+            const dvec3 n = normal_at(leaf, part.triangle, corner);
+            facets.corners.push_back({corner, part.turned ? -n : n});
+            facets.smooth = facets.smooth || n != dvec3(0);
+        }
+    }
+    std::vector<SolidPart> parts;
+    for (auto& [material, facets] : by_material)
+        parts.push_back({material, std::move(facets)});
+    return parts;
+}
+
+Box bounds_of(const Solid& solid, int segments) {
+    std::vector<Box> boxes;
+    for (const SolidLeaf& leaf : solid.leaves) {
+        if (const auto* plane = std::get_if<PlaneShape>(&leaf.skins[0].object->shape))
+            boxes.push_back(bounds_of_plane(*plane, leaf));
+        else
+            boxes.push_back(leaf.inverse ? kEverywhere : cut_leaf(leaf, segments, {}).box);
+    }
+    return bounds_of_node(solid, uint32_t(solid.nodes.size() - 1), boxes);
+}
+
+double triangles_of(const Solid& solid, int segments) {
+    double sum = 0;
+    for (const SolidLeaf& leaf : solid.leaves)
+        for (const SolidLeaf::Skin& skin : leaf.skins)
+            if (const Shape* shape = std::get_if<Shape>(&skin.object->shape))
+                sum += shape->triangles(segments);
+    return sum;
+}
+
+} // namespace ovc::pov
