@@ -274,14 +274,6 @@ int choose_segments(const Gatherer& gatherer) {
     return segments;
 }
 
-Box moved(const Box& box, const dmat4& by) {
-    Box all;
-    for (int i = 0; i < 8; ++i)
-        all.add(dvec3(by * dvec4(i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y,
-                                 i & 4 ? box.hi.z : box.lo.z, 1)));
-    return all;
-}
-
 /// Around all that is not endless.
 Box box_of(const Gatherer& gatherer, int segments) {
     Box box;
@@ -293,6 +285,10 @@ Box box_of(const Gatherer& gatherer, int segments) {
     for (const Placed& p : gatherer.placed)
         if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
             facets.corners.clear();
+            if (shape->box) {
+                box.add(moved(*shape->box, p.placed));
+                continue;
+            }
             shape->cut(segments, p.object->open, facets);
             for (const Corner& corner : facets.corners)
                 if (const dvec3 at(p.placed * dvec4(corner.position, 1)); is_finite(at))
@@ -429,6 +425,17 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
     for (const Placed& p : placed)
         if (std::holds_alternative<PlaneShape>(p.object->shape))
             add_plane(p, world.center(), reach_of(world), scene);
+}
+
+Box moved(const Box& box, const dmat4& by) {
+    Box all;
+    for (int i = 0; !box.empty() && i < 8; ++i) {
+        const dvec3 corner(i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y,
+                           i & 4 ? box.hi.z : box.lo.z);
+        if (is_finite(corner))
+            all.add(dvec3(by * dvec4(corner, 1)));
+    }
+    return all;
 }
 
 Box bounds_of(const Object& object) {

@@ -44,17 +44,28 @@ void parse_wrapped(Reader& reader, Object& object);
 void parse_refused(Reader& reader, Object& object);
 
 const std::unordered_map<std::string_view, ParseWhole> kWholes = {
-    {"plane", parse_plane},           {"mesh", parse_mesh},
-    {"mesh2", parse_mesh2},           {"light_source", parse_light_source},
-    {"object", parse_wrapped},        {"union", parse_group},
-    {"merge", parse_group},           {"difference", parse_group},
-    {"intersection", parse_group},    {"light_group", parse_group},
-    {"blob", parse_refused},          {"cubic", parse_refused},
-    {"height_field", parse_refused},  {"isosurface", parse_refused},
-    {"julia_fractal", parse_refused}, {"parametric", parse_refused},
-    {"poly", parse_refused},          {"polynomial", parse_refused},
-    {"quadric", parse_refused},       {"quartic", parse_refused},
-    {"sphere_sweep", parse_refused},  {"text", parse_refused}};
+    {"plane", parse_plane},
+    {"mesh", parse_mesh},
+    {"mesh2", parse_mesh2},
+    {"light_source", parse_light_source},
+    {"object", parse_wrapped},
+    {"union", parse_group},
+    {"merge", parse_group},
+    {"difference", parse_group},
+    {"intersection", parse_group},
+    {"light_group", parse_group},
+    {"blob", parse_blob},
+    {"cubic", parse_polynomial},
+    {"height_field", parse_refused},
+    {"isosurface", parse_isosurface},
+    {"julia_fractal", parse_refused},
+    {"parametric", parse_refused},
+    {"poly", parse_polynomial},
+    {"polynomial", parse_refused},
+    {"quadric", parse_quadric},
+    {"quartic", parse_polynomial},
+    {"sphere_sweep", parse_refused},
+    {"text", parse_refused}};
 
 void parse_plane(Reader& reader, Object& object) {
     PlaneShape plane;

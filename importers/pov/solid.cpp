@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/pov/solid.h"
 
+#include "importers/pov/bounds.h"
+#include "importers/pov/flatten.h"
 #include "importers/pov/shape.h"
 
 #include <algorithm>
@@ -85,18 +87,6 @@ void cut_plane(const PlaneShape& plane, const Box& box, Facets& out) {
     out.add_quad(rim[3] + down, rim[2] + down, rim[1] + down, rim[0] + down);
 }
 
-bool is_endless(const SolidLeaf& leaf) {
-    return std::holds_alternative<PlaneShape>(leaf.skins[0].object->shape);
-}
-
-Box moved(const Box& box, const dmat4& by) {
-    Box all;
-    for (int i = 0; i < 8; ++i)
-        all.add(dvec3(by * dvec4(i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y,
-                                 i & 4 ? box.hi.z : box.lo.z, 1)));
-    return all;
-}
-
 /// A mesh's triangles may run the other way around: outside is where the volume is above 0.
 void turn_outward(CutLeaf& leaf) {
     double volume = 0;
@@ -119,6 +109,11 @@ CutLeaf cut_leaf(const SolidLeaf& leaf, int segments, const Box& reach) {
             shape->cut(segments, /* open= */ false, facets);
             if (skin.object->open)
                 hidden = hidden_caps(*shape, segments, facets);
+        } else if (const auto* endless = std::get_if<EndlessShape>(&skin.object->shape)) {
+            const size_t shown =
+                endless->cut(moved(reach, glm::inverse(leaf.placed)), segments, facets);
+            hidden.resize(shown, 0);
+            hidden.resize(facets.corners.size() / 3, 1);
         } else if (const auto* plane = std::get_if<PlaneShape>(&skin.object->shape)) {
             cut_plane(*plane, moved(reach, glm::inverse(leaf.placed)), facets);
             hidden.assign(facets.corners.size() / 3, 1);
@@ -163,6 +158,29 @@ Box bounds_of_node(const Solid& solid, uint32_t number, const std::vector<Box>& 
     return box.empty() ? Box() : box;
 }
 
+/// What reaches as far as this is taken for endless.
+constexpr double kFar = 1e7;
+
+Box without_far_sides(Box box) {
+    for (int i = 0; i < 3; ++i) {
+        box.lo[i] = box.lo[i] < -0.1 * kFar ? -kInfinity : box.lo[i];
+        box.hi[i] = box.hi[i] > 0.1 * kFar ? kInfinity : box.hi[i];
+    }
+    return box;
+}
+
+Box bounds_of_leaf(const SolidLeaf& leaf, int segments) {
+    Box box;
+    for (const SolidLeaf::Skin& skin : leaf.skins)
+        if (const auto* shape = std::get_if<Shape>(&skin.object->shape); shape && shape->box)
+            box.add(moved(*shape->box, leaf.placed));
+        else if (shape)
+            return cut_leaf(leaf, segments, {}).box;
+        else
+            return kEverywhere;
+    return box;
+}
+
 bool is_finite_box(const Box& box) {
     return is_finite(box.lo) && is_finite(box.hi);
 }
@@ -191,6 +209,28 @@ Evaluated evaluate_within(const Solid& solid, int segments, const Box& reach) {
     return result;
 }
 
+bool has_field(const Solid& solid) {
+    return std::any_of(solid.leaves.begin(), solid.leaves.end(), [](const SolidLeaf& leaf) {
+        return std::holds_alternative<EndlessShape>(leaf.skins[0].object->shape);
+    });
+}
+
+/// Where boxes do not bound a solid, what planes at odd angles leave of it may still be small: that
+/// shows when it is cut coarsely. What is endless ends with the reach, a field's much sooner, for
+/// its cells would be as large as the scene.
+Box found_bounds(const Solid& solid, const Box& box, const Box& reach) {
+    constexpr double kFieldReach = 4 / kPlaneReach;
+    const dvec3 half = (has_field(solid) ? kFieldReach : 1.0) * 0.5 * reach.extent();
+    const Box largest = box.intersection(Box{reach.center() - half, reach.center() + half});
+    if (largest.empty())
+        return largest;
+    const Box found = evaluate_within(solid, has_field(solid) ? 32 : 8, largest).box;
+    const Box middle{reach.center() - 0.5 * half, reach.center() + 0.5 * half};
+    if (found.empty() || !middle.contains(found.lo) || !middle.contains(found.hi))
+        return largest;
+    return found.padded(0.1 * glm::length(found.extent()));
+}
+
 /// The normal that a whole triangle has at one of its points.
 dvec3 normal_at(const CutLeaf& leaf, uint32_t triangle, const dvec3& p) {
     const auto& t = leaf.operand.triangles[triangle];
@@ -211,8 +251,8 @@ dvec3 normal_at(const CutLeaf& leaf, uint32_t triangle, const dvec3& p) {
 } // namespace
 
 bool is_solid(const Object& object) {
-    return object.kind == "difference" || object.kind == "intersection" || object.kind == "merge" ||
-           !object.clips.empty();
+    return std::holds_alternative<EndlessShape>(object.shape) || object.kind == "difference" ||
+           object.kind == "intersection" || object.kind == "merge" || !object.clips.empty();
 }
 
 csg::Kind kind_of(const Object& object, bool inverse) {
@@ -226,17 +266,10 @@ std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& rea
     Box box = bounds_of(solid, segments);
     if (box.empty())
         return {};
-    if (!is_finite_box(box)) {
-        // Planes at odd angles may still bound it: that shows when it is cut.
-        box = reach;
-        if (std::any_of(solid.leaves.begin(), solid.leaves.end(), is_endless)) {
-            const Box found = evaluate_within(solid, 8, reach).box;
-            const Box middle{reach.center() - 0.25 * reach.extent(),
-                             reach.center() + 0.25 * reach.extent()};
-            if (!found.empty() && middle.contains(found.lo) && middle.contains(found.hi))
-                box = found.padded(0.25 * glm::length(found.extent()));
-        }
-    }
+    if (!is_finite_box(box))
+        box = found_bounds(solid, box, reach);
+    if (box.empty())
+        return {};
     Evaluated cut = evaluate_within(solid, segments, box);
     std::map<uint32_t, Facets> by_material;
     for (const csg::Part& part : cut.parts) {
@@ -256,13 +289,29 @@ std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& rea
 
 Box bounds_of(const Solid& solid, int segments) {
     std::vector<Box> boxes;
+    bool is_open = false; // some may be smaller where the whole is
     for (const SolidLeaf& leaf : solid.leaves) {
-        if (const auto* plane = std::get_if<PlaneShape>(&leaf.skins[0].object->shape))
+        const Object& object = *leaf.skins[0].object;
+        if (const auto* plane = std::get_if<PlaneShape>(&object.shape))
             boxes.push_back(bounds_of_plane(*plane, leaf));
         else
-            boxes.push_back(leaf.inverse ? kEverywhere : cut_leaf(leaf, segments, {}).box);
+            boxes.push_back(leaf.inverse ? kEverywhere : bounds_of_leaf(leaf, segments));
+        is_open = is_open || (std::holds_alternative<EndlessShape>(object.shape) && !leaf.inverse);
     }
-    return bounds_of_node(solid, uint32_t(solid.nodes.size() - 1), boxes);
+    const uint32_t root = uint32_t(solid.nodes.size() - 1);
+    Box whole = bounds_of_node(solid, root, boxes);
+    for (int round = 0; is_open && !whole.empty() && round < 4; ++round) {
+        const Box asked = whole.intersection(Box{dvec3(0), dvec3(0)}.padded(kFar));
+        for (size_t i = 0; i < solid.leaves.size(); ++i) {
+            const SolidLeaf& leaf = solid.leaves[i];
+            if (const auto* endless = std::get_if<EndlessShape>(&leaf.skins[0].object->shape);
+                endless && !leaf.inverse)
+                boxes[i] = without_far_sides(
+                    moved(endless->bounds(moved(asked, glm::inverse(leaf.placed))), leaf.placed));
+        }
+        whole = bounds_of_node(solid, root, boxes);
+    }
+    return whole;
 }
 
 double triangles_of(const Solid& solid, int segments) {
@@ -271,6 +320,8 @@ double triangles_of(const Solid& solid, int segments) {
         for (const SolidLeaf::Skin& skin : leaf.skins)
             if (const Shape* shape = std::get_if<Shape>(&skin.object->shape))
                 sum += shape->triangles(segments);
+            else if (std::holds_alternative<EndlessShape>(skin.object->shape))
+                sum += 8.0 * segments * segments;
     return sum;
 }
 
