@@ -27,14 +27,14 @@ bool apart(std::span<const Point* const> points, std::span<const Plane> walls) {
 /// The planes through the triangle's edges, along the axis that it faces most; the triangle is
 /// above them.
 std::array<Plane, 3> walls_of(const GridTriangle& t, const Plane& plane) {
-    std::array<Plane, 3> walls;
     const int axis = major_axis_of(plane);
-    for (size_t i = 0; i < 3; ++i) {
-        walls[i] = plane_along(axis, t[i], t[(i + 1) % 3]);
-        if (side(walls[i], t[(i + 2) % 3]) < 0)
-            walls[i] = plane_along(axis, t[(i + 1) % 3], t[i]);
-    }
-    return walls;
+    // Seen along the axis the triangle runs counterclockwise, or the other way.
+    const bool turned = plane.n[axis] < 0;
+    const auto wall = [&](size_t i) {
+        const GridPoint &a = t[i], &b = t[(i + 1) % 3];
+        return turned ? plane_along(axis, b, a) : plane_along(axis, a, b);
+    };
+    return {wall(0), wall(1), wall(2)};
 }
 
 } // namespace
@@ -164,14 +164,12 @@ Point inner_point(const Polygon& polygon, const Plane& plane, int attempt) {
     const dvec3 p = sum / weights;
     // Where the plane meets two that lie across the axes it faces less, in steps of 2^-20.
     const int axis = major_axis_of(plane);
-    Plane across[2];
-    for (int i = 0; i < 2; ++i) {
-        const int other = (axis + 1 + i) % 3;
-        across[i] = {};
-        across[i].n[other] = 1 << 20;
-        across[i].d = -Int128(std::ldexp(p[other], 20));
-    }
-    return meet(plane, across[0], across[1]);
+    const auto across = [&](int other) {
+        Int128 n[3] = {0, 0, 0};
+        n[other] = 1 << 20;
+        return Plane(n[0], n[1], n[2], -Int128(std::ldexp(p[other], 20)));
+    };
+    return meet(plane, across((axis + 1) % 3), across((axis + 2) % 3));
 }
 
 } // namespace ovc::csg

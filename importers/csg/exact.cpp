@@ -42,24 +42,18 @@ Plane plane_through(const GridPoint& a, const GridPoint& b, const GridPoint& c) 
         u[i] = b[i] - a[i];
         v[i] = c[i] - a[i];
     }
-    Plane plane;
-    plane.d = 0;
-    for (size_t i = 0; i < 3; ++i) {
-        const size_t j = (i + 1) % 3, k = (i + 2) % 3;
-        plane.n[i] = u[j] * v[k] - u[k] * v[j];
-        plane.d -= plane.n[i] * a[i];
-    }
-    return plane;
+    const Int128 x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2],
+                 z = u[0] * v[1] - u[1] * v[0];
+    return {x, y, z, -(x * a[0] + y * a[1] + z * a[2])};
 }
 
 Plane plane_along(int axis, const GridPoint& a, const GridPoint& b) {
     const size_t i = size_t(axis), j = (i + 1) % 3, k = (i + 2) % 3;
-    Plane plane;
-    plane.n[i] = 0;
-    plane.n[j] = Int128(a[k]) - b[k];
-    plane.n[k] = Int128(b[j]) - a[j];
-    plane.d = -(plane.n[j] * a[j] + plane.n[k] * a[k]);
-    return plane;
+    Int128 n[3];
+    n[i] = 0;
+    n[j] = Int128(a[k]) - b[k];
+    n[k] = Int128(b[j]) - a[j];
+    return {n[0], n[1], n[2], -(n[j] * a[j] + n[k] * a[k])};
 }
 
 int major_axis_of(const Plane& plane) {
@@ -103,18 +97,23 @@ Point meet(const Plane& a, const Plane& b, const Plane& c) {
 }
 
 int side(const Plane& plane, const GridPoint& p) {
+    const double x = plane.near[0] * double(p[0]), y = plane.near[1] * double(p[1]),
+                 z = plane.near[2] * double(p[2]), value = x + y + z + plane.near[3];
+    const double size = std::abs(x) + std::abs(y) + std::abs(z) + std::abs(plane.near[3]);
+    if (std::abs(value) > size * 0x1p-49)
+        return value > 0 ? 1 : -1;
     return sign(plane.n[0] * p[0] + plane.n[1] * p[1] + plane.n[2] * p[2] + plane.d);
 }
 
 // Doubles decide where they can: `near` is off by less than 2^-kFractionBits in each coordinate,
 // and ten roundings of 2^-53 of the largest term are less than 2^-49 of the sum of sizes.
 int side(const Plane& plane, const Point& p) {
-    double value = double(plane.d), size = std::abs(value), steep = 0;
+    double value = plane.near[3], size = std::abs(value), steep = 0;
     for (int i = 0; i < 3; ++i) {
-        const double n = double(plane.n[i]);
-        value += n * p.near[i];
-        size += std::abs(n * p.near[i]);
-        steep += std::abs(n);
+        const double part = plane.near[i] * p.near[i];
+        value += part;
+        size += std::abs(part);
+        steep += std::abs(plane.near[i]);
     }
     const double error = steep * 0x1p-12 + size * 0x1p-49;
     if (std::abs(value) > error)

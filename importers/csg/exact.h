@@ -30,6 +30,10 @@ inline constexpr int kFractionBits = 13;
 struct Plane {
     Int128 n[3];
     Int128 d;
+    double near[4]; // n and d, rounded
+
+    Plane(Int128 x, Int128 y, Int128 z, Int128 offset)
+        : n{x, y, z}, d(offset), near{double(x), double(y), double(z), double(offset)} {}
 };
 
 struct Point {

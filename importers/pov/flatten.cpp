@@ -274,13 +274,16 @@ int choose_segments(const Gatherer& gatherer) {
     return segments;
 }
 
-/// Around all that is not endless.
+/// Around all that is not endless, and the middles of solids that are.
 Box box_of(const Gatherer& gatherer, int segments) {
     Box box;
-    for (const Solid& solid : gatherer.solids)
-        if (const Box around = moved(bounds_of(solid, segments), solid.placed);
-            is_finite(around.lo) && is_finite(around.hi))
-            box.add(around);
+    for (const Solid& solid : gatherer.solids) {
+        const Box own = bounds_of(solid, segments);
+        if (is_finite(own.lo) && is_finite(own.hi))
+            box.add(moved(own, solid.placed));
+        else if (!own.empty())
+            box.add(dvec3(solid.placed[3]));
+    }
     Facets facets;
     for (const Placed& p : gatherer.placed)
         if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
@@ -369,18 +372,26 @@ using Batches = std::map<std::pair<uint32_t, bool>, Batch>;
 
 void add_solids(const std::vector<Solid>& solids, int segments, const Box& world,
                 const dvec3& origin, Batches& batches) {
+    constexpr size_t kAtOnce = 64; // so that not all are in memory twice
     const Box reach = Box{world.center(), world.center()}.padded(kPlaneReach * reach_of(world));
-    std::vector<std::vector<SolidPart>> parts(solids.size());
-    parallel_for(solids.size(), 1, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i)
-            parts[i] = evaluate(solids[i], segments, moved(reach, glm::inverse(solids[i].placed)));
-    });
-    for (size_t i = 0; i < solids.size(); ++i)
-        for (const SolidPart& part : parts[i]) {
-            const Placed p{solids[i].object, solids[i].placed, false, part.material,
-                           solids[i].no_shadow};
-            add_corners(part.facets, p, origin, batches[{p.material, p.no_shadow}]);
-        }
+    const std::vector<std::vector<uint32_t>> groups = alike(solids);
+    for (size_t start = 0; start < groups.size(); start += kAtOnce) {
+        std::vector<std::vector<SolidPart>> parts(std::min(kAtOnce, groups.size() - start));
+        parallel_for(parts.size(), 1, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                const Solid& solid = solids[groups[start + i][0]];
+                parts[i] = evaluate(solid, segments, moved(reach, glm::inverse(solid.placed)));
+            }
+        });
+        for (size_t i = 0; i < parts.size(); ++i)
+            for (const uint32_t number : groups[start + i])
+                for (const SolidPart& part : parts[i]) {
+                    const Solid& solid = solids[number];
+                    const Placed p{solid.object, solid.placed, false, material_of(solid, part.skin),
+                                   solid.no_shadow};
+                    add_corners(part.facets, p, origin, batches[{p.material, p.no_shadow}]);
+                }
+    }
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 
 namespace ovc::pov {
 
@@ -20,7 +21,7 @@ const Box kEverywhere{dvec3(-kInfinity), dvec3(kInfinity)};
 struct CutLeaf {
     csg::Operand operand;
     std::vector<std::array<dvec3, 3>> normals; // 0: the triangle's own
-    std::vector<uint32_t> materials;
+    std::vector<uint32_t> skins;
     Box box;
 };
 
@@ -44,7 +45,7 @@ std::vector<uint8_t> hidden_caps(const Shape& shape, int segments, const Facets&
 }
 
 /// Adds facets as they stand in the solid's space, outward.
-void add(const Facets& facets, const dmat4& placed, uint32_t material, CutLeaf& leaf) {
+void add(const Facets& facets, const dmat4& placed, uint32_t skin, CutLeaf& leaf) {
     const dmat3 turned = glm::transpose(glm::inverse(dmat3(placed)));
     const bool mirrored = glm::determinant(dmat3(placed)) < 0;
     const size_t order[3] = {0, mirrored ? size_t(2) : 1, mirrored ? size_t(1) : 2};
@@ -61,7 +62,7 @@ void add(const Facets& facets, const dmat4& placed, uint32_t material, CutLeaf& 
         }
         leaf.operand.triangles.push_back(at);
         leaf.normals.push_back(normals);
-        leaf.materials.push_back(material);
+        leaf.skins.push_back(skin);
     }
 }
 
@@ -119,7 +120,7 @@ CutLeaf cut_leaf(const SolidLeaf& leaf, int segments, const Box& reach) {
             hidden.assign(facets.corners.size() / 3, 1);
             hidden[0] = hidden[1] = 0;
         }
-        add(facets, leaf.placed, skin.material, cut);
+        add(facets, leaf.placed, uint32_t(&skin - leaf.skins.data()), cut);
         hidden.resize(facets.corners.size() / 3, 0);
         cut.operand.hidden.insert(cut.operand.hidden.end(), hidden.begin(), hidden.end());
     }
@@ -231,6 +232,30 @@ Box found_bounds(const Solid& solid, const Box& box, const Box& reach) {
     return found.padded(0.1 * glm::length(found.extent()));
 }
 
+/// The same for solids of the same tree of the same shapes, placed alike.
+std::string key_of(const Solid& solid) {
+    std::string key;
+    const auto add = [&key](const auto& value) {
+        key.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    for (const csg::Node& node : solid.nodes) {
+        add(node.kind);
+        add(node.operand);
+        add(node.children.size());
+        for (const uint32_t child : node.children)
+            add(child);
+    }
+    for (const SolidLeaf& leaf : solid.leaves) {
+        add(leaf.placed);
+        add(leaf.inverse);
+        add(leaf.has_inside);
+        add(leaf.skins.size());
+        for (const SolidLeaf::Skin& skin : leaf.skins)
+            add(skin.object);
+    }
+    return key;
+}
+
 /// The normal that a whole triangle has at one of its points.
 dvec3 normal_at(const CutLeaf& leaf, uint32_t triangle, const dvec3& p) {
     const auto& t = leaf.operand.triangles[triangle];
@@ -271,10 +296,16 @@ std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& rea
     if (box.empty())
         return {};
     Evaluated cut = evaluate_within(solid, segments, box);
-    std::map<uint32_t, Facets> by_material;
+    std::vector<uint32_t> first; // skin of each leaf
+    uint32_t skins = 0;
+    for (const SolidLeaf& leaf : solid.leaves) {
+        first.push_back(skins);
+        skins += uint32_t(leaf.skins.size());
+    }
+    std::map<uint32_t, Facets> by_skin;
     for (const csg::Part& part : cut.parts) {
         const CutLeaf& leaf = cut.leaves[part.operand];
-        Facets& facets = by_material[leaf.materials[part.triangle]];
+        Facets& facets = by_skin[first[part.operand] + leaf.skins[part.triangle]];
         for (const dvec3& corner : part.corners) {
             const dvec3 n = normal_at(leaf, part.triangle, corner);
             facets.corners.push_back({corner, part.turned ? -n : n});
@@ -282,9 +313,31 @@ std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& rea
         }
     }
     std::vector<SolidPart> parts;
-    for (auto& [material, facets] : by_material)
-        parts.push_back({material, std::move(facets)});
+    for (auto& [skin, facets] : by_skin)
+        parts.push_back({skin, std::move(facets)});
     return parts;
+}
+
+uint32_t material_of(const Solid& solid, uint32_t skin) {
+    size_t leaf = 0;
+    for (; skin >= solid.leaves[leaf].skins.size(); ++leaf)
+        skin -= uint32_t(solid.leaves[leaf].skins.size());
+    return solid.leaves[leaf].skins[skin].material;
+}
+
+std::vector<std::vector<uint32_t>> alike(const std::vector<Solid>& solids) {
+    std::map<std::string, std::vector<uint32_t>> groups;
+    std::vector<std::vector<uint32_t>> all;
+    for (uint32_t i = 0; i < solids.size(); ++i)
+        groups[key_of(solids[i])].push_back(i);
+    for (auto& [key, group] : groups)
+        if (group.size() == 1 || is_finite_box(bounds_of(solids[group[0]], 8)))
+            all.push_back(std::move(group));
+        else
+            for (const uint32_t i : group)
+                all.push_back({i});
+    std::sort(all.begin(), all.end());
+    return all;
 }
 
 Box bounds_of(const Solid& solid, int segments) {

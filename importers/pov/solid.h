@@ -37,12 +37,19 @@ csg::Kind kind_of(const Object& object, bool inverse);
 
 /// The triangles of one material, in the solid's space.
 struct SolidPart {
-    uint32_t material;
+    uint32_t skin; // counted through all leaves
     Facets facets;
 };
 
 /// The surface of a solid. reach: where it is cut off if it is endless, in its space.
 std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& reach);
+
+/// The material of a skin.
+uint32_t material_of(const Solid& solid, uint32_t skin);
+
+/// Solids in groups that come out alike, as the copies of a declared one do. Those that are endless
+/// end elsewhere each, and are alone.
+std::vector<std::vector<uint32_t>> alike(const std::vector<Solid>& solids);
 
 /// The box around it as POV-Ray has it, from its parts' boxes, in its space; what is endless
 /// reaches to infinity.
