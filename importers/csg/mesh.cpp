@@ -12,7 +12,7 @@ Grid::Grid(const std::vector<Operand>& operands) {
             for (const dvec3& corner : triangle)
                 if (is_finite(corner))
                     box.add(corner);
-    if (box.empty())
+    if (box.empty() || !is_finite(box.extent()))
         return;
     const dvec3 half = 0.5 * box.extent();
     std::frexp(std::max(max_component(half), 1e-30), &exponent);
@@ -20,6 +20,11 @@ Grid::Grid(const std::vector<Operand>& operands) {
     // On the grid, so that whole numbers stay whole.
     for (int i = 0; i < 3; ++i)
         origin[i] = std::ldexp(std::round(std::ldexp(box.center()[i], -exponent)), exponent);
+}
+
+bool Grid::holds(const dvec3& p) const {
+    return is_finite(p) &&
+           max_component(glm::abs(p - origin)) <= std::ldexp(1, exponent + kGridBits);
 }
 
 GridPoint Grid::to_grid(const dvec3& p) const {
@@ -48,7 +53,7 @@ Mesh::Mesh(const Operand& operand, const Grid& grid)
     std::vector<Box> all;
     for (const auto& corners : operand.triangles) {
         GridTriangle triangle{};
-        if (is_finite(corners[0]) && is_finite(corners[1]) && is_finite(corners[2]))
+        if (grid.holds(corners[0]) && grid.holds(corners[1]) && grid.holds(corners[2]))
             for (size_t i = 0; i < 3; ++i)
                 triangle[i] = grid.to_grid(corners[i]);
         triangles.push_back(triangle);

@@ -16,6 +16,7 @@ struct Grid {
     int exponent = 0; // a step of the grid is 2^exponent
 
     explicit Grid(const std::vector<Operand>& operands);
+    bool holds(const dvec3& p) const;
     GridPoint to_grid(const dvec3& p) const;
     dvec3 from_grid(const std::array<int64_t, 3>& rounded) const;
 };

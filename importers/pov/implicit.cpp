@@ -12,6 +12,7 @@ namespace ovc::pov {
 namespace {
 
 using Cell = std::array<int, 3>;
+using Value = std::function<double(const dvec3&)>;
 
 /// Values at the corners of cubic cells; the outermost are outside, whatever the field says.
 class Samples {
@@ -40,6 +41,8 @@ public:
         return (size_t(c[2]) * size_t(counts_[1] + 1) + size_t(c[1])) * size_t(counts_[0] + 1) +
                size_t(c[0]);
     }
+    /// The field in and around a cell.
+    const Value& value_near(const Cell& cell) const { return field_in_[block_of(cell)]; }
     bool is_outermost(const Cell& cell) const {
         for (size_t i = 0; i < 3; ++i)
             if (cell[i] == 0 || cell[i] == counts_[i] - 1)
@@ -48,28 +51,35 @@ public:
     }
 
 private:
-    void fill(const Field& field) {
-        constexpr int kBlock = 8;
-        Cell blocks;
-        for (size_t i = 0; i < 3; ++i)
-            blocks[i] = counts_[i] / kBlock + 1;
-        parallel_for(size_t(blocks[0]) * size_t(blocks[1]) * size_t(blocks[2]), 1,
-                     [&](size_t first, size_t last) {
-                         for (size_t b = first; b < last; ++b) {
-                             const int i = int(b);
-                             fill_block(field,
-                                        {i % blocks[0] * kBlock, i / blocks[0] % blocks[1] * kBlock,
-                                         i / blocks[0] / blocks[1] * kBlock},
-                                        kBlock);
-                         }
-                     });
+    static constexpr int kBlock = 8;
+
+    size_t block_of(const Cell& c) const {
+        return (size_t(c[2] / kBlock) * size_t(blocks_[1]) + size_t(c[1] / kBlock)) *
+                   size_t(blocks_[0]) +
+               size_t(c[0] / kBlock);
     }
 
-    void fill_block(const Field& field, const Cell& lo, int size) {
+    void fill(const Field& field) {
+        for (size_t i = 0; i < 3; ++i)
+            blocks_[i] = counts_[i] / kBlock + 1;
+        field_in_.resize(size_t(blocks_[0]) * size_t(blocks_[1]) * size_t(blocks_[2]));
+        parallel_for(field_in_.size(), 1, [&](size_t first, size_t last) {
+            for (size_t b = first; b < last; ++b) {
+                const int i = int(b);
+                fill_block(field, {i % blocks_[0] * kBlock, i / blocks_[0] % blocks_[1] * kBlock,
+                                   i / blocks_[0] / blocks_[1] * kBlock});
+            }
+        });
+    }
+
+    void fill_block(const Field& field, const Cell& lo) {
         Cell hi;
         for (size_t i = 0; i < 3; ++i)
-            hi[i] = std::min(lo[i] + size - 1, counts_[i]);
-        const auto value = field.within ? field.within({place(lo), place(hi)}) : field.value;
+            hi[i] = std::min(lo[i] + kBlock - 1, counts_[i]);
+        Value& value = field_in_[block_of(lo)];
+        // Its cells reach a step farther, and corners a little out of them.
+        value = field.within ? field.within(Box{place(lo), place(hi)}.padded(1.5 * step_))
+                             : field.value;
         Cell c;
         for (c[2] = lo[2]; c[2] <= hi[2]; ++c[2])
             for (c[1] = lo[1]; c[1] <= hi[1]; ++c[1])
@@ -84,22 +94,24 @@ private:
 
     double step_;
     dvec3 origin_;
-    Cell counts_;
+    Cell counts_, blocks_{};
     std::vector<double> values_;
+    std::vector<Value> field_in_; // each block
 };
 
-dvec3 gradient(const Field& field, const dvec3& p, double step) {
+dvec3 gradient(const Value& field, const dvec3& p, double step) {
     dvec3 g;
     for (int i = 0; i < 3; ++i) {
         dvec3 h(0);
         h[i] = step;
-        g[i] = (field.value(p + h) - field.value(p - h)) / (2 * step);
+        g[i] = (field(p + h) - field(p - h)) / (2 * step);
     }
     return g;
 }
 
 /// A point of the surface in the cell, or near the middle of where it runs through.
-Corner corner_in(const Field& field, const Samples& samples, const Cell& cell) {
+Corner corner_in(const Samples& samples, const Cell& cell) {
+    const Value& field = samples.value_near(cell);
     dvec3 sum(0);
     int count = 0;
     for (int axis = 0; axis < 3; ++axis)
@@ -122,14 +134,14 @@ Corner corner_in(const Field& field, const Samples& samples, const Cell& cell) {
                 hi = samples.place(cell) + 1.25 * samples.step();
     const double fine = 1e-4 * samples.step();
     for (int turn = 0; turn < 4; ++turn) {
-        const double value = field.value(p);
+        const double value = field(p);
         const dvec3 g = gradient(field, p, fine);
         const double square = glm::dot(g, g);
         if (!(square > 0) || !std::isfinite(value / square))
             break;
         const dvec3 next = glm::clamp(p - value / square * g, lo, hi);
         // Where the field is no distance at all a step may lead away.
-        if (!(std::abs(field.value(next)) < std::abs(value)))
+        if (!(std::abs(field(next)) < std::abs(value)))
             break;
         p = next;
     }
@@ -144,6 +156,8 @@ Corner corner_in(const Field& field, const Samples& samples, const Cell& cell) {
 // crosses a quad of the corners around. Around each face of a cell the quads' edges cancel out, so
 // the surface is closed.
 size_t cut_field(const Field& field, const Box& box, int cells, Facets& out) {
+    if (box.empty() || !is_finite(box.extent()))
+        return 0;
     const Samples samples(field, box, cells);
     const Cell& counts = samples.counts();
     std::vector<Cell> crossed;
@@ -165,7 +179,7 @@ size_t cut_field(const Field& field, const Box& box, int cells, Facets& out) {
     std::vector<Corner> corners(crossed.size());
     parallel_for(crossed.size(), 64, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
-            corners[i] = corner_in(field, samples, crossed[i]);
+            corners[i] = corner_in(samples, crossed[i]);
     });
     Facets closing;
     for (const Cell& cell : crossed)
