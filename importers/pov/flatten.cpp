@@ -242,6 +242,11 @@ private:
         leaf.has_inside = object.has_inside;
         if (!std::holds_alternative<std::monostate>(object.shape))
             leaf.skins.push_back({&object, material_of(from)});
+        if (std::holds_alternative<EndlessShape>(object.shape))
+            for (const ObjectPtr& bound : object.bounds) {
+                const Box box = moved(bounds_of(*bound), glm::inverse(object.placed));
+                leaf.bounds.add(moved(box, from.in_solid));
+            }
         for (const ObjectPtr& child : object.children) { // a mesh's, by their textures
             Inherited down = from;
             inherit(*child, down);

@@ -28,7 +28,11 @@ struct Range {
 Range power(double lo, double hi, int exponent) {
     if (exponent == 0)
         return {1, 1};
-    const double a = std::pow(lo, exponent), b = std::pow(hi, exponent);
+    double a = lo, b = hi;
+    for (int i = 1; i < exponent; ++i) {
+        a *= lo;
+        b *= hi;
+    }
     if (exponent % 2 == 0 && lo < 0 && hi > 0)
         return {0, std::max(a, b)};
     return {std::min(a, b), std::max(a, b)};
@@ -71,7 +75,7 @@ namespace {
 /// How far the set below 0 reaches along an axis, at most: boxes are halved, the farthest first,
 /// until that one is small.
 double farthest(const Polynomial& polynomial, const Box& whole, int axis, int way) {
-    constexpr int kMostBoxes = 3000;
+    constexpr int kMostBoxes = 400; // of flat surfaces many reach equally far
     const auto reach = [&](const Box& box) { return way > 0 ? box.hi[axis] : -box.lo[axis]; };
     const auto nearer = [&](const Box& a, const Box& b) { return reach(a) < reach(b); };
     std::priority_queue<Box, std::vector<Box>, decltype(nearer)> open(nearer);

@@ -137,8 +137,10 @@ void finish_polynomial(Reader& reader, Object& object, Polynomial polynomial) {
             return size_t(0);
         out.smooth = true;
         const double margin = 0.02 * max_component(tight.extent());
+        // What runs out of the box on some side has thin arms, more often than not.
+        const bool is_cut = max_component(tight.extent()) >= 0.99 * max_component(box.extent());
         return cut_field({[shared](const dvec3& p) { return (*shared)(p); }, {}},
-                         tight.padded(margin), segments, out);
+                         tight.padded(margin), is_cut ? 2 * segments : segments, out);
     };
     object.shape = std::move(shape);
     parse_modifiers(reader, object);

@@ -216,17 +216,30 @@ bool has_field(const Solid& solid) {
     });
 }
 
-/// Where boxes do not bound a solid, what planes at odd angles leave of it may still be small: that
-/// shows when it is cut coarsely. What is endless ends with the reach, a field's much sooner, for
-/// its cells would be as large as the scene.
-Box found_bounds(const Solid& solid, const Box& box, const Box& reach) {
+/// Where a field without end is drawn: its cells would otherwise be as large as the scene.
+Box field_reach(const Solid& solid, const Box& reach) {
     constexpr double kFieldReach = 4 / kPlaneReach;
-    const dvec3 half = (has_field(solid) ? kFieldReach : 1.0) * 0.5 * reach.extent();
-    const Box largest = box.intersection(Box{reach.center() - half, reach.center() + half});
+    Box bounds;
+    for (const SolidLeaf& leaf : solid.leaves)
+        if (!leaf.bounds.empty())
+            bounds.add(leaf.bounds);
+    if (!bounds.empty()) // POV-Ray draws what it comes upon beyond
+        return bounds.padded(0.5 * max_component(bounds.extent()));
+    const dvec3 half = kFieldReach * 0.5 * reach.extent();
+    return {reach.center() - half, reach.center() + half};
+}
+
+/// Where boxes do not bound a solid, what planes at odd angles leave of it may still be small: that
+/// shows when it is cut coarsely. What is endless ends with the reach.
+Box found_bounds(const Solid& solid, const Box& box, Box reach) {
+    if (has_field(solid))
+        reach = field_reach(solid, reach);
+    const Box largest = box.intersection(reach);
     if (largest.empty())
         return largest;
     const Box found = evaluate_within(solid, has_field(solid) ? 32 : 8, largest).box;
-    const Box middle{reach.center() - 0.5 * half, reach.center() + 0.5 * half};
+    const dvec3 quarter = 0.25 * reach.extent();
+    const Box middle{reach.center() - quarter, reach.center() + quarter};
     if (found.empty() || !middle.contains(found.lo) || !middle.contains(found.hi))
         return largest;
     return found.padded(0.1 * glm::length(found.extent()));

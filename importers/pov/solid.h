@@ -19,6 +19,7 @@ struct SolidLeaf {
     dmat4 placed{1}; // in the solid's space
     bool inverse = false;
     bool has_inside = true;
+    Box bounds; // of its bounded_by, in the solid's space; empty: it has none
 };
 
 /// A tree of operands, before they are cut; its space is that of its object's children.
