@@ -14,7 +14,7 @@ namespace ovc::csg {
 
 namespace {
 
-/// A polygon that stays, and where it is from.
+/// Where an outline that stays is from.
 struct Kept {
     uint32_t operand, triangle;
 };
@@ -22,17 +22,19 @@ struct Kept {
 class Evaluation {
 public:
     explicit Evaluation(const Tree& tree) : grid_(tree.operands), rules_(tree) {
-        for (const Operand& operand : tree.operands)
-            meshes_.emplace_back(operand, grid_);
+        for (uint32_t i = 0; i < tree.operands.size(); ++i)
+            meshes_.emplace_back(rules_.cutters(i).empty() ? Operand{} : tree.operands[i], grid_);
     }
 
-    std::vector<Part> run() {
-        for (uint32_t i = 0; i < meshes_.size(); ++i)
-            if (rules_.is_shown(i))
-                judge(i);
+    std::vector<Part> run(const Tree& tree) {
         std::vector<Part> parts;
-        for (const Stitched& t : stitch(polygons_)) {
-            Part part{kept_[t.polygon].operand, kept_[t.polygon].triangle, false, {}};
+        for (uint32_t i = 0; i < meshes_.size(); ++i)
+            if (rules_.cutters(i).empty())
+                take_whole(i, tree.operands[i], parts);
+            else if (rules_.is_shown(i))
+                judge(i);
+        for (const Stitched& t : stitch(outlines_)) {
+            Part part{kept_[t.outline].operand, kept_[t.outline].triangle, false, {}};
             part.turned = meshes_[part.operand].inverse;
             for (size_t i = 0; i < 3; ++i)
                 part.corners[i] = grid_.from_grid(t.corners[i]);
@@ -75,6 +77,18 @@ private:
         return found;
     }
 
+    static void take_whole(uint32_t number, const Operand& operand, std::vector<Part>& parts) {
+        for (uint32_t t = 0; t < operand.triangles.size(); ++t) {
+            const auto& [a, b, c] = operand.triangles[t];
+            if ((operand.hidden.empty() || !operand.hidden[t]) && is_finite(a) && is_finite(b) &&
+                is_finite(c))
+                parts.push_back({number,
+                                 t,
+                                 operand.inverse,
+                                 {a, operand.inverse ? c : b, operand.inverse ? b : c}});
+        }
+    }
+
     void judge(uint32_t operand) {
         const Mesh& mesh = meshes_[operand];
         std::vector<uint32_t> untouched;
@@ -92,7 +106,8 @@ private:
 
     void judge_cut(uint32_t operand, uint32_t triangle, const std::vector<Touch>& others) {
         const Mesh& mesh = meshes_[operand];
-        CutTriangle cut(mesh.triangles[triangle], mesh.planes[triangle], pool_);
+        Pool pool;
+        CutTriangle cut(mesh.triangles[triangle], mesh.planes[triangle], pool);
         for (const Touch& other : others)
             cut.cut(meshes_[other.operand].triangles[other.triangle],
                     meshes_[other.operand].planes[other.triangle]);
@@ -106,9 +121,12 @@ private:
         while (!todo.empty()) {
             const size_t at = todo.back();
             todo.pop_back();
-            if (stays[at])
-                keep(operand, triangle, parts[at].polygon);
-            else if (parts[at].above != 0)
+            if (stays[at]) {
+                Outline outline;
+                for (const Point* point : parts[at].polygon.points)
+                    outline.push_back(point->rounded);
+                keep(operand, triangle, std::move(outline));
+            } else if (parts[at].above != 0)
                 todo.insert(todo.end(), {parts[at].above, parts[at].below});
         }
     }
@@ -150,37 +168,37 @@ private:
             }
         std::vector<std::optional<bool>> answer(triangles.size());
         for (uint32_t i = 0; i < triangles.size(); ++i) {
-            const Plane& plane = mesh.planes[triangles[i]];
-            const CutTriangle whole(mesh.triangles[triangles[i]], plane, pool_);
+            const GridTriangle& t = mesh.triangles[triangles[i]];
             std::optional<bool>& stays = answer[root(i)];
-            if (!stays)
+            if (!stays) {
+                Pool pool;
+                const Plane& plane = mesh.planes[triangles[i]];
+                const CutTriangle whole(t, plane, pool);
                 stays = stays_polygon(operand, whole.parts()[0].polygon, plane);
+            }
             if (*stays)
-                keep(operand, triangles[i], whole.parts()[0].polygon);
+                keep(operand, triangles[i], {rounded(t[0]), rounded(t[1]), rounded(t[2])});
         }
     }
 
-    void keep(uint32_t operand, uint32_t triangle, Polygon polygon) {
-        if (meshes_[operand].inverse) {
-            std::reverse(polygon.points.begin(), polygon.points.end());
-            polygon.edges.clear(); // which no longer stand beside their points
-        }
-        polygons_.push_back(std::move(polygon));
+    void keep(uint32_t operand, uint32_t triangle, Outline outline) {
+        if (meshes_[operand].inverse)
+            std::reverse(outline.begin(), outline.end());
+        outlines_.push_back(std::move(outline));
         kept_.push_back({operand, triangle});
     }
 
     Grid grid_;
     Rules rules_;
     std::vector<Mesh> meshes_;
-    Pool pool_;
-    std::vector<Polygon> polygons_;
+    std::vector<Outline> outlines_; // that stay
     std::vector<Kept> kept_;
 };
 
 } // namespace
 
 std::vector<Part> evaluate(const Tree& tree) {
-    return Evaluation(tree).run();
+    return Evaluation(tree).run(tree);
 }
 
 } // namespace ovc::csg

@@ -65,12 +65,13 @@ int major_axis_of(const Plane& plane) {
 }
 
 Point point_of(const GridPoint& p) {
-    Point point{Wide(p[0]), Wide(p[1]), Wide(p[2]), Wide(1)};
-    for (size_t i = 0; i < 3; ++i) {
-        point.rounded[i] = p[i] * (int64_t(1) << kFractionBits);
-        point.near[int(i)] = double(p[i]);
-    }
-    return point;
+    return {Wide(p[0]), Wide(p[1]), Wide(p[2]),
+            Wide(1),    rounded(p), dvec3(double(p[0]), double(p[1]), double(p[2]))};
+}
+
+std::array<int64_t, 3> rounded(const GridPoint& p) {
+    constexpr int64_t kSteps = int64_t(1) << kFractionBits;
+    return {p[0] * kSteps, p[1] * kSteps, p[2] * kSteps};
 }
 
 // Cramer's rule, by the second-order minors of b and c.

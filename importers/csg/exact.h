@@ -53,6 +53,8 @@ inline bool is_null(const Plane& p) {
 int major_axis_of(const Plane& plane);
 
 Point point_of(const GridPoint& p);
+/// As a point's `rounded` is.
+std::array<int64_t, 3> rounded(const GridPoint& p);
 /// Where three planes meet; they must do so in one point.
 Point meet(const Plane& a, const Plane& b, const Plane& c);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/csg/stitch.h"
 
+#include "importers/csg/box_tree.h"
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -9,10 +11,8 @@ namespace ovc::csg {
 
 namespace {
 
-using Rounded = std::array<int64_t, 3>;
-
-struct HashOfRounded {
-    size_t operator()(const Rounded& p) const {
+struct HashOfCorner {
+    size_t operator()(const Corner& p) const {
         uint64_t h = 0;
         for (const int64_t x : p)
             h = (h ^ uint64_t(x)) * 0x9e3779b97f4a7c15u, h ^= h >> 32;
@@ -25,26 +25,26 @@ struct HashOfRounded {
 /// again. That leaves edges as they match, whichever corners fall together.
 constexpr int kSnappedBits = 3 + kFractionBits;
 
-Rounded snapped(Rounded p) {
+Corner snapped(Corner p) {
     for (int64_t& x : p)
         x = (x + (int64_t(1) << (kSnappedBits - 1))) >> kSnappedBits << kSnappedBits;
     return p;
 }
 
 /// A corner and the straight line that goes on from it: corners in line have the same one.
-struct Corner {
+struct Turn {
     uint32_t vertex;
     uint32_t line;
 };
-using Loop = std::vector<Corner>;
+using Loop = std::vector<Turn>;
 
 class Stitcher {
 public:
-    explicit Stitcher(const std::vector<Polygon>& polygons) {
-        for (const Polygon& polygon : polygons) {
+    explicit Stitcher(const std::vector<Outline>& outlines) {
+        for (const Outline& outline : outlines) {
             Loop loop;
-            for (size_t i = 0; i < polygon.points.size(); ++i)
-                loop.push_back({number(*polygon.points[i]), uint32_t(i)});
+            for (const Corner& corner : outline)
+                loop.push_back({number(corner), uint32_t(loop.size())});
             loops_.push_back(tidied(std::move(loop)));
         }
         find_open();
@@ -59,8 +59,8 @@ public:
     }
 
 private:
-    uint32_t number(const Point& p) {
-        const Rounded place = snapped(p.rounded);
+    uint32_t number(const Corner& corner) {
+        const Corner place = snapped(corner);
         const auto [at, is_new] = numbers_.try_emplace(place, uint32_t(vertices_.size()));
         if (is_new)
             vertices_.push_back(place);
@@ -68,7 +68,7 @@ private:
     }
 
     dvec3 place(uint32_t vertex) const {
-        const Rounded& p = vertices_[vertex];
+        const Corner& p = vertices_[vertex];
         return {double(p[0]), double(p[1]), double(p[2])};
     }
 
@@ -145,15 +145,15 @@ private:
         return order;
     }
 
-    void add(uint32_t polygon, uint32_t a, uint32_t b, uint32_t c,
+    void add(uint32_t outline, uint32_t a, uint32_t b, uint32_t c,
              std::vector<Stitched>& out) const {
         if (a != b && b != c && c != a)
-            out.push_back({polygon, {vertices_[a], vertices_[b], vertices_[c]}});
+            out.push_back({outline, {vertices_[a], vertices_[b], vertices_[c]}});
     }
 
     /// Corners are cut off one by one, the shortest cut first; never one that leaves a line.
-    void triangulate(uint32_t polygon, std::vector<Stitched>& out) const {
-        Loop loop = loops_[polygon];
+    void triangulate(uint32_t outline, std::vector<Stitched>& out) const {
+        Loop loop = loops_[outline];
         uint32_t line = uint32_t(loop.size());
         while (loop.size() > 3) {
             const size_t count = loop.size();
@@ -179,7 +179,7 @@ private:
             if (best == count)
                 break; // a triangle with corners on one of its edges: see below
             const size_t before = (best + count - 1) % count, after = (best + 1) % count;
-            add(polygon, loop[before].vertex, loop[best].vertex, loop[after].vertex, out);
+            add(outline, loop[before].vertex, loop[best].vertex, loop[after].vertex, out);
             loop[before].line = ++line;
             loop.erase(loop.begin() + ptrdiff_t(best));
         }
@@ -192,20 +192,20 @@ private:
                 loop[(i + 1) % count].line != loop[i].line)
                 apex = i;
         for (size_t i = 1; i + 1 < count; ++i)
-            add(polygon, loop[apex].vertex, loop[(apex + i) % count].vertex,
+            add(outline, loop[apex].vertex, loop[(apex + i) % count].vertex,
                 loop[(apex + i + 1) % count].vertex, out);
     }
 
-    std::vector<Rounded> vertices_;
-    std::unordered_map<Rounded, uint32_t, HashOfRounded> numbers_;
+    std::vector<Corner> vertices_;
+    std::unordered_map<Corner, uint32_t, HashOfCorner> numbers_;
     std::vector<Loop> loops_;
     std::unordered_map<uint64_t, int> balance_;
 };
 
 } // namespace
 
-std::vector<Stitched> stitch(const std::vector<Polygon>& polygons) {
-    return Stitcher(polygons).triangles();
+std::vector<Stitched> stitch(const std::vector<Outline>& outlines) {
+    return Stitcher(outlines).triangles();
 }
 
 } // namespace ovc::csg

@@ -3,16 +3,22 @@
 // of another, that gets a corner there as well.
 #pragma once
 
-#include "importers/csg/cut.h"
+#include "importers/csg/exact.h"
+
+#include <vector>
 
 namespace ovc::csg {
 
-/// Corners in 2^-kFractionBits of the grid; as many as the polygon of that number is cut into.
+/// Corners in 2^-kFractionBits of the grid.
+using Corner = std::array<int64_t, 3>;
+/// A convex polygon; neighbouring edges are not in line.
+using Outline = std::vector<Corner>;
+
 struct Stitched {
-    uint32_t polygon;
-    std::array<std::array<int64_t, 3>, 3> corners;
+    uint32_t outline; // the number of the one it is a part of
+    std::array<Corner, 3> corners;
 };
 
-std::vector<Stitched> stitch(const std::vector<Polygon>& polygons);
+std::vector<Stitched> stitch(const std::vector<Outline>& outlines);
 
 } // namespace ovc::csg
