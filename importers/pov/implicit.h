@@ -18,6 +18,11 @@ struct Field {
     std::function<std::function<double(const dvec3&)>(const Box&)> within;
 };
 
+/// Cells along the longest side of a closed shape that are as fine as a sphere's segments.
+inline int field_cells(int segments) {
+    return segments * 2 / 3;
+}
+
 /// The field's surface in a box of `cells` cells along its longest side, and some way out of it,
 /// where it is closed. Corners lie on the surface and have its normals. Returns the number of
 /// triangles that are of the surface: those behind close it, all of them outside of the box.

@@ -36,7 +36,7 @@ struct EndlessShape {
     /// What of the box it may be in; empty: nothing.
     std::function<Box(const Box&)> bounds;
     /// Closed triangles; as many as it says are of the surface, those behind are not to be seen.
-    std::function<size_t(const Box&, int segments, Facets& out)> cut;
+    std::function<size_t(const Box&, int cells, Facets& out)> cut;
 };
 
 struct LightSource {

@@ -18,7 +18,7 @@ namespace ovc::pov {
 namespace {
 
 /// Triangles of a surface net: about two for each of the cells that it runs through.
-constexpr double kPerSquare = 8;
+constexpr double kPerSquare = 4;
 
 /// A field's triangles, kept: a shape is cut once to be measured and once to be drawn.
 Shape kept(const Box& box, std::function<void(int segments, bool open, Facets& out)> cut) {
@@ -111,7 +111,7 @@ int cells_of(const Components& parts, const Box& box, int segments) {
         if (part.strength > 0)
             smallest = std::min(smallest, max_component(part.box.extent()));
     const double wanted = 0.25 * segments * max_component(box.extent()) / smallest;
-    return std::clamp(int(wanted), std::min(segments, 256), 256);
+    return std::clamp(int(wanted), field_cells(segments), 256);
 }
 
 std::vector<double> parse_factors(Reader& reader, int order) {
@@ -131,16 +131,14 @@ void finish_polynomial(Reader& reader, Object& object, Polynomial polynomial) {
     const auto shared = std::make_shared<const Polynomial>(std::move(polynomial));
     EndlessShape shape;
     shape.bounds = [shared](const Box& box) { return tightened(*shared, box); };
-    shape.cut = [shared](const Box& box, int segments, Facets& out) {
+    shape.cut = [shared](const Box& box, int cells, Facets& out) {
         const Box tight = tightened(*shared, box);
         if (tight.empty())
             return size_t(0);
         out.smooth = true;
         const double margin = 0.02 * max_component(tight.extent());
-        // What runs out of the box on some side has thin arms, more often than not.
-        const bool is_cut = max_component(tight.extent()) >= 0.99 * max_component(box.extent());
         return cut_field({[shared](const dvec3& p) { return (*shared)(p); }, {}},
-                         tight.padded(margin), is_cut ? 2 * segments : segments, out);
+                         tight.padded(margin), cells, out);
     };
     object.shape = std::move(shape);
     parse_modifiers(reader, object);

@@ -3,6 +3,7 @@
 
 #include "importers/pov/bounds.h"
 #include "importers/pov/flatten.h"
+#include "importers/pov/implicit.h"
 #include "importers/pov/shape.h"
 
 #include <algorithm>
@@ -101,7 +102,15 @@ void turn_outward(CutLeaf& leaf) {
         }
 }
 
-CutLeaf cut_leaf(const SolidLeaf& leaf, int segments, const Box& reach) {
+/// How finely to cut: pieces of a circle, cells of a field.
+struct Fineness {
+    int segments, cells;
+
+    explicit Fineness(int pieces) : segments(pieces), cells(field_cells(pieces)) {}
+};
+
+CutLeaf cut_leaf(const SolidLeaf& leaf, const Fineness& fineness, const Box& reach) {
+    const int segments = fineness.segments;
     CutLeaf cut;
     for (const SolidLeaf::Skin& skin : leaf.skins) {
         Facets facets;
@@ -112,7 +121,7 @@ CutLeaf cut_leaf(const SolidLeaf& leaf, int segments, const Box& reach) {
                 hidden = hidden_caps(*shape, segments, facets);
         } else if (const auto* endless = std::get_if<EndlessShape>(&skin.object->shape)) {
             const size_t shown =
-                endless->cut(moved(reach, glm::inverse(leaf.placed)), segments, facets);
+                endless->cut(moved(reach, glm::inverse(leaf.placed)), fineness.cells, facets);
             hidden.resize(shown, 0);
             hidden.resize(facets.corners.size() / 3, 1);
         } else if (const auto* plane = std::get_if<PlaneShape>(&skin.object->shape)) {
@@ -176,7 +185,7 @@ Box bounds_of_leaf(const SolidLeaf& leaf, int segments) {
         if (const auto* shape = std::get_if<Shape>(&skin.object->shape); shape && shape->box)
             box.add(moved(*shape->box, leaf.placed));
         else if (shape)
-            return cut_leaf(leaf, segments, {}).box;
+            return cut_leaf(leaf, Fineness(segments), {}).box;
         else
             return kEverywhere;
     return box;
@@ -193,12 +202,12 @@ struct Evaluated {
     Box box;
 };
 
-Evaluated evaluate_within(const Solid& solid, int segments, const Box& reach) {
+Evaluated evaluate_within(const Solid& solid, const Fineness& fineness, const Box& reach) {
     Evaluated result;
     csg::Tree tree;
     tree.nodes = solid.nodes;
     for (const SolidLeaf& leaf : solid.leaves) {
-        result.leaves.push_back(cut_leaf(leaf, segments, reach));
+        result.leaves.push_back(cut_leaf(leaf, fineness, reach));
         tree.operands.push_back(std::move(result.leaves.back().operand));
     }
     result.parts = csg::evaluate(tree);
@@ -237,7 +246,7 @@ Box found_bounds(const Solid& solid, const Box& box, Box reach) {
     const Box largest = box.intersection(reach);
     if (largest.empty())
         return largest;
-    const Box found = evaluate_within(solid, has_field(solid) ? 32 : 8, largest).box;
+    const Box found = evaluate_within(solid, Fineness(has_field(solid) ? 48 : 8), largest).box;
     const dvec3 quarter = 0.25 * reach.extent();
     const Box middle{reach.center() - quarter, reach.center() + quarter};
     if (found.empty() || !middle.contains(found.lo) || !middle.contains(found.hi))
@@ -304,11 +313,14 @@ std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& rea
     Box box = bounds_of(solid, segments);
     if (box.empty())
         return {};
-    if (!is_finite_box(box))
+    Fineness fineness(segments);
+    if (!is_finite_box(box)) {
         box = found_bounds(solid, box, reach);
+        fineness.cells *= 3; // what has no end has thin arms, more often than not
+    }
     if (box.empty())
         return {};
-    Evaluated cut = evaluate_within(solid, segments, box);
+    Evaluated cut = evaluate_within(solid, fineness, box);
     std::vector<uint32_t> first; // skin of each leaf
     uint32_t skins = 0;
     for (const SolidLeaf& leaf : solid.leaves) {
@@ -387,7 +399,7 @@ double triangles_of(const Solid& solid, int segments) {
             if (const Shape* shape = std::get_if<Shape>(&skin.object->shape))
                 sum += shape->triangles(segments);
             else if (std::holds_alternative<EndlessShape>(skin.object->shape))
-                sum += 8.0 * segments * segments;
+                sum += 4.0 * segments * segments;
     return sum;
 }
 
