@@ -122,6 +122,27 @@ TEST(PovDirectives, IncludesAreFoundWhateverTheirLettersAndSlashes) {
     std::filesystem::remove_all(folder / "Geom");
 }
 
+/// As povray 3.7.0 prints them: #debug str(f_sphere(.3, .4, 1.2, .5), 0, 12).
+TEST(PovExpression, KnowsInternalFunctions) {
+    const std::string functions =
+        "#declare E = function { internal(17) } #declare P = function { internal(47) } "
+        "#declare R = function { internal(57) } #declare B = function { internal(60) } "
+        "#declare S = function { internal(61) } #declare Q = function { internal(68) } "
+        "#declare T = function { internal(69) } #declare O = function { internal(70) }";
+    const std::pair<const char*, double> cases[] = {{"E(.3, .4, 1.2, 2, 3, 4)", 4.983974317751},
+                                                    {"P(.3, -.4, 1.2)", 1.883563048736},
+                                                    {"R(.3, .4, 1.2)", 1.3},
+                                                    {"B(1.3, .4, 1.2, .1, 1, 1, 1)", 0.399999},
+                                                    {"B(.3, .95, .97, .1, 1, 1, 1)", -0.013978},
+                                                    {"B(-.3, -1.95, .97, .2, 1, 2, 1)", 0.026715},
+                                                    {"S(.3, .4, 1.2, .5)", 0.8},
+                                                    {"Q(1.3, .4, .5, .7, .4)", -0.317592936919},
+                                                    {"T(-.3, .4, -1.2)", -2.896613990463},
+                                                    {"O(.3, .4, 1.2, 1, .2)", 0.264904963008}};
+    for (const auto& [call, expected] : cases) // a rounded box is 1e-6 larger in POV-Ray
+        EXPECT_NEAR(value(call, functions).x, expected, 2e-6) << call;
+}
+
 TEST(PovErrors, NameTheLineAndShowIt) {
     const struct {
         const char* text;
