@@ -48,6 +48,15 @@ TEST(PovExpression, FollowsTheOrderOfOperations) {
     EXPECT_VALUE(0.25, "rgbf <1, 1, 1, 0.25>.filter");
 }
 
+TEST(PovExpression, ComparesAsPovrayDoes) {
+    EXPECT_VALUE(7, "(1 < 1+1e-11) + 2*(1+1e-11 > 1) + 4*(1+1e-11 <= 1)");
+    EXPECT_VALUE(3, "(1-1e-11 >= 1) + 2*(1 = 1+1e-11) + 4*(1 != 1+1e-11)");
+    EXPECT_VALUE(4, "(1 = 1+1e-9) + 2*(1+1e-9 <= 1) + 4*(1 != 1+1e-9)");
+    EXPECT_VALUE(11, "N",
+                 "#declare I = 0; #declare N = 0;"
+                 "#while (I < 1) #declare I = I + .1; #declare N = N + 1; #end");
+}
+
 TEST(PovExpression, KnowsTheFunctions) {
     EXPECT_VALUE(5, "vlength(<3, 4, 0>)");
     EXPECT_VALUE(dvec3(0, 0, 1), "vcross(x, y)");
