@@ -23,13 +23,13 @@ class Evaluation {
 public:
     explicit Evaluation(const Tree& tree) : grid_(tree.operands), rules_(tree) {
         for (uint32_t i = 0; i < tree.operands.size(); ++i)
-            meshes_.emplace_back(rules_.cutters(i).empty() ? Operand{} : tree.operands[i], grid_);
+            meshes_.emplace_back(rules_.has_cutters(i) ? tree.operands[i] : Operand{}, grid_);
     }
 
     std::vector<Part> run(const Tree& tree) {
         std::vector<Part> parts;
         for (uint32_t i = 0; i < meshes_.size(); ++i)
-            if (rules_.cutters(i).empty())
+            if (!rules_.has_cutters(i))
                 take_whole(i, tree.operands[i], parts);
             else if (rules_.is_shown(i))
                 judge(i);
@@ -49,7 +49,8 @@ private:
     };
 
     /// Triangles of other operands that touch this one, or nearly.
-    std::vector<Touch> touching(uint32_t operand, uint32_t triangle) const {
+    std::vector<Touch> touching(uint32_t operand, uint32_t triangle,
+                                const std::vector<uint32_t>& cutters) const {
         const GridTriangle& t = meshes_[operand].triangles[triangle];
         const Plane& plane = meshes_[operand].planes[triangle];
         const auto beside = [](const Plane& p, const GridTriangle& other) {
@@ -57,10 +58,8 @@ private:
             return (a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0);
         };
         std::vector<Touch> found;
-        for (const uint32_t other : rules_.cutters(operand)) {
+        for (const uint32_t other : cutters) {
             const Mesh& mesh = meshes_[other];
-            if (!mesh.solid)
-                continue;
             mesh.boxes.visit(box_of(t), [&](uint32_t i) {
                 if (!is_null(mesh.planes[i]) && !beside(plane, mesh.triangles[i]) &&
                     !beside(mesh.planes[i], t))
@@ -91,11 +90,16 @@ private:
 
     void judge(uint32_t operand) {
         const Mesh& mesh = meshes_[operand];
+        std::vector<uint32_t> cutters = rules_.cutters(operand);
+        std::erase_if(cutters, [&](uint32_t other) {
+            return !meshes_[other].solid ||
+                   !meshes_[other].boxes.bounds().touches(mesh.boxes.bounds());
+        });
         std::vector<uint32_t> untouched;
         for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
             if (is_null(mesh.planes[t]) || (!mesh.hidden.empty() && mesh.hidden[t]))
                 continue;
-            const std::vector<Touch> others = touching(operand, t);
+            const std::vector<Touch> others = touching(operand, t, cutters);
             if (others.empty())
                 untouched.push_back(t);
             else

@@ -7,8 +7,8 @@ Rules::Rules(const Tree& tree)
     : tree_(tree),
       parent_(tree.nodes.size()),
       node_of_(tree.operands.size()),
-      cutters_(tree.operands.size()),
-      shown_(tree.operands.size(), 1) {
+      shown_(tree.operands.size(), 1),
+      is_cut_(tree.operands.size()) {
     for (uint32_t n = 0; n < tree.nodes.size(); ++n) {
         parent_[n] = n;
         for (const uint32_t child : tree.nodes[n].children)
@@ -21,11 +21,19 @@ Rules::Rules(const Tree& tree)
             const Node& node = tree.nodes[parent_[at]];
             if (node.kind == Kind::Clip && at != node.children[0])
                 shown_[i] = 0;
-            if (node.kind != Kind::Union)
-                for (const uint32_t child : node.children)
-                    if (child != at)
-                        gather(child, cutters_[i]);
+            is_cut_[i] = is_cut_[i] || (node.kind != Kind::Union && node.children.size() > 1);
         }
+}
+
+std::vector<uint32_t> Rules::cutters(uint32_t operand) const {
+    std::vector<uint32_t> all;
+    for (uint32_t at = node_of_[operand]; at + 1 < tree_.nodes.size(); at = parent_[at]) {
+        const Node& node = tree_.nodes[parent_[at]];
+        for (const uint32_t child : node.children)
+            if (node.kind != Kind::Union && child != at)
+                gather(child, all);
+    }
+    return all;
 }
 
 void Rules::gather(uint32_t node, std::vector<uint32_t>& operands) const {

@@ -15,8 +15,10 @@ class Rules {
 public:
     explicit Rules(const Tree& tree);
 
-    /// Operands that part the surface of this one into what stays and what goes.
-    const std::vector<uint32_t>& cutters(uint32_t operand) const { return cutters_[operand]; }
+    /// Operands that part the surface of this one into what stays and what goes. Found when asked
+    /// for: where a thousand are taken away, each has a thousand.
+    std::vector<uint32_t> cutters(uint32_t operand) const;
+    bool has_cutters(uint32_t operand) const { return is_cut_[operand]; }
     /// Whether any of its surface can be seen.
     bool is_shown(uint32_t operand) const { return shown_[operand]; }
 
@@ -32,8 +34,7 @@ private:
     const Tree& tree_;
     std::vector<uint32_t> parent_;  // of each node; the root's is itself
     std::vector<uint32_t> node_of_; // of each operand
-    std::vector<std::vector<uint32_t>> cutters_;
-    std::vector<uint8_t> shown_;
+    std::vector<uint8_t> shown_, is_cut_;
 };
 
 } // namespace ovc::csg
