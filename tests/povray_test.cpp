@@ -96,18 +96,30 @@ TEST(Povray, DrawsGlassAndMirrorsAsWeDo) {
     expect_alike(*scene, 12, *theirs, 0.001, 1 / 250.0);
 }
 
-TEST(Povray, DrawsLightsAndFinishesAsWeDoFromTheSameFile) {
+/// The same file, read by both.
+void expect_file_alike(const std::string& name, double mean, double unlike_share) {
     if (!has_povray())
         GTEST_SKIP() << "povray is not installed";
-    const std::string file = OVC_SOURCE_DIR "/testscenes/lights.pov";
+    const std::string file = OVC_SOURCE_DIR "/testscenes/" + name;
     const std::optional<Image> theirs = drawn_by_povray(file);
     ASSERT_TRUE(theirs);
     ImportOptions options;
     options.size = ImageSize{kSize, kSize};
     const Result<Scene> scene = load(file, options);
     ASSERT_TRUE(scene) << scene.error().message;
-    expect_alike(*scene, *scene->max_depth, *theirs, 0.003,
-                 1 / 60.0); // the floor's far squares are smaller than pixels
+    expect_alike(*scene, scene->max_depth.value_or(5), *theirs, mean, unlike_share);
+}
+
+TEST(Povray, DrawsLightsAndFinishesAsWeDoFromTheSameFile) {
+    expect_file_alike("lights.pov", 0.003, 1 / 60.0); // the floor's far squares: below a pixel
+}
+
+TEST(Povray, DrawsSolidsAsWeDo) {
+    expect_file_alike("solids.pov", 0.002, 1 / 100.0);
+}
+
+TEST(Povray, DrawsImplicitSurfacesAsWeDo) {
+    expect_file_alike("fields.pov", 0.002, 1 / 100.0);
 }
 
 } // namespace

@@ -11,4 +11,7 @@ namespace ovc::pov {
 /// it for what is endless.
 Box bounds_of(const Object& object);
 
+/// Around a box that a transformation has turned; nothing where it is empty or reaches to infinity.
+Box moved(const Box& box, const dmat4& by);
+
 } // namespace ovc::pov

@@ -366,7 +366,7 @@ void Reader::do_macro() {
         macro->parameters.push_back(raw_name("the parameters of " + macro->name->text));
         if (peek_raw().is(','))
             raw();
-        else if (!peek_raw().is(')'))
+        else if (!peek_raw().is(')') && peek_raw().kind != TokenKind::Name) // commas may be missing
             fail(peek_raw().place, fmt::format("found {} in the parameters of {}, expected ')'",
                                                found(peek_raw()), macro->name->text));
     }

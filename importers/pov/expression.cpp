@@ -202,13 +202,13 @@ bool is_comparison(const Token& token) {
 }
 
 bool holds(char op, double a, double b) {
-    // POV-Ray's equality has a little room.
+    // POV-Ray's equality has a little room; its < and > have none.
     constexpr double kRoom = 1e-10;
     switch (op) {
     case '<':
-        return b - a > kRoom;
+        return a < b;
     case '>':
-        return a - b > kRoom;
+        return a > b;
     case 'l':
         return a - b <= kRoom;
     case 'g':

@@ -21,7 +21,8 @@ struct Facets {
     /// Flat. A triangle without area is left out, as a pole's or a seam's is.
     void add(const dvec3& a, const dvec3& b, const dvec3& c) {
         if (a != b && b != c && c != a)
-            corners.insert(corners.end(), {{a, dvec3(0)}, {b, dvec3(0)}, {c, dvec3(0)}});
+            for (const dvec3& p : {a, b, c})
+                corners.push_back({p, dvec3(0)});
     }
     void add(const Corner& a, const Corner& b, const Corner& c) {
         if (a.position == b.position || b.position == c.position || c.position == a.position)

@@ -2,8 +2,10 @@
 // First every visible shape with what it inherits, then how finely to cut, then the cutting.
 #include "importers/pov/flatten.h"
 
+#include "core/parallel.h"
 #include "importers/origin.h"
 #include "importers/pov/bounds.h"
+#include "importers/pov/solid.h"
 #include "importers/readers.h"
 
 #include <fmt/format.h>
@@ -32,6 +34,7 @@ struct Placed {
 /// What is handed down from parents.
 struct Inherited {
     dmat4 placed{1};
+    dmat4 in_solid{1}; // within the solid that it is a part of
     const Texture* texture = nullptr;
     dmat4 texture_placed{1}; // on top of the texture's own
     const Interior* interior = nullptr;
@@ -139,63 +142,161 @@ public:
     void gather(const Object& object, Inherited from) {
         if (object.no_image)
             return;
+        if (is_solid(object)) {
+            add_solid(object, from);
+            return;
+        }
+        inherit(object, from);
+        if (const auto* light = std::get_if<LightSource>(&object.shape))
+            add_light(*light, from.placed, scene_);
+        else if (!std::holds_alternative<std::monostate>(object.shape))
+            placed.push_back(
+                {&object, from.placed, from.inverse, material_of(from), from.no_shadow});
+        for (const ObjectPtr& child : object.children)
+            gather(*child, from);
+    }
+
+    std::vector<Placed> placed;
+    std::vector<Solid> solids;
+
+private:
+    void inherit(const Object& object, Inherited& from) {
         if (!object.refused.empty())
             throw ParseError(object.place, object.refused);
         from.texture_placed = object.texture ? from.placed : from.texture_placed;
         from.texture = object.texture ? &*object.texture : from.texture;
         from.placed = from.placed * object.placed;
+        from.in_solid = from.in_solid * object.placed;
         from.interior = object.interior ? &*object.interior : from.interior;
         from.no_shadow = from.no_shadow || object.no_shadow;
         from.inverse = from.inverse != object.inverse;
-        if (const auto* light = std::get_if<LightSource>(&object.shape))
-            add_light(*light, from.placed, scene_);
-        else if (!std::holds_alternative<std::monostate>(object.shape)) {
-            const Texture& texture = from.texture ? *from.texture : look_.defaults;
-            placed.push_back({&object, from.placed, from.inverse,
-                              materials_.number(texture, from.texture_placed, from.interior),
-                              from.no_shadow});
-        }
         // Groups of groups may be more than any memory holds.
         if (++visited_ > look_.most_triangles / kTrianglesAnObject)
             throw ParseError(object.place,
                              fmt::format("found more than {} objects in the scene, expected at "
                                          "most that",
                                          look_.most_triangles / kTrianglesAnObject));
-        for (const ObjectPtr& child : object.children)
-            gather(*child, from);
     }
 
-    std::vector<Placed> placed;
+    uint32_t material_of(const Inherited& from) {
+        const Texture& texture = from.texture ? *from.texture : look_.defaults;
+        return materials_.number(texture, from.texture_placed, from.interior);
+    }
 
-private:
+    void add_solid(const Object& object, Inherited from) {
+        Solid solid;
+        solid.object = &object;
+        solid.placed = from.placed * object.placed;
+        solid.no_shadow = from.no_shadow || object.no_shadow;
+        from.in_solid = glm::inverse(object.placed);
+        from.inverse = false; // turns the whole, which looks the same
+        if (gather_node(object, from, solid))
+            solids.push_back(std::move(solid));
+    }
+
+    /// Adds an object to the solid's tree as its last node; false where nothing of it can be there.
+    bool gather_node(const Object& object, Inherited from, Solid& solid) {
+        const Inherited outside = from;
+        inherit(object, from);
+        if (solid.nodes.empty() && &object == solid.object)
+            from.in_solid = dmat4(1);
+        if (const auto* light = std::get_if<LightSource>(&object.shape)) {
+            add_light(*light, from.placed, scene_);
+            return false;
+        }
+        csg::Node node;
+        if (!std::holds_alternative<std::monostate>(object.shape) || object.kind == "mesh" ||
+            object.kind == "mesh2") {
+            node.operand = uint32_t(solid.leaves.size());
+            solid.leaves.push_back(leaf_of(object, from));
+        } else {
+            node.kind = kind_of(object, from.inverse);
+            for (const ObjectPtr& child : object.children) {
+                Inherited down = from;
+                down.inverse =
+                    from.inverse != (object.kind == "difference" && !node.children.empty());
+                if (gather_node(*child, down, solid))
+                    node.children.push_back(uint32_t(solid.nodes.size() - 1));
+            }
+            if (node.children.empty())
+                return false;
+        }
+        solid.nodes.push_back(node);
+        if (object.clips.empty())
+            return true;
+        csg::Node clip{csg::Kind::Clip, 0, {uint32_t(solid.nodes.size() - 1)}};
+        for (const ObjectPtr& other : object.clips) {
+            Inherited down = outside;
+            down.inverse = false;
+            if (gather_node(*other, down, solid))
+                clip.children.push_back(uint32_t(solid.nodes.size() - 1));
+        }
+        solid.nodes.push_back(clip);
+        return true;
+    }
+
+    SolidLeaf leaf_of(const Object& object, const Inherited& from) {
+        SolidLeaf leaf;
+        leaf.placed = from.in_solid;
+        leaf.inverse = from.inverse;
+        leaf.has_inside = object.has_inside;
+        if (!std::holds_alternative<std::monostate>(object.shape))
+            leaf.skins.push_back({&object, material_of(from)});
+        if (std::holds_alternative<EndlessShape>(object.shape))
+            for (const ObjectPtr& bound : object.bounds) {
+                const Box box = moved(bounds_of(*bound), glm::inverse(object.placed));
+                leaf.bounds.add(moved(box, from.in_solid));
+            }
+        for (const ObjectPtr& child : object.children) { // a mesh's, by their textures
+            Inherited down = from;
+            inherit(*child, down);
+            leaf.skins.push_back({child.get(), material_of(down)});
+        }
+        return leaf;
+    }
+
     const Look& look_;
     Scene& scene_;
     MaterialTable materials_;
     uint64_t visited_ = 0;
 };
 
-double triangles_at(const std::vector<Placed>& placed, int segments) {
+double triangles_at(const Gatherer& gatherer, int segments) {
     double sum = 0;
-    for (const Placed& p : placed)
+    for (const Solid& solid : gatherer.solids)
+        sum += triangles_of(solid, segments);
+    for (const Placed& p : gatherer.placed)
         if (const Shape* shape = std::get_if<Shape>(&p.object->shape))
             sum += shape->triangles(segments);
     return sum;
 }
 
-int choose_segments(const std::vector<Placed>& placed) {
+int choose_segments(const Gatherer& gatherer) {
     int segments = kMostSegments;
     while (segments > 8 &&
-           triangles_at(placed, segments) - triangles_at(placed, 0) > kMostRoundTriangles)
+           triangles_at(gatherer, segments) - triangles_at(gatherer, 0) > kMostRoundTriangles)
         segments = std::max(8, segments * 3 / 4 / 4 * 4);
     return segments;
 }
 
-Box box_of(const std::vector<Placed>& placed, int segments) {
+/// Around all that is not endless, and the middles of solids that are.
+Box box_of(const Gatherer& gatherer, int segments) {
     Box box;
+    for (const Solid& solid : gatherer.solids) {
+        const Box own = bounds_of(solid, segments);
+        if (is_finite(own.lo) && is_finite(own.hi))
+            box.add(moved(own, solid.placed));
+        else if (!own.empty())
+            box.add(dvec3(solid.placed[3]));
+    }
     Facets facets;
-    for (const Placed& p : placed)
+    for (const Placed& p : gatherer.placed)
         if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
             facets.corners.clear();
+            if (shape->box) {
+                box.add(moved(*shape->box, p.placed));
+                continue;
+            }
             shape->cut(segments, p.object->open, facets);
             for (const Corner& corner : facets.corners)
                 if (const dvec3 at(p.placed * dvec4(corner.position, 1)); is_finite(at))
@@ -259,6 +360,45 @@ void add_plane(const Placed& p, const dvec3& center, double reach, Scene& scene)
     scene.meshes[mesh].no_shadow = p.no_shadow;
 }
 
+/// The scene and the camera.
+Box world_of(Box box, const Look& look) {
+    if (look.eye)
+        box.add(*look.eye);
+    if (box.empty())
+        box.add(dvec3(0));
+    return box;
+}
+
+double reach_of(const Box& world) {
+    return std::max(1.0, 0.5 * glm::length(world.extent()));
+}
+
+using Batches = std::map<std::pair<uint32_t, bool>, Batch>;
+
+void add_solids(const std::vector<Solid>& solids, int segments, const Box& world,
+                const dvec3& origin, Batches& batches) {
+    constexpr size_t kAtOnce = 64; // so that not all are in memory twice
+    const Box reach = Box{world.center(), world.center()}.padded(kPlaneReach * reach_of(world));
+    const std::vector<std::vector<uint32_t>> groups = alike(solids);
+    for (size_t start = 0; start < groups.size(); start += kAtOnce) {
+        std::vector<std::vector<SolidPart>> parts(std::min(kAtOnce, groups.size() - start));
+        parallel_for(parts.size(), 1, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                const Solid& solid = solids[groups[start + i][0]];
+                parts[i] = evaluate(solid, segments, moved(reach, glm::inverse(solid.placed)));
+            }
+        });
+        for (size_t i = 0; i < parts.size(); ++i)
+            for (const uint32_t number : groups[start + i])
+                for (const SolidPart& part : parts[i]) {
+                    const Solid& solid = solids[number];
+                    const Placed p{solid.object, solid.placed, false, material_of(solid, part.skin),
+                                   solid.no_shadow};
+                    add_corners(part.facets, p, origin, batches[{p.material, p.no_shadow}]);
+                }
+    }
+}
+
 } // namespace
 
 void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& scene) {
@@ -267,13 +407,13 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
         gatherer.gather(*object, {});
     const std::vector<Placed>& placed = gatherer.placed;
 
-    const int segments = choose_segments(placed);
-    if (const double count = triangles_at(placed, segments); count > double(look.most_triangles))
+    const int segments = choose_segments(gatherer);
+    if (const double count = triangles_at(gatherer, segments); count > double(look.most_triangles))
         throw ParseError({}, fmt::format("found about {:.0f} triangles, expected at most {}", count,
                                          look.most_triangles));
-    const Box box = box_of(placed, 8);
+    const Box box = box_of(gatherer, 8);
     const dvec3 origin = chunk_origin(box, 16);
-    std::map<std::pair<uint32_t, bool>, Batch> batches;
+    Batches batches;
     Facets facets;
     for (const Placed& p : placed)
         if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
@@ -282,6 +422,7 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
             shape->cut(segments, p.object->open, facets);
             add_corners(facets, p, origin, batches[{p.material, p.no_shadow}]);
         }
+    add_solids(gatherer.solids, segments, world_of(box, look), origin, batches);
     for (auto& [key, batch] : batches) {
         if (batch.corners.empty())
             continue;
@@ -296,14 +437,21 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
         scene.meshes[mesh].no_shadow = key.second;
     }
 
-    Box world = box;
-    if (look.eye)
-        world.add(*look.eye);
-    if (world.empty())
-        world.add(dvec3(0));
+    const Box world = world_of(box, look);
     for (const Placed& p : placed)
         if (std::holds_alternative<PlaneShape>(p.object->shape))
-            add_plane(p, world.center(), std::max(1.0, 0.5 * glm::length(world.extent())), scene);
+            add_plane(p, world.center(), reach_of(world), scene);
+}
+
+Box moved(const Box& box, const dmat4& by) {
+    Box all;
+    for (int i = 0; !box.empty() && i < 8; ++i) {
+        const dvec3 corner(i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y,
+                           i & 4 ? box.hi.z : box.lo.z);
+        if (is_finite(corner))
+            all.add(dvec3(by * dvec4(corner, 1)));
+    }
+    return all;
 }
 
 Box bounds_of(const Object& object) {
@@ -314,7 +462,10 @@ Box bounds_of(const Object& object) {
     for (const Placed& p : gatherer.placed)
         if (std::holds_alternative<PlaneShape>(p.object->shape))
             return {dvec3(-1e10), dvec3(1e10)};
-    Box box = box_of(gatherer.placed, 32);
+    for (const Solid& solid : gatherer.solids)
+        if (const Box around = bounds_of(solid, 8); !around.empty() && !is_finite(around.extent()))
+            return {dvec3(-1e10), dvec3(1e10)};
+    Box box = box_of(gatherer, 32);
     if (box.empty())
         box.add(dvec3(0));
     return box;

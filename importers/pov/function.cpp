@@ -4,6 +4,7 @@
 
 #include "importers/pov/block.h"
 #include "importers/pov/builtin.h"
+#include "importers/pov/internal.h"
 #include "importers/pov/spline.h"
 #include "importers/pov/transform.h"
 #include "importers/text.h"
@@ -245,6 +246,26 @@ std::vector<std::string> parse_parameters(Reader& reader) {
 
 } // namespace
 
+/// `internal(N)`, as functions.inc has it.
+static void parse_internal(Reader& reader, Function& function) {
+    reader.next();
+    reader.expect('(', "internal");
+    const int number = parse_int(reader, 0, 1000, "the number of a function");
+    reader.expect(')', "internal");
+    const Internal internal = find_internal(number);
+    if (!internal.call) {
+        function.refused =
+            fmt::format("the function is internal({}), which Overcast does not compute", number);
+        return;
+    }
+    function.parameters = size_t(internal.count);
+    function.formula = [internal](std::span<const double> x) {
+        std::array<double, 8> all{};
+        std::copy_n(x.begin(), std::min(x.size(), all.size()), all.begin());
+        return internal.call(all);
+    };
+}
+
 std::shared_ptr<const Function> parse_function(Reader& reader) {
     auto function = std::make_shared<Function>();
     const std::vector<std::string> parameters = parse_parameters(reader);
@@ -260,7 +281,9 @@ std::shared_ptr<const Function> parse_function(Reader& reader) {
         function->transform = parse_transform_block(reader);
     else if (reader.take("spline"))
         function->spline = parse_spline(reader);
-    else if (first.is("pigment") || first.is("pattern") || first.is("internal")) {
+    else if (first.is("internal"))
+        parse_internal(reader, *function);
+    else if (first.is("pigment") || first.is("pattern")) {
         function->refused = fmt::format("the function is {} {{ }}, which Overcast does not compute",
                                         first.name->text);
         skip_block(reader); // up to and with the function's own }

@@ -3,6 +3,7 @@
 // textures.
 #pragma once
 
+#include "core/box.h"
 #include "importers/pov/facets.h"
 #include "importers/pov/value.h"
 
@@ -17,6 +18,7 @@ struct Shape {
     double fixed = 0;
     double per_square = 0; // x segments^2
     double per_segment = 0;
+    std::optional<Box> box; // around it, where cutting it to find out takes long
 
     double triangles(int segments) const {
         return fixed + segments * (per_segment + segments * per_square);
@@ -29,6 +31,14 @@ struct PlaneShape {
     double distance = 0;
 };
 
+/// A shape whose end, if it has one, is not known: it is cut in a box.
+struct EndlessShape {
+    /// What of the box it may be in; empty: nothing.
+    std::function<Box(const Box&)> bounds;
+    /// Closed triangles; as many as it says are of the surface, those behind are not to be seen.
+    std::function<size_t(const Box&, int cells, Facets& out)> cut;
+};
+
 struct LightSource {
     Light light;
     bool area = false;
@@ -39,8 +49,12 @@ using ObjectPtr = std::shared_ptr<const Object>;
 struct Object {
     std::string_view kind; // the keyword: "sphere"
     Place place;
-    std::variant<std::monostate, Shape, PlaneShape, LightSource> shape; // none: its children's
+    std::variant<std::monostate, Shape, PlaneShape, EndlessShape, LightSource>
+        shape; // none: its children's
     std::vector<ObjectPtr> children;
+    /// What bounds it where it is seen (clipped_by), and what may be tested first (bounded_by); in
+    /// the space that the object stands in.
+    std::vector<ObjectPtr> clips, bounds;
     /// Why it cannot be cut into triangles; empty: it can. Told only where it is to be seen.
     std::string refused;
 
@@ -51,6 +65,7 @@ struct Object {
     bool no_image = false;
     bool inverse = false;
     bool open = false;
+    bool has_inside = true; // else it is a sheet that solids have no use for
 };
 
 } // namespace ovc::pov

@@ -42,6 +42,7 @@ public:
     }
 
     void give_to(Object& object) {
+        object.has_inside = false; // unless an inside_vector follows
         for (Group& group : groups_) {
             auto child = std::make_shared<Object>();
             child->kind = object.kind;

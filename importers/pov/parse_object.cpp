@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <unordered_map>
+#include <unordered_set>
 
 namespace ovc::pov {
 
@@ -32,6 +33,10 @@ const std::unordered_map<std::string_view, ParseShape> kShapes = {
     {"superellipsoid", parse_superellipsoid},
     {"bicubic_patch", parse_bicubic_patch}};
 
+/// Shapes that nothing is inside of.
+const std::unordered_set<std::string_view> kSheets = {"disc", "triangle", "smooth_triangle",
+                                                      "polygon", "bicubic_patch"};
+
 using ParseWhole = void (*)(Reader&, Object&);
 void parse_plane(Reader& reader, Object& object);
 void parse_group(Reader& reader, Object& object);
@@ -39,17 +44,28 @@ void parse_wrapped(Reader& reader, Object& object);
 void parse_refused(Reader& reader, Object& object);
 
 const std::unordered_map<std::string_view, ParseWhole> kWholes = {
-    {"plane", parse_plane},           {"mesh", parse_mesh},
-    {"mesh2", parse_mesh2},           {"light_source", parse_light_source},
-    {"object", parse_wrapped},        {"union", parse_group},
-    {"merge", parse_group},           {"difference", parse_group},
-    {"intersection", parse_group},    {"light_group", parse_group},
-    {"blob", parse_refused},          {"cubic", parse_refused},
-    {"height_field", parse_refused},  {"isosurface", parse_refused},
-    {"julia_fractal", parse_refused}, {"parametric", parse_refused},
-    {"poly", parse_refused},          {"polynomial", parse_refused},
-    {"quadric", parse_refused},       {"quartic", parse_refused},
-    {"sphere_sweep", parse_refused},  {"text", parse_refused}};
+    {"plane", parse_plane},
+    {"mesh", parse_mesh},
+    {"mesh2", parse_mesh2},
+    {"light_source", parse_light_source},
+    {"object", parse_wrapped},
+    {"union", parse_group},
+    {"merge", parse_group},
+    {"difference", parse_group},
+    {"intersection", parse_group},
+    {"light_group", parse_group},
+    {"blob", parse_blob},
+    {"cubic", parse_polynomial},
+    {"height_field", parse_refused},
+    {"isosurface", parse_isosurface},
+    {"julia_fractal", parse_refused},
+    {"parametric", parse_refused},
+    {"poly", parse_polynomial},
+    {"polynomial", parse_refused},
+    {"quadric", parse_quadric},
+    {"quartic", parse_polynomial},
+    {"sphere_sweep", parse_refused},
+    {"text", parse_refused}};
 
 void parse_plane(Reader& reader, Object& object) {
     PlaneShape plane;
@@ -78,11 +94,6 @@ void parse_children(Reader& reader, Object& object) {
 
 void parse_group(Reader& reader, Object& object) {
     parse_children(reader, object);
-    if (object.kind == "difference" || object.kind == "intersection")
-        object.refused = fmt::format("{} is not supported", object.kind);
-    if (object.kind == "merge")
-        reader.warn("merge", object.place,
-                    "merge is taken for union: where it lets light through, inner surfaces show");
     parse_modifiers(reader, object);
 }
 
@@ -95,6 +106,21 @@ void parse_wrapped(Reader& reader, Object& object) {
     object = *inside;
     object.place = at;
     parse_modifiers(reader, object);
+}
+
+/// clipped_by { objects } or clipped_by { bounded_by }, and the other way round.
+void parse_bounds(Reader& reader, Object& object, std::string_view what) {
+    std::vector<ObjectPtr>& list = what == "clipped_by" ? object.clips : object.bounds;
+    reader.expect('{', what);
+    Object holder;
+    if (reader.take("bounded_by"))
+        list = object.bounds;
+    else if (reader.take("clipped_by"))
+        list = object.clips;
+    else
+        parse_children(reader, holder);
+    list.insert(list.end(), holder.children.begin(), holder.children.end());
+    reader.expect('}', what);
 }
 
 void parse_refused(Reader& reader, Object& object) {
@@ -169,6 +195,12 @@ void place(Object& object, const dmat4& by) {
     object.placed = by * object.placed;
     if (object.texture)
         object.texture->pigment.placed = by * object.texture->pigment.placed;
+    for (std::vector<ObjectPtr>* list : {&object.clips, &object.bounds})
+        for (ObjectPtr& other : *list) {
+            auto moved = std::make_shared<Object>(*other); // others may hold it as well
+            place(*moved, by);
+            other = std::move(moved);
+        }
 }
 
 ObjectPtr parse_object(Reader& reader) {
@@ -197,6 +229,7 @@ ObjectPtr parse_object(Reader& reader) {
     }
     if (const auto shape = kShapes.find(object->kind); shape != kShapes.end()) {
         object->shape = shape->second(reader);
+        object->has_inside = !kSheets.contains(object->kind);
         parse_modifiers(reader, *object);
     } else
         kWholes.at(object->kind)(reader, *object);
@@ -210,13 +243,17 @@ void parse_modifiers(Reader& reader, Object& object) {
             continue;
         if (const auto m = take_transform(reader))
             place(object, *m);
-        else if (reader.take("clipped_by")) {
-            object.refused = "clipped_by is not supported";
-            skip_braces(reader, "clipped_by");
+        else if (reader.take("clipped_by"))
+            parse_bounds(reader, object, "clipped_by");
+        else if (reader.take("bounded_by"))
+            parse_bounds(reader, object, "bounded_by");
+        else if (reader.take("inside_vector")) {
+            parse_vector(reader);
+            object.has_inside = true;
         } else if (const auto texture = take_named_if<Texture>(reader))
             add_texture(object, *texture); // as old scenes have it
         else if (token.kind == TokenKind::Name && token.name->is_keyword && !starts_object(token)) {
-            reader.next(); // bounded_by, interior_texture, photons, uv_mapping and the like
+            reader.next(); // interior_texture, photons, uv_mapping and the like
             skip_arguments(reader);
         } else if (!reader.take(',') && !reader.take(';'))
             reader.fail_here(fmt::format("'}}' or a modifier of {}", object.kind));

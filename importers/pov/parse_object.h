@@ -18,6 +18,12 @@ void parse_light_source(Reader& reader, Object& object);
 void parse_mesh(Reader& reader, Object& object);
 void parse_mesh2(Reader& reader, Object& object);
 
+/// shape_implicit.cpp: from the { on, likewise.
+void parse_blob(Reader& reader, Object& object);
+void parse_quadric(Reader& reader, Object& object);
+void parse_polynomial(Reader& reader, Object& object);
+void parse_isosurface(Reader& reader, Object& object);
+
 /// Modifiers up to the }, which is taken.
 void parse_modifiers(Reader& reader, Object& object);
 

@@ -38,6 +38,29 @@ const Solid kSolids[] = {
      24},
     {"scaled", "sphere { 0, 1 scale <1, 2, -3> rotate <10, 20, 30> translate 5 }", 8 * kPi},
     {"inverse_twice", "box { 0, 1 inverse inverse }", 1},
+    {"box_minus_boxes",
+     "difference { box { 0, 3 } box { 1, <2, 2, 3> } box { <1, 1, 0>, <2, 2, 1> } }", 24},
+    {"box_minus_union", "difference { box { 0, 3 } union { box { 1, 4 } box { <0, 2, 0>, 3 } } }",
+     27 - 8 - 9 + 4},
+    {"box_minus_difference",
+     "difference { box { 0, 3 } difference { box { 1, 4 } box { 2, 5 } } scale <1, -1, 1> }", 20},
+    {"lens", "intersection { sphere { 0, 1 } sphere { x, 1 } rotate 33 }", kPi * 5 / 12},
+    {"merged", "merge { sphere { 0, 1 } sphere { x, 1 } }", 8 / 3.0 * kPi - kPi * 5 / 12},
+    {"half_a_ball", "intersection { sphere { 0, 2 } plane { y, 0 } }", 2 / 3.0 * kPi * 8},
+    {"the_other_half", "difference { sphere { 0, 2 } plane { <1, 1, 1>, 0 } }", 2 / 3.0 * kPi * 8},
+    {"a_box_of_planes",
+     "intersection { plane { x, 1 } plane { -x, 1 } plane { y, 2 } plane { y, 0 inverse } "
+     "plane { z, 5 } plane { -z, -4 } }",
+     4},
+    {"a_tetrahedron_of_planes",
+     "intersection { plane { <1, 1, 1>, 1 } plane { <-1, -1, 1>, 1 } plane { <1, -1, -1>, 1 } "
+     "plane { <-1, 1, -1>, 1 } }",
+     8 * std::sqrt(3.0)},
+    {"a_mesh_with_an_inside",
+     "difference { box { -1, 1 } mesh { triangle { 0, <0, 3, 0>, <3, 0, 0> } "
+     "triangle { 0, <3, 0, 0>, <0, 0, 3> } triangle { 0, <0, 0, 3>, <0, 3, 0> } "
+     "triangle { <3, 0, 0>, <0, 3, 0>, <0, 0, 3> } inside_vector y } }",
+     7},
 };
 
 class PovSolid : public testing::TestWithParam<Solid> {};
@@ -58,7 +81,7 @@ TEST_P(PovSolid, IsClosedAndOutwardAndHasItsVolume) {
     }
     for (const auto& [edge, balance] : edges)
         ASSERT_EQ(balance, 0) << edge.first[0] << " " << edge.first[1] << " " << edge.first[2];
-    EXPECT_NEAR(volume, GetParam().volume, 0.003 * GetParam().volume);
+    EXPECT_NEAR(volume, GetParam().volume, 0.004 * GetParam().volume);
 }
 
 TEST_P(PovSolid, NormalsPointOutside) {
@@ -68,6 +91,8 @@ TEST_P(PovSolid, NormalsPointOutside) {
         for (size_t i = 0; i < scene->meshes[m].normals.size(); ++i) {
             const Triangle t = scene->soup.chunks[m].triangle(uint32_t(i / 3));
             const dvec3 flat = glm::cross(t[1] - t[0], t[2] - t[0]);
+            if (glm::length(flat) <= 1e-8)
+                continue; // solids have slivers that floats turn around
             ASSERT_GT(glm::dot(flat, dvec3(scene->meshes[m].normals[i])), 0) << i;
         }
 }
@@ -90,6 +115,44 @@ TEST(PovShapes, FlatOnesHaveTheirArea) {
         8, 1e-9);
     EXPECT_NEAR(area("cylinder { 0, y, 1 open }"), 2 * kPi, 0.01);
     EXPECT_NEAR(area("triangle { 0, 2*x, 2*y }"), 2, 1e-9);
+}
+
+TEST(PovShapes, ClippedOnesAreOpen) {
+    EXPECT_NEAR(area("sphere { 0, 1 clipped_by { plane { y, 0 } } }"), 2 * kPi, 0.01);
+    EXPECT_NEAR(area("box { 0, 2 clipped_by { box { 1, 3 } } translate 5 }"), 3, 1e-5);
+    EXPECT_NEAR(area("box { 0, 2 translate 5 clipped_by { box { 1, 3 } } }"), 0, 1e-9);
+    EXPECT_NEAR(area("box { 0, 2 bounded_by { box { 1, 3 } } clipped_by { bounded_by } }"), 3,
+                1e-5);
+    EXPECT_NEAR(area("difference { box { 0, 2 } cylinder { <1, 1, -1>, <1, 1, 3>, 0.5 open } }"),
+                24 - 0.5 * kPi + 2 * kPi, 0.01);
+    EXPECT_NEAR(
+        area("intersection { box { 0, 2 } cylinder { <1, 1, 0.5>, <1, 1, 1.5>, 0.5 open } }"), kPi,
+        0.01);
+}
+
+TEST(PovShapes, PartsOfSolidsKeepTheirLook) {
+    const Result<Scene> scene =
+        parse_pov("difference { sphere { 0, 1 pigment { color rgb x } } box { 0, 2 } "
+                  "pigment { color rgb y } interior { ior 1.5 } }",
+                  "x.pov", {});
+    ASSERT_TRUE(scene) << scene.error().message;
+    ASSERT_EQ(scene->meshes.size(), 2u);
+    for (size_t m = 0; m < 2; ++m) {
+        const bool is_box = scene->materials[scene->meshes[m].material].color == vec3(0, 1, 0);
+        EXPECT_EQ(scene->materials[scene->meshes[m].material].ior, 1.5);
+        const Chunk& chunk = scene->soup.chunks[m];
+        for (uint32_t prim = 0; prim < chunk.size(); ++prim) {
+            const Triangle t = chunk.triangle(prim);
+            if (is_box) { // its faces look into what it takes away
+                const dvec3 flat = glm::cross(t[1] - t[0], t[2] - t[0]);
+                EXPECT_GE(std::min({flat.x, flat.y, flat.z}), -1e-12);
+            }
+            for (size_t i = 0; !is_box && i < 3; ++i) // the sphere's, in between its corners
+                EXPECT_GT(
+                    glm::dot(dvec3(scene->meshes[m].normals[3 * prim + i]), glm::normalize(t[i])),
+                    0.99999);
+        }
+    }
 }
 
 TEST(PovShapes, VerticesLieOnTheSphere) {

@@ -415,6 +415,25 @@ Material parse_material(Reader& reader) {
     return material;
 }
 
+/// `tiles { texture { … } tile2 texture { … } }`: a checker of two textures, as old scenes have it.
+/// It has the finish of the first.
+static Texture parse_tiles(Reader& reader) {
+    reader.expect('{', "tiles");
+    std::vector<Texture> both;
+    while (!reader.take('}')) {
+        if (reader.take("texture"))
+            both.push_back(parse_texture(reader));
+        else if (const auto texture = take_named_if<Texture>(reader))
+            both.push_back(*texture);
+        else if (!reader.take("tile2") && !reader.take(','))
+            reader.fail_here("'}' or a texture of tiles");
+    }
+    if (both.empty())
+        return reader.defaults;
+    both.front().pigment.other = mean_of(both.back().pigment);
+    return both.front();
+}
+
 Texture parse_texture(Reader& reader) {
     const Deeper deeper(reader);
     reader.expect('{', "texture");
@@ -429,6 +448,8 @@ Texture parse_texture(Reader& reader) {
             texture.pigment = parse_pigment(reader, texture.pigment);
         else if (reader.take("finish"))
             texture.surface = parse_finish(reader, texture.surface);
+        else if (reader.take("tiles"))
+            texture = parse_tiles(reader);
         else if (reader.take("normal")) {
             reader.warn("normal", token.place, "normal patterns are left out");
             skip_braces(reader, "normal");

@@ -1,0 +1,406 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/pov/solid.h"
+
+#include "importers/pov/bounds.h"
+#include "importers/pov/flatten.h"
+#include "importers/pov/implicit.h"
+#include "importers/pov/shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+namespace ovc::pov {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const Box kEverywhere{dvec3(-kInfinity), dvec3(kInfinity)};
+
+/// An operand's triangles, with what each is of.
+struct CutLeaf {
+    csg::Operand operand;
+    std::vector<std::array<dvec3, 3>> normals; // 0: the triangle's own
+    std::vector<uint32_t> skins;
+    Box box;
+};
+
+/// Corners that a shape has when it is open, among those that it has when it is closed.
+std::vector<uint8_t> hidden_caps(const Shape& shape, int segments, const Facets& closed) {
+    const auto key = [](const Facets& facets, size_t t) {
+        std::array<double, 9> all;
+        for (size_t i = 0; i < 9; ++i)
+            all[i] = facets.corners[t + i / 3].position[int(i % 3)];
+        return all;
+    };
+    Facets open;
+    shape.cut(segments, /* open= */ true, open);
+    std::map<std::array<double, 9>, int> shown;
+    for (size_t t = 0; t < open.corners.size(); t += 3)
+        ++shown[key(open, t)];
+    std::vector<uint8_t> hidden;
+    for (size_t t = 0; t < closed.corners.size(); t += 3)
+        hidden.push_back(!shown.contains(key(closed, t)));
+    return hidden;
+}
+
+/// Adds facets as they stand in the solid's space, outward.
+void add(const Facets& facets, const dmat4& placed, uint32_t skin, CutLeaf& leaf) {
+    const dmat3 turned = glm::transpose(glm::inverse(dmat3(placed)));
+    const bool mirrored = glm::determinant(dmat3(placed)) < 0;
+    const size_t order[3] = {0, mirrored ? size_t(2) : 1, mirrored ? size_t(1) : 2};
+    for (size_t t = 0; t + 2 < facets.corners.size(); t += 3) {
+        std::array<dvec3, 3> at, normals;
+        for (size_t i = 0; i < 3; ++i) {
+            const Corner& corner = facets.corners[t + order[i]];
+            at[i] = dvec3(placed * dvec4(corner.position, 1));
+            const dvec3 n = turned * corner.normal;
+            const double length = glm::length(n);
+            normals[i] = length > 0 && std::isfinite(length) ? n / length : dvec3(0);
+            if (is_finite(at[i]))
+                leaf.box.add(at[i]);
+        }
+        leaf.operand.triangles.push_back(at);
+        leaf.normals.push_back(normals);
+        leaf.skins.push_back(skin);
+    }
+}
+
+/// A half-space as far as the box reaches, and beyond: its surface, and walls that are not shown.
+void cut_plane(const PlaneShape& plane, const Box& box, Facets& out) {
+    const dvec3 center = box.center();
+    const double far = 2 * std::max(glm::length(box.extent()), 1e-9);
+    const dvec3& n = plane.normal;
+    // A plane beyond the box leaves it whole, or nothing of it, wherever it is.
+    const double height = std::clamp(plane.distance - glm::dot(n, center), -far, far);
+    const int major = major_axis(n);
+    dvec3 u(0);
+    u[(major + 1) % 3] = 1;
+    u = glm::normalize(u - glm::dot(u, n) * n);
+    const dvec3 v = glm::cross(n, u), top = center + height * n, down = -3 * far * n;
+    const dvec3 rim[4] = {top + far * (u + v), top + far * (v - u), top - far * (u + v),
+                          top + far * (u - v)};
+    out.add_quad(rim[0], rim[1], rim[2], rim[3]);
+    for (int i = 0; i < 4; ++i) {
+        const dvec3 &a = rim[i], &b = rim[(i + 1) % 4];
+        out.add_quad(a, a + down, b + down, b);
+    }
+    out.add_quad(rim[3] + down, rim[2] + down, rim[1] + down, rim[0] + down);
+}
+
+/// A mesh's triangles may run the other way around: outside is where the volume is above 0.
+void turn_outward(CutLeaf& leaf) {
+    double volume = 0;
+    const dvec3 center = leaf.box.empty() ? dvec3(0) : leaf.box.center();
+    for (const auto& t : leaf.operand.triangles)
+        volume += glm::dot(t[0] - center, glm::cross(t[1] - center, t[2] - center));
+    if (volume < 0)
+        for (size_t i = 0; i < leaf.operand.triangles.size(); ++i) {
+            std::swap(leaf.operand.triangles[i][1], leaf.operand.triangles[i][2]);
+            std::swap(leaf.normals[i][1], leaf.normals[i][2]);
+        }
+}
+
+/// How finely to cut: pieces of a circle, cells of a field.
+struct Fineness {
+    int segments, cells;
+
+    explicit Fineness(int pieces) : segments(pieces), cells(field_cells(pieces)) {}
+};
+
+CutLeaf cut_leaf(const SolidLeaf& leaf, const Fineness& fineness, const Box& reach) {
+    const int segments = fineness.segments;
+    CutLeaf cut;
+    for (const SolidLeaf::Skin& skin : leaf.skins) {
+        Facets facets;
+        std::vector<uint8_t> hidden;
+        if (const auto* shape = std::get_if<Shape>(&skin.object->shape)) {
+            shape->cut(segments, /* open= */ false, facets);
+            if (skin.object->open)
+                hidden = hidden_caps(*shape, segments, facets);
+        } else if (const auto* endless = std::get_if<EndlessShape>(&skin.object->shape)) {
+            const size_t shown =
+                endless->cut(moved(reach, glm::inverse(leaf.placed)), fineness.cells, facets);
+            hidden.resize(shown, 0);
+            hidden.resize(facets.corners.size() / 3, 1);
+        } else if (const auto* plane = std::get_if<PlaneShape>(&skin.object->shape)) {
+            cut_plane(*plane, moved(reach, glm::inverse(leaf.placed)), facets);
+            hidden.assign(facets.corners.size() / 3, 1);
+            hidden[0] = hidden[1] = 0;
+        }
+        add(facets, leaf.placed, uint32_t(&skin - leaf.skins.data()), cut);
+        hidden.resize(facets.corners.size() / 3, 0);
+        cut.operand.hidden.insert(cut.operand.hidden.end(), hidden.begin(), hidden.end());
+    }
+    if (leaf.has_inside)
+        turn_outward(cut);
+    cut.operand.solid = leaf.has_inside;
+    cut.operand.inverse = leaf.inverse;
+    return cut;
+}
+
+/// A half-space ends on one side where it looks along an axis.
+Box bounds_of_plane(const PlaneShape& plane, const SolidLeaf& leaf) {
+    const dvec3 n = glm::transpose(glm::inverse(dmat3(leaf.placed))) * plane.normal *
+                    (leaf.inverse ? -1.0 : 1.0);
+    const dvec3 on(leaf.placed * dvec4(plane.distance * plane.normal, 1));
+    const int axis = major_axis(n);
+    Box box = kEverywhere;
+    if (n[(axis + 1) % 3] == 0 && n[(axis + 2) % 3] == 0)
+        (n[axis] > 0 ? box.hi : box.lo)[axis] = on[axis];
+    return box;
+}
+
+Box bounds_of_node(const Solid& solid, uint32_t number, const std::vector<Box>& leaves) {
+    const csg::Node& node = solid.nodes[number];
+    if (node.kind == csg::Kind::Operand)
+        return leaves[node.operand];
+    const bool all = node.kind == csg::Kind::Intersection || node.kind == csg::Kind::Clip;
+    Box box = all ? kEverywhere : Box();
+    for (const uint32_t child : node.children) {
+        const Box one = bounds_of_node(solid, child, leaves);
+        if (all)
+            box = box.intersection(one);
+        else
+            box.add(one);
+    }
+    return box.empty() ? Box() : box;
+}
+
+/// What reaches as far as this is taken for endless.
+constexpr double kFar = 1e7;
+
+Box without_far_sides(Box box) {
+    for (int i = 0; i < 3; ++i) {
+        box.lo[i] = box.lo[i] < -0.1 * kFar ? -kInfinity : box.lo[i];
+        box.hi[i] = box.hi[i] > 0.1 * kFar ? kInfinity : box.hi[i];
+    }
+    return box;
+}
+
+Box bounds_of_leaf(const SolidLeaf& leaf, int segments) {
+    Box box;
+    for (const SolidLeaf::Skin& skin : leaf.skins)
+        if (const auto* shape = std::get_if<Shape>(&skin.object->shape); shape && shape->box)
+            box.add(moved(*shape->box, leaf.placed));
+        else if (shape)
+            return cut_leaf(leaf, Fineness(segments), {}).box;
+        else
+            return kEverywhere;
+    return box;
+}
+
+bool is_finite_box(const Box& box) {
+    return is_finite(box.lo) && is_finite(box.hi);
+}
+
+/// The solid in triangles: endless operands are cut where `reach` ends.
+struct Evaluated {
+    std::vector<CutLeaf> leaves;
+    std::vector<csg::Part> parts;
+    Box box;
+};
+
+Evaluated evaluate_within(const Solid& solid, const Fineness& fineness, const Box& reach) {
+    Evaluated result;
+    csg::Tree tree;
+    tree.nodes = solid.nodes;
+    for (const SolidLeaf& leaf : solid.leaves) {
+        result.leaves.push_back(cut_leaf(leaf, fineness, reach));
+        tree.operands.push_back(std::move(result.leaves.back().operand));
+    }
+    result.parts = csg::evaluate(tree);
+    for (const csg::Part& part : result.parts)
+        for (const dvec3& corner : part.corners)
+            result.box.add(corner);
+    for (size_t i = 0; i < tree.operands.size(); ++i)
+        result.leaves[i].operand = std::move(tree.operands[i]);
+    return result;
+}
+
+bool has_field(const Solid& solid) {
+    return std::any_of(solid.leaves.begin(), solid.leaves.end(), [](const SolidLeaf& leaf) {
+        return std::holds_alternative<EndlessShape>(leaf.skins[0].object->shape);
+    });
+}
+
+/// Where a field without end is drawn: its cells would otherwise be as large as the scene.
+Box field_reach(const Solid& solid, const Box& reach) {
+    constexpr double kFieldReach = 4 / kPlaneReach;
+    Box bounds;
+    for (const SolidLeaf& leaf : solid.leaves)
+        if (!leaf.bounds.empty())
+            bounds.add(leaf.bounds);
+    if (!bounds.empty()) // POV-Ray draws what it comes upon beyond
+        return bounds.padded(0.5 * max_component(bounds.extent()));
+    const dvec3 half = kFieldReach * 0.5 * reach.extent();
+    return {reach.center() - half, reach.center() + half};
+}
+
+/// Where boxes do not bound a solid, what planes at odd angles leave of it may still be small: that
+/// shows when it is cut coarsely. What is endless ends with the reach.
+Box found_bounds(const Solid& solid, const Box& box, Box reach) {
+    if (has_field(solid))
+        reach = field_reach(solid, reach);
+    const Box largest = box.intersection(reach);
+    if (largest.empty())
+        return largest;
+    const Box found = evaluate_within(solid, Fineness(has_field(solid) ? 48 : 8), largest).box;
+    const dvec3 quarter = 0.25 * reach.extent();
+    const Box middle{reach.center() - quarter, reach.center() + quarter};
+    if (found.empty() || !middle.contains(found.lo) || !middle.contains(found.hi))
+        return largest;
+    return found.padded(0.1 * glm::length(found.extent()));
+}
+
+/// The same for solids of the same tree of the same shapes, placed alike.
+std::string key_of(const Solid& solid) {
+    std::string key;
+    const auto add = [&key](const auto& value) {
+        key.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    for (const csg::Node& node : solid.nodes) {
+        add(node.kind);
+        add(node.operand);
+        add(node.children.size());
+        for (const uint32_t child : node.children)
+            add(child);
+    }
+    for (const SolidLeaf& leaf : solid.leaves) {
+        add(leaf.placed);
+        add(leaf.inverse);
+        add(leaf.has_inside);
+        add(leaf.skins.size());
+        for (const SolidLeaf::Skin& skin : leaf.skins)
+            add(skin.object);
+    }
+    return key;
+}
+
+/// The normal that a whole triangle has at one of its points.
+dvec3 normal_at(const CutLeaf& leaf, uint32_t triangle, const dvec3& p) {
+    const auto& t = leaf.operand.triangles[triangle];
+    const auto& n = leaf.normals[triangle];
+    const dvec3 flat = glm::cross(t[1] - t[0], t[2] - t[0]);
+    const double square = glm::dot(flat, flat);
+    if ((n[0] == dvec3(0) && n[1] == dvec3(0) && n[2] == dvec3(0)) || !(square > 0))
+        return dvec3(0);
+    dvec3 sum(0);
+    for (size_t i = 0; i < 3; ++i) {
+        const dvec3 &a = t[(i + 1) % 3], &b = t[(i + 2) % 3];
+        const double weight = glm::dot(glm::cross(a - p, b - p), flat) / square;
+        sum += std::clamp(weight, 0.0, 1.0) * (n[i] == dvec3(0) ? flat / std::sqrt(square) : n[i]);
+    }
+    return sum;
+}
+
+} // namespace
+
+bool is_solid(const Object& object) {
+    return std::holds_alternative<EndlessShape>(object.shape) || object.kind == "difference" ||
+           object.kind == "intersection" || object.kind == "merge" || !object.clips.empty();
+}
+
+csg::Kind kind_of(const Object& object, bool inverse) {
+    const bool all = object.kind == "difference" || object.kind == "intersection";
+    if (all == inverse)
+        return object.kind == "merge" || inverse ? csg::Kind::Merge : csg::Kind::Union;
+    return csg::Kind::Intersection;
+}
+
+std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& reach) {
+    Box box = bounds_of(solid, segments);
+    if (box.empty())
+        return {};
+    Fineness fineness(segments);
+    if (!is_finite_box(box)) {
+        box = found_bounds(solid, box, reach);
+        fineness.cells *= 3; // what has no end has thin arms, more often than not
+    }
+    if (box.empty())
+        return {};
+    Evaluated cut = evaluate_within(solid, fineness, box);
+    std::vector<uint32_t> first; // skin of each leaf
+    uint32_t skins = 0;
+    for (const SolidLeaf& leaf : solid.leaves) {
+        first.push_back(skins);
+        skins += uint32_t(leaf.skins.size());
+    }
+    std::map<uint32_t, Facets> by_skin;
+    for (const csg::Part& part : cut.parts) {
+        const CutLeaf& leaf = cut.leaves[part.operand];
+        Facets& facets = by_skin[first[part.operand] + leaf.skins[part.triangle]];
+        for (const dvec3& corner : part.corners) {
+            const dvec3 n = normal_at(leaf, part.triangle, corner);
+            facets.corners.push_back({corner, part.turned ? -n : n});
+            facets.smooth = facets.smooth || n != dvec3(0);
+        }
+    }
+    std::vector<SolidPart> parts;
+    for (auto& [skin, facets] : by_skin)
+        parts.push_back({skin, std::move(facets)});
+    return parts;
+}
+
+uint32_t material_of(const Solid& solid, uint32_t skin) {
+    size_t leaf = 0;
+    for (; skin >= solid.leaves[leaf].skins.size(); ++leaf)
+        skin -= uint32_t(solid.leaves[leaf].skins.size());
+    return solid.leaves[leaf].skins[skin].material;
+}
+
+std::vector<std::vector<uint32_t>> alike(const std::vector<Solid>& solids) {
+    std::map<std::string, std::vector<uint32_t>> groups;
+    std::vector<std::vector<uint32_t>> all;
+    for (uint32_t i = 0; i < solids.size(); ++i)
+        groups[key_of(solids[i])].push_back(i);
+    for (auto& [key, group] : groups)
+        if (group.size() == 1 || is_finite_box(bounds_of(solids[group[0]], 8)))
+            all.push_back(std::move(group));
+        else
+            for (const uint32_t i : group)
+                all.push_back({i});
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+Box bounds_of(const Solid& solid, int segments) {
+    std::vector<Box> boxes;
+    bool is_open = false; // some may be smaller where the whole is
+    for (const SolidLeaf& leaf : solid.leaves) {
+        const Object& object = *leaf.skins[0].object;
+        if (const auto* plane = std::get_if<PlaneShape>(&object.shape))
+            boxes.push_back(bounds_of_plane(*plane, leaf));
+        else
+            boxes.push_back(leaf.inverse ? kEverywhere : bounds_of_leaf(leaf, segments));
+        is_open = is_open || (std::holds_alternative<EndlessShape>(object.shape) && !leaf.inverse);
+    }
+    const uint32_t root = uint32_t(solid.nodes.size() - 1);
+    Box whole = bounds_of_node(solid, root, boxes);
+    for (int round = 0; is_open && !whole.empty() && round < 4; ++round) {
+        const Box asked = whole.intersection(Box{dvec3(0), dvec3(0)}.padded(kFar));
+        for (size_t i = 0; i < solid.leaves.size(); ++i) {
+            const SolidLeaf& leaf = solid.leaves[i];
+            if (const auto* endless = std::get_if<EndlessShape>(&leaf.skins[0].object->shape);
+                endless && !leaf.inverse)
+                boxes[i] = without_far_sides(
+                    moved(endless->bounds(moved(asked, glm::inverse(leaf.placed))), leaf.placed));
+        }
+        whole = bounds_of_node(solid, root, boxes);
+    }
+    return whole;
+}
+
+double triangles_of(const Solid& solid, int segments) {
+    double sum = 0;
+    for (const SolidLeaf& leaf : solid.leaves)
+        for (const SolidLeaf::Skin& skin : leaf.skins)
+            if (const Shape* shape = std::get_if<Shape>(&skin.object->shape))
+                sum += shape->triangles(segments);
+            else if (std::holds_alternative<EndlessShape>(skin.object->shape))
+                sum += 4.0 * segments * segments;
+    return sum;
+}
+
+} // namespace ovc::pov
