@@ -107,15 +107,17 @@ void Reader::do_declare(bool local) {
         Value* item = hooks_.item(*this, *kept);
         expect('=', name->text);
         Value value = hooks_.value(*this);
+        count_depth(*kept, value);
         *item = std::move(value);
         return take_semicolon();
     }
     raw_expect('=', name->text);
-    const size_t scopes = scopes_.size();
+    // The value may end in a macro that is still running, or behind the end of the one that this
+    // stands in, whose variables are gone.
+    const uint32_t scope = scope_of(name, local);
     Value value = hooks_.value(*this);
-    // The end of the macro that this stood in may have been read past: its variables are gone.
-    if (!local || scopes <= scopes_.size())
-        declare(name, local).value = std::move(value);
+    if (scope < scopes_.size())
+        declare_in(scope, name).value = std::move(value);
     take_semicolon();
 }
 

@@ -47,6 +47,7 @@ struct Object {
     dmat4 placed{1};                // from its own space to that of what it is a part of
     std::optional<Texture> texture; // none: its parent's
     std::optional<Interior> interior;
+    uint32_t depth = 1; // of groups in groups
     bool no_shadow = false;
     bool no_image = false;
     bool inverse = false;

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <unordered_map>
 
 namespace ovc::pov {
@@ -200,6 +201,11 @@ ObjectPtr parse_object(Reader& reader) {
         parse_modifiers(reader, *object);
     } else
         kWholes.at(object->kind)(reader, *object);
+    for (const ObjectPtr& child : object->children)
+        object->depth = std::max(object->depth, child->depth + 1);
+    if (object->depth > reader.limits.chain)
+        reader.fail(object->place, fmt::format("found groups more than {} deep in each other",
+                                               reader.limits.chain));
     return object;
 }
 

@@ -19,6 +19,12 @@ namespace ovc::pov {
 
 namespace {
 
+void fill_item(Reader& reader, Array& array, size_t i) {
+    Value value = parse_value(reader);
+    reader.count_depth(array, value);
+    array.items[i] = std::move(value);
+}
+
 void fill(Reader& reader, Array& array, size_t dimension, size_t first, size_t count) {
     const Deeper deeper(reader);
     reader.expect('{', "an array");
@@ -28,7 +34,7 @@ void fill(Reader& reader, Array& array, size_t dimension, size_t first, size_t c
         if (dimension + 1 < array.sizes.size())
             fill(reader, array, dimension + 1, first + i * stride, stride);
         else
-            array.items[first + i] = parse_value(reader);
+            fill_item(reader, array, first + i);
         reader.take_comma();
     }
     reader.expect('}', "the items of an array");
@@ -121,8 +127,9 @@ std::optional<Value> take_whole(Reader& reader) {
             return std::nullopt;
         }
         const Value item = *parse_item(reader, *kept);
-        if (std::holds_alternative<Number>(item))
-            return item;
+        // A copy, so that an array in another never changes and cannot come to hold that other.
+        if (const auto* inner = std::get_if<std::shared_ptr<Array>>(&item))
+            return std::make_shared<Array>(**inner);
         return item;
     }
     const bool is_callable = std::holds_alternative<std::shared_ptr<const Function>>(slot->value) ||

@@ -49,6 +49,7 @@ public:
           reader_({parse_value, parse_float, parse_condition, parse_item, parse_defaults},
                   options.log, folder) {
         reader_.limits.tokens = most_words;
+        reader_.limits.triangles = options.max_triangles;
         reader_.defaults = factory_default();
         reader_.picture = options.size.value_or(reader_.picture);
     }

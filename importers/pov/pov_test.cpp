@@ -64,6 +64,26 @@ TEST(PovExpression, KnowsTheFunctions) {
                  "#declare T = function { transform { rotate -90*z scale 5 } }");
 }
 
+/// As povray 3.7.0.10 prints them; curved surfaces within what their facets leave.
+TEST(PovExpression, TraceMeetsSurfacesWherePovRayDoes) {
+    const std::string box =
+        "#declare N = x; #declare S = box { -1, 1 rotate 90*y scale <1, 1, -2> }";
+    EXPECT_VALUE(dvec3(0, 0, -2), "trace(S, -5*z, z, N) + 0 * N", box);
+    EXPECT_VALUE(dvec3(0, 0, -1), "N", box + "#declare P = trace(S, -5*z, 3*z, N);");
+    EXPECT_VALUE(dvec3(0), "trace(S, -5*z, x, N)", box);
+    EXPECT_VALUE(dvec3(0), "N", box + "#declare P = trace(S, -5*z, x, N);");
+    EXPECT_VALUE(dvec3(1, 2, 0), "trace(P, <1, 9, 0>, -y)", "#declare P = plane { y, 2 no_image }");
+    EXPECT_VALUE(dvec3(0, 1, 0), "N",
+                 "#declare P = plane { y, 2 }; #declare V = trace(P, <1, 9, 0>, -y, N);");
+    const std::string balls = "#declare S = union { #for (I, 0, 40) sphere { I * x, 0.5 } #end }";
+    EXPECT_LT(glm::length(value("trace(S, <30.2, 5, 0.1>, -y)", balls) -
+                          dvec3(30.2, std::sqrt(0.25 - 0.04 - 0.01), 0.1)),
+              0.001);
+    EXPECT_LT(glm::length(value("N", balls + "#declare P = trace(S, <30.2, 5, 0.1>, -y, N);") -
+                          2.0 * dvec3(0.2, std::sqrt(0.25 - 0.04 - 0.01), 0.1)),
+              0.002);
+}
+
 /// What povray 3.7.0.10 prints for #debug str(rand(seed(1)), 0, 9) and the next.
 TEST(PovExpression, RandomNumbersAreThoseOfPovRay) {
     const std::string stream = "#declare R = seed(1);";
@@ -88,6 +108,10 @@ TEST(PovDirectives, MacrosTakeValuesAndVariables) {
     EXPECT_VALUE(6, "Twice(3)", "#macro Twice(A) (2 * A) #end");
     EXPECT_VALUE(9, "Out", "#macro Set(A, B) #declare A = B * B; #end Set(Out, 3)");
     EXPECT_VALUE(3, "I", "#declare I = 3; #macro M() #local I = 7; #end M()");
+    // The macro still runs when its value is known; it has a Q of its own.
+    EXPECT_VALUE(6, "M()",
+                 "#macro Five() #local Q = 5; #if (1) Q; #else 0; #end #end\n"
+                 "#macro M() #local Q = 1; #local P = Five() #local Q = Five() (P + 1) #end");
     EXPECT_VALUE(24, "Factorial(4)",
                  "#macro Factorial(N) #if (N <= 1) 1 #else (N * Factorial(N - 1)) #end #end");
 }

@@ -91,10 +91,24 @@ Token Reader::step(bool hold_declarations) {
     }
 }
 
-Token Reader::raw() {
-    if (++run_over_ > limits.tokens)
+void Reader::spend(uint64_t words) {
+    run_over_ += words;
+    if (run_over_ > limits.tokens)
         fail(last_,
              fmt::format("stopped after {} words: a loop or a macro does not end", limits.tokens));
+}
+
+void Reader::count_depth(Array& array, const Value& item) const {
+    const auto* inner = std::get_if<std::shared_ptr<Array>>(&item);
+    if (!inner)
+        return;
+    array.depth = std::max(array.depth, (*inner)->depth + 1);
+    if (array.depth > limits.chain)
+        fail(last_, fmt::format("found arrays more than {} deep in each other", limits.chain));
+}
+
+Token Reader::raw() {
+    spend(1);
     while (!frames_.empty() && frame().at >= frame().end) {
         if (!frame().open.empty())
             fail(frame().open.back().place, "found no #end to this");
@@ -143,13 +157,24 @@ void Reader::bind(Name* name, uint32_t scope, Slot* slot) {
     }
 }
 
+uint32_t Reader::scope_of(const Name* name, bool local) const {
+    if (local)
+        return uint32_t(scopes_.size() - 1);
+    return name->bound.empty() ? 0 : name->bound.back().scope;
+}
+
 Slot& Reader::declare(Name* name, bool local) {
-    const uint32_t scope = local ? uint32_t(scopes_.size() - 1) : 0;
-    if (!name->bound.empty() && (!local || name->bound.back().scope == scope))
-        return *name->bound.back().slot;
+    return declare_in(scope_of(name, local), name);
+}
+
+Slot& Reader::declare_in(uint32_t scope, Name* name) {
+    for (const Name::Bound& bound : name->bound)
+        if (bound.scope == scope)
+            return *bound.slot;
     scopes_[scope].slots.push_back(std::make_unique<Slot>());
-    bind(name, scope, scopes_[scope].slots.back().get());
-    return *name->bound.back().slot;
+    Slot* slot = scopes_[scope].slots.back().get();
+    bind(name, scope, slot);
+    return *slot;
 }
 
 void Reader::undefine(Name* name) {

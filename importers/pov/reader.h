@@ -18,11 +18,15 @@ struct Limits {
     uint64_t tokens = 0;   // run over in all
     size_t nesting = 1000; // includes and macros inside each other
     uint64_t objects = 20'000'000;
-    uint64_t array_items = 50'000'000;
+    uint64_t triangles = 0; // of an object that the scene asks about
+    uint64_t array_items = 2'000'000;
+    uint32_t chain = 2000;      // groups in groups, arrays in arrays
+    uint32_t operations = 4000; // of a function and what it calls
     size_t depth = 400; // blocks and parentheses inside each other: the C++ stack holds as many
 };
 
 class Reader;
+class TraceTarget;
 
 /// Counts how deep the parser stands in itself; throws ParseError beyond Limits::depth.
 class Deeper {
@@ -69,6 +73,10 @@ public:
 
     [[noreturn]] void fail(const Place& at, const std::string& sentence) const;
     [[noreturn]] void fail_here(const std::string& expected);
+    /// Work other than running over words, counted in words: what takes about as long.
+    void spend(uint64_t words);
+    /// Before `item` becomes one of the array's. ParseError: arrays in arrays, too deep.
+    void count_depth(Array& array, const Value& item) const;
     /// Once for each `kind`.
     void warn(const std::string& kind, const Place& at, const std::string& sentence);
 
@@ -86,6 +94,8 @@ public:
     double gamma = 1; // assumed_gamma: what srgb colors are converted to
     ImageSize picture{640, 480};
     Texture defaults; // of #default
+    /// Objects that the scene asked about.
+    std::map<std::shared_ptr<const Object>, std::shared_ptr<const TraceTarget>> targets;
     std::vector<uint32_t> random_streams;
     Limits limits;
     uint64_t objects = 0;
@@ -147,6 +157,9 @@ private:
     /// #elseif, #case or #range of it where that is asked for; that directive is taken. Its name.
     std::string_view skip(bool stop_at_else, bool stop_at_case);
     void call(const Token& at, const std::shared_ptr<const Macro>& macro);
+    /// Where #declare or #local puts a variable of this name now.
+    uint32_t scope_of(const Name* name, bool local) const;
+    Slot& declare_in(uint32_t scope, Name* name);
     void bind(Name* name, uint32_t scope, Slot* slot);
     /// The value where it is given, or the caller's variable.
     std::pair<Slot*, Value> argument();

@@ -100,6 +100,7 @@ struct Slot {
 struct Array {
     std::vector<size_t> sizes; // of the dimensions
     std::vector<Value> items;  // the last index counts fastest
+    uint32_t depth = 1;        // of arrays in arrays
 };
 
 /// The tokens [first, last) of a file, run in the place of a call.
