@@ -141,7 +141,7 @@ void Reader::do_include() {
         fail(at, fmt::format("found macros and includes more than {} deep in each other: {} does "
                              "not end",
                              limits.nesting, ovc::quoted(*name)));
-    const std::filesystem::path path = find_file(*name);
+    const std::filesystem::path path = find_file(*name, ".inc");
     if (path.empty())
         fail(at, fmt::format("there is no file {}, neither beside the scene nor among POV-Ray's "
                              "include files",
@@ -163,12 +163,12 @@ void Reader::do_include() {
     frames_.push_back({file, 0, file->tokens.size() - 1, false, scope, {}, at});
 }
 
-std::filesystem::path Reader::find_file(const std::string& name) const {
+std::filesystem::path Reader::find_file(const std::string& name, std::string_view extension) const {
     std::vector<std::string> folders = {folder_};
     for (auto f = frames_.rbegin(); f != frames_.rend(); ++f)
         if (folders.back() != f->file->folder)
             folders.push_back(f->file->folder);
-    return pov::find_file(name, folders);
+    return pov::find_file(name, extension, folders);
 }
 
 bool Reader::condition() {

@@ -31,7 +31,8 @@ const std::unordered_map<std::string_view, ParseShape> kShapes = {
     {"lathe", parse_lathe},
     {"sor", parse_sor},
     {"superellipsoid", parse_superellipsoid},
-    {"bicubic_patch", parse_bicubic_patch}};
+    {"bicubic_patch", parse_bicubic_patch},
+    {"text", parse_text_shape}};
 
 using ParseWhole = void (*)(Reader&, Object&);
 void parse_plane(Reader& reader, Object& object);
@@ -50,7 +51,7 @@ const std::unordered_map<std::string_view, ParseWhole> kWholes = {
     {"julia_fractal", parse_refused}, {"parametric", parse_refused},
     {"poly", parse_refused},          {"polynomial", parse_refused},
     {"quadric", parse_refused},       {"quartic", parse_refused},
-    {"sphere_sweep", parse_refused},  {"text", parse_refused}};
+    {"sphere_sweep", parse_refused}};
 
 void parse_plane(Reader& reader, Object& object) {
     PlaneShape plane;

@@ -132,6 +132,7 @@ TEST(PovDirectives, LoopsAndConditionsNest) {
 
 TEST(PovDirectives, DeclarationsNeedNoSemicolon) {
     EXPECT_VALUE(5, "B", "#declare A = 5\n#declare B = A\n");
+    EXPECT_VALUE(5, "B", "#\n#declare A = 5 #; #\n # declare B = A # \n");
     EXPECT_VALUE(1, "1", "declare Old = 3 /* a /* nested */ comment */");
 }
 
@@ -139,9 +140,9 @@ TEST(PovDirectives, IncludesAreFoundWhateverTheirLettersAndSlashes) {
     const TestFolder folder;
     std::filesystem::create_directories(folder / "Geom");
     folder.write("Geom/Ball.INC", "#local R = 2; #declare Ball = sphere { 0, R }");
-    const auto scene = load(
-        folder.write("main.pov", "#include \"geom\\ball.inc\"\nobject { Ball }\n#ifdef (R) #error "
-                                 "\"a #local of an include is seen outside\" #end"));
+    const auto scene =
+        load(folder.write("main.pov", "#include \"geom\\ball\"\nobject { Ball }\n#ifdef (R) #error "
+                                      "\"a #local of an include is seen outside\" #end"));
     EXPECT_GT(triangles_of(scene).size(), 100u);
     std::filesystem::remove_all(folder / "Geom");
 }

@@ -26,6 +26,7 @@ struct Limits {
 };
 
 class Reader;
+class Font;
 class TraceTarget;
 
 /// Counts how deep the parser stands in itself; throws ParseError beyond Limits::depth.
@@ -87,7 +88,8 @@ public:
     Slot& declare(Name* name, bool local);
     void undefine(Name* name);
 
-    std::filesystem::path find_file(const std::string& name) const; // empty: none
+    /// As files.h has it: beside the scene, beside the including files, among POV-Ray's.
+    std::filesystem::path find_file(const std::string& name, std::string_view extension) const;
     Names& names() { return names_; }
     const Place& place() const { return last_; } // of the token read last
     double version = 3.7;
@@ -96,6 +98,7 @@ public:
     Texture defaults; // of #default
     /// Objects that the scene asked about.
     std::map<std::shared_ptr<const Object>, std::shared_ptr<const TraceTarget>> targets;
+    std::map<std::string, std::shared_ptr<Font>> fonts; // by name
     std::vector<uint32_t> random_streams;
     Limits limits;
     uint64_t objects = 0;
