@@ -250,11 +250,6 @@ Number parse_choice_of(Reader& reader) {
     return left;
 }
 
-double from_srgb(double c, double gamma) {
-    const double linear = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-    return gamma == 1 ? linear : std::pow(linear, 1 / gamma);
-}
-
 /// After rgb, rgbf, rgbt, rgbft or their srgb kin.
 void parse_rgb(Reader& reader, std::string_view word, Number& color) {
     const bool is_srgb = word[0] == 's';
@@ -402,6 +397,11 @@ bool parse_flag(Reader& reader) {
         token.is("yes") || token.is("no") || token.kind == TokenKind::Number || token.is('('))
         return parse_float(reader) != 0;
     return true;
+}
+
+double from_srgb(double c, double gamma) {
+    const double linear = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    return gamma == 1 ? linear : std::pow(linear, 1 / gamma);
 }
 
 bool starts_color(const Token& token) {

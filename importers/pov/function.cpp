@@ -269,10 +269,10 @@ std::shared_ptr<const Function> parse_function(Reader& reader) {
     auto function = std::make_shared<Function>();
     const std::vector<std::string> parameters = parse_parameters(reader);
     function->parameters = parameters.size();
-    if (!reader.peek().is('{')) { // width, height: of an image made from it
-        parse_float(reader);
+    if (!reader.peek().is('{')) { // of an image or a height_field made from it
+        function->grid.x = parse_float(reader);
         reader.take_comma();
-        parse_float(reader);
+        function->grid.y = parse_float(reader);
     }
     reader.expect('{', "function");
     const Token first = reader.peek();

@@ -17,6 +17,7 @@ struct Function {
     std::optional<dmat4> transform;       // or
     std::shared_ptr<const Spline> spline; // or
     uint32_t depth = 1;                   // of closures in each other
+    dvec2 grid{0};                        // WIDTH, HEIGHT of function WIDTH, HEIGHT { }
     std::string refused;                  // why it cannot be called
 };
 

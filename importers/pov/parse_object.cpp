@@ -32,7 +32,8 @@ const std::unordered_map<std::string_view, ParseShape> kShapes = {
     {"sor", parse_sor},
     {"superellipsoid", parse_superellipsoid},
     {"bicubic_patch", parse_bicubic_patch},
-    {"text", parse_text_shape}};
+    {"text", parse_text_shape},
+    {"height_field", parse_height_field}};
 
 using ParseWhole = void (*)(Reader&, Object&);
 void parse_plane(Reader& reader, Object& object);
@@ -41,17 +42,16 @@ void parse_wrapped(Reader& reader, Object& object);
 void parse_refused(Reader& reader, Object& object);
 
 const std::unordered_map<std::string_view, ParseWhole> kWholes = {
-    {"plane", parse_plane},           {"mesh", parse_mesh},
-    {"mesh2", parse_mesh2},           {"light_source", parse_light_source},
-    {"object", parse_wrapped},        {"union", parse_group},
-    {"merge", parse_group},           {"difference", parse_group},
-    {"intersection", parse_group},    {"light_group", parse_group},
-    {"blob", parse_refused},          {"cubic", parse_refused},
-    {"height_field", parse_refused},  {"isosurface", parse_refused},
-    {"julia_fractal", parse_refused}, {"parametric", parse_refused},
-    {"poly", parse_refused},          {"polynomial", parse_refused},
-    {"quadric", parse_refused},       {"quartic", parse_refused},
-    {"sphere_sweep", parse_refused}};
+    {"plane", parse_plane},        {"mesh", parse_mesh},
+    {"mesh2", parse_mesh2},        {"light_source", parse_light_source},
+    {"object", parse_wrapped},     {"union", parse_group},
+    {"merge", parse_group},        {"difference", parse_group},
+    {"intersection", parse_group}, {"light_group", parse_group},
+    {"blob", parse_refused},       {"cubic", parse_refused},
+    {"isosurface", parse_refused}, {"julia_fractal", parse_refused},
+    {"parametric", parse_refused}, {"poly", parse_refused},
+    {"polynomial", parse_refused}, {"quadric", parse_refused},
+    {"quartic", parse_refused},    {"sphere_sweep", parse_refused}};
 
 void parse_plane(Reader& reader, Object& object) {
     PlaneShape plane;

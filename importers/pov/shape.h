@@ -27,6 +27,9 @@ Shape parse_prism(Reader& reader);
 Shape parse_lathe(Reader& reader);
 Shape parse_sor(Reader& reader);
 
+// shape_height_field.cpp
+Shape parse_height_field(Reader& reader);
+
 // shape_text.cpp
 Shape parse_text_shape(Reader& reader);
 
