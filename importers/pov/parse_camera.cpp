@@ -59,10 +59,8 @@ bool take_bend(Reader& reader, CameraValue& camera) {
         {"omnimax", Bend::Omnimax},     {"panoramic", Bend::Panoramic},
         {"spherical", Bend::Spherical}, {"cylinder", Bend::Cylinder1}};
     for (const auto& [word, bend] : kWords)
-        if (const Place at = reader.peek().place; reader.take(word)) {
+        if (reader.take(word)) {
             camera.bend = bend;
-            if (bend == Bend::Omnimax)
-                reader.warn("omnimax", at, "the picture of omnimax is bent a little otherwise");
             if (bend == Bend::Cylinder1)
                 camera.bend =
                     Bend(int(bend) + parse_int(reader, 1, 4, "the kind of a cylinder") - 1);
