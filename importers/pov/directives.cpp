@@ -48,14 +48,10 @@ void Reader::obey(const Token& at) {
         {"debug", [](Reader& r, const Token& t) { r.do_message(t); }},
         {"render", [](Reader& r, const Token& t) { r.do_message(t); }},
         {"statistics", [](Reader& r, const Token& t) { r.do_message(t); }},
-        {"fopen",
-         [](Reader& r, const Token&) {
-             r.raw_name("#fopen");
-             r.hooks_.value(r);
-             r.next(); // read, write or append
-         }},
-        {"fclose", [](Reader& r, const Token&) { r.raw_name("#fclose"); }},
-        {"write", [](Reader& r, const Token&) { r.pass_over_parentheses(); }}};
+        {"fopen", [](Reader& r, const Token&) { r.do_fopen(); }},
+        {"fclose", [](Reader& r, const Token&) { r.do_fclose(); }},
+        {"read", [](Reader& r, const Token&) { r.do_read(); }},
+        {"write", [](Reader& r, const Token&) { r.do_write(); }}};
     const auto action = kActions.find(at.name->text);
     if (action == kActions.end())
         fail(at.place,
@@ -366,11 +362,8 @@ void Reader::do_macro() {
     raw_expect('(', macro->name->text);
     while (!peek_raw().is(')')) {
         macro->parameters.push_back(raw_name("the parameters of " + macro->name->text));
-        if (peek_raw().is(','))
+        if (peek_raw().is(',')) // may be left out
             raw();
-        else if (!peek_raw().is(')'))
-            fail(peek_raw().place, fmt::format("found {} in the parameters of {}, expected ')'",
-                                               found(peek_raw()), macro->name->text));
     }
     raw();
     macro->file = frame().file;
@@ -402,16 +395,6 @@ void Reader::do_version() {
     if (const Number* number = std::get_if<Number>(&value))
         version = number->v[0];
     take_semicolon();
-}
-
-void Reader::pass_over_parentheses() {
-    raw_expect('(', "#write");
-    for (int depth = 1; depth > 0;) {
-        const Token token = raw();
-        if (token.kind == TokenKind::End)
-            fail(token.place, "found no ')' to #write");
-        depth += token.is('(') ? 1 : token.is(')') ? -1 : 0;
-    }
 }
 
 } // namespace ovc::pov

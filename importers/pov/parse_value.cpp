@@ -166,7 +166,7 @@ std::string kind_of(const Value& value) {
     static constexpr const char* kKindNames[] = {
         "nothing",  "a number",    "a text",     "an object",   "a texture",   "a pigment",
         "a finish", "an interior", "a material", "a color map", "a transform", "an array",
-        "a macro",  "a function",  "a spline",   "a camera",    "a block"};
+        "a macro",  "a function",  "a spline",   "a camera",    "a file",      "a block"};
     static_assert(std::size(kKindNames) == std::variant_size_v<Value>);
     return kKindNames[value.index()];
 }

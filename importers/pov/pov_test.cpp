@@ -105,6 +105,7 @@ TEST(PovExpression, SplinesAreThoseOfPovRay) {
 }
 
 TEST(PovDirectives, MacrosTakeValuesAndVariables) {
+    EXPECT_VALUE(5, "Less(7, 2)", "#macro Less(A B) (A - B) #end");
     EXPECT_VALUE(6, "Twice(3)", "#macro Twice(A) (2 * A) #end");
     EXPECT_VALUE(9, "Out", "#macro Set(A, B) #declare A = B * B; #end Set(Out, 3)");
     EXPECT_VALUE(3, "I", "#declare I = 3; #macro M() #local I = 7; #end M()");
@@ -128,6 +129,22 @@ TEST(PovDirectives, LoopsAndConditionsNest) {
                  "#end");
     EXPECT_VALUE(7, "A[1][0]", "#declare A = array[2][2]; #declare A[1][0] = 7;");
     EXPECT_VALUE(4, "dimension_size(A, 1)", "#declare A = array[4] { 1, 2, 3, 4 }");
+}
+
+TEST(PovDirectives, FilesAreReadAndWhatIsWrittenIsReadAgain) {
+    const TestFolder folder;
+    const std::string data = folder.write("data.txt", "1.5, -2e0 <3, 4, 5>,\n \"six\"\n").string();
+    EXPECT_VALUE(dvec3(4.5, 6, 7.5), "V * A",
+                 "#fopen F \"" + data + "\" read #read (F, A, B, V) #read (F, S) #fclose F");
+    EXPECT_VALUE(-2 + 3, "N[1] + strlen(S)",
+                 "#declare N = array[2] #fopen F \"" + data +
+                     "\" read #read (F, N[0], N[1]) #read (F, V, S)");
+    EXPECT_VALUE(
+        6, "Sum",
+        "#fopen F \"new.txt\" write #write (F, 1, \",\", 2, \", \\n\", 3, \"\\n\") #fclose F\n"
+        "#declare Sum = 0; #fopen G \"new.txt\" read\n"
+        "#while (defined(G)) #read (G, X) #declare Sum = Sum + X; #end");
+    EXPECT_FALSE(std::filesystem::exists("new.txt"));
 }
 
 TEST(PovDirectives, DeclarationsNeedNoSemicolon) {

@@ -154,7 +154,12 @@ private:
     void do_macro();
     void do_message(const Token& at);
     void do_version();
-    void pass_over_parentheses();
+    void do_fopen();
+    void do_fclose();
+    void do_read();
+    void do_write();
+    /// The open file that is named next.
+    std::shared_ptr<DataFile> raw_file(std::string_view after, bool writes);
     bool condition();
     /// Passes over tokens up to the #end that belongs to the innermost open block, or to an #else,
     /// #elseif, #case or #range of it where that is asked for; that directive is taken. Its name.
@@ -180,6 +185,8 @@ private:
     std::vector<Scope> scopes_;
     std::vector<Token> back_;
     std::set<std::string> warned_;
+    std::map<std::string, std::string> written_; // files of #fopen, by name
+    uint64_t written_bytes_ = 0;
     Place last_;
     uint64_t run_over_ = 0;
     size_t depth_ = 0;

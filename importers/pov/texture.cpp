@@ -414,6 +414,19 @@ Material parse_material(Reader& reader) {
     return material;
 }
 
+/// tiles { texture { } tile2 texture { } }, from the { on.
+static Color parse_tiles(Reader& reader) {
+    reader.expect('{', "tiles");
+    Mean mean;
+    while (!reader.take('}')) {
+        if (reader.take("texture"))
+            mean.add(mean_of(parse_texture(reader).pigment), 1);
+        else if (!reader.take("tile2"))
+            reader.fail_here("a texture, or tile2 and a texture");
+    }
+    return mean.color();
+}
+
 Texture parse_texture(Reader& reader) {
     const Deeper deeper(reader);
     reader.expect('{', "texture");
@@ -431,6 +444,10 @@ Texture parse_texture(Reader& reader) {
         else if (reader.take("normal")) {
             reader.warn("normal", token.place, "normal patterns are left out");
             skip_braces(reader, "normal");
+        } else if (reader.take("tiles")) {
+            texture.pigment.color = parse_tiles(reader);
+            texture.pigment.other.reset();
+            warn_average(reader, token);
         } else if (is_texture_pattern(token) || is_color_map(token)) {
             reader.next();
             if (is_color_map(token))
