@@ -25,7 +25,7 @@ void survives(const std::string& text) {
 }
 
 TEST(PovDamage, SeedsAreScenes) {
-    ASSERT_EQ(seeds().size(), 2u);
+    ASSERT_EQ(seeds().size(), 3u);
     for (const std::string& text : seeds())
         EXPECT_GT(triangles_of(parse_pov(text, "seed.pov", {})).size(), 1000u);
 }

@@ -140,7 +140,7 @@ public:
         if (object.no_image && !gather_unseen)
             return;
         if (!object.refused.empty())
-            throw ParseError(object.place, object.refused);
+            throw ParseError(object.place, object.refused, object.caller);
         from.texture_placed = object.texture ? from.placed : from.texture_placed;
         from.texture = object.texture ? &*object.texture : from.texture;
         from.placed = from.placed * object.placed;

@@ -39,6 +39,7 @@ using ObjectPtr = std::shared_ptr<const Object>;
 struct Object {
     std::string_view kind; // the keyword: "sphere"
     Place place;
+    Caller caller;
     std::variant<std::monostate, Shape, PlaneShape, LightSource> shape; // none: its children's
     std::vector<ObjectPtr> children;
     /// Why it cannot be cut into triangles; empty: it can. Told only where it is to be seen.

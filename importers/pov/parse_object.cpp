@@ -94,8 +94,10 @@ void parse_wrapped(Reader& reader, Object& object) {
         reader.fail_here("an object or the name of one");
     const ObjectPtr inside = parse_object(reader);
     const Place at = object.place;
+    const Caller caller = object.caller;
     object = *inside;
     object.place = at;
+    object.caller = caller;
     parse_modifiers(reader, object);
 }
 
@@ -183,6 +185,7 @@ ObjectPtr parse_object(Reader& reader) {
     auto object = std::make_shared<Object>();
     object->kind = keyword.name->text; // names live as long as the reader
     object->place = keyword.place;
+    object->caller = reader.caller();
     reader.expect('{', object->kind);
     // Any kind may begin with the name of an object.
     const bool is_group = kWholes.contains(object->kind) && object->kind != "object" &&
@@ -190,9 +193,9 @@ ObjectPtr parse_object(Reader& reader) {
                           object->kind != "mesh2";
     if (!is_group) {
         if (const auto other = take_named_if<ObjectPtr>(reader)) {
-            const Place at = object->place;
             *object = **other;
-            object->place = at;
+            object->place = keyword.place;
+            object->caller = reader.caller();
             parse_modifiers(reader, *object);
             return object;
         }

@@ -156,13 +156,26 @@ private:
     std::shared_ptr<const CameraValue> camera_;
 };
 
-/// "FILE:LINE:COLUMN: sentence", and the line.
-Error error_at(const Place& place, const std::string& sentence, const std::string& fallback) {
-    if (!place.file)
-        return {fmt::format("{}: {}", fallback, sentence)};
+std::string text_of(const Place& place) {
+    return fmt::format("{}:{}:{}", place.file->name, place.line, place.column);
+}
+
+/// The line of the place, on lines of its own.
+std::string line_of(const Place& place) {
     const std::string shown = excerpt(place);
-    return {fmt::format("{}:{}:{}: {}{}{}", place.file->name, place.line, place.column, sentence,
-                        shown.empty() ? "" : "\n", shown)};
+    return shown.empty() ? "" : "\n" + shown;
+}
+
+/// "FILE:LINE:COLUMN: sentence", and the line; then the line of the scene that led there.
+Error error_of(const ParseError& error, const std::string& scene) {
+    if (!error.place.file)
+        return {fmt::format("{}: {}", scene, error.what())};
+    std::string message =
+        fmt::format("{}: {}{}", text_of(error.place), error.what(), line_of(error.place));
+    if (const Caller& caller = error.caller; caller.place.file)
+        message += fmt::format("\n    {} at {}:{}", caller.is_macro ? "called" : "included",
+                               text_of(caller.place), line_of(caller.place));
+    return {message};
 }
 
 } // namespace
@@ -193,7 +206,7 @@ Result<Scene> parse_pov(std::string text, const std::filesystem::path& path,
                 fmt::format("{}: it has no triangles", path.string()));
         return scene;
     } catch (const pov::ParseError& error) {
-        return pov::error_at(error.place, error.what(), path.string());
+        return pov::error_of(error, path.string());
     }
 }
 

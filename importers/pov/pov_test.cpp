@@ -193,6 +193,25 @@ TEST(PovErrors, NameTheLineAndShowIt) {
     }
 }
 
+TEST(PovErrors, TellWhichLineOfTheSceneLedThere) {
+    const Result<Scene> called = parse("#macro In(R) sphere { 0, R / 0 } #end\n"
+                                       "#macro Out(R)\n  In(R)\n#end\nOut(2)");
+    ASSERT_FALSE(called);
+    EXPECT_EQ(called.error().message, "x.pov:1:28: found a division by zero\n"
+                                      "    #macro In(R) sphere { 0, R / 0 } #end\n"
+                                      "                               ^\n"
+                                      "    called at x.pov:5:1:\n"
+                                      "    Out(2)\n"
+                                      "    ^");
+    const TestFolder folder;
+    folder.write("odd.inc", "\njulia_fractal { 1 }");
+    const auto included = load(folder.write("main.pov", "sphere { 0, 1 }\n#include \"odd.inc\""));
+    ASSERT_FALSE(included);
+    EXPECT_EQ(folder.plain(included.error().message),
+              "odd.inc:2:1: julia_fractal is not supported\n    julia_fractal { 1 }\n    ^\n"
+              "    included at main.pov:2:1:\n    #include \"odd.inc\"\n    ^");
+}
+
 TEST(PovErrors, WhatIsDeclaredAndNotSeenMayBeUnsupported) {
     EXPECT_TRUE(parse("#declare D = difference { sphere { 0, 1 } box { 0, 1 } } sphere { 0, 1 }"));
 }

@@ -203,7 +203,11 @@ bool Reader::take(std::string_view word) {
 }
 
 void Reader::fail(const Place& at, const std::string& sentence) const {
-    throw ParseError(at, sentence);
+    throw ParseError(at, sentence, caller());
+}
+
+Caller Reader::caller() const {
+    return frames_.size() > 1 ? Caller{frames_[1].called, frames_[1].is_macro} : Caller{};
 }
 
 void Reader::fail_here(const std::string& expected) {

@@ -92,6 +92,7 @@ public:
     std::filesystem::path find_file(const std::string& name, std::string_view extension) const;
     Names& names() { return names_; }
     const Place& place() const { return last_; } // of the token read last
+    Caller caller() const;                       // of what is running
     double version = 3.7;
     double gamma = 1; // assumed_gamma: what srgb colors are converted to
     ImageSize picture{640, 480};
