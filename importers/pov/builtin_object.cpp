@@ -33,6 +33,7 @@ std::shared_ptr<const TraceTarget> target_of(Reader& reader, const ObjectPtr& ob
     const auto target = std::make_shared<const TraceTarget>(
         cut_object(*object, std::min(kMostKept, reader.limits.triangles)));
     reader.spend(target->triangle_count() / kTrianglesAWord);
+    reader.grow(3 * target->triangle_count() * sizeof(Corner));
     uint64_t kept = target->triangle_count();
     for (const auto& [other, cut] : reader.targets)
         kept += cut->triangle_count();

@@ -48,6 +48,7 @@ void Reader::do_fopen() {
         file->text = std::move(*whole);
     file->skip_space();
     spend(file->text.size() / 16);
+    grow(file->text.size());
     declare(name, /* local= */ false).value = file;
 }
 

@@ -16,6 +16,9 @@ namespace ovc::pov {
 
 namespace {
 
+/// An object and its shape, less what grows with how it is stated.
+constexpr uint64_t kObjectBytes = 1000;
+
 using ParseShape = Shape (*)(Reader&);
 const std::unordered_map<std::string_view, ParseShape> kShapes = {
     {"sphere", parse_sphere},
@@ -182,6 +185,7 @@ ObjectPtr parse_object(Reader& reader) {
         reader.fail(keyword.place, fmt::format("stopped after {} objects: a loop or a macro does "
                                                "not end",
                                                reader.limits.objects));
+    reader.grow(kObjectBytes);
     auto object = std::make_shared<Object>();
     object->kind = keyword.name->text; // names live as long as the reader
     object->place = keyword.place;

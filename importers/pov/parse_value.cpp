@@ -25,6 +25,12 @@ void fill_item(Reader& reader, Array& array, size_t i) {
     array.items[i] = std::move(value);
 }
 
+/// Making or copying an item takes as long as running over a few words.
+void take_items(Reader& reader, uint64_t count) {
+    reader.spend(4 * count);
+    reader.grow(count * sizeof(Value));
+}
+
 void fill(Reader& reader, Array& array, size_t dimension, size_t first, size_t count) {
     const Deeper deeper(reader);
     reader.expect('{', "an array");
@@ -57,6 +63,7 @@ Value parse_array(Reader& reader) {
     }
     if (array->sizes.empty())
         reader.fail_here("'[' and the size of an array");
+    take_items(reader, uint64_t(count));
     array->items.resize(size_t(count));
     if (reader.peek_operator().is('{'))
         fill(reader, *array, 0, 0, array->items.size());
@@ -108,6 +115,11 @@ const std::unordered_map<std::string_view, ParseValue> kKinds = {
     {"rainbow", parse_opaque},
     {"sky_sphere", parse_opaque}};
 
+Value copy_of(Reader& reader, const Array& array) {
+    take_items(reader, array.items.size());
+    return std::make_shared<Array>(array);
+}
+
 /// The value that a variable or item has, where that is no part of an expression.
 std::optional<Value> take_whole(Reader& reader) {
     const Token token = reader.peek();
@@ -121,7 +133,7 @@ std::optional<Value> take_whole(Reader& reader) {
     if (const auto* array = std::get_if<std::shared_ptr<Array>>(&slot->value)) {
         const std::shared_ptr<Array> kept = *array;
         if (!reader.peek_operator().is('['))
-            return std::make_shared<Array>(*kept);
+            return copy_of(reader, *kept);
         if (!kept->items.empty() && std::holds_alternative<Number>(kept->items[0])) {
             reader.put_back(token);
             return std::nullopt;
@@ -129,7 +141,7 @@ std::optional<Value> take_whole(Reader& reader) {
         const Value item = *parse_item(reader, *kept);
         // A copy, so that an array in another never changes and cannot come to hold that other.
         if (const auto* inner = std::get_if<std::shared_ptr<Array>>(&item))
-            return std::make_shared<Array>(**inner);
+            return copy_of(reader, **inner);
         return item;
     }
     const bool is_callable = std::holds_alternative<std::shared_ptr<const Function>>(slot->value) ||

@@ -164,6 +164,21 @@ TEST(PovDirectives, IncludesAreFoundWhateverTheirLettersAndSlashes) {
     std::filesystem::remove_all(folder / "Geom");
 }
 
+/// Some of them need the names of colors.inc and shapes.inc, for povray too.
+TEST(PovDirectives, AllIncludeFilesOfPovRayAreRead) {
+    const std::filesystem::path library = "/usr/share/povray-3.7/include";
+    if (!std::filesystem::exists(library / "colors.inc"))
+        GTEST_SKIP() << "povray-includes is not installed";
+    for (const auto& entry : std::filesystem::directory_iterator(library)) {
+        if (entry.path().extension() != ".inc")
+            continue;
+        const Result<Scene> scene =
+            parse("#include \"colors.inc\"\n#include \"shapes.inc\"\n#include \"" +
+                  entry.path().filename().string() + "\"\nsphere { 0, 1 }");
+        EXPECT_TRUE(scene) << entry.path() << "\n" << scene.error().message;
+    }
+}
+
 TEST(PovErrors, NameTheLineAndShowIt) {
     const struct {
         const char* text;

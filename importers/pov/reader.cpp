@@ -2,6 +2,8 @@
 // The stream of tokens: frames of files and macros, scopes of variables. directives.cpp obeys.
 #include "importers/pov/reader.h"
 
+#include "importers/available_memory.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +23,11 @@ Deeper::~Deeper() {
 }
 
 Reader::Reader(Hooks hooks, LogSink log, std::string main_folder)
-    : limits{}, hooks_(std::move(hooks)), log_(std::move(log)), folder_(std::move(main_folder)) {
+    : limits{},
+      hooks_(std::move(hooks)),
+      log_(std::move(log)),
+      folder_(std::move(main_folder)),
+      available_(available_memory()) {
     push_scope(); // of the scene: what #declare makes
 }
 
@@ -96,6 +102,18 @@ void Reader::spend(uint64_t words) {
     if (run_over_ > limits.tokens)
         fail(last_,
              fmt::format("stopped after {} words: a loop or a macro does not end", limits.tokens));
+}
+
+void Reader::grow(uint64_t bytes) {
+    constexpr uint64_t kBetweenChecks = uint64_t(64) << 20; // asking the system takes a while
+    unchecked_ += bytes;
+    if (unchecked_ < kBetweenChecks)
+        return;
+    if (available_memory() < available_ / 2 + bytes)
+        fail(last_, fmt::format("stopped after half of the {} MB of memory were taken: a loop or a "
+                                "macro does not end, or the scene is too large",
+                                available_ >> 20));
+    unchecked_ = 0;
 }
 
 void Reader::count_depth(Array& array, const Value& item) const {

@@ -76,6 +76,9 @@ public:
     [[noreturn]] void fail_here(const std::string& expected);
     /// Work other than running over words, counted in words: what takes about as long.
     void spend(uint64_t words);
+    /// Before so many bytes are taken for what the scene makes. Fails once reading has taken more
+    /// than half of the memory there was: the rest is for the triangles.
+    void grow(uint64_t bytes);
     /// Before `item` becomes one of the array's. ParseError: arrays in arrays, too deep.
     void count_depth(Array& array, const Value& item) const;
     /// Once for each `kind`.
@@ -188,6 +191,8 @@ private:
     std::set<std::string> warned_;
     std::map<std::string, std::string> written_; // files of #fopen, by name
     uint64_t written_bytes_ = 0;
+    uint64_t available_; // memory, when reading began
+    uint64_t unchecked_ = 0;
     Place last_;
     uint64_t run_over_ = 0;
     size_t depth_ = 0;

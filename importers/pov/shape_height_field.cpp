@@ -50,6 +50,7 @@ Grid grid_of_function(Reader& reader, const Token& word) {
     grid.width = size_t(width);
     grid.height = size_t(height);
     reader.spend(grid.width * grid.height);
+    reader.grow(grid.width * grid.height * sizeof(float));
     grid.heights.reserve(grid.width * grid.height);
     for (size_t row = 0; row < grid.height; ++row)
         for (size_t i = 0; i < grid.width; ++i) {
@@ -77,6 +78,7 @@ Grid grid_of_picture(Reader& reader) {
     grid.width = picture->width;
     grid.height = picture->height;
     reader.spend(picture->size() / 16);
+    reader.grow(picture->size() * sizeof(float));
     for (size_t i = 0; i < picture->size(); ++i)
         grid.heights.push_back(float(height_of(*picture, i)));
     return grid;
