@@ -94,7 +94,7 @@ void Reader::do_read() {
 void Reader::do_write() {
     raw_expect('(', "#write");
     const std::shared_ptr<DataFile> file = raw_file("#write", /* writes= */ true);
-    while (take(',')) {
+    for (take_comma(); !take(')'); take_comma()) { // commas may be left out
         const Place at = peek().place;
         const size_t before = file->text.size();
         if (!file->write(hooks_.value(*this)))
@@ -103,7 +103,6 @@ void Reader::do_write() {
         if (written_bytes_ > kMostWritten)
             fail(at, fmt::format("stopped after {} bytes written", kMostWritten));
     }
-    expect(')', "#write");
 }
 
 } // namespace ovc::pov

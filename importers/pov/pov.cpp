@@ -144,6 +144,8 @@ private:
 
     /// 480 high, and as wide as the camera's window is.
     ImageSize size_of(const CameraValue& camera) const {
+        if (!camera.window_given)
+            return {640, 480};
         const double high = glm::length(camera.up), wide = glm::length(camera.right);
         const double ratio = high > 0 && wide > 0 ? std::clamp(wide / high, 0.1, 10.0) : 4 / 3.0;
         return {uint32_t(std::lround(480 * ratio)), 480};

@@ -272,6 +272,31 @@ TEST(PovScene, ReadsLightsCameraAndSettings) {
     EXPECT_TRUE(scene->meshes[0].no_shadow);
 }
 
+/// As povray 3.7.0.10 shows a plane at z = 0.
+TEST(PovScene, OrthographicCamerasShowAsMuchAsPovRay) {
+    const struct {
+        const char* camera;
+        double width, height;
+    } cases[] = {
+        {"location -z*10 look_at 0", 13.3, 10},
+        {"location -z*20 look_at 0", 26.6, 20},
+        {"location -z*10", 14.63, 11},
+        {"location -z*10 direction 2*z look_at 0", 6.65, 5},
+        {"location -z*10 look_at 0 right 3*x up 2*y", 3, 2},
+        {"location -z*10 look_at 0 direction 2*z right 3*x", 3, 1},
+        {"location -z*10 look_at 0 angle 40", 7.279, 5.473},
+        {"location -z*10 right 3*x up 2*y look_at 0 angle 40", 7.279, 4.853},
+        {"location -z*10 angle 40", 8.007, 6.021},
+    };
+    for (const auto& c : cases) {
+        const Result<Scene> scene =
+            parse(std::string("sphere { 0, 1 } camera { orthographic ") + c.camera + " }");
+        ASSERT_TRUE(scene) << scene.error().message;
+        EXPECT_NEAR(glm::length(scene->camera->window->right), c.width, 0.001) << c.camera;
+        EXPECT_NEAR(glm::length(scene->camera->window->up), c.height, 0.001) << c.camera;
+    }
+}
+
 TEST(PovScene, ThingsInheritTheLookOfTheirGroup) {
     const Result<Scene> scene =
         parse("union { sphere { 0, 1 } sphere { x, 1 pigment { rgb y } } pigment { rgb x } }");
