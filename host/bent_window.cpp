@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// By the angle off the axis that a distance from the middle stands for; 1 is the rim.
+/// p: where in a circle around the axis, 1 its rim; off_axis: the angle that a distance from its
+/// middle stands for. 0 outside.
 template <class OffAxis>
-dvec3 around_the_axis(const ImageWindow& w, const dvec2& at, OffAxis off_axis) {
-    const dvec2 p(2 * at.x * glm::length(w.right), 2 * at.y * glm::length(w.up));
+dvec3 around_the_axis(const ImageWindow& w, const dvec2& p, OffAxis off_axis) {
     const double distance = glm::length(p);
     if (distance > 1)
         return dvec3(0);
@@ -26,7 +26,17 @@ dvec3 around_the_axis(const ImageWindow& w, const dvec2& at, OffAxis off_axis) {
            std::cos(angle) * glm::normalize(w.direction);
 }
 
-/// POV-Ray's polynomial for the dome's lens.
+/// Where in the circle of a dome's lens. A picture wider than high is cut off below; one that is
+/// wider still than the film, left and right. Measured on povray 3.7.0.10.
+dvec2 on_omnimax(const ImageWindow& w, const dvec2& at) {
+    constexpr double kFilm = 1.283458; // wide, 1 high
+    const double aspect = glm::length(w.right) / glm::length(w.up);
+    if (aspect <= 1)
+        return {2 * at.x, 2 * at.y / aspect};
+    return {2 * at.x * std::max(1.0, aspect / kFilm), (2 * at.y - 1) / std::min(aspect, kFilm) + 1};
+}
+
+/// POV-Ray's polynomial for that lens.
 double omnimax(double r) {
     return r * (1.411269 + r * r * (-0.09439 + r * r * 0.25674));
 }
@@ -44,10 +54,14 @@ Ray bent_ray(const ImageWindow& w, const dvec3& eye, const dvec2& at) {
     ray.org = eye;
     switch (w.bend) {
     case Bend::Fisheye:
-        ray.dir = around_the_axis(w, at, [&](double r) { return r * w.angle * kPi / 360; });
+        ray.dir =
+            around_the_axis(w, {2 * at.x * glm::length(w.right), 2 * at.y * glm::length(w.up)},
+                            [&](double r) { return r * w.angle * kPi / 360; });
         break;
     case Bend::Omnimax:
-        ray.dir = around_the_axis(w, at, omnimax);
+        ray.dir = around_the_axis(w, on_omnimax(w, at), omnimax);
+        if (glm::dot(ray.dir, up) < -glm::dot(ray.dir, forward)) // the dome ends 45 degrees down
+            ray.dir = dvec3(0);
         break;
     case Bend::UltraWide:
         ray.dir = std::sin(across) * right + std::sin(upward * ratio) * up +

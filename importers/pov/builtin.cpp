@@ -2,7 +2,7 @@
 // Each function of the language as one row of a table.
 #include "importers/pov/builtin.h"
 
-#include "importers/pov/bounds.h"
+#include "importers/pov/builtin_object.h"
 #include "importers/pov/transform.h"
 #include "importers/text.h"
 
@@ -203,18 +203,6 @@ Number strcmp(Reader& reader, const Token& token) {
     return Number::of(a < b ? -1 : a > b ? 1 : 0);
 }
 
-Number extent(Reader& reader, const Token& token) {
-    reader.expect('(', token.name->text);
-    const Token name = reader.peek();
-    const auto object = take_named<std::shared_ptr<const Object>>(reader);
-    if (!object)
-        reader.fail(name.place,
-                    fmt::format("found {}, expected the name of an object", found(name)));
-    reader.expect(')', token.name->text);
-    const Box box = bounds_of(**object);
-    return Number::of(token.is("min_extent") ? box.lo : box.hi);
-}
-
 Number refuse(Reader& reader, const Token& token) {
     reader.fail(token.place, fmt::format("{}() is not supported", token.name->text));
 }
@@ -305,12 +293,12 @@ const std::unordered_map<std::string_view, Builtin> kBuiltins = {
     {"file_exists",
      [](Reader& r, const Token& t) {
          return of_text(r, t, [&r](const std::string& s) {
-             return Number::of(r.find_file(s).empty() ? 0.0 : 1.0);
+             return Number::of(r.find_file(s, "").empty() ? 0.0 : 1.0);
          });
      }},
-    {"min_extent", extent},
-    {"max_extent", extent},
-    {"trace", refuse},
+    {"min_extent", parse_extent},
+    {"max_extent", parse_extent},
+    {"trace", parse_trace},
     {"inside", refuse},
     {"vturbulence", refuse}};
 

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which pixels of POV-Ray scenes are hit: povray's answer beside ours, scene by scene. docs/pov.md says how povray's is had.
 
-usage: compare.py [--data DIR] [--tiers AB] [--only TEXT] [--cache DIR] [--build DIR] [--jobs N] [--reference-only]
+usage: compare.py [--data DIR] [--index FILE] [--tiers AB] [--only TEXT] [--again TABLE] [--cache DIR] [--build DIR] [--jobs N] [--limit SECONDS]
+                  [--reference-only]
 
-DIR holds pov_tiers.txt and, unpacked, pov/ (data/scenes). What povray says is kept in --cache and not asked again.
+DIR holds, unpacked, pov/ (data/scenes); FILE is pov_tiers.txt. What povray says is kept in --cache and not asked again. TABLE is what a former run
+printed: only scenes that were not imported, or differed, are asked about again.
 """
 import argparse
 import collections
@@ -139,6 +141,7 @@ def main():
     parser.add_argument("--index", type=pathlib.Path, default=ROOT.parent / "shared" / "data" / "pov_tiers.txt")
     parser.add_argument("--tiers", default="AB")
     parser.add_argument("--only", default="")
+    parser.add_argument("--again", type=pathlib.Path, help="the table of a former run: only what failed in it")
     parser.add_argument("--cache", type=pathlib.Path, default=pathlib.Path("/tmp/overcast-pov-masks"))
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
     parser.add_argument("--jobs", type=int, default=1)
@@ -149,6 +152,10 @@ def main():
     data = options.data.resolve()
     scenes = [data / line.split()[2] for line in options.index.read_text().splitlines()
               if line and line[0] in options.tiers and options.only in line.split()[2]]
+    if options.again:
+        rows = [[cell.strip() for cell in line.split("|")[1:3]] for line in options.again.read_text().splitlines() if line.startswith("| pov")]
+        failed = {data / scene for scene, state in rows if state in ("not imported", "differs")}
+        scenes = [scene for scene in scenes if scene in failed]
     tool = options.build / "bin" / "pov_mask"
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         results = list(pool.map(lambda s: compare(s, options, tool), scenes))

@@ -12,15 +12,6 @@ namespace ovc::pov {
 
 namespace {
 
-bool is_inside(const dvec2& p, const Contour& c) {
-    bool inside = false;
-    for (size_t i = 0, j = c.size() - 1; i < c.size(); j = i++)
-        if ((c[i].y > p.y) != (c[j].y > p.y) &&
-            p.x < (c[j].x - c[i].x) * (p.y - c[i].y) / (c[j].y - c[i].y) + c[i].x)
-            inside = !inside;
-    return inside;
-}
-
 /// A contour as numbers of points.
 using Ring = std::vector<uint32_t>;
 
@@ -73,6 +64,15 @@ void join(Ring& ring, const Ring& hole, const std::vector<dvec2>& points) {
 }
 
 } // namespace
+
+bool is_inside(const dvec2& p, const Contour& c) {
+    bool inside = false;
+    for (size_t i = 0, j = c.size() - 1; i < c.size(); j = i++)
+        if ((c[i].y > p.y) != (c[j].y > p.y) &&
+            p.x < (c[j].x - c[i].x) * (p.y - c[i].y) / (c[j].y - c[i].y) + c[i].x)
+            inside = !inside;
+    return inside;
+}
 
 double doubled_area(const Contour& c) {
     double area = 0;

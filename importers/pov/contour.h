@@ -18,6 +18,9 @@ using Contour = std::vector<dvec2>;
 /// other but not cross.
 std::vector<std::array<uint32_t, 3>> cut_contours(const std::vector<Contour>& contours);
 
+/// By crossings of a line to the right; a point on the contour is on either side.
+bool is_inside(const dvec2& p, const Contour& contour);
+
 /// Twice the area, above 0 where the contour runs counterclockwise.
 double doubled_area(const Contour& contour);
 

@@ -25,7 +25,7 @@ void survives(const std::string& text) {
 }
 
 TEST(PovDamage, SeedsAreScenes) {
-    ASSERT_EQ(seeds().size(), 4u);
+    ASSERT_EQ(seeds().size(), 5u);
     for (const std::string& text : seeds())
         EXPECT_GT(triangles_of(parse_pov(text, "seed.pov", {})).size(), 1000u);
 }
@@ -60,6 +60,17 @@ TEST(PovDamage, LoopsRecursionAndGroupsThatDoNotEndAreStopped) {
         {"#declare A = sphere { 0, 1 }\n#declare I = 0;\n#while (I < 40)\n"
          "#declare A = union { object { A } object { A } }\n#declare I = I + 1;\n#end object { A }",
          "found more than 50000 objects in the scene"},
+        {"#declare A = sphere { 0, 1 }\n#while (1) #declare A = union { object { A } }\n#end",
+         "found groups more than 2000 deep in each other"},
+        {"#declare F = function { x }\n#while (1) #declare F = function { F(x, y, z) + 1 }\n#end",
+         "found a function of more than 4000 operations"},
+        {"#declare F = function { x }\n#for (I, 1, 60) #declare F = function { F(x, y, z) + F(y, "
+         "x, z) "
+         "}\n#end #declare V = F(1, 2, 3);",
+         "stopped after 100000 words"},
+        {"#declare A = array[1] { 1 }\n#while (1) #declare A = array[1] { A }\n#end",
+         "found arrays more than 2000 deep in each other"},
+        {"#while (1) #declare A = array[20000] #end", "stopped after 100000 words"},
         {"#declare A = array[100000][100000]", "found an array of 10000000000 items"},
     };
     ImportOptions options;

@@ -48,14 +48,10 @@ void Reader::obey(const Token& at) {
         {"debug", [](Reader& r, const Token& t) { r.do_message(t); }},
         {"render", [](Reader& r, const Token& t) { r.do_message(t); }},
         {"statistics", [](Reader& r, const Token& t) { r.do_message(t); }},
-        {"fopen",
-         [](Reader& r, const Token&) {
-             r.raw_name("#fopen");
-             r.hooks_.value(r);
-             r.next(); // read, write or append
-         }},
-        {"fclose", [](Reader& r, const Token&) { r.raw_name("#fclose"); }},
-        {"write", [](Reader& r, const Token&) { r.pass_over_parentheses(); }}};
+        {"fopen", [](Reader& r, const Token&) { r.do_fopen(); }},
+        {"fclose", [](Reader& r, const Token&) { r.do_fclose(); }},
+        {"read", [](Reader& r, const Token&) { r.do_read(); }},
+        {"write", [](Reader& r, const Token&) { r.do_write(); }}};
     const auto action = kActions.find(at.name->text);
     if (action == kActions.end())
         fail(at.place,
@@ -107,15 +103,17 @@ void Reader::do_declare(bool local) {
         Value* item = hooks_.item(*this, *kept);
         expect('=', name->text);
         Value value = hooks_.value(*this);
+        count_depth(*kept, value);
         *item = std::move(value);
         return take_semicolon();
     }
     raw_expect('=', name->text);
-    const size_t scopes = scopes_.size();
+    // The value may end in a macro that is still running, or behind the end of the one that this
+    // stands in, whose variables are gone.
+    const uint32_t scope = scope_of(name, local);
     Value value = hooks_.value(*this);
-    // The end of the macro that this stood in may have been read past: its variables are gone.
-    if (!local || scopes <= scopes_.size())
-        declare(name, local).value = std::move(value);
+    if (scope < scopes_.size())
+        declare_in(scope, name).value = std::move(value);
     take_semicolon();
 }
 
@@ -139,7 +137,7 @@ void Reader::do_include() {
         fail(at, fmt::format("found macros and includes more than {} deep in each other: {} does "
                              "not end",
                              limits.nesting, ovc::quoted(*name)));
-    const std::filesystem::path path = find_file(*name);
+    const std::filesystem::path path = find_file(*name, ".inc");
     if (path.empty())
         fail(at, fmt::format("there is no file {}, neither beside the scene nor among POV-Ray's "
                              "include files",
@@ -161,12 +159,12 @@ void Reader::do_include() {
     frames_.push_back({file, 0, file->tokens.size() - 1, false, scope, {}, at});
 }
 
-std::filesystem::path Reader::find_file(const std::string& name) const {
+std::filesystem::path Reader::find_file(const std::string& name, std::string_view extension) const {
     std::vector<std::string> folders = {folder_};
     for (auto f = frames_.rbegin(); f != frames_.rend(); ++f)
         if (folders.back() != f->file->folder)
             folders.push_back(f->file->folder);
-    return pov::find_file(name, folders);
+    return pov::find_file(name, extension, folders);
 }
 
 bool Reader::condition() {
@@ -400,16 +398,6 @@ void Reader::do_version() {
     if (const Number* number = std::get_if<Number>(&value))
         version = number->v[0];
     take_semicolon();
-}
-
-void Reader::pass_over_parentheses() {
-    raw_expect('(', "#write");
-    for (int depth = 1; depth > 0;) {
-        const Token token = raw();
-        if (token.kind == TokenKind::End)
-            fail(token.place, "found no ')' to #write");
-        depth += token.is('(') ? 1 : token.is(')') ? -1 : 0;
-    }
 }
 
 } // namespace ovc::pov

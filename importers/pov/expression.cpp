@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 namespace ovc::pov {
@@ -249,11 +250,6 @@ Number parse_choice_of(Reader& reader) {
     return left;
 }
 
-double from_srgb(double c, double gamma) {
-    const double linear = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-    return gamma == 1 ? linear : std::pow(linear, 1 / gamma);
-}
-
 /// After rgb, rgbf, rgbt, rgbft or their srgb kin.
 void parse_rgb(Reader& reader, std::string_view word, Number& color) {
     const bool is_srgb = word[0] == 's';
@@ -403,6 +399,11 @@ bool parse_flag(Reader& reader) {
     return true;
 }
 
+double from_srgb(double c, double gamma) {
+    const double linear = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    return gamma == 1 ? linear : std::pow(linear, 1 / gamma);
+}
+
 bool starts_color(const Token& token) {
     return token.kind == TokenKind::Name && (token.is("color") || token.is("colour") ||
                                              is_rgb(token.name->text) || channel(token) >= 0);
@@ -445,6 +446,22 @@ Value* parse_item(Reader& reader, Array& array) {
     return &array.items[index];
 }
 
+/// 0 where these are no digits of base 16.
+static uint32_t code_of(std::string_view digits) {
+    uint32_t code = 0;
+    const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), code, 16);
+    return end.ptr == digits.data() + digits.size() ? code : 0;
+}
+
+/// Of a code below 2^16.
+static std::string utf8(uint32_t code) {
+    if (code < 0x80)
+        return {char(code)};
+    if (code < 0x800)
+        return {char(0xc0 | code >> 6), char(0x80 | (code & 0x3f))};
+    return {char(0xe0 | code >> 12), char(0x80 | (code >> 6 & 0x3f)), char(0x80 | (code & 0x3f))};
+}
+
 static std::string unescaped(std::string_view raw) {
     std::string text;
     for (size_t i = 0; i < raw.size(); ++i) {
@@ -459,6 +476,10 @@ static std::string unescaped(std::string_view raw) {
             break;
         case 't':
             text += '\t';
+            break;
+        case 'u': // four digits of base 16
+            text += utf8(code_of(raw.substr(i + 1, 4)));
+            i += std::min<size_t>(4, raw.size() - i - 1);
             break;
         case 'a':
         case 'b':

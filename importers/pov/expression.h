@@ -29,6 +29,9 @@ bool starts_text(const Reader& reader, const Token& token);
 /// rgb, color, red, …
 bool starts_color(const Token& token);
 
+/// A part of an sRGB color as the scene's colors are: light, or light ^ (1 / gamma).
+double from_srgb(double c, double gamma);
+
 /// From the first [ behind the array's name on.
 Value* parse_item(Reader& reader, Array& array);
 

@@ -46,22 +46,26 @@ static std::optional<fs::path> file_like(const fs::path& folder, const fs::path&
     return fs::is_regular_file(at, ec) ? std::optional(at) : std::nullopt;
 }
 
-fs::path find_file(std::string name, const std::vector<std::string>& folders) {
+fs::path find_file(std::string name, std::string_view extension,
+                   const std::vector<std::string>& folders) {
     std::replace(name.begin(), name.end(), '\\', '/');
-    const fs::path path(name);
-    std::error_code ec;
     if (name.empty() || name.find('\0') != name.npos)
         return {};
-    if (path.is_absolute())
-        return fs::is_regular_file(path, ec) ? path : fs::path();
+    std::vector<fs::path> paths = {name};
+    if (!paths[0].has_extension() && !extension.empty())
+        paths.push_back(name + std::string(extension));
     std::vector<fs::path> places(folders.begin(), folders.end());
     places.insert(places.end(), std::begin(kLibraries), std::end(kLibraries));
-    for (const fs::path& place : places)
-        if (fs::is_regular_file(place / path, ec))
-            return place / path;
-    for (const fs::path& place : places)
-        if (const std::optional<fs::path> file = file_like(place, path))
-            return *file;
+    std::error_code ec;
+    for (const fs::path& path : paths)
+        for (const fs::path& place : places) // an absolute path stays as it is
+            if (fs::is_regular_file(place / path, ec))
+                return place / path;
+    for (const fs::path& path : paths)
+        for (const fs::path& place : places)
+            if (!path.is_absolute())
+                if (const std::optional<fs::path> file = file_like(place, path))
+                    return *file;
     return {};
 }
 

@@ -6,14 +6,16 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ovc::pov {
 
 /// The first file of this name in `folders`, then in the folder of POV-Ray's include files; empty:
 /// none. `\` counts as `/`; where no file has exactly this name, capital and small letters are the
-/// same.
-std::filesystem::path find_file(std::string name, const std::vector<std::string>& folders);
+/// same. extension: ".inc", of a name that has none.
+std::filesystem::path find_file(std::string name, std::string_view extension,
+                                const std::vector<std::string>& folders);
 
 /// The whole of a file, unpacked; lines end with LF.
 Result<std::string> read_text(const std::filesystem::path& path);

@@ -6,6 +6,7 @@
 #include "importers/origin.h"
 #include "importers/pov/bounds.h"
 #include "importers/pov/solid.h"
+#include "importers/pov/trace.h"
 #include "importers/readers.h"
 
 #include <fmt/format.h>
@@ -140,7 +141,7 @@ public:
         : look_(look), scene_(scene), materials_(look, scene) {}
 
     void gather(const Object& object, Inherited from) {
-        if (object.no_image)
+        if (object.no_image && !gather_unseen)
             return;
         if (is_solid(object)) {
             add_solid(object, from);
@@ -158,11 +159,12 @@ public:
 
     std::vector<Placed> placed;
     std::vector<Solid> solids;
+    bool gather_unseen = false; // what no_image hides
 
 private:
     void inherit(const Object& object, Inherited& from) {
         if (!object.refused.empty())
-            throw ParseError(object.place, object.refused);
+            throw ParseError(object.place, object.refused, object.caller);
         from.texture_placed = object.texture ? from.placed : from.texture_placed;
         from.texture = object.texture ? &*object.texture : from.texture;
         from.placed = from.placed * object.placed;
@@ -244,7 +246,8 @@ private:
             leaf.skins.push_back({&object, material_of(from)});
         if (std::holds_alternative<EndlessShape>(object.shape))
             for (const ObjectPtr& bound : object.bounds) {
-                const Box box = moved(bounds_of(*bound), glm::inverse(object.placed));
+                const Box box =
+                    moved(bounds_of(*bound, look_.most_triangles), glm::inverse(object.placed));
                 leaf.bounds.add(moved(box, from.in_solid));
             }
         for (const ObjectPtr& child : object.children) { // a mesh's, by their textures
@@ -279,6 +282,12 @@ int choose_segments(const Gatherer& gatherer) {
     return segments;
 }
 
+void require_at_most(uint64_t most, const Gatherer& gatherer, int segments, const Place& at) {
+    if (const double count = triangles_at(gatherer, segments); count > double(most))
+        throw ParseError(
+            at, fmt::format("found about {:.0f} triangles, expected at most {}", count, most));
+}
+
 /// Around all that is not endless, and the middles of solids that are.
 Box box_of(const Gatherer& gatherer, int segments) {
     Box box;
@@ -311,40 +320,68 @@ struct Batch {
     bool smooth = false;
 };
 
-void add_corners(const Facets& facets, const Placed& p, const dvec3& origin, Batch& batch) {
+/// The triangles of `facets` in the world, wound so that they face outside; every corner has a
+/// normal, of any length.
+template <class Use>
+void for_each_placed(const Facets& facets, const Placed& p, Use use) {
     const dmat3 turned = glm::transpose(glm::inverse(dmat3(p.placed)));
     const bool mirrored = (glm::determinant(dmat3(p.placed)) < 0) != p.inverse;
     const double outward = p.inverse ? -1 : 1;
     const size_t order[3] = {0, mirrored ? size_t(2) : 1, mirrored ? size_t(1) : 2};
     for (size_t t = 0; t + 2 < facets.corners.size(); t += 3) {
-        dvec3 at[3], normal[3];
+        std::array<Corner, 3> corners;
         for (size_t i = 0; i < 3; ++i) {
             const Corner& corner = facets.corners[t + order[i]];
-            at[i] = dvec3(p.placed * dvec4(corner.position, 1));
-            normal[i] = outward * (turned * corner.normal);
+            corners[i] = {dvec3(p.placed * dvec4(corner.position, 1)),
+                          outward * (turned * corner.normal)};
         }
-        const dvec3 flat = glm::cross(at[1] - at[0], at[2] - at[0]);
-        for (size_t i = 0; i < 3; ++i) {
-            batch.corners.push_back(vec3(at[i] - origin));
-            const dvec3& n = glm::dot(normal[i], normal[i]) > 0 ? normal[i] : flat;
-            const double length = glm::length(n);
-            batch.normals.push_back(length > 0 && std::isfinite(length) ? vec3(n / length)
-                                                                        : vec3(0));
-        }
+        const dvec3 flat = glm::cross(corners[1].position - corners[0].position,
+                                      corners[2].position - corners[0].position);
+        for (Corner& corner : corners)
+            if (!(glm::dot(corner.normal, corner.normal) > 0))
+                corner.normal = flat;
+        use(corners);
     }
+}
+
+void add_corners(const Facets& facets, const Placed& p, const dvec3& origin, Batch& batch) {
+    for_each_placed(facets, p, [&](const std::array<Corner, 3>& corners) {
+        for (const Corner& corner : corners) {
+            batch.corners.push_back(vec3(corner.position - origin));
+            const double length = glm::length(corner.normal);
+            batch.normals.push_back(
+                length > 0 && std::isfinite(length) ? vec3(corner.normal / length) : vec3(0));
+        }
+    });
     batch.smooth = batch.smooth || facets.smooth;
+}
+
+void add_finite(const Facets& facets, const Placed& p, Facets& out) {
+    for_each_placed(facets, p, [&](const std::array<Corner, 3>& corners) {
+        if (std::all_of(corners.begin(), corners.end(),
+                        [](const Corner& c) { return is_finite(c.position); }))
+            out.corners.insert(out.corners.end(), corners.begin(), corners.end());
+    });
+}
+
+/// As it stands in the world, its normal of length 1; nothing where that is not finite.
+std::optional<PlaneShape> placed_plane(const PlaneShape& plane, const Placed& p) {
+    const dmat3 turned = glm::transpose(glm::inverse(dmat3(p.placed)));
+    const dvec3 normal = glm::normalize(turned * plane.normal) * (p.inverse ? -1.0 : 1.0);
+    const dvec3 on_plane(p.placed * dvec4(plane.distance * plane.normal, 1));
+    if (!is_finite(normal) || !is_finite(on_plane))
+        return std::nullopt;
+    return PlaneShape{normal, glm::dot(normal, on_plane)};
 }
 
 /// Squares around the point of the plane nearest to the scene; that point is a corner of each, so
 /// that floats keep the plane in place there.
 void add_plane(const Placed& p, const dvec3& center, double reach, Scene& scene) {
-    const PlaneShape& plane = std::get<PlaneShape>(p.object->shape);
-    const dmat3 turned = glm::transpose(glm::inverse(dmat3(p.placed)));
-    const dvec3 normal = glm::normalize(turned * plane.normal) * (p.inverse ? -1.0 : 1.0);
-    const dvec3 on_plane(p.placed * dvec4(plane.distance * plane.normal, 1));
-    if (!is_finite(normal) || !is_finite(on_plane))
+    const auto plane = placed_plane(std::get<PlaneShape>(p.object->shape), p);
+    if (!plane)
         return;
-    const dvec3 origin = center + glm::dot(on_plane - center, normal) * normal;
+    const dvec3& normal = plane->normal;
+    const dvec3 origin = center + (plane->distance - glm::dot(center, normal)) * normal;
     const int major = major_axis(normal);
     dvec3 u(0);
     u[(major + 1) % 3] = 1;
@@ -373,12 +410,17 @@ double reach_of(const Box& world) {
     return std::max(1.0, 0.5 * glm::length(world.extent()));
 }
 
+/// Where endless solids end.
+Box reach_of_solids(const Box& world) {
+    return Box{world.center(), world.center()}.padded(kPlaneReach * reach_of(world));
+}
+
 using Batches = std::map<std::pair<uint32_t, bool>, Batch>;
 
 void add_solids(const std::vector<Solid>& solids, int segments, const Box& world,
                 const dvec3& origin, Batches& batches) {
     constexpr size_t kAtOnce = 64; // so that not all are in memory twice
-    const Box reach = Box{world.center(), world.center()}.padded(kPlaneReach * reach_of(world));
+    const Box reach = reach_of_solids(world);
     const std::vector<std::vector<uint32_t>> groups = alike(solids);
     for (size_t start = 0; start < groups.size(); start += kAtOnce) {
         std::vector<std::vector<SolidPart>> parts(std::min(kAtOnce, groups.size() - start));
@@ -408,9 +450,7 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
     const std::vector<Placed>& placed = gatherer.placed;
 
     const int segments = choose_segments(gatherer);
-    if (const double count = triangles_at(gatherer, segments); count > double(look.most_triangles))
-        throw ParseError({}, fmt::format("found about {:.0f} triangles, expected at most {}", count,
-                                         look.most_triangles));
+    require_at_most(look.most_triangles, gatherer, segments, {});
     const Box box = box_of(gatherer, 8);
     const dvec3 origin = chunk_origin(box, 16);
     Batches batches;
@@ -454,10 +494,41 @@ Box moved(const Box& box, const dmat4& by) {
     return all;
 }
 
-Box bounds_of(const Object& object) {
+CutObject cut_object(const Object& object, uint64_t most_triangles) {
     Scene scene;
-    const Look look;
+    Look look;
+    look.most_triangles = most_triangles;
     Gatherer gatherer(look, scene);
+    gatherer.gather_unseen = true;
+    gatherer.gather(object, {});
+    const int segments = choose_segments(gatherer);
+    require_at_most(most_triangles, gatherer, segments, object.place);
+    CutObject cut;
+    Facets facets;
+    for (const Placed& p : gatherer.placed) {
+        if (const auto* plane = std::get_if<PlaneShape>(&p.object->shape))
+            if (const std::optional<PlaneShape> in_world = placed_plane(*plane, p))
+                cut.planes.push_back(*in_world);
+        if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
+            facets.corners.clear();
+            shape->cut(segments, p.object->open, facets);
+            add_finite(facets, p, cut.facets);
+        }
+    }
+    const Box reach = reach_of_solids(world_of(box_of(gatherer, 8), look));
+    for (const Solid& solid : gatherer.solids)
+        for (const SolidPart& part :
+             evaluate(solid, segments, moved(reach, glm::inverse(solid.placed))))
+            add_finite(part.facets, {solid.object, solid.placed, false, 0, false}, cut.facets);
+    return cut;
+}
+
+Box bounds_of(const Object& object, uint64_t most_triangles) {
+    Scene scene;
+    Look look;
+    look.most_triangles = most_triangles;
+    Gatherer gatherer(look, scene);
+    gatherer.gather_unseen = true;
     gatherer.gather(object, {});
     for (const Placed& p : gatherer.placed)
         if (std::holds_alternative<PlaneShape>(p.object->shape))

@@ -23,6 +23,9 @@ public:
     FormulaParser(Reader& reader, std::vector<std::string> parameters)
         : reader_(reader), parameters_(std::move(parameters)) {}
 
+    /// How many closures stand in each other at most, those of functions that it calls included.
+    uint32_t depth() const { return operations_ + called_; }
+
     Formula whole() {
         Formula left = comparison();
         for (;;) {
@@ -36,8 +39,20 @@ public:
     }
 
 private:
+    /// Running a formula and ending it goes down as deep on the stack as closures stand in each
+    /// other, which is at most one an operation.
+    void count_operation() {
+        ++operations_;
+        if (depth() > reader_.limits.operations)
+            reader_.fail(reader_.place(),
+                         fmt::format("found a function of more than {} operations, those of the "
+                                     "functions that it calls included",
+                                     reader_.limits.operations));
+    }
+
     template <class Op>
-    static Formula both(Formula a, Formula b, Op op) {
+    Formula both(Formula a, Formula b, Op op) {
+        count_operation();
         return [a = std::move(a), b = std::move(b), op](std::span<const double> x) {
             return op(a(x), b(x));
         };
@@ -89,6 +104,7 @@ private:
 
     Formula operand() {
         const Deeper deeper(reader_);
+        count_operation();
         if (reader_.take('-')) {
             Formula inside = operand();
             return [inside](std::span<const double> x) { return -inside(x); };
@@ -214,6 +230,8 @@ private:
 
     Formula call_user(const Token& token, std::shared_ptr<const Function> function) {
         const std::vector<Formula> given = arguments(token);
+        called_ = std::max(called_, function->depth);
+        count_operation();
         if (reader_.take('.'))
             reader_.next(); // a component of a pigment's color: what it is called on is refused
         return [given, function, token, this_reader = &reader_](std::span<const double> x) {
@@ -226,6 +244,8 @@ private:
 
     Reader& reader_;
     const std::vector<std::string> parameters_;
+    uint32_t operations_ = 0;
+    uint32_t called_ = 0; // the depth of the deepest function that it calls
 };
 
 std::vector<std::string> parse_parameters(Reader& reader) {
@@ -270,10 +290,10 @@ std::shared_ptr<const Function> parse_function(Reader& reader) {
     auto function = std::make_shared<Function>();
     const std::vector<std::string> parameters = parse_parameters(reader);
     function->parameters = parameters.size();
-    if (!reader.peek().is('{')) { // width, height: of an image made from it
-        parse_float(reader);
+    if (!reader.peek().is('{')) { // of an image or a height_field made from it
+        function->grid.x = parse_float(reader);
         reader.take_comma();
-        parse_float(reader);
+        function->grid.y = parse_float(reader);
     }
     reader.expect('{', "function");
     const Token first = reader.peek();
@@ -288,14 +308,18 @@ std::shared_ptr<const Function> parse_function(Reader& reader) {
                                         first.name->text);
         skip_block(reader); // up to and with the function's own }
         return function;
-    } else
-        function->formula = FormulaParser(reader, parameters).whole();
+    } else {
+        FormulaParser parser(reader, parameters);
+        function->formula = parser.whole();
+        function->depth = parser.depth();
+    }
     reader.expect('}', "a function");
     return function;
 }
 
-Number call(const Reader& reader, const Token& name, const Function& function,
+Number call(Reader& reader, const Token& name, const Function& function,
             std::span<const double> arguments) {
+    reader.spend(1);
     if (!function.refused.empty())
         reader.fail(name.place, fmt::format("{} cannot be called: {}", ovc::quoted(name.name->text),
                                             function.refused));

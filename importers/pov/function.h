@@ -16,6 +16,8 @@ struct Function {
     Formula formula;                      // or
     std::optional<dmat4> transform;       // or
     std::shared_ptr<const Spline> spline; // or
+    uint32_t depth = 1;                   // of closures in each other
+    dvec2 grid{0};                        // WIDTH, HEIGHT of function WIDTH, HEIGHT { }
     std::string refused;                  // why it cannot be called
 };
 
@@ -23,7 +25,7 @@ struct Function {
 std::shared_ptr<const Function> parse_function(Reader& reader);
 
 /// name: the token that calls it, for messages.
-Number call(const Reader& reader, const Token& name, const Function& function,
+Number call(Reader& reader, const Token& name, const Function& function,
             std::span<const double> arguments);
 
 } // namespace ovc::pov

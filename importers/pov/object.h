@@ -49,6 +49,7 @@ using ObjectPtr = std::shared_ptr<const Object>;
 struct Object {
     std::string_view kind; // the keyword: "sphere"
     Place place;
+    Caller caller;
     std::variant<std::monostate, Shape, PlaneShape, EndlessShape, LightSource>
         shape; // none: its children's
     std::vector<ObjectPtr> children;
@@ -61,6 +62,7 @@ struct Object {
     dmat4 placed{1};                // from its own space to that of what it is a part of
     std::optional<Texture> texture; // none: its parent's
     std::optional<Interior> interior;
+    uint32_t depth = 1; // of groups in groups
     bool no_shadow = false;
     bool no_image = false;
     bool inverse = false;

@@ -59,10 +59,8 @@ bool take_bend(Reader& reader, CameraValue& camera) {
         {"omnimax", Bend::Omnimax},     {"panoramic", Bend::Panoramic},
         {"spherical", Bend::Spherical}, {"cylinder", Bend::Cylinder1}};
     for (const auto& [word, bend] : kWords)
-        if (const Place at = reader.peek().place; reader.take(word)) {
+        if (reader.take(word)) {
             camera.bend = bend;
-            if (bend == Bend::Omnimax)
-                reader.warn("omnimax", at, "the picture of omnimax is bent a little otherwise");
             if (bend == Bend::Cylinder1)
                 camera.bend =
                     Bend(int(bend) + parse_int(reader, 1, 4, "the kind of a cylinder") - 1);
@@ -88,11 +86,10 @@ std::shared_ptr<const CameraValue> parse_camera(Reader& reader) {
             camera.location = parse_vector(reader);
         else if (reader.take("direction"))
             camera.direction = parse_vector(reader);
-        else if (reader.take("up"))
-            camera.up = parse_vector(reader);
-        else if (reader.take("right"))
-            camera.right = parse_vector(reader);
-        else if (reader.take("sky"))
+        else if (const bool is_up = reader.take("up"); is_up || reader.take("right")) {
+            (is_up ? camera.up : camera.right) = parse_vector(reader);
+            camera.window_given = true;
+        } else if (reader.take("sky"))
             camera.sky = parse_vector(reader);
         else if (reader.take("look_at"))
             target = parse_vector(reader);
@@ -123,6 +120,8 @@ std::shared_ptr<const CameraValue> parse_camera(Reader& reader) {
     }
     if (target)
         look_at(reader, camera, *target);
+    else if (!camera.distance)
+        camera.distance = glm::length(dvec3(0, 0, 1) - camera.location);
     if (angle)
         set_angle(reader, camera, *angle);
     apply(camera, placed);
@@ -138,8 +137,9 @@ Camera camera_of(const CameraValue& c) {
     camera.window->angle = c.angle > 0 ? c.angle : all_around ? 360 : 90;
     camera.window->vertical_angle =
         c.vertical_angle > 0 ? c.vertical_angle : 0.5 * camera.window->angle;
-    // With an angle, an orthographic camera shows at look_at what a perspective one would.
-    if (c.orthographic && c.angle > 0 && c.distance) {
+    // With an angle, or without a window's size, an orthographic camera shows at look_at what a
+    // perspective one would.
+    if (c.orthographic && (c.angle > 0 || !c.window_given) && c.distance) {
         const double scale = *c.distance / glm::length(c.direction);
         camera.window->right *= scale;
         camera.window->up *= scale;

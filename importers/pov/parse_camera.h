@@ -11,9 +11,10 @@ struct CameraValue {
     dvec3 location{0};
     dvec3 direction{0, 0, 1};
     dvec3 up{0, 1, 0};
-    dvec3 right{4 / 3.0, 0, 0};
+    dvec3 right{1.33, 0, 0}; // povray's, though its pictures are 4 : 3
     dvec3 sky{0, 1, 0};
-    std::optional<double> distance; // to what it looks at
+    std::optional<double> distance; // to what it looks at; without look_at that is <0, 0, 1>
+    bool window_given = false;      // right or up
     bool orthographic = false;
     ImageWindow::Bend bend = ImageWindow::Bend::Flat;
     double vertical_angle = 0;

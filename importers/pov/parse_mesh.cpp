@@ -94,6 +94,7 @@ void parse_mesh_triangle(Reader& reader, bool smooth, Groups& groups) {
         else
             reader.fail_here("'}' or a texture of a triangle");
     }
+    reader.grow(3 * sizeof(Corner));
     Facets& facets = groups.of(texture);
     if (smooth)
         facets.add(c[0], c[1], c[2]);
@@ -187,6 +188,7 @@ void parse_normal_indices(Reader& reader, Mesh2& mesh) {
 }
 
 void add_faces(Reader& reader, const Mesh2& mesh, Groups& groups) {
+    reader.grow(mesh.faces.size() * 3 * sizeof(Corner));
     for (const Face& face : mesh.faces) {
         std::optional<Texture> texture;
         if (face.texture >= 0 && face.texture < int(mesh.textures.size()))

@@ -9,12 +9,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
 
 namespace ovc::pov {
 
 namespace {
+
+/// An object and its shape, less what grows with how it is stated.
+constexpr uint64_t kObjectBytes = 1000;
 
 using ParseShape = Shape (*)(Reader&);
 const std::unordered_map<std::string_view, ParseShape> kShapes = {
@@ -31,7 +35,9 @@ const std::unordered_map<std::string_view, ParseShape> kShapes = {
     {"lathe", parse_lathe},
     {"sor", parse_sor},
     {"superellipsoid", parse_superellipsoid},
-    {"bicubic_patch", parse_bicubic_patch}};
+    {"bicubic_patch", parse_bicubic_patch},
+    {"text", parse_text_shape},
+    {"height_field", parse_height_field}};
 
 /// Shapes that nothing is inside of.
 const std::unordered_set<std::string_view> kSheets = {"disc", "triangle", "smooth_triangle",
@@ -56,7 +62,6 @@ const std::unordered_map<std::string_view, ParseWhole> kWholes = {
     {"light_group", parse_group},
     {"blob", parse_blob},
     {"cubic", parse_polynomial},
-    {"height_field", parse_refused},
     {"isosurface", parse_isosurface},
     {"julia_fractal", parse_refused},
     {"parametric", parse_refused},
@@ -64,8 +69,7 @@ const std::unordered_map<std::string_view, ParseWhole> kWholes = {
     {"polynomial", parse_refused},
     {"quadric", parse_quadric},
     {"quartic", parse_polynomial},
-    {"sphere_sweep", parse_refused},
-    {"text", parse_refused}};
+    {"sphere_sweep", parse_refused}};
 
 void parse_plane(Reader& reader, Object& object) {
     PlaneShape plane;
@@ -103,8 +107,10 @@ void parse_wrapped(Reader& reader, Object& object) {
         reader.fail_here("an object or the name of one");
     const ObjectPtr inside = parse_object(reader);
     const Place at = object.place;
+    const Caller caller = object.caller;
     object = *inside;
     object.place = at;
+    object.caller = caller;
     parse_modifiers(reader, object);
 }
 
@@ -210,9 +216,11 @@ ObjectPtr parse_object(Reader& reader) {
         reader.fail(keyword.place, fmt::format("stopped after {} objects: a loop or a macro does "
                                                "not end",
                                                reader.limits.objects));
+    reader.grow(kObjectBytes);
     auto object = std::make_shared<Object>();
     object->kind = keyword.name->text; // names live as long as the reader
     object->place = keyword.place;
+    object->caller = reader.caller();
     reader.expect('{', object->kind);
     // Any kind may begin with the name of an object.
     const bool is_group = kWholes.contains(object->kind) && object->kind != "object" &&
@@ -220,9 +228,9 @@ ObjectPtr parse_object(Reader& reader) {
                           object->kind != "mesh2";
     if (!is_group) {
         if (const auto other = take_named_if<ObjectPtr>(reader)) {
-            const Place at = object->place;
             *object = **other;
-            object->place = at;
+            object->place = keyword.place;
+            object->caller = reader.caller();
             parse_modifiers(reader, *object);
             return object;
         }
@@ -233,6 +241,11 @@ ObjectPtr parse_object(Reader& reader) {
         parse_modifiers(reader, *object);
     } else
         kWholes.at(object->kind)(reader, *object);
+    for (const ObjectPtr& child : object->children)
+        object->depth = std::max(object->depth, child->depth + 1);
+    if (object->depth > reader.limits.chain)
+        reader.fail(object->place, fmt::format("found groups more than {} deep in each other",
+                                               reader.limits.chain));
     return object;
 }
 

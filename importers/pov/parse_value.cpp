@@ -19,6 +19,18 @@ namespace ovc::pov {
 
 namespace {
 
+void fill_item(Reader& reader, Array& array, size_t i) {
+    Value value = parse_value(reader);
+    reader.count_depth(array, value);
+    array.items[i] = std::move(value);
+}
+
+/// Making or copying an item takes as long as running over a few words.
+void take_items(Reader& reader, uint64_t count) {
+    reader.spend(4 * count);
+    reader.grow(count * sizeof(Value));
+}
+
 void fill(Reader& reader, Array& array, size_t dimension, size_t first, size_t count) {
     const Deeper deeper(reader);
     reader.expect('{', "an array");
@@ -28,7 +40,7 @@ void fill(Reader& reader, Array& array, size_t dimension, size_t first, size_t c
         if (dimension + 1 < array.sizes.size())
             fill(reader, array, dimension + 1, first + i * stride, stride);
         else
-            array.items[first + i] = parse_value(reader);
+            fill_item(reader, array, first + i);
         reader.take_comma();
     }
     reader.expect('}', "the items of an array");
@@ -51,6 +63,7 @@ Value parse_array(Reader& reader) {
     }
     if (array->sizes.empty())
         reader.fail_here("'[' and the size of an array");
+    take_items(reader, uint64_t(count));
     array->items.resize(size_t(count));
     if (reader.peek_operator().is('{'))
         fill(reader, *array, 0, 0, array->items.size());
@@ -102,6 +115,11 @@ const std::unordered_map<std::string_view, ParseValue> kKinds = {
     {"rainbow", parse_opaque},
     {"sky_sphere", parse_opaque}};
 
+Value copy_of(Reader& reader, const Array& array) {
+    take_items(reader, array.items.size());
+    return std::make_shared<Array>(array);
+}
+
 /// The value that a variable or item has, where that is no part of an expression.
 std::optional<Value> take_whole(Reader& reader) {
     const Token token = reader.peek();
@@ -115,14 +133,15 @@ std::optional<Value> take_whole(Reader& reader) {
     if (const auto* array = std::get_if<std::shared_ptr<Array>>(&slot->value)) {
         const std::shared_ptr<Array> kept = *array;
         if (!reader.peek_operator().is('['))
-            return std::make_shared<Array>(*kept);
+            return copy_of(reader, *kept);
         if (!kept->items.empty() && std::holds_alternative<Number>(kept->items[0])) {
             reader.put_back(token);
             return std::nullopt;
         }
         const Value item = *parse_item(reader, *kept);
-        if (std::holds_alternative<Number>(item))
-            return item;
+        // A copy, so that an array in another never changes and cannot come to hold that other.
+        if (const auto* inner = std::get_if<std::shared_ptr<Array>>(&item))
+            return copy_of(reader, **inner);
         return item;
     }
     const bool is_callable = std::holds_alternative<std::shared_ptr<const Function>>(slot->value) ||
@@ -159,7 +178,7 @@ std::string kind_of(const Value& value) {
     static constexpr const char* kKindNames[] = {
         "nothing",  "a number",    "a text",     "an object",   "a texture",   "a pigment",
         "a finish", "an interior", "a material", "a color map", "a transform", "an array",
-        "a macro",  "a function",  "a spline",   "a camera",    "a block"};
+        "a macro",  "a function",  "a spline",   "a camera",    "a file",      "a block"};
     static_assert(std::size(kKindNames) == std::variant_size_v<Value>);
     return kKindNames[value.index()];
 }

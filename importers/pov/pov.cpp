@@ -49,6 +49,7 @@ public:
           reader_({parse_value, parse_float, parse_condition, parse_item, parse_defaults},
                   options.log, folder) {
         reader_.limits.tokens = most_words;
+        reader_.limits.triangles = options.max_triangles;
         reader_.defaults = factory_default();
         reader_.picture = options.size.value_or(reader_.picture);
     }
@@ -143,6 +144,8 @@ private:
 
     /// 480 high, and as wide as the camera's window is.
     ImageSize size_of(const CameraValue& camera) const {
+        if (!camera.window_given)
+            return {640, 480};
         const double high = glm::length(camera.up), wide = glm::length(camera.right);
         const double ratio = high > 0 && wide > 0 ? std::clamp(wide / high, 0.1, 10.0) : 4 / 3.0;
         return {uint32_t(std::lround(480 * ratio)), 480};
@@ -155,13 +158,26 @@ private:
     std::shared_ptr<const CameraValue> camera_;
 };
 
-/// "FILE:LINE:COLUMN: sentence", and the line.
-Error error_at(const Place& place, const std::string& sentence, const std::string& fallback) {
-    if (!place.file)
-        return {fmt::format("{}: {}", fallback, sentence)};
+std::string text_of(const Place& place) {
+    return fmt::format("{}:{}:{}", place.file->name, place.line, place.column);
+}
+
+/// The line of the place, on lines of its own.
+std::string line_of(const Place& place) {
     const std::string shown = excerpt(place);
-    return {fmt::format("{}:{}:{}: {}{}{}", place.file->name, place.line, place.column, sentence,
-                        shown.empty() ? "" : "\n", shown)};
+    return shown.empty() ? "" : "\n" + shown;
+}
+
+/// "FILE:LINE:COLUMN: sentence", and the line; then the line of the scene that led there.
+Error error_of(const ParseError& error, const std::string& scene) {
+    if (!error.place.file)
+        return {fmt::format("{}: {}", scene, error.what())};
+    std::string message =
+        fmt::format("{}: {}{}", text_of(error.place), error.what(), line_of(error.place));
+    if (const Caller& caller = error.caller; caller.place.file)
+        message += fmt::format("\n    {} at {}:{}", caller.is_macro ? "called" : "included",
+                               text_of(caller.place), line_of(caller.place));
+    return {message};
 }
 
 } // namespace
@@ -192,7 +208,7 @@ Result<Scene> parse_pov(std::string text, const std::filesystem::path& path,
                 fmt::format("{}: it has no triangles", path.string()));
         return scene;
     } catch (const pov::ParseError& error) {
-        return pov::error_at(error.place, error.what(), path.string());
+        return pov::error_of(error, path.string());
     }
 }
 

@@ -73,6 +73,26 @@ TEST(PovExpression, KnowsTheFunctions) {
                  "#declare T = function { transform { rotate -90*z scale 5 } }");
 }
 
+/// As povray 3.7.0.10 prints them; curved surfaces within what their facets leave.
+TEST(PovExpression, TraceMeetsSurfacesWherePovRayDoes) {
+    const std::string box =
+        "#declare N = x; #declare S = box { -1, 1 rotate 90*y scale <1, 1, -2> }";
+    EXPECT_VALUE(dvec3(0, 0, -2), "trace(S, -5*z, z, N) + 0 * N", box);
+    EXPECT_VALUE(dvec3(0, 0, -1), "N", box + "#declare P = trace(S, -5*z, 3*z, N);");
+    EXPECT_VALUE(dvec3(0), "trace(S, -5*z, x, N)", box);
+    EXPECT_VALUE(dvec3(0), "N", box + "#declare P = trace(S, -5*z, x, N);");
+    EXPECT_VALUE(dvec3(1, 2, 0), "trace(P, <1, 9, 0>, -y)", "#declare P = plane { y, 2 no_image }");
+    EXPECT_VALUE(dvec3(0, 1, 0), "N",
+                 "#declare P = plane { y, 2 }; #declare V = trace(P, <1, 9, 0>, -y, N);");
+    const std::string balls = "#declare S = union { #for (I, 0, 40) sphere { I * x, 0.5 } #end }";
+    EXPECT_LT(glm::length(value("trace(S, <30.2, 5, 0.1>, -y)", balls) -
+                          dvec3(30.2, std::sqrt(0.25 - 0.04 - 0.01), 0.1)),
+              0.001);
+    EXPECT_LT(glm::length(value("N", balls + "#declare P = trace(S, <30.2, 5, 0.1>, -y, N);") -
+                          2.0 * dvec3(0.2, std::sqrt(0.25 - 0.04 - 0.01), 0.1)),
+              0.002);
+}
+
 /// What povray 3.7.0.10 prints for #debug str(rand(seed(1)), 0, 9) and the next.
 TEST(PovExpression, RandomNumbersAreThoseOfPovRay) {
     const std::string stream = "#declare R = seed(1);";
@@ -94,9 +114,14 @@ TEST(PovExpression, SplinesAreThoseOfPovRay) {
 }
 
 TEST(PovDirectives, MacrosTakeValuesAndVariables) {
+    EXPECT_VALUE(5, "Less(7, 2)", "#macro Less(A B) (A - B) #end");
     EXPECT_VALUE(6, "Twice(3)", "#macro Twice(A) (2 * A) #end");
     EXPECT_VALUE(9, "Out", "#macro Set(A, B) #declare A = B * B; #end Set(Out, 3)");
     EXPECT_VALUE(3, "I", "#declare I = 3; #macro M() #local I = 7; #end M()");
+    // The macro still runs when its value is known; it has a Q of its own.
+    EXPECT_VALUE(6, "M()",
+                 "#macro Five() #local Q = 5; #if (1) Q; #else 0; #end #end\n"
+                 "#macro M() #local Q = 1; #local P = Five() #local Q = Five() (P + 1) #end");
     EXPECT_VALUE(24, "Factorial(4)",
                  "#macro Factorial(N) #if (N <= 1) 1 #else (N * Factorial(N - 1)) #end #end");
 }
@@ -115,8 +140,25 @@ TEST(PovDirectives, LoopsAndConditionsNest) {
     EXPECT_VALUE(4, "dimension_size(A, 1)", "#declare A = array[4] { 1, 2, 3, 4 }");
 }
 
+TEST(PovDirectives, FilesAreReadAndWhatIsWrittenIsReadAgain) {
+    const TestFolder folder;
+    const std::string data = folder.write("data.txt", "1.5, -2e0 <3, 4, 5>,\n \"six\"\n").string();
+    EXPECT_VALUE(dvec3(4.5, 6, 7.5), "V * A",
+                 "#fopen F \"" + data + "\" read #read (F, A, B, V) #read (F, S) #fclose F");
+    EXPECT_VALUE(-2 + 3, "N[1] + strlen(S)",
+                 "#declare N = array[2] #fopen F \"" + data +
+                     "\" read #read (F, N[0], N[1]) #read (F, V, S)");
+    EXPECT_VALUE(
+        6, "Sum",
+        "#fopen F \"new.txt\" write #write (F, 1, \",\", 2, \", \\n\", 3, \"\\n\") #fclose F\n"
+        "#declare Sum = 0; #fopen G \"new.txt\" read\n"
+        "#while (defined(G)) #read (G, X) #declare Sum = Sum + X; #end");
+    EXPECT_FALSE(std::filesystem::exists("new.txt"));
+}
+
 TEST(PovDirectives, DeclarationsNeedNoSemicolon) {
     EXPECT_VALUE(5, "B", "#declare A = 5\n#declare B = A\n");
+    EXPECT_VALUE(5, "B", "#\n#declare A = 5 #; #\n # declare B = A # \n");
     EXPECT_VALUE(1, "1", "declare Old = 3 /* a /* nested */ comment */");
 }
 
@@ -124,11 +166,26 @@ TEST(PovDirectives, IncludesAreFoundWhateverTheirLettersAndSlashes) {
     const TestFolder folder;
     std::filesystem::create_directories(folder / "Geom");
     folder.write("Geom/Ball.INC", "#local R = 2; #declare Ball = sphere { 0, R }");
-    const auto scene = load(
-        folder.write("main.pov", "#include \"geom\\ball.inc\"\nobject { Ball }\n#ifdef (R) #error "
-                                 "\"a #local of an include is seen outside\" #end"));
+    const auto scene =
+        load(folder.write("main.pov", "#include \"geom\\ball\"\nobject { Ball }\n#ifdef (R) #error "
+                                      "\"a #local of an include is seen outside\" #end"));
     EXPECT_GT(triangles_of(scene).size(), 100u);
     std::filesystem::remove_all(folder / "Geom");
+}
+
+/// Some of them need the names of colors.inc and shapes.inc, for povray too.
+TEST(PovDirectives, AllIncludeFilesOfPovRayAreRead) {
+    const std::filesystem::path library = "/usr/share/povray-3.7/include";
+    if (!std::filesystem::exists(library / "colors.inc"))
+        GTEST_SKIP() << "povray-includes is not installed";
+    for (const auto& entry : std::filesystem::directory_iterator(library)) {
+        if (entry.path().extension() != ".inc")
+            continue;
+        const Result<Scene> scene =
+            parse("#include \"colors.inc\"\n#include \"shapes.inc\"\n#include \"" +
+                  entry.path().filename().string() + "\"\nsphere { 0, 1 }");
+        EXPECT_TRUE(scene) << entry.path() << "\n" << scene.error().message;
+    }
 }
 
 /// As povray 3.7.0 prints them: #debug str(f_sphere(.3, .4, 1.2, .5), 0, 12).
@@ -180,6 +237,25 @@ TEST(PovErrors, NameTheLineAndShowIt) {
     }
 }
 
+TEST(PovErrors, TellWhichLineOfTheSceneLedThere) {
+    const Result<Scene> called = parse("#macro In(R) sphere { 0, R / 0 } #end\n"
+                                       "#macro Out(R)\n  In(R)\n#end\nOut(2)");
+    ASSERT_FALSE(called);
+    EXPECT_EQ(called.error().message, "x.pov:1:28: found a division by zero\n"
+                                      "    #macro In(R) sphere { 0, R / 0 } #end\n"
+                                      "                               ^\n"
+                                      "    called at x.pov:5:1:\n"
+                                      "    Out(2)\n"
+                                      "    ^");
+    const TestFolder folder;
+    folder.write("odd.inc", "\njulia_fractal { 1 }");
+    const auto included = load(folder.write("main.pov", "sphere { 0, 1 }\n#include \"odd.inc\""));
+    ASSERT_FALSE(included);
+    EXPECT_EQ(folder.plain(included.error().message),
+              "odd.inc:2:1: julia_fractal is not supported\n    julia_fractal { 1 }\n    ^\n"
+              "    included at main.pov:2:1:\n    #include \"odd.inc\"\n    ^");
+}
+
 TEST(PovErrors, WhatIsDeclaredAndNotSeenMayBeUnsupported) {
     EXPECT_TRUE(parse("#declare D = julia_fractal { <0, 0, 0, 0> } sphere { 0, 1 }"));
 }
@@ -223,6 +299,31 @@ TEST(PovScene, ReadsLightsCameraAndSettings) {
     EXPECT_NEAR(material.transmission, 0.5, 1e-6);
     EXPECT_EQ(material.ior, 1.4);
     EXPECT_TRUE(scene->meshes[0].no_shadow);
+}
+
+/// As povray 3.7.0.10 shows a plane at z = 0.
+TEST(PovScene, OrthographicCamerasShowAsMuchAsPovRay) {
+    const struct {
+        const char* camera;
+        double width, height;
+    } cases[] = {
+        {"location -z*10 look_at 0", 13.3, 10},
+        {"location -z*20 look_at 0", 26.6, 20},
+        {"location -z*10", 14.63, 11},
+        {"location -z*10 direction 2*z look_at 0", 6.65, 5},
+        {"location -z*10 look_at 0 right 3*x up 2*y", 3, 2},
+        {"location -z*10 look_at 0 direction 2*z right 3*x", 3, 1},
+        {"location -z*10 look_at 0 angle 40", 7.279, 5.473},
+        {"location -z*10 right 3*x up 2*y look_at 0 angle 40", 7.279, 4.853},
+        {"location -z*10 angle 40", 8.007, 6.021},
+    };
+    for (const auto& c : cases) {
+        const Result<Scene> scene =
+            parse(std::string("sphere { 0, 1 } camera { orthographic ") + c.camera + " }");
+        ASSERT_TRUE(scene) << scene.error().message;
+        EXPECT_NEAR(glm::length(scene->camera->window->right), c.width, 0.001) << c.camera;
+        EXPECT_NEAR(glm::length(scene->camera->window->up), c.height, 0.001) << c.camera;
+    }
 }
 
 TEST(PovScene, ThingsInheritTheLookOfTheirGroup) {

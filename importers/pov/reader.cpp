@@ -2,6 +2,8 @@
 // The stream of tokens: frames of files and macros, scopes of variables. directives.cpp obeys.
 #include "importers/pov/reader.h"
 
+#include "importers/available_memory.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +23,11 @@ Deeper::~Deeper() {
 }
 
 Reader::Reader(Hooks hooks, LogSink log, std::string main_folder)
-    : limits{}, hooks_(std::move(hooks)), log_(std::move(log)), folder_(std::move(main_folder)) {
+    : limits{},
+      hooks_(std::move(hooks)),
+      log_(std::move(log)),
+      folder_(std::move(main_folder)),
+      available_(available_memory()) {
     push_scope(); // of the scene: what #declare makes
 }
 
@@ -91,10 +97,36 @@ Token Reader::step(bool hold_declarations) {
     }
 }
 
-Token Reader::raw() {
-    if (++run_over_ > limits.tokens)
+void Reader::spend(uint64_t words) {
+    run_over_ += words;
+    if (run_over_ > limits.tokens)
         fail(last_,
              fmt::format("stopped after {} words: a loop or a macro does not end", limits.tokens));
+}
+
+void Reader::grow(uint64_t bytes) {
+    constexpr uint64_t kBetweenChecks = uint64_t(64) << 20; // asking the system takes a while
+    unchecked_ += bytes;
+    if (unchecked_ < kBetweenChecks)
+        return;
+    if (available_memory() < available_ / 2 + bytes)
+        fail(last_, fmt::format("stopped after half of the {} MB of memory were taken: a loop or a "
+                                "macro does not end, or the scene is too large",
+                                available_ >> 20));
+    unchecked_ = 0;
+}
+
+void Reader::count_depth(Array& array, const Value& item) const {
+    const auto* inner = std::get_if<std::shared_ptr<Array>>(&item);
+    if (!inner)
+        return;
+    array.depth = std::max(array.depth, (*inner)->depth + 1);
+    if (array.depth > limits.chain)
+        fail(last_, fmt::format("found arrays more than {} deep in each other", limits.chain));
+}
+
+Token Reader::raw() {
+    spend(1);
     while (!frames_.empty() && frame().at >= frame().end) {
         if (!frame().open.empty())
             fail(frame().open.back().place, "found no #end to this");
@@ -143,13 +175,24 @@ void Reader::bind(Name* name, uint32_t scope, Slot* slot) {
     }
 }
 
+uint32_t Reader::scope_of(const Name* name, bool local) const {
+    if (local)
+        return uint32_t(scopes_.size() - 1);
+    return name->bound.empty() ? 0 : name->bound.back().scope;
+}
+
 Slot& Reader::declare(Name* name, bool local) {
-    const uint32_t scope = local ? uint32_t(scopes_.size() - 1) : 0;
-    if (!name->bound.empty() && (!local || name->bound.back().scope == scope))
-        return *name->bound.back().slot;
+    return declare_in(scope_of(name, local), name);
+}
+
+Slot& Reader::declare_in(uint32_t scope, Name* name) {
+    for (const Name::Bound& bound : name->bound)
+        if (bound.scope == scope)
+            return *bound.slot;
     scopes_[scope].slots.push_back(std::make_unique<Slot>());
-    bind(name, scope, scopes_[scope].slots.back().get());
-    return *name->bound.back().slot;
+    Slot* slot = scopes_[scope].slots.back().get();
+    bind(name, scope, slot);
+    return *slot;
 }
 
 void Reader::undefine(Name* name) {
@@ -178,7 +221,11 @@ bool Reader::take(std::string_view word) {
 }
 
 void Reader::fail(const Place& at, const std::string& sentence) const {
-    throw ParseError(at, sentence);
+    throw ParseError(at, sentence, caller());
+}
+
+Caller Reader::caller() const {
+    return frames_.size() > 1 ? Caller{frames_[1].called, frames_[1].is_macro} : Caller{};
 }
 
 void Reader::fail_here(const std::string& expected) {

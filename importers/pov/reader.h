@@ -18,11 +18,16 @@ struct Limits {
     uint64_t tokens = 0;   // run over in all
     size_t nesting = 1000; // includes and macros inside each other
     uint64_t objects = 20'000'000;
-    uint64_t array_items = 50'000'000;
+    uint64_t triangles = 0; // of an object that the scene asks about
+    uint64_t array_items = 2'000'000;
+    uint32_t chain = 2000;      // groups in groups, arrays in arrays
+    uint32_t operations = 4000; // of a function and what it calls
     size_t depth = 400; // blocks and parentheses inside each other: the C++ stack holds as many
 };
 
 class Reader;
+class Font;
+class TraceTarget;
 
 /// Counts how deep the parser stands in itself; throws ParseError beyond Limits::depth.
 class Deeper {
@@ -69,6 +74,13 @@ public:
 
     [[noreturn]] void fail(const Place& at, const std::string& sentence) const;
     [[noreturn]] void fail_here(const std::string& expected);
+    /// Work other than running over words, counted in words: what takes about as long.
+    void spend(uint64_t words);
+    /// Before so many bytes are taken for what the scene makes. Fails once reading has taken more
+    /// than half of the memory there was: the rest is for the triangles.
+    void grow(uint64_t bytes);
+    /// Before `item` becomes one of the array's. ParseError: arrays in arrays, too deep.
+    void count_depth(Array& array, const Value& item) const;
     /// Once for each `kind`.
     void warn(const std::string& kind, const Place& at, const std::string& sentence);
 
@@ -79,13 +91,18 @@ public:
     Slot& declare(Name* name, bool local);
     void undefine(Name* name);
 
-    std::filesystem::path find_file(const std::string& name) const; // empty: none
+    /// As files.h has it: beside the scene, beside the including files, among POV-Ray's.
+    std::filesystem::path find_file(const std::string& name, std::string_view extension) const;
     Names& names() { return names_; }
     const Place& place() const { return last_; } // of the token read last
+    Caller caller() const;                       // of what is running
     double version = 3.7;
     double gamma = 1; // assumed_gamma: what srgb colors are converted to
     ImageSize picture{640, 480};
     Texture defaults; // of #default
+    /// Objects that the scene asked about.
+    std::map<std::shared_ptr<const Object>, std::shared_ptr<const TraceTarget>> targets;
+    std::map<std::string, std::shared_ptr<Font>> fonts; // by name
     std::vector<uint32_t> random_streams;
     Limits limits;
     uint64_t objects = 0;
@@ -141,12 +158,20 @@ private:
     void do_macro();
     void do_message(const Token& at);
     void do_version();
-    void pass_over_parentheses();
+    void do_fopen();
+    void do_fclose();
+    void do_read();
+    void do_write();
+    /// The open file that is named next.
+    std::shared_ptr<DataFile> raw_file(std::string_view after, bool writes);
     bool condition();
     /// Passes over tokens up to the #end that belongs to the innermost open block, or to an #else,
     /// #elseif, #case or #range of it where that is asked for; that directive is taken. Its name.
     std::string_view skip(bool stop_at_else, bool stop_at_case);
     void call(const Token& at, const std::shared_ptr<const Macro>& macro);
+    /// Where #declare or #local puts a variable of this name now.
+    uint32_t scope_of(const Name* name, bool local) const;
+    Slot& declare_in(uint32_t scope, Name* name);
     void bind(Name* name, uint32_t scope, Slot* slot);
     /// The value where it is given, or the caller's variable.
     std::pair<Slot*, Value> argument();
@@ -164,6 +189,10 @@ private:
     std::vector<Scope> scopes_;
     std::vector<Token> back_;
     std::set<std::string> warned_;
+    std::map<std::string, std::string> written_; // files of #fopen, by name
+    uint64_t written_bytes_ = 0;
+    uint64_t available_; // memory, when reading began
+    uint64_t unchecked_ = 0;
     Place last_;
     uint64_t run_over_ = 0;
     size_t depth_ = 0;

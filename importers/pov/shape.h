@@ -27,6 +27,12 @@ Shape parse_prism(Reader& reader);
 Shape parse_lathe(Reader& reader);
 Shape parse_sor(Reader& reader);
 
+// shape_height_field.cpp
+Shape parse_height_field(Reader& reader);
+
+// shape_text.cpp
+Shape parse_text_shape(Reader& reader);
+
 // shape_patch.cpp
 Shape parse_bicubic_patch(Reader& reader);
 

@@ -2,6 +2,7 @@
 // A curve swept along y (prism) or around it (lathe, sor).
 #include "importers/pov/contour.h"
 #include "importers/pov/shape.h"
+#include "importers/pov/sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,44 +108,12 @@ Shape parse_prism(Reader& reader) {
     shape.fixed = 4 * double(points.size());
     shape.per_segment = curve == Curve::Linear ? 0 : double(points.size()) / 2;
     shape.cut = [=](int segments, bool open, Facets& out) {
-        const std::vector<Contour> contours = prism_contours(curve, points, segments);
-        const auto at = [&](const dvec2& p, double y) {
+        const auto place = [&](const dvec2& p, bool end) {
+            const double y = end ? high : low;
             const double scale = conic ? y : 1;
             return dvec3(p.x * scale, y, p.y * scale);
         };
-        std::vector<dvec2> all;
-        for (const Contour& c : contours) {
-            all.insert(all.end(), c.begin(), c.end());
-            // Outside is to the right of a counterclockwise curve in x and z, which is clockwise
-            // seen from above; a hole's outside is its inside.
-            size_t depth = 0;
-            for (const Contour& other : contours)
-                depth += &other != &c && [&] {
-                    bool inside = false;
-                    for (size_t i = 0, j = other.size() - 1; i < other.size(); j = i++)
-                        if ((other[i].y > c[0].y) != (other[j].y > c[0].y) &&
-                            c[0].x < (other[j].x - other[i].x) * (c[0].y - other[i].y) /
-                                             (other[j].y - other[i].y) +
-                                         other[i].x)
-                            inside = !inside;
-                    return inside;
-                }();
-            const bool forwards = (doubled_area(c) > 0) == (depth % 2 == 0);
-            for (size_t i = 0; i < c.size(); ++i) {
-                const dvec2& p = c[i];
-                const dvec2& q = c[(i + 1) % c.size()];
-                if (forwards)
-                    out.add_quad(at(p, low), at(p, high), at(q, high), at(q, low));
-                else
-                    out.add_quad(at(q, low), at(q, high), at(p, high), at(p, low));
-            }
-        }
-        if (open)
-            return;
-        for (const auto& t : cut_contours(contours)) {
-            out.add(at(all[t[2]], high), at(all[t[1]], high), at(all[t[0]], high));
-            out.add(at(all[t[0]], low), at(all[t[1]], low), at(all[t[2]], low));
-        }
+        sweep(prism_contours(curve, points, segments), /* lids= */ !open, place, out);
     };
     return shape;
 }

@@ -4,6 +4,7 @@
 #include "importers/readers.h"
 #include "importers/test_files.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -65,9 +66,8 @@ const Solid kSolids[] = {
 
 class PovSolid : public testing::TestWithParam<Solid> {};
 
-TEST_P(PovSolid, IsClosedAndOutwardAndHasItsVolume) {
-    const Result<Scene> scene = parse_pov(GetParam().text, "x.pov", {});
-    ASSERT_TRUE(scene) << scene.error().message;
+/// The volume; every edge must be met as often one way as the other.
+double volume_of_closed(const Result<Scene>& scene) {
     using Point = std::array<double, 3>;
     std::map<std::pair<Point, Point>, int> edges;
     double volume = 0;
@@ -80,8 +80,14 @@ TEST_P(PovSolid, IsClosedAndOutwardAndHasItsVolume) {
         }
     }
     for (const auto& [edge, balance] : edges)
-        ASSERT_EQ(balance, 0) << edge.first[0] << " " << edge.first[1] << " " << edge.first[2];
-    EXPECT_NEAR(volume, GetParam().volume, 0.004 * GetParam().volume);
+        EXPECT_EQ(balance, 0) << edge.first[0] << " " << edge.first[1] << " " << edge.first[2];
+    return volume;
+}
+
+TEST_P(PovSolid, IsClosedAndOutwardAndHasItsVolume) {
+    const Result<Scene> scene = parse_pov(GetParam().text, "x.pov", {});
+    ASSERT_TRUE(scene) << scene.error().message;
+    EXPECT_NEAR(volume_of_closed(scene), GetParam().volume, 0.004 * GetParam().volume);
 }
 
 TEST_P(PovSolid, NormalsPointOutside) {
@@ -181,6 +187,36 @@ TEST(PovShapes, PlanesKeepTheirPlaceNearTheScene) {
         EXPECT_EQ(t[0], plane.origin());
         EXPECT_GT(glm::dot(glm::cross(t[1] - t[0], t[2] - t[0]), normal), 0);
         EXPECT_GT(glm::length(t[1] - t[0]), 1e4);
+    }
+}
+
+/// The boxes are what povray 3.7.0.10 prints for min_extent and max_extent, less its padding.
+TEST(PovText, StandsWherePovRaySetsIt) {
+    const struct {
+        const char* text;
+        dvec3 lo, hi;
+    } cases[] = {
+        {"ttf \"timrom.ttf\" \"AVia\" 0.3, 0", {0, -0.016, 0}, {1.956, 0.696, 0.3}},
+        {"ttf \"timrom.ttf\" \"AV\" 0.3, <0.1, 0.2, 0.05>", {0, 0, 0}, {1.378, 0.88, 0.3}},
+        {"ttf \"timrom.ttf\" \"a a\" -0.3, 0", {0, -0.01, -0.3}, {1.106, 0.469, 0}},
+        {"ttf \"timrom.ttf\" \"\\u0041\\u00e9\" 0.3, 0", {0, 0, 0}, {1.25, 0.696, 0.3}},
+        {"internal 1 \"Pi\" 0.3, 0", {0, 0, 0}, {0.814, 0.696, 0.3}},
+        {"internal 2 \"Pi\" 0.3, 0", {0, 0, 0}, {0.702, 0.728, 0.3}},
+        {"internal 3 \"Pi\" 0.3, 0", {0, -0.00097, 0}, {0.8203, 0.72998, 0.3}},
+        {"internal 4 \"Pi\" 0.3, 0", {0, 0.00196, 0}, {1.373, 1.00196, 0.3}},
+    };
+    for (const auto& c : cases) {
+        const Result<Scene> scene = parse_pov(fmt::format("text {{ {} }}", c.text), "x.pov", {});
+        if (!scene && scene.error().message.find("found no file") != std::string::npos)
+            GTEST_SKIP() << "povray's fonts are not installed";
+        ASSERT_TRUE(scene) << scene.error().message;
+        EXPECT_GT(volume_of_closed(scene), 0.01) << c.text;
+        Box box;
+        for (const Triangle& t : triangles_of(scene))
+            for (const dvec3& corner : t)
+                box.add(corner);
+        EXPECT_LT(glm::length(box.lo - c.lo), 0.001) << c.text << box.lo.x << " " << box.lo.y;
+        EXPECT_LT(glm::length(box.hi - c.hi), 0.001) << c.text << box.hi.x << " " << box.hi.y;
     }
 }
 

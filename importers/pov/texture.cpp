@@ -3,6 +3,7 @@
 
 #include "importers/pov/block.h"
 #include "importers/pov/function.h"
+#include "importers/pov/image_map.h"
 #include "importers/pov/transform.h"
 #include "importers/text.h"
 
@@ -168,10 +169,8 @@ Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
             parse_list(reader, token, pigment);
         } else if (token.is("image_map")) {
             reader.next();
-            skip_braces(reader, "image_map");
-            pigment.color = kMiddle;
+            pigment.color = parse_image_map(reader, token).value_or(kMiddle);
             pigment.other.reset();
-            reader.warn("image_map", token.place, "image_map is drawn by a middle grey");
         } else if (token.is("quick_color") || token.is("quick_colour")) {
             reader.next();
             parse_color(reader);

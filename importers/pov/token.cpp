@@ -35,8 +35,8 @@ public:
                 file_.tokens.push_back(token);
                 return;
             }
-            read(token);
-            file_.tokens.push_back(token);
+            if (read(token))
+                file_.tokens.push_back(token);
         }
     }
 
@@ -85,7 +85,8 @@ private:
         } while (depth > 0);
     }
 
-    void read(Token& token) {
+    /// False: there was none, but a sign that counts for nothing.
+    bool read(Token& token) {
         const char c = peek();
         if (is_letter(c)) {
             token.name = read_name();
@@ -100,11 +101,12 @@ private:
             token.kind = TokenKind::Text;
             token.text = read_text();
         } else if (c == '#') {
-            read_directive(token);
+            return read_directive(token);
         } else {
             token.kind = TokenKind::Sign;
             token.sign = read_sign();
         }
+        return true;
     }
 
     Name* read_name() {
@@ -146,13 +148,16 @@ private:
         return text_.substr(first, at_++ - first);
     }
 
-    void read_directive(Token& token) {
+    /// False: a # without a word in its line, which POV-Ray passes over.
+    bool read_directive(Token& token) {
         ++at_;
-        skip_space();
+        while (peek() == ' ' || peek() == '\t')
+            ++at_;
         if (!is_letter(peek()))
-            throw ParseError(token.place, "found # alone, expected a directive such as #declare");
+            return false;
         token.kind = TokenKind::Directive;
         token.name = read_name();
+        return true;
     }
 
     char read_sign() {

@@ -24,12 +24,20 @@ struct Place {
     uint32_t column = 0;
 };
 
+/// Where the scene's own file calls the macro, or includes the file, in which a place stands; no
+/// file: the place stands in the scene's own file.
+struct Caller {
+    Place place;
+    bool is_macro = false;
+};
+
 /// What is wrong with the scene, thrown inside this folder and caught in pov.cpp: the sentence
 /// alone, and where.
 struct ParseError : std::runtime_error {
-    ParseError(const Place& at, const std::string& sentence)
-        : std::runtime_error(sentence), place(at) {}
+    ParseError(const Place& at, const std::string& sentence, const Caller& from = {})
+        : std::runtime_error(sentence), place(at), caller(from) {}
     Place place;
+    Caller caller;
 };
 
 /// An identifier or a keyword; one for each spelling.

@@ -82,12 +82,13 @@ struct Opaque {
 };
 
 struct CameraValue;
+struct DataFile;
 
-using Value =
-    std::variant<std::monostate, Number, std::string, std::shared_ptr<const Object>, Texture,
-                 Pigment, Surface, Interior, Material, ColorMap, dmat4, std::shared_ptr<Array>,
-                 std::shared_ptr<const Macro>, std::shared_ptr<const Function>,
-                 std::shared_ptr<const Spline>, std::shared_ptr<const CameraValue>, Opaque>;
+using Value = std::variant<std::monostate, Number, std::string, std::shared_ptr<const Object>,
+                           Texture, Pigment, Surface, Interior, Material, ColorMap, dmat4,
+                           std::shared_ptr<Array>, std::shared_ptr<const Macro>,
+                           std::shared_ptr<const Function>, std::shared_ptr<const Spline>,
+                           std::shared_ptr<const CameraValue>, std::shared_ptr<DataFile>, Opaque>;
 
 /// "a float", "an object": what a message calls it.
 std::string kind_of(const Value& value);
@@ -100,6 +101,7 @@ struct Slot {
 struct Array {
     std::vector<size_t> sizes; // of the dimensions
     std::vector<Value> items;  // the last index counts fastest
+    uint32_t depth = 1;        // of arrays in arrays
 };
 
 /// The tokens [first, last) of a file, run in the place of a call.

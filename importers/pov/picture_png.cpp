@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// PNG, by libpng's long interface: the short one does not tell the numbers of colors in their
+// table.
+#include "importers/pov/picture.h"
+
+#include <png.h>
+
+#include <csetjmp>
+#include <cstring>
+#include <string>
+
+namespace ovc::pov {
+
+namespace {
+
+/// All that lives while libpng may jump.
+struct Reading {
+    png_structp png = nullptr;
+    png_infop info = nullptr;
+    Bytes file;
+    size_t at = 0;
+    std::string error;
+    std::vector<uint8_t> data;
+    std::vector<png_bytep> rows;
+    Result<Picture> picture = Error{"found a damaged PNG picture"};
+
+    ~Reading() { png_destroy_read_struct(&png, &info, nullptr); }
+};
+
+void on_error(png_structp png, png_const_charp message) {
+    static_cast<Reading*>(png_get_error_ptr(png))->error = message;
+    png_longjmp(png, 1);
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+void read_bytes(png_structp png, png_bytep out, size_t count) {
+    Reading& reading = *static_cast<Reading*>(png_get_io_ptr(png));
+    if (reading.file.size() - reading.at < count)
+        png_error(png, "the file ends too early");
+    std::memcpy(out, reading.file.data() + reading.at, count);
+    reading.at += count;
+}
+
+/// Rows of 16 bits a sample, high byte first: gray and opacity, or red, green, blue and opacity.
+void decode(Reading& r) {
+    png_set_read_fn(r.png, &r, read_bytes);
+    png_read_info(r.png, r.info);
+    r.picture =
+        make_picture(png_get_image_width(r.png, r.info), png_get_image_height(r.png, r.info));
+    if (!r.picture)
+        return;
+    const int type = png_get_color_type(r.png, r.info);
+    const bool indexed = type == PNG_COLOR_TYPE_PALETTE;
+    if (indexed)
+        png_set_packing(r.png); // one byte a number
+    else {
+        png_set_expand_16(r.png);
+        png_set_add_alpha(r.png, 0xffff, PNG_FILLER_AFTER);
+    }
+    png_set_interlace_handling(r.png);
+    png_read_update_info(r.png, r.info);
+    const size_t stride = png_get_rowbytes(r.png, r.info);
+    r.data.resize(stride * r.picture->height);
+    for (size_t y = 0; y < r.picture->height; ++y)
+        r.rows.push_back(r.data.data() + y * stride);
+    png_read_image(r.png, r.rows.data());
+
+    Picture& picture = *r.picture;
+    picture.gray = !indexed && !(type & PNG_COLOR_MASK_COLOR);
+    picture.pixels.resize(picture.size());
+    if (indexed) {
+        png_colorp table = nullptr;
+        int count = 0;
+        png_get_PLTE(r.png, r.info, &table, &count);
+        picture.indices.resize(picture.size());
+        for (size_t i = 0; i < picture.size(); ++i) {
+            const int index = r.rows[i / picture.width][i % picture.width];
+            const png_color c = index < count ? table[index] : png_color{0, 0, 0};
+            picture.indices[i] = uint8_t(index);
+            picture.pixels[i] = {uint16_t(257 * c.red), uint16_t(257 * c.green),
+                                 uint16_t(257 * c.blue), 65535};
+        }
+        return;
+    }
+    const size_t channels = picture.gray ? 2 : 4;
+    for (size_t i = 0; i < picture.size(); ++i) {
+        const uint8_t* p = r.rows[i / picture.width] + 2 * channels * (i % picture.width);
+        const auto sample = [&](size_t c) { return uint16_t(p[2 * c] << 8 | p[2 * c + 1]); };
+        if (picture.gray)
+            picture.pixels[i] = {sample(0), sample(0), sample(0), sample(1)};
+        else
+            picture.pixels[i] = {sample(0), sample(1), sample(2), sample(3)};
+    }
+}
+
+} // namespace
+
+Result<Picture> read_png(Bytes file) {
+    Reading reading;
+    reading.file = file;
+    reading.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reading, on_error, on_warning);
+    reading.info = reading.png ? png_create_info_struct(reading.png) : nullptr;
+    if (!reading.info)
+        return Error{"libpng cannot be started"};
+    if (setjmp(png_jmpbuf(reading.png)) != 0)
+        return Error{"found a damaged PNG picture: " + reading.error};
+    decode(reading);
+    return std::move(reading.picture);
+}
+
+} // namespace ovc::pov

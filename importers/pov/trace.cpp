@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: Moller and Trumbore 1997, for the triangles. The boxes are halved by count: scenes ask
+// some thousand times, which such a tree answers before a better one would be built.
+#include "importers/pov/trace.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ovc::pov {
+
+namespace {
+
+/// A meeting is beyond this: what starts on a surface leaves it.
+constexpr double kLeastDistance = 1e-6;
+constexpr uint32_t kLeafTriangles = 4;
+
+void meet_triangle(const Corner* c, const dvec3& from, const dvec3& way, Meeting& nearest) {
+    const dvec3 ab = c[1].position - c[0].position, ac = c[2].position - c[0].position;
+    const dvec3 p = glm::cross(way, ac);
+    const double determinant = glm::dot(ab, p);
+    if (determinant == 0)
+        return;
+    const dvec3 s = from - c[0].position;
+    const dvec3 q = glm::cross(s, ab);
+    const double u = glm::dot(s, p) / determinant, v = glm::dot(way, q) / determinant;
+    const double t = glm::dot(ac, q) / determinant;
+    if (!(u >= 0 && v >= 0 && u + v <= 1 && t > kLeastDistance && t < nearest.distance))
+        return;
+    nearest.distance = t;
+    nearest.normal = (1 - u - v) * c[0].normal + u * c[1].normal + v * c[2].normal;
+}
+
+void meet_plane(const PlaneShape& plane, const dvec3& from, const dvec3& way, Meeting& nearest) {
+    const double t = (plane.distance - glm::dot(plane.normal, from)) / glm::dot(plane.normal, way);
+    if (t > kLeastDistance && t < nearest.distance)
+        nearest = {t, plane.normal};
+}
+
+/// Whether the box is met before `limit`. A way of 0 along an axis gives infinities, and NaN on a
+/// side of the box, which the comparisons count as met.
+bool meets(const Box& box, const dvec3& from, const dvec3& inverse_way, double limit) {
+    double first = 0, last = limit;
+    for (int axis = 0; axis < 3; ++axis) {
+        double a = (box.lo[axis] - from[axis]) * inverse_way[axis];
+        double b = (box.hi[axis] - from[axis]) * inverse_way[axis];
+        if (a > b)
+            std::swap(a, b);
+        first = a > first ? a : first;
+        last = b < last ? b : last;
+    }
+    return !(first > last * (1 + 1e-12));
+}
+
+} // namespace
+
+TraceTarget::TraceTarget(CutObject object) : object_(std::move(object)) {
+    order_.resize(triangle_count());
+    std::iota(order_.begin(), order_.end(), 0u);
+    if (!order_.empty())
+        build(0, uint32_t(order_.size()));
+}
+
+Box TraceTarget::box_of(uint32_t triangle) const {
+    Box box;
+    for (size_t i = 0; i < 3; ++i)
+        box.add(object_.facets.corners[3 * size_t(triangle) + i].position);
+    return box;
+}
+
+void TraceTarget::build(uint32_t first, uint32_t last) {
+    const size_t node = nodes_.size();
+    nodes_.push_back({{}, first, last, 0});
+    Box box;
+    for (uint32_t i = first; i < last; ++i)
+        box.add(box_of(order_[i]));
+    nodes_[node].box = box;
+    if (last - first <= kLeafTriangles)
+        return;
+    const int axis = major_axis(box.extent());
+    const auto middle = [&](uint32_t triangle) {
+        const Corner* c = &object_.facets.corners[3 * size_t(triangle)];
+        return c[0].position[axis] + c[1].position[axis] + c[2].position[axis];
+    };
+    const uint32_t half = first + (last - first) / 2;
+    std::nth_element(order_.begin() + first, order_.begin() + half, order_.begin() + last,
+                     [&](uint32_t a, uint32_t b) { return middle(a) < middle(b); });
+    build(first, half);
+    nodes_[node].second = uint32_t(nodes_.size());
+    build(half, last);
+}
+
+Meeting TraceTarget::first_meeting(const dvec3& origin, const dvec3& direction) const {
+    Meeting nearest;
+    for (const PlaneShape& plane : object_.planes)
+        meet_plane(plane, origin, direction, nearest);
+    if (nodes_.empty())
+        return nearest;
+    const dvec3 inverse_way = 1.0 / direction;
+    uint32_t waiting[64]; // halving 2^32 triangles goes 32 deep
+    size_t count = 0;
+    waiting[count++] = 0;
+    while (count > 0) {
+        const uint32_t at = waiting[--count];
+        const Node& node = nodes_[at];
+        if (!meets(node.box, origin, inverse_way, nearest.distance))
+            continue;
+        if (node.second) {
+            waiting[count++] = node.second;
+            waiting[count++] = at + 1;
+            continue;
+        }
+        for (uint32_t i = node.first; i < node.last; ++i)
+            meet_triangle(&object_.facets.corners[3 * size_t(order_[i])], origin, direction,
+                          nearest);
+    }
+    return nearest;
+}
+
+} // namespace ovc::pov
