@@ -12,10 +12,11 @@
 
 namespace ovc::pbrt {
 
-/// Files in each other, and files in all. Scenes have a few of the one and thousands of the other;
-/// beyond that a file includes itself under ever new names, or two of the next again and again.
+/// Files in each other, and files in all. Scenes have a few of the one and up to thousands of the
+/// other; beyond that a file includes itself under ever new names, or two of the next again and
+/// again.
 static constexpr size_t kDeepest = 64;
-static constexpr uint64_t kMostFiles = 50000;
+static constexpr uint64_t kMostFiles = 10000;
 
 /// Source cuts lines that are longer.
 static constexpr size_t kLongestLine = size_t(1) << 26;
