@@ -2,41 +2,21 @@
 // Archive: what was written comes back, in place; any changed bit and any missing byte is noticed.
 #include "core/archive.h"
 
-#include <gtest/gtest.h>
+#include "core/test_archive.h"
 
-#include <cstring>
+#include <gtest/gtest.h>
 
 namespace ovc {
 namespace {
 
-/// Aligned as a mapped file is.
-struct Memory {
-    explicit Memory(const std::vector<std::byte>& bytes) : size(bytes.size()) {
-        lines.resize((size + sizeof(Line) - 1) / sizeof(Line));
-        if (size > 0)
-            std::memcpy(lines.data(), bytes.data(), size);
-    }
-    Bytes bytes() const { return {reinterpret_cast<const std::byte*>(lines.data()), size}; }
-    std::byte* data() { return reinterpret_cast<std::byte*>(lines.data()); }
-
-    struct alignas(kPartAlignment) Line {
-        std::array<std::byte, kPartAlignment> bytes;
-    };
-    std::vector<Line> lines;
-    size_t size;
-};
+using test::ArchiveMemory;
 
 const std::vector<double> kNumbers = {1, 2.5, -3};
 const std::string kText = "seventeen letters";
 
-std::vector<std::byte> example() {
-    std::vector<std::byte> file;
-    ArchiveWriter writer(
-        [&](Bytes bytes) {
-            file.insert(file.end(), bytes.begin(), bytes.end());
-            return true;
-        },
-        "example", 7);
+ArchiveMemory example() {
+    ArchiveMemory file;
+    ArchiveWriter writer(file.sink(), "example", 7);
     writer.part<double>("numbers", kNumbers);
     writer.begin("nothing");
     writer.begin("text");
@@ -58,7 +38,7 @@ TEST(Checksum, IsXxh3OfTheBytesInAnyParts) {
 }
 
 TEST(Archive, GivesBackItsParts) {
-    const Memory memory(example());
+    const ArchiveMemory memory = example();
     const auto archive = Archive::open(memory.bytes(), "example", 7);
     ASSERT_TRUE(archive) << archive.error().message;
     const auto numbers = archive->items<double>("numbers");
@@ -78,7 +58,7 @@ TEST(Archive, GivesBackItsParts) {
 }
 
 TEST(Archive, OthersAreRefusedWithAReason) {
-    const Memory memory(example());
+    const ArchiveMemory memory = example();
     EXPECT_EQ(Archive::open(memory.bytes(), "other", 7).error().message,
               "does not begin as other does");
     EXPECT_EQ(Archive::open(memory.bytes(), "example", 8).error().message,
@@ -93,24 +73,30 @@ bool is_whole(Bytes bytes) {
 }
 
 TEST(Archive, EveryChangedBitIsNoticedButInThePaddingBetweenParts) {
-    const std::vector<std::byte> whole = example();
+    ArchiveMemory memory = example();
     size_t unnoticed = 0;
-    for (size_t bit = 0; bit < 8 * whole.size(); ++bit) {
-        Memory memory(whole);
+    for (size_t bit = 0; bit < 8 * memory.size(); ++bit) {
         memory.data()[bit / 8] ^= std::byte(1 << bit % 8);
         unnoticed += is_whole(memory.bytes());
+        memory.data()[bit / 8] ^= std::byte(1 << bit % 8);
     }
     const size_t padding = (64 - 24) + (64 - kText.size());
     EXPECT_EQ(unnoticed, 8 * padding);
-    EXPECT_TRUE(is_whole(Memory(whole).bytes()));
+    EXPECT_TRUE(is_whole(memory.bytes()));
 }
 
 TEST(Archive, EveryMissingEndIsNoticed) {
-    const std::vector<std::byte> whole = example();
-    for (size_t size = 0; size < whole.size(); ++size)
-        EXPECT_FALSE(
-            is_whole(Memory(std::vector(whole.begin(), whole.begin() + ptrdiff_t(size))).bytes()))
-            << size;
+    const ArchiveMemory memory = example();
+    for (size_t size = 0; size < memory.size(); ++size)
+        EXPECT_FALSE(is_whole(memory.bytes().first(size))) << size;
+}
+
+TEST(Archive, ResealedItIsWholeAgain) {
+    ArchiveMemory memory = example();
+    memory.data()[64] ^= std::byte(1); // in the first part
+    EXPECT_FALSE(is_whole(memory.bytes()));
+    test::reseal(memory);
+    EXPECT_TRUE(is_whole(memory.bytes()));
 }
 
 TEST(Archive, AFullSinkIsTold) {
