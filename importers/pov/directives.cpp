@@ -146,7 +146,7 @@ void Reader::do_include() {
                              ovc::quoted(*name)));
     SourceFile*& file = by_path_[path.string()];
     if (!file) {
-        Result<std::string> text = read_text(path);
+        Result<std::string> text = read_text(path, files_read_);
         if (!text)
             fail(at, text.error().message);
         files_.push_back(std::make_unique<SourceFile>());
@@ -166,7 +166,7 @@ std::filesystem::path Reader::find_file(const std::string& name) const {
     for (auto f = frames_.rbegin(); f != frames_.rend(); ++f)
         if (folders.back() != f->file->folder)
             folders.push_back(f->file->folder);
-    return pov::find_file(name, folders);
+    return pov::find_file(name, folders, files_read_);
 }
 
 bool Reader::condition() {

@@ -46,7 +46,7 @@ static std::optional<fs::path> file_like(const fs::path& folder, const fs::path&
     return fs::is_regular_file(at, ec) ? std::optional(at) : std::nullopt;
 }
 
-fs::path find_file(std::string name, const std::vector<std::string>& folders) {
+fs::path find_file(std::string name, const std::vector<std::string>& folders, FilesRead* files) {
     std::replace(name.begin(), name.end(), '\\', '/');
     const fs::path path(name);
     std::error_code ec;
@@ -56,17 +56,19 @@ fs::path find_file(std::string name, const std::vector<std::string>& folders) {
         return fs::is_regular_file(path, ec) ? path : fs::path();
     std::vector<fs::path> places(folders.begin(), folders.end());
     places.insert(places.end(), std::begin(kLibraries), std::end(kLibraries));
-    for (const fs::path& place : places)
+    for (const fs::path& place : places) {
+        note(files, place / path);
         if (fs::is_regular_file(place / path, ec))
             return place / path;
+    }
     for (const fs::path& place : places)
         if (const std::optional<fs::path> file = file_like(place, path))
             return *file;
     return {};
 }
 
-Result<std::string> read_text(const fs::path& path) {
-    Result<Source> source = Source::open(path);
+Result<std::string> read_text(const fs::path& path, FilesRead* files) {
+    Result<Source> source = Source::open(path, files);
     if (!source)
         return source.error();
     std::string text;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/result.h"
+#include "importers/files_read.h"
 
 #include <filesystem>
 #include <string>
@@ -13,9 +14,10 @@ namespace ovc::pov {
 /// The first file of this name in `folders`, then in the folder of POV-Ray's include files; empty:
 /// none. `\` counts as `/`; where no file has exactly this name, capital and small letters are the
 /// same.
-std::filesystem::path find_file(std::string name, const std::vector<std::string>& folders);
+std::filesystem::path find_file(std::string name, const std::vector<std::string>& folders,
+                                FilesRead* files = nullptr);
 
 /// The whole of a file, unpacked; lines end with LF.
-Result<std::string> read_text(const std::filesystem::path& path);
+Result<std::string> read_text(const std::filesystem::path& path, FilesRead* files = nullptr);
 
 } // namespace ovc::pov

@@ -47,7 +47,7 @@ public:
     SceneParser(const ImportOptions& options, const std::string& folder, uint64_t most_words)
         : options_(options),
           reader_({parse_value, parse_float, parse_condition, parse_item, parse_defaults},
-                  options.log, folder) {
+                  options.log, folder, options.files) {
         reader_.limits.tokens = most_words;
         reader_.defaults = factory_default();
         reader_.picture = options.size.value_or(reader_.picture);
@@ -171,7 +171,7 @@ Error error_at(const Place& place, const std::string& sentence, const std::strin
 namespace ovc {
 
 Result<Scene> read_pov(const std::filesystem::path& path, const ImportOptions& options) {
-    Result<std::string> text = pov::read_text(path);
+    Result<std::string> text = pov::read_text(path, options.files);
     if (!text)
         return text.error();
     return parse_pov(std::move(*text), path, options);
