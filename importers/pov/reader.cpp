@@ -221,7 +221,8 @@ void Reader::call(const Token& at, const std::shared_ptr<const Macro>& macro) {
     for (size_t i = 0; i < arguments.size(); ++i) {
         Slot* slot = arguments[i].first;
         if (!slot) {
-            scopes_[scope].slots.push_back(std::make_unique<Slot>(std::move(arguments[i].second)));
+            scopes_[scope].slots.push_back(
+                std::make_unique<Slot>(Slot{std::move(arguments[i].second)}));
             slot = scopes_[scope].slots.back().get();
         }
         bind(kept->parameters[i], scope, slot);
