@@ -6,7 +6,7 @@ usage: measure.py BIN DATA TORTURE.tsv
 
 BIN: the folder with overcast and import_cost. DATA: the folder with meshes/ and torture/. TORTURE.tsv: odd files with
 what an independent reader made of them; importers/real_files_test.cpp holds the triangles to it. Prints a table of the
-large files (CPU seconds: medians of several runs, so that other programs on the machine hardly count) and one of the odd
+large files (CPU seconds, medians of several runs, so that other programs on the machine hardly count) and one of the odd
 files; exit 1 where a promise is broken.
 """
 import gzip
@@ -15,7 +15,6 @@ import pathlib
 import subprocess
 import sys
 import tempfile
-import time
 
 MEGABYTE = 1e6
 SLOWEST_SECONDS = 5
@@ -27,10 +26,8 @@ MOST_OF_SOUP = 1.5
 
 
 def cost(folder, path, *words):
-    start = time.monotonic()
-    done = subprocess.run([f"{folder}/import_cost", path, *words], capture_output=True, text=True, timeout=120)
-    found = json.loads(done.stdout) if done.returncode in (0, 1) else {"crashed": done.returncode}
-    return found | {"seconds": time.monotonic() - start}
+    done = subprocess.run([f"{folder}/import_cost", path, *words], capture_output=True, text=True, timeout=600)
+    return json.loads(done.stdout) if done.returncode in (0, 1) else {"crashed": done.returncode}
 
 
 def large_files(folder, data, scratch):
@@ -92,9 +89,9 @@ def measure_odd(folder, data, index):
         if "error" in found and (not found["error"].startswith(str(path)) or "\n" in found["error"]):
             broken.append(f"{name}: no sentence that begins with the file: {found['error']}")
         share = found["peak_bytes"] / max(path.stat().st_size * MOST_MEMORY, MEMORY_FLOOR)
-        slowest = max(slowest, (found["seconds"], name))
+        slowest = max(slowest, (found["cpu_seconds"], name))
         largest = max(largest, (share, name))
-        if found["seconds"] > SLOWEST_SECONDS:
+        if found["cpu_seconds"] > SLOWEST_SECONDS:
             broken.append(f"{name}: {found['seconds']:.1f} s, promised {SLOWEST_SECONDS}")
         if share > 1:
             broken.append(f"{name}: {found['peak_bytes']} bytes for {path.stat().st_size}")
