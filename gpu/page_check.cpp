@@ -56,9 +56,10 @@ private:
             return texel(at.unit, 0).w < triangle_count_ &&
                    (b < triangle_count_ || b == OVC_NO_TRIANGLE);
         }
-        if (texel(at.unit, 3).w != 0 || at.depth > page_.depth)
+        const uvec4& last = texel(at.unit, 3);
+        if (last.y != 0 || last.z != 0 || last.w != 0 || at.depth > page_.depth)
             return false;
-        const uint64_t base = texel(at.unit, 3).x;
+        const uint64_t base = last.x;
         for (uint32_t child = 0; child < 4; ++child)
             if (!is_missing(at.unit, child) && !reach(base + child, at.depth + 1))
                 return false;

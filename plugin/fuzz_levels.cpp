@@ -26,7 +26,6 @@ BuiltLevels build_for_test(const Soup& soup, const LeafLimits& limits) {
     require(bool(levels));
     built.level1 = std::move(levels->level1);
     built.pages = std::move(levels->pages);
-    built.references = built.level1.reference_count();
     return built;
 }
 
@@ -34,7 +33,7 @@ namespace {
 
 /// A soup with twins, its saved levels, and rays to ask.
 struct Subject {
-    static constexpr LeafLimits kLimits{30, 1 << 20};
+    static constexpr LeafLimits kLimits{30, 1 << 20, 1 << 22};
 
     Soup soup = test::random_soup(5, 120, 0.3);
     Numbering numbers;

@@ -13,7 +13,7 @@ namespace ovc {
 BuiltLevels build_for_test(const Soup& soup, const LeafLimits& limits);
 
 inline BuiltLevelsView view_of(const BuiltLevels& levels) {
-    return {levels.dropped, levels.twins,  levels.triangles, levels.references,
+    return {levels.dropped, levels.twins,  levels.triangles,
             levels.limits,  levels.level1, levels.pages};
 }
 

@@ -84,7 +84,7 @@ ovc_statistics TwoLevel::report() const {
             s.dropped.degenerate,
             s.twins,
             level1().leaves.size(),
-            s.leaf_references,
+            level1().reference_count(),
             s.level2_bytes,
             s.largest_page_bytes,
             plan().budget_bytes,

@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "gpu/page_check.h"
+#include "plugin/page_rate.h"
 #include "shaders/layout.h"
 #include "shaders/sources.h"
 
@@ -25,6 +26,7 @@ struct Key {
     uint64_t soup = 0;           // checksum of origins and corners
     uint64_t leaf_triangles = 0; // limits
     uint64_t page_bytes = 0;     // 0 where no page could come near it
+    uint64_t all_resident = 0;   // 1 where all pages may be: then leaves may share a frame
 
     bool operator==(const Key&) const = default;
 };
@@ -35,19 +37,21 @@ struct Summary {
     uint64_t degenerate = 0;
     uint64_t twins = 0;
     uint64_t triangles = 0;
-    uint64_t references = 0;
+    uint64_t shares_frame = 0;
     Box bounds;
     double padding = 0;
 };
-static_assert(sizeof(Summary) == 16 * 8);
+static_assert(sizeof(Summary) == 17 * 8);
 
 struct SavedLeaf {
     Box cell;
     Box box;
+    Box grid;
     dvec3 origin{0};
     double scale = 1;
+    uint64_t triangles = 0; // so many of the part "lists", behind those of the leaves before
 };
-static_assert(sizeof(SavedLeaf) == 16 * 8);
+static_assert(sizeof(SavedLeaf) == 23 * 8);
 
 struct SavedPage {
     uint64_t texels = 0;
@@ -71,9 +75,10 @@ uint64_t checksum_of_soup(const Soup& soup) {
     return sum.value();
 }
 
-void put_limits(Key& key, const LeafLimits& limits) {
+void put_limits(Key& key, const LeafLimits& limits, uint64_t references) {
     key.leaf_triangles = limits.triangles;
     key.page_bytes = limits.pages_matter() ? limits.page_bytes : 0;
+    key.all_resident = references * kLeastBytesPerTriangle <= limits.pool_bytes;
 }
 
 bool is_sound(const Box& box) {
@@ -106,8 +111,13 @@ bool is_walkable(std::span<const KdNode> nodes, size_t leaves) {
 }
 
 bool is_sound(const SavedLeaf& leaf) {
-    return is_sound(leaf.cell) && is_sound(leaf.box) && is_finite(leaf.origin) &&
-           std::isfinite(leaf.scale) && leaf.scale > 0;
+    return is_sound(leaf.cell) && is_sound(leaf.box) && is_sound(leaf.grid) &&
+           is_finite(leaf.origin) && std::isfinite(leaf.scale) && leaf.scale > 0;
+}
+
+bool share_frame(const SavedLeaf& a, const SavedLeaf& b) {
+    return a.origin == b.origin && a.scale == b.scale && a.grid.lo == b.grid.lo &&
+           a.grid.hi == b.grid.hi;
 }
 
 bool are_sound(std::span<const Twins::Pair> pairs, const Soup& soup) {
@@ -150,9 +160,9 @@ public:
     Result<BuiltLevels> restore(const Summary& summary) {
         levels_.dropped = {summary.not_finite, summary.degenerate};
         levels_.triangles = summary.triangles;
-        levels_.references = summary.references;
         levels_.level1.bounds = summary.bounds;
         levels_.level1.padding = summary.padding;
+        levels_.level1.shares_frame = summary.shares_frame == 1;
         if (Result<Done> done = read_twins(summary.twins); !done)
             return done.error();
         if (Result<Done> done = read_level1(); !done)
@@ -180,16 +190,29 @@ private:
         const auto leaves = archive_.items<SavedLeaf>("leaves");
         if (!leaves)
             return leaves.error();
+        const auto lists = archive_.items<TriangleId>("lists");
+        if (!lists)
+            return lists.error();
         Level1& level1 = levels_.level1;
         if (!is_walkable(*nodes, leaves->size()) || nodes->empty() != leaves->empty() ||
             !(level1.padding >= 0) || (!nodes->empty() && !is_sound(level1.bounds)))
             return kUnsound;
         level1.nodes.assign(nodes->begin(), nodes->end());
+        std::span<const TriangleId> rest = *lists;
         for (const SavedLeaf& leaf : *leaves) {
-            if (!is_sound(leaf))
+            if (!is_sound(leaf) || leaf.triangles > rest.size() ||
+                (level1.shares_frame && !share_frame(leaf, leaves->front())))
                 return kUnsound;
-            level1.leaves.push_back({leaf.cell, leaf.box, {leaf.origin, leaf.scale}, {}});
+            const auto list = rest.first(leaf.triangles);
+            rest = rest.subspan(leaf.triangles);
+            level1.leaves.push_back({leaf.cell,
+                                     leaf.box,
+                                     {leaf.origin, leaf.scale},
+                                     leaf.grid,
+                                     {list.begin(), list.end()}});
         }
+        if (!rest.empty())
+            return kUnsound;
         return Done{};
     }
 
@@ -216,17 +239,18 @@ bool save_levels(const Soup& soup, const BuiltLevelsView& levels, const ByteSink
     Summary summary;
     summary.key.layout = checksum_of_layout();
     summary.key.soup = checksum_of_soup(soup);
-    put_limits(summary.key, levels.limits);
+    put_limits(summary.key, levels.limits, levels.level1.reference_count());
     summary.not_finite = levels.dropped.not_finite;
     summary.degenerate = levels.dropped.degenerate;
     summary.twins = levels.twins.count();
     summary.triangles = levels.triangles;
-    summary.references = levels.references;
+    summary.shares_frame = levels.level1.shares_frame;
     summary.bounds = levels.level1.bounds;
     summary.padding = levels.level1.padding;
     std::vector<SavedLeaf> leaves;
     for (const Leaf& leaf : levels.level1.leaves)
-        leaves.push_back({leaf.cell, leaf.box, leaf.frame.origin, leaf.frame.scale});
+        leaves.push_back({leaf.cell, leaf.box, leaf.grid, leaf.frame.origin, leaf.frame.scale,
+                          leaf.triangles.size()});
     std::vector<SavedPage> pages;
     for (const Page& page : levels.pages)
         pages.push_back({page.view().size(), page.depth});
@@ -236,6 +260,9 @@ bool save_levels(const Soup& soup, const BuiltLevelsView& levels, const ByteSink
     writer.part<Twins::Pair>("twins", levels.twins.pairs());
     writer.part<KdNode>("nodes", levels.level1.nodes);
     writer.part<SavedLeaf>("leaves", leaves);
+    writer.begin("lists");
+    for (const Leaf& leaf : levels.level1.leaves)
+        writer.write(bytes_of(std::span<const TriangleId>(leaf.triangles)));
     writer.part<SavedPage>("pages", pages);
     writer.begin("texels");
     for (const Page& page : levels.pages)
@@ -258,7 +285,7 @@ restore_levels(Bytes saved, const Soup& soup,
     Key key;
     key.layout = checksum_of_layout();
     const LeafLimits limits = limits_for(summary.triangles);
-    put_limits(key, limits);
+    put_limits(key, limits, archive->unchecked("lists").size() / sizeof(TriangleId));
     key.soup = summary.key.soup; // the rest first: this takes a while
     if (key != summary.key || checksum_of_soup(soup) != key.soup)
         return std::optional<BuiltLevels>();

@@ -16,9 +16,8 @@ namespace ovc {
 struct BuiltLevels {
     Dropped dropped;
     Twins twins;
-    uint64_t triangles = 0;  // in leaves, each counted once
-    uint64_t references = 0; // and in each leaf they touch
-    LeafLimits limits{};     // that the leaves keep to
+    uint64_t triangles = 0; // in leaves, each counted once
+    LeafLimits limits{};    // that the leaves keep to
     Level1 level1;
     std::vector<Page> pages; // pages[i] belongs to level1.leaves[i]
 };
@@ -28,7 +27,6 @@ struct BuiltLevelsView {
     const Dropped& dropped;
     const Twins& twins;
     uint64_t triangles;
-    uint64_t references;
     const LeafLimits& limits;
     const Level1& level1;
     std::span<const Page> pages;
@@ -38,7 +36,7 @@ struct BuiltLevelsView {
 bool save_levels(const Soup& soup, const BuiltLevelsView& levels, const ByteSink& sink);
 
 /// What save_levels() wrote of this soup. Pages stay in `saved`, which is aligned to
-/// kPartAlignment and outlives them; the leaves' lists of triangles are not saved. Nothing: they
+/// kPartAlignment and outlives them. Nothing: they
 /// are of another soup, or a build would now make others of it. limits_for: the limits for so many
 /// triangles. Error: they are damaged, or not such bytes; the sentence goes on from a name.
 /// Whatever the bytes are, what comes back is safe to walk.

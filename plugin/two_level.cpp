@@ -90,7 +90,6 @@ Result<Done> TwoLevel::make_levels(BuildProgress* progress) {
         return levels.error();
     level1_ = std::move(levels->level1);
     pages_ = std::move(levels->pages);
-    statistics_.leaf_references = level1_.reference_count();
     statistics_.seconds_level1 += levels->seconds_level1;
     statistics_.seconds_level2 += levels->seconds_level2;
     return Done{};
@@ -116,7 +115,6 @@ bool TwoLevel::restore(Bytes saved) {
     BuiltLevels& levels = **found;
     statistics_.from_saved = true;
     statistics_.dropped = levels.dropped;
-    statistics_.leaf_references = levels.references;
     twins_ = std::move(levels.twins);
     triangles_ = levels.triangles;
     limits_ = levels.limits;
@@ -127,9 +125,7 @@ bool TwoLevel::restore(Bytes saved) {
 }
 
 Result<Done> TwoLevel::save(const ByteSink& sink) const {
-    if (!save_levels(soup_,
-                     {statistics_.dropped, twins_, triangles_, statistics_.leaf_references, limits_,
-                      level1_, pages_},
+    if (!save_levels(soup_, {statistics_.dropped, twins_, triangles_, limits_, level1_, pages_},
                      sink))
         return Error{"saving was stopped", ErrorKind::Cancelled};
     return Done{};

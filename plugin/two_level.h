@@ -52,7 +52,6 @@ Result<Done> check_count(const Soup& soup);
 struct TwoLevelStatistics {
     Dropped dropped;
     uint64_t twins = 0;
-    uint64_t leaf_references = 0;
     bool from_saved = false;
     uint64_t largest_page_bytes = 0;
     uint64_t level2_bytes = 0;
@@ -153,7 +152,7 @@ private:
     Twins twins_;
     uint64_t triangles_ = 0; // in leaves, each once
     LeafLimits limits_{};    // that leaves keep to
-    Level1 level1_;          // without twins; restored: without lists of triangles
+    Level1 level1_;          // without twins
     std::vector<Page> pages_;
     std::vector<uint8_t> was_active_;   // per leaf: when take_active() was asked last
     std::unique_ptr<Tracer> tracer_;    // made and destroyed on the thread of gl_
