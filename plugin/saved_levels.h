@@ -36,10 +36,10 @@ struct BuiltLevelsView {
 bool save_levels(const Soup& soup, const BuiltLevelsView& levels, const ByteSink& sink);
 
 /// What save_levels() wrote of this soup. Pages stay in `saved`, which is aligned to
-/// kPartAlignment and outlives them. Nothing: they
-/// are of another soup, or a build would now make others of it. limits_for: the limits for so many
-/// triangles. Error: they are damaged, or not such bytes; the sentence goes on from a name.
-/// Whatever the bytes are, what comes back is safe to walk.
+/// kPartAlignment and outlives them. Nothing: they are of another soup, or a build would now make
+/// others of it. limits_for: the limits for so many triangles. Error: they are damaged, or not such
+/// bytes; the sentence goes on from a name. Whatever the bytes are, what comes back is safe to
+/// walk.
 Result<std::optional<BuiltLevels>>
 restore_levels(Bytes saved, const Soup& soup,
                const std::function<LeafLimits(uint64_t)>& limits_for);
