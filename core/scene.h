@@ -3,6 +3,7 @@
 // cameras.
 #pragma once
 
+#include "core/mapped_file.h"
 #include "core/soup.h"
 
 #include <array>
@@ -179,6 +180,8 @@ struct Scene {
     Background background;
     double gamma = 1; // what is rendered ^ gamma is linear light: POV-Ray's assumed_gamma
     std::optional<Instancing> instancing; // none: every triangle is its own
+    MappedFile file; // where chunks and `saved` lie, if they do not own what they show
+    Bytes saved;     // what the plugin saved of this soup (ovc_scene_config.saved); empty: nothing
 
     /// 3 per triangle, to be turned by MeshInfo::turn; empty: the mesh has none.
     const std::vector<vec3>& normals_of(const MeshInfo& mesh) const {

@@ -6,6 +6,7 @@
 #include "core/soup.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace ovc {
@@ -36,12 +37,23 @@ public:
     /// Triangles taken out.
     uint64_t count() const { return count_; }
 
-private:
+    /// Of a set: what it leaves of itself.
     struct Pair {
         TriangleId smallest;
         TriangleId second;
     };
 
+    /// All sets, by smallest.
+    std::span<const Pair> pairs() const { return pairs_; }
+    /// As pairs() and count() were; sorted.
+    static Twins restored(std::span<const Pair> pairs, uint64_t count) {
+        Twins twins;
+        twins.pairs_.assign(pairs.begin(), pairs.end());
+        twins.count_ = count;
+        return twins;
+    }
+
+private:
     /// The second smallest of the set whose smallest is `id`; `id` where there is no such set.
     TriangleId second(TriangleId id) const;
 

@@ -22,7 +22,7 @@ struct Counted {
 Boxf root_box(const Page& page) {
     Boxf box;
     for (int axis = 0; axis < 3; ++axis) {
-        const uvec4& words = page.texels[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + size_t(axis)];
+        const uvec4& words = page.view()[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + size_t(axis)];
         // A missing child has the greatest lo and the least hi.
         box.lo[axis] =
             float(std::min({words.x & 0xffff, words.x >> 16, words.y & 0xffff, words.y >> 16}));
@@ -34,7 +34,7 @@ Boxf root_box(const Page& page) {
 
 GridHeader header_of(const Page& page) {
     const auto vector = [&](size_t i) {
-        const uvec4& t = page.texels[i];
+        const uvec4& t = page.view()[i];
         return vec3(std::bit_cast<float>(t.x), std::bit_cast<float>(t.y),
                     std::bit_cast<float>(t.z));
     };
@@ -42,11 +42,13 @@ GridHeader header_of(const Page& page) {
 }
 
 bool is_pair(const Page& page, uint64_t unit) {
-    return page.texels[unit * OVC_UNIT_TEXELS + 3].w == OVC_PAIR;
+    return page.view()[unit * OVC_UNIT_TEXELS + 3].w == OVC_PAIR;
 }
 
 Page shifted(const Page& page, uint32_t units) {
-    Page moved = page;
+    Page moved;
+    moved.texels.assign(page.view().begin(), page.view().end());
+    moved.depth = page.depth;
     if (moved.texels.empty())
         return moved;
     moved.texels[2].x += units;
@@ -104,8 +106,8 @@ std::optional<LinkedPages> link_pages(const Level1& level1, std::span<const Page
         for (const Page& page : pages)
             boxes.push_back(root_box(page));
         const auto put = [&](uint32_t leaf, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
-            const auto root = std::span(pages[leaf].texels)
-                                  .subspan<OVC_ROOT_UNIT * OVC_UNIT_TEXELS, OVC_UNIT_TEXELS>();
+            const auto root =
+                pages[leaf].view().subspan<OVC_ROOT_UNIT * OVC_UNIT_TEXELS, OVC_UNIT_TEXELS>();
             std::copy(root.begin(), root.end(), unit.begin());
             // Counted from the top's first unit, like its own.
             unit[3].x += linked.first_unit[leaf] - linked.top_unit;

@@ -16,11 +16,13 @@
 namespace ovc {
 
 struct Page {
-    std::vector<uvec4> texels;
-    uint32_t depth = 0; // stack words a traversal needs
+    std::vector<uvec4> texels;         // as it is built; empty where they are
+    std::span<const uvec4> borrowed{}; // somebody else's, who keeps them alive and unchanged
+    uint32_t depth = 0;                // stack words a traversal needs
 
-    uint64_t units() const { return texels.size() / OVC_UNIT_TEXELS; }
-    uint64_t bytes() const { return texels.size() * sizeof(uvec4); }
+    std::span<const uvec4> view() const { return borrowed.empty() ? texels : borrowed; }
+    uint64_t units() const { return view().size() / OVC_UNIT_TEXELS; }
+    uint64_t bytes() const { return view().size_bytes(); }
 };
 
 /// Stack words that the kernel needs for all of these pages, rounded up: few programs, and no

@@ -19,8 +19,9 @@ namespace ovc {
 template <class Visit, class Limit>
 bool walk_page(const Page& page, const Leaf& leaf, const PreparedRay& p, double from, Visit&& visit,
                Limit&& limit) {
+    const std::span<const uvec4> texels = page.view();
     const auto texel = [&](uint32_t unit, int i) -> const uvec4& {
-        return page.texels[size_t(unit) * OVC_UNIT_TEXELS + size_t(i)];
+        return texels[size_t(unit) * OVC_UNIT_TEXELS + size_t(i)];
     };
     const auto vector = [&](int i) {
         const uvec4& t = texel(0, i);

@@ -61,7 +61,7 @@ bool Residency::admit(uint32_t leaf, uint64_t bytes, uint64_t keep,
 
 void Pool::upload(uint64_t offset, const Page& page) const {
     glNamedBufferSubData(buffer_.id(), GLintptr(offset), GLsizeiptr(page.bytes()),
-                         page.texels.data());
+                         page.view().data());
 }
 
 } // namespace ovc

@@ -3,6 +3,7 @@
 // the thesis, the CPU KD-tree and Embree.
 #pragma once
 
+#include "core/archive.h"
 #include "core/batched_stream.h"
 #include "core/log.h"
 #include "core/ray.h"
@@ -45,6 +46,10 @@ public:
     /// The pages that rays went through since this was asked last; none where the options did not
     /// ask for it or the backend cannot tell.
     virtual std::optional<ovc_active> take_active() { return {}; }
+    /// Whether save() can do anything.
+    virtual bool saves() const { return false; }
+    /// Passes on what BackendOptions::saved of a later run over the same soup takes.
+    virtual Result<Done> save(const ByteSink&) const { return Error{"this backend saves nothing"}; }
     /// Counted since it was built. What a backend does not have is 0.
     virtual ovc_statistics statistics() const = 0;
     /// What does the work, for a person: the GL renderer's name, or the CPU.
@@ -89,6 +94,7 @@ struct BackendOptions {
     ovc_level1_build level1_build = OVC_LEVEL1_BUILD_TOP_DOWN;
     bool tell_active = false; // of two-level: take_active() is asked
     BuildWatching watching = BuildWatching::None;
+    Bytes saved{}; // of an earlier run over the same soup; outlives the backend. Two-level only
 };
 
 /// Auto is the plugin; where no device opens and none was named it is the CPU KD-tree, and the log

@@ -84,8 +84,11 @@ static ovc_mesh mesh_of(const Chunk& chunk) {
 
 class PluginBackend final : public Backend {
 public:
-    PluginBackend(PluginDevice device, std::string renderer, PluginScene scene)
-        : device_(std::move(device)), renderer_(std::move(renderer)), scene_(std::move(scene)) {}
+    PluginBackend(PluginDevice device, std::string renderer, PluginScene scene, bool saves)
+        : device_(std::move(device)),
+          renderer_(std::move(renderer)),
+          scene_(std::move(scene)),
+          saves_(saves) {}
 
     Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
                            std::span<Hit> hits) override {
@@ -122,6 +125,18 @@ public:
         return api().active(scene_.get(), &active) == OVC_OK ? std::optional(active) : std::nullopt;
     }
 
+    bool saves() const override { return saves_; }
+
+    Result<Done> save(const ByteSink& sink) const override {
+        const auto write = [](void* user, const void* bytes, size_t size) {
+            return (*static_cast<const ByteSink*>(user))(
+                       {static_cast<const std::byte*>(bytes), size})
+                       ? 0
+                       : 1;
+        };
+        return device_.checked(api().save(scene_.get(), write, const_cast<ByteSink*>(&sink)));
+    }
+
     ovc_statistics statistics() const override {
         ovc_statistics statistics{};
         statistics.struct_size = sizeof(statistics);
@@ -137,6 +152,7 @@ private:
     PluginDevice device_;
     std::string renderer_;
     PluginScene scene_; // after device_: destroyed before it
+    const bool saves_;
 };
 
 static Result<Done> add_meshes(const PluginDevice& device, ovc_scene scene, const Soup& soup) {
@@ -165,6 +181,10 @@ static Result<ovc_scene_config> config_of(const BackendOptions& options,
     config.level1 = options.level1;
     config.level1_build = options.level1_build;
     config.tell_active = options.tell_active && config.structure == OVC_STRUCTURE_TWO_LEVEL;
+    if (config.structure == OVC_STRUCTURE_TWO_LEVEL) {
+        config.saved = options.saved.data();
+        config.saved_bytes = options.saved.size();
+    }
     return config;
 }
 
@@ -187,7 +207,8 @@ Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const 
     if (const Result<Done> done = device.checked(device.api()->commit(scene->get())); !done)
         return done.error();
     return std::unique_ptr<Backend>(
-        std::make_unique<PluginBackend>(std::move(device), info->renderer, std::move(*scene)));
+        std::make_unique<PluginBackend>(std::move(device), info->renderer, std::move(*scene),
+                                        structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL));
 }
 
 Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast convert: any input to .ply or .obj.
+// overcast convert: any input to .ply, .obj or .ovc.
 #include "host/arguments.h"
+#include "host/backend_arguments.h"
 #include "host/command.h"
 #include "host/interrupt.h"
 #include "host/output.h"
+#include "host/scene_cache.h"
 #include "host/scene_source.h"
 #include "importers/importer.h"
 #include "testscenes/catalog.h"
@@ -20,20 +22,27 @@ namespace ovc {
 static constexpr const char* kExamples = R"(Examples:
   overcast convert kitchen.obj kitchen.ply
   overcast convert dragon.ply.gz dragon.ply
-  overcast convert plants plants.ply          a generated scene, for other programs)";
+  overcast convert plants plants.ply          a generated scene, for other programs
+  overcast convert plants.pbrt plants.ovc     with materials, lights, camera and what tracing builds:
+  overcast render plants.ovc                  starts at once)";
 
-/// Known before a big file is read for nothing.
-static Result<Done> check_mesh_output(const std::filesystem::path& path) {
+static std::string extension_of(const std::filesystem::path& path) {
     std::string extension = path.extension();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return char(std::tolower(c)); });
-    if (extension != ".ply" && extension != ".obj")
+    return extension;
+}
+
+/// Known before a big file is read for nothing.
+static Result<Done> check_output(const std::filesystem::path& path) {
+    const std::string extension = extension_of(path);
+    if (extension != ".ply" && extension != ".obj" && extension != ".ovc")
         return Error{
-            fmt::format("the output file '{}' ends in neither .ply nor .obj", path.string())};
+            fmt::format("the output file '{}' ends in none of .ply, .obj, .ovc", path.string())};
     return check_writable("output", path);
 }
 
-/// What the scene has and no output keeps, for a person; empty: nothing.
+/// What the scene has and a mesh does not keep, for a person; empty: nothing.
 static std::string left_out(const Scene& scene) {
     std::vector<std::string> items;
     const auto add = [&](size_t count, std::string_view what) {
@@ -56,15 +65,60 @@ static std::string left_out(const Scene& scene) {
     return fmt::format("{}", fmt::join(items, ", "));
 }
 
+/// All of the scene, and what the plugin builds of it, as .ovc.
+static Result<Done> convert_to_scene_file(const SceneArguments& source,
+                                          const BackendOptions& backend_options,
+                                          const std::string& output) {
+    FilesRead files;
+    Provenance from;
+    const LogSink log = standard_error_log(/* chatty= */ false);
+    const LogSink listening = [&](LogLevel level, const std::string& message) {
+        if (level == LogLevel::Warning)
+            from.warnings.push_back(message);
+        say(log, level, message);
+    };
+    const Result<Scene> scene = open_scene(source, listening, std::nullopt, &files);
+    if (!scene)
+        return scene.error();
+    from.files = files.stamps();
+    BackendOptions options = backend_options;
+    options.saved = scene->saved;
+    const Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, options, log);
+    if (!backend)
+        return backend.error();
+    if (!(*backend)->saves())
+        say(log, LogLevel::Warning,
+            fmt::format("{} holds the scene alone: only two-level can be saved", output));
+    return write_scene_file(*scene, from, (*backend)->saves() ? levels_of(**backend) : SaveLevels(),
+                            output);
+}
+
+static Result<Done> convert_to_mesh(const SceneArguments& source, const std::string& output,
+                                    bool quiet) {
+    const Result<Scene> scene = open_scene(source, standard_error_log(/* chatty= */ false));
+    if (!scene)
+        return scene.error();
+    if (Result<Done> saved = save(*scene, output); !saved)
+        return saved;
+    if (const std::string items = left_out(*scene); !items.empty() && !quiet)
+        fmt::print(stderr, "overcast: only triangles are kept; left out of {}: {}\n", output,
+                   items);
+    return Done{};
+}
+
 Result<int> run_convert(const Arguments& arguments) {
-    CLI::App app{"Writes the triangles of a scene as .ply (binary) or .obj.", "overcast convert"};
+    CLI::App app{"Writes the triangles of a scene as .ply (binary) or .obj, or all of it and what "
+                 "tracing builds as .ovc, which starts at once (docs/cache.md).",
+                 "overcast convert"};
     SceneArguments source;
     std::string output;
     bool quiet = false;
+    BackendArguments backend; // for .ovc
     source.add_to(app, "IN");
     app.add_option("OUT", output, "The file to write; replaced only once the new one is complete")
         ->required();
     app.add_flag("--quiet", quiet, "Print nothing but warnings and errors");
+    backend.add_to(app);
     app.footer(kExamples);
     const Result<Parsed> parsed = parse_arguments(app, arguments);
     if (!parsed)
@@ -72,7 +126,7 @@ Result<int> run_convert(const Arguments& arguments) {
     if (*parsed == Parsed::HelpShown)
         return kExitOk;
 
-    if (const Result<Done> fine = check_mesh_output(output); !fine)
+    if (const Result<Done> fine = check_output(output); !fine)
         return fine.error();
     if (const Result<Done> fine = source.check(); !fine)
         return fine.error();
@@ -80,14 +134,14 @@ Result<int> run_convert(const Arguments& arguments) {
     files.push_back({"output", output});
     if (const Result<Done> fine = check_distinct(files); !fine)
         return fine.error();
-    const Result<Scene> scene = open_scene(source, standard_error_log(/* chatty= */ false));
-    if (!scene)
-        return scene.error();
-    if (const Result<Done> saved = save(*scene, output); !saved)
-        return saved.error();
-    if (const std::string items = left_out(*scene); !items.empty() && !quiet)
-        fmt::print(stderr, "overcast: only triangles are kept; left out of {}: {}\n", output,
-                   items);
+    const Result<BackendOptions> backend_options = backend.resolve();
+    if (!backend_options)
+        return backend_options.error();
+    const Result<Done> done = extension_of(output) == ".ovc"
+                                  ? convert_to_scene_file(source, *backend_options, output)
+                                  : convert_to_mesh(source, output, quiet);
+    if (!done)
+        return done.error();
     return kExitOk;
 }
 

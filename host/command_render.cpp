@@ -10,10 +10,13 @@
 #include "host/render_job.h"
 #include "testscenes/catalog.h"
 
+#include <filesystem>
 #include <fmt/format.h>
 #include <unistd.h>
 
 namespace ovc {
+
+namespace fs = std::filesystem;
 
 static constexpr const char* kExamples = R"(Examples:
   overcast render dragon.ply
@@ -30,6 +33,8 @@ static constexpr const char* kExamples = R"(Examples:
       every tenth frame of a path of your own (docs/scenes.md)
   overcast render dragons-5 --model dragon.ply
       the scene with your model in the place of the generated one
+  overcast render plants.pbrt --cache ~/.cache/overcast -o plants.png
+      the second time it starts at once
   overcast render dragon.ply +W640 +H480 +Od.png
       POV-Ray's words are understood
 
@@ -50,6 +55,7 @@ struct RenderWords {
     bool no_shadows = false;
     bool working_set = false;
     BackendArguments backend;
+    std::string cache;
     std::string stats;
     bool quiet = false;
 
@@ -102,6 +108,10 @@ void RenderWords::add_to(CLI::App& app) {
                    "ray took part in)")
         ->type_name("NAMES");
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
+    app.add_option("--cache", cache,
+                   "Keep the scene and what is built of it in this folder, and start from there "
+                   "next time; what is stale or damaged is made anew (docs/cache.md)")
+        ->type_name("DIR");
     app.add_option("--stats", stats, "Write statistics as JSON (docs/stats.md)")
         ->type_name("FILE.json");
     app.add_flag("--working-set", working_set,
@@ -249,10 +259,13 @@ static Result<Done> understand_aovs(const RenderWords& words, RenderJob& job) {
 static Result<RenderJob> understand(const RenderWords& words) {
     RenderJob job;
     job.scene = words.scene;
+    job.cache = words.cache;
     job.stats = words.stats;
     job.quiet = words.quiet;
     if (const Result<Done> fine = words.scene.check(); !fine)
         return fine.error();
+    if (std::error_code ec; fs::exists(words.cache, ec) && !fs::is_directory(words.cache, ec))
+        return Error{fmt::format("--cache: '{}' is no folder", words.cache)};
     Result<std::vector<Shot>> shots = understand_frames(words);
     if (!shots)
         return shots.error();

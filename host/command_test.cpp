@@ -281,6 +281,44 @@ TEST_F(CommandTest, InfoIsJsonForPrograms) {
     EXPECT_EQ(info["bounds"]["min"].size(), 3u);
 }
 
+TEST_F(CommandTest, StrictMakesAnErrorOfWhatAPbrtSceneLacks) {
+    std::ofstream(path("odd.pbrt"))
+        << "WorldBegin\nShape \"sphere\"\nFurniture\nShape \"plymesh\" \"string filename\" "
+           "\"none.ply\"\nWorldEnd\n";
+    const std::string scene = path("odd.pbrt"), out = path("a.png");
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(
+        error({"render", scene, "--backend", "cpu-kdtree", "--size", "8x8", "-o", out, "--quiet"}),
+        "");
+    EXPECT_THAT(testing::internal::GetCapturedStderr(),
+                testing::AllOf(testing::HasSubstr("odd.pbrt:3: "), testing::HasSubstr("Furniture"),
+                               testing::HasSubstr("none.ply")));
+    fs::remove(out);
+    for (const Arguments& arguments :
+         {Arguments{"render", scene, "--strict", "-o", out}, Arguments{"info", "--strict", scene},
+          Arguments{"convert", scene, path("a.ply"), "--strict"}})
+        EXPECT_THAT(error(arguments), testing::AllOf(testing::HasSubstr("odd.pbrt:3: "),
+                                                     testing::HasSubstr("Furniture")));
+    EXPECT_FALSE(fs::exists(out));
+    EXPECT_FALSE(fs::exists(path("a.ply")));
+}
+
+TEST_F(CommandTest, MoreTrianglesThanAllowedAreRefusedWithTheirCount) {
+    std::ofstream(path("two.pbrt")) << "WorldBegin\nShape \"sphere\"\nShape \"sphere\"\n"
+                                       "WorldEnd\n"; // 1,520 each
+    const std::string scene = path("two.pbrt");
+    EXPECT_EQ(error({"convert", scene, path("a.ply"), "--max-triangles", "3040"}), "");
+    EXPECT_TRUE(fs::exists(path("a.ply")));
+    EXPECT_THAT(error({"convert", scene, path("b.ply"), "--max-triangles", "3039"}),
+                testing::AllOf(testing::HasSubstr("3040 triangles"),
+                               testing::HasSubstr("at most 3039"),
+                               testing::HasSubstr("--max-triangles")));
+    EXPECT_FALSE(fs::exists(path("b.ply")));
+    for (const char* wrong : {"0", "-1", "many", "4294967295"})
+        EXPECT_THAT(error({"info", scene, "--max-triangles", wrong}),
+                    testing::HasSubstr("--max-triangles needs a whole number from 1 to "));
+}
+
 TEST_F(CommandTest, ReportSaysWhichReportsThereAre) {
     EXPECT_EQ(error({"report"}),
               "the whole report is not there yet; there are --only stability and leaks");

@@ -55,8 +55,10 @@ Result<int> run_trace(const Arguments& arguments) {
     const Result<Scene> scene = open_scene(source, log);
     if (!scene)
         return scene.error();
+    BackendOptions options_of_scene = *backend_options;
+    options_of_scene.saved = scene->saved;
     const Result<std::unique_ptr<Backend>> backend =
-        make_backend(scene->soup, *backend_options, log);
+        make_backend(scene->soup, options_of_scene, log);
     if (!backend)
         return backend.error();
     const Result<Done> done = trace_stream(**backend, STDIN_FILENO, STDOUT_FILENO, options);

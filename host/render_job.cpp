@@ -7,6 +7,7 @@
 #include "host/frames.h"
 #include "host/interrupt.h"
 #include "host/progress.h"
+#include "host/scene_cache.h"
 #include "host/scene_summary.h"
 #include "host/stats.h"
 #include "host/whitted_batched.h"
@@ -164,7 +165,8 @@ Result<int> render(const RenderJob& job) {
     const Stopwatch total;
     const LogSink log = standard_error_log(/* chatty= */ !job.quiet);
     RenderStats stats;
-    Result<Scene> scene = open_scene(job.scene, log, job.size);
+    SceneCache cache(job.cache, job.scene, job.backend, job.size);
+    Result<Scene> scene = cache.open(log);
     if (!scene)
         return scene.error();
     stats.scene = job.scene.scene;
@@ -172,6 +174,7 @@ Result<int> render(const RenderJob& job) {
     stats.width = size.width;
     stats.height = size.height;
     stats.seconds_import = total.seconds();
+    stats.scene_from_cache = cache.found();
 
     const std::vector<Shot> shots =
         job.shots.empty() ? std::vector<Shot>{{0, still_camera(*scene, job, size)}} : job.shots;
@@ -179,6 +182,7 @@ Result<int> render(const RenderJob& job) {
         if (const Result<Done> fine = check_camera(shot.camera); !fine)
             return Error{fmt::format("{}: {}", job.scene.scene, fine.error().message)};
     BackendOptions options = job.backend;
+    options.saved = scene->saved;
     options.watching = job.quiet ? BuildWatching::Silent : BuildWatching::Shown;
     const Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, options, log);
     if (!backend && backend.error().kind == ErrorKind::Cancelled) {
@@ -188,6 +192,7 @@ Result<int> render(const RenderJob& job) {
     if (!backend)
         return backend.error();
 
+    cache.keep(*scene, **backend, log);
     Result<Done> done = Rendering(job, size, *scene, **backend).run(shots, stats);
     if (!done)
         return done.error();

@@ -38,7 +38,8 @@ struct RenderJob {
     std::optional<uint32_t> max_depth; // none: the scene's, else that of `whitted`
     RenderMode mode = RenderMode::Auto;
     BackendOptions backend;
-    Aovs aovs; // in the outputs that take layers
+    Aovs aovs;         // in the outputs that take layers
+    std::string cache; // folder where scenes and levels are kept; empty: none
     std::string stats;
     bool quiet = false;
 };

@@ -15,9 +15,9 @@
 namespace ovc {
 
 void SceneArguments::add_to(CLI::App& app, const char* name) {
-    app.add_option(
-           name, scene,
-           "A file (.ply .obj .pbrt .pov, also .gz, or what Assimp reads) or a test scene's name")
+    app.add_option(name, scene,
+                   "A file (.ply .obj .pbrt .pov, also .gz; .ovc, or what Assimp reads) or a test "
+                   "scene's name")
         ->required();
     app.add_option("--model", model,
                    "For dragons-N and dragonball: the model they show instead of a generated one")
@@ -65,9 +65,10 @@ static Result<Scene> make_with_model(const std::string& name, const ImportOption
 }
 
 Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
-                         std::optional<ImageSize> size) {
+                         std::optional<ImageSize> size, FilesRead* files) {
     ImportOptions options{log, arguments.strict};
     options.size = size;
+    options.files = files;
     options.max_triangles = *triangle_limit(arguments.max_triangles);
     return open_scene(arguments.scene, options, arguments.model);
 }

@@ -41,8 +41,9 @@ inline Result<Scene> open_scene(const std::string& source, const LogSink& log,
     return open_scene(source, ImportOptions{log}, model);
 }
 /// check() has accepted them. size: of the picture to come, where that is known.
+/// files: receives what is read; or null.
 Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
-                         std::optional<ImageSize> size = {});
+                         std::optional<ImageSize> size = {}, FilesRead* files = nullptr);
 
 /// Writes warnings and errors, and Info if `chatty`, to standard error, one line each.
 LogSink standard_error_log(bool chatty);

@@ -129,6 +129,7 @@ std::string stats_json(const RenderStats& s) {
         {"capped", t.capped},
         {"queues", queues_of(t)},
         {"left_out", left_out_of(s)},
+        {"from_cache", {{"scene", s.scene_from_cache}, {"levels", t.from_saved != 0}}},
         {"time", times_of(s)},
         {"frames", frames_of(s)}};
     // A name of a file or a driver need not be UTF-8; what is not is replaced rather than thrown

@@ -37,6 +37,7 @@ struct RenderStats {
     std::vector<FrameStats> frames; // those that are finished, and for a single picture also a part
     std::string renderer;
     std::vector<LeftOut> left_out;
+    bool scene_from_cache = false;
     double seconds_import = 0;
     double seconds_output = 0;
     double seconds_total = 0;

@@ -4,6 +4,7 @@
 #include "importers/readers.h"
 #include "importers/source.h"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -93,6 +94,20 @@ void add_mesh(Scene& scene, const aiMesh& mesh) {
                    Chunk::owning(dvec3(0), std::move(corners)), normals_from(mesh));
 }
 
+/// Opens files for Assimp, and takes down which.
+class NotingFiles final : public Assimp::DefaultIOSystem {
+public:
+    explicit NotingFiles(FilesRead& files) : files_(files) {}
+
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        files_.note(file);
+        return DefaultIOSystem::Open(file, mode);
+    }
+
+private:
+    FilesRead& files_;
+};
+
 /// The whole file, uncompressed.
 std::vector<unsigned char> contents(Source& source) {
     constexpr size_t kBlock = size_t(1) << 16;
@@ -123,10 +138,12 @@ bool assimp_reads(std::string_view extension) {
 }
 
 Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions& options) try {
-    Result<Source> source = Source::open(path);
+    Result<Source> source = Source::open(path, options.files);
     if (!source)
         return source.error();
     Assimp::Importer importer;
+    if (options.files)
+        importer.SetIOHandler(new NotingFiles(*options.files)); // which it deletes
     const aiScene* found = read(importer, *source, path);
     if (!found || source->is_damaged())
         return source->error(fmt::format("Assimp found: {}", importer.GetErrorString()));

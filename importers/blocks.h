@@ -62,7 +62,7 @@ public:
     }
 
 private:
-    static constexpr size_t kBlock = (size_t(1) << 20) / sizeof(T);
+    static constexpr size_t kBlock = (size_t(1) << 18) / sizeof(T);
 
     void push_later(const T& value) {
         if (used_ == kBlock || later_.empty()) {

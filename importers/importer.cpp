@@ -22,6 +22,7 @@ struct Format {
 };
 
 constexpr Format kFormats[] = {{"obj", read_obj, write_obj},
+                               {"ovc", read_ovc, write_ovc},
                                {"pbrt", read_pbrt, nullptr},
                                {"ply", read_ply, write_ply},
                                {"pov", read_pov, nullptr}};

@@ -5,6 +5,7 @@
 #include "core/log.h"
 #include "core/result.h"
 #include "core/scene.h"
+#include "importers/files_read.h"
 
 #include <filesystem>
 #include <string>
@@ -24,6 +25,8 @@ struct ImportOptions {
     uint64_t max_triangles = kDefaultMostTriangles;
     /// Of the picture to come, where that is known: scenes of POV-Ray may ask for it.
     std::optional<ImageSize> size = {};
+    /// Receives every file that is read or looked for in vain; null: nobody asks.
+    FilesRead* files = nullptr;
 };
 
 /// Reads a scene. The reader is chosen by the extension, a trailing .gz taken off first; any case.
@@ -38,8 +41,9 @@ Result<Scene> load(const std::filesystem::path& path, const ImportOptions& optio
 /// float would move them) or .obj (an object per mesh); normals and materials are not written.
 /// Corners that agree in every bit become one vertex. load() gives back the same triangles bit for
 /// bit where floats hold them; where only doubles do, offsets are rounded to floats anew, and .obj
-/// keeps the digits but load() takes them for floats unless they are far from 0. A file that exists
-/// is replaced only once the new one is complete; what is written is removed where it cannot be.
+/// keeps the digits but load() takes them for floats unless they are far from 0. Or all of the
+/// scene as .ovc (scene_file.h), which comes back as it is. A file that exists is replaced only
+/// once the new one is complete; what is written is removed where it cannot be.
 Result<Done> save(const Scene& scene, const std::filesystem::path& path);
 
 /// The extensions load() reads with readers of ours, without the dot ("ply", "obj"); Assimp's are

@@ -43,7 +43,7 @@ TEST(Importer, TheExtensionChoosesTheReader) {
                  {"a.STL.gz", gzip(kStl)}};
     for (const auto& test : cases)
         EXPECT_EQ(triangles_of(load(folder.write(test.name, test.contents))), kOne) << test.name;
-    EXPECT_EQ(own_extensions(), (std::vector<std::string>{"obj", "pbrt", "ply", "pov"}));
+    EXPECT_EQ(own_extensions(), (std::vector<std::string>{"obj", "ovc", "pbrt", "ply", "pov"}));
 }
 
 TEST(Importer, ErrorsNameTheFileAndWhatWasExpected) {
@@ -52,8 +52,8 @@ TEST(Importer, ErrorsNameTheFileAndWhatWasExpected) {
     for (const char* name : {"a.plyx", "a.xyzw", "none", "a.gz", ".obj"})
         folder.write(name, "x");
     folder.write("empty.stl", "");
-    const std::string reads =
-        ", expected .obj, .pbrt, .ply, .pov or one that Assimp reads, such as .stl, .off, .glb";
+    const std::string reads = ", expected .obj, .ovc, .pbrt, .ply, .pov or one that Assimp reads, "
+                              "such as .stl, .off, .glb";
     EXPECT_EQ(folder.failure("gone.ply"), "gone.ply: no such file");
     EXPECT_EQ(folder.failure("gone.plyx"), "gone.plyx: no such file");
     EXPECT_EQ(folder.failure("gone"), "gone: no such file");
@@ -221,9 +221,9 @@ TEST(Save, ErrorsNameTheFileAndWhatWasExpected) {
     };
     EXPECT_EQ(failure("gone/a.ply"), "gone/a.ply: the folder does not exist");
     EXPECT_EQ(failure("folder.ply"), "folder.ply: found a directory, expected a file to write");
-    EXPECT_EQ(failure("a.stl"), "a.stl: found extension .stl, expected .obj, .ply");
-    EXPECT_EQ(failure("a.ply.gz"), "a.ply.gz: found extension .gz, expected .obj, .ply");
-    EXPECT_EQ(failure("a"), "a: found no extension, expected .obj, .ply");
+    EXPECT_EQ(failure("a.stl"), "a.stl: found extension .stl, expected .obj, .ovc, .ply");
+    EXPECT_EQ(failure("a.ply.gz"), "a.ply.gz: found extension .gz, expected .obj, .ovc, .ply");
+    EXPECT_EQ(failure("a"), "a: found no extension, expected .obj, .ovc, .ply");
 }
 
 TEST(Save, AFailedWriteLeavesTheOldFileAndNothingElse) {

@@ -98,8 +98,8 @@ void read_line(std::string_view keyword, std::string_view rest, Entry& entry) {
 
 } // namespace
 
-Result<std::vector<Material>> read_mtl(const std::filesystem::path& path) {
-    Result<Source> source = Source::open(path);
+Result<std::vector<Material>> read_mtl(const std::filesystem::path& path, FilesRead* files) {
+    Result<Source> source = Source::open(path, files);
     if (!source)
         return source.error();
     std::vector<Entry> entries;

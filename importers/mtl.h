@@ -4,6 +4,7 @@
 
 #include "core/result.h"
 #include "core/scene.h"
+#include "importers/files_read.h"
 
 #include <filesystem>
 #include <vector>
@@ -15,6 +16,7 @@ namespace ovc {
 /// not mirrored goes through: 1 - d of it, else Tr, or all where neither dims it; Tf becomes the
 /// filter, and Ni the index of refraction where illum is 6 or 7. Fresnel's equations (5, 7) are
 /// left out. All else, textures too, and what is no number, is passed over.
-Result<std::vector<Material>> read_mtl(const std::filesystem::path& path);
+Result<std::vector<Material>> read_mtl(const std::filesystem::path& path,
+                                       FilesRead* files = nullptr);
 
 } // namespace ovc

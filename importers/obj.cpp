@@ -37,8 +37,8 @@ struct Mesh {
 
 class ObjReader {
 public:
-    ObjReader(Source& source, const std::filesystem::path& path, const LogSink& log)
-        : source_(source), path_(path), log_(log) {}
+    ObjReader(Source& source, const std::filesystem::path& path, const ImportOptions& options)
+        : source_(source), path_(path), log_(options.log), files_read_(options.files) {}
 
     bool read() {
         while (const auto line = source_.line()) {
@@ -91,6 +91,7 @@ private:
     Source& source_;
     const std::filesystem::path& path_;
     const LogSink& log_;
+    FilesRead* const files_read_;
     Error error_;
     std::unordered_set<std::string> warned_;
     std::string joined_;
@@ -273,7 +274,7 @@ void ObjReader::read_libraries(std::string_view rest) {
 }
 
 bool ObjReader::read_library(std::string_view name) {
-    auto materials = read_mtl(path_.parent_path() / std::string(name));
+    auto materials = read_mtl(path_.parent_path() / std::string(name), files_read_);
     if (!materials)
         return false;
     for (Material& material : *materials) {
@@ -376,10 +377,10 @@ Result<Scene> ObjReader::take() {
 } // namespace
 
 Result<Scene> read_obj(const std::filesystem::path& path, const ImportOptions& options) {
-    Result<Source> source = Source::open(path);
+    Result<Source> source = Source::open(path, options.files);
     if (!source)
         return source.error();
-    ObjReader reader(*source, path, options.log);
+    ObjReader reader(*source, path, options);
     if (!reader.read())
         return reader.error();
     return reader.take();

@@ -371,7 +371,7 @@ std::optional<Error> check(const PlyHeader& header, const Source& source) {
 } // namespace
 
 Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& options) {
-    Result<Source> source = Source::open(path);
+    Result<Source> source = Source::open(path, options.files);
     if (!source)
         return source.error();
     const Result<PlyHeader> header = read_ply_header(*source);

@@ -124,6 +124,10 @@ public:
 private:
     template <class T>
     bool integer(std::string_view what, const PlyProperty& property, T& value) {
+        if (uint32_t digits = 0; take_digits(rest_, digits)) {
+            value = digits;
+            return true;
+        }
         const std::string_view word = next_word(rest_);
         const auto parsed = parse_number<T>(word);
         if (!parsed)

@@ -77,6 +77,65 @@ TEST(Ply, ExtraPropertiesElementsAndBlanksAreSkipped) {
     EXPECT_EQ(triangles_of(load(path)), kSquare);
 }
 
+/// `value` as a PLY type of this name stores it.
+std::string stored(const std::string& type, int value, bool big) {
+    if (type == "char" || type == "uchar")
+        return std::string(1, char(value));
+    return type == "short" || type == "ushort" ? bytes(int16_t(value), big)
+                                               : bytes(int32_t(value), big);
+}
+
+TEST(Ply, ListsMayHaveAnyTypesOfLengthAndIndex) {
+    const TestFolder folder;
+    const std::string types[] = {"char", "uchar", "short", "ushort", "int", "uint"};
+    for (const std::string& length : types)
+        for (const std::string& index : types) {
+            SCOPED_TRACE(length + " " + index);
+            std::string header = kSquareHeader;
+            header.replace(header.find("uchar int"), 9, length + " " + index);
+            for (const bool big : {false, true}) {
+                std::string file = std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                                   "_endian 1.0\n" + header;
+                for (const float value : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f, 0.f, 1.f})
+                    file += bytes(value, big);
+                file += bytes(0.5f, big);
+                for (const auto& face : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
+                    file += stored(length, 3, big);
+                    for (const int corner : face)
+                        file += stored(index, corner, big);
+                }
+                EXPECT_EQ(triangles_of(load(folder.write("a.ply", file))), kSquare);
+            }
+            EXPECT_EQ(triangles_of(load(folder.write("b.ply", ascii(header + kSquareRows)))),
+                      kSquare);
+        }
+}
+
+TEST(Ply, WholeNumbersMayHaveASignAndLeadingZeros) {
+    const TestFolder folder;
+    const std::string rows = "0 0 0\n1 0 0\n1 1 0\n0 1 0.5\n"
+                             "+3 -0 000000001 00000000002\n3\t0  +2 0000000000000003 \n";
+    EXPECT_EQ(triangles_of(load(folder.write("a.ply", ascii(kSquareHeader + rows)))), kSquare);
+}
+
+TEST(Ply, ConcavePolygonsAreCutWithoutOverlap) {
+    const TestFolder folder;
+    // A staircase of six corners, the reflex one second, in the plane x = 2.
+    const auto triangles = triangles_of(load(folder.write(
+        "stairs.ply",
+        ascii("element vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+              "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+              "2 0 2\n2 0 0\n2 2 0\n2 2 1\n2 1 1\n2 1 2\n6 3 4 5 0 1 2\n"))));
+    ASSERT_EQ(triangles.size(), 4u);
+    double area = 0;
+    for (const Triangle& t : triangles) {
+        const dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
+        EXPECT_GE(normal.x, 0);
+        area += normal.x / 2;
+    }
+    EXPECT_EQ(area, 3);
+}
+
 TEST(Ply, FacesMayComeBeforeVertices) {
     const TestFolder folder;
     const auto path =

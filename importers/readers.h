@@ -13,6 +13,7 @@ inline constexpr uint64_t kMostTriangles = 0xfffffffe;
 
 Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& options);
 Result<Scene> read_obj(const std::filesystem::path& path, const ImportOptions& options);
+Result<Scene> read_ovc(const std::filesystem::path& path, const ImportOptions& options);
 Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& options);
 Result<Scene> read_pov(const std::filesystem::path& path, const ImportOptions& options);
 Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions& options);
@@ -28,6 +29,7 @@ Result<Scene> parse_pov(std::string text, const std::filesystem::path& path,
 /// Whether Assimp names this extension (without the dot, lower case) as one it reads.
 bool assimp_reads(std::string_view extension);
 
+Result<Done> write_ovc(const Scene& scene, const std::filesystem::path& path);
 Result<Done> write_ply(const Scene& scene, const std::filesystem::path& path);
 Result<Done> write_obj(const Scene& scene, const std::filesystem::path& path);
 

@@ -47,7 +47,8 @@ void Source::CloseFile::operator()(gzFile_s* file) const {
     gzclose(file);
 }
 
-Result<Source> Source::open(const std::filesystem::path& path) {
+Result<Source> Source::open(const std::filesystem::path& path, FilesRead* files) {
+    note(files, path);
     Source source;
     source.name_ = path.string();
     std::error_code ec;

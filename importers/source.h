@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/result.h"
+#include "importers/files_read.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -21,7 +22,8 @@ namespace ovc {
 class Source {
 public:
     /// Fails on no such file, no regular file (links are followed), no permission, an empty file.
-    static Result<Source> open(const std::filesystem::path& path);
+    /// files: receives which file that is.
+    static Result<Source> open(const std::filesystem::path& path, FilesRead* files = nullptr);
 
     /// The next line without its end (LF, CR LF, or CR alone where the first line ends so); nothing
     /// at the end of the file. Valid until the next call.

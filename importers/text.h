@@ -53,6 +53,21 @@ std::optional<T> parse_number(std::string_view word) {
     return value;
 }
 
+/// Takes a word of one to nine digits off `text`: what nearly every index is. False, and at most
+/// blanks taken, for any other word. A quarter of the time of reading a PLY file as text was
+/// parse_number.
+inline bool take_digits(std::string_view& text, uint32_t& value) {
+    skip_blanks(text);
+    value = 0;
+    size_t n = 0;
+    for (; n < text.size() && n < 10 && text[n] >= '0' && text[n] <= '9'; ++n)
+        value = value * 10 + uint32_t(text[n] - '0');
+    if (n == 0 || n == 10 || (n < text.size() && !is_blank(text[n])))
+        return false;
+    text.remove_prefix(n);
+    return true;
+}
+
 /// The nearest float or double. A double rounds to the float nearest to the text, not only to the
 /// one nearest to the double, so that a reader may keep doubles until it knows that floats suffice.
 std::optional<float> parse_float(std::string_view word);

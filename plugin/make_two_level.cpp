@@ -34,11 +34,16 @@ static TwoLevelOptions options_of(const ovc_scene_config& config) {
             config.tell_active == 1};
 }
 
+static Bytes saved_in(const ovc_scene_config& config) {
+    return {static_cast<const std::byte*>(config.saved), size_t(config.saved_bytes)};
+}
+
 Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
                                                   const ovc_scene_config& config,
                                                   const LogSink& log, BuildProgress* progress) {
-    Result<std::unique_ptr<TwoLevel>> built =
-        TwoLevel::build(soup, gl, options_of(config), log, progress);
+    TwoLevelOptions options = options_of(config);
+    options.saved = saved_in(config);
+    Result<std::unique_ptr<TwoLevel>> built = TwoLevel::build(soup, gl, options, log, progress);
     if (!built)
         return built.error();
     return std::unique_ptr<Structure>(std::move(*built));
@@ -101,7 +106,8 @@ ovc_statistics TwoLevel::report() const {
             s.host_bytes,
             s.queues,
             s.queued_rays,
-            s.longest_queue};
+            s.longest_queue,
+            s.from_saved};
 }
 
 } // namespace ovc

@@ -121,6 +121,9 @@ typedef enum ovc_level1_build {
     OVC_LEVEL1_BUILD_BOTTOM_UP = 1 /* the leaves of a complete tree merged while they are small enough; not for a grid */
 } ovc_level1_build;
 
+/* Takes the next `size` bytes of what is saved. 0: go on; anything else: stop. */
+typedef int (*ovc_write_function)(void* user, const void* bytes, size_t size);
+
 /* How far a commit or a plan is: done from 0 to 1, never less than before; stage: what is being done, valid during the call only.
  * Called fifty times a second at most, from any thread, but never from two at once. Must return soon and call nothing on the
  * scene. 0: go on; anything else: stop, and the call returns OVC_ERROR_CANCELLED within a tenth of a second or so. */
@@ -141,6 +144,11 @@ typedef struct ovc_scene_config {
     void* progress_user;
     uint32_t tell_active; /* experimental. 1: active() tells which pages rays go through, for some percent of time; not for all structures. 0 */
     uint32_t reserved;    /* 0 */
+    /* What save() wrote of a scene with the same meshes, so that commit need not build: NULL or its bytes, aligned to 64, valid and
+     * unchanged until the scene is destroyed; a mapped file will do. Commit checks them: where they are damaged, or of other meshes
+     * or options, it builds, and the device's log says why. Answers are the same bits either way. */
+    const void* saved;
+    uint64_t saved_bytes;
 } ovc_scene_config;
 
 typedef enum ovc_mesh_flags {
@@ -223,6 +231,7 @@ typedef struct ovc_statistics {
     uint64_t queues;               /* of rays that waited for a leaf until its page was moved in */
     uint64_t queued_rays;          /* in them, all together */
     uint64_t longest_queue;        /* rays */
+    uint64_t from_saved;           /* 1: commit took them from ovc_scene_config.saved; else 0 */
 } ovc_statistics;
 
 /* The pages that rays went through since this was asked last, or since the commit; experimental. */
@@ -305,6 +314,10 @@ typedef struct ovc_api {
     /* Which pages are active: asked at the end of each picture, its working set. OVC_ERROR_INVALID_ARGUMENT where the scene's
      * config did not ask for it (tell_active) or its structure cannot tell. Experimental. */
     ovc_result (*active)(ovc_scene scene, ovc_active* active);
+    /* Hands what commit has built to `write`, front to back in parts of any size, for ovc_scene_config.saved of a later scene with the
+     * same meshes. It is for this version on this kind of machine: whatever else takes it builds anew. OVC_ERROR_CANCELLED where
+     * `write` says so; OVC_ERROR_INVALID_ARGUMENT for structures that cannot be saved. `write` may call nothing on the scene. */
+    ovc_result (*save)(ovc_scene scene, ovc_write_function write, void* user);
 } ovc_api;
 
 #if defined(_WIN32)

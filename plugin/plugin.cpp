@@ -11,7 +11,7 @@ extern "C" const ovc_api* ovc_get_api(uint32_t abi_version) {
         ovc::list_devices, ovc::create_device, ovc::describe_device, ovc::destroy_device,
         ovc::create_scene, ovc::add_mesh,      ovc::commit,          ovc::intersect,
         ovc::occluded,     ovc::statistics,    ovc::destroy_scene,   ovc::stream,
-        ovc::push,         ovc::plan,          ovc::active,
+        ovc::push,         ovc::plan,          ovc::active,          ovc::save,
     };
     return abi_version == OVC_ABI_VERSION ? &api : nullptr;
 }

@@ -121,6 +121,8 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
             created->config.struct_size = sizeof(ovc_scene_config);
             check_choice("tell_active", created->config.tell_active, 1);
             check_choice("reserved", created->config.reserved, 0);
+            if (!created->config.saved && created->config.saved_bytes)
+                invalid("ovc_scene_config.saved is NULL, but saved_bytes is not 0");
         }
         // Known to be impossible before anything is added: say so now.
         check_config(created->config, device->gl->info());
@@ -231,6 +233,19 @@ ovc_result active(ovc_scene scene, ovc_active* active) {
                           "active: " + told.error().message};
         *active = *told;
         active->struct_size = sizeof(ovc_active);
+    });
+}
+
+ovc_result save(ovc_scene scene, ovc_write_function write, void* user) {
+    return on_scene(scene, "save", [&] {
+        if (!write)
+            invalid("save: write is NULL");
+        const Result<Done> saved = committed(scene, "save").save([&](Bytes bytes) {
+            return write(user, bytes.data(), bytes.size()) == 0;
+        });
+        if (!saved)
+            throw Failure{code_of(saved.error().kind, OVC_ERROR_INVALID_ARGUMENT),
+                          "save: " + saved.error().message};
     });
 }
 

@@ -16,6 +16,7 @@ ovc_result occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint
 ovc_result statistics(ovc_scene scene, ovc_statistics* statistics);
 ovc_result plan(ovc_scene scene, ovc_plan* plan);
 ovc_result active(ovc_scene scene, ovc_active* active);
+ovc_result save(ovc_scene scene, ovc_write_function write, void* user);
 void destroy_scene(ovc_scene scene);
 
 } // namespace ovc

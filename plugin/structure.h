@@ -4,6 +4,7 @@
 // compared with (thesis/).
 #pragma once
 
+#include "core/archive.h"
 #include "core/batched_stream.h"
 #include "core/build_progress.h"
 #include "core/log.h"
@@ -45,6 +46,11 @@ public:
     /// cannot tell, or was not asked to when it was built.
     virtual Result<ovc_active> take_active() {
         return Error{"this structure does not tell which pages are active"};
+    }
+    /// Passes on what a structure over the same soup can be made from without building. Error of
+    /// the kind Cancelled: the sink wanted no more; else: it cannot be saved.
+    virtual Result<Done> save(const ByteSink&) const {
+        return Error{"only two-level can be saved"};
     }
     /// Counted since it was built. What a structure does not have is 0.
     virtual ovc_statistics report() const = 0;

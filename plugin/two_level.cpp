@@ -58,39 +58,12 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
 
     if (const Result<Done> fine = check_count(soup); !fine)
         return fine.error();
-    const Stopwatch watch;
-    begin(progress, "triangles", 0.1, 2 * soup.triangle_count());
-    Box bounds;
-    TwoLevelStatistics& statistics = self->statistics_;
-    std::vector<TriangleId> triangles =
-        hittable_triangles(soup, &statistics.dropped, &bounds, progress);
-    if (statistics.dropped.not_finite)
-        say(log, LogLevel::Warning,
-            fmt::format("left out {} triangles with a NaN or infinite corner",
-                        statistics.dropped.not_finite));
-    if (statistics.dropped.degenerate)
-        say(log, LogLevel::Warning,
-            fmt::format("left out {} triangles without area", statistics.dropped.degenerate));
-    self->twins_ = Twins::take_out(soup, triangles, progress);
-    statistics.twins = self->twins_.count();
-    statistics.seconds_level1 = watch.seconds();
-
     self->numbers_ = Numbering(soup);
-    Result<Levels> levels = build_levels(soup, self->numbers_, triangles, bounds,
-                                         limits_of(options, *plan, triangles.size()), progress);
-    if (!levels)
-        return levels.error();
-    self->level1_ = std::move(levels->level1);
-    self->pages_ = std::move(levels->pages);
-    statistics.seconds_level1 += levels->seconds_level1;
-    statistics.seconds_level2 += levels->seconds_level2;
-    for (const Page& page : self->pages_) {
-        statistics.level2_bytes += page.bytes();
-        statistics.largest_page_bytes = std::max(statistics.largest_page_bytes, page.bytes());
-    }
-    statistics.host_bytes =
-        statistics.level2_bytes + self->level1_.reference_count() * sizeof(TriangleId) +
-        self->level1_.leaves.size() * sizeof(Leaf) + self->level1_.nodes.size() * sizeof(KdNode);
+    if (!self->restore(options.saved))
+        if (const Result<Done> made = self->make_levels(progress); !made)
+            return made.error();
+    self->warn_of_dropped();
+    self->count_levels();
     if (self->pages_.empty())
         return self; // every ray misses, no GPU needed
     if (const Result<Done> shared = self->share_out(); !shared)
@@ -99,6 +72,84 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     if (const Result<Done> made = self->make_tracer(progress); !made)
         return made.error();
     return self;
+}
+
+/// Level 1 and level 2 from the soup.
+Result<Done> TwoLevel::make_levels(BuildProgress* progress) {
+    const Stopwatch watch;
+    begin(progress, "triangles", 0.1, 2 * soup_.triangle_count());
+    Box bounds;
+    std::vector<TriangleId> triangles =
+        hittable_triangles(soup_, &statistics_.dropped, &bounds, progress);
+    twins_ = Twins::take_out(soup_, triangles, progress);
+    statistics_.seconds_level1 = watch.seconds();
+    triangles_ = triangles.size();
+    limits_ = limits_of(options_, plan_, triangles_);
+    Result<Levels> levels = build_levels(soup_, numbers_, triangles, bounds, limits_, progress);
+    if (!levels)
+        return levels.error();
+    level1_ = std::move(levels->level1);
+    pages_ = std::move(levels->pages);
+    statistics_.seconds_level1 += levels->seconds_level1;
+    statistics_.seconds_level2 += levels->seconds_level2;
+    return Done{};
+}
+
+/// The same from what was saved; false where that will not do, and nothing has changed.
+bool TwoLevel::restore(Bytes saved) {
+    if (saved.empty())
+        return false;
+    const Stopwatch watch;
+    Result<std::optional<BuiltLevels>> found = restore_levels(
+        saved, soup_, [&](uint64_t triangles) { return limits_of(options_, plan_, triangles); });
+    if (!found) {
+        say(log_, LogLevel::Warning,
+            fmt::format("building anew: what was saved {}", found.error().message));
+        return false;
+    }
+    if (!*found) {
+        say(log_, LogLevel::Info,
+            "building anew: what was saved is of other meshes or other options");
+        return false;
+    }
+    BuiltLevels& levels = **found;
+    statistics_.from_saved = true;
+    statistics_.dropped = levels.dropped;
+    twins_ = std::move(levels.twins);
+    triangles_ = levels.triangles;
+    limits_ = levels.limits;
+    level1_ = std::move(levels.level1);
+    pages_ = std::move(levels.pages);
+    statistics_.seconds_level1 = watch.seconds();
+    return true;
+}
+
+Result<Done> TwoLevel::save(const ByteSink& sink) const {
+    if (!save_levels(soup_, {statistics_.dropped, twins_, triangles_, limits_, level1_, pages_},
+                     sink))
+        return Error{"saving was stopped", ErrorKind::Cancelled};
+    return Done{};
+}
+
+void TwoLevel::warn_of_dropped() const {
+    const Dropped& dropped = statistics_.dropped;
+    if (dropped.not_finite)
+        say(log_, LogLevel::Warning,
+            fmt::format("left out {} triangles with a NaN or infinite corner", dropped.not_finite));
+    if (dropped.degenerate)
+        say(log_, LogLevel::Warning,
+            fmt::format("left out {} triangles without area", dropped.degenerate));
+}
+
+void TwoLevel::count_levels() {
+    statistics_.twins = twins_.count();
+    for (const Page& page : pages_) {
+        statistics_.level2_bytes += page.bytes();
+        statistics_.largest_page_bytes = std::max(statistics_.largest_page_bytes, page.bytes());
+    }
+    statistics_.host_bytes =
+        statistics_.level2_bytes + level1_.reference_count() * sizeof(TriangleId) +
+        level1_.leaves.size() * sizeof(Leaf) + level1_.nodes.size() * sizeof(KdNode);
 }
 
 /// The pool and what rays need, in the context there is now; smaller where the driver has no room.

@@ -12,6 +12,7 @@
 #include "gpu/tracer.h"
 #include "kdtree/partition.h"
 #include "plugin/level2.h"
+#include "plugin/saved_levels.h"
 #include "plugin/structure.h"
 
 #include <algorithm>
@@ -34,6 +35,7 @@ struct TwoLevelOptions {
     /// once, and what is moved before a pass has ended is some 20 % more.
     std::optional<bool> beside;
     uint64_t driver_bytes = ~uint64_t(0); // for tests: as in MemoryPlan
+    Bytes saved = {}; // what save() of a structure over the same soup wrote; outlives this one
 };
 
 /// The budget in bytes that the options ask for.
@@ -50,6 +52,7 @@ Result<Done> check_count(const Soup& soup);
 struct TwoLevelStatistics {
     Dropped dropped;
     uint64_t twins = 0;
+    bool from_saved = false;
     uint64_t largest_page_bytes = 0;
     uint64_t level2_bytes = 0;
     uint64_t passes = 0;
@@ -94,6 +97,7 @@ public:
     Result<Done> stream(StreamHost& host) override; // two_level_stream.cpp
     ovc_statistics report() const override;         // make_two_level.cpp
     Result<ovc_active> take_active() override;
+    Result<Done> save(const ByteSink& sink) const override;
 
     const TwoLevelStatistics& statistics() const { return statistics_; }
     const MemoryPlan& plan() const { return plan_; }
@@ -104,6 +108,10 @@ private:
              LogSink log)
         : soup_(soup), gl_(gl), log_(std::move(log)), options_(options), plan_(plan) {}
 
+    Result<Done> make_levels(BuildProgress* progress);
+    bool restore(Bytes saved);
+    void warn_of_dropped() const;
+    void count_levels();
     Result<Done> share_out();
     void bring_first(BuildProgress* progress);
     Result<Done> make_tracer(BuildProgress* progress);
@@ -142,7 +150,9 @@ private:
     MemoryPlan plan_;
     Numbering numbers_;
     Twins twins_;
-    Level1 level1_; // without them
+    uint64_t triangles_ = 0; // in leaves, each once
+    LeafLimits limits_{};    // that leaves keep to
+    Level1 level1_;          // without twins
     std::vector<Page> pages_;
     std::vector<uint8_t> was_active_;   // per leaf: when take_active() was asked last
     std::unique_ptr<Tracer> tracer_;    // made and destroyed on the thread of gl_

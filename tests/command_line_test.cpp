@@ -53,6 +53,110 @@ std::string binary_ply_header(int vertices, int faces) {
            std::to_string(faces) + "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
+/// Whether the statistics of a rendering say that `part`, scene or levels, came from a cache.
+bool from_cache(const std::string& stats, const std::string& part) {
+    const size_t at = stats.find("\"from_cache\"");
+    EXPECT_NE(at, stats.npos);
+    return stats.find("\"" + part + "\": true", at) < stats.find('}', at);
+}
+
+TEST_F(CommandLine, ASceneFileHoldsTheSceneAndWhatIsBuiltOfIt) {
+    ASSERT_EQ(overcast("render mirrors -o direct.png --size 48x32 --quiet").exit_code, 0);
+    ASSERT_EQ(overcast("convert mirrors m.ovc").exit_code, 0);
+    const auto rendered = overcast("render m.ovc -o file.png --size 48x32 --quiet --stats s.json");
+    ASSERT_EQ(rendered.exit_code, 0) << rendered.output;
+    EXPECT_EQ(bytes("file.png"), bytes("direct.png"));
+    EXPECT_TRUE(from_cache(bytes("s.json"), "levels"));
+    // Other options: the scene is there, the levels are built.
+    ASSERT_EQ(overcast("render m.ovc --leaves 40 -o other.png --size 48x32 --quiet --stats s.json")
+                  .exit_code,
+              0);
+    EXPECT_EQ(bytes("other.png"), bytes("direct.png"));
+    EXPECT_FALSE(from_cache(bytes("s.json"), "levels"));
+    ASSERT_EQ(overcast("convert m.ovc m.ply --quiet").exit_code, 0);
+    ASSERT_EQ(overcast("convert mirrors direct.ply --quiet").exit_code, 0);
+    EXPECT_EQ(bytes("m.ply"), bytes("direct.ply"));
+}
+
+TEST_F(CommandLine, ADamagedSceneFileIsRefusedOrMended) {
+    ASSERT_EQ(overcast("render box -o direct.png --size 32x32 --quiet").exit_code, 0);
+    ASSERT_EQ(overcast("convert box b.ovc").exit_code, 0);
+    const std::string whole = bytes("b.ovc");
+    size_t refused = 0, mended = 0;
+    for (size_t at = 0; at < whole.size(); at += whole.size() / 12) {
+        std::string damaged = whole;
+        damaged[at] ^= 0x10;
+        write("d.ovc", damaged);
+        fs::remove(folder / "d.png");
+        const auto result = overcast("render d.ovc -o d.png --size 32x32 --quiet");
+        if (result.exit_code == 1) {
+            ++refused;
+            EXPECT_THAT(result.output, HasSubstr("d.ovc: the file "));
+            EXPECT_FALSE(fs::exists(folder / "d.png"));
+            continue;
+        }
+        ASSERT_EQ(result.exit_code, 0) << result.output;
+        mended += result.output.find("building anew: what was saved ") != std::string::npos;
+        EXPECT_EQ(bytes("d.png"), bytes("direct.png")) << at;
+    }
+    EXPECT_GT(refused, 0u);
+    EXPECT_GT(mended, 0u);
+    write("d.ovc", whole.substr(0, whole.size() - 1));
+    EXPECT_EQ(overcast("render d.ovc -o d.png").exit_code, 1);
+}
+
+TEST_F(CommandLine, TheCacheIsUsedRefreshedAndMended) {
+    ASSERT_EQ(overcast("convert box box.ply --quiet").exit_code, 0);
+    ASSERT_EQ(overcast("convert mirrors other.ply --quiet").exit_code, 0);
+    const auto render = [&](const std::string& options) {
+        const auto result = overcast("render box.ply --size 32x32 --stats s.json --cache kept " +
+                                     options + " -o a.png");
+        EXPECT_EQ(result.exit_code, 0) << result.output;
+        return result.output;
+    };
+    const auto expect = [&](bool scene, bool levels, const char* picture) {
+        EXPECT_EQ(from_cache(bytes("s.json"), "scene"), scene);
+        EXPECT_EQ(from_cache(bytes("s.json"), "levels"), levels);
+        EXPECT_EQ(bytes("a.png"), bytes(picture));
+    };
+    const auto kept = [&] {
+        std::vector<fs::path> files;
+        for (const auto& entry : fs::directory_iterator(folder / "kept"))
+            files.push_back(entry.path());
+        return files;
+    };
+    ASSERT_EQ(overcast("render box.ply --size 32x32 --quiet -o box.png").exit_code, 0);
+    ASSERT_EQ(overcast("render other.ply --size 32x32 --quiet -o other.png").exit_code, 0);
+    render("");
+    expect(false, false, "box.png");
+    render("");
+    expect(true, true, "box.png");
+    ASSERT_EQ(kept().size(), 1u);
+
+    fs::copy(folder / "other.ply", folder / "box.ply", fs::copy_options::overwrite_existing);
+    EXPECT_THAT(render(""), HasSubstr("box.ply has changed"));
+    expect(false, false, "other.png");
+    render("");
+    expect(true, true, "other.png");
+
+    std::fstream(kept()[0], std::ios::in | std::ios::out | std::ios::binary).seekp(0).put('x');
+    EXPECT_THAT(render(""), HasSubstr("does not begin as ovc scene does"));
+    expect(false, false, "other.png");
+    render("");
+    expect(true, true, "other.png");
+
+    render("--leaves 40");
+    expect(false, false, "other.png");
+    EXPECT_EQ(kept().size(), 2u) << "a file for each set of options";
+    render("--leaves 40");
+    expect(true, true, "other.png");
+    render("--backend cpu-kdtree");
+    expect(true, false, "other.png");
+
+    write("file", "");
+    EXPECT_THAT(overcast("render box --cache file").output, HasSubstr("'file' is no folder"));
+}
+
 TEST_F(CommandLine, BadInputIsOneSentenceExitOneAndNothingWritten) {
     write("empty.ply", "");
     write("cut.ply", binary_ply_header(3, 1) + std::string(20, '\0'));

@@ -23,6 +23,7 @@ MAY_INCLUDE = {
 PLACES = {
     r"glm/": ["core/vec.h"],
     r"(oneapi/)?tbb/": ["core/parallel.h"],
+    r"xxhash\.h": ["core/checksum.cpp"],
     r"assimp/": ["importers/assimp.cpp"],
     r"zlib\.h": ["importers/source.cpp", "importers/source.h"],
     r"epoxy/": ["gpu/gl.h"],

@@ -11,7 +11,7 @@ namespace ovc {
 
 Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& options) {
     pbrt::Diagnostics diagnostics(options.log, options.strict);
-    pbrt::Tokens tokens(path.parent_path(), diagnostics);
+    pbrt::Tokens tokens(path.parent_path(), diagnostics, options.files);
     pbrt::Interpreter interpreter(tokens, diagnostics, options);
     if (!tokens.open(path) || !interpreter.run())
         return diagnostics.error();

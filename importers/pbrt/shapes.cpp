@@ -117,6 +117,7 @@ std::optional<Mesh> make_ply_mesh(ShapeRequest& request) {
     }
     ImportOptions options;
     options.log = request.diagnostics.log();
+    options.files = request.tokens.files_read();
     Result<Scene> scene = read_ply(*path, options);
     if (!scene) {
         request.diagnostics.missing("file " + name, request.place,

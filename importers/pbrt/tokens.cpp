@@ -12,10 +12,11 @@
 
 namespace ovc::pbrt {
 
-/// Files in each other, and files in all. Scenes have a few of the one and thousands of the other;
-/// beyond that a file includes itself under ever new names, or two of the next again and again.
+/// Files in each other, and files in all. Scenes have a few of the one and up to thousands of the
+/// other; beyond that a file includes itself under ever new names, or two of the next again and
+/// again.
 static constexpr size_t kDeepest = 64;
-static constexpr uint64_t kMostFiles = 50000;
+static constexpr uint64_t kMostFiles = 10000;
 
 /// Source cuts lines that are longer.
 static constexpr size_t kLongestLine = size_t(1) << 26;
@@ -145,7 +146,7 @@ bool Tokens::read_word(std::string_view& rest) {
 }
 
 bool Tokens::open(const std::filesystem::path& path) {
-    Result<Source> source = Source::open(path);
+    Result<Source> source = Source::open(path, files_read_);
     if (!source)
         return diagnostics_.fail(source.error());
     std::error_code ignored;
@@ -196,7 +197,7 @@ bool Tokens::include(const std::string& name, const Place& place, bool marks_its
                                  fmt::format("found more than {} files in each other", kDeepest));
     if (opened_ >= kMostFiles)
         return diagnostics_.fail(place, fmt::format("found more than {} includes", kMostFiles));
-    Result<Source> source = Source::open(*path);
+    Result<Source> source = Source::open(*path, files_read_);
     if (!source)
         return missing(source.error().message);
     push(std::move(*source), *path, std::move(identity), marks_its_end);
@@ -211,10 +212,12 @@ std::optional<std::filesystem::path> Tokens::find(const std::string& name) const
     std::error_code ignored;
     for (const std::string& spelling : {plain, other})
         for (const std::filesystem::path& folder :
-             {root_, files_.empty() ? root_ : files_.back().folder})
-            if (const auto path = folder / spelling;
-                std::filesystem::is_regular_file(path, ignored))
+             {root_, files_.empty() ? root_ : files_.back().folder}) {
+            const std::filesystem::path path = folder / spelling;
+            note(files_read_, path);
+            if (std::filesystem::is_regular_file(path, ignored))
                 return path;
+        }
     return std::nullopt;
 }
 

@@ -36,9 +36,12 @@ std::string described(const Token& token);
 /// middle of a parameter list too; then its tokens come first.
 class Tokens {
 public:
-    /// Nothing is read yet. root: the folder that names are relative to.
-    Tokens(std::filesystem::path root, Diagnostics& diagnostics)
-        : root_(std::move(root)), diagnostics_(diagnostics) {}
+    /// Nothing is read yet. root: the folder that names are relative to. files_read: receives what
+    /// is looked for and read; or null.
+    Tokens(std::filesystem::path root, Diagnostics& diagnostics, FilesRead* files_read)
+        : root_(std::move(root)), diagnostics_(diagnostics), files_read_(files_read) {}
+
+    FilesRead* files_read() const { return files_read_; }
 
     /// The next token, to be changed by the next call. False: an error, in the diagnostics.
     bool next();
@@ -80,6 +83,7 @@ private:
 
     std::filesystem::path root_;
     Diagnostics& diagnostics_;
+    FilesRead* const files_read_;
     std::vector<File> files_; // the innermost last
     std::deque<std::string> names_;
     std::unordered_map<std::string, const std::string*> known_names_;

@@ -144,7 +144,7 @@ void Reader::do_include() {
                              ovc::quoted(*name)));
     SourceFile*& file = by_path_[path.string()];
     if (!file) {
-        Result<std::string> text = read_text(path);
+        Result<std::string> text = read_text(path, files_read_);
         if (!text)
             fail(at, text.error().message);
         files_.push_back(std::make_unique<SourceFile>());
@@ -164,7 +164,7 @@ std::filesystem::path Reader::find_file(const std::string& name, std::string_vie
     for (auto f = frames_.rbegin(); f != frames_.rend(); ++f)
         if (folders.back() != f->file->folder)
             folders.push_back(f->file->folder);
-    return pov::find_file(name, extension, folders);
+    return pov::find_file(name, extension, folders, files_read_);
 }
 
 bool Reader::condition() {

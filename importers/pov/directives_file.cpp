@@ -42,7 +42,7 @@ void Reader::do_fopen() {
         file->text = written->second;
     else if (const std::filesystem::path path = find_file(file->name, ""); path.empty())
         fail(at, fmt::format("there is no file {}", ovc::quoted(file->name)));
-    else if (Result<std::string> whole = read_text(path); !whole)
+    else if (Result<std::string> whole = read_text(path, files_read_); !whole)
         fail(at, whole.error().message);
     else
         file->text = std::move(*whole);

@@ -47,7 +47,7 @@ static std::optional<fs::path> file_like(const fs::path& folder, const fs::path&
 }
 
 fs::path find_file(std::string name, std::string_view extension,
-                   const std::vector<std::string>& folders) {
+                   const std::vector<std::string>& folders, FilesRead* files) {
     std::replace(name.begin(), name.end(), '\\', '/');
     if (name.empty() || name.find('\0') != name.npos)
         return {};
@@ -58,9 +58,11 @@ fs::path find_file(std::string name, std::string_view extension,
     places.insert(places.end(), std::begin(kLibraries), std::end(kLibraries));
     std::error_code ec;
     for (const fs::path& path : paths)
-        for (const fs::path& place : places) // an absolute path stays as it is
+        for (const fs::path& place : places) { // an absolute path stays as it is
+            note(files, place / path);
             if (fs::is_regular_file(place / path, ec))
                 return place / path;
+        }
     for (const fs::path& path : paths)
         for (const fs::path& place : places)
             if (!path.is_absolute())
@@ -69,8 +71,8 @@ fs::path find_file(std::string name, std::string_view extension,
     return {};
 }
 
-Result<std::string> read_text(const fs::path& path) {
-    Result<Source> source = Source::open(path);
+Result<std::string> read_text(const fs::path& path, FilesRead* files) {
+    Result<Source> source = Source::open(path, files);
     if (!source)
         return source.error();
     std::string text;

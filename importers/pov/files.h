@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/result.h"
+#include "importers/files_read.h"
 
 #include <filesystem>
 #include <string>
@@ -15,9 +16,10 @@ namespace ovc::pov {
 /// none. `\` counts as `/`; where no file has exactly this name, capital and small letters are the
 /// same. extension: ".inc", of a name that has none.
 std::filesystem::path find_file(std::string name, std::string_view extension,
-                                const std::vector<std::string>& folders);
+                                const std::vector<std::string>& folders,
+                                FilesRead* files = nullptr);
 
 /// The whole of a file, unpacked; lines end with LF.
-Result<std::string> read_text(const std::filesystem::path& path);
+Result<std::string> read_text(const std::filesystem::path& path, FilesRead* files = nullptr);
 
 } // namespace ovc::pov

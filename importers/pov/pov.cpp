@@ -47,7 +47,7 @@ public:
     SceneParser(const ImportOptions& options, const std::string& folder, uint64_t most_words)
         : options_(options),
           reader_({parse_value, parse_float, parse_condition, parse_item, parse_defaults},
-                  options.log, folder) {
+                  options.log, folder, options.files) {
         reader_.limits.tokens = most_words;
         reader_.limits.triangles = options.max_triangles;
         reader_.defaults = factory_default();
@@ -187,7 +187,7 @@ Error error_of(const ParseError& error, const std::string& scene) {
 namespace ovc {
 
 Result<Scene> read_pov(const std::filesystem::path& path, const ImportOptions& options) {
-    Result<std::string> text = pov::read_text(path);
+    Result<std::string> text = pov::read_text(path, options.files);
     if (!text)
         return text.error();
     return parse_pov(std::move(*text), path, options);

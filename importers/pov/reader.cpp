@@ -22,11 +22,12 @@ Deeper::~Deeper() {
     --reader_.depth_;
 }
 
-Reader::Reader(Hooks hooks, LogSink log, std::string main_folder)
+Reader::Reader(Hooks hooks, LogSink log, std::string main_folder, FilesRead* files_read)
     : limits{},
       hooks_(std::move(hooks)),
       log_(std::move(log)),
       folder_(std::move(main_folder)),
+      files_read_(files_read),
       available_(available_memory()) {
     push_scope(); // of the scene: what #declare makes
 }

@@ -5,6 +5,7 @@
 
 #include "core/log.h"
 #include "core/scene.h"
+#include "importers/files_read.h"
 #include "importers/pov/value.h"
 
 #include <filesystem>
@@ -52,7 +53,8 @@ public:
         std::function<void(Reader&)> defaults;       // of #default
     };
 
-    Reader(Hooks hooks, LogSink log, std::string main_folder);
+    /// files_read: receives what is looked for and read; or null.
+    Reader(Hooks hooks, LogSink log, std::string main_folder, FilesRead* files_read);
 
     /// The scene itself.
     void open(std::unique_ptr<SourceFile> file);
@@ -183,6 +185,7 @@ private:
     LogSink log_;
     Names names_;
     std::string folder_;
+    FilesRead* files_read_;
     std::vector<std::unique_ptr<SourceFile>> files_;
     std::map<std::string, SourceFile*> by_path_;
     std::vector<Frame> frames_;

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+# cmake -DOVC_FUZZ=ON with clang: the libFuzzer targets fuzz_NAME; docs/fuzzing.md says how they are run.
+option(OVC_FUZZ "Build the libFuzzer targets; needs clang" OFF)
+if(OVC_FUZZ AND NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    message(FATAL_ERROR "OVC_FUZZ needs clang: -DCMAKE_CXX_COMPILER=clang++")
+endif()
+
+# ovc_watch_for_fuzzing(TARGET): what a library's code does counts for the fuzzers, and is checked.
+function(ovc_watch_for_fuzzing target)
+    if(OVC_FUZZ)
+        target_compile_options(${target} PRIVATE
+            -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined)
+    endif()
+endfunction()
+
+# ovc_add_fuzzer(NAME SOURCES … LIBRARIES …)
+function(ovc_add_fuzzer name)
+    if(NOT OVC_FUZZ)
+        return()
+    endif()
+    cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES;DEFINITIONS" ${ARGN})
+    add_executable(fuzz_${name} ${ARG_SOURCES})
+    target_compile_definitions(fuzz_${name} PRIVATE ${ARG_DEFINITIONS})
+    target_compile_options(fuzz_${name} PRIVATE -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined)
+    target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer,address,undefined)
+    target_link_libraries(fuzz_${name} PRIVATE ovc_flags ${ARG_LIBRARIES})
+endfunction()

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Visits every unit of a page once, as a walk that misses nothing would.
+#include "gpu/page_check.h"
+
+#include "gpu/bvh.h"
+
+namespace ovc {
+namespace {
+
+class PageChecker {
+public:
+    PageChecker(const Page& page, uint32_t triangle_count)
+        : page_(page), texels_(page.view()), triangle_count_(triangle_count) {}
+
+    bool check() {
+        const uint64_t units = page_.units();
+        if (texels_.size() % OVC_UNIT_TEXELS || units <= OVC_ROOT_UNIT || units >= OVC_MAX_UNITS ||
+            page_.depth > uint32_t(kMaxBvhDepth))
+            return false;
+        if (texels_[2] != uvec4(OVC_ROOT_UNIT, 0xffffffffu, 0, 0))
+            return false;
+        seen_.assign(units, 0);
+        if (!reach(OVC_ROOT_UNIT, 1))
+            return false;
+        while (!pending_.empty()) {
+            const Pending next = pending_.back();
+            pending_.pop_back();
+            if (!check_unit(next))
+                return false;
+        }
+        return true;
+    }
+
+private:
+    struct Pending {
+        uint32_t unit;
+        uint32_t depth;
+    };
+
+    const uvec4& texel(uint32_t unit, uint32_t i) const {
+        return texels_[size_t(unit) * OVC_UNIT_TEXELS + i];
+    }
+
+    /// False where a walk would leave the page, or come to the same unit on two ways.
+    bool reach(uint64_t unit, uint32_t depth) {
+        if (unit >= seen_.size() || seen_[unit])
+            return false;
+        seen_[unit] = 1;
+        pending_.push_back({uint32_t(unit), depth});
+        return true;
+    }
+
+    bool check_unit(const Pending& at) {
+        if (texel(at.unit, 3).w == OVC_PAIR && at.unit != OVC_ROOT_UNIT) {
+            const uint32_t b = texel(at.unit, 1).w;
+            return texel(at.unit, 0).w < triangle_count_ &&
+                   (b < triangle_count_ || b == OVC_NO_TRIANGLE);
+        }
+        const uvec4& last = texel(at.unit, 3);
+        if (last.y != 0 || last.z != 0 || last.w != 0 || at.depth > page_.depth)
+            return false;
+        const uint64_t base = last.x;
+        for (uint32_t child = 0; child < 4; ++child)
+            if (!is_missing(at.unit, child) && !reach(base + child, at.depth + 1))
+                return false;
+        return true;
+    }
+
+    bool is_missing(uint32_t unit, uint32_t child) const {
+        const uint32_t shift = (child & 1) * 16;
+        for (uint32_t axis = 0; axis < 3; ++axis) {
+            const uvec4& t = texel(unit, axis);
+            if (((t[int(child / 2)] >> shift) & 0xffffu) != 0xffff ||
+                ((t[int(2 + child / 2)] >> shift) & 0xffffu) != 0)
+                return false;
+        }
+        return true;
+    }
+
+    const Page& page_;
+    const std::span<const uvec4> texels_;
+    const uint32_t triangle_count_;
+    std::vector<uint8_t> seen_; // per unit
+    std::vector<Pending> pending_;
+};
+
+} // namespace
+
+bool is_walkable(const Page& page, uint32_t triangle_count) {
+    return PageChecker(page, triangle_count).check();
+}
+
+} // namespace ovc

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fields of a scene, named once for writing and for reading: each_field(io, x) calls io(…) with
+// them. What has no each_field is bytes.
+#pragma once
+
+#include "core/scene.h"
+#include "importers/files_read.h"
+
+#include <concepts>
+
+namespace ovc {
+
+/// T or const T.
+template <class A, class T>
+concept Some = std::same_as<std::remove_const_t<A>, T>;
+
+void each_field(auto& io, Some<Finish> auto& f) {
+    io(f.ambient, f.diffuse, f.brilliance, f.phong, f.phong_size, f.specular, f.roughness,
+       f.metallic, f.reflection, f.grazing_reflection, f.reflection_falloff, f.fresnel,
+       f.metallic_reflection, f.conserve_energy);
+}
+
+void each_field(auto& io, Some<Checker> auto& c) {
+    io(c.other, c.to_cubes);
+}
+
+void each_field(auto& io, Some<Material> auto& m) {
+    io(m.name, m.color, m.mirror, m.transmission, m.filter, m.ior, m.finish, m.checker);
+}
+
+void each_field(auto& io, Some<SpotCone> auto& c) {
+    io(c.radius_cosine, c.falloff_cosine, c.tightness);
+}
+
+void each_field(auto& io, Some<Light> auto& l) {
+    io(l.position, l.color, l.on_camera, l.direction, l.cone, l.parallel, l.shadowless,
+       l.fade_distance, l.fade_power);
+}
+
+void each_field(auto& io, Some<ImageWindow> auto& w) {
+    io(w.direction, w.right, w.up, w.orthographic, w.bend, w.angle, w.vertical_angle);
+}
+
+void each_field(auto& io, Some<Camera> auto& c) {
+    io(c.eye, c.target, c.up, c.fov_degrees, c.window);
+}
+
+void each_field(auto& io, Some<ImageSize> auto& s) {
+    io(s.width, s.height);
+}
+
+void each_field(auto& io, Some<Background> auto& b) {
+    io(b.horizon, b.zenith);
+}
+
+void each_field(auto& io, Some<Instancing> auto& i) {
+    io(i.unique_triangles, i.instances);
+}
+
+/// All but the normals.
+void each_field(auto& io, Some<MeshInfo> auto& m) {
+    io(m.name, m.material, m.no_shadow, m.normals_from, m.turn);
+}
+
+/// All but meshes and soup.
+void each_field(auto& io, Some<Scene> auto& s) {
+    io(s.name, s.materials, s.lights, s.camera, s.size, s.max_depth, s.background, s.gamma,
+       s.instancing);
+}
+
+void each_field(auto& io, Some<FileStamp> auto& f) {
+    io(f.path, f.exists, f.bytes, f.time_ns);
+}
+
+} // namespace ovc

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scene file: an archive of a few thousand bytes of fields, the corners, the normals, and the
+// levels.
+#include "importers/scene_file.h"
+
+#include "importers/output_file.h"
+#include "importers/readers.h"
+#include "importers/scene_bytes.h"
+#include "importers/scene_fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ovc {
+
+namespace {
+
+constexpr std::string_view kKind = "ovc scene";
+/// To be raised with every change of scene_fields.h, and where importers make another scene of the
+/// same file.
+constexpr uint32_t kVersion = 1;
+
+/// What of a mesh lies in other parts.
+struct MeshExtent {
+    dvec3 origin{0};
+    uint64_t corners = 0;
+    uint64_t normals = 0;
+};
+static_assert(sizeof(MeshExtent) == 40);
+
+std::vector<MeshExtent> extents_of(const Scene& scene) {
+    std::vector<MeshExtent> extents;
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+        extents.push_back({scene.soup.chunks[m].origin(), scene.soup.chunks[m].corners().size(),
+                           scene.meshes[m].normals.size()});
+    return extents;
+}
+
+/// Gives the meshes their corners, in place, and normals; false where they do not come out even.
+bool share_out(std::span<const MeshExtent> extents, std::span<const vec3> corners,
+               std::span<const vec3> normals, Scene& scene) {
+    if (extents.size() != scene.meshes.size())
+        return false;
+    for (size_t m = 0; m < extents.size(); ++m) {
+        const MeshExtent& extent = extents[m];
+        if (extent.corners > corners.size() || extent.corners % 3 ||
+            extent.corners / 3 > kMostTriangles || extent.normals > normals.size() ||
+            !is_finite(extent.origin))
+            return false;
+        scene.soup.chunks.push_back(Chunk::borrowing(extent.origin, corners.first(extent.corners)));
+        corners = corners.subspan(extent.corners);
+        scene.meshes[m].normals.assign(normals.begin(),
+                                       normals.begin() + ptrdiff_t(extent.normals));
+        normals = normals.subspan(extent.normals);
+    }
+    return corners.empty() && normals.empty();
+}
+
+/// What the host relies on.
+bool is_sound(const Scene& scene) {
+    constexpr uint32_t kMostPixels = 65535; // a side
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        const MeshInfo& mesh = scene.meshes[m];
+        if (mesh.material >= scene.materials.size() ||
+            (mesh.normals_from != kNone && mesh.normals_from >= m))
+            return false;
+        const size_t count = scene.normals_of(mesh).size();
+        if (count != 0 && count != scene.soup.chunks[m].corners().size())
+            return false;
+    }
+    const auto fits = [](uint32_t side) { return side >= 1 && side <= kMostPixels; };
+    if (scene.size && !(fits(scene.size->width) && fits(scene.size->height)))
+        return false;
+    using Bend = ImageWindow::Bend;
+    return !scene.camera || !scene.camera->window ||
+           (scene.camera->window->bend >= Bend::Flat &&
+            scene.camera->window->bend <= Bend::Cylinder4);
+}
+
+Result<SceneFile> read(const Archive& archive) {
+    const Error unsound{"is damaged: what it holds is no scene"};
+    const auto fields = archive.part("fields");
+    if (!fields)
+        return fields.error();
+    const auto extents = archive.items<MeshExtent>("extents");
+    if (!extents)
+        return extents.error();
+    const auto corners = archive.items<vec3>("corners");
+    if (!corners)
+        return corners.error();
+    const auto normals = archive.items<vec3>("normals");
+    if (!normals)
+        return normals.error();
+    SceneFile file;
+    ByteReader reader(*fields);
+    reader(file.scene, file.scene.meshes, file.from.request, file.from.files, file.from.warnings);
+    if (!reader.done() || !share_out(*extents, *corners, *normals, file.scene) ||
+        !is_sound(file.scene))
+        return unsound;
+    file.scene.saved = archive.unchecked("levels");
+    return file;
+}
+
+} // namespace
+
+const FileStamp* Provenance::changed_file() const {
+    const auto changed = std::find_if(files.begin(), files.end(), [](const FileStamp& file) {
+        return stamp_of(file.path) != file;
+    });
+    return changed == files.end() ? nullptr : &*changed;
+}
+
+Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
+                              const SaveLevels& save_levels, const std::filesystem::path& path) {
+    Result<OutputFile> out = OutputFile::create(path);
+    if (!out)
+        return out.error();
+    const ByteSink sink = [&](Bytes bytes) {
+        out->write(bytes.data(), bytes.size());
+        return true; // commit() says what went wrong
+    };
+    ByteWriter fields;
+    fields(scene, scene.meshes, from.request, from.files, from.warnings);
+    ArchiveWriter writer(sink, kKind, kVersion);
+    writer.part<std::byte>("fields", fields.bytes());
+    writer.part<MeshExtent>("extents", extents_of(scene));
+    writer.begin("corners");
+    for (const Chunk& chunk : scene.soup.chunks)
+        writer.write(bytes_of(chunk.corners()));
+    writer.begin("normals");
+    for (const MeshInfo& mesh : scene.meshes)
+        writer.write(bytes_of(std::span<const vec3>(mesh.normals)));
+    if (save_levels) {
+        writer.begin("levels");
+        const Result<Done> saved = save_levels([&](Bytes bytes) {
+            writer.write(bytes);
+            return true;
+        });
+        if (!saved)
+            return saved;
+    }
+    writer.finish();
+    return out->commit();
+}
+
+Result<SceneFile> read_scene_file(const std::filesystem::path& path) {
+    Result<MappedFile> mapped = MappedFile::open(path);
+    if (!mapped)
+        return mapped.error();
+    const auto failed = [&](const Error& error) {
+        return Error{fmt::format("{}: the file {}", path.string(), error.message)};
+    };
+    const Result<Archive> archive = Archive::open(mapped->bytes(), kKind, kVersion);
+    if (!archive)
+        return failed(archive.error());
+    Result<SceneFile> file = read(*archive);
+    if (!file)
+        return failed(file.error());
+    file->scene.file = std::move(*mapped);
+    return file;
+}
+
+/// What was said of the scene when it was made is said again.
+Result<Scene> read_ovc(const std::filesystem::path& path, const ImportOptions& options) {
+    note(options.files, path);
+    Result<SceneFile> file = read_scene_file(path);
+    if (!file)
+        return file.error();
+    for (const std::string& warning : file->from.warnings)
+        say(options.log, LogLevel::Warning, warning);
+    if (const FileStamp* changed = file->from.changed_file())
+        say(options.log, LogLevel::Warning,
+            fmt::format("{}: it shows {} as that was before it changed", path.string(),
+                        changed->path));
+    return std::move(file->scene);
+}
+
+Result<Done> write_ovc(const Scene& scene, const std::filesystem::path& path) {
+    return write_scene_file(scene, {}, {}, path);
+}
+
+} // namespace ovc

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scene files give back every field; damage is an error, whatever it hits; what has changed since
+// is told.
+#include "importers/scene_file.h"
+
+#include "importers/fuzz/fuzz.h"
+#include "importers/readers.h"
+#include "importers/scene_bytes.h"
+#include "importers/scene_fields.h"
+#include "importers/test_files.h"
+
+#include <random>
+
+namespace ovc {
+namespace {
+
+/// Every field but the corners, as bytes: alike where the scenes are.
+std::vector<std::byte> fields_of(const Scene& scene) {
+    ByteWriter writer;
+    writer(scene, scene.meshes);
+    for (const MeshInfo& mesh : scene.meshes)
+        writer(mesh.normals);
+    return {writer.bytes().begin(), writer.bytes().end()};
+}
+
+void expect_same(const Scene& a, const Scene& b) {
+    EXPECT_EQ(fields_of(a), fields_of(b));
+    ASSERT_EQ(a.soup.chunks.size(), b.soup.chunks.size());
+    for (size_t m = 0; m < a.soup.chunks.size(); ++m) {
+        EXPECT_EQ(a.soup.chunks[m].origin(), b.soup.chunks[m].origin());
+        EXPECT_TRUE(std::ranges::equal(bytes_of(a.soup.chunks[m].corners()),
+                                       bytes_of(b.soup.chunks[m].corners())));
+    }
+}
+
+TEST(SceneFile, GivesBackEveryField) {
+    const TestFolder folder;
+    const Scene scene = scene_with_everything();
+    const Provenance from{"asked", {{"/a/b", true, 7, 8}}, {"one", "two"}};
+    const SaveLevels levels = [](const ByteSink& sink) -> Result<Done> {
+        sink(bytes_of(std::span<const char>("levels", 6)));
+        return Done{};
+    };
+    ASSERT_TRUE(write_scene_file(scene, from, levels, folder / "a.ovc"));
+    const auto file = read_scene_file(folder / "a.ovc");
+    ASSERT_TRUE(file) << file.error().message;
+    expect_same(scene, file->scene);
+    EXPECT_EQ(file->scene.materials, scene.materials);
+    EXPECT_EQ(file->scene.camera->window->bend, ImageWindow::Bend::Omnimax);
+    EXPECT_EQ(file->from.request, "asked");
+    EXPECT_EQ(file->from.files, from.files);
+    EXPECT_EQ(file->from.warnings, from.warnings);
+    EXPECT_TRUE(
+        std::ranges::equal(file->scene.saved, bytes_of(std::span<const char>("levels", 6))));
+    EXPECT_EQ(reinterpret_cast<uintptr_t>(file->scene.saved.data()) % kPartAlignment, 0u);
+}
+
+/// A field that each_field() forgets would be equal in the test above.
+TEST(SceneFile, EveryFieldOfAStructIsNamed) {
+    const auto size = [](const auto& value) {
+        ByteWriter writer;
+        writer(value);
+        return writer.bytes().size();
+    };
+    // Their sizes in memory, less padding, and optionals and strings by their own parts.
+    EXPECT_EQ(size(Finish{}), sizeof(Finish) - 2 * 3);
+    EXPECT_EQ(size(Checker{}), sizeof(vec3) + sizeof(Checker::to_cubes));
+    EXPECT_EQ(size(Material{}), 8 + 12 + 4 + 4 + 12 + 8 + 1 + 1u);
+    EXPECT_EQ(size(SpotCone{}), sizeof(SpotCone));
+    EXPECT_EQ(size(Light{}), 24 + 12 + 1 + 24 + 1 + 1 + 1 + 8 + 8u);
+    EXPECT_EQ(size(ImageWindow{}), 3 * 24 + 1 + 4 + 8 + 8u);
+    EXPECT_EQ(size(Camera{}), 3 * 24 + 8 + 1u);
+    EXPECT_EQ(size(MeshInfo{}), 8 + 4 + 1 + 4 + 72u);
+    EXPECT_EQ(sizeof(Finish), 80u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Material), 280u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Light), 120u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(ImageWindow), 96u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Camera), 184u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(MeshInfo), 144u) << "a field more: name it in scene_fields.h, and here";
+}
+
+/// In steps, for it goes through files; Archive's own test takes every bit.
+TEST(SceneFile, ChangedBytesAndMissingEndsAreErrorsOrHarmless) {
+    const TestFolder folder;
+    const Scene scene = scene_with_everything();
+    ASSERT_TRUE(save(scene, folder / "a.ovc"));
+    const std::string whole = folder.read("a.ovc");
+    for (size_t i = 0; i < whole.size(); i += 7) {
+        std::string damaged = whole;
+        damaged[i] ^= 0x20;
+        const auto found = load(folder.write("b.ovc", damaged));
+        if (found)
+            expect_same(scene, *found); // between parts
+        else
+            EXPECT_EQ(found.error().message.find((folder / "b.ovc").string() + ": the file "), 0u);
+        EXPECT_FALSE(load(folder.write("c.ovc", whole.substr(0, i)))) << i;
+    }
+}
+
+/// What the fuzzer does for longer.
+TEST(SceneFile, DamageBehindRightChecksumsIsAnErrorOrASoundScene) {
+    for (uint32_t seed = 0; seed < 3000; ++seed) {
+        std::mt19937 random(seed);
+        std::vector<uint8_t> orders(1 + 6 * (1 + random() % 4) + (random() % 16 == 0));
+        for (uint8_t& byte : orders)
+            byte = uint8_t(random());
+        fuzz_ovc(orders.data(), orders.size());
+    }
+}
+
+TEST(SceneFile, ErrorsNameTheFile) {
+    const TestFolder folder;
+    const auto message = [&](const std::filesystem::path& path) {
+        const auto found = load(path);
+        return found ? std::string() : folder.plain(found.error().message);
+    };
+    EXPECT_EQ(message(folder / "none.ovc"), "none.ovc: no such file");
+    EXPECT_EQ(message(folder.write("empty.ovc", "")),
+              "empty.ovc: the file is empty, expected a scene");
+    EXPECT_EQ(message(folder.write("text.ovc", std::string(200, 'x'))),
+              "text.ovc: the file does not begin as ovc scene does");
+    EXPECT_EQ(message(folder.write("short.ovc", "ovc scene")),
+              "short.ovc: the file is too short to be whole");
+}
+
+TEST(SceneFile, AChangedSourceIsTold) {
+    const TestFolder folder;
+    FilesRead read;
+    read.note(folder.write("a.ply", "ply"));
+    read.note(folder / "later.mtl");
+    Provenance from{"", read.stamps(), {"said before"}};
+    EXPECT_EQ(from.changed_file(), nullptr);
+    ASSERT_TRUE(write_scene_file(scene_with_everything(), from, {}, folder / "a.ovc"));
+    const auto warnings_now = [&] {
+        std::vector<std::string> warnings;
+        EXPECT_TRUE(load(folder / "a.ovc", gather(warnings)));
+        return warnings;
+    };
+    EXPECT_EQ(warnings_now(), std::vector<std::string>{"said before"});
+    folder.write("later.mtl", "newmtl a");
+    ASSERT_EQ(warnings_now().size(), 2u);
+    EXPECT_NE(warnings_now()[1].find("later.mtl as that was before it changed"), std::string::npos);
+    std::filesystem::remove(folder / "later.mtl");
+    EXPECT_EQ(warnings_now().size(), 1u);
+    folder.write("a.ply", "ply ");
+    EXPECT_EQ(warnings_now().size(), 2u);
+}
+
+/// All files that a reader opens, and those it would have opened.
+TEST(SceneFile, ReadersSayWhatTheyRead) {
+    const TestFolder folder;
+    folder.write("a.obj", "mtllib a.mtl none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("a.mtl", "newmtl a\n");
+    ASSERT_TRUE(save(*load(folder / "a.obj"), folder / "mesh.ply"));
+    folder.write("a.pbrt", "Include \"b.pbrt\" Shape \"plymesh\" \"string filename\" \"mesh.ply\"\n"
+                           "Shape \"plymesh\" \"string filename\" \"gone.ply\"\n");
+    folder.write("b.pbrt", "WorldBegin\n");
+    folder.write("a.pov", "#include \"b.inc\"\nsphere { 0, 1 }\n");
+    folder.write("b.inc", "#declare A = 1;\n");
+    const auto read_by = [&](const char* name) {
+        FilesRead files;
+        ImportOptions options;
+        options.files = &files;
+        EXPECT_TRUE(load(folder / name, options)) << name;
+        std::vector<std::string> found;
+        for (const FileStamp& stamp : files.stamps())
+            found.push_back((stamp.exists ? "" : "no ") +
+                            std::filesystem::path(stamp.path).filename().string());
+        return found;
+    };
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(read_by("a.obj"), (Names{"a.obj", "no a.mtl none.mtl", "a.mtl", "no none.mtl"}));
+    EXPECT_EQ(read_by("mesh.ply"), (Names{"mesh.ply"}));
+    EXPECT_EQ(read_by("a.pbrt"),
+              (Names{"a.pbrt", "b.pbrt", "mesh.ply", "no gone.ply", "no gone.ply.gz"}));
+    EXPECT_EQ(read_by("a.pov"), (Names{"a.pov", "b.inc"}));
+}
+
+} // namespace
+} // namespace ovc

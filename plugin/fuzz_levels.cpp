@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// fuzz_levels: through the arbiter, which walks level 1 and pages as the kernel does.
+#include "plugin/fuzz_levels.h"
+
+#include "core/test_archive.h"
+#include "kdtree/test_soups.h"
+#include "plugin/arbiter.h"
+
+#include <cstdlib>
+
+namespace ovc {
+
+static void require(bool condition) {
+    if (!condition)
+        std::abort();
+}
+
+BuiltLevels build_for_test(const Soup& soup, const LeafLimits& limits) {
+    BuiltLevels built;
+    Box bounds;
+    std::vector<TriangleId> triangles = hittable_triangles(soup, &built.dropped, &bounds);
+    built.twins = Twins::take_out(soup, triangles);
+    built.triangles = triangles.size();
+    built.limits = limits;
+    Result<Levels> levels = build_levels(soup, Numbering(soup), triangles, bounds, limits);
+    require(bool(levels));
+    built.level1 = std::move(levels->level1);
+    built.pages = std::move(levels->pages);
+    return built;
+}
+
+namespace {
+
+/// A soup with twins, its saved levels, and rays to ask.
+struct Subject {
+    static constexpr LeafLimits kLimits{30, 1 << 20, 1 << 22};
+
+    Soup soup = test::random_soup(5, 120, 0.3);
+    Numbering numbers;
+    test::ArchiveMemory saved;
+    std::vector<Ray> rays;
+
+    Subject() {
+        std::vector<vec3> corners(soup.chunks[0].corners().begin(), soup.chunks[0].corners().end());
+        corners.insert(corners.end(), corners.begin(), corners.begin() + 30);
+        soup.chunks[0] = Chunk::owning(soup.chunks[0].origin(), std::move(corners));
+        numbers = Numbering(soup);
+        const BuiltLevels built = build_for_test(soup, kLimits);
+        require(save_levels(soup, view_of(built), saved.sink()));
+        rays = test::unpleasant_rays(soup, 9, 40);
+    }
+};
+
+void trace(const Subject& subject, const BuiltLevels& levels) {
+    require(levels.pages.size() == levels.level1.leaves.size());
+    for (const Ray& ray : subject.rays) {
+        if (!ray.valid())
+            continue;
+        const PreparedRay prepared(ray);
+        const Hit hit = arbitrate<false>(subject.soup, subject.numbers, levels.twins, levels.level1,
+                                         levels.pages, prepared);
+        require(!hit.is_hit() || hit.id.prim < subject.soup.chunks[0].size());
+        arbitrate<true>(subject.soup, subject.numbers, levels.twins, levels.level1, levels.pages,
+                        prepared);
+    }
+}
+
+} // namespace
+
+void fuzz_levels(const uint8_t* data, size_t size) {
+    static const Subject subject;
+    if (size == 0)
+        return;
+    test::ArchiveMemory memory(subject.saved.bytes());
+    test::damage(memory, {data + 1, size - 1});
+    if (data[0] % 2)
+        test::reseal(memory);
+    const auto found =
+        restore_levels(memory.bytes(), subject.soup, [](uint64_t) { return Subject::kLimits; });
+    if (!found)
+        require(!found.error().message.empty());
+    else if (*found)
+        trace(subject, **found);
+}
+
+} // namespace ovc

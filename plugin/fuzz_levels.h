@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the fuzzer and the tests of saved levels do with damage: restore, and trace.
+#pragma once
+
+#include "plugin/saved_levels.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace ovc {
+
+/// Levels of a soup as TwoLevel builds them.
+BuiltLevels build_for_test(const Soup& soup, const LeafLimits& limits);
+
+inline BuiltLevelsView view_of(const BuiltLevels& levels) {
+    return {levels.dropped, levels.twins,  levels.triangles,
+            levels.limits,  levels.level1, levels.pages};
+}
+
+/// Damages saved levels as `data` says (core/test_archive.h), makes the checksums right if its
+/// first byte is odd, and traces rays through what comes back. Aborts where that goes wrong.
+void fuzz_levels(const uint8_t* data, size_t size);
+
+} // namespace ovc
