@@ -122,7 +122,7 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
         {{"render", "box", "-o", out, "--quiet=maybe"}, "--quiet takes no value"},
         {{"info", path("none.obj")}, "none.obj"},
         {{"trace", path("none.obj")}, "none.obj"},
-        {{"convert", "box", path("box.stl")}, "neither .ply nor .obj"},
+        {{"convert", "box", path("box.stl")}, "ends in none of .ply, .obj, .ovc"},
         {{"convert", "box", path("no/box.ply")}, "does not exist"},
     };
     for (const auto& c : cases) {
