@@ -46,7 +46,7 @@ inline AbiScene add_soup(const Device& device, const Soup& soup, const ovc_scene
     AbiScene owner(scene);
     for (const Chunk& chunk : soup.chunks) {
         auto mesh = sized<ovc_mesh>();
-        mesh.positions = &chunk.corners().data()->x;
+        mesh.positions = reinterpret_cast<const float*>(chunk.corners().data());
         mesh.vertex_count = chunk.corners().size();
         for (int axis = 0; axis < 3; ++axis)
             mesh.origin[axis] = chunk.origin()[axis];
