@@ -7,6 +7,7 @@
 #include "importers/readers.h"
 #include "importers/scene_bytes.h"
 #include "importers/scene_fields.h"
+#include "importers/sound_meshes.h"
 
 #include <fmt/format.h>
 
@@ -60,15 +61,8 @@ bool share_out(std::span<const MeshExtent> extents, std::span<const vec3> corner
 /// What the host relies on.
 bool is_sound(const Scene& scene) {
     constexpr uint32_t kMostPixels = 65535; // a side
-    for (size_t m = 0; m < scene.meshes.size(); ++m) {
-        const MeshInfo& mesh = scene.meshes[m];
-        if (mesh.material >= scene.materials.size() ||
-            (mesh.normals_from != kNone && mesh.normals_from >= m))
-            return false;
-        const size_t count = scene.normals_of(mesh).size();
-        if (count != 0 && count != scene.soup.chunks[m].corners().size())
-            return false;
-    }
+    if (!has_sound_meshes(scene))
+        return false;
     const auto fits = [](uint32_t side) { return side >= 1 && side <= kMostPixels; };
     if (scene.size && !(fits(scene.size->width) && fits(scene.size->height)))
         return false;

@@ -17,6 +17,17 @@
 
 namespace ovc {
 
+/// Of every file in a folder.
+inline std::vector<std::string> contents_of(const std::filesystem::path& folder) {
+    std::vector<std::string> contents;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        std::ifstream file(entry.path(), std::ios::binary);
+        contents.emplace_back(std::istreambuf_iterator<char>(file),
+                              std::istreambuf_iterator<char>());
+    }
+    return contents;
+}
+
 /// A folder of one test process, gone with it.
 class TestFolder {
 public:

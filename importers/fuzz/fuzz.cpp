@@ -5,6 +5,7 @@
 #include "core/test_archive.h"
 #include "importers/readers.h"
 #include "importers/scene_file.h"
+#include "importers/sound_meshes.h"
 
 #include <cstdlib>
 #include <string>
@@ -39,14 +40,7 @@ private:
 };
 
 void check_scene(const Scene& scene) {
-    require(scene.meshes.size() == scene.soup.chunks.size());
-    for (size_t m = 0; m < scene.meshes.size(); ++m) {
-        const MeshInfo& mesh = scene.meshes[m];
-        require(mesh.material < scene.materials.size());
-        require(mesh.normals_from == kNone || mesh.normals_from < m);
-        const size_t normals = scene.normals_of(mesh).size();
-        require(normals == 0 || normals == scene.soup.chunks[m].corners().size());
-    }
+    require(has_sound_meshes(scene));
     Box bounds;
     hittable_triangles(scene.soup, nullptr, &bounds); // touches every corner
 }

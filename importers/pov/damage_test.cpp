@@ -9,15 +9,8 @@
 namespace ovc {
 namespace {
 
-namespace fs = std::filesystem;
-
 std::vector<std::string> seeds() {
-    std::vector<std::string> texts;
-    for (const auto& entry : fs::directory_iterator(OVC_SOURCE_DIR "/importers/pov/corpus")) {
-        std::ifstream file(entry.path(), std::ios::binary);
-        texts.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-    }
-    return texts;
+    return contents_of(OVC_SOURCE_DIR "/importers/pov/corpus");
 }
 
 void survives(const std::string& text) {

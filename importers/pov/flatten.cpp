@@ -494,13 +494,23 @@ Box moved(const Box& box, const dmat4& by) {
     return all;
 }
 
-CutObject cut_object(const Object& object, uint64_t most_triangles) {
+/// An object gathered by itself, what no_image hides included.
+struct ObjectAlone {
+    ObjectAlone(const Object& object, uint64_t most_triangles) {
+        look.most_triangles = most_triangles;
+        gatherer.gather_unseen = true;
+        gatherer.gather(object, {});
+    }
+    ObjectAlone(const ObjectAlone&) = delete; // the gatherer keeps their addresses
+
     Scene scene;
     Look look;
-    look.most_triangles = most_triangles;
-    Gatherer gatherer(look, scene);
-    gatherer.gather_unseen = true;
-    gatherer.gather(object, {});
+    Gatherer gatherer{look, scene};
+};
+
+CutObject cut_object(const Object& object, uint64_t most_triangles) {
+    const ObjectAlone alone(object, most_triangles);
+    const Gatherer& gatherer = alone.gatherer;
     const int segments = choose_segments(gatherer);
     require_at_most(most_triangles, gatherer, segments, object.place);
     CutObject cut;
@@ -515,7 +525,7 @@ CutObject cut_object(const Object& object, uint64_t most_triangles) {
             add_finite(facets, p, cut.facets);
         }
     }
-    const Box reach = reach_of_solids(world_of(box_of(gatherer, 8), look));
+    const Box reach = reach_of_solids(world_of(box_of(gatherer, 8), alone.look));
     for (const Solid& solid : gatherer.solids)
         for (const SolidPart& part :
              evaluate(solid, segments, moved(reach, glm::inverse(solid.placed))))
@@ -524,12 +534,8 @@ CutObject cut_object(const Object& object, uint64_t most_triangles) {
 }
 
 Box bounds_of(const Object& object, uint64_t most_triangles) {
-    Scene scene;
-    Look look;
-    look.most_triangles = most_triangles;
-    Gatherer gatherer(look, scene);
-    gatherer.gather_unseen = true;
-    gatherer.gather(object, {});
+    const ObjectAlone alone(object, most_triangles);
+    const Gatherer& gatherer = alone.gatherer;
     for (const Placed& p : gatherer.placed)
         if (std::holds_alternative<PlaneShape>(p.object->shape))
             return {dvec3(-1e10), dvec3(1e10)};

@@ -2,6 +2,7 @@
 #include "importers/pov/fuzz.h"
 
 #include "importers/readers.h"
+#include "importers/sound_meshes.h"
 
 #include <cstdlib>
 
@@ -27,13 +28,7 @@ void fuzz_pov(const uint8_t* data, size_t size) {
         return;
     }
     require(scene->camera.has_value());
-    require(scene->meshes.size() == scene->soup.chunks.size());
-    for (size_t m = 0; m < scene->meshes.size(); ++m) {
-        const MeshInfo& mesh = scene->meshes[m];
-        require(mesh.material < scene->materials.size());
-        require(mesh.normals.empty() ||
-                mesh.normals.size() == scene->soup.chunks[m].corners().size());
-    }
+    require(has_sound_meshes(*scene));
 }
 
 } // namespace ovc

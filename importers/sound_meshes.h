@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a renderer relies on in the meshes of every scene that was read.
+#pragma once
+
+#include "core/scene.h"
+
+namespace ovc {
+
+/// Each chunk has its mesh; materials are there; normals come from an earlier mesh or the mesh
+/// itself, and are none or one a corner.
+inline bool has_sound_meshes(const Scene& scene) {
+    if (scene.meshes.size() != scene.soup.chunks.size())
+        return false;
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        const MeshInfo& mesh = scene.meshes[m];
+        if (mesh.material >= scene.materials.size() ||
+            (mesh.normals_from != kNone && mesh.normals_from >= m))
+            return false;
+        const size_t normals = scene.normals_of(mesh).size();
+        if (normals != 0 && normals != scene.soup.chunks[m].corners().size())
+            return false;
+    }
+    return true;
+}
+
+} // namespace ovc
