@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG out: 8 bits a channel, sRGB, as a viewer expects. The only file that sees libpng.
+// PNG out: 8 bits a channel, sRGB, as a viewer expects. PNG in, of POV-Ray scenes:
+// importers/pov/picture_png.cpp.
 #include "host/output.h"
 
 #include "core/parallel.h"

@@ -142,7 +142,7 @@ typedef struct ovc_scene_config {
     uint32_t level1_build;     /* ovc_level1_build; 0 for all other structures */
     ovc_progress_function progress; /* NULL: silent, and not to be stopped */
     void* progress_user;
-    uint32_t tell_active; /* experimental. 1: active() tells which pages rays go through, for some percent of time; not for all structures. 0 */
+    uint32_t tell_active; /* experimental. 1: active() tells which pages rays go through; tracing takes up to half as long again. Not for all structures. 0 */
     uint32_t reserved;    /* 0 */
     /* What save() wrote of a scene with the same meshes, so that commit need not build: NULL or its bytes, aligned to 64, valid and
      * unchanged until the scene is destroyed; a mapped file will do. Commit checks them: where they are damaged, or of other meshes
