@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// RayList: rays as a backend takes them, each with what it is for.
+#pragma once
+
+#include "core/ray.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace ovc {
+
+template <class Purpose>
+struct RayList {
+    std::vector<Ray> rays;
+    std::vector<TriangleId> skip; // the triangle it starts on, and does not see
+    std::vector<Purpose> purposes;
+
+    size_t size() const { return rays.size(); }
+    bool empty() const { return rays.empty(); }
+
+    void push(const Ray& ray, TriangleId start, const Purpose& purpose) {
+        rays.push_back(ray);
+        skip.push_back(start);
+        purposes.push_back(purpose);
+    }
+
+    void resize(size_t count) {
+        rays.resize(count);
+        skip.resize(count);
+        purposes.resize(count);
+    }
+
+    /// Writes all of `from` over the rays from `at` on.
+    void put(size_t at, const RayList& from) {
+        std::copy(from.rays.begin(), from.rays.end(), rays.begin() + ptrdiff_t(at));
+        std::copy(from.skip.begin(), from.skip.end(), skip.begin() + ptrdiff_t(at));
+        std::copy(from.purposes.begin(), from.purposes.end(), purposes.begin() + ptrdiff_t(at));
+    }
+
+    /// Moves the rays from `first` on into `to`, whose own are lost.
+    void move_tail(size_t first, RayList& to) {
+        if (first == 0) {
+            std::swap(*this, to);
+        } else {
+            to.rays.assign(rays.begin() + ptrdiff_t(first), rays.end());
+            to.skip.assign(skip.begin() + ptrdiff_t(first), skip.end());
+            to.purposes.assign(purposes.begin() + ptrdiff_t(first), purposes.end());
+        }
+        resize(first);
+    }
+};
+
+} // namespace ovc
