@@ -76,11 +76,11 @@ Pinhole::Pinhole(const Camera& camera, uint32_t width, uint32_t height)
     }
 }
 
-Ray Pinhole::ray(uint32_t x, uint32_t y) const {
+Ray Pinhole::ray(uint32_t x, uint32_t y, const dvec2& place) const {
+    const dvec2 at = dvec2(x, y) + place;
     if (bent_)
-        return bent_ray(*bent_, eye_, {(x + 0.5) / width_ - 0.5, 0.5 - (y + 0.5) / height_});
-    const dvec3 in_plane =
-        (2 * (x + 0.5) / width_ - 1) * to_right_ + (1 - 2 * (y + 0.5) / height_) * to_top_;
+        return bent_ray(*bent_, eye_, {at.x / width_ - 0.5, 0.5 - at.y / height_});
+    const dvec3 in_plane = (2 * at.x / width_ - 1) * to_right_ + (1 - 2 * at.y / height_) * to_top_;
     Ray ray;
     ray.org = orthographic_ ? eye_ + in_plane : eye_;
     ray.dir = orthographic_ ? middle_ : middle_ + in_plane;

@@ -29,10 +29,11 @@ public:
     /// not.
     Pinhole(const Camera& camera, uint32_t width, uint32_t height);
 
-    /// A pixel that a bent picture leaves out gets a ray that hits nothing: its dir is 0.
-    /// Through the centre of pixel (x, y), (0, 0) being top left. dir is not of unit length: t is
-    /// the depth, in a window's case in units of its direction.
-    Ray ray(uint32_t x, uint32_t y) const;
+    /// Through a place in pixel (x, y), (0, 0) being top left: from (0, 0), its top left corner, to
+    /// (1, 1). dir is not of unit length: t is the depth, in a window's case in units of its
+    /// direction. A pixel that a bent picture leaves out gets a ray that hits nothing: its dir is
+    /// 0.
+    Ray ray(uint32_t x, uint32_t y, const dvec2& place = dvec2(0.5)) const;
 
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }

@@ -49,6 +49,7 @@ struct RenderWords {
     std::string frames;
     std::string camera_path;
     std::vector<std::string> lights;
+    std::string samples;
     std::string max_depth;
     std::string mode = "auto";
     std::string aov;
@@ -92,6 +93,11 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_option("--light", lights, "A point light instead of the scene's; may be repeated")
         ->allow_extra_args(false)
         ->type_name("X,Y,Z");
+    app.add_option(
+           "--samples", samples,
+           "Rays a pixel, up to 65536: more of them smooth edges; the same ones every time; "
+           "default: 1, through its middle")
+        ->type_name("N");
     app.add_option("--max-depth,--max-trace-level", max_depth,
                    "Reflections and refractions in a row at most, up to 1000; default: what the "
                    "file asks for, else 5")
@@ -225,6 +231,12 @@ static Result<Done> understand_view(const RenderWords& words, RenderJob& job) {
 }
 
 static Result<Done> understand_shading(const RenderWords& words, RenderJob& job) {
+    if (!words.samples.empty()) {
+        const Result<uint64_t> samples = parse_count("--samples", words.samples, 1, kMostSamples);
+        if (!samples)
+            return samples.error();
+        job.samples = uint32_t(*samples);
+    }
     if (!words.max_depth.empty()) {
         const Result<uint64_t> depth = parse_count("--max-depth", words.max_depth, 0, kMostDepth);
         if (!depth)
@@ -235,10 +247,10 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
     const Result<size_t> mode = parse_choice("--mode", words.mode, modes);
     if (!mode)
         return mode.error();
-    job.mode = RenderMode(*mode);
-    job.whitted.shadows = !words.no_shadows;
+    job.render.mode = RenderMode(*mode);
+    job.render.shadows = !words.no_shadows;
     if (isatty(STDERR_FILENO))
-        job.whitted.batch_rays = kWatchedBatchRays;
+        job.render.batch_rays = kWatchedBatchRays;
     return Done{};
 }
 

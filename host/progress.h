@@ -4,7 +4,7 @@
 
 #include "core/stopwatch.h"
 #include "host/backend.h"
-#include "host/whitted.h"
+#include "host/render.h"
 
 #include <cstdint>
 #include <string>

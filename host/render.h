@@ -41,6 +41,7 @@ struct RayCounts {
     uint64_t bounce = 0;
 
     uint64_t total() const { return primary + shadow + reflection + refraction + bounce; }
+    void count(RayKind kind);
     RayCounts& operator+=(const RayCounts& other);
 };
 

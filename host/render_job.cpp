@@ -7,11 +7,10 @@
 #include "host/frames.h"
 #include "host/interrupt.h"
 #include "host/progress.h"
+#include "host/render.h"
 #include "host/scene_cache.h"
 #include "host/scene_summary.h"
 #include "host/stats.h"
-#include "host/whitted_batched.h"
-#include "host/whitted_mixed.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -35,8 +34,8 @@ static Camera still_camera(const Scene& scene, const RenderJob& job, const Image
     return framing_camera(hittable_bounds(scene.soup), size.width, size.height);
 }
 
-static WhittedOptions whitted_options(const RenderJob& job, const Scene& scene) {
-    WhittedOptions options = job.whitted;
+static RenderOptions render_options(const RenderJob& job, const Scene& scene) {
+    RenderOptions options = job.render;
     options.max_depth = job.max_depth.value_or(scene.max_depth.value_or(options.max_depth));
     options.max_depth = std::min(options.max_depth, kMostDepth);
     return options;
@@ -48,7 +47,7 @@ public:
     Rendering(const RenderJob& job, const ImageSize& size, Scene& scene, Backend& backend)
         : job_(job),
           size_(size),
-          whitted_(whitted_options(job, scene)),
+          options_(render_options(job, scene)),
           scene_(scene),
           lights_(job.lights.empty() ? scene.lights : job.lights),
           backend_(backend) {}
@@ -84,11 +83,12 @@ private:
         FrameStats frame;
         frame.frame = shot.frame;
         scene_.lights = placed_lights(lights_, shot.camera);
-        Image image(size_.width, size_.height);
-        if (const Result<RenderReport> report = trace(shot, image); report)
+        Film film(size_.width, size_.height, job_.samples);
+        if (const Result<RenderReport> report = trace(shot, film); report)
             frame.report = *report;
         else
             return report.error();
+        Image image = film.image();
         if (scene_.gamma != 1)
             to_linear(image);
         frame.tracing = counted_between(before, backend_.statistics());
@@ -110,15 +110,14 @@ private:
                 pixel[i] = std::pow(std::max(pixel[i], 0.0f), float(scene_.gamma));
     }
 
-    Result<RenderReport> trace(const Shot& shot, Image& image) {
+    Result<RenderReport> trace(const Shot& shot, Film& film) {
         Progress progress(backend_, is_sequence() ? fmt::format("frame {}: ", shot.frame) : "",
-                          image.pixels.size(), /* shown= */ !job_.quiet);
+                          uint64_t(film.width()) * film.height(), /* shown= */ !job_.quiet);
         const auto observe = [&](const RenderReport& report) {
             progress.update(report);
             return !interrupt_.interrupted();
         };
-        const auto render = job_.mode == RenderMode::Mixed ? render_mixed : render_batched;
-        return render(scene_, shot.camera, backend_, whitted_, observe, image);
+        return render_picture(scene_, shot.camera, backend_, options_, observe, film);
     }
 
     Result<Done> save_all(const Image& image, const Shot& shot) {
@@ -140,7 +139,7 @@ private:
 
     const RenderJob& job_;
     const ImageSize size_;
-    const WhittedOptions whitted_;
+    const RenderOptions options_;
     Scene& scene_;
     const std::vector<Light> lights_; // as the scene or the user has them
     Backend& backend_;
@@ -199,7 +198,7 @@ Result<int> render(const RenderJob& job) {
     stats.tracing = (*backend)->statistics();
     stats.renderer = (*backend)->renderer();
     stats.left_out =
-        left_out_of(*scene, needs_of(*scene, {job.whitted.shadows,
+        left_out_of(*scene, needs_of(*scene, {job.render.shadows,
                                               job.backend.precision == OVC_PRECISION_CERTIFIED,
                                               stats.tracing.leaves}));
     stats.seconds_total = total.seconds();

@@ -5,8 +5,8 @@
 #include "host/aov.h"
 #include "host/arguments.h"
 #include "host/backend.h"
+#include "host/render.h"
 #include "host/scene_source.h"
-#include "host/whitted.h"
 
 #include <optional>
 #include <string>
@@ -17,15 +17,14 @@ namespace ovc {
 /// The most that --max-depth may ask for.
 inline constexpr uint32_t kMostDepth = 1000;
 
+/// The most that --samples may ask for.
+inline constexpr uint32_t kMostSamples = 65536;
+
 /// One picture of a sequence.
 struct Shot {
     uint32_t frame = 0; // in the camera path
     Camera camera;
 };
-
-/// Algorithm 5 or 6 of the thesis. Auto is batched, which shades faster where all is resident
-/// (docs/benchmarks.md).
-enum class RenderMode { Auto, Batched, Mixed };
 
 struct RenderJob {
     SceneArguments scene;
@@ -34,9 +33,9 @@ struct RenderJob {
     std::optional<Camera> camera;
     std::vector<Shot> shots; // empty: one picture, from `camera` or the scene's own
     std::vector<Light> lights;
-    WhittedOptions whitted;
-    std::optional<uint32_t> max_depth; // none: the scene's, else that of `whitted`
-    RenderMode mode = RenderMode::Auto;
+    RenderOptions render;
+    std::optional<uint32_t> max_depth; // none: the scene's, else that of `render`
+    uint32_t samples = 1;              // camera rays a pixel
     BackendOptions backend;
     Aovs aovs;         // in the outputs that take layers
     std::string cache; // folder where scenes and levels are kept; empty: none

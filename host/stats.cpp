@@ -33,10 +33,7 @@ ovc_statistics counted_between(const ovc_statistics& before, const ovc_statistic
 }
 
 void RenderStats::add(const FrameStats& frame) {
-    report.rays += frame.report.rays;
-    report.seconds_trace += frame.report.seconds_trace;
-    report.seconds_shade += frame.report.seconds_shade;
-    report.pixels_done += frame.report.pixels_done;
+    report += frame.report;
     seconds_output += frame.seconds_output;
     frames.push_back(frame);
 }
@@ -45,7 +42,8 @@ static Json rays_of(const RayCounts& rays) {
     return {{"primary", rays.primary},
             {"shadow", rays.shadow},
             {"reflection", rays.reflection},
-            {"refraction", rays.refraction}};
+            {"refraction", rays.refraction},
+            {"bounce", rays.bounce}};
 }
 
 static Json queues_of(const ovc_statistics& t) {
@@ -81,6 +79,8 @@ static Json frames_of(const RenderStats& s) {
                            {{"trace", f.report.seconds_trace},
                             {"kernel", f.tracing.seconds_kernel},
                             {"shade", f.report.seconds_shade},
+                            {"render", f.report.seconds},
+                            {"cpu", f.report.seconds_cpu},
                             {"output", f.seconds_output},
                             {"total", f.seconds}}}});
     return frames;
@@ -97,6 +97,7 @@ static Json times_of(const RenderStats& s) {
     return {{"import", s.seconds_import},         {"level1", s.tracing.seconds_level1},
             {"level2", s.tracing.seconds_level2}, {"trace", s.report.seconds_trace},
             {"kernel", s.tracing.seconds_kernel}, {"shade", s.report.seconds_shade},
+            {"render", s.report.seconds},         {"cpu", s.report.seconds_cpu},
             {"output", s.seconds_output},         {"total", s.seconds_total}};
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "host/scene_summary.h"
-#include "host/whitted.h"
+#include "host/render.h"
 #include "plugin/overcast.h"
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The batched renderer on a tiny scene with the CPU backend: shadows, mirrors, and the same pixels
-// however it is cut.
-#include "host/whitted_batched.h"
+// Whitted's integrator in the batched renderer, on a tiny scene with the CPU backend: shadows,
+// mirrors, glass, and the same pixels however it is cut.
+#include "host/whitted.h"
 
-#include "host/backend.h"
+#include "host/render.h"
 
 #include <gtest/gtest.h>
 
@@ -37,48 +37,48 @@ static Camera towards(dvec3 target) {
     return camera;
 }
 
-static Image render(const Scene& scene, const Camera& camera, WhittedOptions options = {},
+static Image render(const Scene& scene, const Camera& camera, RenderOptions options = {},
                     uint32_t width = 1, uint32_t height = 1, RenderReport* report = nullptr) {
-    Image image(width, height);
+    Film film(width, height);
     const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
-    const Result<RenderReport> done = render_batched(scene, camera, *backend, options, {}, image);
+    const Result<RenderReport> done = render_picture(scene, camera, *backend, options, {}, film);
     EXPECT_TRUE(done && done->complete);
     if (report)
         *report = *done;
-    return image;
+    return film.image();
 }
 
-static float red(const Scene& scene, dvec3 target, WhittedOptions options = {}) {
+static float red(const Scene& scene, dvec3 target, RenderOptions options = {}) {
     return render(scene, towards(target), options).pixels[0].r;
 }
 
-TEST(WhittedBatched, CastsShadows) {
+TEST(Whitted, CastsShadows) {
     const Scene scene = room();
-    WhittedOptions unshadowed;
+    RenderOptions unshadowed;
     unshadowed.shadows = false;
     EXPECT_LT(red(scene, {0, 0, 0}), red(scene, {3, 0, 0}));
     EXPECT_GT(red(scene, {0, 0, 0}, unshadowed), red(scene, {3, 0, 0}, unshadowed));
 }
 
-TEST(WhittedBatched, ASurfaceDoesNotShadowItselfNorDoesItsCopy) {
+TEST(Whitted, ASurfaceDoesNotShadowItselfNorDoesItsCopy) {
     Scene scene = room();
     const float alone = red(scene, {3, 0, 0});
     scene.add_mesh("floor again", 0, quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}));
     EXPECT_EQ(red(scene, {3, 0, 0}), alone);
 }
 
-TEST(WhittedBatched, MirrorsShowTheFloor) {
+TEST(Whitted, MirrorsShowTheFloor) {
     const Scene scene = room();
     const dvec3 low_on_the_wall(2.5, 0.3, -4);
     const vec4 pixel = render(scene, towards(low_on_the_wall)).pixels[0];
     EXPECT_GT(pixel.r, 3 * pixel.b);
-    WhittedOptions no_bounces;
+    RenderOptions no_bounces;
     no_bounces.max_depth = 0;
     const vec4 plain = render(scene, towards(low_on_the_wall), no_bounces).pixels[0];
     EXPECT_LT(plain.r, plain.b); // grey, under a blue sky
 }
 
-TEST(WhittedBatched, ShowsTheBackgroundWhereNothingIs) {
+TEST(Whitted, ShowsTheBackgroundWhereNothingIs) {
     const Scene scene = room();
     const vec4 pixel = render(scene, towards({0, 300, -300})).pixels[0];
     EXPECT_GT(pixel.b, pixel.r);
@@ -87,7 +87,7 @@ TEST(WhittedBatched, ShowsTheBackgroundWhereNothingIs) {
     EXPECT_EQ(render(empty, Camera{}).pixels[0].a, 1);
 }
 
-TEST(WhittedBatched, CountsRays) {
+TEST(Whitted, CountsRays) {
     RenderReport report;
     render(room(), towards({3, 0, 0}), {}, 1, 1, &report);
     EXPECT_EQ(report.rays.primary, 1u);
@@ -95,12 +95,12 @@ TEST(WhittedBatched, CountsRays) {
     EXPECT_EQ(report.rays.reflection, 0u);
 }
 
-TEST(WhittedBatched, EndsBetweenTwoMirrors) {
+TEST(Whitted, EndsBetweenTwoMirrors) {
     Scene scene;
     scene.materials = {{"mirror", vec3(0.5f), 1}};
     scene.add_mesh("ahead", 0, quad({-9, -9, -4}, {9, -9, -4}, {9, 9, -4}, {-9, 9, -4}));
     scene.add_mesh("behind", 0, quad({-9, -9, 14}, {9, -9, 14}, {9, 9, 14}, {-9, 9, 14}));
-    WhittedOptions options;
+    RenderOptions options;
     options.max_depth = 7;
     RenderReport report;
     render(scene, towards({0, 1.5, 0}), options, 1, 1, &report);
@@ -132,11 +132,11 @@ static Camera at_the_box(double fov_degrees) {
     return camera;
 }
 
-TEST(WhittedBatched, ClearGlassOfTheAirsIndexIsNotSeen) {
+TEST(Whitted, ClearGlassOfTheAirsIndexIsNotSeen) {
     Scene bare = room_with_box({});
     bare.meshes.resize(3);
     bare.soup.chunks.erase(bare.soup.chunks.begin() + 3, bare.soup.chunks.end());
-    WhittedOptions options;
+    RenderOptions options;
     options.shadows = false;
     const Image without = render(bare, at_the_box(30), options, 61, 43);
     RenderReport report;
@@ -148,8 +148,8 @@ TEST(WhittedBatched, ClearGlassOfTheAirsIndexIsNotSeen) {
     }
 }
 
-TEST(WhittedBatched, TheFilterTintsEveryCrossing) {
-    WhittedOptions options;
+TEST(Whitted, TheFilterTintsEveryCrossing) {
+    RenderOptions options;
     options.shadows = false;
     const vec4 clear =
         render(room_with_box({"glass", vec3(0), 0, 1, vec3(1), 1}), at_the_box(0.01), options)
@@ -162,11 +162,11 @@ TEST(WhittedBatched, TheFilterTintsEveryCrossing) {
     EXPECT_EQ(tinted.b, 0);
 }
 
-TEST(WhittedBatched, LightThroughGlassIsDimmedAndTintedAtEveryCrossing) {
+TEST(Whitted, LightThroughGlassIsDimmedAndTintedAtEveryCrossing) {
     Scene scene = room();
     scene.materials[0] = {"grey", vec3(0.5f), 0};
     const vec4 dark = render(scene, towards({0, 0, 0})).pixels[0];
-    WhittedOptions options;
+    RenderOptions options;
     options.shadows = false;
     const vec4 lit = render(scene, towards({0, 0, 0}), options).pixels[0];
     // The blocker becomes two panes, one above the other.
@@ -181,10 +181,10 @@ TEST(WhittedBatched, LightThroughGlassIsDimmedAndTintedAtEveryCrossing) {
     EXPECT_EQ(report.rays.shadow, 3u) << "one for each stretch of the way";
 }
 
-TEST(WhittedBatched, GlassCountsReflectionsAndRefractions) {
+TEST(Whitted, GlassCountsReflectionsAndRefractions) {
     RenderReport report;
     const Scene scene = room_with_box({"glass", vec3(0), 0.25f, 0.75f, vec3(1), 1.5});
-    WhittedOptions options;
+    RenderOptions options;
     options.max_depth = 1;
     render(scene, at_the_box(0.01), options, 1, 1, &report);
     EXPECT_EQ(report.rays.reflection, 1u);
@@ -195,13 +195,13 @@ TEST(WhittedBatched, GlassCountsReflectionsAndRefractions) {
     EXPECT_EQ(report.rays.refraction, 2u);
 }
 
-TEST(WhittedBatched, TotalReflectionKeepsAllTheLight) {
+TEST(Whitted, TotalReflectionKeepsAllTheLight) {
     // A ray inside a glass box of a great index never leaves, until the box shows its own color.
     Scene scene = room_with_box({"glass", {0, 1, 0}, 0, 1, vec3(1), 1e3});
     Camera camera = at_the_box(0.01);
     camera.eye = {0, 1.5, 4};
     camera.target = {0.3, 1.7, 4.4};
-    WhittedOptions options;
+    RenderOptions options;
     options.max_depth = 50;
     RenderReport report;
     const vec4 pixel = render(scene, camera, options, 1, 1, &report).pixels[0];
@@ -211,9 +211,9 @@ TEST(WhittedBatched, TotalReflectionKeepsAllTheLight) {
     EXPECT_EQ(pixel.r, 0);
 }
 
-TEST(WhittedBatched, BatchSizeDoesNotChangeAPixelThroughSplittingRays) {
+TEST(Whitted, BatchSizeDoesNotChangeAPixelThroughSplittingRays) {
     const Scene scene = room_with_box({"glass", vec3(0.2f), 0.45f, 0.5f, {1, 0.9f, 0.8f}, 1.5});
-    WhittedOptions options;
+    RenderOptions options;
     options.max_depth = 12;
     RenderReport report;
     const Image whole = render(scene, at_the_box(30), options, 67, 45, &report);
@@ -250,45 +250,93 @@ private:
     std::unique_ptr<Backend> cpu_;
 };
 
-TEST(WhittedBatched, ABatchIsNeverLargerThanAsked) {
+TEST(Whitted, ABatchIsNeverLargerThanAsked) {
     const Scene scene = room_with_box({"glass", vec3(0), 0.45f, 0.55f, vec3(1), 1.5});
     CountingBackend backend(scene.soup);
-    WhittedOptions options;
+    RenderOptions options;
     options.max_depth = 200;
     options.batch_rays = 2000;
-    Image image(64, 64);
-    ASSERT_TRUE(render_batched(scene, at_the_box(8), backend, options, {}, image));
+    Film film(64, 64);
+    ASSERT_TRUE(render_picture(scene, at_the_box(8), backend, options, {}, film));
     EXPECT_EQ(backend.most, 2000u);
 }
 
-TEST(WhittedBatched, BatchSizeDoesNotChangeAPixel) {
+TEST(Whitted, BatchSizeDoesNotChangeAPixel) {
     const Scene scene = room();
     Camera camera = towards({0, 1, 0});
     camera.fov_degrees = 50;
     const Image whole = render(scene, camera, {}, 67, 45);
     for (size_t batch : {1u, 7u, 64u, 1000u}) {
-        WhittedOptions options;
+        RenderOptions options;
         options.batch_rays = batch;
         EXPECT_EQ(difference(render(scene, camera, options, 67, 45), whole).differing, 0u) << batch;
     }
 }
 
-TEST(WhittedBatched, StopsWhenToldAndKeepsWhatItHas) {
+TEST(Whitted, StopsWhenToldAndKeepsThePixelsThatAreDone) {
     const Scene scene = room();
-    Image image(16, 16);
+    Camera camera = towards({0, 0, 0});
+    camera.fov_degrees = 50;
+    Film film(256, 256);
     const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
-    WhittedOptions options;
-    options.batch_rays = 64;
-    const auto after_two_batches = [](const RenderReport& report) {
-        return report.rays.primary <= 128;
+    RenderOptions options;
+    options.batch_rays = 1000;
+    const auto until_some_are_done = [](const RenderReport& report) {
+        return report.pixels_done < 5000;
     };
-    const Result<RenderReport> done =
-        render_batched(scene, towards({0, 0, 0}), *backend, options, after_two_batches, image);
+    const Result<RenderReport> part =
+        render_picture(scene, camera, *backend, options, until_some_are_done, film);
+    ASSERT_TRUE(part);
+    EXPECT_FALSE(part->complete);
+    EXPECT_GE(part->pixels_done, 5000u);
+    EXPECT_LT(part->pixels_done, 10000u);
+
+    // What is done has the colors that it has in the whole picture; the rest can be rendered later.
+    const Image whole = render(scene, camera, {}, 256, 256);
+    Film rest(256, 256);
+    uint64_t kept = 0;
+    const Image half = film.image();
+    for (uint32_t pixel = 0; pixel < 256 * 256; ++pixel) {
+        if (!film.done(pixel)) {
+            EXPECT_EQ(half.pixels[pixel], vec4(0));
+            continue;
+        }
+        ++kept;
+        EXPECT_EQ(half.pixels[pixel], whole.pixels[pixel]);
+        rest.restore(pixel, film.sums(pixel));
+    }
+    EXPECT_EQ(kept, part->pixels_done);
+    const Result<RenderReport> done = render_picture(scene, camera, *backend, options, {}, rest);
+    ASSERT_TRUE(done && done->complete);
+    EXPECT_EQ(done->rays.primary, 256 * 256 - kept);
+    EXPECT_EQ(difference(rest.image(), whole).differing, 0u);
+}
+
+TEST(Whitted, SamplesSmoothEdgesAndAverageTheSameLight) {
+    const Scene scene = room();
+    Camera camera = towards({0, 0, 0});
+    camera.fov_degrees = 50;
+    const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
+    // 16 samples of a pixel are stratified in 4 x 4: near what 16 pixels in its place have.
+    Film film(32, 32, 16);
+    const Result<RenderReport> done = render_picture(scene, camera, *backend, {}, {}, film);
     ASSERT_TRUE(done);
-    EXPECT_FALSE(done->complete);
-    const size_t begun = size_t(std::count_if(image.pixels.begin(), image.pixels.end(),
-                                              [](const vec4& p) { return p.a == 1; }));
-    EXPECT_EQ(begun, 192u);
+    EXPECT_EQ(done->rays.primary, 32u * 32 * 16);
+    const Image smooth = film.image();
+    const Image fine = render(scene, camera, {}, 128, 128);
+    double worst = 0, sum = 0;
+    for (uint32_t y = 0; y < 32; ++y)
+        for (uint32_t x = 0; x < 32; ++x) {
+            vec4 mean(0);
+            for (uint32_t k = 0; k < 16; ++k)
+                mean += fine.at(4 * x + k % 4, 4 * y + k / 4) / 16.0f;
+            const double off = std::abs(double(mean.r - smooth.at(x, y).r));
+            worst = std::max(worst, off);
+            sum += off;
+        }
+    EXPECT_LT(worst, 0.25);
+    EXPECT_LT(sum / (32 * 32), 0.004);
+    EXPECT_GT(sum, 0);
 }
 
 /// Answers nothing: what a lost device looks like.
@@ -306,10 +354,10 @@ public:
     std::string renderer() const override { return "none"; }
 };
 
-TEST(WhittedBatched, HandsOnTheBackendsError) {
+TEST(Whitted, HandsOnTheBackendsError) {
     FailingBackend backend;
-    Image image(2, 2);
-    const Result<RenderReport> done = render_batched(room(), Camera{}, backend, {}, {}, image);
+    Film film(2, 2);
+    const Result<RenderReport> done = render_picture(room(), Camera{}, backend, {}, {}, film);
     ASSERT_FALSE(done);
     EXPECT_EQ(done.error().message, "the device was lost");
 }

@@ -3,8 +3,8 @@
 // background shows through the ground, and each pixel sees the triangle that the reference sees.
 #include "host/backend.h"
 #include "host/camera.h"
+#include "host/render.h"
 #include "host/report/terrain_rays.h"
-#include "host/whitted_batched.h"
 #include "testscenes/catalog.h"
 
 #include <gtest/gtest.h>
@@ -44,9 +44,10 @@ TEST_P(FarTerrainPicture, HasNoBackgroundBelowTheHorizon) {
         GTEST_SKIP() << two_level.error().message;
     Box bounds;
     hittable_triangles(scene_.soup, nullptr, &bounds);
-    Image image(kWidth, kHeight);
+    Film film(kWidth, kHeight);
     const auto observe = [](const RenderReport&) { return true; };
-    ASSERT_TRUE(render_batched(scene_, *scene_.camera, **two_level, {}, observe, image));
+    ASSERT_TRUE(render_picture(scene_, *scene_.camera, **two_level, {}, observe, film));
+    const Image image = film.image();
     uint64_t ground = 0, sky = 0, cracks = 0;
     for (uint32_t y = 0; y < kHeight; ++y)
         for (uint32_t x = 0; x < kWidth; ++x) {

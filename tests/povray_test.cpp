@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Glass, mirrors and shadows through glass look as POV-Ray draws them: its own spheres, our
 // triangles.
-#include "host/whitted_batched.h"
+#include "host/render.h"
 #include "importers/importer.h"
 #include "tests/run_command.h"
 #include "testscenes/catalog.h"
@@ -62,11 +62,12 @@ std::optional<Image> drawn_by_povray(const std::string& scene) {
 /// mean: of the difference over colors and pixels; unlike: the share of pixels more than 0.02 off.
 void expect_alike(const Scene& scene, uint32_t max_depth, const Image& theirs, double mean,
                   double unlike_share) {
-    Image ours(kSize, kSize);
-    WhittedOptions options;
+    Film film(kSize, kSize);
+    RenderOptions options;
     options.max_depth = max_depth;
     const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
-    ASSERT_TRUE(render_batched(scene, *scene.camera, *backend, options, {}, ours));
+    ASSERT_TRUE(render_picture(scene, *scene.camera, *backend, options, {}, film));
+    const Image ours = film.image();
     double sum = 0;
     size_t unlike = 0;
     for (size_t i = 0; i < ours.pixels.size(); ++i) {

@@ -2,7 +2,7 @@
 // Rays and frames as workloads. Buffers are made once, so that no contender pays for them.
 #include "host/bench/workload.h"
 
-#include "host/whitted_batched.h"
+#include "host/render.h"
 
 #include <bit>
 #include <memory>
@@ -66,12 +66,13 @@ static uint64_t answer_of(const vec4& pixel) {
 
 Workload frame_workload(const Scene& scene, const Camera& camera, uint32_t width, uint32_t height,
                         StopRequest stop) {
-    auto image = std::make_shared<Image>(width, height);
+    auto image = std::make_shared<Image>();
     return {"frame",
-            [&scene, camera, image, stop](Backend& backend) -> Result<uint64_t> {
-                const Result<RenderReport> report = render_batched(
-                    scene, camera, backend, {}, [&](const RenderReport&) { return !stop(); },
-                    *image);
+            [&scene, camera, image, width, height, stop](Backend& backend) -> Result<uint64_t> {
+                Film film(width, height);
+                const Result<RenderReport> report = render_picture(
+                    scene, camera, backend, {}, [&](const RenderReport&) { return !stop(); }, film);
+                *image = film.image();
                 return report ? Result<uint64_t>(report->rays.total()) : report.error();
             },
             [image] {

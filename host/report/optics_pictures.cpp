@@ -2,8 +2,8 @@
 // Pictures of glass, compared with pictures that must look the same.
 #include "host/report/optics_pictures.h"
 
+#include "host/render.h"
 #include "host/report/stability_meshes.h"
-#include "host/whitted_batched.h"
 
 #include <algorithm>
 
@@ -44,15 +44,15 @@ Result<Image> picture(const Scene& scene, const OpticsOptions& options, const Lo
     if (!backend)
         return backend.error();
     const uint32_t side = kSize * uint32_t(std::min<uint64_t>(options.times, 8));
-    Image image(side, side);
-    WhittedOptions whitted;
-    whitted.max_depth = 20;
+    Film film(side, side);
+    RenderOptions how;
+    how.max_depth = 20;
     const Result<RenderReport> report =
-        render_batched(scene, *scene.camera, **backend, whitted, {}, image);
+        render_picture(scene, *scene.camera, **backend, how, {}, film);
     if (!report)
         return report.error();
     rays += report->rays.total();
-    return image;
+    return film.image();
 }
 
 Result<OpticsScore> compare(const Scene& scene, const Scene& reference, double allowed,

@@ -43,12 +43,22 @@ struct Inherited {
     bool inverse = false;
 };
 
+void tell_all(const Notes& notes, const Look& look) {
+    for (const auto& note : notes)
+        if (look.tell)
+            look.tell(*note);
+}
+
 /// Materials that are alike become one.
 class MaterialTable {
 public:
     MaterialTable(const Look& look, Scene& scene) : look_(look), scene_(scene) {}
 
     uint32_t number(const Texture& texture, const dmat4& placed, const Interior* interior) {
+        for (const Notes* notes : {&texture.notes, &texture.pigment.notes, &texture.surface.notes})
+            tell_all(*notes, look_);
+        if (interior)
+            tell_all(interior->notes, look_);
         ovc::Material material = made(texture, placed, interior);
         std::vector<double> key = key_of(material);
         const auto [at, is_new] =
@@ -165,6 +175,7 @@ private:
     void inherit(const Object& object, Inherited& from) {
         if (!object.refused.empty())
             throw ParseError(object.place, object.refused, object.caller);
+        tell_all(object.notes, look_);
         from.texture_placed = object.texture ? from.placed : from.texture_placed;
         from.texture = object.texture ? &*object.texture : from.texture;
         from.placed = from.placed * object.placed;

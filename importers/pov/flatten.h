@@ -12,6 +12,7 @@ struct Look {
     Texture defaults;
     vec3 ambient_light{1};
     uint64_t most_triangles = kDefaultMostTriangles;
+    std::function<void(const Note&)> tell; // of what is to be seen; none: nobody asks
     std::optional<dvec3> eye; // planes reach as far as it can see them
 };
 

@@ -58,6 +58,7 @@ struct Object {
     std::vector<ObjectPtr> clips, bounds;
     /// Why it cannot be cut into triangles; empty: it can. Told only where it is to be seen.
     std::string refused;
+    Notes notes; // about the object itself
 
     dmat4 placed{1};                // from its own space to that of what it is a part of
     std::optional<Texture> texture; // none: its parent's

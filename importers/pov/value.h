@@ -33,6 +33,15 @@ struct Number {
     static Number of(const dvec3& p) { return {{p.x, p.y, p.z}, 3, false}; }
 };
 
+/// Something about a look that is drawn by an approximation, or left out: a warning where the look is
+/// to be seen. kind: of several alike the first is told.
+struct Note {
+    std::string kind;
+    Place place;
+    std::string sentence;
+};
+using Notes = std::vector<std::shared_ptr<const Note>>;
+
 /// A color with what it lets through: light x color x filter + light x transmit.
 struct Color {
     vec3 rgb{0};
@@ -47,6 +56,7 @@ struct Pigment {
     Color color;
     std::optional<Color> other; // of a checker
     dmat4 placed{1};            // where a checker stands
+    Notes notes;
 };
 
 /// A finish, and what it is without the scene: ambient and emission are still apart.
@@ -54,16 +64,19 @@ struct Surface {
     Finish finish;
     vec3 ambient{0.1f};
     vec3 emission{0};
+    Notes notes;
 };
 
 /// All layers of a texture, drawn together.
 struct Texture {
     Pigment pigment;
     Surface surface;
+    Notes notes; // of the whole
 };
 
 struct Interior {
     double ior = 1;
+    Notes notes;
 };
 
 struct Material {
