@@ -30,7 +30,7 @@ struct RenderOptions {
     uint64_t seed = 0; // of path tracing
     /// Batched: the most rays a backend gets at once. Bounds host memory: at most about three times
     /// as many rays wait.
-    size_t batch_rays = size_t(1) << 19;
+    size_t batch_rays = size_t(1) << 20;
 };
 
 struct RayCounts {

@@ -7,7 +7,6 @@
 #include "host/shading.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <future>
 #include <mutex>
@@ -16,11 +15,17 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kLanes = 2;
-/// Batches that a picture is cut into at least, so that each lane has something to do while the
-/// other traces; but not into smaller ones than these.
-constexpr uint64_t kLeastBatches = 4 * kLanes;
-constexpr uint64_t kLeastBatchRays = 1 << 15;
+/// With two lanes: so many rays a batch keep the device busy, and a picture is cut into at least so
+/// many batches, or a lane has nothing to do while the other traces.
+constexpr uint64_t kLaneRays = 1 << 18;
+constexpr uint64_t kLeastBatches = 8;
+
+/// Whether pages are moved while rays are traced. Then a batch takes all the rays it may and has
+/// the backend to itself: two smaller ones would move twice the bytes.
+bool moves_pages(const Backend& backend) {
+    const ovc_statistics statistics = backend.statistics();
+    return statistics.level2_bytes > statistics.gpu_peak_bytes;
+}
 
 /// What the lanes share: the camera's rays, and the backend, which answers one call at a time.
 class Work {
@@ -188,10 +193,12 @@ private:
 Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
                                     const CameraRays& camera, Backend& backend, size_t batch_rays,
                                     const RenderObserver& observe, Film& film) {
-    const uint64_t shared = std::max(camera.size() / kLeastBatches, kLeastBatchRays);
-    const size_t batch = size_t(std::min<uint64_t>(batch_rays, shared));
+    const bool alone = moves_pages(backend);
+    const uint64_t wanted =
+        alone ? batch_rays : std::min(camera.size() / kLeastBatches + 1, kLaneRays);
+    const size_t batch = size_t(std::min<uint64_t>(batch_rays, wanted));
     Work work(camera, backend, observe, film);
-    std::array<std::future<void>, kLanes> lanes;
+    std::vector<std::future<void>> lanes(alone ? 1 : 2);
     for (std::future<void>& lane : lanes)
         lane = std::async(std::launch::async,
                           [&] { Lane(work, integrator, lights, batch, film).run(); });
