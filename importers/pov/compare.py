@@ -53,6 +53,31 @@ def is_key(pixel):
     return 0.2 < power < 5 and all(abs(p - 65535 * k ** power) <= 4 + 0.001 * p for p, k in zip(pixel, KEY))
 
 
+def run_povray(arguments, folder, limit):
+    """Why povray failed; "": it did not."""
+    command = ["povray", *arguments, "-D", "-GA", "+WT1", f"+L{folder}"]
+    try:
+        done = subprocess.run(command, cwd=folder, capture_output=True, timeout=limit, preexec_fn=lambda: os.nice(10))
+    except subprocess.TimeoutExpired:
+        return f"more than {limit:g} s"
+    text = done.stderr.decode("utf-8", "replace")
+    return "" if done.returncode == 0 else next((line for line in text.splitlines() if "Error" in line), f"exit {done.returncode}")
+
+
+def add_choice(parser):
+    """The arguments that say which scenes."""
+    parser.add_argument("--data", type=pathlib.Path, default=ROOT / "data" / "scenes")
+    parser.add_argument("--index", type=pathlib.Path, default=ROOT.parent / "shared" / "data" / "pov_tiers.txt")
+    parser.add_argument("--tiers", default="AB")
+    parser.add_argument("--only", default="")
+
+
+def chosen_scenes(options):
+    data = options.data.resolve()
+    return [data / line.split()[2] for line in options.index.read_text().splitlines()
+            if line and line[0] in options.tiers and options.only in line.split()[2]]
+
+
 def povray_mask(scene, cache, limit):
     """Bytes of 0 and 1, one a pixel; or why there are none."""
     name = hashlib.sha1(str(scene).encode()).hexdigest()[:16]
@@ -63,16 +88,7 @@ def povray_mask(scene, cache, limit):
         return None, failed.read_text()
     wrapped, picture = cache / (name + ".pov"), cache / (name + ".ppm")
     wrapped.write_bytes(scene.read_bytes() + sky(KEY).encode())
-    command = ["povray", f"+I{wrapped}", f"+O{picture}", f"+W{WIDTH}", f"+H{HEIGHT}", "+FP16", "File_Gamma=1.0", "-A",
-               "-D", "-GA", "+Q0", "+WT1", f"+L{scene.parent}"]
-    try:
-        done = subprocess.run(command, cwd=scene.parent, capture_output=True, timeout=limit,
-                              preexec_fn=lambda: os.nice(10))
-        text = done.stderr.decode("utf-8", "replace")
-        error = "" if done.returncode == 0 else next(
-            (line for line in text.splitlines() if "Error" in line), f"exit {done.returncode}")
-    except subprocess.TimeoutExpired:
-        error = f"more than {limit} s"
+    error = run_povray([f"+I{wrapped}", f"+O{picture}", f"+W{WIDTH}", f"+H{HEIGHT}", "+FP16", "File_Gamma=1.0", "-A", "+Q0"], scene.parent, limit)
     wrapped.unlink()
     if error:
         failed.write_text(error)
@@ -137,10 +153,7 @@ def show(results, data):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--data", type=pathlib.Path, default=ROOT / "data" / "scenes")
-    parser.add_argument("--index", type=pathlib.Path, default=ROOT.parent / "shared" / "data" / "pov_tiers.txt")
-    parser.add_argument("--tiers", default="AB")
-    parser.add_argument("--only", default="")
+    add_choice(parser)
     parser.add_argument("--again", type=pathlib.Path, help="the table of a former run: only what failed in it")
     parser.add_argument("--cache", type=pathlib.Path, default=pathlib.Path("/tmp/overcast-pov-masks"))
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
@@ -150,8 +163,7 @@ def main():
     options = parser.parse_args()
     options.cache.mkdir(parents=True, exist_ok=True)
     data = options.data.resolve()
-    scenes = [data / line.split()[2] for line in options.index.read_text().splitlines()
-              if line and line[0] in options.tiers and options.only in line.split()[2]]
+    scenes = chosen_scenes(options)
     if options.again:
         rows = [[cell.strip() for cell in line.split("|")[1:3]] for line in options.again.read_text().splitlines() if line.startswith("| pov")]
         failed = {data / scene for scene, state in rows if state in ("not imported", "differs")}
