@@ -17,4 +17,4 @@ plane { y, 0 pigment { checker rgb 0.9, rgb <0.2, 0.3, 0.2> } finish { diffuse 0
 Ball(<-2, 0.8, 0>, <1, 0.3, 0.2>, finish { phong 0.9 phong_size 25 })
 Ball(<0, 0.8, 1>, <0.9, 0.7, 0.2>, finish { specular 0.8 roughness 0.03 metallic brilliance 3 })
 Ball(<2, 0.8, 0>, <0.3, 0.6, 0.9>, finish { reflection { 0.1, 0.8 falloff 3 metallic } })
-box { <-0.6, 0, -2.6>, <0.6, 1, -1.8> pigment { rgbft <0.4, 0.9, 0.5, 0.5, 0.2> } finish { diffuse 0.6 ambient 0 } no_shadow rotate 20 * y }
+box { <-0.6, 0.05, -2.6>, <0.6, 1, -1.8> pigment { rgbft <0.4, 0.9, 0.5, 0.5, 0.2> } finish { diffuse 0.6 ambient 0 } no_shadow rotate 20 * y }

@@ -3,7 +3,7 @@
 """How POV-Ray scenes look: povray's picture beside ours, scene by scene. docs/pov.md says what is compared.
 
 usage: compare_pictures.py -o DIR [--data DIR] [--index FILE] [--tiers AB] [--only TEXT] [--cache DIR] [--build DIR] [--backend NAME] [--jobs N]
-                           [--limit SECONDS] [--at-most N] [SCENE ...]
+                           [--limit SECONDS] [--plain] [--at-most N] [SCENE ...]
 
 Prints a table and writes DIR/index.html with the pairs, the worst first. Errors are root mean squares over pixels and colors, in code values of 8
 bits as both programs write them. Scenes: those of the index (compare.py), or SCENE ...; those of which the importer says that it draws
@@ -82,14 +82,16 @@ def colors_at(picture, pixels):
 
 
 def compare(scene, options):
+    name = hashlib.sha1(str(scene).encode()).hexdigest()[:12]
+    picture = options.output / f"{name}-ours.png"
+    warnings, refused = our_picture(scene, picture, options)
+    if warnings and options.plain:
+        return {"scene": scene, "state": "approximated", "why": "; ".join(warnings)}
     kept, error = povray_picture(scene, options.cache, options.limit)
     if not kept:
         return {"scene": scene, "state": "povray fails", "why": error}
-    name = hashlib.sha1(str(scene).encode()).hexdigest()[:12]
-    picture = options.output / f"{name}-ours.png"
-    warnings, error = our_picture(scene, picture, options)
-    if error:
-        return {"scene": scene, "state": "not imported", "why": error}
+    if refused:
+        return {"scene": scene, "state": "not imported", "why": refused}
     _, _, theirs = read_png(kept)
     _, _, ours = read_png(picture)
     (options.output / f"{name}-povray.png").write_bytes(kept.read_bytes())
@@ -160,6 +162,7 @@ def main():
     parser.add_argument("--backend", default="auto")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--limit", type=float, default=120, help="seconds for one picture")
+    parser.add_argument("--plain", action="store_true", help="ask povray only about plain scenes")
     parser.add_argument("--at-most", type=float, help="code values: fail where a scene is off by more")
     options = parser.parse_args()
     options.cache.mkdir(parents=True, exist_ok=True)

@@ -151,8 +151,10 @@ public:
         : look_(look), scene_(scene), materials_(look, scene) {}
 
     void gather(const Object& object, Inherited from) {
-        if (object.no_image && !gather_unseen)
+        if (object.no_image && !gather_unseen) {
+            tell_all(object.notes, look_);
             return;
+        }
         if (is_solid(object)) {
             add_solid(object, from);
             return;

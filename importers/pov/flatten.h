@@ -13,7 +13,7 @@ struct Look {
     vec3 ambient_light{1};
     uint64_t most_triangles = kDefaultMostTriangles;
     std::function<void(const Note&)> tell; // of what is to be seen; none: nobody asks
-    std::optional<dvec3> eye; // planes reach as far as it can see them
+    std::optional<dvec3> eye;              // planes reach as far as it can see them
 };
 
 /// Adds the objects to `scene`: a mesh for each material, one for each plane, and their lights.

@@ -40,7 +40,12 @@ void parse_through(Reader& reader, float& share) {
 
 } // namespace
 
-std::optional<Color> parse_image_map(Reader& reader, const Token& word) {
+void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
+    const auto note = [&](const std::string& kind, const Place& at, const std::string& sentence) {
+        pigment.notes = {make_note(kind, at, sentence)};
+    };
+    pigment.color = {vec3(0.5f)};
+    pigment.other.reset();
     reader.expect('{', "image_map");
     const Place start = reader.peek().place;
     if (reader.peek().kind == TokenKind::Name && !starts_text(reader, reader.peek()) &&
@@ -48,8 +53,8 @@ std::optional<Color> parse_image_map(Reader& reader, const Token& word) {
         reader.next(); // png and the like: the file itself tells
     if (!starts_text(reader, reader.peek())) {
         skip_block(reader); // function, pigment
-        reader.warn("image_map", start, "an image_map that is computed is drawn by a middle grey");
-        return std::nullopt;
+        note("image_map", start, "an image_map that is computed is drawn by a middle grey");
+        return;
     }
     const std::string name = parse_text(reader);
     Color color;
@@ -60,11 +65,10 @@ std::optional<Color> parse_image_map(Reader& reader, const Token& word) {
     if (picture) {
         color = average(reader, *picture);
         reader.spend(picture->size() / 16);
-        reader.warn("image_map", word.place, "image_map is drawn by its average color");
+        note("image_map", word.place, "image_map is drawn by its average color");
     } else
-        reader.warn(
-            "image_map " + name, start,
-            fmt::format("{}: the image_map is drawn by a middle grey", picture.error().message));
+        note("image_map " + name, start,
+             fmt::format("{}: the image_map is drawn by a middle grey", picture.error().message));
     while (!reader.take('}')) {
         if (reader.take("filter"))
             parse_through(reader, color.filter);
@@ -73,7 +77,8 @@ std::optional<Color> parse_image_map(Reader& reader, const Token& word) {
         else if (reader.next().kind == TokenKind::End)
             reader.fail(start, "found no '}' to image_map");
     }
-    return picture ? std::optional(color) : std::nullopt;
+    if (picture)
+        pigment.color = color;
 }
 
 } // namespace ovc::pov

@@ -6,7 +6,8 @@
 
 namespace ovc::pov {
 
-/// From the { on. Nothing, and a warning that names it: there is no such picture.
-std::optional<Color> parse_image_map(Reader& reader, const Token& word);
+/// From the { on: the pigment's color, and notes that say so. A middle grey where there is no
+/// picture.
+void parse_image_map(Reader& reader, const Token& word, Pigment& pigment);
 
 } // namespace ovc::pov

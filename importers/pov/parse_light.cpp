@@ -78,8 +78,11 @@ bool parse_other_part(Reader& reader, Words& words) {
         auto changed = std::make_shared<Object>(*words.looks_like);
         parse_modifiers(reader, *changed);
         words.looks_like = changed;
-    } else if (reader.take("projected_through") || reader.take("photons"))
+    } else if (reader.take("projected_through")) {
+        reader.warn("projected_through", token.place, "projected_through of a light is left out");
         skip_braces(reader, "projected_through");
+    } else if (reader.take("photons"))
+        skip_braces(reader, "photons");
     else if (reader.take("circular") || reader.take("orient"))
         ;
     else if (reader.take("jitter") || reader.take("area_illumination") ||

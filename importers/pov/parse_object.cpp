@@ -98,6 +98,9 @@ void parse_children(Reader& reader, Object& object) {
 
 void parse_group(Reader& reader, Object& object) {
     parse_children(reader, object);
+    if (object.kind == "light_group")
+        object.notes.push_back(make_note("light_group", object.place,
+                                         "the lights of a light_group shine on everything"));
     parse_modifiers(reader, object);
 }
 
@@ -134,8 +137,8 @@ void parse_refused(Reader& reader, Object& object) {
     skip_block(reader);
 }
 
-void add_texture(Object& object, const Texture& texture) {
-    object.texture = object.texture ? layered(texture, *object.texture) : texture;
+void add_texture(Object& object, const Texture& texture, const Place& at) {
+    object.texture = object.texture ? layered(texture, *object.texture, at) : texture;
 }
 
 /// The texture that a pigment or finish of its own changes.
@@ -148,7 +151,7 @@ Texture& own_texture(Reader& reader, Object& object) {
 bool parse_look(Reader& reader, Object& object) {
     const Token token = reader.peek();
     if (reader.take("texture"))
-        add_texture(object, parse_texture(reader));
+        add_texture(object, parse_texture(reader), token.place);
     else if (reader.take("pigment")) {
         Texture& texture = own_texture(reader, object);
         texture.pigment = parse_pigment(reader, texture.pigment);
@@ -156,13 +159,12 @@ bool parse_look(Reader& reader, Object& object) {
         Texture& texture = own_texture(reader, object);
         texture.surface = parse_finish(reader, texture.surface);
     } else if (reader.take("normal")) {
-        own_texture(reader, object);
-        reader.warn("normal", token.place, "normal patterns are left out");
+        own_texture(reader, object).notes.push_back(normal_note(token));
         skip_braces(reader, "normal");
     } else if (reader.take("material")) {
         const Material material = parse_material(reader);
         if (material.texture)
-            add_texture(object, *material.texture);
+            add_texture(object, *material.texture, token.place);
         if (material.interior)
             object.interior = material.interior;
     } else if (reader.take("interior"))
@@ -173,16 +175,20 @@ bool parse_look(Reader& reader, Object& object) {
 }
 
 bool parse_switch(Reader& reader, Object& object) {
+    const Token token = reader.peek();
     if (reader.take("no_shadow"))
         object.no_shadow = parse_flag(reader);
-    else if (reader.take("no_image"))
+    else if (reader.take("no_image")) {
         object.no_image = parse_flag(reader);
-    else if (reader.take("inverse"))
+        object.notes.push_back(make_note("no_image", token.place, "what has no_image is left out"));
+    } else if (reader.take("no_reflection") || reader.take("double_illuminate")) {
+        if (parse_flag(reader))
+            object.notes.push_back(left_out("an object", token));
+    } else if (reader.take("inverse"))
         object.inverse = !object.inverse;
     else if (reader.take("open"))
         object.open = parse_flag(reader);
-    else if (reader.take("hollow") || reader.take("no_reflection") || reader.take("sturm") ||
-             reader.take("hierarchy") || reader.take("double_illuminate") ||
+    else if (reader.take("hollow") || reader.take("sturm") || reader.take("hierarchy") ||
              reader.take("split_union") || reader.take("no_radiosity"))
         parse_flag(reader);
     else
@@ -264,9 +270,11 @@ void parse_modifiers(Reader& reader, Object& object) {
             parse_vector(reader);
             object.has_inside = true;
         } else if (const auto texture = take_named_if<Texture>(reader))
-            add_texture(object, *texture); // as old scenes have it
+            add_texture(object, *texture, token.place); // as old scenes have it
         else if (token.kind == TokenKind::Name && token.name->is_keyword && !starts_object(token)) {
-            reader.next(); // interior_texture, photons, uv_mapping and the like
+            reader.next(); // photons, uv_mapping and the like
+            if (token.is("interior_texture") || token.is("cutaway_textures"))
+                object.notes.push_back(left_out("an object", token));
             skip_arguments(reader);
         } else if (!reader.take(',') && !reader.take(';'))
             reader.fail_here(fmt::format("'}}' or a modifier of {}", object.kind));

@@ -66,9 +66,7 @@ public:
         look_.eye = camera_->location;
         look_.defaults = reader_.defaults;
         look_.most_triangles = options_.max_triangles;
-        look_.tell = [&](const Note& note) {
-            reader_.warn(note.kind, note.place, note.sentence);
-        };
+        look_.tell = [&](const Note& note) { reader_.warn(note.kind, note.place, note.sentence); };
         flatten(objects_, look_, scene);
         return scene;
     }
@@ -136,9 +134,11 @@ private:
                 scene.max_depth = uint32_t(parse_int(reader_, 0, 256, "max_trace_level"));
             else if (reader_.take("ambient_light"))
                 look_.ambient_light = parse_color(reader_).rgb;
-            else if (const Token token = reader_.next(); token.kind == TokenKind::Name)
+            else if (const Token token = reader_.next(); token.kind == TokenKind::Name) {
+                if (token.is("radiosity") || token.is("photons") || token.is("hf_gray_16"))
+                    reader_.warn(token.name->text, token.place, token.name->text + " is left out");
                 skip_arguments(reader_);
-            else
+            } else
                 reader_.fail(token.place, fmt::format("found {}, expected a part of "
                                                       "global_settings",
                                                       found(token)));

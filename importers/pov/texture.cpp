@@ -78,10 +78,10 @@ Color mean_of(const Pigment& p) {
     return mean.color();
 }
 
-void warn_average(Reader& reader, const Token& pattern) {
-    reader.warn("pattern", pattern.place,
-                fmt::format("patterns such as {} are drawn by their average color",
-                            ovc::quoted(pattern.name->text)));
+Notes average_note(const Token& pattern) {
+    return {make_note("pattern", pattern.place,
+                      fmt::format("patterns such as {} are drawn by their average color",
+                                  ovc::quoted(pattern.name->text)))};
 }
 
 Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end);
@@ -131,6 +131,11 @@ void parse_list(Reader& reader, const Token& pattern, Pigment& pigment) {
         pigment.color = colors.size() > 0 ? colors[0] : kDefaults[0];
         pigment.other = colors.size() > 1 ? colors[1] : kDefaults[1];
         pigment.placed = dmat4(1);
+        pigment.notes.clear();
+        if (pigment.color.opacity() != 1 || pigment.other->opacity() != 1)
+            pigment.notes = {
+                make_note("checker", pattern.place,
+                          "a checker lets through all over what its first color does")};
         return;
     }
     Mean mean;
@@ -139,11 +144,17 @@ void parse_list(Reader& reader, const Token& pattern, Pigment& pigment) {
     if (!mean.empty())
         pigment.color = mean.color();
     pigment.other.reset();
-    warn_average(reader, pattern);
+    pigment.notes = average_note(pattern);
 }
 
 /// What a map pattern stands for until its map comes.
 const Color kMiddle{vec3(0.5f)};
+
+void set_plain(Pigment& pigment, const Color& color) {
+    pigment.color = color;
+    pigment.other.reset();
+    pigment.notes.clear();
+}
 
 Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
     const Deeper deeper(reader);
@@ -157,8 +168,7 @@ Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
         } else if (starts_color(token) ||
                    (token.kind == TokenKind::Name && !token.name->is_keyword &&
                     starts_number(reader, token))) {
-            pigment.color = parse_color(reader);
-            pigment.other.reset();
+            set_plain(pigment, parse_color(reader));
         } else if (is_color_map(token)) {
             reader.next();
             pigment.color = parse_map(reader).average;
@@ -169,14 +179,13 @@ Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
             parse_list(reader, token, pigment);
         } else if (token.is("image_map")) {
             reader.next();
-            pigment.color = parse_image_map(reader, token).value_or(kMiddle);
-            pigment.other.reset();
+            parse_image_map(reader, token, pigment);
         } else if (token.is("quick_color") || token.is("quick_colour")) {
             reader.next();
             parse_color(reader);
         } else if (is_map_pattern(token)) {
             reader.next();
-            warn_average(reader, token);
+            pigment.notes = average_note(token);
             if (!mapped)
                 pigment.color = kMiddle;
             pigment.other.reset();
@@ -186,10 +195,11 @@ Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
                 skip_arguments(reader);
         } else if (token.kind == TokenKind::Name) {
             reader.next(); // turbulence, octaves, warp and the like
+            if (pigment.other)
+                pigment.notes = {left_out("a checker", token)};
             skip_arguments(reader);
         } else if (starts_number(reader, token)) {
-            pigment.color = parse_color(reader);
-            pigment.other.reset();
+            set_plain(pigment, parse_color(reader));
         } else if (!reader.take(','))
             reader.fail_here("a part of a pigment");
     }
@@ -289,6 +299,15 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
 
 } // namespace
 
+std::shared_ptr<const Note> normal_note(const Token& word) {
+    return make_note("normal", word.place, "normal patterns are left out");
+}
+
+std::shared_ptr<const Note> left_out(std::string_view of, const Token& word) {
+    const std::string what = fmt::format("{} of {}", word.name->text, of);
+    return make_note(what, word.place, what + " is left out");
+}
+
 void skip_arguments(Reader& reader) {
     for (;;) {
         const Token token = reader.peek();
@@ -363,6 +382,7 @@ Surface parse_finish(Reader& reader, const Surface& base) {
             if (token.kind != TokenKind::Name)
                 reader.fail(token.place,
                             fmt::format("found {}, expected a part of a finish", found(token)));
+            surface.notes.push_back(left_out("a finish", token));
             skip_arguments(reader);
         }
     }
@@ -383,8 +403,7 @@ Interior parse_interior(Reader& reader, const Interior& base) {
             if (token.kind != TokenKind::Name)
                 reader.fail(token.place,
                             fmt::format("found {}, expected a part of an interior", found(token)));
-            if (token.is("media"))
-                reader.warn("media", token.place, "media is left out");
+            interior.notes.push_back(left_out("an interior", token));
             skip_arguments(reader);
         }
     }
@@ -399,13 +418,17 @@ Material parse_material(Reader& reader) {
         if (const auto named_material = take_named_if<Material>(reader))
             material = *named_material;
         else if (reader.take("texture"))
-            material.texture = material.texture ? layered(parse_texture(reader), *material.texture)
-                                                : parse_texture(reader);
+            material.texture =
+                material.texture ? layered(parse_texture(reader), *material.texture, reader.place())
+                                 : parse_texture(reader);
         else if (reader.take("interior"))
             material.interior = parse_interior(reader, material.interior.value_or(Interior{}));
-        else if (reader.take("interior_texture"))
+        else if (const Token token = reader.peek(); reader.take("interior_texture")) {
+            Interior inside = material.interior.value_or(Interior{});
+            inside.notes.push_back(left_out("a material", token));
+            material.interior = inside;
             skip_braces(reader, "interior_texture");
-        else if (const auto m = take_transform(reader)) {
+        } else if (const auto m = take_transform(reader)) {
             if (material.texture)
                 material.texture->pigment.placed = *m * material.texture->pigment.placed;
         } else
@@ -450,7 +473,7 @@ Texture parse_texture(Reader& reader) {
         else if (reader.take("tiles"))
             texture = parse_tiles(reader);
         else if (reader.take("normal")) {
-            reader.warn("normal", token.place, "normal patterns are left out");
+            texture.notes.push_back(normal_note(token));
             skip_braces(reader, "normal");
         } else if (is_texture_pattern(token) || is_color_map(token)) {
             reader.next();
@@ -459,7 +482,7 @@ Texture parse_texture(Reader& reader) {
             else if (is_list_pattern(token))
                 parse_list(reader, token, texture.pigment);
             else {
-                warn_average(reader, token);
+                texture.pigment.notes = average_note(token);
                 skip_arguments(reader);
             }
         } else if (token.kind == TokenKind::Name) {
@@ -471,7 +494,7 @@ Texture parse_texture(Reader& reader) {
     return texture;
 }
 
-Texture layered(const Texture& upper, const Texture& lower) {
+Texture layered(const Texture& upper, const Texture& lower, const Place& at) {
     const Color& over = upper.pigment.color;
     if (over.filter <= 0 && over.transmit <= 0 && !upper.pigment.other)
         return upper;
@@ -490,6 +513,8 @@ Texture layered(const Texture& upper, const Texture& lower) {
     if (upper.pigment.other)
         both.pigment.other = seen(*upper.pigment.other);
     both.surface = lower.surface;
+    both.notes.insert(both.notes.end(), lower.notes.begin(), lower.notes.end());
+    both.notes.push_back(make_note("layers", at, "layers of a texture are drawn as one"));
     return both;
 }
 

@@ -16,7 +16,11 @@ Material parse_material(Reader& reader);
 ColorMap parse_map(Reader& reader);
 
 /// `upper` as it is seen over `lower`.
-Texture layered(const Texture& upper, const Texture& lower);
+Texture layered(const Texture& upper, const Texture& lower, const Place& at);
+
+std::shared_ptr<const Note> normal_note(const Token& word);
+/// "WORD of a finish is left out"
+std::shared_ptr<const Note> left_out(std::string_view of, const Token& word);
 
 /// Passes over what belongs to a word: numbers, texts, a block.
 void skip_arguments(Reader& reader);

@@ -33,14 +33,19 @@ struct Number {
     static Number of(const dvec3& p) { return {{p.x, p.y, p.z}, 3, false}; }
 };
 
-/// Something about a look that is drawn by an approximation, or left out: a warning where the look is
-/// to be seen. kind: of several alike the first is told.
+/// Something about a look that is drawn by an approximation, or left out: a warning where the look
+/// is to be seen. kind: of several alike the first is told.
 struct Note {
     std::string kind;
     Place place;
     std::string sentence;
 };
 using Notes = std::vector<std::shared_ptr<const Note>>;
+
+inline std::shared_ptr<const Note> make_note(std::string kind, const Place& place,
+                                             std::string sentence) {
+    return std::make_shared<const Note>(Note{std::move(kind), place, std::move(sentence)});
+}
 
 /// A color with what it lets through: light x color x filter + light x transmit.
 struct Color {
