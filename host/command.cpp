@@ -4,7 +4,7 @@
 
 #include "host/interrupt.h"
 #include "host/suggestion.h"
-#include "plugin/overcast.h"
+#include "host/version.h"
 
 #include <fmt/format.h>
 
@@ -79,8 +79,7 @@ Result<int> run_command(const Arguments& arguments) {
         return kExitOk;
     }
     if (name == "--version" || name == "-V" || name == "version") {
-        fmt::print("overcast {}.{}.{}\n", OVC_VERSION / 10000, OVC_VERSION / 100 % 100,
-                   OVC_VERSION % 100);
+        fmt::print("overcast {}\n", version_text());
         return kExitOk;
     }
     return run_named(name, {arguments.begin() + 1, arguments.end()});
