@@ -318,24 +318,36 @@ static Result<RenderJob> understand(const RenderWords& words) {
     return job;
 }
 
-Result<int> run_render(const Arguments& arguments) {
-    CLI::App app{"Renders a picture of a scene with Whitted's model: shadows, mirrors and glass.",
-                 "overcast render"};
-    RenderWords words;
-    words.add_to(app);
-    app.footer(kExamples);
-    const Result<Arguments> translated = translate_pov_words(arguments);
-    if (!translated)
-        return translated.error();
-    const Result<Parsed> parsed = parse_arguments(app, *translated);
-    if (!parsed)
-        return parsed.error();
-    if (*parsed == Parsed::HelpShown)
-        return kExitOk;
-    const Result<RenderJob> job = understand(words);
-    if (!job)
-        return job.error();
-    return render(*job);
+namespace {
+
+class Render final : public Subcommand {
+public:
+    void add_to(CLI::App& app) override {
+        app.description(
+            "Renders a picture of a scene with Whitted's model: shadows, mirrors and glass.");
+        words_.add_to(app);
+        app.footer(kExamples);
+    }
+
+    Result<Arguments> in_our_words(const Arguments& arguments) override {
+        return translate_pov_words(arguments);
+    }
+
+    Result<int> run() override {
+        const Result<RenderJob> job = understand(words_);
+        if (!job)
+            return job.error();
+        return render(*job);
+    }
+
+private:
+    RenderWords words_;
+};
+
+} // namespace
+
+std::unique_ptr<Subcommand> make_render() {
+    return std::make_unique<Render>();
 }
 
 } // namespace ovc
