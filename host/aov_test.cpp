@@ -65,7 +65,7 @@ TEST(Aovs, OfAFileAreWhatEachPixelsRayHits) {
     const std::string path =
         (std::filesystem::temp_directory_path() / ("aov" + std::to_string(getpid()) + ".exr"))
             .string();
-    ASSERT_TRUE(save_image(Image(kWidth, kHeight), path, *layers));
+    ASSERT_TRUE(save_image(Image(kWidth, kHeight), path, {.layers = *layers}));
     const auto depth = channel(path, "depth.Z", Imf::FLOAT);
     const auto mesh = channel(path, "id.mesh", Imf::UINT),
                prim = channel(path, "id.prim", Imf::UINT);

@@ -2,9 +2,9 @@
 // The table of subcommands, and the program's own help and version.
 #include "host/command.h"
 
-#include "host/interrupt.h"
+#include "host/arguments.h"
 #include "host/suggestion.h"
-#include "plugin/overcast.h"
+#include "host/version.h"
 
 #include <fmt/format.h>
 
@@ -13,14 +13,14 @@
 namespace ovc {
 
 static constexpr Command kCommands[] = {
-    {"render", "Render a picture of a scene", run_render},
-    {"info", "Say what a scene consists of and needs", run_info},
-    {"trace", "Answer rays from standard input", run_trace},
-    {"convert", "Write a scene as .ply or .obj", run_convert},
-    {"devices", "List the GPUs and software renderers there are", run_devices},
-    {"scenes", "List the generated test scenes", run_scenes},
-    {"report", "Measure what the documents claim", run_report},
-    {"bench", "Time rays, certified and fast, beside peers", run_bench},
+    {"render", "Render a picture of a scene", make_render},
+    {"info", "Say what a scene consists of and needs", make_info},
+    {"trace", "Answer rays from standard input", make_trace},
+    {"convert", "Write a scene as .ply or .obj", make_convert},
+    {"devices", "List the GPUs and software renderers there are", make_devices},
+    {"scenes", "List the generated test scenes", make_scenes},
+    {"report", "Measure what the documents claim", make_report},
+    {"bench", "Time rays, certified and fast, beside peers", make_bench},
 };
 
 /// Subcommands that the design has and this version does not.
@@ -61,10 +61,23 @@ static Error unknown_command(std::string_view name) {
                         hint.empty() ? "; see overcast --help" : hint)};
 }
 
+static Result<int> run(const Command& command, const Arguments& arguments) {
+    const std::unique_ptr<Subcommand> subcommand = command.make();
+    CLI::App app{"", fmt::format("overcast {}", command.name)};
+    subcommand->add_to(app);
+    const Result<Arguments> ours = subcommand->in_our_words(arguments);
+    if (!ours)
+        return ours.error();
+    const Result<Parsed> parsed = parse_arguments(app, *ours);
+    if (!parsed)
+        return parsed.error();
+    return *parsed == Parsed::HelpShown ? kExitOk : subcommand->run();
+}
+
 static Result<int> run_named(const std::string& name, const Arguments& arguments) {
     for (const Command& command : kCommands)
         if (command.name == name)
-            return command.run(arguments);
+            return run(command, arguments);
     return unknown_command(name);
 }
 
@@ -79,8 +92,7 @@ Result<int> run_command(const Arguments& arguments) {
         return kExitOk;
     }
     if (name == "--version" || name == "-V" || name == "version") {
-        fmt::print("overcast {}.{}.{}\n", OVC_VERSION / 10000, OVC_VERSION / 100 % 100,
-                   OVC_VERSION % 100);
+        fmt::print("overcast {}\n", version_text());
         return kExitOk;
     }
     return run_named(name, {arguments.begin() + 1, arguments.end()});

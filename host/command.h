@@ -1,32 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subcommands. Each parses its own arguments and runs; the result is an exit code, or the
-// sentence to fail with.
+// The subcommands, and the program that hands over to them.
 #pragma once
 
 #include "core/result.h"
+#include "host/interrupt.h"
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace ovc {
 
 using Arguments = std::vector<std::string>;
 
-Result<int> run_render(const Arguments& arguments);
-Result<int> run_info(const Arguments& arguments);
-Result<int> run_trace(const Arguments& arguments);
-Result<int> run_convert(const Arguments& arguments);
-Result<int> run_devices(const Arguments& arguments);
-Result<int> run_scenes(const Arguments& arguments);
-Result<int> run_report(const Arguments& arguments);
-Result<int> run_bench(const Arguments& arguments);
+/// The words that a subcommand takes, and what it does with them.
+class Subcommand {
+public:
+    virtual ~Subcommand() = default;
+    /// Describes itself, its options and examples, to an app that does not outlive it: to be
+    /// parsed, or only to be told of in a manual.
+    virtual void add_to(CLI::App& app) = 0;
+    /// The arguments in words that the app knows: other programs' spellings in ours.
+    virtual Result<Arguments> in_our_words(const Arguments& arguments) { return arguments; }
+    /// Once the app has parsed them. The result is an exit code, or the sentence to fail with.
+    virtual Result<int> run() = 0;
+};
+
+std::unique_ptr<Subcommand> make_render();
+std::unique_ptr<Subcommand> make_info();
+std::unique_ptr<Subcommand> make_trace();
+std::unique_ptr<Subcommand> make_convert();
+std::unique_ptr<Subcommand> make_devices();
+std::unique_ptr<Subcommand> make_scenes();
+std::unique_ptr<Subcommand> make_report();
+std::unique_ptr<Subcommand> make_bench();
 
 struct Command {
     std::string_view name;
-    std::string_view summary;
-    Result<int> (*run)(const Arguments& arguments);
+    std::string_view summary; // a line of the program's help
+    std::unique_ptr<Subcommand> (*make)();
+    int exit_on_error = kExitError;
 };
 
 /// In the order of the help.

@@ -196,23 +196,30 @@ Result<int> bench(const BenchJob& job) {
     return kExitInterrupted;
 }
 
+class Bench final : public Subcommand {
+public:
+    void add_to(CLI::App& app) override {
+        app.description("Times how rays are answered: the plugin certified and fast, and its "
+                        "peers.");
+        words_.add_to(app);
+        app.footer(kExamples);
+    }
+
+    Result<int> run() override {
+        const Result<BenchJob> job = understand_bench(words_);
+        if (!job)
+            return job.error();
+        return bench(*job);
+    }
+
+private:
+    BenchWords words_;
+};
+
 } // namespace
 
-Result<int> run_bench(const Arguments& arguments) {
-    CLI::App app{"Times how rays are answered: the plugin certified and fast, and its peers.",
-                 "overcast bench"};
-    BenchWords words;
-    words.add_to(app);
-    app.footer(kExamples);
-    const Result<Parsed> parsed = parse_arguments(app, arguments);
-    if (!parsed)
-        return parsed.error();
-    if (*parsed == Parsed::HelpShown)
-        return kExitOk;
-    const Result<BenchJob> job = understand_bench(words);
-    if (!job)
-        return job.error();
-    return bench(*job);
+std::unique_ptr<Subcommand> make_bench() {
+    return std::make_unique<Bench>();
 }
 
 } // namespace ovc

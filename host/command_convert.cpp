@@ -106,43 +106,53 @@ static Result<Done> convert_to_mesh(const SceneArguments& source, const std::str
     return Done{};
 }
 
-Result<int> run_convert(const Arguments& arguments) {
-    CLI::App app{"Writes the triangles of a scene as .ply (binary) or .obj, or all of it and what "
-                 "tracing builds as .ovc, which starts at once (docs/cache.md).",
-                 "overcast convert"};
-    SceneArguments source;
-    std::string output;
-    bool quiet = false;
-    BackendArguments backend; // for .ovc
-    source.add_to(app, "IN");
-    app.add_option("OUT", output, "The file to write; replaced only once the new one is complete")
-        ->required();
-    app.add_flag("--quiet", quiet, "Print nothing but warnings and errors");
-    backend.add_to(app);
-    app.footer(kExamples);
-    const Result<Parsed> parsed = parse_arguments(app, arguments);
-    if (!parsed)
-        return parsed.error();
-    if (*parsed == Parsed::HelpShown)
-        return kExitOk;
+namespace {
 
-    if (const Result<Done> fine = check_output(output); !fine)
-        return fine.error();
-    if (const Result<Done> fine = source.check(); !fine)
-        return fine.error();
-    std::vector<NamedFile> files = source.files();
-    files.push_back({"output", output});
-    if (const Result<Done> fine = check_distinct(files); !fine)
-        return fine.error();
-    const Result<BackendOptions> backend_options = backend.resolve();
-    if (!backend_options)
-        return backend_options.error();
-    const Result<Done> done = extension_of(output) == ".ovc"
-                                  ? convert_to_scene_file(source, *backend_options, output)
-                                  : convert_to_mesh(source, output, quiet);
-    if (!done)
-        return done.error();
-    return kExitOk;
+class Convert final : public Subcommand {
+public:
+    void add_to(CLI::App& app) override {
+        app.description("Writes the triangles of a scene as .ply (binary) or .obj, or all of it "
+                        "and what tracing builds as .ovc, which starts at once (docs/cache.md).");
+        source_.add_to(app, "IN");
+        app.add_option("OUT", output_,
+                       "The file to write; replaced only once the new one is complete")
+            ->required();
+        app.add_flag("--quiet", quiet_, "Print nothing but warnings and errors");
+        backend_.add_to(app);
+        app.footer(kExamples);
+    }
+
+    Result<int> run() override {
+        if (const Result<Done> fine = check_output(output_); !fine)
+            return fine.error();
+        if (const Result<Done> fine = source_.check(); !fine)
+            return fine.error();
+        std::vector<NamedFile> files = source_.files();
+        files.push_back({"output", output_});
+        if (const Result<Done> fine = check_distinct(files); !fine)
+            return fine.error();
+        const Result<BackendOptions> backend_options = backend_.resolve();
+        if (!backend_options)
+            return backend_options.error();
+        const Result<Done> done = extension_of(output_) == ".ovc"
+                                      ? convert_to_scene_file(source_, *backend_options, output_)
+                                      : convert_to_mesh(source_, output_, quiet_);
+        if (!done)
+            return done.error();
+        return kExitOk;
+    }
+
+private:
+    SceneArguments source_;
+    std::string output_;
+    bool quiet_ = false;
+    BackendArguments backend_; // for .ovc
+};
+
+} // namespace
+
+std::unique_ptr<Subcommand> make_convert() {
+    return std::make_unique<Convert>();
 }
 
 } // namespace ovc

@@ -31,27 +31,34 @@ static std::string describe(size_t number, const ovc_device_info& info) {
                        human_count(info.max_buffer_texels));
 }
 
-Result<int> run_devices(const Arguments& arguments) {
-    CLI::App app{"Lists the devices that rays can be traced on, by number and name.",
-                 "overcast devices"};
-    app.footer(kExamples);
-    const Result<Parsed> parsed = parse_arguments(app, arguments);
-    if (!parsed)
-        return parsed.error();
-    if (*parsed == Parsed::HelpShown)
-        return kExitOk;
+namespace {
 
-    const Result<const ovc_api*> api = load_plugin();
-    if (!api)
-        return api.error();
-    const Result<std::vector<ovc_device_info>> infos = list_devices(*api);
-    if (!infos)
-        return infos.error();
-    for (size_t i = 0; i < infos->size(); ++i)
-        fmt::print("{}", describe(i, (*infos)[i]));
-    if (infos->empty())
-        fmt::print("no devices; --backend cpu-kdtree traces on the CPU\n");
-    return kExitOk;
+class Devices final : public Subcommand {
+public:
+    void add_to(CLI::App& app) override {
+        app.description("Lists the devices that rays can be traced on, by number and name.");
+        app.footer(kExamples);
+    }
+
+    Result<int> run() override {
+        const Result<const ovc_api*> api = load_plugin();
+        if (!api)
+            return api.error();
+        const Result<std::vector<ovc_device_info>> infos = list_devices(*api);
+        if (!infos)
+            return infos.error();
+        for (size_t i = 0; i < infos->size(); ++i)
+            fmt::print("{}", describe(i, (*infos)[i]));
+        if (infos->empty())
+            fmt::print("no devices; --backend cpu-kdtree traces on the CPU\n");
+        return kExitOk;
+    }
+};
+
+} // namespace
+
+std::unique_ptr<Subcommand> make_devices() {
+    return std::make_unique<Devices>();
 }
 
 } // namespace ovc

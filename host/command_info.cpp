@@ -167,42 +167,50 @@ static std::string info_text(const std::string& source, const Scene& scene, cons
     return text + plan_text(plan);
 }
 
-Result<int> run_info(const Arguments& arguments) {
-    CLI::App app{
-        "Says what a scene consists of, what it needs, what is left out of it, and, before "
-        "anything is built, how it would be traced.",
-        "overcast info"};
-    SceneArguments source;
-    bool json = false;
-    source.add_to(app);
-    BackendArguments backend;
-    backend.add_to(app);
-    app.add_flag("--json", json, "As JSON, for a program");
-    app.footer(kExamples);
-    const Result<Parsed> parsed = parse_arguments(app, arguments);
-    if (!parsed)
-        return parsed.error();
-    if (*parsed == Parsed::HelpShown)
-        return kExitOk;
+namespace {
 
-    if (const Result<Done> fine = source.check(); !fine)
-        return fine.error();
-    const Result<BackendOptions> options = backend.resolve();
-    if (!options)
-        return options.error();
-    const Result<Scene> scene = open_scene(source, standard_error_log(/* chatty= */ false));
-    if (!scene)
-        return scene.error();
-    SceneSummary summary = summarize(*scene);
-    const Result<ovc_plan> plan =
-        make_plan(scene->soup, *options, standard_error_log(/* chatty= */ false));
-    summary.needs =
-        needs_of(*scene, {/* shadows= */ true, options->precision == OVC_PRECISION_CERTIFIED,
-                          plan ? plan->leaves : 2});
-    summary.left_out = left_out_of(*scene, summary.needs);
-    fmt::print("{}", json ? info_json(*scene, summary, plan)
-                          : info_text(source.scene, *scene, summary, plan));
-    return kExitOk;
+class Info final : public Subcommand {
+public:
+    void add_to(CLI::App& app) override {
+        app.description("Says what a scene consists of, what it needs, what is left out of it, "
+                        "and, before anything is built, how it would be traced.");
+        source_.add_to(app);
+        backend_.add_to(app);
+        app.add_flag("--json", json_, "As JSON, for a program");
+        app.footer(kExamples);
+    }
+
+    Result<int> run() override {
+        if (const Result<Done> fine = source_.check(); !fine)
+            return fine.error();
+        const Result<BackendOptions> options = backend_.resolve();
+        if (!options)
+            return options.error();
+        const LogSink log = standard_error_log(/* chatty= */ false);
+        const Result<Scene> scene = open_scene(source_, log);
+        if (!scene)
+            return scene.error();
+        SceneSummary summary = summarize(*scene);
+        const Result<ovc_plan> plan = make_plan(scene->soup, *options, log);
+        summary.needs =
+            needs_of(*scene, {/* shadows= */ true, options->precision == OVC_PRECISION_CERTIFIED,
+                              plan ? plan->leaves : 2});
+        summary.left_out = left_out_of(*scene, summary.needs);
+        fmt::print("{}", json_ ? info_json(*scene, summary, plan)
+                               : info_text(source_.scene, *scene, summary, plan));
+        return kExitOk;
+    }
+
+private:
+    SceneArguments source_;
+    BackendArguments backend_;
+    bool json_ = false;
+};
+
+} // namespace
+
+std::unique_ptr<Subcommand> make_info() {
+    return std::make_unique<Info>();
 }
 
 } // namespace ovc

@@ -53,6 +53,7 @@ struct RenderWords {
     std::string max_depth;
     std::string mode = "auto";
     std::string aov;
+    std::string png_bits = "8";
     bool no_shadows = false;
     bool working_set = false;
     BackendArguments backend;
@@ -113,6 +114,7 @@ void RenderWords::add_to(CLI::App& app) {
                    "depth, normal, id (mesh and triangle), leaf (of level 1), passes (that the "
                    "ray took part in)")
         ->type_name("NAMES");
+    app.add_option("--png-bits", png_bits, "Bits a channel of .png files: 8 or 16")->type_name("N");
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
     app.add_option("--cache", cache,
                    "Keep the scene and what is built of it in this folder, and start from there "
@@ -254,6 +256,15 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
     return Done{};
 }
 
+static Result<Done> understand_png(const RenderWords& words, RenderJob& job) {
+    static constexpr std::string_view bits[] = {"8", "16"};
+    const Result<size_t> choice = parse_choice("--png-bits", words.png_bits, bits);
+    if (!choice)
+        return choice.error();
+    job.png_bits = *choice == 0 ? 8 : 16;
+    return Done{};
+}
+
 static Result<Done> understand_aovs(const RenderWords& words, RenderJob& job) {
     if (words.aov.empty())
         return Done{};
@@ -291,6 +302,8 @@ static Result<RenderJob> understand(const RenderWords& words) {
         return fine.error();
     if (const Result<Done> fine = understand_shading(words, job); !fine)
         return fine.error();
+    if (const Result<Done> fine = understand_png(words, job); !fine)
+        return fine.error();
     if (const Result<Done> fine = understand_aovs(words, job); !fine)
         return fine.error();
     const Result<BackendOptions> backend = words.backend.resolve();
@@ -305,24 +318,36 @@ static Result<RenderJob> understand(const RenderWords& words) {
     return job;
 }
 
-Result<int> run_render(const Arguments& arguments) {
-    CLI::App app{"Renders a picture of a scene with Whitted's model: shadows, mirrors and glass.",
-                 "overcast render"};
-    RenderWords words;
-    words.add_to(app);
-    app.footer(kExamples);
-    const Result<Arguments> translated = translate_pov_words(arguments);
-    if (!translated)
-        return translated.error();
-    const Result<Parsed> parsed = parse_arguments(app, *translated);
-    if (!parsed)
-        return parsed.error();
-    if (*parsed == Parsed::HelpShown)
-        return kExitOk;
-    const Result<RenderJob> job = understand(words);
-    if (!job)
-        return job.error();
-    return render(*job);
+namespace {
+
+class Render final : public Subcommand {
+public:
+    void add_to(CLI::App& app) override {
+        app.description(
+            "Renders a picture of a scene with Whitted's model: shadows, mirrors and glass.");
+        words_.add_to(app);
+        app.footer(kExamples);
+    }
+
+    Result<Arguments> in_our_words(const Arguments& arguments) override {
+        return translate_pov_words(arguments);
+    }
+
+    Result<int> run() override {
+        const Result<RenderJob> job = understand(words_);
+        if (!job)
+            return job.error();
+        return render(*job);
+    }
+
+private:
+    RenderWords words_;
+};
+
+} // namespace
+
+std::unique_ptr<Subcommand> make_render() {
+    return std::make_unique<Render>();
 }
 
 } // namespace ovc

@@ -275,46 +275,58 @@ Result<int> make_report(const Report& report, const std::string& folder) {
     return interrupt.interrupted() ? kExitInterrupted : kExitOk;
 }
 
+class ReportCommand final : public Subcommand {
+public:
+    void add_to(CLI::App& app) override {
+        app.description("Measures what the documents claim.");
+        app.add_option("--only", given_.only, "The report to make: stability or leaks")
+            ->type_name("NAME");
+        app.add_option("-o,--output", given_.folder,
+                       "Also write NAME.md and NAME.json into this folder")
+            ->type_name("DIR");
+        app.add_flag("--quick", given_.quick,
+                     "The short form: a tenth of the rays; for leaks, 1e6");
+        app.add_option("--times", given_.times,
+                       "For stability: so many times the rays of the short form; default: 10")
+            ->type_name("N");
+        app.add_option("--rays", given_.rays, "For leaks: how many rays altogether; default: 1e8")
+            ->type_name("N");
+        app.add_option("--case", given_.name_part, "Only the cases with this in their name")
+            ->type_name("TEXT");
+        app.add_option(
+               "--data", given_.data,
+               "A folder with meshes/stanford-dragon/dragon_vrip.ply, for cases on the dragon")
+            ->type_name("DIR");
+        app.add_option(
+               "--backend", given_.backend,
+               "What is asked: two-level (the default) or another that `overcast trace` has")
+            ->type_name("NAME");
+        app.add_option("--device", given_.device,
+                       "A number or a part of a name from `overcast devices`")
+            ->type_name("NAME");
+        app.add_option("--kernel", given_.kernel, "auto (the faster one), fragment or compute")
+            ->type_name("NAME");
+        app.footer(kExamples);
+    }
+
+    Result<int> run() override {
+        if (const Result<Done> known = check_name(given_.only); !known)
+            return known.error();
+        Result<Report> report =
+            given_.only == kReports[0] ? stability_report(given_) : leak_report(given_);
+        if (!report)
+            return report.error();
+        return make_report(*report, given_.folder);
+    }
+
+private:
+    ReportArguments given_;
+};
+
 } // namespace
 
-Result<int> run_report(const Arguments& arguments) {
-    CLI::App app{"Measures what the documents claim.", "overcast report"};
-    ReportArguments given;
-    app.add_option("--only", given.only, "The report to make: stability or leaks")
-        ->type_name("NAME");
-    app.add_option("-o,--output", given.folder, "Also write NAME.md and NAME.json into this folder")
-        ->type_name("DIR");
-    app.add_flag("--quick", given.quick, "The short form: a tenth of the rays; for leaks, 1e6");
-    app.add_option("--times", given.times,
-                   "For stability: so many times the rays of the short form; default: 10")
-        ->type_name("N");
-    app.add_option("--rays", given.rays, "For leaks: how many rays altogether; default: 1e8")
-        ->type_name("N");
-    app.add_option("--case", given.name_part, "Only the cases with this in their name")
-        ->type_name("TEXT");
-    app.add_option("--data", given.data,
-                   "A folder with meshes/stanford-dragon/dragon_vrip.ply, for cases on the dragon")
-        ->type_name("DIR");
-    app.add_option("--backend", given.backend,
-                   "What is asked: two-level (the default) or another that `overcast trace` has")
-        ->type_name("NAME");
-    app.add_option("--device", given.device, "A number or a part of a name from `overcast devices`")
-        ->type_name("NAME");
-    app.add_option("--kernel", given.kernel, "auto (the faster one), fragment or compute")
-        ->type_name("NAME");
-    app.footer(kExamples);
-    const Result<Parsed> parsed = parse_arguments(app, arguments);
-    if (!parsed)
-        return parsed.error();
-    if (*parsed == Parsed::HelpShown)
-        return kExitOk;
-    if (const Result<Done> known = check_name(given.only); !known)
-        return known.error();
-    Result<Report> report =
-        given.only == kReports[0] ? stability_report(given) : leak_report(given);
-    if (!report)
-        return report.error();
-    return make_report(*report, given.folder);
+std::unique_ptr<Subcommand> make_report() {
+    return std::make_unique<ReportCommand>();
 }
 
 } // namespace ovc

@@ -19,22 +19,30 @@ A scene with frames has a camera path; these are its first two frames:
 dragons-N and dragonball show a generated dragon, or a model of yours:
   overcast render dragons-3 --model dragon.ply)";
 
-Result<int> run_scenes(const Arguments& arguments) {
-    CLI::App app{"Lists the test scenes that are generated on demand.", "overcast scenes"};
-    app.footer(kExamples);
-    const Result<Parsed> parsed = parse_arguments(app, arguments);
-    if (!parsed)
-        return parsed.error();
-    if (*parsed == Parsed::HelpShown)
-        return kExitOk;
+namespace {
 
-    size_t widest = 0;
-    for (const CatalogEntry& entry : catalog())
-        widest = std::max(widest, entry.name.size());
-    for (const CatalogEntry& entry : catalog())
-        fmt::print("{:<{}}  {}{}\n", entry.name, widest, entry.description,
-                   entry.frames > 0 ? fmt::format("; {} frames", entry.frames) : "");
-    return kExitOk;
+class Scenes final : public Subcommand {
+public:
+    void add_to(CLI::App& app) override {
+        app.description("Lists the test scenes that are generated on demand.");
+        app.footer(kExamples);
+    }
+
+    Result<int> run() override {
+        size_t widest = 0;
+        for (const CatalogEntry& entry : catalog())
+            widest = std::max(widest, entry.name.size());
+        for (const CatalogEntry& entry : catalog())
+            fmt::print("{:<{}}  {}{}\n", entry.name, widest, entry.description,
+                       entry.frames > 0 ? fmt::format("; {} frames", entry.frames) : "");
+        return kExitOk;
+    }
+};
+
+} // namespace
+
+std::unique_ptr<Subcommand> make_scenes() {
+    return std::make_unique<Scenes>();
 }
 
 } // namespace ovc

@@ -29,42 +29,52 @@ Examples:
   overcast trace dragon.ply --any < rays.txt > shadows.txt
   overcast trace dragon.ply --binary --gpu-memory 64M < rays.bin > hits.bin)";
 
-Result<int> run_trace(const Arguments& arguments) {
-    CLI::App app{"Answers rays: where each first hits the scene, or whether it hits it at all.",
-                 "overcast trace"};
-    SceneArguments source;
-    TraceOptions options;
-    BackendArguments words;
-    source.add_to(app);
-    app.add_flag("--any", options.any, "Only whether a ray hits anything");
-    app.add_flag("--binary", options.binary, "Records of doubles instead of lines, in and out");
-    words.add_to(app);
-    app.footer(kExamples);
-    const Result<Parsed> parsed = parse_arguments(app, arguments);
-    if (!parsed)
-        return parsed.error();
-    if (*parsed == Parsed::HelpShown)
-        return kExitOk;
+namespace {
 
-    const Result<BackendOptions> backend_options = words.resolve();
-    if (!backend_options)
-        return backend_options.error();
-    if (const Result<Done> fine = source.check(); !fine)
-        return fine.error();
-    const LogSink log = standard_error_log(/* chatty= */ false);
-    const Result<Scene> scene = open_scene(source, log);
-    if (!scene)
-        return scene.error();
-    BackendOptions options_of_scene = *backend_options;
-    options_of_scene.saved = scene->saved;
-    const Result<std::unique_ptr<Backend>> backend =
-        make_backend(scene->soup, options_of_scene, log);
-    if (!backend)
-        return backend.error();
-    const Result<Done> done = trace_stream(**backend, STDIN_FILENO, STDOUT_FILENO, options);
-    if (!done)
-        return done.error();
-    return kExitOk;
+class Trace final : public Subcommand {
+public:
+    void add_to(CLI::App& app) override {
+        app.description(
+            "Answers rays: where each first hits the scene, or whether it hits it at all.");
+        source_.add_to(app);
+        app.add_flag("--any", options_.any, "Only whether a ray hits anything");
+        app.add_flag("--binary", options_.binary,
+                     "Records of doubles instead of lines, in and out");
+        backend_.add_to(app);
+        app.footer(kExamples);
+    }
+
+    Result<int> run() override {
+        Result<BackendOptions> backend_options = backend_.resolve();
+        if (!backend_options)
+            return backend_options.error();
+        if (const Result<Done> fine = source_.check(); !fine)
+            return fine.error();
+        const LogSink log = standard_error_log(/* chatty= */ false);
+        const Result<Scene> scene = open_scene(source_, log);
+        if (!scene)
+            return scene.error();
+        backend_options->saved = scene->saved;
+        const Result<std::unique_ptr<Backend>> backend =
+            make_backend(scene->soup, *backend_options, log);
+        if (!backend)
+            return backend.error();
+        const Result<Done> done = trace_stream(**backend, STDIN_FILENO, STDOUT_FILENO, options_);
+        if (!done)
+            return done.error();
+        return kExitOk;
+    }
+
+private:
+    SceneArguments source_;
+    TraceOptions options_;
+    BackendArguments backend_;
+};
+
+} // namespace
+
+std::unique_ptr<Subcommand> make_trace() {
+    return std::make_unique<Trace>();
 }
 
 } // namespace ovc

@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
 #include <exception>
@@ -32,10 +33,12 @@ private:
     size_t at_ = 0;
 };
 
-Result<std::string> encode_exr(const Image& image, std::span<const Layer> layers) {
+Result<std::string> encode_exr(const Image& image, const FileContents& contents) {
     try {
         Imf::Header header(int(image.width), int(image.height));
         header.compression() = Imf::ZIP_COMPRESSION;
+        for (const FileNote& note : contents.notes)
+            header.insert(note.name, Imf::StringAttribute(note.text));
         Imf::FrameBuffer frame;
         for (int channel = 0; channel < 4; ++channel) {
             const char name[] = {"RGBA"[channel], '\0'};
@@ -47,7 +50,7 @@ Result<std::string> encode_exr(const Image& image, std::span<const Layer> layers
             frame.insert(name,
                          Imf::Slice(Imf::FLOAT, first, sizeof(vec4), sizeof(vec4) * image.width));
         }
-        for (const Layer& layer : layers) {
+        for (const Layer& layer : contents.layers) {
             const Imf::PixelType type = layer.type == Layer::Type::Float ? Imf::FLOAT : Imf::UINT;
             header.channels().insert(layer.name, Imf::Channel(type));
             char* first = const_cast<char*>(reinterpret_cast<const char*>(layer.values.data()));

@@ -16,15 +16,10 @@ namespace fs = std::filesystem;
 struct ImageFormat {
     std::string_view extension;
     bool layers;
-    Result<std::string> (*encode)(const Image&, std::span<const Layer>);
+    Result<std::string> (*encode)(const Image&, const FileContents&);
 };
 
-static Result<std::string> encode_png_alone(const Image& image, std::span<const Layer>) {
-    return encode_png(image);
-}
-
-static constexpr ImageFormat kFormats[] = {{".png", false, encode_png_alone},
-                                           {".exr", true, encode_exr}};
+static constexpr ImageFormat kFormats[] = {{".png", false, encode_png}, {".exr", true, encode_exr}};
 
 static const ImageFormat* format_of(const fs::path& path) {
     std::string extension = path.extension();
@@ -66,12 +61,12 @@ bool takes_layers(const fs::path& path) {
     return format && format->layers;
 }
 
-Result<Done> save_image(const Image& image, const fs::path& path, std::span<const Layer> layers) {
+Result<Done> save_image(const Image& image, const fs::path& path, const FileContents& contents) {
     const ImageFormat* format = format_of(path);
     if (!format)
         return Error{
             fmt::format("the output file '{}' ends in neither .png nor .exr", path.string())};
-    const Result<std::string> bytes = format->encode(image, layers);
+    const Result<std::string> bytes = format->encode(image, contents);
     if (!bytes)
         return Error{
             fmt::format("{}: cannot be written: {}", path.string(), bytes.error().message)};

@@ -42,17 +42,29 @@ struct Layer {
 /// Whether files of this name hold layers.
 bool takes_layers(const std::filesystem::path& path);
 
+/// A name and a text that an .exr file keeps with the picture.
+struct FileNote {
+    std::string name; // "overcast:version"
+    std::string text;
+};
+
+/// What goes into a file besides its picture, as far as its format has room for it.
+struct FileContents {
+    std::vector<Layer> layers;   // .exr
+    std::vector<FileNote> notes; // .exr
+    int png_bits = 8;            // a channel, 8 or 16
+};
+
 /// Writes `image` in the format of the extension. On an error what was at `path` stays, and nothing
 /// else remains; so it is with save_text.
-/// layers: further channels, which .png has no room for.
 Result<Done> save_image(const Image& image, const std::filesystem::path& path,
-                        std::span<const Layer> layers = {});
+                        const FileContents& contents = {});
 
 /// Writes `text`.
 Result<Done> save_text(std::string_view text, const std::filesystem::path& path);
 
 /// The bytes of a file in one format each; the error says only what went wrong.
-Result<std::string> encode_png(const Image& image);
-Result<std::string> encode_exr(const Image& image, std::span<const Layer> layers = {});
+Result<std::string> encode_png(const Image& image, const FileContents& contents = {});
+Result<std::string> encode_exr(const Image& image, const FileContents& contents = {});
 
 } // namespace ovc

@@ -121,17 +121,18 @@ private:
     }
 
     Result<Done> save_all(const Image& image, const Shot& shot) {
-        std::vector<Layer> layers;
+        FileContents contents;
+        contents.png_bits = job_.png_bits;
         if (job_.aovs.any()) {
             Result<std::vector<Layer>> traced =
                 trace_aovs(scene_, shot.camera, backend_, job_.aovs, image.width, image.height);
             if (!traced)
                 return traced.error();
-            layers = std::move(*traced);
+            contents.layers = std::move(*traced);
         }
         for (const std::string& output : job_.outputs)
             if (const Result<Done> saved = save_image(
-                    image, is_sequence() ? frame_file(output, shot.frame) : output, layers);
+                    image, is_sequence() ? frame_file(output, shot.frame) : output, contents);
                 !saved)
                 return saved;
         return Done{};

@@ -38,6 +38,7 @@ struct RenderJob {
     uint32_t samples = 1;              // camera rays a pixel
     BackendOptions backend;
     Aovs aovs;         // in the outputs that take layers
+    int png_bits = 8;  // a channel, 8 or 16
     std::string cache; // folder where scenes and levels are kept; empty: none
     std::string stats;
     bool quiet = false;

@@ -29,7 +29,7 @@ PLACES = {
     r"epoxy/": ["gpu/gl.h"],
     r"(EGL|GL|GLES\d?|KHR)/": [],
     r"(OpenEXR/|Imf)": ["host/image_exr.cpp"],
-    r"png\.h": ["host/image_png.cpp", "importers/pov/picture_png.cpp"],  # written; read
+    r"png\.h": ["importers/png.cpp"],
     r"embree": ["host/backend_embree.cpp"],
     r"boost/": ["importers/csg/exact.h"],
     r"(gtest|gmock)/": [],

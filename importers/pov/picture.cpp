@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/pov/picture.h"
 
+#include "importers/png.h"
+
 #include <fmt/format.h>
 
 #include <cstring>
@@ -32,16 +34,6 @@ Result<Picture> read_any(Bytes file, const std::filesystem::path& path) {
 }
 
 } // namespace
-
-Result<Picture> make_picture(uint64_t width, uint64_t height) {
-    if (width == 0 || height == 0 || width > kMostPixels || height > kMostPixels / width)
-        return Error{fmt::format("found a picture of {} x {}, expected 1 to {} pixels", width,
-                                 height, kMostPixels)};
-    Picture picture;
-    picture.width = uint32_t(width);
-    picture.height = uint32_t(height);
-    return picture;
-}
 
 Result<Picture> read_picture(const std::filesystem::path& path) {
     std::error_code ec;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG, by libpng's long interface: the short one does not tell the numbers of colors in their
-// table.
-#include "importers/pov/picture.h"
+// PNG by libpng, whose errors jump: what lives across a jump stands in a struct outside. The only
+// file that sees libpng. Indexed pictures keep the numbers of colors in their table.
+#include "importers/png.h"
 
 #include <png.h>
 
 #include <csetjmp>
 #include <cstring>
-#include <string>
+#include <vector>
 
-namespace ovc::pov {
+namespace ovc {
 
 namespace {
 
@@ -17,7 +17,7 @@ namespace {
 struct Reading {
     png_structp png = nullptr;
     png_infop info = nullptr;
-    Bytes file;
+    std::span<const uint8_t> file;
     size_t at = 0;
     std::string error;
     std::vector<uint8_t> data;
@@ -28,7 +28,7 @@ struct Reading {
 };
 
 void on_error(png_structp png, png_const_charp message) {
-    static_cast<Reading*>(png_get_error_ptr(png))->error = message;
+    *static_cast<std::string*>(png_get_error_ptr(png)) = message;
     png_longjmp(png, 1);
 }
 
@@ -94,12 +94,60 @@ void decode(Reading& r) {
     }
 }
 
+/// The same for the other way.
+struct Writing {
+    png_structp png = nullptr;
+    png_infop info = nullptr;
+    std::string error;
+    std::string bytes;
+    std::vector<uint8_t> row;
+
+    ~Writing() { png_destroy_write_struct(&png, &info); }
+};
+
+void write_bytes(png_structp png, png_bytep data, size_t count) {
+    static_cast<Writing*>(png_get_io_ptr(png))->bytes.append(reinterpret_cast<char*>(data), count);
+}
+
+void flush_nothing(png_structp) {}
+
+void say_software(const Writing& w, const std::string& software) {
+    png_text text{};
+    text.compression = PNG_TEXT_COMPRESSION_NONE;
+    char key[] = "Software"; // libpng only reads both
+    text.key = key;
+    text.text = const_cast<char*>(software.c_str());
+    text.text_length = software.size();
+    png_set_text(w.png, w.info, &text, 1);
+}
+
+void encode(Writing& w, const PngPixels& pixels, const std::string& software) {
+    png_set_write_fn(w.png, &w, write_bytes, flush_nothing);
+    png_set_IHDR(w.png, w.info, pixels.width, pixels.height, pixels.bits, PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB_gAMA_and_cHRM(w.png, w.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    say_software(w, software);
+    png_write_info(w.png, w.info);
+    const size_t samples = size_t(pixels.width) * 3;
+    const size_t sample_bytes = size_t(pixels.bits) / 8;
+    w.row.resize(samples * sample_bytes);
+    for (uint32_t y = 0; y < pixels.height; ++y) {
+        const uint16_t* from = pixels.samples.data() + y * samples;
+        for (size_t i = 0; i < samples; ++i)
+            for (size_t byte = 0; byte < sample_bytes; ++byte) // the high one first
+                w.row[i * sample_bytes + byte] = uint8_t(from[i] >> (8 - 8 * byte));
+        png_write_row(w.png, w.row.data());
+    }
+    png_write_end(w.png, w.info);
+}
+
 } // namespace
 
-Result<Picture> read_png(Bytes file) {
+Result<Picture> read_png(std::span<const uint8_t> file) {
     Reading reading;
     reading.file = file;
-    reading.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reading, on_error, on_warning);
+    reading.png =
+        png_create_read_struct(PNG_LIBPNG_VER_STRING, &reading.error, on_error, on_warning);
     reading.info = reading.png ? png_create_info_struct(reading.png) : nullptr;
     if (!reading.info)
         return Error{"libpng cannot be started"};
@@ -109,4 +157,17 @@ Result<Picture> read_png(Bytes file) {
     return std::move(reading.picture);
 }
 
-} // namespace ovc::pov
+Result<std::string> write_png(const PngPixels& pixels, const std::string& software) {
+    Writing writing;
+    writing.png =
+        png_create_write_struct(PNG_LIBPNG_VER_STRING, &writing.error, on_error, on_warning);
+    writing.info = writing.png ? png_create_info_struct(writing.png) : nullptr;
+    if (!writing.info)
+        return Error{"libpng cannot be started"};
+    if (setjmp(png_jmpbuf(writing.png)) != 0)
+        return Error{writing.error};
+    encode(writing, pixels, software);
+    return std::move(writing.bytes);
+}
+
+} // namespace ovc
