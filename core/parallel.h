@@ -3,6 +3,7 @@
 #pragma once
 
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/parallel_reduce.h>
@@ -31,6 +32,22 @@ T parallel_reduce(size_t count, T identity, Body&& body, Join&& join) {
             return body(range.begin(), range.end(), std::move(value));
         },
         std::forward<Join>(join));
+}
+
+/// While it lives, loops of the whole process run on at most so many threads.
+class ThreadLimit {
+public:
+    explicit ThreadLimit(size_t threads)
+        : limit_(oneapi::tbb::global_control::max_allowed_parallelism, threads) {}
+
+private:
+    oneapi::tbb::global_control limit_;
+};
+
+/// On how many threads loops run at most.
+inline size_t thread_count() {
+    return oneapi::tbb::global_control::active_value(
+        oneapi::tbb::global_control::max_allowed_parallelism);
 }
 
 /// Sorts [first, last) by <. Equal elements come in any order.

@@ -50,6 +50,8 @@ struct RenderWords {
     std::string camera_path;
     std::vector<std::string> lights;
     std::string samples;
+    std::string threads;
+    bool go_on = false;
     std::string max_depth;
     std::string mode = "auto";
     std::string aov;
@@ -120,6 +122,12 @@ void RenderWords::add_to(CLI::App& app) {
                    "Keep the scene and what is built of it in this folder, and start from there "
                    "next time; what is stale or damaged is made anew (docs/cache.md)")
         ->type_name("DIR");
+    app.add_flag("--continue", go_on,
+                 "Go on from what an interrupted run has left: the pixels in NAME.unfinished.film, "
+                 "the frames that are there");
+    app.add_option("--threads", threads,
+                   "Cores to use at most, of the software renderer too; default: all")
+        ->type_name("N");
     app.add_option("--stats", stats, "Write statistics as JSON (docs/stats.md)")
         ->type_name("FILE.json");
     app.add_flag("--working-set", working_set,
@@ -233,6 +241,12 @@ static Result<Done> understand_view(const RenderWords& words, RenderJob& job) {
 }
 
 static Result<Done> understand_shading(const RenderWords& words, RenderJob& job) {
+    if (!words.threads.empty()) {
+        const Result<uint64_t> threads = parse_count("--threads", words.threads, 1, kMostThreads);
+        if (!threads)
+            return threads.error();
+        job.threads = uint32_t(*threads);
+    }
     if (!words.samples.empty()) {
         const Result<uint64_t> samples = parse_count("--samples", words.samples, 1, kMostSamples);
         if (!samples)
@@ -285,6 +299,7 @@ static Result<RenderJob> understand(const RenderWords& words) {
     job.cache = words.cache;
     job.stats = words.stats;
     job.quiet = words.quiet;
+    job.go_on = words.go_on;
     if (const Result<Done> fine = words.scene.check(); !fine)
         return fine.error();
     if (std::error_code ec; fs::exists(words.cache, ec) && !fs::is_directory(words.cache, ec))

@@ -203,10 +203,26 @@ TEST_F(CommandTest, AnInterruptedSequenceKeepsItsFinishedFrames) {
     EXPECT_LT(saved, 100u);
     EXPECT_THAT(said, testing::HasSubstr(fmt::format(
                           "{} of 100 frames are saved, frame {} is the next", saved, saved)));
-    size_t pictures = 0;
-    for (const auto& entry : fs::directory_iterator(folder_))
-        pictures += entry.path().extension() == ".png";
-    EXPECT_EQ(pictures, saved);
+    const auto pictures = [&] {
+        size_t count = 0;
+        for (const auto& entry : fs::directory_iterator(folder_))
+            count += entry.path().extension() == ".png";
+        return count;
+    };
+    EXPECT_EQ(pictures(), saved);
+
+    // The rest, and what is there stays.
+    const auto first_written = fs::last_write_time(path("0000.png"));
+    arguments.push_back("--continue");
+    ASSERT_EQ(error(arguments), "");
+    EXPECT_EQ(pictures(), 100u);
+    EXPECT_EQ(fs::last_write_time(path("0000.png")), first_written);
+    const std::string next = fmt::format("{:04}.png", saved);
+    Arguments alone = small_dragons(model, path("alone-####.png"), "256x256");
+    alone.insert(alone.end(), {"--frames", fmt::format("{}", saved), "--quiet"});
+    ASSERT_EQ(error(alone), "");
+    EXPECT_EQ(bytes(next.c_str()), bytes(("alone-" + next).c_str()))
+        << "perhaps begun by one run and ended by another";
 }
 
 TEST_F(CommandTest, ScenesListsCountsAndFrames) {

@@ -3,6 +3,7 @@
 // pixels. Two lanes do so beside each other: while one traces, the other shades.
 #include "host/render_batched.h"
 
+#include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "host/shading.h"
 
@@ -198,7 +199,7 @@ Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
         alone ? batch_rays : std::min(camera.size() / kLeastBatches + 1, kLaneRays);
     const size_t batch = size_t(std::min<uint64_t>(batch_rays, wanted));
     Work work(camera, backend, observe, film);
-    std::vector<std::future<void>> lanes(alone ? 1 : 2);
+    std::vector<std::future<void>> lanes(alone || thread_count() == 1 ? 1 : 2);
     for (std::future<void>& lane : lanes)
         lane = std::async(std::launch::async,
                           [&] { Lane(work, integrator, lights, batch, film).run(); });

@@ -2,6 +2,7 @@
 // Rendering: the scene and the structure once, then picture after picture.
 #include "host/render_job.h"
 
+#include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "host/camera.h"
 #include "host/frames.h"
@@ -11,6 +12,10 @@
 #include "host/scene_cache.h"
 #include "host/scene_summary.h"
 #include "host/stats.h"
+#include "host/unfinished.h"
+#include "importers/scene_bytes.h"
+#include "importers/scene_fields.h"
+#include "importers/scene_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,8 +23,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 namespace ovc {
+
+namespace fs = std::filesystem;
 
 /// The camera of a single picture: the one asked for, the scene's, or one that sees all of it.
 static Camera still_camera(const Scene& scene, const RenderJob& job, const ImageSize& size) {
@@ -41,22 +49,43 @@ static RenderOptions render_options(const RenderJob& job, const Scene& scene) {
     return options;
 }
 
+static std::vector<std::string> outputs_of(const RenderJob& job, uint32_t frame) {
+    std::vector<std::string> outputs = job.outputs;
+    if (!job.shots.empty())
+        for (std::string& output : outputs)
+            output = frame_file(output, frame);
+    return outputs;
+}
+
+/// An earlier run has finished the picture, and this one goes on from there.
+static bool is_there(const RenderJob& job, uint32_t frame) {
+    const std::vector<std::string> outputs = outputs_of(job, frame);
+    return job.go_on && !fs::exists(unfinished_film(outputs[0])) &&
+           std::all_of(outputs.begin(), outputs.end(),
+                       [](const std::string& output) { return fs::exists(output); });
+}
+
 /// A run of pictures over one scene and one backend.
 class Rendering {
 public:
-    Rendering(const RenderJob& job, const ImageSize& size, Scene& scene, Backend& backend)
+    Rendering(const RenderJob& job, const ImageSize& size, Scene& scene, Backend& backend,
+              const LogSink& log)
         : job_(job),
+          log_(log),
           size_(size),
           options_(render_options(job, scene)),
           scene_(scene),
           lights_(job.lights.empty() ? scene.lights : job.lights),
           backend_(backend) {}
 
-    /// Every picture in turn until one is interrupted. A single picture is saved as far as it
-    /// came; of a sequence, only whole frames are.
+    /// Every picture in turn until one is interrupted, whose pixels are kept beside its outputs.
     Result<Done> run(const std::vector<Shot>& shots, RenderStats& stats) {
         stats.report.complete = true;
         for (const Shot& shot : shots) {
+            if (is_there(job_, shot.frame)) {
+                ++stats.frames_there;
+                continue;
+            }
             const Result<FrameStats> frame = render_one(shot);
             if (!frame)
                 return frame.error();
@@ -84,23 +113,50 @@ private:
         frame.frame = shot.frame;
         scene_.lights = placed_lights(lights_, shot.camera);
         Film film(size_.width, size_.height, job_.samples);
+        if (const Result<Done> done = go_on_with(shot, film); !done)
+            return done.error();
         if (const Result<RenderReport> report = trace(shot, film); report)
             frame.report = *report;
         else
             return report.error();
-        Image image = film.image();
-        if (scene_.gamma != 1)
-            to_linear(image);
         frame.tracing = counted_between(before, backend_.statistics());
         frame.active = backend_.take_active();
         const Stopwatch output;
-        if (frame.report.complete || !is_sequence())
-            if (const Result<Done> saved = save_all(image, shot); !saved)
-                return saved.error();
+        const Result<Done> saved =
+            frame.report.complete ? save_finished(shot, film) : save_unfinished(shot, film);
+        if (!saved)
+            return saved.error();
         frame.seconds_output = output.seconds();
         frame.seconds = watch.seconds();
         frame.host_peak_bytes = host_peak_bytes();
         return frame;
+    }
+
+    std::vector<std::string> outputs_of(const Shot& shot) const {
+        return ovc::outputs_of(job_, shot.frame);
+    }
+    std::string film_of(const Shot& shot) const { return unfinished_film(outputs_of(shot)[0]); }
+
+    Result<Done> go_on_with(const Shot& shot, Film& film) const {
+        if (!job_.go_on || !fs::exists(film_of(shot)))
+            return Done{};
+        const Result<Done> loaded = load_film(film_of(shot), checksum_of_picture(shot), film);
+        if (loaded)
+            say(log_, LogLevel::Info,
+                fmt::format("going on with {}: {} of {} pixels are there", film_of(shot),
+                            film.pixels_done(), uint64_t(film.width()) * film.height()));
+        return loaded;
+    }
+
+    /// Of what the pixels depend on, but for their number.
+    uint64_t checksum_of_picture(const Shot& shot) const {
+        ByteWriter view;
+        view(shot.camera, options_.integrator, options_.max_depth, options_.shadows, options_.seed,
+             job_.backend.precision);
+        Checksum sum;
+        sum.add(view.bytes());
+        sum.add_value(checksum_of(scene_));
+        return sum.value();
     }
 
     /// From the light of a scene with an assumed_gamma to what files hold.
@@ -120,7 +176,36 @@ private:
         return render_picture(scene_, shot.camera, backend_, options_, observe, film);
     }
 
-    Result<Done> save_all(const Image& image, const Shot& shot) {
+    Result<Done> save_finished(const Shot& shot, const Film& film) {
+        const std::vector<std::string> outputs = outputs_of(shot);
+        if (const Result<Done> saved = save_all(outputs, shot, film); !saved)
+            return saved;
+        std::error_code ignored; // what is not there need not go
+        fs::remove(film_of(shot), ignored);
+        for (const std::string& output : outputs)
+            fs::remove(unfinished_picture(output), ignored);
+        return Done{};
+    }
+
+    /// Beside the outputs: what is there may be finished. Of a sequence no picture, for it would
+    /// only be one of many.
+    Result<Done> save_unfinished(const Shot& shot, const Film& film) {
+        if (film.pixels_done() == 0)
+            return Done{};
+        std::vector<std::string> outputs = outputs_of(shot);
+        const Result<Done> saved = save_film(film, checksum_of_picture(shot), film_of(shot));
+        if (!saved || is_sequence())
+            return saved;
+        for (std::string& output : outputs)
+            output = unfinished_picture(output);
+        return save_all(outputs, shot, film);
+    }
+
+    Result<Done> save_all(const std::vector<std::string>& outputs, const Shot& shot,
+                          const Film& film) {
+        Image image = film.image();
+        if (scene_.gamma != 1)
+            to_linear(image);
         FileContents contents;
         contents.png_bits = job_.png_bits;
         if (job_.aovs.any()) {
@@ -130,15 +215,14 @@ private:
                 return traced.error();
             contents.layers = std::move(*traced);
         }
-        for (const std::string& output : job_.outputs)
-            if (const Result<Done> saved = save_image(
-                    image, is_sequence() ? frame_file(output, shot.frame) : output, contents);
-                !saved)
+        for (const std::string& output : outputs)
+            if (const Result<Done> saved = save_image(image, output, contents); !saved)
                 return saved;
         return Done{};
     }
 
     const RenderJob& job_;
+    const LogSink& log_;
     const ImageSize size_;
     const RenderOptions options_;
     Scene& scene_;
@@ -148,21 +232,54 @@ private:
 };
 
 static void report(const RenderJob& job, const RenderStats& stats) {
-    if (!job.quiet && !stats.frames.empty())
+    if (!job.quiet && stats.frames_there > 0)
+        fmt::print("{} frames were there already\n", stats.frames_there);
+    if (!job.quiet && !stats.frames.empty() && (stats.report.complete || !job.shots.empty()))
         fmt::print("{}  wrote      {}\n", stats_summary(stats), fmt::join(job.outputs, ", "));
     if (stats.report.complete)
         return;
-    if (job.shots.empty())
-        fmt::print(stderr, "overcast: interrupted; what was rendered so far is saved\n");
-    else
+    if (job.shots.empty()) {
         fmt::print(stderr,
-                   "overcast: interrupted; {} of {} frames are saved, frame {} is the next to "
-                   "render\n",
-                   stats.frames.size(), job.shots.size(), job.shots[stats.frames.size()].frame);
+                   "overcast: interrupted; {:.0f} % of the picture is in {}, and the same command "
+                   "with --continue goes on from there\n",
+                   100.0 * double(stats.report.pixels_done) /
+                       (double(stats.width) * double(stats.height)),
+                   unfinished_picture(job.outputs[0]));
+        return;
+    }
+    const size_t saved = stats.frames_there + stats.frames.size();
+    fmt::print(stderr,
+               "overcast: interrupted; {} of {} frames are saved, frame {} is the next, and the "
+               "same command with --continue goes on from there\n",
+               saved, job.shots.size(), job.shots[saved].frame);
+}
+
+/// 0: no limit.
+static std::optional<ThreadLimit> limit_threads(uint32_t threads) {
+    if (threads == 0)
+        return {};
+    // Of Mesa's software renderer, which reads it when the device is opened.
+    setenv("LP_NUM_THREADS", fmt::format("{}", threads).c_str(), /* overwrite= */ 1);
+    return std::optional<ThreadLimit>(std::in_place, threads);
+}
+
+/// Before anything is read: whether nothing is left to do.
+static bool all_there(const RenderJob& job) {
+    return job.shots.empty()
+               ? is_there(job, 0)
+               : std::all_of(job.shots.begin(), job.shots.end(),
+                             [&](const Shot& shot) { return is_there(job, shot.frame); });
 }
 
 Result<int> render(const RenderJob& job) {
+    if (all_there(job)) {
+        if (!job.quiet)
+            fmt::print("all is there in {}; without --continue it is rendered anew\n",
+                       fmt::join(job.outputs, ", "));
+        return kExitOk;
+    }
     const Stopwatch total;
+    const std::optional<ThreadLimit> threads = limit_threads(job.threads);
     const LogSink log = standard_error_log(/* chatty= */ !job.quiet);
     RenderStats stats;
     SceneCache cache(job.cache, job.scene, job.backend, job.size);
@@ -193,7 +310,7 @@ Result<int> render(const RenderJob& job) {
         return backend.error();
 
     cache.keep(*scene, **backend, log);
-    Result<Done> done = Rendering(job, size, *scene, **backend).run(shots, stats);
+    Result<Done> done = Rendering(job, size, *scene, **backend, log).run(shots, stats);
     if (!done)
         return done.error();
     stats.tracing = (*backend)->statistics();

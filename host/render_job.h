@@ -20,6 +20,9 @@ inline constexpr uint32_t kMostDepth = 1000;
 /// The most that --samples may ask for.
 inline constexpr uint32_t kMostSamples = 65536;
 
+/// The most that --threads may ask for.
+inline constexpr uint32_t kMostThreads = 1024;
+
 /// One picture of a sequence.
 struct Shot {
     uint32_t frame = 0; // in the camera path
@@ -41,6 +44,8 @@ struct RenderJob {
     int png_bits = 8;  // a channel, 8 or 16
     std::string cache; // folder where scenes and levels are kept; empty: none
     std::string stats;
+    bool go_on = false;   // from what an interrupted run has left
+    uint32_t threads = 0; // at most; 0: as many as there are cores
     bool quiet = false;
 };
 

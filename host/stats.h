@@ -2,8 +2,8 @@
 // What a rendering took: as JSON for programs (docs/stats.md) and as a few lines for people.
 #pragma once
 
-#include "host/scene_summary.h"
 #include "host/render.h"
+#include "host/scene_summary.h"
 #include "plugin/overcast.h"
 
 #include <cstdint>
@@ -37,6 +37,7 @@ struct RenderStats {
     std::vector<FrameStats> frames; // those that are finished, and for a single picture also a part
     std::string renderer;
     std::vector<LeftOut> left_out;
+    uint64_t frames_there = 0; // of an earlier run, not rendered
     bool scene_from_cache = false;
     double seconds_import = 0;
     double seconds_output = 0;

@@ -255,10 +255,10 @@ TEST(Whitted, ABatchIsNeverLargerThanAsked) {
     CountingBackend backend(scene.soup);
     RenderOptions options;
     options.max_depth = 200;
-    options.batch_rays = 2000;
+    options.batch_rays = 400;
     Film film(64, 64);
     ASSERT_TRUE(render_picture(scene, at_the_box(8), backend, options, {}, film));
-    EXPECT_EQ(backend.most, 2000u);
+    EXPECT_EQ(backend.most, 400u);
 }
 
 TEST(Whitted, BatchSizeDoesNotChangeAPixel) {

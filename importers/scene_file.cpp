@@ -138,6 +138,20 @@ Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
     return out->commit();
 }
 
+uint64_t checksum_of(const Scene& scene) {
+    ByteWriter fields;
+    fields(scene, scene.meshes);
+    Checksum sum;
+    sum.add(fields.bytes());
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        for (int axis = 0; axis < 3; ++axis)
+            sum.add_value(scene.soup.chunks[m].origin()[axis]);
+        sum.add(bytes_of(scene.soup.chunks[m].corners()));
+        sum.add(bytes_of(std::span<const vec3>(scene.meshes[m].normals)));
+    }
+    return sum.value();
+}
+
 Result<SceneFile> read_scene_file(const std::filesystem::path& path) {
     Result<MappedFile> mapped = MappedFile::open(path);
     if (!mapped)

@@ -36,6 +36,9 @@ using SaveLevels = std::function<Result<Done>(const ByteSink&)>;
 Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
                               const SaveLevels& save_levels, const std::filesystem::path& path);
 
+/// Of all that a picture of the scene depends on, and names.
+uint64_t checksum_of(const Scene& scene);
+
 /// Error: damage, another version, no such file; the sentence begins with the path. Everything but
 /// the levels, which the plugin checks, is checked: what comes back is a sound scene.
 Result<SceneFile> read_scene_file(const std::filesystem::path& path);
