@@ -213,9 +213,10 @@ TEST_F(CommandTest, AnInterruptedSequenceKeepsItsFinishedFrames) {
 
     // The rest, and what is there stays.
     const auto first_written = fs::last_write_time(path("0000.png"));
-    arguments.push_back("--continue");
-    ASSERT_EQ(error(arguments), "");
-    EXPECT_EQ(pictures(), 100u);
+    Arguments more = small_dragons(model, path("####.png"), "256x256");
+    more.insert(more.end(), {"--frames", fmt::format("0:{}", saved + 1), "--quiet", "--continue"});
+    ASSERT_EQ(error(more), "");
+    EXPECT_EQ(pictures(), saved + 2);
     EXPECT_EQ(fs::last_write_time(path("0000.png")), first_written);
     const std::string next = fmt::format("{:04}.png", saved);
     Arguments alone = small_dragons(model, path("alone-####.png"), "256x256");
