@@ -28,14 +28,27 @@ GlThread::~GlThread() {
 }
 
 void GlThread::execute(const std::function<void(GlState&)>& work) {
-    const std::lock_guard turn(turn_);
+    Job job{&work};
+    post(job);
+    finish(job);
+}
+
+void GlThread::post(Job& job) {
     std::unique_lock lock(mutex_);
-    work_ = &work;
-    done_ = false;
+    changed_.wait(lock, [&] { return !job_; });
+    job_ = &job;
     changed_.notify_all();
-    changed_.wait(lock, [&] { return done_; });
-    if (thrown_)
-        std::rethrow_exception(std::exchange(thrown_, nullptr));
+}
+
+void GlThread::wait_for(const Job& job) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return job.done; });
+}
+
+void GlThread::finish(const Job& job) {
+    wait_for(job);
+    if (job.thrown)
+        std::rethrow_exception(job.thrown);
 }
 
 Result<Done> GlThread::reopen(uint32_t generation) {
@@ -76,20 +89,19 @@ void GlThread::serve() {
     started_ = Done{};
     changed_.notify_all();
     while (true) {
-        changed_.wait(lock, [&] { return work_ || stop_; });
-        if (!work_)
+        changed_.wait(lock, [&] { return job_ || stop_; });
+        if (!job_)
             break;
-        const std::function<void(GlState&)>& work = *std::exchange(work_, nullptr);
         lock.unlock();
         std::exception_ptr thrown;
         try {
-            work(state);
+            (*job_->work)(state);
         } catch (...) {
             thrown = std::current_exception();
         }
         lock.lock();
-        thrown_ = thrown;
-        done_ = true;
+        job_->thrown = thrown;
+        std::exchange(job_, nullptr)->done = true;
         changed_.notify_all();
     }
 }

@@ -48,6 +48,21 @@ public:
         }
     }
 
+    /// Runs work(GlState&) there and meanwhile() here, which may call run() too; waits for both.
+    template <class Work, class Meanwhile>
+    void run_beside(Work&& work, Meanwhile&& meanwhile) {
+        const std::function<void(GlState&)> function = [&](GlState& state) { work(state); };
+        Job job{&function};
+        post(job);
+        try {
+            meanwhile();
+        } catch (...) {
+            wait_for(job); // it refers to what is here
+            throw;
+        }
+        finish(job);
+    }
+
     const DeviceInfo& info() const { return info_; }
 
     /// How often the device has been opened. What was made in an earlier context is gone.
@@ -59,18 +74,24 @@ public:
 
 private:
     GlThread(std::string device, LogSink log) : device_(std::move(device)), log_(std::move(log)) {}
+    struct Job {
+        const std::function<void(GlState&)>* work;
+        bool done = false;
+        std::exception_ptr thrown{};
+    };
+
     void execute(const std::function<void(GlState&)>& work);
+    void post(Job& job);
+    void wait_for(const Job& job);
+    void finish(const Job& job);
     void serve();
 
     const std::string device_;
     const LogSink log_;
-    std::mutex turn_; // one caller at a time
-    std::mutex mutex_;
+    std::mutex mutex_; // of what is below
     std::condition_variable changed_;
-    const std::function<void(GlState&)>* work_ = nullptr;
-    std::exception_ptr thrown_;
+    Job* job_ = nullptr; // to be done, or being done; others wait until it is
     std::optional<Result<Done>> started_;
-    bool done_ = false;
     bool stop_ = false;
     std::atomic<uint32_t> generation_{0};
     DeviceInfo info_;

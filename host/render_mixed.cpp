@@ -77,11 +77,14 @@ public:
 
     Result<RenderReport> render(Backend& backend) {
         const Stopwatch watch;
+        const double traced_before = backend.statistics().seconds_trace;
         const Result<Done> done = backend.stream(*this);
         if (!done && done.error().kind != ErrorKind::Cancelled)
             return done.error();
         report_.complete = bool(done);
-        report_.seconds_trace = watch.seconds() - report_.seconds_shade;
+        // Some shade beside tracing, and say how long they trace; others do one or the other.
+        const double traced = backend.statistics().seconds_trace - traced_before;
+        report_.seconds_trace = traced > 0 ? traced : watch.seconds() - report_.seconds_shade;
         return report_;
     }
 

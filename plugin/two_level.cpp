@@ -263,7 +263,8 @@ uint32_t TwoLevel::number_to_skip(TriangleId id) const {
 
 /// The first `count` travellers on their way; their answers into answers_.
 /// Beside them, pages of `wanted` are moved in; returns how many.
-Result<size_t> TwoLevel::pass(size_t count, std::span<const uint32_t> wanted) {
+Result<size_t> TwoLevel::pass(size_t count, std::span<const uint32_t> wanted,
+                              const std::function<void()>& meanwhile) {
     const size_t padded = Tracer::padded(count);
     const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
     travellers_.resize(padded);
@@ -273,7 +274,7 @@ Result<size_t> TwoLevel::pass(size_t count, std::span<const uint32_t> wanted) {
     Result<Done> done = Done{};
     bool alive = false;
     Moved moved;
-    gl_.run([&](GlState& state) {
+    const auto work = [&](GlState& state) {
         alive = is_ours(state);
         if (!alive)
             return;
@@ -284,7 +285,8 @@ Result<size_t> TwoLevel::pass(size_t count, std::span<const uint32_t> wanted) {
         if (done)
             done = tracer_->collect(std::span(answers_).first(count));
         alive = state.context.alive(); // else what was read is anything
-    });
+    };
+    gl_.run_beside(work, meanwhile);
     if (!alive)
         return lost();
     if (!done)
@@ -309,7 +311,9 @@ Result<Done> TwoLevel::trace(const Query& query) {
         std::iota(all.begin(), all.end(), 0u);
         wave.start(all);
         while (wave.ready() + wave.waiting() > 0)
-            if (Result<Done> done = round(wave); !done)
+            if (Result<Done> done = round(
+                    plan_.batch_rays, [] {}, wave);
+                !done)
                 return done;
         (Query::kAnyHit ? statistics_.occlusion_rays : statistics_.nearest_rays) += count;
     }

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -135,11 +136,13 @@ private:
     /// The leaves worth moving in for rays of these waves where few are ready; else none.
     template <class... Queries>
     std::vector<uint32_t> wanted_by(const Wave<Queries>&... waves) const;
-    /// A pass, of rays of all these waves. Pages that others wait for are moved in before it where
-    /// few rays are ready, and beside it where few are left.
-    template <class... Queries>
-    Result<Done> round(Wave<Queries>&... waves);
-    Result<size_t> pass(size_t count, std::span<const uint32_t> wanted);
+    /// A pass, of at most `most` rays of all these waves; meanwhile() runs beside it. Pages that
+    /// others wait for are moved in before it where few rays are ready, and beside it where few are
+    /// left.
+    template <class Meanwhile, class... Queries>
+    Result<Done> round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&... waves);
+    Result<size_t> pass(size_t count, std::span<const uint32_t> wanted,
+                        const std::function<void()>& meanwhile);
     template <class Query>
     Result<Done> trace(const Query& query);
 

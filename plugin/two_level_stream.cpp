@@ -21,6 +21,7 @@ public:
     size_t backlog() const { return backlog_.size(); }
     size_t under_way() const { return rays_.size() - free_.size(); }
     bool empty() const { return backlog() + under_way() == 0; }
+    bool can_start() const { return backlog() > 0 && under_way() < kSlots; }
 
     /// Starts rays of the backlog, as many as there may be at once; returns how many.
     size_t start() {
@@ -31,11 +32,13 @@ public:
         const StreamRays rays = backlog_.last(count);
         const std::vector<uint32_t> slots(free_.end() - ptrdiff_t(count), free_.end());
         free_.resize(free_.size() - count);
-        for (size_t i = 0; i < count; ++i) {
-            rays_[slots[i]] = rays.rays[i];
-            skip_[slots[i]] = rays.skip[i];
-            tokens_[slots[i]] = rays.tokens[i];
-        }
+        parallel_for(count, kGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                rays_[slots[i]] = rays.rays[i];
+                skip_[slots[i]] = rays.skip[i];
+                tokens_[slots[i]] = rays.tokens[i];
+            }
+        });
         backlog_.drop_last(count);
         wave_.start(slots);
         return count;
@@ -47,12 +50,14 @@ public:
         const std::vector<uint32_t> finished = wave_.take_finished();
         if (finished.empty())
             return true;
-        std::vector<uint64_t> tokens;
-        std::vector<Result> results;
-        for (const uint32_t slot : finished) {
-            tokens.push_back(tokens_[slot]);
-            results.push_back(results_[slot]);
-        }
+        std::vector<uint64_t> tokens(finished.size());
+        std::vector<Result> results(finished.size());
+        parallel_for(finished.size(), kGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                tokens[i] = tokens_[finished[i]];
+                results[i] = results_[finished[i]];
+            }
+        });
         free_.insert(free_.end(), finished.begin(), finished.end());
         return hand_over(tokens, results);
     }
@@ -60,6 +65,8 @@ public:
     static constexpr size_t kSlots = size_t(1) << 20; // some 150 bytes each
 
 private:
+    static constexpr size_t kGrain = 1024; // rays a task that are only copied
+
     /// At least `slots` of them, and twice as many as before where they do not do.
     void grow(size_t slots) {
         const size_t before = rays_.size();
@@ -97,20 +104,32 @@ public:
         rays.any_hit ? any_.push(rays) : nearest_.push(rays);
     }
 
+    /// What a pass answers is handed over while the next one runs; but where pages are moved before
+    /// it, so that what it spawns goes with that one.
     ovc::Result<Done> run() {
-        while (true) {
-            if (!fill() || !deliver())
-                return stopped_by_host();
-            if (nearest_.backlog() + any_.backlog() > 0 && start() > 0)
-                continue; // some may be answered already
+        bool goes_on = true;
+        while (goes_on && fill()) {
+            start();
             if (nearest_.empty() && any_.empty())
                 return Done{};
+            const size_t ready = any_.wave().ready() + nearest_.wave().ready();
+            const bool beside = any_.wave().waiting() + nearest_.wave().waiting() == 0;
+            if (ready == 0 || !beside) {
+                goes_on = deliver();
+                if (!goes_on || nearest_.can_start() || any_.can_start())
+                    continue;
+            }
+            if (ready == 0 && beside)
+                continue;
             const Stopwatch watch;
-            ovc::Result<Done> done = s_.round(any_.wave(), nearest_.wave());
+            const ovc::Result<Done> done = s_.round(
+                beside ? kPassRays : ~size_t(0), [&] { goes_on = !beside || deliver(); },
+                any_.wave(), nearest_.wave());
             s_.statistics_.seconds_trace += watch.seconds();
             if (!done)
                 return done;
         }
+        return stopped_by_host();
     }
 
 private:
@@ -126,15 +145,18 @@ private:
         return true;
     }
 
-    size_t start() {
+    void start() {
         const Stopwatch watch;
         const size_t nearest = nearest_.start();
         const size_t any = any_.start();
         s_.statistics_.nearest_rays += nearest;
         s_.statistics_.occlusion_rays += any;
         s_.statistics_.seconds_trace += watch.seconds();
-        return nearest + any;
     }
+
+    /// Rays a pass where no page need be moved: enough to keep a device busy, and few enough that
+    /// passes and the host's work on what they answered go on beside each other.
+    static constexpr size_t kPassRays = size_t(1) << 17;
 
     bool deliver() {
         return any_.deliver([&](std::span<const uint64_t> tokens,

@@ -244,8 +244,8 @@ std::vector<uint32_t> TwoLevel::wanted_by(const Wave<Queries>&... waves) const {
     return worth_moving(counts, pages_);
 }
 
-template <class... Queries>
-Result<Done> TwoLevel::round(Wave<Queries>&... waves) {
+template <class Meanwhile, class... Queries>
+Result<Done> TwoLevel::round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&... waves) {
     // What is ready goes with the next pass, whose greater part then comes from the pages moved
     // in: so every pass gets somewhere, though those pages may push out what was ready for.
     const std::vector<uint32_t> before = wanted_by(waves...);
@@ -253,10 +253,11 @@ Result<Done> TwoLevel::round(Wave<Queries>&... waves) {
     (waves.call_up(moved), ...);
     if ((waves.ready() + ...) == 0)
         return lost(); // nothing could be moved in
-    travellers_.resize(Tracer::padded(std::min<size_t>((waves.ready() + ...), plan_.batch_rays)));
+    most = std::min<size_t>(most, plan_.batch_rays);
+    travellers_.resize(Tracer::padded(std::min<size_t>((waves.ready() + ...), most)));
     size_t count = 0;
     const auto load = [&](auto& wave) {
-        const size_t room = std::min<size_t>(travellers_.size(), plan_.batch_rays) - count;
+        const size_t room = std::min(travellers_.size(), most) - count;
         const size_t loaded = wave.load(std::span(travellers_).subspan(count, room));
         count += loaded;
         return loaded;
@@ -265,7 +266,7 @@ Result<Done> TwoLevel::round(Wave<Queries>&... waves) {
     const std::vector<uint32_t> beside = options_.beside.value_or(!gl_.info().is_software)
                                              ? wanted_by(waves...)
                                              : std::vector<uint32_t>();
-    const Result<size_t> moved_beside = pass(count, beside);
+    const Result<size_t> moved_beside = pass(count, beside, meanwhile);
     if (!moved_beside)
         return moved_beside.error();
     size_t first = 0;
