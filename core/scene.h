@@ -46,6 +46,28 @@ struct Checker {
     bool operator==(const Checker&) const = default;
 };
 
+/// What a surface is to light where its file says so, as physics has it: path tracing goes by this,
+/// and Whitted's model by the rest of the material. Shares of light, linear RGB in [0, 1].
+struct Optics {
+    /// What reflects on top. None: nothing. Mirror: `reflection` at any angle. Metal: `reflection`
+    /// head on, and all of it at grazing angles, as Schlick has it. Dielectric: `reflection` x what
+    /// Fresnel's equations say of `ior`. Thin: the same for a pane, both of its sides together.
+    enum class Boundary : uint8_t { None, Mirror, Metal, Dielectric, Thin };
+
+    vec3 diffuse{0}; // scattered evenly, of what comes below the boundary
+    Boundary boundary = Boundary::None;
+    vec3 reflection{1};
+    /// x what the boundary does not reflect goes on; bent by Material::ior, which is 1 but for
+    /// Dielectric.
+    vec3 through{0};
+    double ior = 1.5;
+    float width = 0;        // of the slopes of microfacets, GGX's alpha; 0: smooth
+    vec3 emission{0};       // radiance, in the units of Light::color over distance squared
+    bool two_sided = false; // emits from its back too
+
+    bool operator==(const Optics&) const = default;
+};
+
 /// Whitted's surface, linear RGB in [0, 1]. Of the light that it sends on, `mirror` is the share
 /// reflected as by a mirror and `transmission` the share let through, tinted by `filter` at every
 /// crossing; the rest, at least 0, is the surface's own color. ior: of the inside of a closed mesh
@@ -62,6 +84,7 @@ struct Material {
     double ior = 1;
     std::optional<Finish> finish;
     std::optional<Checker> checker;
+    std::optional<Optics> optics;
 
     bool operator==(const Material&) const = default;
 };
@@ -109,6 +132,8 @@ struct Light {
     /// the square of the distance: a tiny fade_distance D, power 2, and color / (2 D^2).
     double fade_distance = 0;
     double fade_power = 0;
+    /// Stands for light that path tracing finds by itself: that of emitters and of the sky.
+    bool stand_in = false;
 };
 
 /// The image as a window at the end of `direction` from the eye, `right` wide and `up` high,
@@ -178,7 +203,8 @@ struct Scene {
     std::optional<ImageSize> size;     // of the picture that the file asks for
     std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's
     Background background;
-    double gamma = 1; // what is rendered ^ gamma is linear light: POV-Ray's assumed_gamma
+    float exposure = 1; // what lights, background and emission were multiplied by to fit a picture
+    double gamma = 1;   // what is rendered ^ gamma is linear light: POV-Ray's assumed_gamma
     std::optional<Instancing> instancing; // none: every triangle is its own
     MappedFile file; // where chunks and `saved` lie, if they do not own what they show
     Bytes saved;     // what the plugin saved of this soup (ovc_scene_config.saved); empty: nothing

@@ -25,6 +25,8 @@ struct Path {
     vec3 weight;     // what light at its end is worth to the pixel
     float density; // path tracing: with which its direction was chosen, by solid angle; 0: no other
                    // was possible
+    float behind = 0; // path tracing: how far from the ray's origin, through panes that do not bend
+                      // it, the direction was chosen
 };
 
 /// What a shadow ray is for. Its t = 1 is the light, or a point of it.

@@ -4,11 +4,14 @@
 
 #include "core/stopwatch.h"
 #include "host/camera_rays.h"
+#include "host/path_tracer.h"
 #include "host/render_batched.h"
 #include "host/render_mixed.h"
 #include "host/whitted.h"
 
 #include <sys/resource.h>
+
+#include <memory>
 
 namespace ovc {
 
@@ -58,6 +61,15 @@ static double cpu_seconds() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Camera& camera,
+                                                   const RenderOptions& options) {
+    const vec3 up(glm::normalize(camera.up));
+    if (options.integrator == IntegratorKind::Path)
+        return std::make_unique<PathTracer>(
+            scene, up, PathTracerOptions{options.max_depth, options.shadows, options.seed});
+    return std::make_unique<Whitted>(scene, up, options.max_depth, options.shadows);
+}
+
 Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Backend& backend,
                                     const RenderOptions& options, const RenderObserver& observe,
                                     Film& film) {
@@ -65,12 +77,11 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
     const double cpu_before = cpu_seconds();
     const Pinhole pinhole(camera, film.width(), film.height());
     const CameraRays rays(pinhole, film);
-    const Whitted integrator(scene, vec3(glm::normalize(camera.up)), options.max_depth,
-                             options.shadows);
+    const std::unique_ptr<Integrator> integrator = make_integrator(scene, camera, options);
     Result<RenderReport> report =
         options.mode == RenderMode::Mixed
-            ? render_mixed(integrator, scene.lights.size(), rays, backend, observe, film)
-            : render_batched(integrator, scene.lights.size(), rays, backend, options.batch_rays,
+            ? render_mixed(*integrator, scene.lights.size(), rays, backend, observe, film)
+            : render_batched(*integrator, scene.lights.size(), rays, backend, options.batch_rays,
                              observe, film);
     if (!report)
         return report;

@@ -162,15 +162,20 @@ static double attenuation(const Light& light, const dvec3& towards, double dista
     return share;
 }
 
-vec3 direct_light(const Light& light, const SurfacePoint& surface) {
-    const dvec3 there = towards_light(light, surface.position);
+FromLight light_at(const Light& light, const dvec3& position) {
+    const dvec3 there = towards_light(light, position);
     const double distance = glm::length(there);
-    const dvec3 towards = distance > 0 ? there / distance : surface.normal;
+    const dvec3 towards = distance > 0 ? there / distance : dvec3(0);
+    return {towards, light.color * float(attenuation(light, towards, distance))};
+}
+
+vec3 direct_light(const Light& light, const SurfacePoint& surface) {
+    const FromLight from = light_at(light, surface.position);
+    const dvec3 towards = from.towards != dvec3(0) ? from.towards : surface.normal;
     const double cosine = glm::dot(surface.normal, towards);
     if (!(cosine > 0) || !(glm::dot(surface.geometric_normal, towards) > 0))
         return vec3(0);
-    const vec3 arriving = light.color * (float(attenuation(light, towards, distance)) *
-                                         std::numbers::inv_pi_v<float>);
+    const vec3 arriving = from.color * std::numbers::inv_pi_v<float>;
     if (!surface.material->finish)
         return surface.color * arriving * float(cosine);
     return finish_light(surface, towards, arriving, /* highlights= */ !light.shadowless);

@@ -36,6 +36,13 @@ vec3 background_color(const Background& background, const vec3& up, const dvec3&
 /// reflects of it.
 vec3 ambient_light(const Background& background, const vec3& up, const SurfacePoint& surface);
 
+/// What a light brings to a place if nothing is in between.
+struct FromLight {
+    dvec3 towards{0}; // the light, unit length; 0: it is right there
+    vec3 color{0};    // of the light, as far as it comes this way and so far
+};
+FromLight light_at(const Light& light, const dvec3& position);
+
 /// What the surface reflects of `light` when nothing is in between; 0 when the light is behind it.
 vec3 direct_light(const Light& light, const SurfacePoint& surface);
 

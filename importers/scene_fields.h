@@ -24,8 +24,12 @@ void each_field(auto& io, Some<Checker> auto& c) {
     io(c.other, c.to_cubes);
 }
 
+void each_field(auto& io, Some<Optics> auto& o) {
+    io(o.diffuse, o.boundary, o.reflection, o.through, o.ior, o.width, o.emission, o.two_sided);
+}
+
 void each_field(auto& io, Some<Material> auto& m) {
-    io(m.name, m.color, m.mirror, m.transmission, m.filter, m.ior, m.finish, m.checker);
+    io(m.name, m.color, m.mirror, m.transmission, m.filter, m.ior, m.finish, m.checker, m.optics);
 }
 
 void each_field(auto& io, Some<SpotCone> auto& c) {
@@ -34,7 +38,7 @@ void each_field(auto& io, Some<SpotCone> auto& c) {
 
 void each_field(auto& io, Some<Light> auto& l) {
     io(l.position, l.color, l.on_camera, l.direction, l.cone, l.parallel, l.shadowless,
-       l.fade_distance, l.fade_power);
+       l.fade_distance, l.fade_power, l.stand_in);
 }
 
 void each_field(auto& io, Some<ImageWindow> auto& w) {
@@ -64,8 +68,8 @@ void each_field(auto& io, Some<MeshInfo> auto& m) {
 
 /// All but meshes and soup.
 void each_field(auto& io, Some<Scene> auto& s) {
-    io(s.name, s.materials, s.lights, s.camera, s.size, s.max_depth, s.background, s.gamma,
-       s.instancing);
+    io(s.name, s.materials, s.lights, s.camera, s.size, s.max_depth, s.background, s.exposure,
+       s.gamma, s.instancing);
 }
 
 void each_field(auto& io, Some<FileStamp> auto& f) {

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fresnel's equations for a boundary of two clear media, the mean of both polarisations, in double.
+#pragma once
+
+#include <cmath>
+
+namespace ovc {
+
+/// The share of light that is reflected. cosine: to the normal, where it comes from, in [0, 1].
+/// ior: of the medium behind the boundary, in units of the one before it; 1 where all is reflected.
+inline double fresnel(double cosine, double ior) {
+    const double square = ior * ior + cosine * cosine - 1; // (ior x the refracted cosine)^2
+    if (!(square > 0))
+        return 1;
+    const double g = std::sqrt(square);
+    const double s = (cosine - g) / (cosine + g);
+    const double p = (ior * ior * cosine - g) / (ior * ior * cosine + g);
+    return 0.5 * (s * s + p * p);
+}
+
+/// The share of light from everywhere, as much from each direction, that is reflected; ior: above
+/// 0. Walsh 1926, in the form of Dunkle 1963.
+inline double fresnel_mean(double ior) {
+    if (ior < 1) // what total reflection keeps back, too: seen from the other side, n^2 (1 - F)
+        return 1 - (1 - fresnel_mean(1 / ior)) * ior * ior;
+    if (ior < 1 + 1e-4) // the formula cancels
+        return 0;
+    const double n = ior, n2 = n * n, n4 = n2 * n2;
+    return 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +
+           n2 * (n2 - 1) * (n2 - 1) / ((n2 + 1) * (n2 + 1) * (n2 + 1)) *
+               std::log((n - 1) / (n + 1)) -
+           2 * n2 * n * (n2 + 2 * n - 1) / ((n2 + 1) * (n4 - 1)) +
+           8 * n4 * (n4 + 1) / ((n2 + 1) * (n4 - 1) * (n4 - 1)) * std::log(n);
+}
+
+} // namespace ovc
