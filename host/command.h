@@ -40,6 +40,7 @@ std::unique_ptr<Subcommand> make_devices();
 std::unique_ptr<Subcommand> make_scenes();
 std::unique_ptr<Subcommand> make_report();
 std::unique_ptr<Subcommand> make_bench();
+std::unique_ptr<Subcommand> make_diff();
 
 struct Command {
     std::string_view name;

@@ -77,7 +77,6 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
     } cases[] = {
         {{}, "no command given"},
         {{"rendr"}, "did you mean 'render'?"},
-        {{"diff"}, "not there yet"},
         {{"render"}, "SCENE is required"},
         {{"render", path("none.ply"), "-o", out}, "none.ply"},
         {{"render", folder_.string(), "-o", out}, "is a directory"},
@@ -224,6 +223,46 @@ TEST_F(CommandTest, AnInterruptedSequenceKeepsItsFinishedFrames) {
     ASSERT_EQ(error(alone), "");
     EXPECT_EQ(bytes(next.c_str()), bytes(("alone-" + next).c_str()))
         << "perhaps begun by one run and ended by another";
+}
+
+TEST_F(CommandTest, DiffEndsAsIdiffDoes) {
+    const std::string scenes[][2] = {{"box", "a"}, {"mirrors", "b"}};
+    for (const auto& [scene, name] : scenes)
+        ASSERT_EQ(error({"render", scene, "--backend", "cpu-kdtree", "--size", "24x18", "--quiet",
+                         "--aov", "id", "-o", path((name + ".png").c_str()), "-o",
+                         path((name + ".exr").c_str())}),
+                  "");
+    ASSERT_EQ(error({"render", "box", "--backend", "cpu-kdtree", "--size", "18x24", "--quiet", "-o",
+                     path("turned.png")}),
+              "");
+    std::ofstream(path("text.png")) << "no picture";
+    const auto diff = [&](Arguments words) {
+        words.insert(words.begin(), "diff");
+        testing::internal::CaptureStdout();
+        testing::internal::CaptureStderr();
+        const int code = *run_command(words);
+        std::fflush(stdout);
+        testing::internal::GetCapturedStdout();
+        testing::internal::GetCapturedStderr();
+        return code;
+    };
+    const std::string a = path("a.png"), b = path("b.png");
+    EXPECT_EQ(diff({a, a}), 0);
+    EXPECT_EQ(diff({path("a.exr"), path("a.exr"), "--json"}), 0);
+    EXPECT_EQ(diff({a, b, "--fail", "1"}), 1);
+    EXPECT_EQ(diff({a, b}), 2);
+    EXPECT_EQ(diff({a, path("a.exr"), "--fail", "0.002", "--warn", "0.002"}), 0)
+        << "half a code, and what rounding adds";
+    EXPECT_EQ(diff({a, path("turned.png")}), 3);
+    EXPECT_EQ(diff({a, path("none.png")}), 4);
+    EXPECT_EQ(diff({a, path("text.png")}), 4);
+    EXPECT_EQ(diff({a}), 4);
+    EXPECT_EQ(diff({a, b, "--fail", "little"}), 4);
+    EXPECT_EQ(diff({a, b, "-o", a}), 4) << "no input is written over";
+    EXPECT_EQ(diff({a, b, "-o", path("d.png"), "-q"}), 2);
+    EXPECT_EQ(diff({path("a.exr"), path("b.exr"), "-o", path("d.exr")}), 2);
+    EXPECT_THAT(bytes("d.exr"), testing::HasSubstr("id.prim"));
+    EXPECT_EQ(diff({path("d.png"), a, "--fail", "2", "--warn", "2"}), 0);
 }
 
 TEST_F(CommandTest, ScenesListsCountsAndFrames) {

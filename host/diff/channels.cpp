@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// PNG into channels, and which reader a file's first bytes ask for.
+#include "host/diff/channels.h"
+
+#include "core/parallel.h"
+#include "host/srgb.h"
+#include "importers/png.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace ovc {
+
+namespace fs = std::filesystem;
+
+const Layer* Channels::find(std::string_view name) const {
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Layer& one) { return one.name == name; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+static Layer channel_of(const Picture& picture, size_t sample, const char* name) {
+    Layer layer{name, Layer::Type::Float, std::vector<uint32_t>(picture.size())};
+    for (size_t i = 0; i < picture.size(); ++i)
+        layer.values[i] = std::bit_cast<uint32_t>(float(picture.pixels[i][sample]) / 65535);
+    return layer;
+}
+
+static Result<Channels> png_channels(std::span<const uint8_t> file) {
+    const Result<Picture> picture = read_png(file);
+    if (!picture)
+        return picture.error();
+    Channels channels{picture->width, picture->height, Coding::Srgb, {}};
+    const bool opaque = std::all_of(picture->pixels.begin(), picture->pixels.end(),
+                                    [](const auto& pixel) { return pixel[3] == 65535; });
+    static constexpr const char* kNames[] = {"R", "G", "B", "A"};
+    for (size_t sample = 0; sample < (opaque ? 3u : 4u); ++sample)
+        channels.all.push_back(channel_of(*picture, sample, kNames[sample]));
+    return channels;
+}
+
+Result<Channels> read_channels(const fs::path& path) {
+    const auto failed = [&](const std::string& what) {
+        return Error{fmt::format("{}: {}", path.string(), what)};
+    };
+    std::error_code ec;
+    if (fs::is_directory(path, ec))
+        return failed("found a directory, expected a picture, .png or .exr");
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream)
+        return failed(fmt::format("cannot be read: {}", std::strerror(errno)));
+    char magic[4] = {};
+    stream.read(magic, sizeof(magic));
+    Result<Channels> channels = Error{"found neither PNG nor OpenEXR"};
+    if (std::memcmp(magic, "\x89PNG", 4) == 0) {
+        stream.seekg(0);
+        const std::vector<char> file((std::istreambuf_iterator<char>(stream)), {});
+        channels = png_channels({reinterpret_cast<const uint8_t*>(file.data()), file.size()});
+    } else if (std::memcmp(magic, "\x76\x2f\x31\x01", 4) == 0) {
+        channels = read_exr(path);
+    }
+    return channels ? std::move(channels) : failed(channels.error().message);
+}
+
+void encode_srgb(Channels& channels) {
+    for (Layer& layer : channels.all)
+        if ((layer.name == "R" || layer.name == "G" || layer.name == "B") &&
+            layer.type == Layer::Type::Float)
+            parallel_for(layer.values.size(), 4096, [&](size_t first, size_t last) {
+                for (size_t i = first; i < last; ++i)
+                    layer.values[i] =
+                        std::bit_cast<uint32_t>(srgb_code(std::bit_cast<float>(layer.values[i])));
+            });
+    channels.coding = Coding::Srgb;
+}
+
+} // namespace ovc

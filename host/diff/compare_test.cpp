@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Comparing pictures: the metrics against sums done by hand, and who is held to which limit.
+#include "host/diff/compare.h"
+
+#include "host/diff/verdict.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <unistd.h>
+
+namespace ovc {
+namespace {
+
+Layer reals(const char* name, std::initializer_list<float> values) {
+    Layer layer{name, Layer::Type::Float, {}};
+    for (const float value : values)
+        layer.values.push_back(std::bit_cast<uint32_t>(value));
+    return layer;
+}
+
+Channels four_pixels(std::vector<Layer> layers) {
+    return {2, 2, Coding::Linear, std::move(layers)};
+}
+
+TEST(Compare, AddsUpEachLayer) {
+    const Channels a = four_pixels({reals("R", {0, 0.5f, 1, 1}), reals("G", {0, 0, 0, 0}),
+                                    reals("depth.Z", {1, INFINITY, NAN, 2})});
+    const Channels b = four_pixels({reals("R", {0, 0.25f, 1, 0}), reals("G", {0, 0.25f, 0, 0}),
+                                    reals("depth.Z", {1, INFINITY, NAN, 2})});
+    const Comparison c = compare(a, b);
+    ASSERT_EQ(c.layers.size(), 2u);
+    EXPECT_EQ(c.layers[0].name, "color");
+    EXPECT_EQ(c.layers[0].differing, 2u);
+    const Errors& color = *c.layers[0].errors;
+    EXPECT_EQ(color.max, 1);
+    EXPECT_EQ(color.at.channel, "R");
+    EXPECT_EQ(color.at.x, 1u);
+    EXPECT_EQ(color.at.y, 1u);
+    EXPECT_EQ(color.at.a, 1);
+    EXPECT_EQ(color.at.b, 0);
+    EXPECT_DOUBLE_EQ(color.mean, 1.5 / 8);
+    EXPECT_DOUBLE_EQ(color.rmse, std::sqrt((1 + 2 * 0.0625) / 8));
+    EXPECT_DOUBLE_EQ(color.psnr, 10 * std::log10(8 / 1.125));
+    EXPECT_EQ(c.layers[1].name, "depth");
+    EXPECT_EQ(c.layers[1].differing, 0u) << "equal infinities and NaNs are equal";
+    EXPECT_EQ(c.layers[1].errors->psnr, std::numeric_limits<double>::infinity());
+    EXPECT_FALSE(c.flip) << "without B there is no color to see";
+    EXPECT_EQ(c.over(0.25), 1u);
+    EXPECT_EQ(c.over(0.2), 2u);
+}
+
+TEST(Compare, WhatIsNoNumberIsInfinitelyFar) {
+    const Comparison c = compare(four_pixels({reals("depth.Z", {1, 1, 1, 1})}),
+                                 four_pixels({reals("depth.Z", {1, NAN, INFINITY, 1})}));
+    EXPECT_EQ(c.layers[0].differing, 2u);
+    EXPECT_EQ(c.layers[0].errors->max, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(c.over(1e30), 2u);
+    EXPECT_NE(diff_json("a", "b", c, {}).find("\"max\": null"), std::string::npos);
+}
+
+TEST(Compare, WholeNumbersAreEqualOrNot) {
+    const Channels a = four_pixels({{"id.prim", Layer::Type::Uint, {1, 2, 3, 0xffffffff}}});
+    const Channels b = four_pixels({{"id.prim", Layer::Type::Uint, {1, 2, 4, 0}}});
+    const Comparison c = compare(a, b);
+    EXPECT_EQ(c.layers[0].name, "id");
+    EXPECT_EQ(c.layers[0].differing, 2u);
+    EXPECT_FALSE(c.layers[0].errors);
+    EXPECT_EQ(c.over(1e30), 2u);
+    EXPECT_EQ(std::bit_cast<float>(c.differences[0].values[2]), 1.0f);
+}
+
+TEST(Compare, NamesWhatOnlyOneFileHas) {
+    const Channels a = four_pixels({reals("R", {0, 0, 0, 0}), reals("A", {1, 1, 1, 1})});
+    const Channels b = four_pixels({reals("R", {0, 0, 0, 0}), reals("leaf", {1, 1, 1, 1})});
+    const Comparison c = compare(a, b);
+    EXPECT_THAT(c.only_in_a, testing::ElementsAre("A"));
+    EXPECT_THAT(c.only_in_b, testing::ElementsAre("leaf"));
+    EXPECT_THAT(diff_text("a.exr", "b.exr", c, {}),
+                testing::HasSubstr("only in b.exr, and not compared: leaf"));
+}
+
+TEST(Compare, IsJudgedAsIdiffDoes) {
+    const Channels a = four_pixels({reals("R", {0, 0, 0, 0})});
+    const Comparison c = compare(a, four_pixels({reals("R", {0, 0, 0.1f, 0.5f})}));
+    const auto verdict = [&](const Limit& fail, const Limit& warn) {
+        return judge(c, {fail, warn});
+    };
+    EXPECT_EQ(verdict({}, {}), Verdict::Failure);
+    EXPECT_EQ(verdict({0.2, 25}, {0.2, 25}), Verdict::Ok) << "25 % of the pixels, and no more";
+    EXPECT_EQ(verdict({0.2, 25}, {0.05, 25}), Verdict::Warning);
+    EXPECT_EQ(verdict({0.2, 24}, {}), Verdict::Failure);
+    EXPECT_EQ(verdict({1, 0, 0.4}, {}), Verdict::Failure) << "one pixel too far";
+    EXPECT_EQ(verdict({1, 0, 0.6}, {1, 0, 0.4}), Verdict::Warning);
+    const Comparison same = compare(a, a);
+    EXPECT_EQ(judge(same, {}), Verdict::Ok);
+    const auto json = nlohmann::json::parse(diff_json("x", "y", c, {{0.2, 24}, {}}));
+    EXPECT_EQ(json["verdict"], "failure");
+    EXPECT_EQ(json["fail"]["pixels"], 1);
+    EXPECT_EQ(json["fail"]["passed"], true);
+    EXPECT_EQ(json["layers"][0]["errors"]["at"]["x"], 1);
+}
+
+TEST(Compare, ReadsWhatWasWritten) {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("overcast_compare_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    Image image(2, 2);
+    image.pixels = {vec4(0, 0.25f, 1, 1), vec4(2), vec4(-1, 0, 0, 0.5f), vec4(0.1f)};
+    const Layer id{"id.prim", Layer::Type::Uint, {7, 8, 9, 0xffffffff}};
+    ASSERT_TRUE(save_image(image, folder / "a.exr", {.layers = {id}}));
+    ASSERT_TRUE(save_image(image, folder / "a.png", {.png_bits = 16}));
+    Result<Channels> exr = read_channels(folder / "a.exr");
+    ASSERT_TRUE(exr) << exr.error().message;
+    ASSERT_EQ(exr->size(), 4u);
+    EXPECT_EQ(exr->find("id.prim")->values, id.values);
+    for (size_t i = 0; i < 4; ++i)
+        EXPECT_EQ(std::bit_cast<float>(exr->find("G")->values[i]), image.pixels[i].g);
+    const Result<Channels> png = read_channels(folder / "a.png");
+    ASSERT_TRUE(png) << png.error().message;
+    EXPECT_EQ(png->coding, Coding::Srgb);
+    encode_srgb(*exr);
+    EXPECT_LT(compare(*exr, *png).layers.at(0).errors->max, 1.0 / 65535)
+        << "linear light as codes, clamped as the file is";
+    std::filesystem::remove_all(folder);
+}
+
+TEST(Compare, DamagedFilesAreRefused) {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("overcast_damaged_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    for (const char* name : {"a.exr", "a.png"}) {
+        ASSERT_TRUE(save_image(Image(40, 30), folder / name));
+        std::ifstream in(folder / name, std::ios::binary);
+        const std::string whole((std::istreambuf_iterator<char>(in)), {});
+        for (size_t length = 0; length + 12 < whole.size(); ++length) {
+            std::ofstream(folder / "cut", std::ios::binary) << whole.substr(0, length);
+            const Result<Channels> cut = read_channels(folder / "cut");
+            ASSERT_FALSE(cut) << name << ", " << length;
+            EXPECT_THAT(cut.error().message, testing::HasSubstr("cut: "));
+        }
+    }
+    EXPECT_THAT(read_channels(folder / "none.png").error().message,
+                testing::HasSubstr("none.png: cannot be read: No such file"));
+    EXPECT_THAT(read_channels(folder).error().message, testing::HasSubstr("found a directory"));
+    std::filesystem::remove_all(folder);
+}
+
+} // namespace
+} // namespace ovc
