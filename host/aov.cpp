@@ -99,10 +99,10 @@ Result<Aovs> parse_aovs(std::string_view text) {
     }
 }
 
-Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Camera& camera, Backend& backend,
-                                      const Aovs& aovs, uint32_t width, uint32_t height) {
-    const Pinhole pinhole(camera, width, height);
-    const size_t pixels = size_t(width) * height;
+Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Pinhole& camera, Backend& backend,
+                                      const Aovs& aovs) {
+    const uint32_t width = camera.width();
+    const size_t pixels = size_t(width) * camera.height();
     Layers layers(aovs, pixels);
     std::vector<Ray> rays;
     std::vector<Hit> hits;
@@ -111,7 +111,7 @@ Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Camera& camera, 
         hits.resize(rays.size());
         parallel_for(rays.size(), kGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
-                rays[i] = pinhole.ray(uint32_t((start + i) % width), uint32_t((start + i) / width));
+                rays[i] = camera.ray(uint32_t((start + i) % width), uint32_t((start + i) / width));
         });
         if (const Result<Done> done =
                 backend.intersect_noted(rays, {}, hits, layers.notes(start, rays.size()));

@@ -5,6 +5,7 @@
 #include "core/result.h"
 #include "core/scene.h"
 #include "host/backend.h"
+#include "host/camera.h"
 #include "host/output.h"
 
 #include <string_view>
@@ -29,7 +30,7 @@ Result<Aovs> parse_aovs(std::string_view text);
 
 /// One ray through the middle of each pixel, apart from those of the picture. Error: leaf or passes
 /// of a backend that has none.
-Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Camera& camera, Backend& backend,
-                                      const Aovs& aovs, uint32_t width, uint32_t height);
+Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Pinhole& camera, Backend& backend,
+                                      const Aovs& aovs);
 
 } // namespace ovc

@@ -152,16 +152,16 @@ Result<size_t> parse_choice(std::string_view option, std::string_view text,
                              did_you_mean(text, names))};
 }
 
-Result<ImageSize> parse_size(std::string_view text) {
+Result<ImageSize> parse_size(std::string_view option, std::string_view text) {
     const size_t cross = text.find_first_of("xX");
     if (cross == std::string_view::npos)
-        return Error{fmt::format("--size needs WIDTHxHEIGHT, such as 640x480, not '{}'", text)};
+        return Error{fmt::format("{} needs WIDTHxHEIGHT, such as 640x480, not '{}'", option, text)};
     const Result<uint64_t> width =
-        parse_count("the width in --size", text.substr(0, cross), 1, 65535);
+        parse_count(fmt::format("the width in {}", option), text.substr(0, cross), 1, 65535);
     if (!width)
         return width.error();
     const Result<uint64_t> height =
-        parse_count("the height in --size", text.substr(cross + 1), 1, 65535);
+        parse_count(fmt::format("the height in {}", option), text.substr(cross + 1), 1, 65535);
     if (!height)
         return height.error();
     return ImageSize{uint32_t(*width), uint32_t(*height)};

@@ -36,7 +36,7 @@ Result<size_t> parse_choice(std::string_view option, std::string_view text,
                             std::span<const std::string_view> names);
 
 /// "640x480"; each side from 1 to 65535.
-Result<ImageSize> parse_size(std::string_view text);
+Result<ImageSize> parse_size(std::string_view option, std::string_view text);
 
 /// "ex,ey,ez,tx,ty,tz" or with ",fov" in degrees, 0 < fov < 180; eye and target differ. what: who
 /// needs it, in the error.

@@ -24,12 +24,12 @@ TEST(PovWords, JoinOptionsWhoseValueMayBeNegative) {
 }
 
 TEST(ParseSize, TakesTwoNumbers) {
-    EXPECT_EQ(parse_size("640x480")->width, 640u);
-    EXPECT_EQ(parse_size("640X480")->height, 480u);
+    EXPECT_EQ(parse_size("--size", "640x480")->width, 640u);
+    EXPECT_EQ(parse_size("--size", "640X480")->height, 480u);
     for (const char* text :
          {"", "640", "x", "0x5", "5x0", "65536x1", "-1x5", "5x5x5", "axb", "5 x 5"})
-        EXPECT_FALSE(parse_size(text)) << text;
-    EXPECT_EQ(parse_size("0x5").error().message,
+        EXPECT_FALSE(parse_size("--size", text)) << text;
+    EXPECT_EQ(parse_size("--size", "0x5").error().message,
               "the width in --size needs a whole number from 1 to 65535, not '0'");
 }
 

@@ -56,9 +56,11 @@ Result<Done> check_camera(const Camera& camera) {
     return Done{};
 }
 
-Pinhole::Pinhole(const Camera& camera, uint32_t width, uint32_t height)
-    : width_(width), height_(height), eye_(camera.eye) {
-    assert(width > 0 && height > 0 && check_camera(camera));
+Pinhole::Pinhole(const Camera& camera, const PicturePart& part) : part_(part), eye_(camera.eye) {
+    assert(part.size.width > 0 && part.left + part.size.width <= part.picture.width);
+    assert(part.size.height > 0 && part.top + part.size.height <= part.picture.height);
+    assert(check_camera(camera));
+    const auto [width, height] = part.picture;
     const ViewAxes axes = view_axes(camera);
     right_ = axes.right;
     up_ = axes.up;
@@ -77,10 +79,11 @@ Pinhole::Pinhole(const Camera& camera, uint32_t width, uint32_t height)
 }
 
 Ray Pinhole::ray(uint32_t x, uint32_t y, const dvec2& place) const {
-    const dvec2 at = dvec2(x, y) + place;
+    const dvec2 at = (dvec2(part_.left + x, part_.top + y) + place) /
+                     dvec2(part_.picture.width, part_.picture.height);
     if (bent_)
-        return bent_ray(*bent_, eye_, {at.x / width_ - 0.5, 0.5 - at.y / height_});
-    const dvec3 in_plane = (2 * at.x / width_ - 1) * to_right_ + (1 - 2 * at.y / height_) * to_top_;
+        return bent_ray(*bent_, eye_, {at.x - 0.5, 0.5 - at.y});
+    const dvec3 in_plane = (2 * at.x - 1) * to_right_ + (1 - 2 * at.y) * to_top_;
     Ray ray;
     ray.org = orthographic_ ? eye_ + in_plane : eye_;
     ray.dir = orthographic_ ? middle_ : middle_ + in_plane;

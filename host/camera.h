@@ -22,12 +22,22 @@ inline constexpr double kFarthest = 1e100;
 /// say whose camera it is.
 Result<Done> check_camera(const Camera& camera);
 
-/// A camera made ready for an image of width x height pixels.
+/// A part of a larger picture, so many pixels from its left and upper edge.
+struct PicturePart {
+    ImageSize picture;
+    uint32_t left = 0;
+    uint32_t top = 0;
+    ImageSize size;
+};
+
+/// A camera made ready for an image of width x height pixels, which may be a part of its picture.
 class Pinhole {
 public:
-    /// check_camera() accepts it; an up along the view is replaced by an axis that is
-    /// not.
-    Pinhole(const Camera& camera, uint32_t width, uint32_t height);
+    /// The part lies within its picture. check_camera() accepts the camera; an up along the view is
+    /// replaced by an axis that is not.
+    Pinhole(const Camera& camera, const PicturePart& part);
+    Pinhole(const Camera& camera, uint32_t width, uint32_t height)
+        : Pinhole(camera, {{width, height}, 0, 0, {width, height}}) {}
 
     /// Through a place in pixel (x, y), (0, 0) being top left: from (0, 0), its top left corner, to
     /// (1, 1). dir is not of unit length: t is the depth, in a window's case in units of its
@@ -35,14 +45,14 @@ public:
     /// 0.
     Ray ray(uint32_t x, uint32_t y, const dvec2& place = dvec2(0.5)) const;
 
-    uint32_t width() const { return width_; }
-    uint32_t height() const { return height_; }
+    uint32_t width() const { return part_.size.width; }
+    uint32_t height() const { return part_.size.height; }
     /// Unit length, perpendicular to the view.
     const dvec3& up() const { return up_; }
     const dvec3& right() const { return right_; }
 
 private:
-    uint32_t width_, height_;
+    PicturePart part_;
     dvec3 eye_, right_, up_;
     // To the middle of the image plane, and from there to its right and upper edge.
     dvec3 middle_, to_right_, to_top_;

@@ -45,6 +45,7 @@ struct RenderWords {
     SceneArguments scene;
     std::vector<std::string> outputs;
     std::string size;
+    std::string crop;
     std::string camera;
     std::string frames;
     std::string camera_path;
@@ -81,6 +82,11 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_option("--size", size,
                    "Pixels, at most 65535 a side; default: what the file asks for, else 512x512")
         ->type_name("WxH");
+    app.add_option(
+           "--crop", crop,
+           "Only a part of the picture: its size, and how far it is from the left and upper "
+           "edge")
+        ->type_name("WxH+X+Y");
     app.add_option(
            "--camera", camera,
            "Eye, target and angle of view in degrees along the shorter side (40); not with "
@@ -135,6 +141,26 @@ void RenderWords::add_to(CLI::App& app) {
                  "as long again");
     app.add_flag("--quiet", quiet, "Print nothing but warnings and errors");
     backend.add_to(app);
+}
+
+/// "320x240+100+50"
+static Result<Crop> parse_crop(std::string_view text) {
+    const size_t left = std::min(text.find('+'), text.size());
+    const size_t top = std::min(text.find('+', left + 1), text.size());
+    if (top == text.size())
+        return Error{
+            fmt::format("--crop needs WIDTHxHEIGHT+X+Y, such as 320x240+100+50, not '{}'", text)};
+    const Result<ImageSize> size = parse_size("--crop", text.substr(0, left));
+    if (!size)
+        return size.error();
+    const Result<uint64_t> x =
+        parse_count("X in --crop", text.substr(left + 1, top - left - 1), 0, 65534);
+    if (!x)
+        return x.error();
+    const Result<uint64_t> y = parse_count("Y in --crop", text.substr(top + 1), 0, 65534);
+    if (!y)
+        return y.error();
+    return Crop{uint32_t(*x), uint32_t(*y), *size};
 }
 
 /// The path to take, and what it is called in a sentence.
@@ -220,10 +246,16 @@ static Result<Done> check_outputs(const RenderWords& words, const RenderJob& job
 
 static Result<Done> understand_view(const RenderWords& words, RenderJob& job) {
     if (!words.size.empty()) {
-        const Result<ImageSize> size = parse_size(words.size);
+        const Result<ImageSize> size = parse_size("--size", words.size);
         if (!size)
             return size.error();
         job.size = *size;
+    }
+    if (!words.crop.empty()) {
+        const Result<Crop> crop = parse_crop(words.crop);
+        if (!crop)
+            return crop.error();
+        job.crop = *crop;
     }
     if (!words.camera.empty()) {
         const Result<Camera> camera = parse_camera("--camera", words.camera);

@@ -75,7 +75,8 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
                                     Film& film) {
     const Stopwatch watch;
     const double cpu_before = cpu_seconds();
-    const Pinhole pinhole(camera, film.width(), film.height());
+    const ImageSize whole{film.width(), film.height()};
+    const Pinhole pinhole(camera, options.part.value_or(PicturePart{whole, 0, 0, whole}));
     const CameraRays rays(pinhole, film);
     const std::unique_ptr<Integrator> integrator = make_integrator(scene, camera, options);
     Result<RenderReport> report =

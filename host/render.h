@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 namespace ovc {
 
@@ -27,7 +28,8 @@ struct RenderOptions {
     RenderMode mode = RenderMode::Auto;
     uint32_t max_depth = 5; // surfaces that a path leaves at most
     bool shadows = true;
-    uint64_t seed = 0; // of path tracing
+    uint64_t seed = 0;               // of path tracing
+    std::optional<PicturePart> part; // that the film is; none: it is the whole picture
     /// Batched: the most rays a backend gets at once. Bounds host memory: at most about three times
     /// as many rays wait.
     size_t batch_rays = size_t(1) << 20;

@@ -3,6 +3,7 @@
 // mixed makes fewer passes where memory is short.
 #include "host/render.h"
 
+#include "core/parallel.h"
 #include "host/camera.h"
 #include "host/scene_summary.h"
 #include "testscenes/catalog.h"
@@ -62,6 +63,34 @@ TEST(Modes, MakeTheSamePicture) {
         EXPECT_EQ(mixed.report.pixels_done, size_t(kSide) * kSide);
         EXPECT_EQ(batched.report.pixels_done, size_t(kSide) * kSide);
         expect_same_bits(mixed.image, batched.image);
+    }
+}
+
+TEST(Modes, MakeTheSamePictureOnAnyNumberOfThreads) {
+    const Shown shown("glass");
+    const std::unique_ptr<Backend> cpu = make_cpu_backend(shown.scene.soup);
+    const Image expected = picture(RenderMode::Batched, shown, *cpu).image;
+    for (const size_t threads : {1, 3})
+        for (const RenderMode mode : {RenderMode::Batched, RenderMode::Mixed}) {
+            const ThreadLimit limit(threads);
+            expect_same_bits(picture(mode, shown, *cpu).image, expected);
+        }
+}
+
+TEST(Modes, MakeAPartOfThePicture) {
+    const Shown shown("glass");
+    const std::unique_ptr<Backend> cpu = make_cpu_backend(shown.scene.soup);
+    const Image whole = picture(RenderMode::Batched, shown, *cpu).image;
+    for (const RenderMode mode : {RenderMode::Batched, RenderMode::Mixed}) {
+        RenderOptions options;
+        options.mode = mode;
+        options.part = {{kSide, kSide}, 17, 40, {60, 33}};
+        Film film(60, 33);
+        ASSERT_TRUE(render_picture(shown.scene, shown.camera, *cpu, options, {}, film));
+        const Image part = film.image();
+        for (uint32_t y = 0; y < 33; ++y)
+            for (uint32_t x = 0; x < 60; ++x)
+                ASSERT_EQ(part.at(x, y), whole.at(17 + x, 40 + y));
     }
 }
 

@@ -42,8 +42,10 @@ static Camera still_camera(const Scene& scene, const RenderJob& job, const Image
     return framing_camera(hittable_bounds(scene.soup), size.width, size.height);
 }
 
-static RenderOptions render_options(const RenderJob& job, const Scene& scene) {
+static RenderOptions render_options(const RenderJob& job, const PicturePart& part,
+                                    const Scene& scene) {
     RenderOptions options = job.render;
+    options.part = part;
     options.max_depth = job.max_depth.value_or(scene.max_depth.value_or(options.max_depth));
     options.max_depth = std::min(options.max_depth, kMostDepth);
     return options;
@@ -68,12 +70,11 @@ static bool is_there(const RenderJob& job, uint32_t frame) {
 /// A run of pictures over one scene and one backend.
 class Rendering {
 public:
-    Rendering(const RenderJob& job, const ImageSize& size, Scene& scene, Backend& backend,
+    Rendering(const RenderJob& job, const PicturePart& part, Scene& scene, Backend& backend,
               const LogSink& log)
         : job_(job),
           log_(log),
-          size_(size),
-          options_(render_options(job, scene)),
+          options_(render_options(job, part, scene)),
           scene_(scene),
           lights_(job.lights.empty() ? scene.lights : job.lights),
           backend_(backend) {}
@@ -112,7 +113,7 @@ private:
         FrameStats frame;
         frame.frame = shot.frame;
         scene_.lights = placed_lights(lights_, shot.camera);
-        Film film(size_.width, size_.height, job_.samples);
+        Film film(options_.part->size.width, options_.part->size.height, job_.samples);
         if (const Result<Done> done = go_on_with(shot, film); !done)
             return done.error();
         if (const Result<RenderReport> report = trace(shot, film); report)
@@ -151,8 +152,8 @@ private:
     /// Of what the pixels depend on, but for their number.
     uint64_t checksum_of_picture(const Shot& shot) const {
         ByteWriter view;
-        view(shot.camera, options_.integrator, options_.max_depth, options_.shadows, options_.seed,
-             job_.backend.precision);
+        view(shot.camera, *options_.part, options_.integrator, options_.max_depth, options_.shadows,
+             options_.seed, job_.backend.precision);
         Checksum sum;
         sum.add(view.bytes());
         sum.add_value(checksum_of(scene_));
@@ -210,7 +211,7 @@ private:
         contents.png_bits = job_.png_bits;
         if (job_.aovs.any()) {
             Result<std::vector<Layer>> traced =
-                trace_aovs(scene_, shot.camera, backend_, job_.aovs, image.width, image.height);
+                trace_aovs(scene_, Pinhole(shot.camera, *options_.part), backend_, job_.aovs);
             if (!traced)
                 return traced.error();
             contents.layers = std::move(*traced);
@@ -223,7 +224,6 @@ private:
 
     const RenderJob& job_;
     const LogSink& log_;
-    const ImageSize size_;
     const RenderOptions options_;
     Scene& scene_;
     const std::vector<Light> lights_; // as the scene or the user has them
@@ -263,6 +263,17 @@ static std::optional<ThreadLimit> limit_threads(uint32_t threads) {
     return std::optional<ThreadLimit>(std::in_place, threads);
 }
 
+static Result<PicturePart> part_of(const ImageSize& picture, const std::optional<Crop>& crop) {
+    if (!crop)
+        return PicturePart{picture, 0, 0, picture};
+    if (uint64_t(crop->left) + crop->size.width > picture.width ||
+        uint64_t(crop->top) + crop->size.height > picture.height)
+        return Error{fmt::format("--crop {}x{}+{}+{} does not lie within the picture of {}x{}",
+                                 crop->size.width, crop->size.height, crop->left, crop->top,
+                                 picture.width, picture.height)};
+    return PicturePart{picture, crop->left, crop->top, crop->size};
+}
+
 /// Before anything is read: whether nothing is left to do.
 static bool all_there(const RenderJob& job) {
     return job.shots.empty()
@@ -288,8 +299,11 @@ Result<int> render(const RenderJob& job) {
         return scene.error();
     stats.scene = job.scene.scene;
     const ImageSize size = job.size.value_or(scene->size.value_or(ImageSize{}));
-    stats.width = size.width;
-    stats.height = size.height;
+    const Result<PicturePart> part = part_of(size, job.crop);
+    if (!part)
+        return part.error();
+    stats.width = part->size.width;
+    stats.height = part->size.height;
     stats.seconds_import = total.seconds();
     stats.scene_from_cache = cache.found();
 
@@ -310,7 +324,7 @@ Result<int> render(const RenderJob& job) {
         return backend.error();
 
     cache.keep(*scene, **backend, log);
-    Result<Done> done = Rendering(job, size, *scene, **backend, log).run(shots, stats);
+    Result<Done> done = Rendering(job, *part, *scene, **backend, log).run(shots, stats);
     if (!done)
         return done.error();
     stats.tracing = (*backend)->statistics();

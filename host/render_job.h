@@ -23,6 +23,13 @@ inline constexpr uint32_t kMostSamples = 65536;
 /// The most that --threads may ask for.
 inline constexpr uint32_t kMostThreads = 1024;
 
+/// What is rendered of the picture.
+struct Crop {
+    uint32_t left = 0;
+    uint32_t top = 0;
+    ImageSize size;
+};
+
 /// One picture of a sequence.
 struct Shot {
     uint32_t frame = 0; // in the camera path
@@ -34,6 +41,7 @@ struct RenderJob {
     std::vector<std::string> outputs; // with a # for each digit of the frame, where there are shots
     std::optional<ImageSize> size;    // none: the scene's, else 512 x 512
     std::optional<Camera> camera;
+    std::optional<Crop> crop;
     std::vector<Shot> shots; // empty: one picture, from `camera` or the scene's own
     std::vector<Light> lights;
     RenderOptions render;

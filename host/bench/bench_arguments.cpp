@@ -156,7 +156,7 @@ Result<BenchJob> understand_bench(const BenchWords& words) {
     job.scenes = words.scenes.empty() ? std::vector<std::string>{kDefaultScene} : words.scenes;
     job.device = words.device;
     job.json = words.json;
-    const Result<ImageSize> size = parse_size(words.size);
+    const Result<ImageSize> size = parse_size("--size", words.size);
     if (!size)
         return size.error();
     job.size = *size;
