@@ -6,7 +6,9 @@
 #include "core/mapped_file.h"
 #include "core/soup.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -187,6 +189,17 @@ struct Background {
     vec3 zenith{0.35f, 0.5f, 0.8f};
 };
 
+/// Scene::gamma: sRGB's curve instead of a power.
+inline constexpr double kSrgbGamma = 0;
+
+/// Of a color of a scene with that gamma: the linear light that it means.
+inline float linear_light(float color, double gamma) {
+    if (gamma != kSrgbGamma)
+        return std::pow(std::max(color, 0.0f), float(gamma));
+    return color <= 0.04045f ? std::max(color, 0.0f) / 12.92f
+                             : std::pow((color + 0.055f) / 1.055f, 2.4f); // IEC 61966-2-1
+}
+
 /// What a scene was before its instances were expanded.
 struct Instancing {
     uint64_t unique_triangles = 0;
@@ -204,7 +217,8 @@ struct Scene {
     std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's
     Background background;
     float exposure = 1; // what lights, background and emission were multiplied by to fit a picture
-    double gamma = 1;   // what is rendered ^ gamma is linear light: POV-Ray's assumed_gamma
+    /// What is rendered ^ gamma is linear light: POV-Ray's assumed_gamma; or kSrgbGamma.
+    double gamma = 1;
     std::optional<Instancing> instancing; // none: every triangle is its own
     MappedFile file; // where chunks and `saved` lie, if they do not own what they show
     Bytes saved;     // what the plugin saved of this soup (ovc_scene_config.saved); empty: nothing

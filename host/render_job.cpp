@@ -164,7 +164,7 @@ private:
     void to_linear(Image& image) const {
         for (vec4& pixel : image.pixels)
             for (int i = 0; i < 3; ++i)
-                pixel[i] = std::pow(std::max(pixel[i], 0.0f), float(scene_.gamma));
+                pixel[i] = linear_light(pixel[i], scene_.gamma);
     }
 
     Result<RenderReport> trace(const Shot& shot, Film& film) {

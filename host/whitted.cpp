@@ -56,18 +56,21 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
         met.surface.material->transmission > 0 ? refracted_ray(ray, met.surface) : std::nullopt;
     const bool total = met.surface.material->transmission > 0 && !refracted;
     const Branches parts = branches(met.surface, total);
-    const auto follow = [&](const vec3& share, float taken, RayKind kind, auto&& child) {
+    const auto follow = [&](const vec3& share, float taken, RayKind kind, int deeper,
+                            auto&& child) {
         const vec3 weight = path.weight * share;
         if (path.depth >= max_depth_ || max_component(weight) < kLeastWeight)
             return;
         met.weight -= path.weight * taken;
         spawned.paths.push(
             child(), hit.id,
-            {path.pixel, path.sample, uint16_t(path.depth + 1), kind, weight, path.density});
+            {path.pixel, path.sample, uint16_t(path.depth + deeper), kind, weight, path.density});
     };
-    follow(parts.mirror, parts.taken_by_mirror, RayKind::Reflection,
+    follow(parts.mirror, parts.taken_by_mirror, RayKind::Reflection, 1,
            [&] { return mirror_ray(ray, met.surface); });
-    follow(parts.through, parts.taken_by_through, RayKind::Refraction, [&] { return *refracted; });
+    // Straight on is no step deeper, as in POV-Ray: there are only so many surfaces along a line.
+    follow(parts.through, parts.taken_by_through, RayKind::Refraction,
+           met.surface.material->ior == 1 ? 0 : 1, [&] { return *refracted; });
     return met;
 }
 

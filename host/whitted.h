@@ -12,9 +12,9 @@
 namespace ovc {
 
 /// A reflection or refraction that adds less than this to its pixel is not followed; an 8-bit image
-/// would not show it. The shares of a camera ray's paths add up to at most 1, so it never has more
-/// than 512 of them at a time.
-inline constexpr float kLeastWeight = 1 / 512.0f;
+/// would hardly show it, and POV-Ray does not follow it either (adc_bailout). The shares of a
+/// camera ray's paths add up to at most 1, so it never has more than 255 of them at a time.
+inline constexpr float kLeastWeight = 1 / 255.0f;
 
 class Whitted final : public Integrator {
 public:

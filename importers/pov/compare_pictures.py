@@ -47,10 +47,9 @@ def povray_picture(scene, cache, limit):
     return (kept, "") if kept.exists() else (None, failed.read_text())
 
 
-def our_picture(scene, picture, options):
-    """(what the importer warned of, why there is no picture)."""
-    command = [options.build / "bin" / "overcast", "render", scene, "--size", f"{WIDTH}x{HEIGHT}", "-o", picture, "--quiet",
-               "--backend", options.backend]
+def run_overcast(arguments, options):
+    """(what the importer warned of, why it failed)."""
+    command = [options.build / "bin" / "overcast", *arguments]
     try:
         done = subprocess.run(command, capture_output=True, timeout=options.limit, preexec_fn=lambda: os.nice(15))
     except subprocess.TimeoutExpired:
@@ -82,14 +81,15 @@ def colors_at(picture, pixels):
 
 
 def compare(scene, options):
-    name = hashlib.sha1(str(scene).encode()).hexdigest()[:12]
-    picture = options.output / f"{name}-ours.png"
-    warnings, refused = our_picture(scene, picture, options)
-    if warnings and options.plain:
+    warnings, refused = run_overcast(["info", scene], options) if options.plain else ([], "")
+    if warnings:
         return {"scene": scene, "state": "approximated", "why": "; ".join(warnings)}
     kept, error = povray_picture(scene, options.cache, options.limit)
     if not kept:
         return {"scene": scene, "state": "povray fails", "why": error}
+    name = hashlib.sha1(str(scene).encode()).hexdigest()[:12]
+    picture = options.output / f"{name}-ours.png"
+    warnings, refused = run_overcast(["render", scene, "--size", f"{WIDTH}x{HEIGHT}", "-o", picture, "--quiet", "--backend", options.backend], options)
     if refused:
         return {"scene": scene, "state": "not imported", "why": refused}
     _, _, theirs = read_png(kept)

@@ -397,6 +397,7 @@ void Reader::do_version() {
     const Value value = hooks_.value(*this);
     if (const Number* number = std::get_if<Number>(&value))
         version = number->v[0];
+    version_given = true;
     take_semicolon();
 }
 

@@ -400,6 +400,8 @@ bool parse_flag(Reader& reader) {
 }
 
 double from_srgb(double c, double gamma) {
+    if (gamma == kSrgbGamma)
+        return c;
     const double linear = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
     return gamma == 1 ? linear : std::pow(linear, 1 / gamma);
 }

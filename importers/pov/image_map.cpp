@@ -16,7 +16,7 @@ Color average(const Reader& reader, const Picture& picture) {
     std::array<double, 256> linear;
     for (size_t i = 0; i < linear.size(); ++i)
         linear[i] =
-            reader.version >= 3.7 ? from_srgb(double(i) / 255, reader.gamma) : double(i) / 255;
+            reader.has_linear_colors() ? from_srgb(double(i) / 255, reader.gamma) : double(i) / 255;
     dvec3 sum(0);
     double opacity = 0;
     for (const auto& p : picture.pixels) {

@@ -60,6 +60,9 @@ public:
         reader_.open(std::move(file));
         while (reader_.peek().kind != TokenKind::End)
             parse_statement(scene);
+        // Before 3.7 scenes made colors for screens, and povray still writes them as they are.
+        scene.max_depth = trace_level_ - 1; // the camera's rays count too
+        scene.gamma = gamma_given_ || reader_.has_linear_colors() ? reader_.gamma : kSrgbGamma;
         camera_ = camera_ ? camera_ : std::make_shared<const CameraValue>();
         scene.camera = camera_of(*camera_);
         scene.size = options_.size.value_or(size_of(*camera_));
@@ -81,7 +84,7 @@ private:
         else if (reader_.take("background"))
             parse_background(scene);
         else if (reader_.take("global_settings"))
-            parse_settings(scene);
+            parse_settings();
         else if (reader_.take("sky_sphere"))
             parse_sky(token, scene);
         else if (token.is("fog") || token.is("media") || token.is("rainbow") ||
@@ -124,14 +127,15 @@ private:
         reader_.warn("sky_sphere", at.place, "sky_sphere is drawn by its average color");
     }
 
-    void parse_settings(Scene& scene) {
+    void parse_settings() {
         reader_.expect('{', "global_settings");
         while (!reader_.take('}')) {
             if (reader_.take("assumed_gamma")) {
-                reader_.gamma = std::clamp(parse_float(reader_), 0.1, 10.0);
-                scene.gamma = reader_.gamma;
+                reader_.gamma =
+                    reader_.take("srgb") ? kSrgbGamma : std::clamp(parse_float(reader_), 0.1, 10.0);
+                gamma_given_ = true;
             } else if (reader_.take("max_trace_level"))
-                scene.max_depth = uint32_t(parse_int(reader_, 0, 256, "max_trace_level"));
+                trace_level_ = uint32_t(parse_int(reader_, 1, 256, "max_trace_level"));
             else if (reader_.take("ambient_light"))
                 look_.ambient_light = parse_color(reader_).rgb;
             else if (const Token token = reader_.next(); token.kind == TokenKind::Name) {
@@ -157,6 +161,8 @@ private:
     const ImportOptions& options_;
     Reader reader_;
     Look look_;
+    bool gamma_given_ = false;
+    uint32_t trace_level_ = 5;
     std::vector<ObjectPtr> objects_;
     std::shared_ptr<const CameraValue> camera_;
 };

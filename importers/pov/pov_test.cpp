@@ -289,7 +289,7 @@ TEST(PovScene, ReadsLightsCameraAndSettings) {
     ASSERT_EQ(scene->lights.size(), 1u);
     EXPECT_LT(glm::length(scene->lights[0].direction - dvec3(0, -1, 0)), 1e-12);
     EXPECT_NEAR(scene->lights[0].cone->falloff_cosine, std::cos(20 * 3.14159265358979 / 180), 1e-9);
-    EXPECT_EQ(scene->max_depth, 9u);
+    EXPECT_EQ(scene->max_depth, 8u); // the camera's ray is the first
     EXPECT_EQ(scene->background.zenith, vec3(0, 0, 1));
     ASSERT_EQ(scene->materials.size(), 1u);
     const Material& material = scene->materials[0];

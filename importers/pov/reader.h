@@ -99,6 +99,9 @@ public:
     const Place& place() const { return last_; } // of the token read last
     Caller caller() const;                       // of what is running
     double version = 3.7;
+    bool version_given = false; // by some #version; else povray takes the scene for an older one
+    /// Colors are light, not what screens are told.
+    bool has_linear_colors() const { return version_given && version >= 3.7; }
     double gamma = 1; // assumed_gamma: what srgb colors are converted to
     ImageSize picture{640, 480};
     Texture defaults; // of #default
