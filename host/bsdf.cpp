@@ -2,7 +2,7 @@
 // Lambert below a coat, GGX, mirror and glass.
 #include "host/bsdf.h"
 
-#include "host/fresnel.h"
+#include "core/fresnel.h"
 #include "host/microfacet.h"
 
 #include <algorithm>

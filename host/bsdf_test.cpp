@@ -3,7 +3,7 @@
 // Fresnel's equations by their values.
 #include "host/bsdf.h"
 
-#include "host/fresnel.h"
+#include "core/fresnel.h"
 #include "host/path_sampler.h"
 
 #include <fmt/format.h>

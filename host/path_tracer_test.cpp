@@ -4,7 +4,7 @@
 #include "host/path_tracer.h"
 
 #include "host/camera_rays.h"
-#include "host/fresnel.h"
+#include "core/fresnel.h"
 #include "host/render.h"
 #include "host/render_batched.h"
 

@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kKind = "ovc scene";
 /// To be raised with every change of scene_fields.h, and where importers make another scene of the
 /// same file.
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 
 /// What of a mesh lies in other parts.
 struct MeshExtent {
@@ -66,6 +66,11 @@ bool is_sound(const Scene& scene) {
     const auto fits = [](uint32_t side) { return side >= 1 && side <= kMostPixels; };
     if (scene.size && !(fits(scene.size->width) && fits(scene.size->height)))
         return false;
+    if (!(scene.exposure > 0))
+        return false;
+    for (const Material& material : scene.materials)
+        if (material.optics && material.optics->boundary > Optics::Boundary::Thin)
+            return false;
     using Bend = ImageWindow::Bend;
     return !scene.camera || !scene.camera->window ||
            (scene.camera->window->bend >= Bend::Flat &&

@@ -65,15 +65,17 @@ TEST(SceneFile, EveryFieldOfAStructIsNamed) {
     // Their sizes in memory, less padding, and optionals and strings by their own parts.
     EXPECT_EQ(size(Finish{}), sizeof(Finish) - 2 * 3);
     EXPECT_EQ(size(Checker{}), sizeof(vec3) + sizeof(Checker::to_cubes));
-    EXPECT_EQ(size(Material{}), 8 + 12 + 4 + 4 + 12 + 8 + 1 + 1u);
+    EXPECT_EQ(size(Material{}), 8 + 12 + 4 + 4 + 12 + 8 + 1 + 1 + 1u);
     EXPECT_EQ(size(SpotCone{}), sizeof(SpotCone));
-    EXPECT_EQ(size(Light{}), 24 + 12 + 1 + 24 + 1 + 1 + 1 + 8 + 8u);
+    EXPECT_EQ(size(Optics{}), 3 * 12 + 1 + 8 + 4 + 12 + 1u);
+    EXPECT_EQ(size(Light{}), 24 + 12 + 1 + 24 + 1 + 1 + 1 + 8 + 8 + 1u);
     EXPECT_EQ(size(ImageWindow{}), 3 * 24 + 1 + 4 + 8 + 8u);
     EXPECT_EQ(size(Camera{}), 3 * 24 + 8 + 1u);
     EXPECT_EQ(size(MeshInfo{}), 8 + 4 + 1 + 4 + 72u);
     EXPECT_EQ(sizeof(Finish), 80u) << "a field more: name it in scene_fields.h, and here";
-    EXPECT_EQ(sizeof(Material), 280u) << "a field more: name it in scene_fields.h, and here";
-    EXPECT_EQ(sizeof(Light), 120u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Optics), 72u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Material), 360u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Light), 128u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(ImageWindow), 96u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Camera), 184u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(MeshInfo), 144u) << "a field more: name it in scene_fields.h, and here";

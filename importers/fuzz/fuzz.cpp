@@ -81,7 +81,8 @@ Scene scene_with_everything() {
     scene.name = "everything";
     scene.materials.push_back({"plain"});
     scene.materials.push_back({"shiny", vec3(0.1f, 0.2f, 0.3f), 0.5f, 0.25f, vec3(0.5f), 1.5,
-                               Finish{vec3(0.1f)}, Checker{vec3(1)}});
+                               Finish{vec3(0.1f)}, Checker{vec3(1)},
+                               Optics{.diffuse = vec3(0.3f), .boundary = Optics::Boundary::Thin}});
     const std::vector<vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
                                        {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
     scene.add_mesh("a", 0, Chunk::owning(dvec3(0), corners), std::vector<vec3>(6, vec3(0, 0, 1)));
@@ -94,6 +95,7 @@ Scene scene_with_everything() {
     light.position = dvec3(1, 2, 3);
     light.cone = SpotCone{0.9, 0.8, 2};
     light.fade_power = 2;
+    light.stand_in = true;
     scene.lights = {light, {}};
     Camera camera;
     camera.window = ImageWindow{};
@@ -102,6 +104,7 @@ Scene scene_with_everything() {
     scene.size = ImageSize{320, 240};
     scene.max_depth = 7;
     scene.background.zenith = vec3(0, 0, 1);
+    scene.exposure = 0.5f;
     scene.gamma = 2.2;
     scene.instancing = Instancing{2, 2};
     return scene;

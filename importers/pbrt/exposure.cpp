@@ -109,9 +109,12 @@ void expose(Scene& scene, float exposure) {
         light.color *= exposure;
     scene.background.horizon *= exposure;
     scene.background.zenith *= exposure;
-    for (Material& material : scene.materials)
+    for (Material& material : scene.materials) {
         if (material.finish && material.finish->diffuse == 0)
             material.finish->ambient *= exposure;
+        if (material.optics)
+            material.optics->emission *= exposure;
+    }
 }
 
 } // namespace ovc::pbrt

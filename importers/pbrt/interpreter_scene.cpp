@@ -38,7 +38,8 @@ bool Interpreter::add_shape(Mesh mesh) {
                                 triangles_, options_.max_triangles));
     Shape shape{std::move(mesh), now.transforms.start(), now.material, now.reversed};
     if (now.emission && building_.empty()) {
-        shape.material = materials_.emitter(now.emission->radiance);
+        shape.material =
+            materials_.emitter(now.material, now.emission->radiance, now.emission->two_sided);
         lights_.add_area(shape, *now.emission);
     } else if (now.emission) {
         diagnostics_.approximate("emitting objects", place_, "emission of instances left out");

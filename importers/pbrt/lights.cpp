@@ -131,10 +131,14 @@ std::optional<Emission> Lights::emission(const Parameters& p, const Place& place
 
 void Lights::add_area(const Shape& shape, const Emission& emission) {
     any_ = true;
-    diagnostics_.approximate("area light", emission.place,
-                             "area lights shine from a few points on them: shadows are hard");
-    for (const Light& light : lights_on(shape, emission.radiance, emission.two_sided))
+    diagnostics_.approximate(
+        "area light", emission.place,
+        "area lights shine from a few points on them, and shadows are hard, but "
+        "for --integrator path");
+    for (Light light : lights_on(shape, emission.radiance, emission.two_sided)) {
+        light.stand_in = true;
         area_lights_.push_back(light);
+    }
 }
 
 void Lights::finish(const dvec3& view_up, Scene& scene) {
@@ -162,6 +166,7 @@ void Lights::finish(const dvec3& view_up, Scene& scene) {
         Light above;
         above.parallel = true;
         above.direction = glm::length(view_up) > 0 ? -glm::normalize(view_up) : dvec3(0, -1, 0);
+        above.stand_in = true;
         above.color = sky_mean_ * float(kPi) * kSkyFromAbove;
         scene.lights.push_back(above);
         for (Material& material : scene.materials)

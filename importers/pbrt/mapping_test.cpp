@@ -172,6 +172,57 @@ TEST(PbrtMapping, AreaLightsSendOutTheirLight) {
     EXPECT_NEAR(sum(lamps, {0, 0, 10}), 100 * 5 * kPi * 0.01 / 100, 0.005);
 }
 
+TEST(PbrtMapping, PathTracingKnowsSurfacesAsTheFileHasThem) {
+    using Boundary = Optics::Boundary;
+    const auto optics_of = [](const char* text) { return *material_of(text).optics; };
+    const Optics matte = optics_of("Material \"matte\" \"rgb Kd\" [.1 .2 .3]");
+    EXPECT_EQ(matte.boundary, Boundary::None);
+    expect_color(matte.diffuse, {0.1f, 0.2f, 0.3f}, 1e-6f, "matte");
+    const Optics plastic = optics_of("Material \"plastic\" \"rgb Kd\" [.4 .4 .4] \"rgb Ks\" "
+                                     "[.5 .5 .5] \"float roughness\" .09");
+    EXPECT_EQ(plastic.boundary, Boundary::Dielectric);
+    expect_color(plastic.reflection, vec3(0.5f), 1e-6f, "plastic's coat");
+    EXPECT_NEAR(plastic.width, 0.3f, 1e-6f);
+    const Optics coated = optics_of("Material \"coateddiffuse\" \"rgb reflectance\" [.5 1 0] "
+                                    "\"bool remaproughness\" false \"float roughness\" 0.05");
+    EXPECT_NEAR(coated.width, 0.05f, 1e-6f);
+    // The coat throws 0.596 of what is below back onto it: 1 - (1 - 0.0918) / 1.5^2.
+    expect_color(coated.diffuse, {0.5f * 0.4036f / (1 - 0.5f * 0.5964f), 1, 0}, 1e-3f, "coated");
+    const Optics mirror = optics_of("Material \"mirror\" \"rgb Kr\" [.7 .8 .9]");
+    EXPECT_EQ(mirror.boundary, Boundary::Mirror);
+    expect_color(mirror.reflection, {0.7f, 0.8f, 0.9f}, 1e-6f, "mirror");
+    const Optics glass = optics_of("Material \"dielectric\" \"float eta\" 1.3");
+    EXPECT_EQ(glass.boundary, Boundary::Dielectric);
+    EXPECT_NEAR(glass.ior, 1.3, 1e-6);
+    EXPECT_EQ(glass.through, vec3(1));
+    EXPECT_EQ(optics_of("Material \"thindielectric\"").boundary, Boundary::Thin);
+    const Optics gold = optics_of("Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\" "
+                                  "\"float roughness\" 0.04");
+    EXPECT_EQ(gold.boundary, Boundary::Metal);
+    EXPECT_GT(gold.reflection.x, 2 * gold.reflection.z);
+    EXPECT_NEAR(gold.width, 0.2f, 1e-6f);
+    const Optics veil = optics_of("Material \"uber\" \"color opacity\" [.25 .25 .25]");
+    EXPECT_EQ(veil.boundary, Boundary::None);
+    expect_color(veil.through, vec3(0.75f), 1e-6f, "holes");
+}
+
+TEST(PbrtMapping, PathTracingKnowsEmittersAndNoneOfTheirStandIns) {
+    const Scene scene =
+        scene_of(std::string("LightSource \"point\" LightSource \"infinite\" Material \"matte\" "
+                             "\"rgb Kd\" [.1 .2 .3] AreaLightSource \"diffuse\" \"rgb L\" [5 6 7] "
+                             "\"bool twosided\" true") +
+                 kMesh);
+    const Optics& lamp = *scene.materials[scene.meshes[0].material].optics;
+    EXPECT_EQ(lamp.emission, vec3(5, 6, 7));
+    EXPECT_TRUE(lamp.two_sided);
+    expect_color(lamp.diffuse, {0.1f, 0.2f, 0.3f}, 1e-6f, "what it reflects");
+    int kept = 0;
+    for (const Light& light : scene.lights)
+        kept += !light.stand_in;
+    EXPECT_EQ(kept, 1) << "the point";
+    EXPECT_GT(scene.lights.size(), 2u);
+}
+
 TEST(PbrtMapping, TheSkyIsABackground) {
     const Scene scene = scene_of("LightSource \"infinite\" \"rgb L\" [.1 .2 .3] \"float scale\" 2");
     expect_color(scene.background.horizon, {0.2f, 0.4f, 0.6f}, 1e-6f, "sky");
@@ -222,6 +273,12 @@ TEST(PbrtMapping, LightIsFittedToThePicture) {
     EXPECT_LT(dimmed, 20);
     EXPECT_GT(raised, 0.5);
     EXPECT_NEAR(dimmed, raised, 0.01 * raised);
+    const Scene bright = scene_of(view +
+                                  "LightSource \"point\" \"point from\" [0 0 -1] \"color I\" "
+                                  "[1000 1000 1000] " +
+                                  wall);
+    EXPECT_NEAR(irradiance(bright.lights[0], {0, 0, 2}) / double(bright.exposure), 1000, 1)
+        << "what it was multiplied by is known";
 }
 
 } // namespace

@@ -3,12 +3,17 @@
 // Based on: pbrt's materials; Blinn 1977 (a lobe of exponent n); Schlick 1994 (metals).
 #include "importers/pbrt/material_families.h"
 
+#include "core/fresnel.h"
+
 namespace ovc::pbrt {
 
 namespace {
 
 /// Surfaces rougher than this show a highlight instead of mirror images.
 constexpr double kMirrorRoughness = 0.1;
+
+/// Of plastic, paint and whatever else does not say.
+constexpr double kPlasticIor = 1.5;
 
 /// The width of the microfacets' slopes, 0 to 1: the root of pbrt's roughness, unless the file says
 /// that it is the width itself.
@@ -58,7 +63,23 @@ Material matte(const MaterialContext& c, std::string_view reflectance) {
     Material m;
     m.color = c.color(reflectance, 0.5f);
     m.finish = plain_finish();
+    m.optics = Optics{.diffuse = m.color};
     return m;
+}
+
+/// Paint of this color below clear varnish which reflects `coat` of Fresnel's share.
+Optics varnished(const vec3& color, const vec3& coat, double ior, double width) {
+    return {.diffuse = color,
+            .boundary = Optics::Boundary::Dielectric,
+            .reflection = coat,
+            .ior = ior,
+            .width = float(width)};
+}
+
+/// The color that paint has from above where varnish throws part of its light back onto it.
+vec3 below_varnish(const vec3& color, double ior) {
+    const float back = float(1 - (1 - fresnel_mean(ior)) / (ior * ior));
+    return color * (1 - back) / (vec3(1) - back * color);
 }
 
 } // namespace
@@ -78,6 +99,7 @@ Material make_plastic(const MaterialContext& c) {
     const vec3 coat = c.color("Ks", 0.25f);
     const double width = roughness_of(c, 0.1);
     add_highlight(*m.finish, mean(coat), width);
+    m.optics = varnished(m.color, coat, kPlasticIor, width);
     return m;
 }
 
@@ -89,6 +111,7 @@ Material make_coated_diffuse(const MaterialContext& c) {
     add_highlight(*m.finish, float(f0), width);
     if (width <= kMirrorRoughness)
         add_coat(m, vec3(1));
+    m.optics = varnished(below_varnish(m.color, std::max(m.ior, 1.0)), vec3(1), m.ior, width);
     return m;
 }
 
@@ -99,6 +122,7 @@ Material make_mirror(const MaterialContext& c) {
     m.finish = Finish{};
     m.finish->diffuse = 0;
     m.finish->reflection = m.finish->grazing_reflection = c.color("Kr", 0.9f);
+    m.optics = Optics{.boundary = Optics::Boundary::Mirror, .reflection = m.finish->reflection};
     return m;
 }
 
@@ -113,6 +137,10 @@ Material make_glass(const MaterialContext& c, bool is_thin) {
     m.finish->diffuse = 0;
     m.finish->conserve_energy = true;
     const double ior = stated_ior(c).value_or(1.5);
+    m.optics = Optics{.boundary = is_thin ? Optics::Boundary::Thin : Optics::Boundary::Dielectric,
+                      .reflection = c.color("Kr", 1),
+                      .through = m.filter,
+                      .ior = ior};
     if (is_thin) {
         const double r = (ior - 1) * (ior - 1) / ((ior + 1) * (ior + 1));
         m.finish->reflection = vec3(float(2 * r / (1 + r))) * c.color("Kr", 1);
@@ -163,6 +191,8 @@ Material metal(const vec3& color, double width) {
     m.finish->grazing_reflection = vec3(sharp);
     m.finish->reflection_falloff = 5;
     add_highlight(*m.finish, 1, width);
+    m.optics =
+        Optics{.boundary = Optics::Boundary::Metal, .reflection = color, .width = float(width)};
     return m;
 }
 
@@ -186,18 +216,27 @@ Material make_uber(const MaterialContext& c) {
     Material m;
     m.color = c.color("Kd", 0.25f) * opacity;
     m.finish = plain_finish();
-    add_highlight(*m.finish, mean(c.color("Ks", 0.25f) * opacity), roughness_of(c, 0.1));
-    if (const vec3 kr = c.color("Kr", 0) * opacity; mean(kr) > 0)
+    const vec3 ks = c.color("Ks", 0.25f) * opacity;
+    const double width = roughness_of(c, 0.1);
+    add_highlight(*m.finish, mean(ks), width);
+    const vec3 kr = c.color("Kr", 0) * opacity;
+    if (mean(kr) > 0)
         add_coat(m, kr);
     const vec3 kt = c.color("Kt", 0) * opacity;
     m.ior = stated_ior(c).value_or(1.5);
+    m.optics =
+        mean(kr) > 0 ? varnished(m.color, kr, m.ior, 0) : varnished(m.color, ks, m.ior, width);
     const vec3 through = mean(kt) > 0 ? kt : vec3(1) - opacity;
     if (mean(through) > 0) {
         m.transmission = 1;
         m.filter = through;
         m.finish->conserve_energy = true;
-        if (mean(kt) == 0) // seen through holes, not through glass
+        if (mean(kt) == 0) { // seen through holes, not through glass
             m.ior = 1;
+            m.optics->boundary = Optics::Boundary::None;
+        }
+        m.optics->through = through;
+        m.optics->diffuse *= vec3(1) - through;
     }
     return m;
 }
@@ -216,7 +255,9 @@ Material make_disney(const MaterialContext& c) {
     if (c.number("metallic", 0) > 0.5)
         return metal(c.color("color", 0.5f), roughness_of(c, 0.5));
     Material m = matte(c, "color");
-    add_highlight(*m.finish, 0.04f, roughness_of(c, 0.5));
+    const double width = roughness_of(c, 0.5);
+    add_highlight(*m.finish, 0.04f, width);
+    m.optics = varnished(m.color, vec3(1), kPlasticIor, width);
     return m;
 }
 
@@ -240,6 +281,7 @@ Material make_measured(const MaterialContext&) {
     Material m;
     m.color = vec3(kRed, kGreen, kBlue) * 0.001f;
     m.finish = plain_finish();
+    m.optics = Optics{.diffuse = m.color};
     return m;
 }
 

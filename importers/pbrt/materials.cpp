@@ -76,6 +76,11 @@ Material Materials::mix(const Parameters& parameters, const Place& place) {
         m.finish->grazing_reflection =
             glm::mix(a.finish->grazing_reflection, b.finish->grazing_reflection, share);
     }
+    if (a.optics && b.optics) {
+        m.optics->diffuse = glm::mix(a.optics->diffuse, b.optics->diffuse, share);
+        m.optics->through = glm::mix(a.optics->through, b.optics->through, share);
+        m.optics->reflection = (share < 0.5f ? 1 - share : share) * m.optics->reflection;
+    }
     return m;
 }
 
@@ -102,8 +107,11 @@ uint32_t Materials::named(const std::string& name, const Place& place) {
     return 0;
 }
 
-uint32_t Materials::emitter(const vec3& radiance) {
+uint32_t Materials::emitter(uint32_t surface, const vec3& radiance, bool two_sided) {
     Material m;
+    m.optics = all_[surface].optics.value_or(Optics{.diffuse = all_[surface].color});
+    m.optics->emission = radiance;
+    m.optics->two_sided = two_sided;
     m.name = "emitter";
     m.color = vec3(1);
     m.finish = Finish{};

@@ -19,8 +19,8 @@ public:
     /// MakeNamedMaterial, and NamedMaterial (which warns where there is none of that name).
     void define(const std::string& name, const Parameters& parameters, const Place& place);
     uint32_t named(const std::string& name, const Place& place);
-    /// A surface that sends out light of this radiance.
-    uint32_t emitter(const vec3& radiance);
+    /// The material `surface`, sending out light of this radiance.
+    uint32_t emitter(uint32_t surface, const vec3& radiance, bool two_sided);
 
     const std::vector<Material>& all() const { return all_; }
     std::vector<Material> take() { return std::move(all_); }

@@ -33,9 +33,11 @@ Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& 
     }
     if (const float exposure = pbrt::fitting_exposure(scene); exposure != 1) {
         say(options.log, LogLevel::Info,
-            fmt::format("{}: light times {:.3g}, to fit a picture that ends at white",
+            fmt::format("{}: light times {:.3g}, to fit a picture that ends at white, but for "
+                        "--integrator path",
                         path.string(), exposure));
         pbrt::expose(scene, exposure);
+        scene.exposure = exposure;
     }
     scene.instancing = {census.unique, census.instances};
     if (scene.soup.triangle_count() == 0)
