@@ -35,6 +35,8 @@ static constexpr const char* kExamples = R"(Examples:
       the scene with your model in the place of the generated one
   overcast render plants.pbrt --cache ~/.cache/overcast -o plants.png
       the second time it starts at once
+  overcast render cornell-box.pbrt --integrator path --samples 256 -o box.exr
+      all light there is, from surface to surface; more samples, less noise (docs/path.md)
   overcast render dragon.ply +W640 +H480 +Od.png
       POV-Ray's words are understood
 
@@ -54,6 +56,7 @@ struct RenderWords {
     std::string threads;
     bool go_on = false;
     std::string max_depth;
+    std::string integrator = "whitted";
     std::string mode = "auto";
     std::string aov;
     std::string png_bits = "8";
@@ -107,9 +110,13 @@ void RenderWords::add_to(CLI::App& app) {
            "Rays a pixel, up to 65536: more of them smooth edges; the same ones every time; "
            "default: 1, through its middle")
         ->type_name("N");
+    app.add_option("--integrator", integrator,
+                   "whitted (mirrors, glass, and the light of lamps) or path (path tracing: light "
+                   "from everywhere, with the noise of --samples; docs/path.md)")
+        ->type_name("NAME");
     app.add_option("--max-depth,--max-trace-level", max_depth,
                    "Reflections and refractions in a row at most, up to 1000; default: what the "
-                   "file asks for, else 5")
+                   "file asks for, else 5. Path tracing: surfaces in a row, 16")
         ->type_name("N");
     app.add_option(
            "--mode", mode,
@@ -296,6 +303,11 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
     if (!mode)
         return mode.error();
     job.render.mode = RenderMode(*mode);
+    static constexpr std::string_view integrators[] = {"whitted", "path"};
+    const Result<size_t> integrator = parse_choice("--integrator", words.integrator, integrators);
+    if (!integrator)
+        return integrator.error();
+    job.render.integrator = IntegratorKind(*integrator);
     job.render.shadows = !words.no_shadows;
     if (isatty(STDERR_FILENO))
         job.render.batch_rays = kWatchedBatchRays;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights by their power: sums of powers, searched by halves.
+// Lights by their power: sums of chances, searched by halves.
 #include "host/light_sampler.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace ovc {
 
@@ -41,6 +42,7 @@ LightSampler::LightSampler(const Scene& scene) : scene_(scene) {
     const double reach = box.empty() ? 1 : std::max(0.5 * glm::length(box.extent()), 1e-30);
     add_lights(middle, reach);
     add_emitters(reach);
+    share_with_the_weak();
 }
 
 /// By what they bring to the middle of the scene, from no nearer than its reach.
@@ -76,6 +78,29 @@ void LightSampler::add_emitters(double reach) {
             const double area = glm::length(area_normal(chunk.triangle(p)));
             sums_.push_back(sums_.back() + (std::isfinite(area) ? power * area : 0));
         }
+    }
+}
+
+/// Half of the choices go by power, the others to all lights and emitting meshes alike: what a
+/// strong one does not reach may be lit by a weak one nearby.
+void LightSampler::share_with_the_weak() {
+    std::vector<size_t> first(scene_.lights.size());
+    std::iota(first.begin(), first.end(), size_t(0));
+    for (const Emitters& emitters : emitters_)
+        first.push_back(emitters.first);
+    first.push_back(sums_.size() - 1);
+    const std::vector<double> powers = sums_;
+    const auto power = [&](size_t group) {
+        return powers[first[group + 1]] - powers[first[group]];
+    };
+    double shining = 0;
+    for (size_t group = 0; group + 1 < first.size(); ++group)
+        shining += power(group) > 0;
+    for (size_t group = 0; group + 1 < first.size(); ++group) {
+        const double scale =
+            power(group) > 0 ? 1 / powers.back() + 1 / (shining * power(group)) : 0;
+        for (size_t i = first[group]; i < first[group + 1]; ++i)
+            sums_[i + 1] = sums_[i] + scale * (powers[i + 1] - powers[i]);
     }
 }
 

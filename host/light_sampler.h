@@ -50,6 +50,7 @@ private:
 
     void add_lights(const dvec3& middle, double reach);
     void add_emitters(double reach);
+    void share_with_the_weak();
     std::optional<Arriving> from_light(uint32_t number, const SurfacePoint& surface) const;
     std::optional<Arriving> from_emitter(const Emitters& emitters, size_t i,
                                          const SurfacePoint& surface, const dvec2& u) const;
@@ -57,7 +58,7 @@ private:
 
     const Scene& scene_;
     bool has_lights_ = false;
-    std::vector<double> sums_{0};       // of powers: of the lights, then of triangles
+    std::vector<double> sums_{0};       // of the chances of lights, then of triangles
     std::vector<Emitters> emitters_;    // in the order of `first`
     std::vector<uint32_t> emitters_of_; // a mesh; kNone: it does not emit
 };

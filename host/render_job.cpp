@@ -7,6 +7,7 @@
 #include "host/camera.h"
 #include "host/frames.h"
 #include "host/interrupt.h"
+#include "host/path_tracer.h"
 #include "host/progress.h"
 #include "host/render.h"
 #include "host/scene_cache.h"
@@ -46,7 +47,11 @@ static RenderOptions render_options(const RenderJob& job, const PicturePart& par
                                     const Scene& scene) {
     RenderOptions options = job.render;
     options.part = part;
-    options.max_depth = job.max_depth.value_or(scene.max_depth.value_or(options.max_depth));
+    // What a file asks for is about mirrors and glass: light goes on for longer.
+    const uint32_t otherwise = options.integrator == IntegratorKind::Path
+                                   ? PathTracerOptions{}.max_depth
+                                   : scene.max_depth.value_or(options.max_depth);
+    options.max_depth = job.max_depth.value_or(otherwise);
     options.max_depth = std::min(options.max_depth, kMostDepth);
     return options;
 }

@@ -174,6 +174,8 @@ std::string stats_summary(const RenderStats& s) {
         fmt::format("  rays       {}: {} primary, {} shadow, {} reflection, {} refraction\n",
                     human_count(rays.total()), human_count(rays.primary), human_count(rays.shadow),
                     human_count(rays.reflection), human_count(rays.refraction));
+    if (rays.bounce > 0)
+        text.insert(text.size() - 1, fmt::format(", {} bounces", human_count(rays.bounce)));
     if (t.flagged > 0)
         text += fmt::format(
             "  flagged    {} answers, decided in double precision; {} of them traced again\n",
