@@ -8,9 +8,9 @@
 
 namespace ovc {
 
-/// How far a shadow ray ends off its emitter, in units of the largest coordinate there is; as
-/// surface_point() has it.
-static constexpr double kOffset = 0x1p-48;
+/// Where a shadow ray ends, so that its emitter is not in its way: for doubles 2^-48 less than 1
+/// would do, but rays go to backends in float too.
+static constexpr double kBeforeEmitter = 1 - 0x1p-16;
 /// How many triangles tell how large a scene is, about.
 static constexpr uint64_t kMeasured = 4096;
 
@@ -145,11 +145,7 @@ std::optional<Arriving> LightSampler::from_emitter(const Emitters& emitters, siz
     if (!(cosine > 0 || (emitters.two_sided && cosine < 0)))
         return std::nullopt;
     const double density = chance(i) / area * distance * distance / std::abs(cosine);
-    // The ray ends before the emitter, or that would be in its way.
-    const double coordinate =
-        std::max(max_component(glm::abs(place)), max_component(glm::abs(surface.position)));
-    const dvec3 target = place + std::copysign(kOffset * coordinate / area, cosine) * across;
-    return Arriving{{surface.position, 0, target - surface.position, 1},
+    return Arriving{{surface.position, 0, there, kBeforeEmitter},
                     towards,
                     emitters.radiance / float(density),
                     density,

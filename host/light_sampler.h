@@ -14,7 +14,7 @@ namespace ovc {
 
 /// Light that may arrive at a surface from one place.
 struct Arriving {
-    Ray ray;         // from the surface to there: t = 1
+    Ray ray;         // from the surface; t = 1 is there
     dvec3 towards;   // the same, of unit length
     vec3 light;      // irradiance at a right angle, or of an emitter its radiance; / `density`, or
                      // how likely the light was

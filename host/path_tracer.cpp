@@ -182,7 +182,7 @@ bool PathTracer::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
     ++shadow.passed;
     const dvec3 there = ray.dir;
     ray = is_light ? shadow_ray(scene_.lights[shadow.light], surface.beyond)
-                   : Ray{surface.beyond, 0, ray.at(1) - surface.beyond, 1};
+                   : Ray{surface.beyond, 0, ray.at(1) - surface.beyond, ray.t_max};
     // A light that lies in the surface has been reached; going back to it might never end.
     return shadow.arriving != vec3(0) && glm::dot(ray.dir, there) > 0;
 }
