@@ -3,8 +3,8 @@
 // panes; and its ways to find light against each other.
 #include "host/path_tracer.h"
 
-#include "host/camera_rays.h"
 #include "core/fresnel.h"
+#include "host/camera_rays.h"
 #include "host/render.h"
 #include "host/render_batched.h"
 
