@@ -185,12 +185,21 @@ private:
     Result<Done> save_finished(const Shot& shot, const Film& film) {
         const std::vector<std::string> outputs = outputs_of(shot);
         if (const Result<Done> saved = save_all(outputs, shot, film); !saved)
-            return saved;
+            return kept(saved.error(), shot, film);
         std::error_code ignored; // what is not there need not go
         fs::remove(film_of(shot), ignored);
         for (const std::string& output : outputs)
             fs::remove(unfinished_picture(output), ignored);
         return Done{};
+    }
+
+    /// Where an output cannot be written, what was rendered is not lost.
+    Error kept(Error error, const Shot& shot, const Film& film) {
+        if (save_film(film, checksum_of_picture(shot), film_of(shot)))
+            error.message += fmt::format("; the picture is kept in {}, and --continue writes it "
+                                         "without rendering it again",
+                                         film_of(shot));
+        return error;
     }
 
     /// Beside the outputs: what is there may be finished. Of a sequence no picture, for it would
@@ -221,10 +230,11 @@ private:
                 return traced.error();
             contents.layers = std::move(*traced);
         }
+        Result<Done> all = Done{};
         for (const std::string& output : outputs)
-            if (const Result<Done> saved = save_image(image, output, contents); !saved)
-                return saved;
-        return Done{};
+            if (const Result<Done> saved = save_image(image, output, contents); !saved && all)
+                all = saved;
+        return all;
     }
 
     const RenderJob& job_;

@@ -76,8 +76,7 @@ static Result<Done> restore(const Archive& archive, uint64_t picture, Film& film
         return sums.error();
     const FilmShape wanted = shape_of(film, picture);
     if (!std::equal(wanted.begin(), wanted.end(), shape->begin()))
-        return Error{"is of another scene, camera, size or other options; without --continue the "
-                     "picture is begun anew"};
+        return Error{"is of another scene, camera, size or other options"};
     const uint32_t count = film.width() * film.height();
     if (std::any_of(pixels->begin(), pixels->end(), [&](uint32_t pixel) { return pixel >= count; }))
         return Error{"is damaged: it has pixels outside of the picture"};
@@ -95,7 +94,8 @@ Result<Done> load_film(const std::filesystem::path& path, uint64_t picture, Film
         archive ? restore(*archive, picture, film) : Result<Done>(archive.error());
     if (!restored)
         return Error{
-            fmt::format("{}: the unfinished picture {}", path.string(), restored.error().message)};
+            fmt::format("{}: the unfinished picture {}; without --continue it is begun anew",
+                        path.string(), restored.error().message)};
     return Done{};
 }
 
