@@ -14,13 +14,8 @@
 
 namespace ovc {
 
-/// Options that the design has and this version does not.
-static constexpr std::string_view kLater[] = {"--mode", "--samples", "--threads", "--aov"};
-
 static Error unknown_option(const CLI::App& app, const std::string& word) {
     const std::string option = word.substr(0, word.find('='));
-    if (std::find(std::begin(kLater), std::end(kLater), option) != std::end(kLater))
-        return {fmt::format("the option {} is not there yet", option)};
     if (word[0] != '-')
         return {fmt::format("'{}' is one argument too many for {}; see {} --help", word,
                             app.get_name(), app.get_name())};
@@ -31,6 +26,29 @@ static Error unknown_option(const CLI::App& app, const std::string& word) {
     const std::vector<std::string_view> candidates(names.begin(), names.end());
     return {fmt::format("there is no option '{}'{}", option, did_you_mean(option, candidates))};
 }
+
+/// Help of 100 columns, descriptions from the 30th on; a terminal would break words.
+class HelpFormatter final : public CLI::Formatter {
+    static constexpr size_t kColumns = 70;
+
+    static std::string wrapped(std::string_view text, size_t columns) {
+        std::string lines;
+        while (text.size() > columns) {
+            const size_t blank = text.rfind(' ', columns);
+            const size_t end = blank == text.npos ? std::min(text.find(' '), text.size()) : blank;
+            lines.append(text.substr(0, end)).append("\n");
+            text.remove_prefix(std::min(end + 1, text.size()));
+        }
+        return lines.append(text);
+    }
+
+    std::string make_option_desc(const CLI::Option* option) const override {
+        return wrapped(option->get_description(), kColumns);
+    }
+    std::string make_description(const CLI::App* app) const override {
+        return wrapped(app->get_description(), kColumns + 30) + "\n";
+    }
+};
 
 /// "--size: 1 required WxH missing" and the like, in our words.
 static Error wrong_number_of_values(std::string_view message) {
@@ -85,7 +103,8 @@ Result<Parsed> parse_arguments(CLI::App& app, std::vector<std::string> arguments
         const Result<Done> fine = check_empty_values(app);
         return fine ? Result<Parsed>(Parsed::Run) : fine.error();
     } catch (const CLI::CallForHelp&) {
-        fmt::print("{}", app.help());
+        app.formatter(std::make_shared<HelpFormatter>());
+        fmt::print("{}\n", app.help());
         return Parsed::HelpShown;
     } catch (const CLI::ArgumentMismatch& error) {
         return wrong_number_of_values(error.what());
@@ -103,33 +122,6 @@ Result<Parsed> parse_arguments(CLI::App& app, std::vector<std::string> arguments
             return unknown_option(app, culprit(left_over));
         return Error{fmt::format("{}; see {} --help", error.what(), app.get_name())};
     }
-}
-
-Result<std::vector<std::string>> translate_pov_words(const std::vector<std::string>& arguments) {
-    std::vector<std::string> ours;
-    std::string width, height;
-    for (size_t i = 0; i < arguments.size(); ++i) {
-        const std::string& word = arguments[i];
-        const std::string head = word.substr(0, 2);
-        if (head == "+W" || head == "+w")
-            width = word.substr(2);
-        else if (head == "+H" || head == "+h")
-            height = word.substr(2);
-        else if (head == "+O" || head == "+o")
-            ours.insert(ours.end(), {"-o", word.size() > 2            ? word.substr(2)
-                                           : i + 1 < arguments.size() ? arguments[++i]
-                                                                      : std::string()});
-        else if ((word == "--camera" || word == "--light") && i + 1 < arguments.size())
-            ours.push_back(word + "=" + arguments[++i]);
-        else
-            ours.push_back(word);
-    }
-    if (width.empty() != height.empty())
-        return Error{
-            fmt::format("+W and +H belong together; {} is missing", width.empty() ? "+W" : "+H")};
-    if (!width.empty())
-        ours.push_back("--size=" + width + "x" + height);
-    return ours;
 }
 
 Result<uint64_t> parse_count(std::string_view option, std::string_view text, uint64_t least,
@@ -150,6 +142,10 @@ Result<size_t> parse_choice(std::string_view option, std::string_view text,
         return size_t(known - names.begin());
     return Error{fmt::format("{}: '{}' is none of {}{}", option, text, fmt::join(names, ", "),
                              did_you_mean(text, names))};
+}
+
+std::string choice_names(std::span<const std::string_view> names) {
+    return fmt::format("{}", fmt::join(names, "|"));
 }
 
 Result<ImageSize> parse_size(std::string_view option, std::string_view text) {

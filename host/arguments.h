@@ -22,11 +22,6 @@ enum class Parsed { Run, HelpShown };
 /// option there is.
 Result<Parsed> parse_arguments(CLI::App& app, std::vector<std::string> arguments);
 
-/// POV-Ray's words in ours: +W640 +H480 become --size 640x480, +Ofile or +O file become -o file.
-/// Also joins --camera and
-/// --light with their value, which may begin with a minus sign.
-Result<std::vector<std::string>> translate_pov_words(const std::vector<std::string>& arguments);
-
 /// A whole number from least to most. option: named in the error.
 Result<uint64_t> parse_count(std::string_view option, std::string_view text, uint64_t least,
                              uint64_t most);
@@ -34,6 +29,9 @@ Result<uint64_t> parse_count(std::string_view option, std::string_view text, uin
 /// The place of `text` among `names`; 0 where it is empty.
 Result<size_t> parse_choice(std::string_view option, std::string_view text,
                             std::span<const std::string_view> names);
+
+/// "auto|fragment|compute": a type name that the help shows and completion offers.
+std::string choice_names(std::span<const std::string_view> names);
 
 /// "640x480"; each side from 1 to 65535.
 Result<ImageSize> parse_size(std::string_view option, std::string_view text);

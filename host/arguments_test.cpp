@@ -1,27 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arguments: POV-Ray's words, values, and what an error says.
+// Arguments: values, and what an error says.
 #include "host/arguments.h"
 #include "host/suggestion.h"
 
 #include <gmock/gmock.h>
 
 namespace ovc {
-
-using testing::ElementsAre;
-
-TEST(PovWords, BecomeOurs) {
-    EXPECT_THAT(*translate_pov_words({"a.ply", "+W640", "+H480", "+Oout.png"}),
-                ElementsAre("a.ply", "-o", "out.png", "--size=640x480"));
-    EXPECT_THAT(*translate_pov_words({"+O", "out.exr", "--quiet"}),
-                ElementsAre("-o", "out.exr", "--quiet"));
-    EXPECT_EQ(translate_pov_words({"+W640"}).error().message,
-              "+W and +H belong together; +H is missing");
-}
-
-TEST(PovWords, JoinOptionsWhoseValueMayBeNegative) {
-    EXPECT_THAT(*translate_pov_words({"--camera", "-.5,0,0,1,1,1", "--light", "-1,2,3"}),
-                ElementsAre("--camera=-.5,0,0,1,1,1", "--light=-1,2,3"));
-}
 
 TEST(ParseSize, TakesTwoNumbers) {
     EXPECT_EQ(parse_size("--size", "640x480")->width, 640u);
@@ -78,11 +62,6 @@ TEST_F(ParseArguments, SuggestsTheOptionThatWasMeant) {
     EXPECT_EQ(error({"a.ply", "--gpu-memroy=5"}),
               "there is no option '--gpu-memroy'; did you mean '--gpu-memory'?");
     EXPECT_EQ(error({"a.ply", "--zebra"}), "there is no option '--zebra'");
-}
-
-TEST_F(ParseArguments, SaysWhatIsNotThereYet) {
-    EXPECT_EQ(error({"a.ply", "--mode", "mixed"}), "the option --mode is not there yet");
-    EXPECT_EQ(error({"--mode=mixed", "a.ply"}), "the option --mode is not there yet");
 }
 
 TEST_F(ParseArguments, SaysWhatIsMissingOrTooMuch) {

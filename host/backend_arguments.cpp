@@ -12,6 +12,10 @@
 
 namespace ovc {
 
+static constexpr std::string_view kPrecisions[] = {"certified", "fast"};
+static constexpr std::string_view kKernels[] = {"auto", "fragment", "compute"};
+static constexpr std::string_view kLevels1[] = {"kd", "grid", "bvh"};
+static constexpr std::string_view kLevel1Builds[] = {"top-down", "bottom-up"};
 /// In the order of BackendKind.
 static constexpr std::string_view kBackends[] = {
     "auto",          "two-level", "cpu-kdtree", "embree",   "single-texture",
@@ -35,7 +39,7 @@ void BackendArguments::add_to(CLI::App& app) {
            "the "
            "CPU: thesis-two-level")
         ->group(group)
-        ->type_name("NAME");
+        ->type_name(choice_names(kBackends));
     app.add_option("--gpu-memory", gpu_memory,
                    "The most GPU memory to use: 256M, 1.5GiB, or 50% of what the device has free; "
                    "default: what the "
@@ -60,17 +64,17 @@ void BackendArguments::add_to(CLI::App& app) {
            "--precision", precision,
            "certified (the default: the answer of double precision) or fast (float32's own)")
         ->group(group)
-        ->type_name("NAME");
+        ->type_name(choice_names(kPrecisions));
     app.add_option("--kernel", kernel, "auto, fragment or compute; they answer alike")
         ->group(group)
-        ->type_name("NAME");
+        ->type_name(choice_names(kKernels));
     app.add_option("--level1", level1, "Level 1 of thesis-two-level: kd (the default), grid or bvh")
         ->group(group)
-        ->type_name("NAME");
+        ->type_name(choice_names(kLevels1));
     app.add_option("--level1-build", level1_build,
                    "Its leaves: cut top-down (the default), or merged bottom-up; not for a grid")
         ->group(group)
-        ->type_name("NAME");
+        ->type_name(choice_names(kLevel1Builds));
 }
 
 Result<BackendOptions> BackendArguments::resolve() const {
@@ -116,23 +120,19 @@ Result<BackendOptions> BackendArguments::resolve() const {
         options.leaves = uint32_t(*count);
     }
     options.device = device;
-    static constexpr std::string_view precisions[] = {"certified", "fast"};
-    const Result<size_t> precision_choice = parse_choice("--precision", precision, precisions);
+    const Result<size_t> precision_choice = parse_choice("--precision", precision, kPrecisions);
     if (!precision_choice)
         return precision_choice.error();
     options.precision = ovc_precision(*precision_choice);
-    static constexpr std::string_view kernels[] = {"auto", "fragment", "compute"};
-    const Result<size_t> kernel_choice = parse_choice("--kernel", kernel, kernels);
+    const Result<size_t> kernel_choice = parse_choice("--kernel", kernel, kKernels);
     if (!kernel_choice)
         return kernel_choice.error();
     options.kernel = ovc_kernel(*kernel_choice);
-    static constexpr std::string_view levels[] = {"kd", "grid", "bvh"};
-    const Result<size_t> level1_choice = parse_choice("--level1", level1, levels);
+    const Result<size_t> level1_choice = parse_choice("--level1", level1, kLevels1);
     if (!level1_choice)
         return level1_choice.error();
     options.level1 = ovc_level1(*level1_choice);
-    static constexpr std::string_view builds[] = {"top-down", "bottom-up"};
-    const Result<size_t> build_choice = parse_choice("--level1-build", level1_build, builds);
+    const Result<size_t> build_choice = parse_choice("--level1-build", level1_build, kLevel1Builds);
     if (!build_choice)
         return build_choice.error();
     options.level1_build = ovc_level1_build(*build_choice);

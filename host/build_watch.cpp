@@ -3,18 +3,10 @@
 #include "host/build_watch.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
-
-#include <cstdio>
 
 namespace ovc {
 
-BuildWatch::BuildWatch(bool shown) : shown_(shown && isatty(STDERR_FILENO)) {}
-
-BuildWatch::~BuildWatch() {
-    if (shown_)
-        fmt::print(stderr, "\r\033[K");
-}
+BuildWatch::BuildWatch(bool shown) : line_(shown) {}
 
 void BuildWatch::watch(ovc_scene_config& config) {
     config.progress = told;
@@ -22,11 +14,8 @@ void BuildWatch::watch(ovc_scene_config& config) {
 }
 
 int BuildWatch::told(void* self, double done, const char* stage) {
-    const auto& watch = *static_cast<const BuildWatch*>(self);
-    if (watch.shown_) {
-        fmt::print(stderr, "\r\033[Kbuilding: {:3.0f} %, {}", 100 * done, stage);
-        std::fflush(stderr);
-    }
+    auto& watch = *static_cast<BuildWatch*>(self);
+    watch.line_.show(fmt::format("building: {:3.0f} %, {}", 100 * done, stage));
     return watch.interrupt_.interrupted();
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "host/interrupt.h"
+#include "host/terminal_line.h"
 #include "plugin/overcast.h"
 
 namespace ovc {
@@ -12,9 +13,6 @@ class BuildWatch {
 public:
     /// shown: false keeps it silent even on a terminal. At most one at a time, as InterruptGuard.
     explicit BuildWatch(bool shown);
-    ~BuildWatch();
-    BuildWatch(const BuildWatch&) = delete;
-    BuildWatch& operator=(const BuildWatch&) = delete;
 
     /// Makes the config's scene report to this, which must outlive its commit.
     void watch(ovc_scene_config& config);
@@ -23,7 +21,7 @@ private:
     static int told(void* self, double done, const char* stage);
 
     const InterruptGuard interrupt_{"stopping"};
-    const bool shown_;
+    TerminalLine line_;
 };
 
 } // namespace ovc

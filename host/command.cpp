@@ -21,10 +21,17 @@ static constexpr Command kCommands[] = {
     {"report", "Measure what the documents claim", make_report},
     {"bench", "Time rays, certified and fast, beside peers", make_bench},
     {"diff", "Compare two pictures", make_diff, int(Verdict::Unreadable)},
+    {"completion", "Print a script that completes these words in a shell", make_completion},
+    {"man", "Print the manual page", make_man},
 };
 
 std::span<const Command> commands() {
     return kCommands;
+}
+
+std::string exit_codes() {
+    return "Exit codes: 0 done, 1 an error (one sentence on standard error), 2 interrupted. Those "
+           "of diff are others: see overcast diff --help.";
 }
 
 static void print_help() {
@@ -32,7 +39,7 @@ static void print_help() {
         "Overcast finds where rays hit triangles, in scenes larger than the GPU's memory.\n\n"
         "Usage: overcast COMMAND [arguments]\n\nCommands:\n");
     for (const Command& command : kCommands)
-        fmt::print("  {:<9} {}\n", command.name, command.summary);
+        fmt::print("  {:<11} {}\n", command.name, command.summary);
     fmt::print(
         "\n  overcast COMMAND --help   what a command takes, with examples; also: overcast help "
         "COMMAND\n"
@@ -44,8 +51,8 @@ static void print_help() {
         "  overcast render plants --gpu-memory 64M          with 64 MiB of GPU memory\n"
         "  overcast info dragon.ply                         triangles, bounds, what it needs\n"
         "  echo 0 0 9  0 0 -1 | overcast trace dragon.ply   where one ray hits\n\n"
-        "Exit codes: 0 done, 1 an error (one sentence on standard error), 2 interrupted; of diff, "
-        "see there.\n");
+        "{}\n",
+        exit_codes());
 }
 
 static Error unknown_command(std::string_view name) {

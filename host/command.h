@@ -41,6 +41,8 @@ std::unique_ptr<Subcommand> make_scenes();
 std::unique_ptr<Subcommand> make_report();
 std::unique_ptr<Subcommand> make_bench();
 std::unique_ptr<Subcommand> make_diff();
+std::unique_ptr<Subcommand> make_completion();
+std::unique_ptr<Subcommand> make_man();
 
 struct Command {
     std::string_view name;
@@ -51,6 +53,9 @@ struct Command {
 
 /// In the order of the help.
 std::span<const Command> commands();
+
+/// What the program's exit codes mean, for its help and its manual; one paragraph.
+std::string exit_codes();
 
 /// The whole program but for exceptions: arguments are those after the program's name.
 Result<int> run_command(const Arguments& arguments);

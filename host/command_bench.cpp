@@ -7,13 +7,14 @@
 #include "host/camera.h"
 #include "host/command.h"
 #include "host/interrupt.h"
+#include "host/log_arguments.h"
 #include "host/output.h"
 #include "host/scene_source.h"
 #include "host/scene_summary.h"
+#include "host/terminal_line.h"
 
 #include <fmt/format.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <mutex>
@@ -38,25 +39,10 @@ constexpr const char* kExamples = R"(Examples:
 All contenders answer the same rays with the same number of threads, and are in memory at once.
 Interrupted with Ctrl-C, it prints what it has and exits with 2.)";
 
-/// One line on a terminal that overwrites itself.
-class ProgressLine {
-public:
-    ~ProgressLine() { clear(); }
-    void say(const std::string& what) const {
-        if (!shown_)
-            return;
-        fmt::print(stderr, "\r\033[K{}", what);
-        std::fflush(stderr);
-    }
-    void clear() const { say(""); }
-
-private:
-    bool shown_ = isatty(STDERR_FILENO);
-};
-
 /// To standard error, each sentence once: every contender of the plugin opens the same device.
 class QuietLog {
 public:
+    explicit QuietLog(LogLevel most) : log_(standard_error_log(most)) {}
     LogSink sink() {
         return [this](LogLevel level, const std::string& message) {
             const std::lock_guard lock(mutex_); // the device's thread may call
@@ -66,7 +52,7 @@ public:
     }
 
 private:
-    LogSink log_ = standard_error_log(/* chatty= */ false);
+    LogSink log_;
     std::mutex mutex_;
     std::set<std::string> said_;
 };
@@ -104,13 +90,13 @@ Result<std::vector<Workload>> workloads_of(const Scene& scene, const Camera& cam
 Result<std::vector<Entrant>> build_entrants(const BenchJob& job, const Scene& scene,
                                             std::shared_ptr<Backend> reference,
                                             const StopRequest& stop, const LogSink& log,
-                                            const ProgressLine& progress) {
+                                            TerminalLine& progress) {
     ContenderBuilder builder(scene.soup, std::move(reference), job.device, log);
     std::vector<Entrant> entrants;
     for (const Contender& contender : job.contenders) {
         if (stop())
             break;
-        progress.say("building " + contender.label());
+        progress.show("building " + contender.label());
         Result<std::shared_ptr<Backend>> backend = builder.build(contender);
         if (!backend)
             return Error{fmt::format("{}: {}", contender.label(), backend.error().message)};
@@ -121,13 +107,13 @@ Result<std::vector<Entrant>> build_entrants(const BenchJob& job, const Scene& sc
 
 Result<BenchResult> bench_scene(const BenchJob& job, const std::string& source,
                                 const StopRequest& stop, const LogSink& log,
-                                const ProgressLine& progress) {
+                                TerminalLine& progress) {
     BenchResult result;
     result.scene = source;
     result.width = job.size.width;
     result.height = job.size.height;
     result.threads = std::thread::hardware_concurrency();
-    progress.say("reading " + source);
+    progress.show("reading " + source);
     const Stopwatch import;
     Result<Scene> scene = open_scene(source, log);
     if (!scene)
@@ -138,7 +124,7 @@ Result<BenchResult> bench_scene(const BenchJob& job, const std::string& source,
     if (!camera)
         return Error{fmt::format("{}: {}", source, camera.error().message)};
 
-    progress.say("building the reference");
+    progress.show("building the reference");
     const std::shared_ptr<Backend> reference = make_cpu_backend(scene->soup);
     Result<std::vector<Entrant>> entrants =
         build_entrants(job, *scene, reference, stop, log, progress);
@@ -149,7 +135,7 @@ Result<BenchResult> bench_scene(const BenchJob& job, const std::string& source,
     if (!workloads)
         return workloads.error();
     result.load_before = load_average();
-    const auto observe = [&](const std::string& what) { progress.say(source + ": " + what); };
+    const auto observe = [&](const std::string& what) { progress.show(source + ": " + what); };
     const Result<Done> done =
         run_contenders(*entrants, *workloads, *reference, job.repeats, stop, observe, result);
     if (!done)
@@ -168,11 +154,11 @@ Result<Done> save(const BenchJob& job, std::span<const BenchResult> results) {
     return Done{};
 }
 
-Result<int> bench(const BenchJob& job) {
+Result<int> bench(const BenchJob& job, LogLevel level) {
     const InterruptGuard interrupt;
     const StopRequest stop = [&] { return interrupt.interrupted(); };
-    const ProgressLine progress;
-    QuietLog log;
+    TerminalLine progress;
+    QuietLog log(level);
     std::vector<BenchResult> results;
     for (const std::string& source : job.scenes) {
         if (stop())
@@ -202,18 +188,23 @@ public:
         app.description("Times how rays are answered: the plugin certified and fast, and its "
                         "peers.");
         words_.add_to(app);
+        log_.add_to(app);
         app.footer(kExamples);
     }
 
     Result<int> run() override {
+        const Result<LogLevel> level = log_.resolve();
+        if (!level)
+            return level.error();
         const Result<BenchJob> job = understand_bench(words_);
         if (!job)
             return job.error();
-        return bench(*job);
+        return bench(*job, *level);
     }
 
 private:
     BenchWords words_;
+    LogArguments log_;
 };
 
 } // namespace

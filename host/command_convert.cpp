@@ -4,6 +4,7 @@
 #include "host/backend_arguments.h"
 #include "host/command.h"
 #include "host/interrupt.h"
+#include "host/log_arguments.h"
 #include "host/output.h"
 #include "host/scene_cache.h"
 #include "host/scene_source.h"
@@ -67,11 +68,10 @@ static std::string left_out(const Scene& scene) {
 
 /// All of the scene, and what the plugin builds of it, as .ovc.
 static Result<Done> convert_to_scene_file(const SceneArguments& source,
-                                          const BackendOptions& backend_options,
+                                          const BackendOptions& backend_options, const LogSink& log,
                                           const std::string& output) {
     FilesRead files;
     Provenance from;
-    const LogSink log = standard_error_log(/* chatty= */ false);
     const LogSink listening = [&](LogLevel level, const std::string& message) {
         if (level == LogLevel::Warning)
             from.warnings.push_back(message);
@@ -93,9 +93,9 @@ static Result<Done> convert_to_scene_file(const SceneArguments& source,
                             output);
 }
 
-static Result<Done> convert_to_mesh(const SceneArguments& source, const std::string& output,
-                                    bool quiet) {
-    const Result<Scene> scene = open_scene(source, standard_error_log(/* chatty= */ false));
+static Result<Done> convert_to_mesh(const SceneArguments& source, const LogSink& log,
+                                    const std::string& output, bool quiet) {
+    const Result<Scene> scene = open_scene(source, log);
     if (!scene)
         return scene.error();
     if (Result<Done> saved = save(*scene, output); !saved)
@@ -117,7 +117,7 @@ public:
         app.add_option("OUT", output_,
                        "The file to write; replaced only once the new one is complete")
             ->required();
-        app.add_flag("--quiet", quiet_, "Print nothing but warnings and errors");
+        log_.add_to(app, /* with_quiet= */ true);
         backend_.add_to(app);
         app.footer(kExamples);
     }
@@ -134,9 +134,14 @@ public:
         const Result<BackendOptions> backend_options = backend_.resolve();
         if (!backend_options)
             return backend_options.error();
-        const Result<Done> done = extension_of(output_) == ".ovc"
-                                      ? convert_to_scene_file(source_, *backend_options, output_)
-                                      : convert_to_mesh(source_, output_, quiet_);
+        const Result<LogLevel> level = log_.resolve();
+        if (!level)
+            return level.error();
+        const LogSink log = standard_error_log(*level);
+        const Result<Done> done =
+            extension_of(output_) == ".ovc"
+                ? convert_to_scene_file(source_, *backend_options, log, output_)
+                : convert_to_mesh(source_, log, output_, log_.quiet());
         if (!done)
             return done.error();
         return kExitOk;
@@ -145,7 +150,7 @@ public:
 private:
     SceneArguments source_;
     std::string output_;
-    bool quiet_ = false;
+    LogArguments log_;
     BackendArguments backend_; // for .ovc
 };
 

@@ -4,6 +4,7 @@
 #include "host/backend_arguments.h"
 #include "host/command.h"
 #include "host/interrupt.h"
+#include "host/log_arguments.h"
 #include "host/memory_size.h"
 #include "host/scene_source.h"
 #include "host/scene_summary.h"
@@ -177,16 +178,20 @@ public:
         source_.add_to(app);
         backend_.add_to(app);
         app.add_flag("--json", json_, "As JSON, for a program");
+        log_.add_to(app);
         app.footer(kExamples);
     }
 
     Result<int> run() override {
         if (const Result<Done> fine = source_.check(); !fine)
             return fine.error();
+        const Result<LogLevel> level = log_.resolve();
+        if (!level)
+            return level.error();
         const Result<BackendOptions> options = backend_.resolve();
         if (!options)
             return options.error();
-        const LogSink log = standard_error_log(/* chatty= */ false);
+        const LogSink log = standard_error_log(*level);
         const Result<Scene> scene = open_scene(source_, log);
         if (!scene)
             return scene.error();
@@ -205,6 +210,7 @@ private:
     SceneArguments source_;
     BackendArguments backend_;
     bool json_ = false;
+    LogArguments log_;
 };
 
 } // namespace

@@ -7,11 +7,15 @@
 #include "host/command.h"
 #include "host/frames.h"
 #include "host/interrupt.h"
+#include "host/log_arguments.h"
+#include "host/pov_words.h"
 #include "host/render_job.h"
 #include "testscenes/catalog.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 namespace ovc {
@@ -42,6 +46,10 @@ static constexpr const char* kExamples = R"(Examples:
 
 Interrupted with Ctrl-C, it saves what it has (of a sequence, the finished frames) and exits with 2.)";
 
+/// In the order of RenderMode.
+static constexpr std::string_view kModes[] = {"auto", "batched", "mixed"};
+static constexpr std::string_view kPngBits[] = {"8", "16"};
+
 /// The words as given.
 struct RenderWords {
     SceneArguments scene;
@@ -65,7 +73,7 @@ struct RenderWords {
     BackendArguments backend;
     std::string cache;
     std::string stats;
-    bool quiet = false;
+    LogArguments log{LogLevel::Info};
 
     void add_to(CLI::App& app);
 };
@@ -106,7 +114,7 @@ void RenderWords::add_to(CLI::App& app) {
         ->allow_extra_args(false)
         ->type_name("X,Y,Z");
     app.add_option(
-           "--samples", samples,
+           "--samples,--spp", samples,
            "Rays a pixel, up to 65536: more of them smooth edges; the same ones every time; "
            "default: 1, through its middle")
         ->type_name("N");
@@ -123,13 +131,14 @@ void RenderWords::add_to(CLI::App& app) {
            "auto, batched (a call of the backend for all rays of a kind and depth) or mixed "
            "(what answers spawn joins the rays under way: fewer passes where memory is "
            "short); the picture is the same")
-        ->type_name("MODE");
+        ->type_name(choice_names(kModes));
     app.add_option("--aov", aov,
                    "Layers of the .exr files, of what the camera's rays hit, separated by commas: "
                    "depth, normal, id (mesh and triangle), leaf (of level 1), passes (that the "
                    "ray took part in)")
         ->type_name("NAMES");
-    app.add_option("--png-bits", png_bits, "Bits a channel of .png files: 8 or 16")->type_name("N");
+    app.add_option("--png-bits", png_bits, "Bits a channel of .png files; default: 8")
+        ->type_name(choice_names(kPngBits));
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
     app.add_option("--cache", cache,
                    "Keep the scene and what is built of it in this folder, and start from there "
@@ -138,7 +147,7 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_flag("--continue", go_on,
                  "Go on from what an interrupted run has left: the pixels in NAME.unfinished.film, "
                  "the frames that are there");
-    app.add_option("--threads", threads,
+    app.add_option("--threads,--nthreads", threads,
                    "Cores to use at most, of the software renderer too; default: all")
         ->type_name("N");
     app.add_option("--stats", stats, "Write statistics as JSON (docs/stats.md)")
@@ -146,7 +155,7 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_flag("--working-set", working_set,
                  "The statistics tell which pages each frame's rays go through; takes up to half "
                  "as long again");
-    app.add_flag("--quiet", quiet, "Print nothing but warnings and errors");
+    log.add_to(app, /* with_quiet= */ true);
     backend.add_to(app);
 }
 
@@ -298,8 +307,7 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
             return depth.error();
         job.max_depth = uint32_t(*depth);
     }
-    static constexpr std::string_view modes[] = {"auto", "batched", "mixed"};
-    const Result<size_t> mode = parse_choice("--mode", words.mode, modes);
+    const Result<size_t> mode = parse_choice("--mode", words.mode, kModes);
     if (!mode)
         return mode.error();
     job.render.mode = RenderMode(*mode);
@@ -315,8 +323,7 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
 }
 
 static Result<Done> understand_png(const RenderWords& words, RenderJob& job) {
-    static constexpr std::string_view bits[] = {"8", "16"};
-    const Result<size_t> choice = parse_choice("--png-bits", words.png_bits, bits);
+    const Result<size_t> choice = parse_choice("--png-bits", words.png_bits, kPngBits);
     if (!choice)
         return choice.error();
     job.png_bits = *choice == 0 ? 8 : 16;
@@ -342,7 +349,11 @@ static Result<RenderJob> understand(const RenderWords& words) {
     job.scene = words.scene;
     job.cache = words.cache;
     job.stats = words.stats;
-    job.quiet = words.quiet;
+    job.quiet = words.log.quiet();
+    const Result<LogLevel> level = words.log.resolve();
+    if (!level)
+        return level.error();
+    job.log_level = *level;
     job.go_on = words.go_on;
     if (const Result<Done> fine = words.scene.check(); !fine)
         return fine.error();
@@ -389,18 +400,25 @@ public:
     }
 
     Result<Arguments> in_our_words(const Arguments& arguments) override {
-        return translate_pov_words(arguments);
+        command_line_ = fmt::format("overcast render {}", fmt::join(arguments, " "));
+        const bool quiet = std::any_of(arguments.begin(), arguments.end(), [](const auto& word) {
+            return word == "--quiet" || word == "-q";
+        });
+        return translate_pov_words(arguments,
+                                   standard_error_log(quiet ? LogLevel::Warning : LogLevel::Info));
     }
 
     Result<int> run() override {
-        const Result<RenderJob> job = understand(words_);
+        Result<RenderJob> job = understand(words_);
         if (!job)
             return job.error();
+        job->command_line = command_line_;
         return render(*job);
     }
 
 private:
     RenderWords words_;
+    std::string command_line_;
 };
 
 } // namespace

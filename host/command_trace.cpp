@@ -4,6 +4,7 @@
 #include "host/backend_arguments.h"
 #include "host/command.h"
 #include "host/interrupt.h"
+#include "host/log_arguments.h"
 #include "host/scene_source.h"
 #include "host/trace_stream.h"
 
@@ -40,17 +41,21 @@ public:
         app.add_flag("--any", options_.any, "Only whether a ray hits anything");
         app.add_flag("--binary", options_.binary,
                      "Records of doubles instead of lines, in and out");
+        log_.add_to(app);
         backend_.add_to(app);
         app.footer(kExamples);
     }
 
     Result<int> run() override {
+        const Result<LogLevel> level = log_.resolve();
+        if (!level)
+            return level.error();
         Result<BackendOptions> backend_options = backend_.resolve();
         if (!backend_options)
             return backend_options.error();
         if (const Result<Done> fine = source_.check(); !fine)
             return fine.error();
-        const LogSink log = standard_error_log(/* chatty= */ false);
+        const LogSink log = standard_error_log(*level);
         const Result<Scene> scene = open_scene(source_, log);
         if (!scene)
             return scene.error();
@@ -69,6 +74,7 @@ private:
     SceneArguments source_;
     TraceOptions options_;
     BackendArguments backend_;
+    LogArguments log_;
 };
 
 } // namespace

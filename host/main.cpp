@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -17,6 +18,7 @@ static int fail(const char* sentence) {
 int main(int argc, char** argv) {
     try {
         ovc::exit_on_interrupt();
+        std::signal(SIGXFSZ, SIG_IGN); // a file that may not grow is an error of write()
         const ovc::Result<int> code = ovc::run_command({argv + 1, argv + argc});
         if (!code)
             return fail(code.error().message.c_str());
@@ -26,6 +28,7 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return fail("out of memory");
     } catch (const std::exception& error) {
-        return fail(error.what());
+        // fmt throws where standard output takes nothing more.
+        return fail(std::ferror(stdout) ? "cannot write to standard output" : error.what());
     }
 }

@@ -2,6 +2,9 @@
 // Output: files appear whole or not at all, and say what is wrong before anything is rendered.
 #include "host/output.h"
 
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -98,6 +101,17 @@ TEST_F(Output, WritesBothFormatsTheSameEveryTime) {
     EXPECT_EQ(text_of(folder_ / "a.png").substr(1, 3), "PNG");
     EXPECT_EQ(text_of(folder_ / "a.exr").substr(0, 4), "\x76\x2f\x31\x01");
     EXPECT_EQ(file_count(), 2u);
+}
+
+TEST_F(Output, AnExrFileSaysHowItWasMade) {
+    const FileContents contents{.notes = {{"overcast:version", "1.2.3"}, {"overcast:scene", ""}}};
+    ASSERT_TRUE(save_image(unpleasant_image(), folder_ / "a.exr", contents));
+    const Imf::InputFile file((folder_ / "a.exr").c_str());
+    const auto* version =
+        file.header().findTypedAttribute<Imf::StringAttribute>("overcast:version");
+    ASSERT_TRUE(version);
+    EXPECT_EQ(version->value(), "1.2.3");
+    EXPECT_TRUE(file.header().findTypedAttribute<Imf::StringAttribute>("overcast:scene"));
 }
 
 TEST_F(Output, AFullDiskIsAnErrorThatSaysSo) {

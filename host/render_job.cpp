@@ -14,6 +14,7 @@
 #include "host/scene_summary.h"
 #include "host/stats.h"
 #include "host/unfinished.h"
+#include "host/version.h"
 #include "importers/scene_bytes.h"
 #include "importers/scene_fields.h"
 #include "importers/scene_file.h"
@@ -127,9 +128,11 @@ private:
             return report.error();
         frame.tracing = counted_between(before, backend_.statistics());
         frame.active = backend_.take_active();
+        frame.host_peak_bytes = host_peak_bytes();
+        frame.seconds = watch.seconds(); // as its files tell it
         const Stopwatch output;
-        const Result<Done> saved =
-            frame.report.complete ? save_finished(shot, film) : save_unfinished(shot, film);
+        const Result<Done> saved = frame.report.complete ? save_finished(shot, film, frame)
+                                                         : save_unfinished(shot, film, frame);
         if (!saved)
             return saved.error();
         frame.seconds_output = output.seconds();
@@ -174,7 +177,8 @@ private:
 
     Result<RenderReport> trace(const Shot& shot, Film& film) {
         Progress progress(backend_, is_sequence() ? fmt::format("frame {}: ", shot.frame) : "",
-                          uint64_t(film.width()) * film.height(), /* shown= */ !job_.quiet);
+                          uint64_t(film.width()) * film.height(), film.pixels_done(),
+                          /* shown= */ !job_.quiet);
         const auto observe = [&](const RenderReport& report) {
             progress.update(report);
             return !interrupt_.interrupted();
@@ -182,9 +186,9 @@ private:
         return render_picture(scene_, shot.camera, backend_, options_, observe, film);
     }
 
-    Result<Done> save_finished(const Shot& shot, const Film& film) {
+    Result<Done> save_finished(const Shot& shot, const Film& film, const FrameStats& frame) {
         const std::vector<std::string> outputs = outputs_of(shot);
-        if (const Result<Done> saved = save_all(outputs, shot, film); !saved)
+        if (const Result<Done> saved = save_all(outputs, shot, film, frame); !saved)
             return kept(saved.error(), shot, film);
         std::error_code ignored; // what is not there need not go
         fs::remove(film_of(shot), ignored);
@@ -204,7 +208,7 @@ private:
 
     /// Beside the outputs: what is there may be finished. Of a sequence no picture, for it would
     /// only be one of many.
-    Result<Done> save_unfinished(const Shot& shot, const Film& film) {
+    Result<Done> save_unfinished(const Shot& shot, const Film& film, const FrameStats& frame) {
         if (film.pixels_done() == 0)
             return Done{};
         std::vector<std::string> outputs = outputs_of(shot);
@@ -213,16 +217,26 @@ private:
             return saved;
         for (std::string& output : outputs)
             output = unfinished_picture(output);
-        return save_all(outputs, shot, film);
+        return save_all(outputs, shot, film, frame);
+    }
+
+    /// How the picture was made, for .exr files.
+    std::vector<FileNote> notes_of(const FrameStats& frame) const {
+        return {{"overcast:version", version_text()},
+                {"overcast:scene", job_.scene.scene},
+                {"overcast:options", job_.command_line},
+                {"overcast:renderer", backend_.renderer()},
+                {"overcast:statistics", frame_json(frame)}};
     }
 
     Result<Done> save_all(const std::vector<std::string>& outputs, const Shot& shot,
-                          const Film& film) {
+                          const Film& film, const FrameStats& frame) {
         Image image = film.image();
         if (scene_.gamma != 1)
             to_linear(image);
         FileContents contents;
         contents.png_bits = job_.png_bits;
+        contents.notes = notes_of(frame);
         if (job_.aovs.any()) {
             Result<std::vector<Layer>> traced =
                 trace_aovs(scene_, Pinhole(shot.camera, *options_.part), backend_, job_.aovs);
@@ -306,7 +320,7 @@ Result<int> render(const RenderJob& job) {
     }
     const Stopwatch total;
     const std::optional<ThreadLimit> threads = limit_threads(job.threads);
-    const LogSink log = standard_error_log(/* chatty= */ !job.quiet);
+    const LogSink log = standard_error_log(job.log_level);
     RenderStats stats;
     SceneCache cache(job.cache, job.scene, job.backend, job.size);
     Result<Scene> scene = cache.open(log);

@@ -52,8 +52,10 @@ struct RenderJob {
     int png_bits = 8;  // a channel, 8 or 16
     std::string cache; // folder where scenes and levels are kept; empty: none
     std::string stats;
-    bool go_on = false;   // from what an interrupted run has left
-    uint32_t threads = 0; // at most; 0: as many as there are cores
+    bool go_on = false;       // from what an interrupted run has left
+    uint32_t threads = 0;     // at most; 0: as many as there are cores
+    std::string command_line; // as it was given, for files that keep it
+    LogLevel log_level = LogLevel::Info;
     bool quiet = false;
 };
 

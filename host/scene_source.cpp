@@ -91,9 +91,9 @@ Result<Scene> open_scene(const std::string& source, const ImportOptions& options
     return load(source, options);
 }
 
-LogSink standard_error_log(bool chatty) {
-    return [chatty](LogLevel level, const std::string& message) {
-        if (level == LogLevel::Info && !chatty)
+LogSink standard_error_log(LogLevel most) {
+    return [most](LogLevel level, const std::string& message) {
+        if (level > most)
             return;
         fmt::print(stderr, "overcast: {}{}\n", level == LogLevel::Warning ? "warning: " : "",
                    message);

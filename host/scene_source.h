@@ -45,7 +45,7 @@ inline Result<Scene> open_scene(const std::string& source, const LogSink& log,
 Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
                          std::optional<ImageSize> size = {}, FilesRead* files = nullptr);
 
-/// Writes warnings and errors, and Info if `chatty`, to standard error, one line each.
-LogSink standard_error_log(bool chatty);
+/// Writes messages up to `most` to standard error, one line each.
+LogSink standard_error_log(LogLevel most);
 
 } // namespace ovc

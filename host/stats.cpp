@@ -59,31 +59,39 @@ static Json active_of(const std::optional<ovc_active>& active) {
             {"new_bytes", active->new_bytes}};
 }
 
+static Json frame_of(const FrameStats& f) {
+    return {{"frame", f.frame},
+            {"complete", f.report.complete},
+            {"passes", f.tracing.passes},
+            {"pages_in", f.tracing.pages_in},
+            {"bytes_in", f.tracing.bytes_in},
+            {"rays", rays_of(f.report.rays)},
+            {"ray_visits", f.tracing.ray_visits},
+            {"flagged", f.tracing.flagged},
+            {"retraced", f.tracing.retraced},
+            {"queues", queues_of(f.tracing)},
+            {"active", active_of(f.active)},
+            {"gpu_peak_bytes", f.tracing.gpu_peak_bytes},
+            {"host_peak_bytes", f.host_peak_bytes},
+            {"time",
+             {{"trace", f.report.seconds_trace},
+              {"kernel", f.tracing.seconds_kernel},
+              {"shade", f.report.seconds_shade},
+              {"render", f.report.seconds},
+              {"cpu", f.report.seconds_cpu},
+              {"output", f.seconds_output},
+              {"total", f.seconds}}}};
+}
+
 static Json frames_of(const RenderStats& s) {
     Json frames = Json::array();
-    for (const FrameStats& f : s.frames)
-        frames.push_back({{"frame", f.frame},
-                          {"complete", f.report.complete},
-                          {"passes", f.tracing.passes},
-                          {"pages_in", f.tracing.pages_in},
-                          {"bytes_in", f.tracing.bytes_in},
-                          {"rays", rays_of(f.report.rays)},
-                          {"ray_visits", f.tracing.ray_visits},
-                          {"flagged", f.tracing.flagged},
-                          {"retraced", f.tracing.retraced},
-                          {"queues", queues_of(f.tracing)},
-                          {"active", active_of(f.active)},
-                          {"gpu_peak_bytes", f.tracing.gpu_peak_bytes},
-                          {"host_peak_bytes", f.host_peak_bytes},
-                          {"time",
-                           {{"trace", f.report.seconds_trace},
-                            {"kernel", f.tracing.seconds_kernel},
-                            {"shade", f.report.seconds_shade},
-                            {"render", f.report.seconds},
-                            {"cpu", f.report.seconds_cpu},
-                            {"output", f.seconds_output},
-                            {"total", f.seconds}}}});
+    for (const FrameStats& frame : s.frames)
+        frames.push_back(frame_of(frame));
     return frames;
+}
+
+std::string frame_json(const FrameStats& frame) {
+    return frame_of(frame).dump();
 }
 
 static Json left_out_of(const RenderStats& s) {
@@ -133,8 +141,8 @@ std::string stats_json(const RenderStats& s) {
         {"from_cache", {{"scene", s.scene_from_cache}, {"levels", t.from_saved != 0}}},
         {"time", times_of(s)},
         {"frames", frames_of(s)}};
-    // A name of a file or a driver need not be UTF-8; what is not is replaced rather than thrown
-    // about.
+    // A name of a file or a driver need not be UTF-8; what is not is replaced rather than
+    // thrown about.
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

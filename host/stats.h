@@ -50,6 +50,9 @@ struct RenderStats {
 /// The document of docs/stats.md, with a line end.
 std::string stats_json(const RenderStats& stats);
 
+/// The entry of that document's `frames`, in one line without its end.
+std::string frame_json(const FrameStats& frame);
+
 /// One line about a frame, without a line end.
 std::string frame_summary(const FrameStats& frame);
 

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Completion and the man page, judged by the shells and by groff themselves where they are
+// installed.
+#include "tests/run_command.h"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+namespace ovc {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsSupersetOf;
+
+constexpr const char* kOvercast = OVC_BINARY_DIR "/bin/overcast";
+
+bool is_installed(const std::string& program) {
+    return test::run_shell("command -v " + program).exit_code == 0;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);)
+        lines.push_back(line);
+    return lines;
+}
+
+/// What bash offers for the last of these words; "=" is a word by itself, as bash has it.
+std::vector<std::string> bash_offers(const std::string& words) {
+    const std::string script = "source <(" + std::string(kOvercast) +
+                               " completion bash); cd " OVC_SOURCE_DIR "; COMP_WORDS=(" + words +
+                               "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _overcast; "
+                               "printf \"%s\\n\" \"${COMPREPLY[@]}\"";
+    return lines_of(test::run_shell("bash -c '" + script + "'").output);
+}
+
+TEST(BashCompletion, OffersCommandsOptionsChoicesScenesAndFiles) {
+    if (!is_installed("bash"))
+        GTEST_SKIP() << "bash is not installed";
+    EXPECT_THAT(bash_offers("overcast re"), ElementsAre("render", "report"));
+    EXPECT_THAT(bash_offers("overcast \"\""),
+                IsSupersetOf({"trace", "diff", "completion", "help", "--version"}));
+    EXPECT_THAT(bash_offers("overcast render --ou"), ElementsAre("--output", "--outfile"));
+    EXPECT_THAT(bash_offers("overcast render --mode \"\""),
+                ElementsAre("auto", "batched", "mixed"));
+    EXPECT_THAT(bash_offers("overcast render --mode = mi"), ElementsAre("mixed"));
+    EXPECT_THAT(bash_offers("overcast render --mode = "), IsSupersetOf({"auto", "mixed"}));
+    EXPECT_THAT(bash_offers("overcast info --backend cpu"), ElementsAre("cpu-kdtree"));
+    EXPECT_THAT(bash_offers("overcast render pla"), IsSupersetOf({"plants"}));
+    EXPECT_THAT(bash_offers("overcast render dragons"), Contains("dragons-"));
+    EXPECT_THAT(bash_offers("overcast render READ"), ElementsAre("README.md"));
+    EXPECT_THAT(bash_offers("overcast diff a.png READ"), ElementsAre("README.md"));
+    EXPECT_THAT(bash_offers("overcast completion f"), ElementsAre("fish"));
+    EXPECT_THAT(bash_offers("overcast help tr"), ElementsAre("trace"));
+    EXPECT_THAT(bash_offers("overcast render --size 1"), ElementsAre("")) << "nothing to offer";
+}
+
+/// --help of a command and what completion offers are one and the same list.
+TEST(BashCompletion, OffersEveryOptionOfTheHelp) {
+    if (!is_installed("bash"))
+        GTEST_SKIP() << "bash is not installed";
+    for (const char* command : {"render", "trace", "bench", "report", "diff"}) {
+        const std::string help = test::run_shell(std::string(kOvercast) + " " + command +
+                                                 " --help | grep -oE '^  -[-a-z0-9,]+'")
+                                     .output;
+        std::vector<std::string> offered = bash_offers("overcast " + std::string(command) + " -");
+        size_t options = 0;
+        for (std::string line : lines_of(help)) {
+            std::istringstream names(line);
+            for (std::string name; std::getline(names, name, ',');) {
+                name.erase(0, name.find_first_not_of(' '));
+                EXPECT_THAT(offered, Contains(name)) << command;
+                ++options;
+            }
+        }
+        EXPECT_GT(options, 5u) << help;
+        EXPECT_EQ(options, offered.size()) << command;
+    }
+}
+
+TEST(ZshCompletion, IsAScript) {
+    if (!is_installed("zsh"))
+        GTEST_SKIP() << "zsh is not installed";
+    const auto checked =
+        test::run_shell(std::string(kOvercast) + " completion zsh > /tmp/ovc_zsh_$$ && zsh -n "
+                                                 "/tmp/ovc_zsh_$$; code=$?; rm /tmp/ovc_zsh_$$; "
+                                                 "exit $code");
+    EXPECT_EQ(checked.exit_code, 0) << checked.output;
+    EXPECT_EQ(checked.output, "");
+}
+
+TEST(FishCompletion, OffersCommandsOptionsAndChoices) {
+    if (!is_installed("fish"))
+        GTEST_SKIP() << "fish is not installed";
+    const auto offers = [](const std::string& words) {
+        return test::run_shell("HOME=/nonexistent fish --no-config -c '" + std::string(kOvercast) +
+                               " completion fish | source; complete -C \"" + words + "\"'")
+            .output;
+    };
+    EXPECT_THAT(offers("overcast rend"), testing::StartsWith("render\t"));
+    EXPECT_THAT(offers("overcast render --mode "), testing::HasSubstr("batched"));
+    EXPECT_THAT(offers("overcast diff --hard"), testing::HasSubstr("--hardfail"));
+    EXPECT_THAT(offers("overcast info pla"), testing::HasSubstr("plants"));
+}
+
+TEST(ManPage, IsSoundRoffWithEveryOptionOfTheHelp) {
+    if (!is_installed("groff"))
+        GTEST_SKIP() << "groff is not installed";
+    const std::string set =
+        std::string(kOvercast) + " man | groff -man -Tascii -ww -P-cbou -rLL=200n";
+    const auto complaints = test::run_shell("{ " + set + "; } 2>&1 >/dev/null");
+    EXPECT_EQ(complaints.output, "");
+    const auto page = test::run_shell(set);
+    EXPECT_EQ(page.exit_code, 0);
+    for (const char* part :
+         {"NAME", "overcast - ray tracing", "overcast render SCENE", "--gpu-memory SIZE",
+          "-o, --output, --outfile FILE", "overcast diff A B", "--hardfail X",
+          "overcast render dragon.ply -o d.png -o d.exr --size 1920x1080", "EXIT STATUS",
+          "OVC_PLUGIN"})
+        EXPECT_THAT(page.output, testing::HasSubstr(part));
+}
+
+} // namespace
+} // namespace ovc
