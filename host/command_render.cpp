@@ -48,6 +48,8 @@ Interrupted with Ctrl-C, it saves what it has (of a sequence, the finished frame
 
 /// In the order of RenderMode.
 static constexpr std::string_view kModes[] = {"auto", "batched", "mixed"};
+/// In the order of IntegratorKind.
+static constexpr std::string_view kIntegrators[] = {"whitted", "path"};
 static constexpr std::string_view kPngBits[] = {"8", "16"};
 
 /// The words as given.
@@ -121,7 +123,7 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_option("--integrator", integrator,
                    "whitted (mirrors, glass, and the light of lamps) or path (path tracing: light "
                    "from everywhere, with the noise of --samples; docs/path.md)")
-        ->type_name("NAME");
+        ->type_name(choice_names(kIntegrators));
     app.add_option("--max-depth,--max-trace-level", max_depth,
                    "Reflections and refractions in a row at most, up to 1000; default: what the "
                    "file asks for, else 5. Path tracing: surfaces in a row, 16")
@@ -311,8 +313,7 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
     if (!mode)
         return mode.error();
     job.render.mode = RenderMode(*mode);
-    static constexpr std::string_view integrators[] = {"whitted", "path"};
-    const Result<size_t> integrator = parse_choice("--integrator", words.integrator, integrators);
+    const Result<size_t> integrator = parse_choice("--integrator", words.integrator, kIntegrators);
     if (!integrator)
         return integrator.error();
     job.render.integrator = IntegratorKind(*integrator);

@@ -62,6 +62,9 @@ struct ReportArguments {
 /// All of the design; the first two are there.
 constexpr std::string_view kReports[] = {"stability", "leaks", "speed", "memory", "scenes"};
 
+/// In the order of ovc_kernel.
+constexpr std::string_view kKernels[] = {"auto", "fragment", "compute"};
+
 Result<Done> check_name(const std::string& name) {
     if (name == kReports[0] || name == kReports[1])
         return Done{};
@@ -102,12 +105,10 @@ Result<StabilityOptions> options_of(const ReportArguments& given) {
         return kind.error();
     options.backend.kind = *kind;
     options.backend.device = given.device;
-    constexpr std::string_view kernels[] = {"auto", "fragment", "compute"};
-    const auto kernel = std::find(std::begin(kernels), std::end(kernels), given.kernel);
-    if (kernel == std::end(kernels))
-        return Error{
-            fmt::format("--kernel: '{}' is none of {}", given.kernel, fmt::join(kernels, ", "))};
-    options.backend.kernel = ovc_kernel(kernel - std::begin(kernels));
+    const Result<size_t> kernel = parse_choice("--kernel", given.kernel, kKernels);
+    if (!kernel)
+        return kernel.error();
+    options.backend.kernel = ovc_kernel(*kernel);
     return options;
 }
 
@@ -280,7 +281,7 @@ public:
     void add_to(CLI::App& app) override {
         app.description("Measures what the documents claim.");
         app.add_option("--only", given_.only, "The report to make: stability or leaks")
-            ->type_name("NAME");
+            ->type_name("stability|leaks");
         app.add_option("-o,--output", given_.folder,
                        "Also write NAME.md and NAME.json into this folder")
             ->type_name("DIR");
@@ -305,7 +306,7 @@ public:
                        "A number or a part of a name from `overcast devices`")
             ->type_name("NAME");
         app.add_option("--kernel", given_.kernel, "auto (the faster one), fragment or compute")
-            ->type_name("NAME");
+            ->type_name(choice_names(kKernels));
         app.footer(kExamples);
     }
 
