@@ -140,7 +140,9 @@ void Bsdf::take_shares(const SurfacePoint& surface) {
 /// dimmed alike.
 void Bsdf::take_finish(const SurfacePoint& surface, const Finish& finish) {
     take_shares(surface);
-    emission_ = surface.color * finish.ambient;
+    // Elsewhere ambient light stands for what comes from other surfaces, which path tracing finds;
+    // POV-Ray 3.7 drops it so where there is radiosity.
+    emission_ = finish.diffuse > 0 ? vec3(0) : surface.color * finish.ambient;
     diffuse_ = surface.color * finish.diffuse;
     // Blinn's exponent n is as wide as alpha^2 = 2 / (n + 2), and (n + 2) / 8 high over pi where
     // all is reflected; Phong's of m is as wide as Blinn's of 4 m.

@@ -289,6 +289,14 @@ TEST(Bsdf, EmitsFromItsFrontUnlessItHasTwo) {
     lamp.optics->two_sided = true;
     EXPECT_EQ(Bsdf(seen_from(lamp, way(1, 0), false)).emission(), vec3(3));
     EXPECT_FALSE(Bsdf(seen_from(lamp, way(1, 0))).sample(0.5, dvec2(0.5)));
+
+    Finish finish;
+    finish.ambient = vec3(0.5f);
+    const Material matte = with_finish(finish, {1, 0.5f, 0});
+    EXPECT_EQ(Bsdf(seen_from(matte, way(1, 0))).emission(), vec3(0)) << "stands for other light";
+    finish.diffuse = 0;
+    const Material glowing = with_finish(finish, {1, 0.5f, 0});
+    EXPECT_EQ(Bsdf(seen_from(glowing, way(1, 0))).emission(), vec3(0.5f, 0.25f, 0));
 }
 
 } // namespace
