@@ -61,7 +61,7 @@ TEST_F(DiffBesideIdiff, EndsWithTheSameCodes) {
           "a.png b.png -fail 0.01 -failpercent 20 -warn 0.9", "a.png none.png"}) {
         std::string with_two = words; // minus signs, as ours are
         for (size_t at = 0; (at = with_two.find(" -", at)) != with_two.npos; at += 3)
-            with_two.insert(at + 1, "-");
+            with_two.insert(at + 1, 1, '-');
         EXPECT_EQ(run("overcast diff " + with_two).exit_code,
                   run(std::string("idiff ") + words).exit_code)
             << words;
