@@ -15,6 +15,17 @@ struct Whitted::Met {
     vec3 weight;
 };
 
+/// What is left of a light behind many panes, as a pixel would get it: not worth another one.
+static constexpr float kLeastShadow = 1 / 4096.0f;
+
+/// What a surface leaves of the light of a shadow ray. What POV-Ray's glass reflects, with
+/// conserve_energy, is missing behind it, but does not darken its shadow.
+static vec3 light_through(const SurfacePoint& surface) {
+    const Material& material = *surface.material;
+    return material.finish ? material.transmission * material.filter
+                           : branches(surface, /* total= */ false).through;
+}
+
 static bool lets_light_through(const Scene& scene) {
     return std::any_of(scene.materials.begin(), scene.materials.end(),
                        [](const Material& m) { return m.transmission > 0; }) ||
@@ -89,8 +100,8 @@ void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film
 bool Whitted::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
     const SurfacePoint glass = surface_point(scene_, ray, hit);
     if (!scene_.meshes[hit.id.mesh].no_shadow) {
-        shadow.arriving *= branches(glass, /* total= */ false).through;
-        if (shadow.passed >= max_depth_ || max_component(shadow.arriving) < kLeastWeight)
+        shadow.arriving *= light_through(glass);
+        if (max_component(shadow.arriving) < kLeastShadow)
             shadow.arriving = vec3(0);
     }
     ++shadow.passed;

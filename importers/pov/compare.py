@@ -61,7 +61,7 @@ def run_povray(arguments, folder, limit):
     except subprocess.TimeoutExpired:
         return f"more than {limit:g} s"
     text = done.stderr.decode("utf-8", "replace")
-    return "" if done.returncode == 0 else next((line for line in text.splitlines() if "Error" in line), f"exit {done.returncode}")
+    return "" if done.returncode == 0 else next((line for line in text.splitlines() if "error" in line.lower()), f"exit {done.returncode}")
 
 
 def add_choice(parser):

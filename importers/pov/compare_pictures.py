@@ -8,7 +8,7 @@ usage: compare_pictures.py -o DIR [--data DIR] [--index FILE] [--tiers AB] [--on
 Prints a table and writes DIR/index.html with the pairs, the worst first. Errors are root mean squares over pixels and colors, in code values of 8
 bits as both programs write them. Scenes: those of the index (compare.py), or SCENE ...; those of which the importer says that it draws
 something by an approximation, or leaves it out, are listed with what it said, and do not count. With --at-most it fails where a
-scene is off by more, is not plain, or is drawn by only one of the two.
+scene is off by more, is not plain, or is drawn by only one of the two. Without povray it exits with 77.
 """
 import argparse
 import collections
@@ -18,6 +18,7 @@ import html
 import os
 import pathlib
 import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -27,6 +28,7 @@ from png import read_png, write_png
 
 WIDTH, HEIGHT = 320, 240
 LOUDER = 8  # how much the difference is magnified on the page
+SKIPPED = 77  # what CTest is told
 EDGE = 4    # code values between neighbours
 WARNING = re.compile(r"^overcast: warning: .*?:\d+:\d+: (.*)$", re.M)
 HARMLESS = re.compile(r"the scene warns: |a scale by 0 is taken")  # changes nothing that is seen
@@ -165,6 +167,9 @@ def main():
     parser.add_argument("--plain", action="store_true", help="ask povray only about plain scenes")
     parser.add_argument("--at-most", type=float, help="code values: fail where a scene is off by more")
     options = parser.parse_args()
+    if not shutil.which("povray"):
+        print("povray is not installed")
+        return SKIPPED
     options.cache.mkdir(parents=True, exist_ok=True)
     options.output.mkdir(parents=True, exist_ok=True)
     scenes = [s.resolve() for s in options.scenes] or chosen_scenes(options)

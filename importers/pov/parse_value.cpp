@@ -5,6 +5,7 @@
 #include "importers/pov/function.h"
 #include "importers/pov/parse_camera.h"
 #include "importers/pov/parse_object.h"
+#include "importers/pov/parse_sky.h"
 #include "importers/pov/spline.h"
 #include "importers/pov/texture.h"
 #include "importers/pov/transform.h"
@@ -113,7 +114,7 @@ const std::unordered_map<std::string_view, ParseValue> kKinds = {
     {"media", parse_opaque},
     {"fog", parse_opaque},
     {"rainbow", parse_opaque},
-    {"sky_sphere", parse_opaque}};
+    {"sky_sphere", [](Reader& r) -> Value { return parse_sky_sphere(r); }}};
 
 Value copy_of(Reader& reader, const Array& array) {
     take_items(reader, array.items.size());
@@ -176,9 +177,10 @@ Value parse_value(Reader& reader) {
 
 std::string kind_of(const Value& value) {
     static constexpr const char* kKindNames[] = {
-        "nothing",  "a number",    "a text",     "an object",   "a texture",   "a pigment",
-        "a finish", "an interior", "a material", "a color map", "a transform", "an array",
-        "a macro",  "a function",  "a spline",   "a camera",    "a file",      "a block"};
+        "nothing",   "a number",    "a text",      "an object",  "a texture",
+        "a pigment", "a finish",    "an interior", "a material", "a color map",
+        "a sky",     "a transform", "an array",    "a macro",    "a function",
+        "a spline",  "a camera",    "a file",      "a block"};
     static_assert(std::size(kKindNames) == std::variant_size_v<Value>);
     return kKindNames[value.index()];
 }

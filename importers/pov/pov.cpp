@@ -6,6 +6,7 @@
 #include "importers/pov/flatten.h"
 #include "importers/pov/parse_camera.h"
 #include "importers/pov/parse_object.h"
+#include "importers/pov/parse_sky.h"
 #include "importers/pov/parse_value.h"
 #include "importers/pov/texture.h"
 #include "importers/readers.h"
@@ -60,6 +61,8 @@ public:
         reader_.open(std::move(file));
         while (reader_.peek().kind != TokenKind::End)
             parse_statement(scene);
+        if (sky_)
+            scene.background = background_of(reader_, *sky_, scene.background.horizon, sky_at_);
         // Before 3.7 scenes made colors for screens, and povray still writes them as they are.
         scene.max_depth = trace_level_ - 1; // the camera's rays count too
         scene.gamma = gamma_given_ || reader_.has_linear_colors() ? reader_.gamma : kSrgbGamma;
@@ -86,7 +89,7 @@ private:
         else if (reader_.take("global_settings"))
             parse_settings();
         else if (reader_.take("sky_sphere"))
-            parse_sky(token, scene);
+            parse_sky(token.place);
         else if (token.is("fog") || token.is("media") || token.is("rainbow") ||
                  token.is("photons") || token.is("radiosity")) {
             reader_.next();
@@ -113,18 +116,9 @@ private:
         reader_.expect('}', "background");
     }
 
-    void parse_sky(const Token& at, Scene& scene) {
-        reader_.expect('{', "sky_sphere");
-        while (!reader_.take('}')) {
-            if (reader_.take("pigment")) {
-                const Pigment pigment = parse_pigment(reader_, reader_.defaults.pigment);
-                scene.background.horizon = scene.background.zenith = pigment.color.rgb;
-            } else if (reader_.next().kind == TokenKind::End)
-                reader_.fail(at.place, "found no '}' to sky_sphere");
-            else
-                skip_arguments(reader_);
-        }
-        reader_.warn("sky_sphere", at.place, "sky_sphere is drawn by its average color");
+    void parse_sky(const Place& at) {
+        sky_ = parse_sky_sphere(reader_);
+        sky_at_ = at;
     }
 
     void parse_settings() {
@@ -161,6 +155,8 @@ private:
     const ImportOptions& options_;
     Reader reader_;
     Look look_;
+    std::optional<SkySphere> sky_;
+    Place sky_at_;
     bool gamma_given_ = false;
     uint32_t trace_level_ = 5;
     std::vector<ObjectPtr> objects_;

@@ -94,6 +94,11 @@ struct ColorMap {
     Color average;
 };
 
+/// The pigments of a sky_sphere, the lowest first.
+struct SkySphere {
+    std::vector<Pigment> pigments;
+};
+
 /// Something that has a name and is of no use here: a media, a fog, a normal.
 struct Opaque {
     std::string kind;
@@ -103,8 +108,8 @@ struct CameraValue;
 struct DataFile;
 
 using Value = std::variant<std::monostate, Number, std::string, std::shared_ptr<const Object>,
-                           Texture, Pigment, Surface, Interior, Material, ColorMap, dmat4,
-                           std::shared_ptr<Array>, std::shared_ptr<const Macro>,
+                           Texture, Pigment, Surface, Interior, Material, ColorMap, SkySphere,
+                           dmat4, std::shared_ptr<Array>, std::shared_ptr<const Macro>,
                            std::shared_ptr<const Function>, std::shared_ptr<const Spline>,
                            std::shared_ptr<const CameraValue>, std::shared_ptr<DataFile>, Opaque>;
 
