@@ -222,6 +222,16 @@ TEST(PathTracer, ASlabLetsThroughWhatItsTwoSidesDo) {
     expect_mean(estimate(pane, camera, 256), expected, "a pane");
 }
 
+TEST(PathTracer, ClearGlassIsNotSeenUnderAnEvenSky) {
+    Scene scene = dark();
+    scene.background = {vec3(1), vec3(1)};
+    add_box(scene, glass(), {-1, 0, -1}, {1, 0.7, 1}, /* outside= */ true);
+    PathTracerOptions options;
+    options.max_depth = 100;
+    expect_mean(estimate(scene, at_point({3, 2, 1}, {0.3, 0.7, 0.2}), 64, options), 1,
+                "all light that is reflected or bent comes out again");
+}
+
 /// All ways to find light have one mean.
 TEST(PathTracer, ShadowRaysAndPathsFindTheSameLight) {
     const auto compare = [](const Scene& scene, const Camera& camera, bool shadow_rays,

@@ -264,6 +264,38 @@ TEST_F(CommandLine, InfoTellsThePlanThatRenderThenKeepsTo) {
     EXPECT_THAT(thesis.output, HasSubstr("what skip-bvh takes is known only once it is built"));
 }
 
+TEST_F(CommandLine, PathTracingMakesOnePictureInBothModesAndOfTheSceneFile) {
+    write("lamp.pbrt", R"(LookAt 0 2 6  0 0.5 0  0 1 0
+Camera "perspective" "float fov" 40
+WorldBegin
+Material "matte" "rgb Kd" [0.6 0.5 0.4]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-4 0 -4 -4 0 4 4 0 4 4 0 -4]
+AttributeBegin
+Material "dielectric"
+Translate 0 0.7 0
+Shape "sphere" "float radius" 0.6
+AttributeEnd
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [9 9 9]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-1 3 -1 1 3 -1 1 3 1 -1 3 1]
+AttributeEnd
+)");
+    const std::string how = " --integrator path --samples 4 --size 24x24 --quiet -o ";
+    const auto batched = overcast("render lamp.pbrt --stats s.json" + how + "batched.png");
+    ASSERT_EQ(batched.exit_code, 0) << batched.output;
+    EXPECT_GT(number(bytes("s.json"), "bounce"), 24 * 24);
+    ASSERT_EQ(overcast("render lamp.pbrt --mode mixed" + how + "mixed.png").exit_code, 0);
+    EXPECT_EQ(bytes("batched.png"), bytes("mixed.png"));
+    ASSERT_EQ(overcast("convert lamp.pbrt lamp.ovc").exit_code, 0);
+    ASSERT_EQ(overcast("render lamp.ovc" + how + "file.png").exit_code, 0);
+    EXPECT_EQ(bytes("batched.png"), bytes("file.png"));
+    ASSERT_EQ(overcast("render lamp.pbrt --size 24x24 --quiet -o whitted.png").exit_code, 0);
+    EXPECT_NE(bytes("batched.png"), bytes("whitted.png"));
+    const auto unknown = overcast("render lamp.pbrt --integrator pth");
+    EXPECT_EQ(unknown.exit_code, 1);
+    EXPECT_THAT(unknown.output, HasSubstr("did you mean 'path'?"));
+}
+
 TEST_F(CommandLine, CtrlCDuringABuildEndsItSoon) {
     // Building takes from half a second to six here: the signal comes in the midst of it.
     const auto run = test::run_shell(OVC_BINARY_DIR "/bin/overcast render dragons-21 --quiet -o '" +
