@@ -62,10 +62,11 @@ static_assert(sizeof(Hit) == 32 && offsetof(Hit, id) == 24);
 
 /// What two-level can tell of rays besides their hits. Each is empty, or one per ray.
 struct RayNotes {
-    std::span<uint32_t> leaf;   // of level 1, in which the hit lies; kNone: a miss
-    std::span<uint32_t> passes; // that the ray took part in
+    std::span<uint32_t> leaf;    // of level 1, in which the hit lies; kNone: a miss
+    std::span<uint32_t> passes;  // that the ray took part in
+    std::span<uint32_t> flagged; // 1: the kernel left an answer to doubles; else 0
 
-    bool any() const { return !leaf.empty() || !passes.empty(); }
+    bool any() const { return !leaf.empty() || !passes.empty() || !flagged.empty(); }
 };
 
 } // namespace ovc

@@ -16,7 +16,7 @@
 namespace ovc {
 namespace {
 
-constexpr std::string_view kNames[] = {"depth", "normal", "id", "leaf", "passes"};
+constexpr std::string_view kNames[] = {"depth", "normal", "id", "leaf", "passes", "flagged"};
 constexpr size_t kBatchRays = size_t(1) << 20;
 constexpr size_t kGrain = 1024; // pixels a task
 
@@ -40,15 +40,19 @@ public:
             all_.push_back(layer("leaf", Layer::Type::Uint, pixels));
         if (aovs.passes)
             all_.push_back(layer("passes", Layer::Type::Uint, pixels));
+        if (aovs.flagged)
+            all_.push_back(layer("flagged", Layer::Type::Uint, pixels));
     }
 
     /// Where the backend writes its notes of the rays of these pixels.
     RayNotes notes(size_t first, size_t count) {
-        const auto values = [&](size_t from_last) {
-            return std::span(all_[all_.size() - from_last].values).subspan(first, count);
+        const auto values = [&](bool wanted, std::string_view name) {
+            const auto found = std::find_if(all_.begin(), all_.end(),
+                                            [&](const Layer& one) { return one.name == name; });
+            return wanted ? std::span(found->values).subspan(first, count) : std::span<uint32_t>();
         };
-        return {aovs_.leaf ? values(aovs_.passes ? 2 : 1) : std::span<uint32_t>(),
-                aovs_.passes ? values(1) : std::span<uint32_t>()};
+        return {values(aovs_.leaf, "leaf"), values(aovs_.passes, "passes"),
+                values(aovs_.flagged, "flagged")};
     }
 
     void set(size_t pixel, const Scene& scene, const Ray& ray, const Hit& hit) {
@@ -81,12 +85,13 @@ Result<Aovs> parse_aovs(std::string_view text) {
     while (true) {
         const size_t comma = std::min(text.find(','), text.size());
         const std::string_view name = text.substr(0, comma);
-        bool* const wanted = name == "depth"    ? &aovs.depth
-                             : name == "normal" ? &aovs.normal
-                             : name == "id"     ? &aovs.id
-                             : name == "leaf"   ? &aovs.leaf
-                             : name == "passes" ? &aovs.passes
-                                                : nullptr;
+        bool* const wanted = name == "depth"     ? &aovs.depth
+                             : name == "normal"  ? &aovs.normal
+                             : name == "id"      ? &aovs.id
+                             : name == "leaf"    ? &aovs.leaf
+                             : name == "passes"  ? &aovs.passes
+                             : name == "flagged" ? &aovs.flagged
+                                                 : nullptr;
         if (!wanted)
             return Error{fmt::format("--aov: '{}' is none of {}{}", name, fmt::join(kNames, ", "),
                                      did_you_mean(name, kNames))};

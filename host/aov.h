@@ -15,17 +15,18 @@ namespace ovc {
 
 /// Which of them are wanted.
 struct Aovs {
-    bool depth = false;  // depth.Z: t of the pixel's ray, which is the distance along the view;
-                         // infinity where nothing is hit
-    bool normal = false; // normal.X, .Y, .Z: of unit length in the world, towards the eye; 0
-    bool id = false;     // id.mesh, id.prim: whole numbers; 0xffffffff
-    bool leaf = false;   // leaf: of level 1, in which the hit lies; 0xffffffff
-    bool passes = false; // passes: that the pixel's ray took part in
+    bool depth = false;   // depth.Z: t of the pixel's ray, which is the distance along the view;
+                          // infinity where nothing is hit
+    bool normal = false;  // normal.X, .Y, .Z: of unit length in the world, towards the eye; 0
+    bool id = false;      // id.mesh, id.prim: whole numbers; 0xffffffff
+    bool leaf = false;    // leaf: of level 1, in which the hit lies; 0xffffffff
+    bool passes = false;  // passes: that the pixel's ray took part in
+    bool flagged = false; // flagged: 1 where the kernel was not certain of the answer; else 0
 
-    bool any() const { return depth || normal || id || leaf || passes; }
+    bool any() const { return depth || normal || id || leaf || passes || flagged; }
 };
 
-/// "depth,normal,id,leaf,passes". Error: an unknown name, or one twice.
+/// "depth,normal,id,leaf,passes,flagged". Error: an unknown name, or one twice.
 Result<Aovs> parse_aovs(std::string_view text);
 
 /// One ray through the middle of each pixel, apart from those of the picture. Error: leaf or passes

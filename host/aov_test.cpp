@@ -32,6 +32,7 @@ TEST(Aovs, AreNamedInAnyOrderOnceEach) {
     ASSERT_TRUE(aovs);
     EXPECT_TRUE(aovs->id && aovs->depth && !aovs->normal && !aovs->leaf && !aovs->passes);
     EXPECT_TRUE(parse_aovs("leaf,passes")->leaf);
+    EXPECT_TRUE(parse_aovs("flagged")->flagged);
     EXPECT_EQ(error_of("depth,depth"), "--aov: depth is given twice");
     EXPECT_NE(error_of("norml").find("did you mean 'normal'"), std::string::npos)
         << error_of("norml");
@@ -117,7 +118,8 @@ TEST(Aovs, LeafAndPassesAreRefusedByABackendWithoutLeaves) {
     const auto layers =
         trace_aovs(*scene, Pinhole(Camera{dvec3(3, 2, 6), dvec3(0)}, 4, 4), *backend, aovs);
     ASSERT_FALSE(layers);
-    EXPECT_EQ(layers.error().message, "leaf and passes can be told by --backend two-level alone");
+    EXPECT_EQ(layers.error().message,
+              "leaf, passes and flagged can be told by --backend two-level alone");
 }
 
 } // namespace

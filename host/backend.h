@@ -40,8 +40,9 @@ public:
     virtual Result<Done> intersect_noted(std::span<const Ray> rays,
                                          std::span<const TriangleId> skip, std::span<Hit> hits,
                                          const RayNotes& notes) {
-        return notes.any() ? Error{"leaf and passes can be told by --backend two-level alone"}
-                           : intersect(rays, skip, hits);
+        return notes.any()
+                   ? Error{"leaf, passes and flagged can be told by --backend two-level alone"}
+                   : intersect(rays, skip, hits);
     }
     /// The pages that rays went through since this was asked last; none where the options did not
     /// ask for it or the backend cannot tell.

@@ -101,6 +101,7 @@ public:
         ovc_query query = query_of(skip);
         query.leaf = notes.leaf.empty() ? nullptr : notes.leaf.data();
         query.passes = notes.passes.empty() ? nullptr : notes.passes.data();
+        query.flagged = notes.flagged.empty() ? nullptr : notes.flagged.data();
         return device_.checked(api().intersect(scene_.get(), as_abi(rays), rays.size(),
                                                reinterpret_cast<ovc_hit*>(hits.data()), &query));
     }

@@ -137,7 +137,7 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_option("--aov", aov,
                    "Layers of the .exr files, of what the camera's rays hit, separated by commas: "
                    "depth, normal, id (mesh and triangle), leaf (of level 1), passes (that the "
-                   "ray took part in)")
+                   "ray took part in), flagged (1 where the kernel was not certain)")
         ->type_name("NAMES");
     app.add_option("--png-bits", png_bits, "Bits a channel of .png files; default: 8")
         ->type_name(choice_names(kPngBits));

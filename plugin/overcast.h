@@ -175,6 +175,7 @@ typedef struct ovc_query {
     /* Experimental. Written by intersect of OVC_STRUCTURE_TWO_LEVEL alone; NULL for all else. */
     uint32_t* leaf;   /* ray_count, or NULL: the level-1 leaf that the hit of ray i lies in; OVC_NONE: a miss */
     uint32_t* passes; /* ray_count, or NULL: kernel launches that ray i took part in; 0: it meets no leaf's box, or doubles alone could walk it */
+    uint32_t* flagged; /* ray_count, or NULL: 1 where the kernel was not certain and doubles decided; else 0 */
 } ovc_query;
 
 /* What commit would make of the meshes added so far, told without making it. Numbers of leaves, bytes and pages are estimates:

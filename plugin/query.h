@@ -15,17 +15,23 @@ struct NearestQuery {
     std::span<const Ray> rays;
     std::span<const TriangleId> skip; // empty, or one per ray
     std::span<Hit> results;
-    std::span<uint32_t> passes; // empty, or counts each ray's
+    std::span<uint32_t> passes;  // empty, or counts each ray's
+    std::span<uint32_t> flagged; // empty, or becomes 1 for rays that are
 
     TriangleId skipped(size_t i) const { return skip.empty() ? TriangleId{} : skip[i]; }
     NearestQuery part(size_t first, size_t count) const {
         return {rays.subspan(first, count), skip.empty() ? skip : skip.subspan(first, count),
                 results.subspan(first, count),
-                passes.empty() ? passes : passes.subspan(first, count)};
+                passes.empty() ? passes : passes.subspan(first, count),
+                flagged.empty() ? flagged : flagged.subspan(first, count)};
     }
     void count_pass(size_t i) const {
         if (!passes.empty())
             ++passes[i];
+    }
+    void flag(size_t i) const {
+        if (!flagged.empty())
+            flagged[i] = 1;
     }
     void set_miss(size_t i) const { results[i] = Hit{}; }
     void set(size_t i, const Hit& hit) const { results[i] = hit; }
@@ -45,6 +51,7 @@ struct OcclusionQuery {
                 results.subspan(first, count)};
     }
     void count_pass(size_t) const {}
+    void flag(size_t) const {}
     void set_miss(size_t i) const { results[i] = 0; }
     void set(size_t i, const Hit& hit) const { results[i] = hit.is_hit(); }
     bool was_hit(size_t i) const { return results[i] != 0; }

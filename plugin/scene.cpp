@@ -176,7 +176,7 @@ ovc_result intersect(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc
         const auto skip = skip_of(query, ray_count);
         const RayNotes notes = notes_of(query, ray_count);
         if (notes.any() && !structure.takes_notes())
-            invalid("intersect: this structure cannot tell ovc_query.leaf or passes");
+            invalid("intersect: this structure cannot tell ovc_query.leaf, passes or flagged");
         check(structure.intersect_noted({reinterpret_cast<const Ray*>(rays), ray_count}, skip,
                                         {reinterpret_cast<Hit*>(hits), ray_count}, notes));
     });

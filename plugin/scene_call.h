@@ -44,7 +44,9 @@ ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
 inline std::span<const TriangleId> skip_of(const ovc_query* query, size_t ray_count) {
     if (!query)
         return {};
-    if (query->struct_size != sizeof(ovc_query) && query->struct_size != offsetof(ovc_query, leaf))
+    if (query->struct_size != sizeof(ovc_query) &&
+        query->struct_size != offsetof(ovc_query, leaf) &&
+        query->struct_size != offsetof(ovc_query, flagged))
         invalid(fmt::format("ovc_query.struct_size is {}, expected sizeof(ovc_query) = {}",
                             query->struct_size, sizeof(ovc_query)));
     if (!query->skip)
@@ -59,12 +61,13 @@ inline RayNotes notes_of(const ovc_query* query, size_t ray_count) {
     const auto span = [&](uint32_t* notes) {
         return notes ? std::span(notes, ray_count) : std::span<uint32_t>();
     };
-    return {span(query->leaf), span(query->passes)};
+    const bool has_flagged = query->struct_size > offsetof(ovc_query, flagged);
+    return {span(query->leaf), span(query->passes), span(has_flagged ? query->flagged : nullptr)};
 }
 
 inline void refuse_notes(const char* call, const ovc_query* query, size_t ray_count) {
     if (notes_of(query, ray_count).any())
-        invalid(fmt::format("{}: ovc_query.leaf and passes are for intersect", call));
+        invalid(fmt::format("{}: ovc_query.leaf, passes and flagged are for intersect", call));
 }
 
 inline Structure& committed(ovc_scene scene, const char* call) {

@@ -347,13 +347,15 @@ Result<ovc_active> TwoLevel::take_active() {
 
 Result<Done> TwoLevel::intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
                                  std::span<Hit> hits) {
-    return trace(NearestQuery{rays, skip, hits, {}});
+    return trace(NearestQuery{rays, skip, hits, {}, {}});
 }
 
 Result<Done> TwoLevel::intersect_noted(std::span<const Ray> rays, std::span<const TriangleId> skip,
                                        std::span<Hit> hits, const RayNotes& notes) {
     std::fill(notes.passes.begin(), notes.passes.end(), 0);
-    if (Result<Done> done = trace(NearestQuery{rays, skip, hits, notes.passes}); !done)
+    std::fill(notes.flagged.begin(), notes.flagged.end(), 0);
+    if (Result<Done> done = trace(NearestQuery{rays, skip, hits, notes.passes, notes.flagged});
+        !done)
         return done;
     parallel_for(notes.leaf.size(), 1024, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)

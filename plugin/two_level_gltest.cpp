@@ -332,6 +332,24 @@ TEST_F(TwoLevelGl, TellsTheLeafOfAHitAndThePassesOfARay) {
     }
 }
 
+TEST_F(TwoLevelGl, TellsWhichRaysTheKernelWasNotCertainOf) {
+    const Soup soup = test::random_soup(8, 3000, 0.01);
+    const auto structure = build(soup, {});
+    ASSERT_TRUE(structure);
+    auto rays = test::rays_from_outside(12, soup.triangle_count());
+    for (uint32_t i = 0; i < rays.size(); i += 2) // at corners, where a hit is never certain
+        rays[i].dir = soup.triangle({0, i})[0] - rays[i].org;
+    std::vector<Hit> hits(rays.size());
+    std::vector<uint32_t> flagged(rays.size(), 7);
+    ASSERT_TRUE(ok(structure->intersect_noted(rays, {}, hits, {{}, {}, flagged})));
+    uint64_t at_corners = 0, elsewhere = 0;
+    for (size_t i = 0; i < rays.size(); ++i)
+        (i % 2 == 0 ? at_corners : elsewhere) += flagged[i];
+    EXPECT_GT(at_corners, rays.size() / 4) << "but for those that something hides";
+    EXPECT_LT(elsewhere, rays.size() / 50);
+    EXPECT_EQ(at_corners + elsewhere, structure->statistics().flagged) << "once a ray, in one pass";
+}
+
 TEST_F(TwoLevelGl, TellsThePagesThatRaysWentThrough) {
     const Soup soup = test::random_soup(8, 60000, 0.01);
     const auto aimed = test::rays_from_outside(12, 5000);

@@ -179,7 +179,8 @@ private:
             query_.set(i, nearest.hit());
         const bool settled = in_scene || (Query::kAnyHit && nearest.hit().is_hit()) ||
                              go_on_behind(i, leaf, p, nearest.limit());
-        flagged_ += settled && has_rivals; // decide_in_double() counts the others
+        if (settled && has_rivals) // decide_in_double() counts the others
+            count_flagged(i);
         return settled;
     }
 
@@ -216,8 +217,13 @@ private:
     void decide_in_double(uint32_t i, const PreparedRay& p) {
         query_.set(i, arbitrate<Query::kAnyHit>(s_.soup_, s_.numbers_, s_.twins_, s_.level1_,
                                                 s_.pages_, p));
-        ++flagged_;
+        count_flagged(i);
         ++retraced_;
+    }
+
+    void count_flagged(uint32_t i) {
+        query_.flag(i);
+        ++flagged_;
     }
 
     TwoLevel& s_;

@@ -234,17 +234,23 @@ TEST_F(Abi, IndicesStridesOriginsAndSharingGiveTheSameTriangle) {
 TEST_F(Abi, TellsLeafPassesAndActivePagesWhereItWasAskedTo) {
     commit_triangle();
     ovc_hit hit{};
-    uint32_t leaf = 7, passes = 7;
+    uint32_t leaf = 7, passes = 7, flagged = 7;
     auto query = sized<ovc_query>();
     query.leaf = &leaf;
     query.passes = &passes;
+    query.flagged = &flagged;
     ASSERT_EQ(api().intersect(scene, &kDown, 1, &hit, &query), OVC_OK);
     EXPECT_EQ(leaf, 0u);
     EXPECT_EQ(passes, 1u);
+    EXPECT_EQ(flagged, 0u) << "through the middle of a triangle";
     uint8_t occluded = 0;
     EXPECT_EQ(api().occluded(scene, &kDown, 1, &occluded, &query), OVC_ERROR_INVALID_ARGUMENT);
-    EXPECT_EQ(error(), "occluded: ovc_query.leaf and passes are for intersect");
-    // A host of an earlier header, whose query ends before `leaf`.
+    EXPECT_EQ(error(), "occluded: ovc_query.leaf, passes and flagged are for intersect");
+    // Hosts of earlier headers, whose query ends before `flagged`, and before `leaf`.
+    query.struct_size = offsetof(ovc_query, flagged);
+    flagged = 7;
+    ASSERT_EQ(api().intersect(scene, &kDown, 1, &hit, &query), OVC_OK);
+    EXPECT_EQ(flagged, 7u);
     query.struct_size = offsetof(ovc_query, leaf);
     leaf = 7;
     ASSERT_EQ(api().intersect(scene, &kDown, 1, &hit, &query), OVC_OK);

@@ -312,7 +312,8 @@ TEST_F(CommandLine, LayersOfWhatTheCameraSees) {
     EXPECT_THAT(bytes("a.exr"), HasSubstr("depth.Z"));
     EXPECT_THAT(bytes("a.exr"), HasSubstr("id.prim"));
     EXPECT_EQ(
-        overcast("render knot --aov leaf,passes -o b.exr --quiet --size 64x64 --gpu-memory 12M")
+        overcast(
+            "render knot --aov leaf,passes,flagged -o b.exr --quiet --size 64x64 --gpu-memory 12M")
             .exit_code,
         0);
     EXPECT_THAT(bytes("b.exr"), HasSubstr("passes"));
