@@ -30,7 +30,7 @@ static constexpr double kEdgeShare = 0x1p-20;
 
 /// How far off whole numbers a checker changes: a plane through them keeps to one side, as
 /// POV-Ray's 1e-10 has it for coordinates near 0.
-static constexpr double kCheckerOffset = 1e-6;
+static constexpr double kCheckerOffset = 1e-9;
 
 /// a b - c d to two units in the last place, however much cancels. Kahan's; Jeannerod, Louvet and
 /// Muller 2013.
