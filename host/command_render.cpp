@@ -63,6 +63,7 @@ struct RenderWords {
     std::string camera_path;
     std::vector<std::string> lights;
     std::string samples;
+    std::string seed;
     std::string threads;
     bool go_on = false;
     std::string max_depth;
@@ -119,6 +120,10 @@ void RenderWords::add_to(CLI::App& app) {
            "--samples,--spp", samples,
            "Rays a pixel, up to 65536: more of them smooth edges; the same ones every time; "
            "default: 1, through its middle")
+        ->type_name("N");
+    app.add_option("--seed", seed,
+                   "Of path tracing: other numbers make other noise, the same the same picture; "
+                   "default: 0")
         ->type_name("N");
     app.add_option("--integrator", integrator,
                    "whitted (mirrors, glass, and the light of lamps) or path (path tracing: light "
@@ -296,6 +301,12 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
         if (!threads)
             return threads.error();
         job.threads = uint32_t(*threads);
+    }
+    if (!words.seed.empty()) {
+        const Result<uint64_t> seed = parse_count("--seed", words.seed, 0, ~uint64_t(0));
+        if (!seed)
+            return seed.error();
+        job.render.seed = *seed;
     }
     if (!words.samples.empty()) {
         const Result<uint64_t> samples = parse_count("--samples", words.samples, 1, kMostSamples);
