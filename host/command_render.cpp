@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <functional>
 #include <unistd.h>
 
 namespace ovc {
@@ -295,31 +296,36 @@ static Result<Done> understand_view(const RenderWords& words, RenderJob& job) {
     return Done{};
 }
 
+static Result<Done> understand_counts(const RenderWords& words, RenderJob& job) {
+    struct Wanted {
+        std::string_view option;
+        const std::string& text; // empty: not given
+        uint64_t least, most;
+        std::function<void(uint64_t)> take;
+    };
+    const Wanted all[] = {
+        {"--threads", words.threads, 1, kMostThreads,
+         [&](uint64_t threads) { job.threads = uint32_t(threads); }},
+        {"--seed", words.seed, 0, ~uint64_t(0), [&](uint64_t seed) { job.render.seed = seed; }},
+        {"--samples", words.samples, 1, kMostSamples,
+         [&](uint64_t samples) { job.samples = uint32_t(samples); }},
+        {"--max-depth", words.max_depth, 0, kMostDepth,
+         [&](uint64_t depth) { job.max_depth = uint32_t(depth); }}};
+    for (const Wanted& wanted : all) {
+        if (wanted.text.empty())
+            continue;
+        const Result<uint64_t> count =
+            parse_count(wanted.option, wanted.text, wanted.least, wanted.most);
+        if (!count)
+            return count.error();
+        wanted.take(*count);
+    }
+    return Done{};
+}
+
 static Result<Done> understand_shading(const RenderWords& words, RenderJob& job) {
-    if (!words.threads.empty()) {
-        const Result<uint64_t> threads = parse_count("--threads", words.threads, 1, kMostThreads);
-        if (!threads)
-            return threads.error();
-        job.threads = uint32_t(*threads);
-    }
-    if (!words.seed.empty()) {
-        const Result<uint64_t> seed = parse_count("--seed", words.seed, 0, ~uint64_t(0));
-        if (!seed)
-            return seed.error();
-        job.render.seed = *seed;
-    }
-    if (!words.samples.empty()) {
-        const Result<uint64_t> samples = parse_count("--samples", words.samples, 1, kMostSamples);
-        if (!samples)
-            return samples.error();
-        job.samples = uint32_t(*samples);
-    }
-    if (!words.max_depth.empty()) {
-        const Result<uint64_t> depth = parse_count("--max-depth", words.max_depth, 0, kMostDepth);
-        if (!depth)
-            return depth.error();
-        job.max_depth = uint32_t(*depth);
-    }
+    if (const Result<Done> fine = understand_counts(words, job); !fine)
+        return fine;
     const Result<size_t> mode = parse_choice("--mode", words.mode, kModes);
     if (!mode)
         return mode.error();
