@@ -13,7 +13,8 @@ namespace ovc {
 
 namespace {
 
-constexpr size_t kBlockBytes = size_t(1) << 16; // larger was no faster
+constexpr size_t kBlockBytes = size_t(1) << 16;    // larger was no faster
+constexpr size_t kUnpackedBytes = size_t(1) << 18; // some 1 ms of work
 constexpr size_t kLongestLine = size_t(1) << 26;
 constexpr uint64_t kLikelyCompression = 12; // models as text reach 3 to 6
 
@@ -89,28 +90,57 @@ bool Source::fill(size_t count) {
         end_ -= begin_;
         begin_ = 0;
     }
-    while (end_ < count) {
-        // Doubling as the bytes arrive, never to what `count` claims.
-        if (end_ == buffer_.size())
-            buffer_.resize(2 * buffer_.size());
-        const auto room = unsigned(std::min(buffer_.size() - end_, kBlockBytes));
-        const int got = gzread(file_.get(), buffer_.data() + end_, room);
-        if (got > 0)
-            end_ += size_t(got);
-        if (got < int(room)) {
-            int code = Z_OK;
-            const char* reason = gzerror(file_.get(), &code);
-            if (code == Z_BUF_ERROR)
-                damage_ = "the compressed data ends early";
-            else if (code == Z_ERRNO)
-                damage_ = fmt::format("cannot be read: {}", std::strerror(errno));
-            else if (code != Z_OK && code != Z_STREAM_END)
-                damage_ = fmt::format("the compressed data is damaged: {}", without(name_, reason));
-        }
-        if (got <= 0)
-            return end_ >= count;
-    }
+    while (end_ < count)
+        if ((is_compressed_ ? read_ahead() : read()) == 0)
+            return false;
     return true;
+}
+
+/// Reads what comes next; how many bytes that were. damage: why there are fewer than asked for.
+static size_t read_some(gzFile_s* file, unsigned char* to, size_t room, const std::string& name,
+                        std::string& damage) {
+    const int got = gzread(file, to, unsigned(room));
+    if (got < int(room)) {
+        int code = Z_OK;
+        const char* reason = gzerror(file, &code);
+        if (code == Z_BUF_ERROR)
+            damage = "the compressed data ends early";
+        else if (code == Z_ERRNO)
+            damage = fmt::format("cannot be read: {}", std::strerror(errno));
+        else if (code != Z_OK && code != Z_STREAM_END)
+            damage = fmt::format("the compressed data is damaged: {}", without(name, reason));
+    }
+    return size_t(std::max(got, 0));
+}
+
+size_t Source::read() {
+    // Doubling as the bytes arrive, never to what somebody claims there are.
+    if (end_ == buffer_.size())
+        buffer_.resize(2 * buffer_.size());
+    const size_t got = read_some(file_.get(), buffer_.data() + end_,
+                                 std::min(buffer_.size() - end_, kBlockBytes), name_, damage_);
+    end_ += got;
+    return got;
+}
+
+Source::Block Source::unpack(gzFile_s* file, const std::string& name) {
+    Block block;
+    block.bytes.resize(kUnpackedBytes);
+    block.bytes.resize(read_some(file, block.bytes.data(), kUnpackedBytes, name, block.damage));
+    return block;
+}
+
+/// Takes the block that was unpacked meanwhile, and has the next one unpacked.
+size_t Source::read_ahead() {
+    const Block block = ahead_.valid() ? ahead_.get() : unpack(file_.get(), name_);
+    if (!block.damage.empty())
+        damage_ = block.damage;
+    if (!block.bytes.empty() && block.damage.empty())
+        ahead_ = std::async(std::launch::async, unpack, file_.get(), name_);
+    buffer_.resize(std::max(buffer_.size(), end_ + block.bytes.size()));
+    std::copy(block.bytes.begin(), block.bytes.end(), buffer_.begin() + ptrdiff_t(end_));
+    end_ += block.bytes.size();
+    return block.bytes.size();
 }
 
 std::optional<std::string_view> Source::line() {

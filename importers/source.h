@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,7 +19,8 @@ struct gzFile_s;
 namespace ovc {
 
 /// Memory: one block, more only while a single line or read is longer; never more than twice what
-/// the file holds. Compression is told by the file's first bytes, not by its name.
+/// the file holds. Of a compressed file another thread unpacks the next block meanwhile.
+/// Compression is told by the file's first bytes, not by its name.
 class Source {
 public:
     /// Fails on no such file, no regular file (links are followed), no permission, an empty file.
@@ -70,14 +72,24 @@ private:
         void operator()(gzFile_s* file) const;
     };
 
+    /// What was read at once. damage: empty, or why it ends early.
+    struct Block {
+        std::vector<unsigned char> bytes;
+        std::string damage;
+    };
+
     Source() = default;
 
+    static Block unpack(gzFile_s* file, const std::string& name);
+    size_t read();
+    size_t read_ahead();
     /// Makes at least `count` bytes available; false at the end of the file.
     bool fill(size_t count);
     void find_line_end();
 
     std::string name_;
     std::unique_ptr<gzFile_s, CloseFile> file_;
+    std::future<Block> ahead_; // uses file_
     std::vector<unsigned char> buffer_;
     size_t begin_ = 0; // of what is not given out yet
     size_t end_ = 0;
