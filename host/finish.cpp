@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 namespace ovc {
 
@@ -74,13 +73,13 @@ vec3 finish_light(const SurfacePoint& surface, const dvec3& towards, const vec3&
 }
 
 Branches finish_branches(const SurfacePoint& surface, bool total) {
+    if (total) // POV-Ray's glass then dims nothing, whatever it reflects and lets through otherwise
+        return {vec3(1), vec3(0)};
     Branches parts;
     parts.mirror = reflected_share(surface);
     parts.through = surface.material->transmission * surface.material->filter;
     if (surface.material->finish->conserve_energy)
         parts.through *= glm::clamp(vec3(1) - parts.mirror, vec3(0), vec3(1));
-    if (total)
-        parts.mirror += std::exchange(parts.through, vec3(0));
     return parts;
 }
 
