@@ -411,8 +411,8 @@ namespace {
 class Render final : public Subcommand {
 public:
     void add_to(CLI::App& app) override {
-        app.description(
-            "Renders a picture of a scene with Whitted's model: shadows, mirrors and glass.");
+        app.description("Renders a picture of a scene: shadows, mirrors and glass, or all light "
+                        "there is by path tracing.");
         words_.add_to(app);
         app.footer(kExamples);
     }
