@@ -2,6 +2,7 @@
 // Path tracing in both modes: the same bits for the same seed, and for others the same mean in each
 // pixel.
 #include "host/render.h"
+#include "host/test_shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -12,10 +13,6 @@ namespace ovc {
 namespace {
 
 constexpr uint32_t kSide = 20;
-
-Chunk quad(dvec3 a, dvec3 b, dvec3 c, dvec3 d) {
-    return Chunk::owning(dvec3(0), {vec3(a), vec3(b), vec3(c), vec3(a), vec3(c), vec3(d)});
-}
 
 /// A floor, a glossy one beside it, a mirror behind, a pane in front, a lamp above, a blue sky.
 Scene corner() {

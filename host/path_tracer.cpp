@@ -63,13 +63,6 @@ PathTracer::PathTracer(const Scene& scene, const vec3& up, const PathTracerOptio
       unexposed_(1 / scene.exposure),
       light_may_pass_(light_passes(scene, lights_.has_lights())) {}
 
-template <class Purpose>
-static void append(const RayList<Purpose>& from, RayList<Purpose>& to) {
-    const size_t before = to.size();
-    to.resize(before + from.size());
-    to.put(before, from);
-}
-
 void PathTracer::shade(std::span<const Ray> rays, std::span<const Path> paths,
                        std::span<const Hit> hits, Film& film, Spawned& spawned) const {
     Sides sides;
@@ -80,7 +73,7 @@ void PathTracer::shade(std::span<const Ray> rays, std::span<const Path> paths,
             film.add(paths[i].pixel, paths[i].weight * unexposed_ *
                                          background_color(scene_.background, up_, rays[i].dir));
     for (const RayList<Path>* side : {&sides.mirrored, &sides.through, &sides.bounced})
-        append(*side, spawned.paths);
+        spawned.paths.append(*side);
 }
 
 void PathTracer::meet(const Ray& ray, const Path& path, const Hit& hit, Film& film, Sides& sides,

@@ -7,10 +7,10 @@
 #include "host/camera_rays.h"
 #include "host/render.h"
 #include "host/render_batched.h"
+#include "host/test_shapes.h"
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -20,10 +20,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 using Boundary = Optics::Boundary;
-
-Chunk quad(dvec3 a, dvec3 b, dvec3 c, dvec3 d) {
-    return Chunk::owning(dvec3(0), {vec3(a), vec3(b), vec3(c), vec3(a), vec3(c), vec3(d)});
-}
 
 Material optical(const Optics& optics) {
     Material m;
@@ -57,23 +53,6 @@ void add_level(Scene& scene, const Material& material, double y, double half, bo
     const dvec3 a(-half, y, -half), b(-half, y, half), c(half, y, half), d(half, y, -half);
     scene.add_mesh("level", uint32_t(scene.materials.size() - 1),
                    up ? quad(a, b, c, d) : quad(d, c, b, a));
-}
-
-/// A closed box, its fronts outside or inside.
-void add_box(Scene& scene, const Material& material, dvec3 lo, dvec3 hi, bool outside) {
-    scene.materials.push_back(material);
-    const auto at = [&](int i) {
-        return dvec3(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z);
-    };
-    for (const auto& [a, b, c, d] : {std::array{4, 5, 7, 6},
-                                     {1, 0, 2, 3},
-                                     {5, 1, 3, 7},
-                                     {0, 4, 6, 2},
-                                     {6, 7, 3, 2},
-                                     {0, 1, 5, 4}})
-        scene.add_mesh("side", uint32_t(scene.materials.size() - 1),
-                       outside ? quad(at(a), at(b), at(c), at(d))
-                               : quad(at(d), at(c), at(b), at(a)));
 }
 
 /// Looks so closely that all its pixels show one point.

@@ -4,7 +4,9 @@
 
 #include "core/ray.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -35,6 +37,12 @@ struct RayList {
         std::copy(from.rays.begin(), from.rays.end(), rays.begin() + ptrdiff_t(at));
         std::copy(from.skip.begin(), from.skip.end(), skip.begin() + ptrdiff_t(at));
         std::copy(from.purposes.begin(), from.purposes.end(), purposes.begin() + ptrdiff_t(at));
+    }
+
+    void append(const RayList& from) {
+        const size_t before = size();
+        resize(before + from.size());
+        put(before, from);
     }
 
     /// Moves the rays from `first` on into `to`, whose own are lost.

@@ -49,12 +49,7 @@ Result<Done> save_film(const Film& film, uint64_t picture, const std::filesystem
             pixels.push_back(pixel);
             sums.push_back(film.sums(pixel));
         }
-    ArchiveWriter writer(
-        [&](Bytes bytes) {
-            out->write(bytes.data(), bytes.size());
-            return true; // commit() says what went wrong
-        },
-        kKind, kVersion);
+    ArchiveWriter writer(out->sink(), kKind, kVersion);
     const FilmShape shape = shape_of(film, picture);
     writer.part<uint64_t>("shape", shape);
     writer.part<uint32_t>("pixels", pixels);

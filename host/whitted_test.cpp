@@ -4,17 +4,13 @@
 #include "host/whitted.h"
 
 #include "host/render.h"
+#include "host/test_shapes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 
 namespace ovc {
-
-static Chunk quad(dvec3 a, dvec3 b, dvec3 c, dvec3 d) {
-    return Chunk::owning(dvec3(0), {vec3(a), vec3(b), vec3(c), vec3(a), vec3(c), vec3(d)});
-}
 
 /// A red floor at y = 0, a small blocker above its middle, a mirror wall behind, a light overhead;
 /// seen from the front.
@@ -111,18 +107,7 @@ TEST(Whitted, EndsBetweenTwoMirrors) {
 static Scene room_with_box(Material material) {
     Scene scene = room();
     scene.materials[1] = {"wall", {0.1f, 0.2f, 0.8f}, 0};
-    scene.materials.push_back(std::move(material));
-    const dvec3 lo(-1, 0.5, 3), hi(1, 2.5, 5);
-    const auto at = [&](int i) {
-        return dvec3(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z);
-    };
-    for (const auto& [a, b, c, d] : {std::array{4, 5, 7, 6},
-                                     {1, 0, 2, 3},
-                                     {5, 1, 3, 7},
-                                     {0, 4, 6, 2},
-                                     {6, 7, 3, 2},
-                                     {0, 1, 5, 4}})
-        scene.add_mesh("side", 2, quad(at(a), at(b), at(c), at(d)));
+    add_box(scene, std::move(material), {-1, 0.5, 3}, {1, 2.5, 5});
     return scene;
 }
 

@@ -2,6 +2,7 @@
 // OutputFile: written beside its target, put in the target's place only once complete.
 #pragma once
 
+#include "core/archive.h"
 #include "core/result.h"
 
 #include <cstdio>
@@ -30,6 +31,15 @@ public:
 
     void write(const void* data, size_t bytes);
     void write(std::string_view text) { write(text.data(), text.size()); }
+
+    /// Writes what it gets here while this file stays where it is, and always wants more: commit()
+    /// says what went wrong.
+    ByteSink sink() {
+        return [this](Bytes bytes) {
+            write(bytes.data(), bytes.size());
+            return true;
+        };
+    }
 
     Result<Done> commit();
 

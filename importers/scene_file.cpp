@@ -115,13 +115,9 @@ Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
     Result<OutputFile> out = OutputFile::create(path);
     if (!out)
         return out.error();
-    const ByteSink sink = [&](Bytes bytes) {
-        out->write(bytes.data(), bytes.size());
-        return true; // commit() says what went wrong
-    };
     ByteWriter fields;
     fields(scene, scene.meshes, from.request, from.files, from.warnings);
-    ArchiveWriter writer(sink, kKind, kVersion);
+    ArchiveWriter writer(out->sink(), kKind, kVersion);
     writer.part<std::byte>("fields", fields.bytes());
     writer.part<MeshExtent>("extents", extents_of(scene));
     writer.begin("corners");
