@@ -267,6 +267,10 @@ static void report(const RenderJob& job, const RenderStats& stats) {
         fmt::print("{}  wrote      {}\n", stats_summary(stats), fmt::join(job.outputs, ", "));
     if (stats.report.complete)
         return;
+    if (job.shots.empty() && stats.report.pixels_done == 0) {
+        fmt::print(stderr, "overcast: interrupted; no pixel was done, and nothing is saved\n");
+        return;
+    }
     if (job.shots.empty()) {
         fmt::print(stderr,
                    "overcast: interrupted; {:.0f} % of the picture is in {}, and the same command "
