@@ -27,6 +27,7 @@ struct ShaderConfig {
     bool tell_active = false;
     uint32_t stack_depth = 16;
     bool stack_registers = true;
+    bool branches = false;
     bool buffer_images = true;
     uint32_t most_rounds = 0x7fffffff; // of all loops of a ray
 

@@ -115,8 +115,10 @@ Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress) {
 }
 
 uint32_t stack_depth(uint32_t depth) {
-    constexpr uint32_t kStep = 4;
-    return (depth + kStep - 1) / kStep * kStep;
+    // A word a level at most, the last on top of the stack and not in it. Even, so that few
+    // programs serve all scenes.
+    const uint32_t words = std::max(depth, 2u) - 1;
+    return words + words % 2;
 }
 
 uint32_t stack_depth(std::span<const Page> pages) {

@@ -18,7 +18,7 @@ namespace ovc {
 struct Page {
     std::vector<uvec4> texels;         // as it is built; empty where they are
     std::span<const uvec4> borrowed{}; // somebody else's, who keeps them alive and unchanged
-    uint32_t depth = 0;                // stack words a traversal needs
+    uint32_t depth = 0;                // nodes on the longest way down
 
     std::span<const uvec4> view() const { return borrowed.empty() ? texels : borrowed; }
     uint64_t units() const { return view().size() / OVC_UNIT_TEXELS; }

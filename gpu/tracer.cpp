@@ -165,6 +165,7 @@ Result<Done> Tracer::submit(const PassOptions& options, std::span<const Travelle
     config.tell_active = active_buffer_.has_value();
     config.stack_depth = stack_depth_;
     config.stack_registers = software_;
+    config.branches = !software_;
     config.buffer_images = software_;
     if (software_)
         config.most_rounds = kMostRoundsInSoftware;

@@ -25,7 +25,7 @@ Found nothing_found(float t_end) {
 void add_rival(inout Found found, float lo, uint prim) {
     bool first = lo < found.rival_lo[0];
     bool second = lo < found.rival_lo[1];
-    found.others_lo = second ? found.rival_lo[1] : min(found.others_lo, lo);
+    found.others_lo = second ? found.rival_lo[1] : lesser(found.others_lo, lo);
     found.rival_lo[1] = first ? found.rival_lo[0] : (second ? lo : found.rival_lo[1]);
     found.rival[1] = first ? found.rival[0] : (second ? prim : found.rival[1]);
     found.rival_lo[0] = first ? lo : found.rival_lo[0];
@@ -56,10 +56,11 @@ bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pa
     Corner v3 = corner(uintBitsToFloat(W.xyz), org, basis);
     float e20 = edge(v2, v0);
     float e20_error = edge_error(v2, v0);
+    Depths depths = depths_of(v0, v2);
     Candidate a = candidate(v0, v1, v2, edge(v0, v1), edge(v1, v2), e20, edge_error(v0, v1),
-                            edge_error(v1, v2), e20_error);
+                            edge_error(v1, v2), e20_error, with_corner(depths, v1));
     Candidate b = candidate(v0, v3, v2, edge(v0, v3), edge(v3, v2), e20, edge_error(v0, v3),
-                            edge_error(v3, v2), e20_error);
+                            edge_error(v3, v2), e20_error, with_corner(depths, v3));
     // Where pages are linked, what planes of level 1 cut comes once for each leaf: it is no rival of itself.
     bool fresh_a = OVC_LINKED == 0 || X.w != found.prim;
     bool fresh_b = OVC_LINKED == 0 || Y.w != found.prim;

@@ -8,7 +8,7 @@
 //
 // header  texel 0: grid origin xyz (float bits), 0
 //         texel 1: grid cell xyz (float bits), 0
-//         texel 2: the traversal's first state: the root's unit, the empty stack (-1), stack height 0, 0
+//         texel 2: the traversal's first state: the root's unit, -1 (the stack's height, less one), 0 (no word), 0
 //         texel 3: 0
 // node    texels 0..2: per axis, the 16-bit grid coordinates of four children's boxes: lo0|lo1<<16, lo2|lo3<<16,
 //                      hi0|hi1<<16, hi2|hi3<<16. A missing child has lo = 0xffff > hi = 0.
@@ -21,7 +21,7 @@
 #define OVC_ROOT_UNIT 1
 #define OVC_PAIR 0x80000000u
 #define OVC_NO_TRIANGLE 0xffffffffu
-#define OVC_MAX_UNITS 0x800000 // a stack word has 23 bits for a unit and must not be negative
+#define OVC_MAX_UNITS 0x8000000 // a stack word has 27 bits for a unit and must not be negative
 
 // Where pages are linked (gpu/linked.h) units count from the pool's first; else from the page's own.
 
@@ -89,6 +89,8 @@
 #define OVC_BOUND_UNIT 5.9604644775390625e-8
 #define OVC_BOUND_CONSTANT 6.0
 #define OVC_BOUND_RELATIVE 11.0
+// Of weights that are off by a share s of their sum: by how much an average may move, 2 s, and the roundings of s itself.
+#define OVC_BOUND_SHARE 2.00001
 
 // Farther than this from a leaf, in leaf sizes, a ray's place of entry is off by more than 1/64 of a float rounding.
 #define OVC_MOST_LEAF_SIZES 2097152.0

@@ -55,13 +55,38 @@ struct Candidate {
     vec2 weights; // of corners b and c at the hit
 };
 
+// Instead of min() and max(), which llvmpipe makes of three instructions, because of NaNs.
+float lesser(float a, float b) {
+    precise float r = a < b ? a : b;
+    return r;
+}
+float greater(float a, float b) {
+    precise float r = a < b ? b : a;
+    return r;
+}
+
+// Between which depths corners lie, and by how much t may be off besides: the corners' errors, and as much for its arithmetic.
+struct Depths {
+    float lo;
+    float hi;
+    float error;
+};
+
+Depths depths_of(Corner a, Corner b) {
+    return Depths(lesser(a.z, b.z), greater(a.z, b.z), 2.0 * greater(a.error, b.error));
+}
+Depths with_corner(Depths d, Corner c) {
+    return Depths(lesser(d.lo, c.z), greater(d.hi, c.z), greater(d.error, 2.0 * c.error));
+}
+
 // The triangle (a, b, c) with edge functions ab, bc, ca and their errors.
 Candidate candidate(Corner a, Corner b, Corner c, float ab, float bc, float ca, float ab_error,
-                    float bc_error, float ca_error) {
+                    float bc_error, float ca_error, Depths depths) {
     Candidate result;
     float area = ab + bc + ca;
-    float t = (bc * a.z + ca * b.z + ab * c.z) / area;
-    result.weights = vec2(ca, ab) / area;
+    float inv_area = 1.0 / area;
+    float t = (bc * a.z + ca * b.z + ab * c.z) * inv_area;
+    result.weights = vec2(ca, ab) * inv_area;
     if (OVC_CERTIFY == 0) {
         // Closed: a shared edge belongs to both triangles.
         result.certain = (ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab <= 0.0 && bc <= 0.0 && ca <= 0.0);
@@ -78,13 +103,10 @@ Candidate candidate(Corner a, Corner b, Corner c, float ab, float bc, float ca, 
     result.possible = !(any_positive && any_negative);
     result.certain = all_positive || all_negative;
 
-    float z_min = min(a.z, min(b.z, c.z));
-    float z_max = max(a.z, max(b.z, c.z));
-    float z_error = 2.0 * max(a.error, max(b.error, c.error));
     // t is an average of the corners' z. The weights' errors move it by at most their share of the spread of z.
-    float share = min(2.0 * (ab_error + bc_error + ca_error) / abs(area), 1.0);
-    float t_error = share * (z_max - z_min) + z_error;
-    result.lo = result.certain ? t - t_error : z_min - z_error;
-    result.hi = result.certain ? t + t_error : z_max + z_error;
+    float share = float(OVC_BOUND_SHARE) * (ab_error + bc_error + ca_error) * abs(inv_area);
+    float t_error = share * (depths.hi - depths.lo) + depths.error;
+    result.lo = result.certain ? t - t_error : depths.lo - depths.error;
+    result.hi = result.certain ? t + t_error : depths.hi + depths.error;
     return result;
 }

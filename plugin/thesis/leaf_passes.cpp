@@ -63,6 +63,7 @@ Result<GLuint> LeafPasses::kernel() {
     config.certify = certify_;
     config.stack_depth = stack_depth(pages_);
     config.stack_registers = software_;
+    config.branches = !software_;
     config.buffer_images = software_;
     if (software_ && units > kMostRoundsInSoftware)
         config.most_rounds = kMostRoundsInSoftware;

@@ -88,6 +88,7 @@ Result<GLuint> Runner::link(std::optional<gl::Program>& program, const char* fra
     config.certify = options_.certify;
     config.stack_depth = stack_depth_;
     config.stack_registers = software_;
+    config.branches = !software_;
     if (software_ && most_rounds_ > kMostRoundsInSoftware)
         config.most_rounds = kMostRoundsInSoftware;
     const std::string defines = config.defines() + tile_defines_ +
