@@ -28,6 +28,7 @@ struct ShaderConfig {
     uint32_t stack_depth = 16;
     bool stack_registers = true;
     bool branches = false;
+    bool deal_groups = true;
     bool buffer_images = true;
     uint32_t most_rounds = 0x7fffffff; // of all loops of a ray
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tracer: rays in by a buffer, the kernel over a rectangle of pixels, answers out by a framebuffer
-// object. Based on: thesis, section 3.1.
+// Tracer: rays in by a buffer, the kernel over all of them, answers out (gpu/answers.h). Based on:
+// thesis, section 3.1.
 #include "gpu/tracer.h"
 
 #include "gpu/gl_check.h"
@@ -18,15 +18,6 @@ namespace {
 constexpr uint32_t kMostBlocks = 2048;    // half a million rays: beyond, a pass gains nothing more
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
-/// The pixel of a ray's answer, row by row: the twin of pixel_of() in shaders/ray.glsl.
-size_t pixel_of(size_t ray) {
-    constexpr size_t kTile = OVC_TILE, kTilesInRow = OVC_ROW_RAYS / OVC_TILE;
-    const size_t tile = ray / (kTile * kTile);
-    const size_t x = tile % kTilesInRow * kTile + ray % kTile;
-    const size_t y = tile / kTilesInRow * kTile + ray / kTile % kTile;
-    return y * OVC_ROW_RAYS + x;
-}
-
 } // namespace
 
 Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
@@ -34,7 +25,7 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
     MemoryPlan plan;
     plan.bytes_per_ray = bytes_per_ray;
     plan.budget_bytes = budget_bytes;
-    plan.batch_rays = Tracer::kBlockRays;
+    plan.batch_rays = kBlockRays;
     const uint64_t smallest = plan.ray_bytes() + kSmallestPool;
     if (budget_bytes < smallest)
         return Error{fmt::format("a GPU budget of {} bytes is too small: the smallest that works "
@@ -51,20 +42,24 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
     return plan;
 }
 
-Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const DeviceInfo& device,
-               KernelCache& kernels, const Level1& level1, std::span<const Page> pages)
+Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const PassOptions& options,
+               const DeviceInfo& device, KernelCache& kernels, const Level1& level1,
+               std::span<const Page> pages)
     : ledger_(std::move(ledger)),
       kernels_(kernels),
+      options_(options),
       level1_data_(level1),
       page_data_(pages),
       software_(device.is_software),
       linked_(link_pages(level1, pages, plan.pool_bytes)),
       stack_depth_(linked_ ? stack_depth(linked_->depth) : stack_depth(pages)),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
-      answers_(*ledger_, GL_RGBA32UI, sizeof(Answer), OVC_ROW_RAYS, plan.batch_rays / OVC_ROW_RAYS,
-               "answers"),
       level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
       pool_(*ledger_, plan.pool_bytes, pages.size()) {
+    if (options.compute)
+        words_.emplace(*ledger_, plan.batch_rays);
+    else
+        pixels_.emplace(*ledger_, plan.batch_rays);
     if (plan.active_bytes > 0)
         active_buffer_.emplace(*ledger_, plan.active_bytes, "active leaves");
 }
@@ -85,20 +80,19 @@ Result<Done> Tracer::set_up() {
         active_.show(*active_buffer_, GL_R32UI, 0, active_buffer_->bytes());
         take_active(); // clears it
     }
-    framebuffer_.show(answers_);
-    if (!framebuffer_.complete())
+    if (pixels_ && !pixels_->complete())
         return Error{"the driver cannot render to RGBA32UI textures, which answers come back in"};
     return check_gl("setting up the tracer");
 }
 
-Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const DeviceInfo& device,
-                                               KernelCache& kernels, const Level1& level1,
-                                               std::span<const Page> pages) {
+Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const PassOptions& options,
+                                               const DeviceInfo& device, KernelCache& kernels,
+                                               const Level1& level1, std::span<const Page> pages) {
     auto ledger = std::make_unique<Ledger>();
     ledger->budget = plan.budget_bytes;
     ledger->driver_bytes = plan.driver_bytes;
     std::unique_ptr<Tracer> tracer(
-        new Tracer(std::move(ledger), plan, device, kernels, level1, pages));
+        new Tracer(std::move(ledger), plan, options, device, kernels, level1, pages));
     if (Result<Done> ok = tracer->set_up(); !ok)
         return ok.error();
     return tracer;
@@ -156,16 +150,17 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
     return moved;
 }
 
-Result<Done> Tracer::submit(const PassOptions& options, std::span<const Traveller> rays) {
+Result<Done> Tracer::submit(std::span<const Traveller> rays) {
     assert(!rays.empty());
     ShaderConfig config;
-    config.compute = options.compute;
-    config.certify = options.certify;
+    config.compute = options_.compute;
+    config.certify = options_.certify;
     config.linked = linked_.has_value();
     config.tell_active = active_buffer_.has_value();
     config.stack_depth = stack_depth_;
     config.stack_registers = software_;
     config.branches = !software_;
+    config.deal_groups = software_;
     config.buffer_images = software_;
     if (software_)
         config.most_rounds = kMostRoundsInSoftware;
@@ -173,9 +168,8 @@ Result<Done> Tracer::submit(const PassOptions& options, std::span<const Travelle
     if (!program)
         return program.error();
 
-    const GLsizei rows = GLsizei(padded(rays.size()) / OVC_ROW_RAYS);
-    glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(padded(rays.size()) * sizeof(Traveller)),
-                         rays.data());
+    glNamedBufferSubData(ray_buffer_.id(), 0,
+                         GLsizeiptr(whole_blocks(rays.size()) * sizeof(Traveller)), rays.data());
 
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);
@@ -190,20 +184,10 @@ Result<Done> Tracer::submit(const PassOptions& options, std::span<const Travelle
     if (config.tell_active)
         glBindImageTexture(OVC_BINDING_ACTIVE, active_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
                            GL_R32UI);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-    if (config.compute) {
-        static_assert(kBlockRays % OVC_GROUP_SIZE == 0);
-        glBindImageTexture(OVC_BINDING_ANSWERS, answers_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
-                           GL_RGBA32UI);
-        glDispatchCompute(GLuint(padded(rays.size()) / OVC_GROUP_SIZE), 1, 1);
-        glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT);
-    } else {
-        glBindVertexArray(vertex_array_.id());
-        glViewport(0, 0, OVC_ROW_RAYS, rows);
-        glDisable(GL_DEPTH_TEST);
-        glDisable(GL_BLEND);
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-    }
+    if (words_)
+        words_->dispatch(*program, rays.size());
+    else
+        pixels_->draw(rays.size());
     glPopDebugGroup();
     // llvmpipe (22.3) runs passes on other threads and does not wait for them before it writes to
     // buffers that they read as images.
@@ -227,15 +211,11 @@ std::vector<uint32_t> Tracer::take_active() {
 }
 
 Result<Done> Tracer::collect(std::span<Answer> answers) {
-    read_.resize(padded(answers.size()));
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-    glReadPixels(0, 0, OVC_ROW_RAYS, GLsizei(read_.size() / OVC_ROW_RAYS), GL_RGBA_INTEGER,
-                 GL_UNSIGNED_INT, read_.data());
-    if (Result<Done> ok = check_gl("reading the answers of a pass"); !ok)
-        return ok;
-    for (size_t ray = 0; ray < answers.size(); ++ray)
-        answers[ray] = read_[pixel_of(ray)];
-    return Done{};
+    if (words_)
+        words_->read(answers);
+    else
+        pixels_->read(answers);
+    return check_gl("reading the answers of a pass");
 }
 
 } // namespace ovc

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/result.h"
+#include "gpu/answers.h"
 #include "gpu/egl_context.h"
 #include "gpu/kernel.h"
 #include "gpu/ledger.h"
@@ -11,8 +12,6 @@
 #include "gpu/pool.h"
 #include "shaders/layout.h"
 
-#include <array>
-#include <bit>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -32,24 +31,7 @@ struct Traveller {
 };
 static_assert(sizeof(Traveller) == 80);
 
-/// What the kernel answers, in the layout of shaders/layout.h. prim: the number of a triangle, or
-/// OVC_MISS, OVC_WAITS, OVC_FLAGGED, OVC_CAPPED.
-struct Answer {
-    std::array<uint32_t, 3> words;
-    uint32_t prim;
-
-    uint32_t leaf() const { return words[2]; }
-    /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
-    std::span<const uint32_t, 2> rivals() const { return std::span(words).first<2>(); }
-    /// Fast precision: where the hit is. OVC_WAITS: the t of the cells done.
-    double t() const { return std::bit_cast<double>(uint64_t(words[1]) << 32 | words[0]); }
-    /// Fast precision.
-    double u() const { return (words[2] & 0xffffu) / 65535.0; }
-    double v() const { return (words[2] >> 16) / 65535.0; }
-};
-static_assert(sizeof(Answer) == 16);
-
-/// How a pass is made.
+/// How passes are made.
 struct PassOptions {
     bool certify = true;  // false: fast precision
     bool compute = false; // which kernel: they answer alike
@@ -85,9 +67,9 @@ public:
     /// Error of the kind OutOfGpuMemory: the driver refused the plan's bytes; a smaller pool may
     /// do. kernels outlives the tracer. level1 has leaves, pages[i] belongs to its leaf i; both
     /// outlive the tracer. The plan's pool holds the largest page.
-    static Result<std::unique_ptr<Tracer>> create(const MemoryPlan& plan, const DeviceInfo& device,
-                                                  KernelCache& kernels, const Level1& level1,
-                                                  std::span<const Page> pages);
+    static Result<std::unique_ptr<Tracer>>
+    create(const MemoryPlan& plan, const PassOptions& options, const DeviceInfo& device,
+           KernelCache& kernels, const Level1& level1, std::span<const Page> pages);
 
     /// Moves in the pages of `wanted`, leaves that are not resident, in this order, as many as fit
     /// without pushing each other out: the first at least. Where all leaves share a frame and all
@@ -99,10 +81,10 @@ public:
 
     /// Sends the rays (at most plan.batch_rays) on their walk through the leaves that are resident
     /// now. Pages moved in from here on serve the next pass, and may go over while this one runs.
-    Result<Done> submit(const PassOptions& options, std::span<const Traveller> rays);
+    Result<Done> submit(std::span<const Traveller> rays);
 
     /// Waits for the answers of the pass that was submitted, as many as its rays. The storage of
-    /// rays is used up to the next whole block: see padded().
+    /// rays is used up to the next whole block: see whole_blocks().
     Result<Done> collect(std::span<Answer> answers);
 
     /// Per leaf, whether rays were traced through its page since this was asked last; none where
@@ -111,14 +93,10 @@ public:
 
     const Ledger& ledger() const { return *ledger_; }
 
-    /// Rays come in blocks: a row of tiles.
-    static constexpr uint32_t kBlockRays = OVC_ROW_RAYS * OVC_TILE;
-    /// The size that a buffer for n rays must have: whole blocks.
-    static size_t padded(size_t n) { return (n + kBlockRays - 1) / kBlockRays * kBlockRays; }
-
 private:
-    Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const DeviceInfo& device,
-           KernelCache& kernels, const Level1& level1, std::span<const Page> pages);
+    Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const PassOptions& options,
+           const DeviceInfo& device, KernelCache& kernels, const Level1& level1,
+           std::span<const Page> pages);
 
     bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
     Result<Done> set_up();
@@ -128,6 +106,7 @@ private:
 
     std::unique_ptr<Ledger> ledger_; // the objects below keep its address
     KernelCache& kernels_;
+    PassOptions options_;
     const Level1& level1_data_;
     std::span<const Page> page_data_;
     bool software_;
@@ -135,16 +114,14 @@ private:
     uint32_t stack_depth_;
     gl::Buffer ray_buffer_;
     gl::BufferTexture rays_;
-    gl::Texture2D answers_;
-    gl::Framebuffer framebuffer_;
-    gl::VertexArray vertex_array_;
+    std::optional<AnswerPixels> pixels_; // of the fragment kernel
+    std::optional<AnswerWords> words_;   // of the compute kernel
     gl::Buffer level1_buffer_;
     gl::BufferTexture level1_;
     std::optional<gl::Buffer> active_buffer_;
     gl::BufferTexture active_;
     Pool pool_;
     gl::BufferTexture pages_;
-    std::vector<Answer> read_; // as the texture has them
 };
 
 } // namespace ovc

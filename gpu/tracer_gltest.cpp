@@ -30,7 +30,7 @@ protected:
         MemoryPlan shared = *plan;
         shared.pool_bytes -= 1u << 20; // for level 1
         gl->run([&](GlState& state) {
-            auto created = Tracer::create(shared, gl->info(), state.kernels, level1, pages);
+            auto created = Tracer::create(shared, {}, gl->info(), state.kernels, level1, pages);
             ASSERT_TRUE(created) << created.error().message;
             tracer = std::move(*created);
             EXPECT_EQ(tracer->bring(std::vector<uint32_t>{0}).bytes, pages[0].bytes());
@@ -38,14 +38,14 @@ protected:
     }
 
     std::vector<Answer> trace(std::span<const Ray> rays, bool any_hit = false) {
-        const size_t rows = Tracer::padded(rays.size());
+        const size_t rows = whole_blocks(rays.size());
         std::vector<Traveller> travellers(rows, {kNoRay, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF});
         for (size_t i = 0; i < rays.size(); ++i)
             travellers[i] = {rays[i], rays[i].t_min, OVC_NO_TRIANGLE,
                              OVC_NO_LEAF | (any_hit ? OVC_RAY_ANY_HIT : 0)};
         std::vector<Answer> answers(rows);
         gl->run([&](GlState&) {
-            const Result<Done> sent = tracer->submit({}, std::span(travellers).first(rays.size()));
+            const Result<Done> sent = tracer->submit(std::span(travellers).first(rays.size()));
             ASSERT_TRUE(sent) << sent.error().message;
             const Result<Done> back = tracer->collect(std::span(answers).first(rays.size()));
             ASSERT_TRUE(back) << back.error().message;
@@ -154,7 +154,7 @@ TEST_F(KernelGl, ARayWaitsForALeafThatIsNotInThePool) {
         const Result<MemoryPlan> plan = plan_memory(64u << 20, gl->info());
         MemoryPlan shared = *plan;
         shared.pool_bytes -= 1u << 20;
-        tracer = std::move(*Tracer::create(shared, gl->info(), state.kernels, level1, pages));
+        tracer = std::move(*Tracer::create(shared, {}, gl->info(), state.kernels, level1, pages));
     });
     const Answer answer = trace(std::span(&ray, 1))[0];
     EXPECT_EQ(answer.leaf(), 0u);

@@ -30,7 +30,7 @@ static TwoLevelOptions options_of(const ovc_scene_config& config) {
             config.leaf_triangles,
             config.leaves,
             config.precision != OVC_PRECISION_FAST,
-            config.kernel == OVC_KERNEL_COMPUTE,
+            config.kernel != OVC_KERNEL_FRAGMENT,
             config.tell_active == 1};
 }
 

@@ -160,7 +160,8 @@ Result<Done> TwoLevel::make_tracer(BuildProgress* progress) {
             tracer_.reset();
             tracer_generation_ = state.generation;
             if (state.context.alive())
-                made = Tracer::create(plan_, gl_.info(), state.kernels, level1_, pages_);
+                made = Tracer::create(plan_, {options_.certify, options_.compute}, gl_.info(),
+                                      state.kernels, level1_, pages_);
             else
                 made = Error{"the GPU's context is lost", ErrorKind::DeviceLost};
         });
@@ -265,7 +266,7 @@ uint32_t TwoLevel::number_to_skip(TriangleId id) const {
 /// Beside them, pages of `wanted` are moved in; returns how many.
 Result<size_t> TwoLevel::pass(size_t count, std::span<const uint32_t> wanted,
                               const std::function<void()>& meanwhile) {
-    const size_t padded = Tracer::padded(count);
+    const size_t padded = whole_blocks(count);
     const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
     travellers_.resize(padded);
     std::fill(travellers_.begin() + ptrdiff_t(count), travellers_.end(), none);
@@ -278,8 +279,7 @@ Result<size_t> TwoLevel::pass(size_t count, std::span<const uint32_t> wanted,
         alive = is_ours(state);
         if (!alive)
             return;
-        done = tracer_->submit({options_.certify, options_.compute},
-                               std::span(travellers_).first(count));
+        done = tracer_->submit(std::span(travellers_).first(count));
         if (done)
             moved = tracer_->bring(wanted);
         if (done)

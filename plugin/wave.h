@@ -260,7 +260,7 @@ Result<Done> TwoLevel::round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&.
     if ((waves.ready() + ...) == 0)
         return lost(); // nothing could be moved in
     most = std::min<size_t>(most, plan_.batch_rays);
-    travellers_.resize(Tracer::padded(std::min<size_t>((waves.ready() + ...), most)));
+    travellers_.resize(whole_blocks(std::min<size_t>((waves.ready() + ...), most)));
     size_t count = 0;
     const auto load = [&](auto& wave) {
         const size_t room = std::min(travellers_.size(), most) - count;

@@ -23,6 +23,10 @@
 #ifndef OVC_BRANCHES
 #define OVC_BRANCHES 0 // 1: a step runs what its unit is for; 0: for drivers that run both sides of a branch (llvmpipe)
 #endif
+#ifndef OVC_DEAL_GROUPS
+#define OVC_DEAL_GROUPS 1 // 1: neighbouring work groups go to different threads of a driver that gives each a contiguous share
+                          // of the dispatch (llvmpipe: 15 % on a picture whose rays cost unlike much)
+#endif
 #ifndef OVC_BUFFER_IMAGES
 #define OVC_BUFFER_IMAGES 1 // pages, level 1, rays: 1: imageLoad (inlined on llvmpipe, 5 % faster); 0: texelFetch
 #endif

@@ -46,7 +46,7 @@
 #define OVC_RAY_TEXELS 5
 #define OVC_NO_LEAF 0x7fffffffu
 #define OVC_RAY_ANY_HIT 0x80000000u
-// Answers are a texture. Rays lie in it in tiles of 4 x 4, in rows of tiles: fragments that a driver shades together are rays
+// The answers of the fragment kernel are a texture. Rays lie in it in tiles of 4 x 4, in rows of tiles: fragments that a driver shades together are rays
 // that came one after the other.
 #define OVC_ROW_RAYS 64
 #define OVC_TILE 4
@@ -60,11 +60,16 @@
 // x, y: up to two rivals, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is none; what is
 // named neither in w nor here is certainly not the answer in leaf z.
 // In fast precision x, y: t of the hit (double); z: u and v in 16 bits each.
-#define OVC_MISS 0xffffffffu
-#define OVC_FLAGGED 0xfffffffeu
-#define OVC_CAPPED 0xfffffffdu
-#define OVC_WAITS 0xfffffffcu
-#define OVC_MAX_TRIANGLES 0xfffffff0u
+#define OVC_MISS 0x7fffffffu
+#define OVC_FLAGGED 0x7ffffffeu
+#define OVC_CAPPED 0x7ffffffdu
+#define OVC_WAITS 0x7ffffffcu
+#define OVC_MAX_TRIANGLES 0x7ffffff0u
+// The compute kernel writes its answers to a buffer in four planes, w x y z, a word a ray, as rays lie. x, y and z are written
+// only where they say something: w then has OVC_SAYS_MORE as well; else they stand for OVC_NO_TRIANGLE, OVC_NO_TRIANGLE,
+// OVC_NO_LEAF. (llvmpipe stores word by word and lane by lane: four words a ray took a tenth of the time.)
+#define OVC_SAYS_MORE 0x80000000u
+#define OVC_LOCATION_PLANE 0 // of the uniform that says how many words a plane has
 
 #define OVC_BINDING_PAGE 0
 #define OVC_BINDING_RAYS 1
@@ -83,6 +88,9 @@
 
 // Invocations of a work group of the compute kernel; a row of rays is a multiple.
 #define OVC_GROUP_SIZE 64
+// Groups that stay together, and into how many slices the others are dealt, where groups are dealt out (config.glsl).
+#define OVC_DEALT_GROUPS 4
+#define OVC_DEALT_SLICES 16
 
 // The error bound, in units of u = 2^-24 (docs/numerics.md): a projected corner p is off by at most
 // u (OVC_BOUND_CONSTANT + OVC_BOUND_RELATIVE (|x| + |y| + |z|)).

@@ -14,10 +14,33 @@
 #include "walk.glsl"
 
 layout(local_size_x = OVC_GROUP_SIZE) in;
-layout(rgba32ui, binding = OVC_BINDING_ANSWERS) uniform writeonly restrict uimage2D answers;
+layout(r32ui, binding = OVC_BINDING_ANSWERS) uniform writeonly restrict uimageBuffer answers;
+layout(location = OVC_LOCATION_PLANE) uniform int plane;
+
+// The group whose rays this one traces. Slice by slice: one of each slice in turn.
+uint dealt_group() {
+#if OVC_DEAL_GROUPS
+    uint hand = gl_WorkGroupID.x / OVC_DEALT_GROUPS;
+    uint in_slice = gl_NumWorkGroups.x / (OVC_DEALT_GROUPS * OVC_DEALT_SLICES);
+    if (hand < in_slice * OVC_DEALT_SLICES)
+        hand = hand % in_slice * OVC_DEALT_SLICES + hand / in_slice;
+    return hand * OVC_DEALT_GROUPS + gl_WorkGroupID.x % OVC_DEALT_GROUPS;
+#else
+    return gl_WorkGroupID.x;
+#endif
+}
 
 void main() {
-    int ray = int(gl_GlobalInvocationID.x);
+    int ray = int(dealt_group() * OVC_GROUP_SIZE + gl_LocalInvocationID.x);
     Traveller traveller = traveller(ray);
-    imageStore(answers, pixel_of(ray), OVC_LINKED != 0 ? trace_linked(traveller) : walk(traveller));
+    uvec4 answer = OVC_LINKED != 0 ? trace_linked(traveller) : walk(traveller);
+    const bool tells_leaf = OVC_LINKED == 0 || OVC_CERTIFY == 0;
+    bool more = (tells_leaf && answer.w < OVC_MAX_TRIANGLES) || answer.w == OVC_WAITS || answer.x != OVC_NO_TRIANGLE;
+    imageStore(answers, ray, uvec4(answer.w | (more ? OVC_SAYS_MORE : 0u)));
+    if (more) {
+        imageStore(answers, plane + ray, uvec4(answer.x));
+        imageStore(answers, 2 * plane + ray, uvec4(answer.y));
+        if (tells_leaf)
+            imageStore(answers, 3 * plane + ray, uvec4(answer.z));
+    }
 }

@@ -42,7 +42,7 @@ public:
     const Ledger& ledger() const { return *ledger_; }
 
     static constexpr uint32_t kRowRays = OVC_QUEUE_ROW_RAYS;
-    static_assert(Tracer::kBlockRays % kRowRays == 0); // as plan_memory() counts them
+    static_assert(kBlockRays % kRowRays == 0); // as plan_memory() counts them
     static size_t row_padded(size_t n) { return (n + kRowRays - 1) / kRowRays * kRowRays; }
     static constexpr uint64_t kBytesPerRay = sizeof(FrameRay) + sizeof(FrameAnswer);
 

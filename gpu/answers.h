@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a pass leaves its answers: pixels of a texture (the fragment kernel) or words of a buffer
+// (the compute kernel). The layouts: shaders/layout.h.
+#pragma once
+
+#include "core/result.h"
+#include "gpu/gl_object.h"
+#include "shaders/layout.h"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+/// What the kernel answers. prim: the number of a triangle, or OVC_MISS, OVC_WAITS, OVC_FLAGGED,
+/// OVC_CAPPED.
+struct Answer {
+    std::array<uint32_t, 3> words;
+    uint32_t prim;
+
+    uint32_t leaf() const { return words[2]; }
+    /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
+    std::span<const uint32_t, 2> rivals() const { return std::span(words).first<2>(); }
+    /// Fast precision: where the hit is. OVC_WAITS: the t of the cells done.
+    double t() const { return std::bit_cast<double>(uint64_t(words[1]) << 32 | words[0]); }
+    /// Fast precision.
+    double u() const { return (words[2] & 0xffffu) / 65535.0; }
+    double v() const { return (words[2] >> 16) / 65535.0; }
+};
+static_assert(sizeof(Answer) == 16);
+
+/// Rays come in blocks: a row of tiles.
+inline constexpr uint32_t kBlockRays = OVC_ROW_RAYS * OVC_TILE;
+/// The size that a buffer for n rays must have: whole blocks.
+inline size_t whole_blocks(size_t n) {
+    return (n + kBlockRays - 1) / kBlockRays * kBlockRays;
+}
+
+/// Both kinds are for up to `rays` rays, whole blocks. draw() starts the pass: the program is in
+/// use and its inputs are bound. read() waits for it.
+class AnswerPixels {
+public:
+    AnswerPixels(Ledger& ledger, uint32_t rays);
+    /// False where the driver cannot draw to such a texture.
+    bool complete() const { return framebuffer_.complete(); }
+    void draw(size_t rays) const;
+    void read(std::span<Answer> answers);
+
+private:
+    gl::Texture2D texture_;
+    gl::Framebuffer framebuffer_;
+    gl::VertexArray vertex_array_;
+    std::vector<Answer> pixels_;
+};
+
+class AnswerWords {
+public:
+    AnswerWords(Ledger& ledger, uint32_t rays);
+    void dispatch(GLuint program, size_t rays) const;
+    void read(std::span<Answer> answers);
+
+private:
+    std::span<const uint32_t> plane(int number, size_t rays);
+
+    uint32_t rays_;
+    gl::Buffer buffer_;
+    gl::BufferTexture texture_;
+    std::array<std::vector<uint32_t>, 4> planes_;
+};
+
+} // namespace ovc
