@@ -2,6 +2,7 @@
 // Kernel: include expansion, compilation, logs that name the file.
 #include "gpu/kernel.h"
 
+#include "gpu/program_store.h"
 #include "shaders/sources.h"
 
 #include <fmt/format.h>
@@ -61,21 +62,41 @@ std::string info_log(GLuint id, bool program) {
     return log;
 }
 
-Result<gl::Shader> compile(GLenum stage, std::string_view name, const std::string& defines) {
+struct ExpandedStage {
+    ShaderStage stage;
+    std::string source;
     std::vector<std::string> files;
-    const Result<std::string> source = expand_shader(name, defines, files);
-    if (!source)
-        return source.error();
-    gl::Shader shader(glCreateShader(stage));
-    const char* text = source->c_str();
+};
+
+Result<gl::Shader> compile(const ExpandedStage& expanded) {
+    gl::Shader shader(glCreateShader(expanded.stage.stage));
+    const char* text = expanded.source.c_str();
     glShaderSource(shader.id(), 1, &text, nullptr);
     glCompileShader(shader.id());
     GLint ok = GL_FALSE;
     glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &ok);
     if (!ok)
-        return Error{fmt::format("the driver does not compile {}: {}", name,
-                                 rewrite_log(info_log(shader.id(), /* program= */ false), files))};
+        return Error{
+            fmt::format("the driver does not compile {}: {}", expanded.stage.source,
+                        rewrite_log(info_log(shader.id(), /* program= */ false), expanded.files))};
     return shader;
+}
+
+Result<gl::Program> compile_and_link(std::span<const ExpandedStage> stages) {
+    gl::Program program(glCreateProgram());
+    for (const ExpandedStage& stage : stages) {
+        const Result<gl::Shader> shader = compile(stage);
+        if (!shader)
+            return shader.error();
+        glAttachShader(program.id(), shader->id());
+    }
+    glProgramParameteri(program.id(), GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
+    glLinkProgram(program.id());
+    GLint ok = GL_FALSE;
+    glGetProgramiv(program.id(), GL_LINK_STATUS, &ok);
+    if (!ok)
+        return Error{"the driver does not link the kernel: " + info_log(program.id(), true)};
+    return program;
 }
 
 Result<gl::Program> link(const ShaderConfig& config) {
@@ -104,18 +125,24 @@ std::string ShaderConfig::defines() const {
 }
 
 Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines) {
-    gl::Program program(glCreateProgram());
+    std::vector<ExpandedStage> expanded;
+    std::vector<std::string> sources;
     for (const ShaderStage& stage : stages) {
-        const Result<gl::Shader> shader = compile(stage.stage, stage.source, defines);
-        if (!shader)
-            return shader.error();
-        glAttachShader(program.id(), shader->id());
+        ExpandedStage next{stage, {}, {}};
+        Result<std::string> source = expand_shader(stage.source, defines, next.files);
+        if (!source)
+            return source.error();
+        next.source = std::move(*source);
+        sources.push_back(next.source);
+        expanded.push_back(std::move(next));
     }
-    glLinkProgram(program.id());
-    GLint ok = GL_FALSE;
-    glGetProgramiv(program.id(), GL_LINK_STATUS, &ok);
-    if (!ok)
-        return Error{"the driver does not link the kernel: " + info_log(program.id(), true)};
+    const ProgramStore store(ProgramStore::default_folder());
+    gl::Program kept(glCreateProgram());
+    if (store.load(sources, kept.id()))
+        return kept;
+    Result<gl::Program> program = compile_and_link(expanded);
+    if (program)
+        store.keep(sources, program->id());
     return program;
 }
 

@@ -76,6 +76,9 @@ public:
     /// pages fit, they are linked once the last is there, and none leaves again.
     Moved bring(std::span<const uint32_t> wanted);
 
+    /// All pages are in the pool, under one tree: a pass answers its rays for good.
+    bool all_linked() const { return linked_ && linked_->moved == page_data_.size(); }
+
     /// Marks a leaf as used now: others are pushed out before it.
     void touch(uint32_t leaf) { pool_.residency().touch(leaf); }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which backend: the one asked for, or for Auto the first that this machine has.
 #include "host/backend.h"
+#include "host/device_opening.h"
 #include "host/plugin_loader.h"
 
 #include <fmt/format.h>
@@ -9,18 +10,22 @@ namespace ovc {
 
 Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOptions& options,
                                               const LogSink& log) {
+    DeviceOpening opening(options);
+    return make_backend(soup, options, log, opening);
+}
+
+Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOptions& options,
+                                              const LogSink& log, DeviceOpening& opening) {
     if (options.kind == BackendKind::CpuKdTree)
         return make_cpu_backend(soup);
     if (options.kind == BackendKind::Embree)
         return make_embree_backend(soup, EmbreeMode::Robust);
-    const Result<const ovc_api*> api =
-        load_plugin(structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL ? kProduct : kThesis);
-    if (!api)
-        return Error{api.error().message + " (--backend cpu-kdtree works without it)"};
     ovc_result code = OVC_OK;
-    Result<PluginDevice> device = PluginDevice::open(*api, options.device, log, &code);
+    Result<PluginDevice> device = opening.finish(log, code);
     if (device)
         return make_plugin_backend(std::move(*device), soup, options);
+    if (code == OVC_OK)
+        return Error{device.error().message + " (--backend cpu-kdtree works without it)"};
     // Whoever named a device or a backend meant it, and a wrong setting is for its owner to mend;
     // where there just is no device, the picture is made, slower, and the reason told.
     if (options.kind != BackendKind::Auto || !options.device.empty() || code != OVC_ERROR_NO_DEVICE)

@@ -19,6 +19,7 @@
 
 namespace ovc {
 
+class DeviceOpening;
 class PluginDevice;
 
 /// Built over one soup, which it may use in place: the soup outlives it unchanged.
@@ -102,6 +103,10 @@ struct BackendOptions {
 /// gets a warning that says so.
 Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOptions& options,
                                               const LogSink& log);
+
+/// The same with a device that was begun to be opened for these options.
+Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOptions& options,
+                                              const LogSink& log, DeviceOpening& opening);
 
 /// What make_backend() would make of the soup, told by the plugin before anything is built. Error:
 /// no plugin or no device; a backend that cannot tell.

@@ -3,6 +3,7 @@
 #include "host/arguments.h"
 #include "host/backend_arguments.h"
 #include "host/command.h"
+#include "host/device_opening.h"
 #include "host/interrupt.h"
 #include "host/log_arguments.h"
 #include "host/scene_source.h"
@@ -56,12 +57,13 @@ public:
         if (const Result<Done> fine = source_.check(); !fine)
             return fine.error();
         const LogSink log = standard_error_log(*level);
+        DeviceOpening opening(*backend_options);
         const Result<Scene> scene = open_scene(source_, log);
         if (!scene)
             return scene.error();
         backend_options->saved = scene->saved;
         const Result<std::unique_ptr<Backend>> backend =
-            make_backend(scene->soup, *backend_options, log);
+            make_backend(scene->soup, *backend_options, log, opening);
         if (!backend)
             return backend.error();
         const Result<Done> done = trace_stream(**backend, STDIN_FILENO, STDOUT_FILENO, options_);

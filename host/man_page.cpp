@@ -64,9 +64,13 @@ std::string man_page(const std::vector<CommandManual>& manual) {
             ".SH COMMANDS\n";
     for (const CommandManual& command : manual)
         text += section_of(command);
-    text += ".SH EXIT STATUS\n" + roff(exit_codes()) +
-            "\n.SH ENVIRONMENT\n.TP\n.B OVC_PLUGIN\n"
-            "The libovercast.so to trace with, instead of the one beside the program\n";
+    text +=
+        ".SH EXIT STATUS\n" + roff(exit_codes()) +
+        "\n.SH ENVIRONMENT\n.TP\n.B OVC_PLUGIN\n"
+        "The libovercast.so to trace with, instead of the one beside the program\n"
+        ".TP\n.B OVC_KERNEL_CACHE\n"
+        "The folder for compiled kernels, instead of overcast/kernels in the user's cache; off: "
+        "none\n";
     return text;
 }
 

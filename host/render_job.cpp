@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "host/camera.h"
+#include "host/device_opening.h"
 #include "host/frames.h"
 #include "host/interrupt.h"
 #include "host/path_tracer.h"
@@ -326,6 +327,7 @@ Result<int> render(const RenderJob& job) {
     const std::optional<ThreadLimit> threads = limit_threads(job.threads);
     const LogSink log = standard_error_log(job.log_level);
     RenderStats stats;
+    DeviceOpening opening(job.backend);
     SceneCache cache(job.cache, job.scene, job.backend, job.size);
     Result<Scene> scene = cache.open(log);
     if (!scene)
@@ -348,7 +350,8 @@ Result<int> render(const RenderJob& job) {
     BackendOptions options = job.backend;
     options.saved = scene->saved;
     options.watching = job.quiet ? BuildWatching::Silent : BuildWatching::Shown;
-    const Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, options, log);
+    const Result<std::unique_ptr<Backend>> backend =
+        make_backend(scene->soup, options, log, opening);
     if (!backend && backend.error().kind == ErrorKind::Cancelled) {
         fmt::print(stderr, "overcast: interrupted while building; nothing was rendered\n");
         return kExitInterrupted;

@@ -6,12 +6,14 @@
 #include "gpu/level1_table.h"
 #include "gpu/linked.h"
 #include "plugin/level2.h"
+#include "plugin/one_pass.h"
 #include "plugin/wave.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace ovc {
 namespace {
@@ -262,29 +264,31 @@ uint32_t TwoLevel::number_to_skip(TriangleId id) const {
     return id.mesh == kNone || twins_.stands_for_others(id) ? OVC_NO_TRIANGLE : numbers_.of(id);
 }
 
-/// The first `count` travellers on their way; their answers into answers_.
+/// The first `count` travellers of the batch on their way; their answers into it.
 /// Beside them, pages of `wanted` are moved in; returns how many.
-Result<size_t> TwoLevel::pass(size_t count, std::span<const uint32_t> wanted,
+Result<size_t> TwoLevel::pass(Batch& batch, size_t count, std::span<const uint32_t> wanted,
                               const std::function<void()>& meanwhile) {
     const size_t padded = whole_blocks(count);
     const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
-    travellers_.resize(padded);
-    std::fill(travellers_.begin() + ptrdiff_t(count), travellers_.end(), none);
-    answers_.resize(padded);
-    const Stopwatch watch;
+    batch.travellers.resize(padded);
+    std::fill(batch.travellers.begin() + ptrdiff_t(count), batch.travellers.end(), none);
+    batch.answers.resize(padded);
     Result<Done> done = Done{};
     bool alive = false;
     Moved moved;
+    double seconds = 0;
     const auto work = [&](GlState& state) {
+        const Stopwatch watch;
         alive = is_ours(state);
         if (!alive)
             return;
-        done = tracer_->submit(std::span(travellers_).first(count));
+        done = tracer_->submit(std::span(batch.travellers).first(count));
         if (done)
             moved = tracer_->bring(wanted);
         if (done)
-            done = tracer_->collect(std::span(answers_).first(count));
+            done = tracer_->collect(std::span(batch.answers).first(count));
         alive = state.context.alive(); // else what was read is anything
+        seconds = watch.seconds();
     };
     gl_.run_beside(work, meanwhile);
     if (!alive)
@@ -293,7 +297,7 @@ Result<size_t> TwoLevel::pass(size_t count, std::span<const uint32_t> wanted,
         return done.error();
     statistics_.passes += 1;
     statistics_.ray_visits += count;
-    statistics_.seconds_kernel += watch.seconds();
+    statistics_.seconds_kernel += seconds;
     statistics_.pages_in += moved.pages;
     statistics_.bytes_in += moved.bytes;
     return size_t(moved.pages);
@@ -304,6 +308,17 @@ Result<Done> TwoLevel::trace(const Query& query) {
     const Stopwatch watch;
     if (Result<Done> ready = ready_device(); !ready)
         return ready;
+    const bool linked = tracer_ && tracer_->all_linked();
+    const Result<Done> done = linked ? trace_in_one_pass(query) : trace_in_waves(query);
+    if (!done)
+        return done;
+    (Query::kAnyHit ? statistics_.occlusion_rays : statistics_.nearest_rays) += query.rays.size();
+    statistics_.seconds_trace += watch.seconds();
+    return Done{};
+}
+
+template <class Query>
+Result<Done> TwoLevel::trace_in_waves(const Query& query) {
     for (size_t first = 0; first < query.rays.size(); first += kWaveRays) {
         const size_t count = std::min(kWaveRays, query.rays.size() - first);
         Wave<Query> wave(*this, query.part(first, count));
@@ -315,9 +330,28 @@ Result<Done> TwoLevel::trace(const Query& query) {
                     plan_.batch_rays, [] {}, wave);
                 !done)
                 return done;
-        (Query::kAnyHit ? statistics_.occlusion_rays : statistics_.nearest_rays) += count;
     }
-    statistics_.seconds_trace += watch.seconds();
+    return Done{};
+}
+
+/// Two batches take turns: one is with the kernel, the other is settled and filled again.
+template <class Query>
+Result<Done> TwoLevel::trace_in_one_pass(const Query& query) {
+    OnePass<Query> rays(*this, query);
+    Batch* now = &batches_[0];
+    Batch* other = &batches_[1];
+    other->rays.clear();
+    rays.begin(*now);
+    while (!now->rays.empty()) {
+        const Result<size_t> moved = pass(*now, now->rays.size(), {}, [&] {
+            rays.settle(*other);
+            rays.begin(*other);
+        });
+        if (!moved)
+            return moved.error();
+        std::swap(now, other);
+    }
+    rays.settle(*other);
     return Done{};
 }
 

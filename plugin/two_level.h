@@ -16,6 +16,7 @@
 #include "plugin/structure.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -129,6 +130,10 @@ private:
     size_t few_rays() const { return std::min<size_t>(4096, plan_.batch_rays / 4); }
 
     template <class Query>
+    class Settling;
+    template <class Query>
+    class OnePass;
+    template <class Query>
     class Wave;
     template <class Query>
     class Lane;
@@ -141,10 +146,25 @@ private:
     /// left.
     template <class Meanwhile, class... Queries>
     Result<Done> round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&... waves);
-    Result<size_t> pass(size_t count, std::span<const uint32_t> wanted,
+    /// Rays of a pass, and what it answers.
+    struct Batch {
+        std::vector<uint32_t> rays; // their numbers in the query, where it knows no waves
+        std::vector<Traveller> travellers;
+        std::vector<Answer> answers;
+
+        void make_room() {
+            travellers.resize(Tracer::padded(rays.size()));
+            answers.resize(Tracer::padded(rays.size()));
+        }
+    };
+    Result<size_t> pass(Batch& batch, size_t count, std::span<const uint32_t> wanted,
                         const std::function<void()>& meanwhile);
     template <class Query>
     Result<Done> trace(const Query& query);
+    template <class Query>
+    Result<Done> trace_in_waves(const Query& query);
+    template <class Query>
+    Result<Done> trace_in_one_pass(const Query& query);
 
     const Soup& soup_;
     GlThread& gl_;
@@ -157,11 +177,10 @@ private:
     LeafLimits limits_{};    // that leaves keep to
     Level1 level1_;          // without twins
     std::vector<Page> pages_;
-    std::vector<uint8_t> was_active_;   // per leaf: when take_active() was asked last
-    std::unique_ptr<Tracer> tracer_;    // made and destroyed on the thread of gl_
-    uint32_t tracer_generation_ = 0;    // of the context that it was made in
-    std::vector<Traveller> travellers_; // of a pass, as the answers are; kept between calls
-    std::vector<Answer> answers_;
+    std::vector<uint8_t> was_active_; // per leaf: when take_active() was asked last
+    std::unique_ptr<Tracer> tracer_;  // made and destroyed on the thread of gl_
+    uint32_t tracer_generation_ = 0;  // of the context that it was made in
+    std::array<Batch, 2> batches_;    // kept between calls
     TwoLevelStatistics statistics_;
 };
 

@@ -70,6 +70,36 @@ TEST_F(TwoLevelGl, ARayFromFarAwayMeetsTheCornerOfTheScene) {
         EXPECT_TRUE(hits[i].is_hit()) << "ray " << i;
 }
 
+/// So many rays that they come in several parts, of which one has no ray for the kernel at all.
+TEST_F(TwoLevelGl, ManyRaysAreAnsweredAsFewAre) {
+    const Soup soup = test::closed_grid(60);
+    std::vector<Ray> rays = test::rays_from_outside(11, 300000);
+    test::Random random(12);
+    for (Ray& ray : rays)
+        if (random.below(5) == 0)
+            ray.dir = -ray.dir; // away from the scene
+    for (size_t i = 70000; i < 230000; ++i)
+        rays[i].t_max = -1; // invalid
+    const auto linked = build(soup, {});
+    const auto moving = build(soup, {.budget_bytes = 192u << 10, .leaf_triangles = 300});
+    ASSERT_TRUE(linked && moving);
+    std::vector<Hit> hits(rays.size()), expected(rays.size());
+    ASSERT_TRUE(ok(linked->intersect(rays, {}, hits)));
+    ASSERT_TRUE(ok(moving->intersect(rays, {}, expected)));
+    for (size_t i = 0; i < rays.size(); ++i)
+        ASSERT_TRUE(test::same(hits[i], expected[i])) << "ray " << i;
+    EXPECT_GT(linked->statistics().passes, 1u);
+    EXPECT_EQ(linked->statistics().pages_in, linked->level1().leaves.size());
+    EXPECT_GT(moving->statistics().pages_in, moving->level1().leaves.size());
+    EXPECT_EQ(linked->statistics().invalid_rays, 160000u);
+    EXPECT_LT(linked->statistics().ray_visits, 140000u);
+
+    std::vector<uint8_t> occluded(rays.size());
+    ASSERT_TRUE(ok(linked->occluded(rays, {}, occluded)));
+    for (size_t i = 0; i < rays.size(); ++i)
+        ASSERT_EQ(occluded[i] != 0, expected[i].is_hit()) << "ray " << i;
+}
+
 TEST_F(TwoLevelGl, FewOrdinaryRaysAreFlagged) {
     const Soup soup = test::closed_grid(200);
     const auto structure = build(soup, {});

@@ -3,40 +3,28 @@
 // the others wait for theirs.
 #pragma once
 
-#include "core/parallel.h"
-#include "kdtree/restart.h"
-#include "plugin/arbiter.h"
-#include "plugin/query.h"
-#include "plugin/two_level.h"
+#include "plugin/settling.h"
 #include "plugin/waiting.h"
-#include "shaders/layout.h"
 
 #include <algorithm>
-#include <atomic>
-#include <numeric>
 #include <utility>
 
 namespace ovc {
 
 /// The rays of a query, by their numbers in it.
 template <class Query>
-class TwoLevel::Wave {
-    static constexpr size_t kGrain = 256; // rays a task
+class TwoLevel::Wave : Settling<Query> {
+    using Base = Settling<Query>;
+    using Base::kGrain;
+    using Base::query_;
+    using Base::s_;
 
 public:
     Wave(TwoLevel& structure, const Query& query)
-        : s_(structure),
+        : Base(structure, query),
+          positions_(query.rays.size()),
           waiting_(structure.level1_.leaves.size()),
-          used_(structure.level1_.leaves.size()) {
-        show(query);
-    }
-    ~Wave() {
-        s_.statistics_.invalid_rays += invalid_;
-        s_.statistics_.flagged += flagged_;
-        s_.statistics_.retraced += retraced_;
-        s_.statistics_.capped += capped_;
-    }
-    Wave(const Wave&) = delete;
+          used_(structure.level1_.leaves.size()) {}
 
     /// The query's arrays have moved, or have more rays than before.
     void show(const Query& query) {
@@ -46,10 +34,9 @@ public:
 
     /// Puts these rays, none of them under way, at the beginning of theirs.
     void start(std::span<const uint32_t> rays) {
-        const Box scene = s_.level1_.bounds.padded(s_.level1_.padding); // empty: no triangles
         parallel_for(rays.size(), kGrain, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j)
-                start_one(rays[j], scene);
+                start_one(rays[j]);
         });
         send_on(rays);
     }
@@ -81,11 +68,7 @@ public:
         parallel_for(count, kGrain, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j) {
                 const Position& at = positions_[batch_[j]];
-                query_.count_pass(batch_[j]);
-                Ray rest = query_.rays[batch_[j]];
-                rest.t_max = at.t_end;
-                travellers[j] = {rest, at.t_from, s_.number_to_skip(query_.skipped(batch_[j])),
-                                 at.leaf | (Query::kAnyHit ? OVC_RAY_ANY_HIT : 0)};
+                travellers[j] = this->traveller(batch_[j], at.t_from, at.t_end, at.leaf);
             }
         });
         return count;
@@ -112,19 +95,11 @@ private:
         enum : uint32_t { Done, Ready, Waits } state = Done;
     };
 
-    void start_one(uint32_t i, const Box& scene) {
+    void start_one(uint32_t i) {
         positions_[i] = {};
-        query_.set_miss(i);
-        if (!query_.rays[i].valid()) {
-            ++invalid_;
-            return;
-        }
-        const PreparedRay p = prepare(query_, i);
-        // First: from where double cannot walk, rounding may carry a ray past the whole scene.
-        if (!can_walk(s_.level1_, p))
-            decide_in_double(i, p);
-        else if (!clip(p, scene, p.ray.t_min, p.ray.t_max).empty())
-            positions_[i] = {p.ray.t_min, p.ray.t_max, OVC_NO_LEAF, Position::Ready};
+        if (this->begins(i))
+            positions_[i] = {query_.rays[i].t_min, query_.rays[i].t_max, OVC_NO_LEAF,
+                             Position::Ready};
     }
 
     void send_on(std::span<const uint32_t> rays) {
@@ -146,42 +121,22 @@ private:
             positions_[i] = {answer.t(), positions_[i].t_end, answer.leaf(), Position::Waits};
             return;
         }
-        const bool decided = answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
-        capped_ += answer.prim == OVC_CAPPED;
-        if (!decided || !(s_.options_.certify ? take_in(i, answer) : take_in_fast(i, answer)))
-            decide_in_double(i, prepare(query_, i));
+        note_use(answer);
+        this->take_in(i, answer,
+                      [&](uint32_t ray, uint32_t leaf, const PreparedRay& p, double end) {
+                          return go_on_behind(ray, leaf, p, end);
+                      });
     }
 
-    /// Enters what the kernel found. False where double does not find what the kernel was certain
-    /// of, or cannot say where to go on.
-    bool take_in(uint32_t i, const Answer& answer) {
-        const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
-        if (answer.prim == OVC_MISS && !has_rivals)
-            return true;
-        const uint32_t leaf = answer.leaf();
-        const bool in_scene = leaf == OVC_NO_LEAF; // linked pages: no other leaf is left
-        if (!in_scene && used_[leaf].load(std::memory_order_relaxed) == 0)
-            used_[leaf].store(1, std::memory_order_relaxed);
-        if (Query::kAnyHit && !has_rivals) {
-            query_.set(i, Hit{0, 0, 0, s_.numbers_.id(answer.prim)}); // a certain hit decides
-            return true;
-        }
-        const PreparedRay p = prepare(query_, i);
-        Nearest nearest(p);
-        if (query_.was_hit(i))
-            offer(nearest, s_.numbers_.of(query_.hit(i).id), p.skip);
-        if (answer.prim != OVC_MISS && !offer(nearest, answer.prim, p.skip))
-            return false;
-        for (const uint32_t rival : answer.rivals())
-            if (rival != OVC_NO_TRIANGLE)
-                offer(nearest, rival, p.skip);
-        if (nearest.hit().is_hit())
-            query_.set(i, nearest.hit());
-        const bool settled = in_scene || (Query::kAnyHit && nearest.hit().is_hit()) ||
-                             go_on_behind(i, leaf, p, nearest.limit());
-        if (settled && has_rivals) // decide_in_double() counts the others
-            count_flagged(i);
-        return settled;
+    /// In certified precision an answer that names a triangle names the leaf it ended in.
+    void note_use(const Answer& answer) {
+        const bool names = answer.prim < OVC_MAX_TRIANGLES ||
+                           (answer.prim == OVC_MISS && answer.rivals()[0] != OVC_NO_TRIANGLE);
+        if (!s_.options_.certify || !names || answer.leaf() == OVC_NO_LEAF)
+            return;
+        std::atomic<uint8_t>& used = used_[answer.leaf()];
+        if (used.load(std::memory_order_relaxed) == 0)
+            used.store(1, std::memory_order_relaxed);
     }
 
     /// Sends the ray on unless its best hit, which is not beyond `end` however t is rounded, lies
@@ -199,45 +154,12 @@ private:
         return true;
     }
 
-    bool take_in_fast(uint32_t i, const Answer& answer) {
-        if (answer.prim != OVC_MISS)
-            query_.set(
-                i, s_.twins_.seen(s_.soup_,
-                                  {answer.t(), answer.u(), answer.v(), s_.numbers_.id(answer.prim)},
-                                  query_.skipped(i)));
-        return true;
-    }
-
-    /// Offers what stands in the page as `number`.
-    bool offer(Nearest& nearest, uint32_t number, TriangleId skip) const {
-        const TriangleId seen = s_.twins_.seen(s_.numbers_.id(number), skip);
-        return nearest.offer(s_.soup_.triangle(seen), seen);
-    }
-
-    void decide_in_double(uint32_t i, const PreparedRay& p) {
-        query_.set(i, arbitrate<Query::kAnyHit>(s_.soup_, s_.numbers_, s_.twins_, s_.level1_,
-                                                s_.pages_, p));
-        count_flagged(i);
-        ++retraced_;
-    }
-
-    void count_flagged(uint32_t i) {
-        query_.flag(i);
-        ++flagged_;
-    }
-
-    TwoLevel& s_;
-    Query query_;
     std::vector<Position> positions_; // per ray
     std::vector<uint32_t> ready_;     // rays for the next passes
     std::vector<uint32_t> batch_;     // loaded last
     std::vector<uint32_t> finished_;
     Waiting waiting_;
     std::vector<std::atomic<uint8_t>> used_; // per leaf: a ray of the last pass ended there
-    std::atomic<uint64_t> invalid_{0};
-    std::atomic<uint64_t> flagged_{0};
-    std::atomic<uint64_t> retraced_{0};
-    std::atomic<uint64_t> capped_{0};
 };
 
 template <class... Queries>
@@ -260,11 +182,12 @@ Result<Done> TwoLevel::round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&.
     if ((waves.ready() + ...) == 0)
         return lost(); // nothing could be moved in
     most = std::min<size_t>(most, plan_.batch_rays);
-    travellers_.resize(whole_blocks(std::min<size_t>((waves.ready() + ...), most)));
+    std::vector<Traveller>& travellers = batches_[0].travellers;
+    travellers.resize(whole_blocks(std::min<size_t>((waves.ready() + ...), most)));
     size_t count = 0;
     const auto load = [&](auto& wave) {
-        const size_t room = std::min(travellers_.size(), most) - count;
-        const size_t loaded = wave.load(std::span(travellers_).subspan(count, room));
+        const size_t room = std::min(travellers.size(), most) - count;
+        const size_t loaded = wave.load(std::span(travellers).subspan(count, room));
         count += loaded;
         return loaded;
     };
@@ -272,13 +195,13 @@ Result<Done> TwoLevel::round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&.
     const std::vector<uint32_t> beside = options_.beside.value_or(!gl_.info().is_software)
                                              ? wanted_by(waves...)
                                              : std::vector<uint32_t>();
-    const Result<size_t> moved_beside = pass(count, beside, meanwhile);
+    const Result<size_t> moved_beside = pass(batches_[0], count, beside, meanwhile);
     if (!moved_beside)
         return moved_beside.error();
     size_t first = 0;
     size_t k = 0;
     const auto settle = [&](auto& wave) {
-        wave.settle(std::span(answers_).subspan(first, loaded[k]));
+        wave.settle(std::span(batches_[0].answers).subspan(first, loaded[k]));
         first += loaded[k++];
     };
     (settle(waves), ...);

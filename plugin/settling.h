@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Settling: which rays the kernel is asked about, and what double precision makes of its answers.
+#pragma once
+
+#include "core/parallel.h"
+#include "kdtree/restart.h"
+#include "plugin/arbiter.h"
+#include "plugin/query.h"
+#include "plugin/two_level.h"
+#include "shaders/layout.h"
+
+#include <atomic>
+
+namespace ovc {
+
+/// The part that is the same however rays come to their leaves. Its members may be called for
+/// different rays at once; what it counted goes to the statistics with it.
+template <class Query>
+class TwoLevel::Settling {
+protected:
+    static constexpr size_t kGrain = 256; // rays a task
+
+    Settling(TwoLevel& structure, const Query& query)
+        : s_(structure),
+          query_(query),
+          scene_(structure.level1_.bounds.padded(structure.level1_.padding)) {}
+    ~Settling() {
+        s_.statistics_.invalid_rays += invalid_;
+        s_.statistics_.flagged += flagged_;
+        s_.statistics_.retraced += retraced_;
+        s_.statistics_.capped += capped_;
+    }
+    Settling(const Settling&) = delete;
+
+    /// Whether the kernel is to be asked about ray i. Else it is answered now.
+    bool begins(uint32_t i) {
+        query_.set_miss(i);
+        if (!query_.rays[i].valid()) {
+            ++invalid_;
+            return false;
+        }
+        const PreparedRay p = prepare(query_, i);
+        // First: from where double cannot walk, rounding may carry a ray past the whole scene.
+        if (!can_walk(s_.level1_, p)) {
+            decide_in_double(i, p);
+            return false;
+        }
+        return !clip(p, scene_, p.ray.t_min, p.ray.t_max).empty();
+    }
+
+    /// Ray i on its way: done with the cells up to t_from, of interest up to t_end. leaf: as
+    /// Traveller::first_leaf.
+    Traveller traveller(uint32_t i, double t_from, double t_end, uint32_t leaf) const {
+        query_.count_pass(i);
+        Ray rest = query_.rays[i];
+        rest.t_max = t_end;
+        return {rest, t_from, s_.number_to_skip(query_.skipped(i)),
+                leaf | (Query::kAnyHit ? OVC_RAY_ANY_HIT : 0)};
+    }
+
+    /// Enters what the kernel found of ray i, and what is certain of it. go_on(i, leaf, p, limit)
+    /// is asked where later leaves may hold a hit before `limit`; false: it cannot say where.
+    template <class GoOn>
+    void take_in(uint32_t i, const Answer& answer, GoOn&& go_on) {
+        const bool decided = answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
+        capped_ += answer.prim == OVC_CAPPED;
+        if (!decided ||
+            !(s_.options_.certify ? take_in_certified(i, answer, go_on) : take_in_fast(i, answer)))
+            decide_in_double(i, prepare(query_, i));
+    }
+
+    TwoLevel& s_;
+    Query query_;
+
+private:
+    /// False where double does not find what the kernel was certain of, or go_on() says so.
+    template <class GoOn>
+    bool take_in_certified(uint32_t i, const Answer& answer, GoOn&& go_on) {
+        const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
+        if (answer.prim == OVC_MISS && !has_rivals)
+            return true;
+        if (Query::kAnyHit && !has_rivals) {
+            query_.set(i, Hit{0, 0, 0, s_.numbers_.id(answer.prim)}); // a certain hit decides
+            return true;
+        }
+        const PreparedRay p = prepare(query_, i);
+        Nearest nearest(p);
+        if (query_.was_hit(i))
+            offer(nearest, s_.numbers_.of(query_.hit(i).id), p.skip);
+        if (answer.prim != OVC_MISS && !offer(nearest, answer.prim, p.skip))
+            return false;
+        for (const uint32_t rival : answer.rivals())
+            if (rival != OVC_NO_TRIANGLE)
+                offer(nearest, rival, p.skip);
+        if (nearest.hit().is_hit())
+            query_.set(i, nearest.hit());
+        const bool in_scene = answer.leaf() == OVC_NO_LEAF; // linked pages: no other leaf is left
+        const bool settled = in_scene || (Query::kAnyHit && nearest.hit().is_hit()) ||
+                             go_on(i, answer.leaf(), p, nearest.limit());
+        if (settled && has_rivals) // decide_in_double() counts the others
+            count_flagged(i);
+        return settled;
+    }
+
+    bool take_in_fast(uint32_t i, const Answer& answer) {
+        if (answer.prim != OVC_MISS)
+            query_.set(
+                i, s_.twins_.seen(s_.soup_,
+                                  {answer.t(), answer.u(), answer.v(), s_.numbers_.id(answer.prim)},
+                                  query_.skipped(i)));
+        return true;
+    }
+
+    /// Offers what stands in the page as `number`.
+    bool offer(Nearest& nearest, uint32_t number, TriangleId skip) const {
+        const TriangleId seen = s_.twins_.seen(s_.numbers_.id(number), skip);
+        return nearest.offer(s_.soup_.triangle(seen), seen);
+    }
+
+    void decide_in_double(uint32_t i, const PreparedRay& p) {
+        query_.set(i, arbitrate<Query::kAnyHit>(s_.soup_, s_.numbers_, s_.twins_, s_.level1_,
+                                                s_.pages_, p));
+        count_flagged(i);
+        ++retraced_;
+    }
+
+    void count_flagged(uint32_t i) {
+        query_.flag(i);
+        ++flagged_;
+    }
+
+    const Box scene_; // empty: no triangles
+    std::atomic<uint64_t> invalid_{0};
+    std::atomic<uint64_t> flagged_{0};
+    std::atomic<uint64_t> retraced_{0};
+    std::atomic<uint64_t> capped_{0};
+};
+
+} // namespace ovc
