@@ -3,6 +3,7 @@
 // object. Based on: thesis, section 3.1.
 #include "gpu/tracer.h"
 
+#include "core/stopwatch.h"
 #include "gpu/gl_check.h"
 #include "gpu/level1_table.h"
 #include "shaders/layout.h"
@@ -191,6 +192,9 @@ Result<Done> Tracer::submit(const PassOptions& options, std::span<const Travelle
         glBindImageTexture(OVC_BINDING_ACTIVE, active_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
                            GL_R32UI);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+    const Stopwatch watch;
+    if (!software_)
+        glBeginQuery(GL_TIME_ELAPSED, time_.id());
     if (config.compute) {
         static_assert(kBlockRays % OVC_GROUP_SIZE == 0);
         glBindImageTexture(OVC_BINDING_ANSWERS, answers_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
@@ -204,13 +208,17 @@ Result<Done> Tracer::submit(const PassOptions& options, std::span<const Travelle
         glDisable(GL_BLEND);
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
+    if (!software_)
+        glEndQuery(GL_TIME_ELAPSED);
     glPopDebugGroup();
     // llvmpipe (22.3) runs passes on other threads and does not wait for them before it writes to
     // buffers that they read as images.
-    if (software_)
+    if (software_) {
         glFinish();
-    else
+        kernel_seconds_ = watch.seconds();
+    } else {
         glFlush();
+    }
     return check_gl("starting a pass");
 }
 
@@ -231,6 +239,8 @@ Result<Done> Tracer::collect(std::span<Answer> answers) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     glReadPixels(0, 0, OVC_ROW_RAYS, GLsizei(read_.size() / OVC_ROW_RAYS), GL_RGBA_INTEGER,
                  GL_UNSIGNED_INT, read_.data());
+    if (!software_)
+        kernel_seconds_ = time_.seconds();
     if (Result<Done> ok = check_gl("reading the answers of a pass"); !ok)
         return ok;
     for (size_t ray = 0; ray < answers.size(); ++ray)

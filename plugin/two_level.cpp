@@ -293,7 +293,8 @@ Result<size_t> TwoLevel::pass(size_t count, std::span<const uint32_t> wanted,
         return done.error();
     statistics_.passes += 1;
     statistics_.ray_visits += count;
-    statistics_.seconds_kernel += watch.seconds();
+    statistics_.seconds_pass += watch.seconds();
+    statistics_.seconds_kernel += tracer_->kernel_seconds();
     statistics_.pages_in += moved.pages;
     statistics_.bytes_in += moved.bytes;
     return size_t(moved.pages);

@@ -75,6 +75,7 @@ struct TwoLevelStatistics {
     double seconds_level2 = 0;
     double seconds_trace = 0;
     double seconds_kernel = 0;
+    double seconds_pass = 0;
 };
 
 /// Level 1 and level 2 of a soup, and rays through them. One call at a time.

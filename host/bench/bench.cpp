@@ -47,6 +47,7 @@ Result<Done> call(const Workload& workload, Backend& backend, bool timed, Measur
     if (timed) {
         m.seconds.push_back(seconds);
         m.cpu_seconds.push_back(cpu_seconds);
+        m.pass_seconds.push_back(after.seconds_pass - before.seconds_pass);
         m.kernel_seconds.push_back(after.seconds_kernel - before.seconds_kernel);
     }
     return Done{};

@@ -33,7 +33,8 @@ struct Measurement {
     std::vector<double> seconds; // from call to return, one a repeat
     std::vector<double>
         cpu_seconds; // of all threads: what is left on a machine that others use too
-    std::vector<double> kernel_seconds; // of seconds, waiting for the GPU; 0 for who has none
+    std::vector<double> pass_seconds;   // of seconds, passes: ovc_statistics.seconds_pass
+    std::vector<double> kernel_seconds; // of seconds, the kernel alone; 0 for who has none
 };
 
 struct BenchEntrant {

@@ -57,6 +57,7 @@ Json json_of(const BenchResult& r, const Measurement& m) {
             {"rays", m.rays},
             {"call_seconds", json_of_times(m, m.seconds)},
             {"cpu_seconds", json_of_times(m, m.cpu_seconds)},
+            {"pass_seconds", on_gpu ? json_of_times(m, m.pass_seconds) : Json(nullptr)},
             {"kernel_seconds", on_gpu ? json_of_times(m, m.kernel_seconds) : Json(nullptr)},
             {"call_speed_to_robust", json_of(ratios.call_speed_to_robust)},
             {"kernel_speed_to_robust", json_of(ratios.kernel_speed_to_robust)},
