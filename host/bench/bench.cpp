@@ -139,7 +139,7 @@ Result<Done> run_contenders(std::vector<Entrant>& entrants, std::vector<Workload
                             const BenchObserver& observe, BenchResult& result) {
     for (const Entrant& entrant : entrants)
         result.entrants.push_back(
-            {entrant.contender, entrant.backend->renderer(), entrant.backend->statistics()});
+            {entrant.contender, entrant.backend->renderer(), entrant.backend->statistics(), {}});
     for (const Workload& workload : workloads)
         result.workloads.push_back(workload.name);
     result.repeats = repeats;
@@ -151,6 +151,8 @@ Result<Done> run_contenders(std::vector<Entrant>& entrants, std::vector<Workload
     const Result<bool> done = *warm ? bench.repeat(repeats) : warm;
     if (!done)
         return done.error();
+    for (size_t e = 0; e < entrants.size(); ++e)
+        result.entrants[e].after = entrants[e].backend->statistics();
     result.complete = *done && !stop();
     result.measurements = std::move(bench.measurements);
     std::erase_if(result.measurements, [](const Measurement& m) { return m.seconds.empty(); });

@@ -41,6 +41,7 @@ struct BenchEntrant {
     Contender contender;
     std::string renderer;
     ovc_statistics built{}; // before any ray
+    ovc_statistics after{}; // after the last
 
     double build_seconds() const { return built.seconds_level1 + built.seconds_level2; }
 };

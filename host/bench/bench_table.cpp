@@ -89,7 +89,7 @@ TextRow work_row(const BenchResult& r, const Measurement& m, bool sweep) {
                    number(mrays(m, call.median), 2),
                    fmt::format("{:.4f}", spread_of(m.cpu_seconds).median),
                    on_gpu ? fmt::format("{:.4f}", spread_of(m.pass_seconds).median) : "-",
-                   on_gpu ? fmt::format("{:.4f}", kernel.median) : "-",
+                   kernel.max > 0 ? fmt::format("{:.4f}", kernel.median) : "-",
                    number(mrays(m, kernel.median), 2),
                    number(ratios.call_speed_to_robust, 2),
                    number(ratios.kernel_speed_to_robust, 2),

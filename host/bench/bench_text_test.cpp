@@ -30,7 +30,7 @@ BenchResult example() {
         std::vector<LeavesChoice>{{1, "1"}, {8, "8"}}, std::vector<BudgetChoice>(1));
     EXPECT_TRUE(bool(contenders));
     for (const Contender& contender : *contenders) {
-        result.entrants.push_back({contender, "a renderer", {}});
+        result.entrants.push_back({contender, "a renderer", {}, {}});
         if (contender.kind == ContenderKind::TwoLevel)
             result.entrants.back().built.level2_bytes = 52000;
         result.entrants.back().built.seconds_level2 = 0.125;
