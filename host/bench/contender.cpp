@@ -30,7 +30,7 @@ static const Contender kContenders[] = {
     thesis("thesis-skip-bvh", BackendKind::SkipBvh),
     thesis("thesis-two-level", BackendKind::ThesisTwoLevel),
     {"cpu-kdtree", ContenderKind::CpuKdTree},
-    {"cpu-kdtree-float", ContenderKind::FloatKdTree},
+    {"cpu-float-kdtree", ContenderKind::FloatKdTree},
     {.name = "embree-medium", .kind = ContenderKind::Embree, .embree = EmbreeMode::Medium},
     {.name = "embree-high", .kind = ContenderKind::Embree, .embree = EmbreeMode::High},
     {.name = "embree-packets", .kind = ContenderKind::Embree, .embree = EmbreeMode::Packets},

@@ -61,7 +61,7 @@ Result<std::vector<Contender>> choose_contenders(std::span<const std::string> on
 class ContenderBuilder {
 public:
     /// reference: answers for the contender cpu-kdtree; tree: the tree over the soup that it has,
-    /// for cpu-kdtree-float.
+    /// for cpu-float-kdtree.
     ContenderBuilder(const Soup& soup, std::shared_ptr<Backend> reference,
                      std::shared_ptr<const KdTree> tree, std::string device, LogSink log);
     Result<std::shared_ptr<Backend>> build(const Contender& contender);

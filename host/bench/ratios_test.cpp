@@ -42,9 +42,9 @@ TEST(Spread, IsMinMedianMax) {
 
 TEST_F(BenchRatios, TakeTheCallOfAPeerThatKnowsNoKernel) {
     const Measurement& certified = add(named("certified-compute"), 0.5, 0.25);
-    add(named("cpu-kdtree-float"), 2, 0);
+    add(named("cpu-float-kdtree"), 2, 0);
     add(named("embree-high"), 1, 0.125);
-    EXPECT_DOUBLE_EQ(*kernel_speed_to(result, certified, "cpu-kdtree-float"), 8);
+    EXPECT_DOUBLE_EQ(*kernel_speed_to(result, certified, "cpu-float-kdtree"), 8);
     EXPECT_DOUBLE_EQ(*kernel_speed_to(result, certified, "embree-high"), 0.5);
     EXPECT_FALSE(kernel_speed_to(result, certified, "embree-robust"));
 }
