@@ -194,4 +194,25 @@ private:
     Handle<delete_query> handle_;
 };
 
+/// Measures how long the device works on commands, without what they wait for.
+class TimeQuery {
+public:
+    TimeQuery() : handle_(create()) {}
+    GLuint id() const { return handle_.id(); }
+    /// Of the commands between glBeginQuery and glEndQuery; waits until they are done.
+    double seconds() const {
+        GLuint64 nanoseconds = 0;
+        glGetQueryObjectui64v(id(), GL_QUERY_RESULT, &nanoseconds);
+        return 1e-9 * double(nanoseconds);
+    }
+
+private:
+    static GLuint create() {
+        GLuint id = 0;
+        glCreateQueries(GL_TIME_ELAPSED, 1, &id);
+        return id;
+    }
+    Handle<delete_query> handle_;
+};
+
 } // namespace ovc::gl

@@ -3,6 +3,7 @@
 // thesis, section 3.1.
 #include "gpu/tracer.h"
 
+#include "core/stopwatch.h"
 #include "gpu/gl_check.h"
 #include "gpu/level1_table.h"
 #include "shaders/layout.h"
@@ -184,17 +185,24 @@ Result<Done> Tracer::submit(std::span<const Traveller> rays) {
     if (config.tell_active)
         glBindImageTexture(OVC_BINDING_ACTIVE, active_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
                            GL_R32UI);
+    const Stopwatch watch;
+    if (!software_)
+        glBeginQuery(GL_TIME_ELAPSED, time_.id());
     if (words_)
         words_->dispatch(*program, rays.size());
     else
         pixels_->draw(rays.size());
+    if (!software_)
+        glEndQuery(GL_TIME_ELAPSED);
     glPopDebugGroup();
     // llvmpipe (22.3) runs passes on other threads and does not wait for them before it writes to
     // buffers that they read as images.
-    if (software_)
+    if (software_) {
         glFinish();
-    else
+        kernel_seconds_ = watch.seconds();
+    } else {
         glFlush();
+    }
     return check_gl("starting a pass");
 }
 
@@ -215,6 +223,8 @@ Result<Done> Tracer::collect(std::span<Answer> answers) {
         words_->read(answers);
     else
         pixels_->read(answers);
+    if (!software_)
+        kernel_seconds_ = time_.seconds();
     return check_gl("reading the answers of a pass");
 }
 

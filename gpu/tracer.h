@@ -90,6 +90,10 @@ public:
     /// rays is used up to the next whole block: see whole_blocks().
     Result<Done> collect(std::span<Answer> answers);
 
+    /// How long the kernel took in the pass that was collected last, without rays going over and
+    /// answers coming back: the device's clock; with a software renderer the wall's.
+    double kernel_seconds() const { return kernel_seconds_; }
+
     /// Per leaf, whether rays were traced through its page since this was asked last; none where
     /// the plan has no active_bytes.
     std::vector<uint32_t> take_active();
@@ -125,6 +129,8 @@ private:
     gl::BufferTexture active_;
     Pool pool_;
     gl::BufferTexture pages_;
+    gl::TimeQuery time_;
+    double kernel_seconds_ = 0;
 };
 
 } // namespace ovc

@@ -21,6 +21,7 @@ namespace ovc {
 
 class DeviceOpening;
 class PluginDevice;
+struct KdTree;
 
 /// Built over one soup, which it may use in place: the soup outlives it unchanged.
 class Backend {
@@ -120,9 +121,14 @@ Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
                                   const BackendOptions& options);
 
 std::unique_ptr<Backend> make_cpu_backend(const Soup& soup);
+/// Over a tree that is there already, and took so long to build.
+std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, std::shared_ptr<const KdTree> tree,
+                                          double build_seconds);
 
-/// Robust is RTC_SCENE_FLAG_ROBUST, Default is without it.
-enum class EmbreeMode { Default, Robust };
+/// Medium and High are its build qualities (High splits triangles that are long); Robust is High
+/// with RTC_SCENE_FLAG_ROBUST, with which Embree 3 splits none; Packets is High, asked for 16 rays
+/// in a call.
+enum class EmbreeMode { Medium, High, Robust, Packets };
 
 /// Embree has floats only: world positions and rays are rounded to them, and rays with numbers
 /// beyond 1.8e18 miss. Error: this program was built without Embree, or Embree cannot build.

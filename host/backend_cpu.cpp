@@ -11,19 +11,18 @@ namespace ovc {
 
 class CpuBackend final : public Backend {
 public:
-    explicit CpuBackend(const Soup& soup) : soup_(soup) {
-        const Stopwatch watch;
-        tree_ = build_kd_tree(soup);
+    CpuBackend(const Soup& soup, std::shared_ptr<const KdTree> tree, double build_seconds)
+        : soup_(soup), tree_(std::move(tree)) {
         statistics_.struct_size = sizeof(statistics_);
         statistics_.triangles = soup.triangle_count();
-        statistics_.seconds_level1 = watch.seconds();
+        statistics_.seconds_level1 = build_seconds;
     }
 
     Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
                            std::span<Hit> hits) override {
         assert(hits.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
         const Stopwatch watch;
-        ovc::intersect(tree_, soup_, rays, skip, hits);
+        ovc::intersect(*tree_, soup_, rays, skip, hits);
         statistics_.nearest_rays += rays.size();
         statistics_.seconds_trace += watch.seconds();
         return Done{};
@@ -33,7 +32,7 @@ public:
                           std::span<uint8_t> occluded) override {
         assert(occluded.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
         const Stopwatch watch;
-        ovc::occluded(tree_, soup_, rays, skip, occluded);
+        ovc::occluded(*tree_, soup_, rays, skip, occluded);
         statistics_.occlusion_rays += rays.size();
         statistics_.seconds_trace += watch.seconds();
         return Done{};
@@ -44,12 +43,19 @@ public:
 
 private:
     const Soup& soup_;
-    KdTree tree_;
+    std::shared_ptr<const KdTree> tree_;
     ovc_statistics statistics_{};
 };
 
+std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, std::shared_ptr<const KdTree> tree,
+                                          double build_seconds) {
+    return std::make_unique<CpuBackend>(soup, std::move(tree), build_seconds);
+}
+
 std::unique_ptr<Backend> make_cpu_backend(const Soup& soup) {
-    return std::make_unique<CpuBackend>(soup);
+    const Stopwatch watch;
+    auto tree = std::make_shared<const KdTree>(build_kd_tree(soup));
+    return make_cpu_backend(soup, std::move(tree), watch.seconds());
 }
 
 } // namespace ovc

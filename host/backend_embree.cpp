@@ -8,30 +8,36 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cassert>
 
 namespace ovc {
 
 namespace {
 
-/// What the filter needs to know of a ray.
+/// What the filter needs to know of the rays of a call.
 struct Context {
     RTCIntersectContext base; // first: Embree hands its address to the filter
-    TriangleId skip;
+    const TriangleId* skip;   // by the rays' ids; null: none skips
 
-    explicit Context(TriangleId skipped);
+    explicit Context(const TriangleId* skipped);
 };
 
 void refuse_skipped(const RTCFilterFunctionNArguments* a) {
-    const TriangleId skip = reinterpret_cast<const Context*>(a->context)->skip;
-    if (RTCHitN_geomID(a->hit, a->N, 0) == skip.mesh &&
-        RTCHitN_primID(a->hit, a->N, 0) == skip.prim)
-        a->valid[0] = 0;
+    const TriangleId* skips = reinterpret_cast<const Context*>(a->context)->skip;
+    for (unsigned i = 0; i < a->N; ++i) {
+        const TriangleId skip = skips[RTCRayN_id(a->ray, a->N, i)];
+        if (a->valid[i] && RTCHitN_geomID(a->hit, a->N, i) == skip.mesh &&
+            RTCHitN_primID(a->hit, a->N, i) == skip.prim)
+            a->valid[i] = 0;
+    }
 }
 
-Context::Context(TriangleId skipped) : skip(skipped) {
+Context::Context(const TriangleId* skipped) : skip(skipped) {
     rtcInitIntersectContext(&base);
-    if (skip.mesh != kNone)
+    if (skip)
         base.filter = refuse_skipped;
 }
 
@@ -45,18 +51,117 @@ bool can_ask(const Ray& ray) {
     return ray.valid() && within(ray.org) && within(ray.dir);
 }
 
-RTCRay rounded(const Ray& ray) {
-    RTCRay r{};
-    r.org_x = float(ray.org.x);
-    r.org_y = float(ray.org.y);
-    r.org_z = float(ray.org.z);
-    r.tnear = float(ray.t_min);
-    r.dir_x = float(ray.dir.x);
-    r.dir_y = float(ray.dir.y);
-    r.dir_z = float(ray.dir.z);
-    r.tfar = float(ray.t_max);
-    r.mask = ~0u;
-    return r;
+/// How Embree is asked for N rays in one call.
+template <unsigned N>
+struct Calls;
+
+template <>
+struct Calls<1> {
+    using Query = RTCRayHit;
+    static constexpr RTCIntersectContextFlags kFlags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    static void nearest(RTCScene scene, Context& context, const int* valid, Query& query) {
+        if (*valid)
+            rtcIntersect1(scene, &context.base, &query);
+    }
+    static void any(RTCScene scene, Context& context, const int* valid, Query& query) {
+        if (*valid)
+            rtcOccluded1(scene, &context.base, &query.ray);
+    }
+};
+
+template <>
+struct Calls<16> {
+    using Query = RTCRayHit16;
+    static constexpr RTCIntersectContextFlags kFlags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    static void nearest(RTCScene scene, Context& context, const int* valid, Query& query) {
+        rtcIntersect16(valid, scene, &context.base, &query);
+    }
+    static void any(RTCScene scene, Context& context, const int* valid, Query& query) {
+        rtcOccluded16(valid, scene, &context.base, &query.ray);
+    }
+};
+
+/// Rays of one task, rounded, as Embree takes them N at a time.
+template <unsigned N>
+class Block {
+public:
+    static constexpr size_t kRays = 256;
+
+    /// skips: null, or one a ray.
+    void load(std::span<const Ray> rays, const TriangleId* skips) {
+        assert(rays.size() <= kRays);
+        count_ = rays.size();
+        skips_ = skips;
+        valid_.fill(0);
+        for (size_t i = 0; i < count_; ++i)
+            put(i, rays[i]);
+    }
+
+    void find_nearest(RTCScene scene) { call(scene, Calls<N>::nearest); }
+    void find_any(RTCScene scene) { call(scene, Calls<N>::any); }
+
+    Hit nearest(size_t i) {
+        RTCHitN* hit = RTCRayHitN_HitN(at(i), N);
+        const unsigned lane = i % N;
+        if (!valid_[i] || RTCHitN_geomID(hit, N, lane) == RTC_INVALID_GEOMETRY_ID)
+            return {};
+        return {RTCRayN_tfar(ray(i), N, lane),
+                RTCHitN_u(hit, N, lane),
+                RTCHitN_v(hit, N, lane),
+                {RTCHitN_geomID(hit, N, lane), RTCHitN_primID(hit, N, lane)}};
+    }
+    bool any(size_t i) { return valid_[i] && RTCRayN_tfar(ray(i), N, i % N) < 0; }
+
+private:
+    RTCRayHitN* at(size_t i) { return reinterpret_cast<RTCRayHitN*>(&queries_[i / N]); }
+    RTCRayN* ray(size_t i) { return RTCRayHitN_RayN(at(i), N); }
+
+    void put(size_t i, const Ray& from) {
+        valid_[i] = can_ask(from) ? -1 : 0;
+        RTCRayN* to = ray(i);
+        const unsigned lane = i % N;
+        RTCRayN_org_x(to, N, lane) = float(from.org.x);
+        RTCRayN_org_y(to, N, lane) = float(from.org.y);
+        RTCRayN_org_z(to, N, lane) = float(from.org.z);
+        RTCRayN_tnear(to, N, lane) = float(from.t_min);
+        RTCRayN_dir_x(to, N, lane) = float(from.dir.x);
+        RTCRayN_dir_y(to, N, lane) = float(from.dir.y);
+        RTCRayN_dir_z(to, N, lane) = float(from.dir.z);
+        RTCRayN_tfar(to, N, lane) = float(from.t_max);
+        RTCRayN_time(to, N, lane) = 0;
+        RTCRayN_mask(to, N, lane) = ~0u;
+        RTCRayN_id(to, N, lane) = lane;
+        RTCRayN_flags(to, N, lane) = 0;
+        RTCHitN_geomID(RTCRayHitN_HitN(at(i), N), N, lane) = RTC_INVALID_GEOMETRY_ID;
+    }
+
+    template <class Call>
+    void call(RTCScene scene, const Call& ask) {
+        for (size_t i = 0; i < count_; i += N) {
+            Context context(skips_ ? skips_ + i : nullptr);
+            context.base.flags = Calls<N>::kFlags;
+            ask(scene, context, &valid_[i], queries_[i / N]);
+        }
+    }
+
+    std::array<typename Calls<N>::Query, kRays / N> queries_;
+    alignas(64) std::array<int, kRays> valid_;
+    const TriangleId* skips_ = nullptr;
+    size_t count_ = 0;
+};
+
+const char* words_of(EmbreeMode mode) {
+    switch (mode) {
+    case EmbreeMode::Medium:
+        return ", medium quality";
+    case EmbreeMode::High:
+        return ", high quality";
+    case EmbreeMode::Robust:
+        return " robust";
+    case EmbreeMode::Packets:
+        break;
+    }
+    return ", high quality, 16 rays a call";
 }
 
 class EmbreeBackend final : public Backend {
@@ -64,6 +169,8 @@ public:
     EmbreeBackend(const Soup& soup, EmbreeMode mode)
         : mode_(mode), device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
         const Stopwatch watch;
+        rtcSetSceneBuildQuality(scene_, mode == EmbreeMode::Medium ? RTC_BUILD_QUALITY_MEDIUM
+                                                                   : RTC_BUILD_QUALITY_HIGH);
         rtcSetSceneFlags(scene_, RTCSceneFlags((mode == EmbreeMode::Robust ? RTC_SCENE_FLAG_ROBUST
                                                                            : RTC_SCENE_FLAG_NONE) |
                                                RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
@@ -93,7 +200,9 @@ public:
     Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
                            std::span<Hit> hits) override {
         assert(hits.size() == rays.size());
-        for_each(rays, skip, [&](size_t i, TriangleId s) { hits[i] = nearest(rays[i], s); });
+        const auto find = [&](auto& block) { block.find_nearest(scene_); };
+        for_each(rays, skip, find,
+                 [&](auto& block, size_t i, size_t at) { hits[i] = block.nearest(at); });
         statistics_.nearest_rays += rays.size();
         return Done{};
     }
@@ -101,15 +210,16 @@ public:
     Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
                           std::span<uint8_t> occluded) override {
         assert(occluded.size() == rays.size());
-        for_each(rays, skip, [&](size_t i, TriangleId s) { occluded[i] = any(rays[i], s); });
+        const auto find = [&](auto& block) { block.find_any(scene_); };
+        for_each(rays, skip, find,
+                 [&](auto& block, size_t i, size_t at) { occluded[i] = block.any(at); });
         statistics_.occlusion_rays += rays.size();
         return Done{};
     }
 
     ovc_statistics statistics() const override { return statistics_; }
     std::string renderer() const override {
-        return fmt::format("Embree {}{} on the CPU, float32", RTC_VERSION_STRING,
-                           mode_ == EmbreeMode::Robust ? " robust" : "");
+        return fmt::format("Embree {}{} on the CPU, float32", RTC_VERSION_STRING, words_of(mode_));
     }
 
 private:
@@ -129,37 +239,38 @@ private:
         rtcReleaseGeometry(mesh);
     }
 
-    template <class Answer>
-    void for_each(std::span<const Ray> rays, std::span<const TriangleId> skip,
-                  const Answer& answer) {
+    /// find(block) asks Embree; tell(block, i, at) takes the answer of ray i, which is at `at`.
+    template <class Find, class Tell>
+    void for_each(std::span<const Ray> rays, std::span<const TriangleId> skip, const Find& find,
+                  const Tell& tell) {
         assert(skip.empty() || skip.size() == rays.size());
         const Stopwatch watch;
-        parallel_for(rays.size(), 256, [&](size_t first, size_t last) {
-            for (size_t i = first; i < last; ++i)
-                answer(i, skip.empty() ? TriangleId{} : skip[i]);
-        });
+        if (mode_ == EmbreeMode::Packets)
+            for_each_block<16>(rays, skip, find, tell);
+        else
+            for_each_block<1>(rays, skip, find, tell);
         statistics_.seconds_trace += watch.seconds();
     }
 
-    Hit nearest(const Ray& ray, TriangleId skip) const {
-        if (!can_ask(ray))
-            return {};
-        Context context(skip);
-        RTCRayHit query{rounded(ray), {}};
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene_, &context.base, &query);
-        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
-            return {};
-        return {query.ray.tfar, query.hit.u, query.hit.v, {query.hit.geomID, query.hit.primID}};
-    }
-
-    bool any(const Ray& ray, TriangleId skip) const {
-        if (!can_ask(ray))
-            return false;
-        Context context(skip);
-        RTCRay query = rounded(ray);
-        rtcOccluded1(scene_, &context.base, &query);
-        return query.tfar < 0;
+    template <unsigned N, class Find, class Tell>
+    void for_each_block(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                        const Find& find, const Tell& tell) {
+        constexpr size_t most = Block<N>::kRays;
+        std::atomic<double> inside = 0; // of all threads together
+        parallel_for((rays.size() + most - 1) / most, 1, [&](size_t first, size_t last) {
+            Block<N> block;
+            for (size_t b = first; b < last; ++b) {
+                const size_t from = b * most;
+                const size_t count = std::min(most, rays.size() - from);
+                block.load(rays.subspan(from, count), skip.empty() ? nullptr : &skip[from]);
+                const Stopwatch watch;
+                find(block);
+                inside += watch.seconds();
+                for (size_t i = 0; i < count; ++i)
+                    tell(block, from + i, i);
+            }
+        });
+        statistics_.seconds_kernel += inside / double(thread_count());
     }
 
     EmbreeMode mode_;

@@ -108,7 +108,8 @@ TEST(EmbreeBackend, AnswersAboutWhatTheCpuAnswers) {
     std::vector<Hit> expected(rays.size()), found(rays.size());
     std::vector<uint8_t> hidden(rays.size());
     std::vector<TriangleId> skip(rays.size());
-    for (const EmbreeMode mode : {EmbreeMode::Default, EmbreeMode::Robust}) {
+    for (const EmbreeMode mode :
+         {EmbreeMode::Medium, EmbreeMode::High, EmbreeMode::Robust, EmbreeMode::Packets}) {
         const Result<std::unique_ptr<Backend>> embree = make_embree_backend(soup, mode);
         if (!embree)
             GTEST_SKIP() << embree.error().message;

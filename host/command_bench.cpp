@@ -12,6 +12,7 @@
 #include "host/scene_source.h"
 #include "host/scene_summary.h"
 #include "host/terminal_line.h"
+#include "kdtree/build.h"
 
 #include <fmt/format.h>
 #include <stdlib.h>
@@ -87,11 +88,8 @@ Result<std::vector<Workload>> workloads_of(const Scene& scene, const Camera& cam
 }
 
 /// Fewer than asked for where it was stopped.
-Result<std::vector<Entrant>> build_entrants(const BenchJob& job, const Scene& scene,
-                                            std::shared_ptr<Backend> reference,
-                                            const StopRequest& stop, const LogSink& log,
-                                            TerminalLine& progress) {
-    ContenderBuilder builder(scene.soup, std::move(reference), job.device, log);
+Result<std::vector<Entrant>> build_entrants(const BenchJob& job, ContenderBuilder& builder,
+                                            const StopRequest& stop, TerminalLine& progress) {
     std::vector<Entrant> entrants;
     for (const Contender& contender : job.contenders) {
         if (stop())
@@ -125,9 +123,12 @@ Result<BenchResult> bench_scene(const BenchJob& job, const std::string& source,
         return Error{fmt::format("{}: {}", source, camera.error().message)};
 
     progress.show("building the reference");
-    const std::shared_ptr<Backend> reference = make_cpu_backend(scene->soup);
-    Result<std::vector<Entrant>> entrants =
-        build_entrants(job, *scene, reference, stop, log, progress);
+    const Stopwatch building;
+    const auto tree = std::make_shared<const KdTree>(build_kd_tree(scene->soup));
+    const std::shared_ptr<Backend> reference =
+        make_cpu_backend(scene->soup, tree, building.seconds());
+    ContenderBuilder builder(scene->soup, reference, tree, job.device, log);
+    Result<std::vector<Entrant>> entrants = build_entrants(job, builder, stop, progress);
     if (!entrants)
         return entrants.error();
     Result<std::vector<Workload>> workloads =

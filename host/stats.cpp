@@ -28,6 +28,7 @@ ovc_statistics counted_between(const ovc_statistics& before, const ovc_statistic
           &ovc_statistics::retraced, &ovc_statistics::queues, &ovc_statistics::queued_rays})
         counted.*count -= before.*count;
     counted.seconds_trace -= before.seconds_trace;
+    counted.seconds_pass -= before.seconds_pass;
     counted.seconds_kernel -= before.seconds_kernel;
     return counted;
 }
@@ -75,6 +76,7 @@ static Json frame_of(const FrameStats& f) {
             {"host_peak_bytes", f.host_peak_bytes},
             {"time",
              {{"trace", f.report.seconds_trace},
+              {"pass", f.tracing.seconds_pass},
               {"kernel", f.tracing.seconds_kernel},
               {"shade", f.report.seconds_shade},
               {"render", f.report.seconds},
@@ -102,11 +104,17 @@ static Json left_out_of(const RenderStats& s) {
 }
 
 static Json times_of(const RenderStats& s) {
-    return {{"import", s.seconds_import},         {"level1", s.tracing.seconds_level1},
-            {"level2", s.tracing.seconds_level2}, {"trace", s.report.seconds_trace},
-            {"kernel", s.tracing.seconds_kernel}, {"shade", s.report.seconds_shade},
-            {"render", s.report.seconds},         {"cpu", s.report.seconds_cpu},
-            {"output", s.seconds_output},         {"total", s.seconds_total}};
+    return {{"import", s.seconds_import},
+            {"level1", s.tracing.seconds_level1},
+            {"level2", s.tracing.seconds_level2},
+            {"trace", s.report.seconds_trace},
+            {"pass", s.tracing.seconds_pass},
+            {"kernel", s.tracing.seconds_kernel},
+            {"shade", s.report.seconds_shade},
+            {"render", s.report.seconds},
+            {"cpu", s.report.seconds_cpu},
+            {"output", s.seconds_output},
+            {"total", s.seconds_total}};
 }
 
 std::string stats_json(const RenderStats& s) {

@@ -107,7 +107,8 @@ ovc_statistics TwoLevel::report() const {
             s.queues,
             s.queued_rays,
             s.longest_queue,
-            s.from_saved};
+            s.from_saved,
+            s.seconds_pass};
 }
 
 } // namespace ovc

@@ -227,12 +227,13 @@ typedef struct ovc_statistics {
     double seconds_level1;         /* building the level-1 tree */
     double seconds_level2;         /* building and packing all pages */
     double seconds_trace;          /* inside intersect and occluded */
-    double seconds_kernel;         /* of it, waiting for the GPU */
+    double seconds_kernel;         /* of seconds_pass, the kernel alone; all of it where a structure cannot tell */
     uint64_t host_bytes;           /* level 1 and level 2 in host memory */
     uint64_t queues;               /* of rays that waited for a leaf until its page was moved in */
     uint64_t queued_rays;          /* in them, all together */
     uint64_t longest_queue;        /* rays */
     uint64_t from_saved;           /* 1: commit took them from ovc_scene_config.saved; else 0 */
+    double seconds_pass;           /* of seconds_trace, passes: from sending rays until their answers are here, pages moved in beside */
 } ovc_statistics;
 
 /* The pages that rays went through since this was asked last, or since the commit; experimental. */

@@ -297,7 +297,8 @@ Result<size_t> TwoLevel::pass(Batch& batch, size_t count, std::span<const uint32
         return done.error();
     statistics_.passes += 1;
     statistics_.ray_visits += count;
-    statistics_.seconds_kernel += seconds;
+    statistics_.seconds_pass += seconds;
+    statistics_.seconds_kernel += tracer_->kernel_seconds();
     statistics_.pages_in += moved.pages;
     statistics_.bytes_in += moved.bytes;
     return size_t(moved.pages);

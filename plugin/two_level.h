@@ -76,6 +76,7 @@ struct TwoLevelStatistics {
     double seconds_level2 = 0;
     double seconds_trace = 0;
     double seconds_kernel = 0;
+    double seconds_pass = 0;
 };
 
 /// Level 1 and level 2 of a soup, and rays through them. One call at a time.
@@ -153,8 +154,8 @@ private:
         std::vector<Answer> answers;
 
         void make_room() {
-            travellers.resize(Tracer::padded(rays.size()));
-            answers.resize(Tracer::padded(rays.size()));
+            travellers.resize(whole_blocks(rays.size()));
+            answers.resize(whole_blocks(rays.size()));
         }
     };
     Result<size_t> pass(Batch& batch, size_t count, std::span<const uint32_t> wanted,

@@ -111,6 +111,18 @@ TEST_F(TwoLevelGl, FewOrdinaryRaysAreFlagged) {
     EXPECT_GT(structure->statistics().passes, 0u);
 }
 
+TEST_F(TwoLevelGl, TimeOfTheKernelIsPartOfThatOfPassesIsPartOfThatOfTheCall) {
+    const Soup soup = test::closed_grid(100);
+    const auto structure = build(soup, {});
+    ASSERT_TRUE(structure);
+    const auto rays = test::rays_from_outside(5, 100000);
+    std::vector<Hit> hits(rays.size());
+    ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+    EXPECT_GT(structure->statistics().seconds_kernel, 0);
+    EXPECT_LT(structure->statistics().seconds_kernel, structure->statistics().seconds_pass);
+    EXPECT_LT(structure->statistics().seconds_pass, structure->statistics().seconds_trace);
+}
+
 TEST_F(TwoLevelGl, RaysThatStartOnASurfaceAreNotFlaggedForIt) {
     const Soup soup = test::closed_grid(200);
     const auto structure = build(soup, {});

@@ -47,6 +47,7 @@ Result<Done> call(const Workload& workload, Backend& backend, bool timed, Measur
     if (timed) {
         m.seconds.push_back(seconds);
         m.cpu_seconds.push_back(cpu_seconds);
+        m.pass_seconds.push_back(after.seconds_pass - before.seconds_pass);
         m.kernel_seconds.push_back(after.seconds_kernel - before.seconds_kernel);
     }
     return Done{};
@@ -138,7 +139,7 @@ Result<Done> run_contenders(std::vector<Entrant>& entrants, std::vector<Workload
                             const BenchObserver& observe, BenchResult& result) {
     for (const Entrant& entrant : entrants)
         result.entrants.push_back(
-            {entrant.contender, entrant.backend->renderer(), entrant.backend->statistics()});
+            {entrant.contender, entrant.backend->renderer(), entrant.backend->statistics(), {}});
     for (const Workload& workload : workloads)
         result.workloads.push_back(workload.name);
     result.repeats = repeats;
@@ -150,6 +151,8 @@ Result<Done> run_contenders(std::vector<Entrant>& entrants, std::vector<Workload
     const Result<bool> done = *warm ? bench.repeat(repeats) : warm;
     if (!done)
         return done.error();
+    for (size_t e = 0; e < entrants.size(); ++e)
+        result.entrants[e].after = entrants[e].backend->statistics();
     result.complete = *done && !stop();
     result.measurements = std::move(bench.measurements);
     std::erase_if(result.measurements, [](const Measurement& m) { return m.seconds.empty(); });

@@ -33,13 +33,15 @@ struct Measurement {
     std::vector<double> seconds; // from call to return, one a repeat
     std::vector<double>
         cpu_seconds; // of all threads: what is left on a machine that others use too
-    std::vector<double> kernel_seconds; // of seconds, waiting for the GPU; 0 for who has none
+    std::vector<double> pass_seconds;   // of seconds, passes: ovc_statistics.seconds_pass
+    std::vector<double> kernel_seconds; // of seconds, the kernel alone; 0 for who has none
 };
 
 struct BenchEntrant {
     Contender contender;
     std::string renderer;
     ovc_statistics built{}; // before any ray
+    ovc_statistics after{}; // after the last
 
     double build_seconds() const { return built.seconds_level1 + built.seconds_level2; }
 };

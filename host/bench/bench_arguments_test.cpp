@@ -36,8 +36,9 @@ TEST(BenchArguments, HaveDefaults) {
 TEST(BenchArguments, ChooseContendersByNameOrFirstWord) {
     EXPECT_THAT(labels({.only = "fast-compute,certified"}),
                 testing::ElementsAre("certified-fragment", "certified-compute", "fast-compute"));
-    EXPECT_THAT(labels({.only = "embree"}),
-                testing::ElementsAre("embree-default", "embree-robust"));
+    EXPECT_THAT(
+        labels({.only = "embree"}),
+        testing::ElementsAre("embree-medium", "embree-high", "embree-packets", "embree-robust"));
     EXPECT_THAT(labels({.only = "thesis"}),
                 testing::ElementsAre("thesis-single-texture", "thesis-multi-texture",
                                      "thesis-gpu-grid", "thesis-gpu-kdtree", "thesis-skip-bvh",

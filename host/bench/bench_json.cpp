@@ -51,13 +51,15 @@ Json json_of(const BenchResult& r, const BenchEntrant& e) {
 Json json_of(const BenchResult& r, const Measurement& m) {
     const Contender& contender = r.entrants[m.entrant].contender;
     const bool on_gpu = contender.on_gpu();
+    const bool has_kernel = spread_of(m.kernel_seconds).max > 0;
     const Ratios ratios = ratios_of(r, m);
     return {{"workload", r.workloads[m.workload]},
             {"contender", contender.label()},
             {"rays", m.rays},
             {"call_seconds", json_of_times(m, m.seconds)},
             {"cpu_seconds", json_of_times(m, m.cpu_seconds)},
-            {"kernel_seconds", on_gpu ? json_of_times(m, m.kernel_seconds) : Json(nullptr)},
+            {"pass_seconds", on_gpu ? json_of_times(m, m.pass_seconds) : Json(nullptr)},
+            {"kernel_seconds", has_kernel ? json_of_times(m, m.kernel_seconds) : Json(nullptr)},
             {"call_speed_to_robust", json_of(ratios.call_speed_to_robust)},
             {"kernel_speed_to_robust", json_of(ratios.kernel_speed_to_robust)},
             {"cpu_speed_to_robust", json_of(ratios.cpu_speed_to_robust)},

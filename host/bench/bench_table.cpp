@@ -56,6 +56,7 @@ TextRow work_header(const std::string& workload, bool sweep) {
                       "max",
                       "Mrays/s",
                       "CPU s",
+                      "pass s",
                       "kernel s",
                       "kernel Mrays/s",
                       "speed to robust",
@@ -71,7 +72,7 @@ TextRow work_header(const std::string& workload, bool sweep) {
                       "moved",
                       "checksum"};
     if (sweep)
-        header.insert(header.begin() + 14, {"time to first", "kernel to first"});
+        header.insert(header.begin() + 15, {"time to first", "kernel to first"});
     return header;
 }
 
@@ -87,7 +88,8 @@ TextRow work_row(const BenchResult& r, const Measurement& m, bool sweep) {
                    fmt::format("{:.4f}", call.max),
                    number(mrays(m, call.median), 2),
                    fmt::format("{:.4f}", spread_of(m.cpu_seconds).median),
-                   on_gpu ? fmt::format("{:.4f}", kernel.median) : "-",
+                   on_gpu ? fmt::format("{:.4f}", spread_of(m.pass_seconds).median) : "-",
+                   kernel.max > 0 ? fmt::format("{:.4f}", kernel.median) : "-",
                    number(mrays(m, kernel.median), 2),
                    number(ratios.call_speed_to_robust, 2),
                    number(ratios.kernel_speed_to_robust, 2),
@@ -102,7 +104,7 @@ TextRow work_row(const BenchResult& r, const Measurement& m, bool sweep) {
                    on_gpu ? human_bytes(m.bytes_in) : "-",
                    fmt::format("{:016x}", m.checksum)};
     if (sweep)
-        row.insert(row.begin() + 14,
+        row.insert(row.begin() + 15,
                    {number(ratios.call_time_to_first, 2), number(ratios.kernel_time_to_first, 2)});
     return row;
 }

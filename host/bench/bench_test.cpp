@@ -20,6 +20,7 @@ public:
             hit = {1, 0, 0, {0, prim_}};
         statistics_.passes += 2;
         statistics_.flagged += hits.size();
+        statistics_.seconds_pass += 0.5;
         statistics_.seconds_kernel += 0.25;
         return Done{};
     }
@@ -69,6 +70,7 @@ TEST_F(RunContenders, TakeTurns) {
         EXPECT_EQ(m.rays, 3u);
         EXPECT_EQ(m.seconds.size(), 2u);
         EXPECT_EQ(m.cpu_seconds.size(), 2u);
+        EXPECT_THAT(m.pass_seconds, testing::ElementsAre(0.5, 0.5));
         EXPECT_THAT(m.kernel_seconds, testing::ElementsAre(0.25, 0.25));
         EXPECT_EQ(m.passes, 2u); // of one call, not of all
         EXPECT_EQ(m.flagged, 3u);

@@ -30,7 +30,7 @@ BenchResult example() {
         std::vector<LeavesChoice>{{1, "1"}, {8, "8"}}, std::vector<BudgetChoice>(1));
     EXPECT_TRUE(bool(contenders));
     for (const Contender& contender : *contenders) {
-        result.entrants.push_back({contender, "a renderer", {}});
+        result.entrants.push_back({contender, "a renderer", {}, {}});
         if (contender.kind == ContenderKind::TwoLevel)
             result.entrants.back().built.level2_bytes = 52000;
         result.entrants.back().built.seconds_level2 = 0.125;
@@ -42,6 +42,7 @@ BenchResult example() {
             Measurement m{.entrant = e, .workload = w, .rays = 1048576, .checksum = 0xabcdef + e};
             m.seconds = {base, base + 0.02, base + 0.01};
             m.cpu_seconds = {2 * base, 2 * base, 3 * base};
+            m.pass_seconds = std::vector<double>(3, kernel ? base / 1.5 : 0);
             m.kernel_seconds = std::vector<double>(3, kernel ? base / 2 : 0);
             m.flagged = 1000;
             result.measurements.push_back(m);
@@ -101,6 +102,8 @@ TEST(BenchText, JsonHasWhatTheTableShows) {
             EXPECT_EQ(cell(rows, row, "min"), shown(m["call_seconds"]["min"], 4));
             EXPECT_EQ(cell(rows, row, "max"), shown(m["call_seconds"]["max"], 4));
             EXPECT_EQ(cell(rows, row, "Mrays/s"), shown(m["call_seconds"]["mrays_per_second"], 2));
+            const auto& pass = m["pass_seconds"];
+            EXPECT_EQ(cell(rows, row, "pass s"), shown(pass.is_null() ? pass : pass["median"], 4));
             EXPECT_EQ(cell(rows, row, "kernel s"),
                       shown(kernel.is_null() ? kernel : kernel["median"], 4));
             EXPECT_EQ(cell(rows, row, "CPU s"), shown(m["cpu_seconds"]["median"], 4));

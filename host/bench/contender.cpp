@@ -2,6 +2,7 @@
 // The table of contenders, who of them was asked for, and how each is built.
 #include "host/bench/contender.h"
 
+#include "host/bench/float_kd_tree.h"
 #include "host/suggestion.h"
 
 #include <fmt/format.h>
@@ -29,7 +30,10 @@ static const Contender kContenders[] = {
     thesis("thesis-skip-bvh", BackendKind::SkipBvh),
     thesis("thesis-two-level", BackendKind::ThesisTwoLevel),
     {"cpu-kdtree", ContenderKind::CpuKdTree},
-    {.name = "embree-default", .kind = ContenderKind::Embree, .embree = EmbreeMode::Default},
+    {"cpu-float-kdtree", ContenderKind::FloatKdTree},
+    {.name = "embree-medium", .kind = ContenderKind::Embree, .embree = EmbreeMode::Medium},
+    {.name = "embree-high", .kind = ContenderKind::Embree, .embree = EmbreeMode::High},
+    {.name = "embree-packets", .kind = ContenderKind::Embree, .embree = EmbreeMode::Packets},
     {.name = "embree-robust", .kind = ContenderKind::Embree, .embree = EmbreeMode::Robust},
 };
 
@@ -64,7 +68,7 @@ static Result<Done> check_names(std::span<const std::string> only) {
 }
 
 static bool has_embree() {
-    return bool(make_embree_backend(Soup{}, EmbreeMode::Default));
+    return bool(make_embree_backend(Soup{}, EmbreeMode::Medium));
 }
 
 static bool wanted(const Contender& contender, std::span<const std::string> only) {
@@ -100,9 +104,11 @@ Result<std::vector<Contender>> choose_contenders(std::span<const std::string> on
 }
 
 ContenderBuilder::ContenderBuilder(const Soup& soup, std::shared_ptr<Backend> reference,
-                                   std::string device, LogSink log)
+                                   std::shared_ptr<const KdTree> tree, std::string device,
+                                   LogSink log)
     : soup_(soup),
       reference_(std::move(reference)),
+      tree_(std::move(tree)),
       device_(std::move(device)),
       log_(std::move(log)) {}
 
@@ -119,6 +125,8 @@ Result<std::shared_ptr<Backend>> ContenderBuilder::build(const Contender& conten
         return shared(build_on_gpu(contender));
     case ContenderKind::Embree:
         return shared(make_embree_backend(soup_, contender.embree));
+    case ContenderKind::FloatKdTree:
+        return std::shared_ptr<Backend>(make_float_kd_backend(soup_, *tree_));
     case ContenderKind::CpuKdTree:
         break;
     }

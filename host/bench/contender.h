@@ -5,6 +5,7 @@
 
 #include "core/result.h"
 #include "host/backend.h"
+#include "kdtree/tree.h"
 
 #include <map>
 #include <memory>
@@ -15,7 +16,7 @@
 
 namespace ovc {
 
-enum class ContenderKind { TwoLevel, Thesis, CpuKdTree, Embree };
+enum class ContenderKind { TwoLevel, Thesis, CpuKdTree, FloatKdTree, Embree };
 
 /// A value of a sweep over the plugin's settings, and the words it was asked for with; empty: not
 /// asked.
@@ -34,7 +35,7 @@ struct Contender {
     ContenderKind kind;
     ovc_precision precision = OVC_PRECISION_CERTIFIED;
     ovc_kernel kernel = OVC_KERNEL_AUTO;
-    EmbreeMode embree = EmbreeMode::Default;
+    EmbreeMode embree = EmbreeMode::Medium;
     LeavesChoice leaves;
     BudgetChoice budget;
     BackendKind backend = BackendKind::TwoLevel; // on the GPU: which
@@ -59,9 +60,10 @@ Result<std::vector<Contender>> choose_contenders(std::span<const std::string> on
 /// Builds contenders over one soup, which outlives them.
 class ContenderBuilder {
 public:
-    /// reference: answers for the contender cpu-kdtree, as one tree is enough.
-    ContenderBuilder(const Soup& soup, std::shared_ptr<Backend> reference, std::string device,
-                     LogSink log);
+    /// reference: answers for the contender cpu-kdtree; tree: the tree over the soup that it has,
+    /// for cpu-float-kdtree.
+    ContenderBuilder(const Soup& soup, std::shared_ptr<Backend> reference,
+                     std::shared_ptr<const KdTree> tree, std::string device, LogSink log);
     Result<std::shared_ptr<Backend>> build(const Contender& contender);
 
 private:
@@ -70,6 +72,7 @@ private:
 
     const Soup& soup_;
     std::shared_ptr<Backend> reference_;
+    std::shared_ptr<const KdTree> tree_;
     std::string device_;
     LogSink log_;
     std::map<uint32_t, uint64_t> pages_bytes_; // by leaves

@@ -37,8 +37,9 @@ static double cpu_seconds(const Measurement& m) {
     return spread_of(m.cpu_seconds).median;
 }
 
-static double kernel_seconds(const Measurement& m) {
-    return spread_of(m.kernel_seconds).median;
+double kernel_seconds(const Measurement& m) {
+    const double kernel = spread_of(m.kernel_seconds).median;
+    return kernel > 0 ? kernel : call_seconds(m);
 }
 
 /// At the same workload.
@@ -50,13 +51,21 @@ static const Measurement* find(const BenchResult& result, const Measurement& m,
     return nullptr;
 }
 
+std::optional<double> kernel_speed_to(const BenchResult& result, const Measurement& m,
+                                      std::string_view peer) {
+    const Measurement* other = find(result, m, [&](const Contender& c) { return c.name == peer; });
+    if (!other)
+        return {};
+    return quotient(kernel_seconds(*other), kernel_seconds(m));
+}
+
 Ratios ratios_of(const BenchResult& result, const Measurement& m) {
     const Contender& self = result.entrants[m.entrant].contender;
     Ratios ratios;
     if (const Measurement* robust =
             find(result, m, [](const Contender& c) { return c.name == "embree-robust"; })) {
         ratios.call_speed_to_robust = quotient(call_seconds(*robust), call_seconds(m));
-        ratios.kernel_speed_to_robust = quotient(call_seconds(*robust), kernel_seconds(m));
+        ratios.kernel_speed_to_robust = kernel_speed_to(result, m, "embree-robust");
         ratios.cpu_speed_to_robust = quotient(cpu_seconds(*robust), cpu_seconds(m));
     }
     if (self.kind != ContenderKind::TwoLevel)
@@ -81,7 +90,7 @@ Ratios ratios_of(const BenchResult& result, const Measurement& m) {
 
 std::optional<double> build_time_to_embree(const BenchResult& result, const BenchEntrant& entrant) {
     for (const BenchEntrant& other : result.entrants)
-        if (other.contender.name == "embree-default")
+        if (other.contender.name == "embree-medium")
             return quotient(entrant.build_seconds(), other.build_seconds());
     return {};
 }

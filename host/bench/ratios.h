@@ -21,8 +21,16 @@ Spread spread_of(std::span<const double> values);
 /// Million rays a second; nothing where no time was taken.
 std::optional<double> mrays(const Measurement& m, double seconds);
 
-/// Of medians, at the same workload. Nothing where the other did not take part or has no kernel.
-/// A peer has no kernel: its whole call is compared with the plugin's kernel as with its call.
+/// What a contender takes to answer rays that are where it wants them: a median. Of the plugin the
+/// kernel alone, of Embree what its own functions take; of the others the whole call.
+double kernel_seconds(const Measurement& m);
+
+/// The peer's kernel seconds over these, at the same workload. Nothing where the peer did not take
+/// part.
+std::optional<double> kernel_speed_to(const BenchResult& result, const Measurement& m,
+                                      std::string_view peer);
+
+/// Of medians, at the same workload. Nothing where the other did not take part.
 struct Ratios {
     std::optional<double> call_speed_to_robust; // embree-robust's time over this one's
     std::optional<double> kernel_speed_to_robust;
@@ -36,7 +44,7 @@ struct Ratios {
 
 Ratios ratios_of(const BenchResult& result, const Measurement& m);
 
-/// Its build time over that of embree-default.
+/// Its build time over that of embree-medium.
 std::optional<double> build_time_to_embree(const BenchResult& result, const BenchEntrant& entrant);
 
 /// Bytes of all pages a triangle; nothing for who has no pages.

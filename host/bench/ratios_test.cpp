@@ -16,7 +16,7 @@ Contender named(std::string_view name) {
 class BenchRatios : public testing::Test {
 protected:
     const Measurement& add(Contender contender, double call, double kernel) {
-        result.entrants.push_back({contender, "", {}});
+        result.entrants.push_back({contender, "", {}, {}});
         Measurement m;
         m.entrant = result.entrants.size() - 1;
         m.rays = 1'000'000;
@@ -40,6 +40,15 @@ TEST(Spread, IsMinMedianMax) {
     EXPECT_EQ(spread_of(std::vector<double>{5}).median, 5);
 }
 
+TEST_F(BenchRatios, TakeTheCallOfAPeerThatKnowsNoKernel) {
+    const Measurement& certified = add(named("certified-compute"), 0.5, 0.25);
+    add(named("cpu-float-kdtree"), 2, 0);
+    add(named("embree-high"), 1, 0.125);
+    EXPECT_DOUBLE_EQ(*kernel_speed_to(result, certified, "cpu-float-kdtree"), 8);
+    EXPECT_DOUBLE_EQ(*kernel_speed_to(result, certified, "embree-high"), 0.5);
+    EXPECT_FALSE(kernel_speed_to(result, certified, "embree-robust"));
+}
+
 TEST_F(BenchRatios, SayHowMuchFasterThanEmbreeAndHowMuchSlowerThanFast) {
     const Measurement& certified = add(named("certified-compute"), 0.5, 0.25);
     const Measurement& fast = add(named("fast-compute"), 0.4, 0.2);
@@ -54,7 +63,7 @@ TEST_F(BenchRatios, SayHowMuchFasterThanEmbreeAndHowMuchSlowerThanFast) {
     EXPECT_DOUBLE_EQ(*r.kernel_time_to_fast, 1.25);
     EXPECT_DOUBLE_EQ(*ratios_of(result, fast).call_time_to_fast, 1);
     EXPECT_DOUBLE_EQ(*ratios_of(result, robust).call_speed_to_robust, 1);
-    EXPECT_FALSE(ratios_of(result, robust).kernel_speed_to_robust);
+    EXPECT_DOUBLE_EQ(*ratios_of(result, robust).kernel_speed_to_robust, 1);
     EXPECT_FALSE(ratios_of(result, robust).call_time_to_fast);
     EXPECT_DOUBLE_EQ(*mrays(certified, 0.5), 2);
     EXPECT_FALSE(mrays(robust, 0));
@@ -85,7 +94,7 @@ TEST_F(BenchRatios, StayWithinAWorkload) {
 
 TEST_F(BenchRatios, CompareBuildsAndSizes) {
     add(named("certified-compute"), 1, 1);
-    add(named("embree-default"), 1, 0);
+    add(named("embree-medium"), 1, 0);
     result.triangles = 100;
     result.entrants[0].built.level2_bytes = 5200;
     result.entrants[0].built.seconds_level1 = 1;

@@ -124,7 +124,7 @@ private:
         // Where this program was built without Embree there is none to show.
         for (const auto& [mode, score_of] :
              {std::pair(EmbreeMode::Robust, &StabilityResult::embree_robust),
-              std::pair(EmbreeMode::Default, &StabilityResult::embree_default)})
+              std::pair(EmbreeMode::Medium, &StabilityResult::embree_default)})
             if (Result<std::unique_ptr<Backend>> embree = make_embree_backend(soup_, mode); embree)
                 peers_.push_back({std::move(*embree), score_of});
         return Done{};

@@ -101,7 +101,8 @@ public:
             if (!passes)
                 return passes.error();
             c_.statistics_.passes += *passes;
-            c_.statistics_.seconds_kernel += watch.seconds();
+            c_.statistics_.seconds_pass += watch.seconds();
+            c_.statistics_.seconds_kernel = c_.statistics_.seconds_pass;
             c_.statistics_.ray_visits += count_;
             each_ray([&](size_t i) { settle(i); });
             if (retraced_ > 0)

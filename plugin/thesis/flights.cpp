@@ -118,7 +118,8 @@ Result<Done> Flights::pass(uint32_t leaf, std::span<const uint32_t> queued) {
     s_.statistics.ray_visits += batch.size();
     s_.statistics.pages_in += pass->bytes_in > 0;
     s_.statistics.bytes_in += pass->bytes_in;
-    s_.statistics.seconds_kernel += pass->seconds;
+    s_.statistics.seconds_pass += pass->seconds;
+    s_.statistics.seconds_kernel = s_.statistics.seconds_pass;
     parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
         for (size_t j = from; j < to; ++j)
             settle(flights_[batch[j]], answers_[j], decidable_[j]);
