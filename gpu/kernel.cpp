@@ -107,6 +107,14 @@ Result<gl::Program> link(const ShaderConfig& config) {
     return link_program(stages, config.defines());
 }
 
+/// llvmpipe (Mesa 22.3, LLVM 15) crashes when it compiles any fragment shader for vectors of 512
+/// bits, which its user has to ask for.
+bool compiles_fragment_shaders() {
+    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    const std::string_view name = renderer ? renderer : "";
+    return name.find("llvmpipe") == name.npos || name.find("512 bits") == name.npos;
+}
+
 } // namespace
 
 std::string ShaderConfig::defines() const {
@@ -125,6 +133,11 @@ std::string ShaderConfig::defines() const {
 }
 
 Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines) {
+    const auto is_fragment = [](const ShaderStage& s) { return s.stage == GL_FRAGMENT_SHADER; };
+    if (std::any_of(stages.begin(), stages.end(), is_fragment) && !compiles_fragment_shaders())
+        return Error{
+            "llvmpipe crashes on fragment shaders where LP_NATIVE_VECTOR_WIDTH is 512: take the "
+            "compute kernel, or unset LP_NATIVE_VECTOR_WIDTH"};
     std::vector<ExpandedStage> expanded;
     std::vector<std::string> sources;
     for (const ShaderStage& stage : stages) {

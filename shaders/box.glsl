@@ -48,3 +48,18 @@ ivec4 child_keys(uvec4 x, uvec4 y, uvec4 z, GridRay ray, float t_end) {
             ivec4(floatBitsToInt(t_end))));
     return mix(ivec4(OVC_NO_CHILD), (enter & ~3) | ivec4(0, 1, 2, 3), lessThanEqual(enter, exit));
 }
+
+void order(inout int a, inout int b) {
+    int low = min(a, b);
+    b = max(a, b);
+    a = low;
+}
+
+// Nearest first: a sorting network of five comparisons.
+void sort_keys(inout ivec4 k) {
+    order(k.x, k.y);
+    order(k.z, k.w);
+    order(k.x, k.z);
+    order(k.y, k.w);
+    order(k.y, k.z);
+}

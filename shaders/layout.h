@@ -21,7 +21,7 @@
 #define OVC_ROOT_UNIT 1
 #define OVC_PAIR 0x80000000u
 #define OVC_NO_TRIANGLE 0xffffffffu
-#define OVC_MAX_UNITS 0x8000000 // a stack word has 27 bits for a unit and must not be negative
+#define OVC_MAX_UNITS 0x800000 // a stack word has 23 bits for a unit and must not be negative
 
 // Where pages are linked (gpu/linked.h) units count from the pool's first; else from the page's own.
 

@@ -26,8 +26,8 @@ Unit unit_at(int unit) {
 
 bool is_pair(Unit unit) { return int(unit.w.w) < 0; }
 
-// Where a ray is in the tree. A stack word is a node with children still to come: the unit of the first of its children << 4,
-// and a bit for each that is to come; 0 is no word.
+// Where a ray is in the tree. A stack word is a node with children still to come: the unit of the first of its children << 8,
+// how many are to come << 6, and their numbers, two bits each, the next one lowest; 0 is no word.
 struct Descent {
     int unit;   // where it goes next
     int top;    // the word on top of the stack; 0: the stack is empty
@@ -38,21 +38,21 @@ struct Descent {
 
 // Goes down to the nearest of the children that `keys` has; where it has none, and `leave`, to the next of the stack.
 void advance(inout Descent d, int first_child, ivec4 keys, bool leave) {
-    int nearest = min(min(keys.x, keys.y), min(keys.z, keys.w));
-    bool descend = nearest != OVC_NO_CHILD;
-    int child = nearest & 3;
-    ivec4 met = mix(ivec4(1, 2, 4, 8), ivec4(0), equal(keys, ivec4(OVC_NO_CHILD)));
-    int others = (met.x | met.y | met.z | met.w) & ~(1 << child);
-    bool push = descend && others != 0;
+    sort_keys(keys);
+    bool descend = keys.x != OVC_NO_CHILD;
+    ivec3 met = mix(ivec3(1), ivec3(0), equal(keys.yzw, ivec3(OVC_NO_CHILD)));
+    int others = met.x + met.y + met.z;
+    int word = (first_child << 8) | (others << 6) | (keys.y & 3) | ((keys.z & 3) << 2) | ((keys.w & 3) << 4);
+    bool push = others != 0;
     bool back = leave && !descend;
 
-    int lowest = d.top & -d.top & 15; // its number is (lowest >> 1) - (lowest >> 3)
-    int rest = d.top & (d.top - 1);
-    d.done = d.done || (back && lowest == 0);
-    d.unit = descend ? first_child + child : (back ? (d.top >> 4) + (lowest >> 1) - (lowest >> 3) : d.unit);
+    int left = (d.top >> 6) & 3;
+    int rest = (d.top & ~255) | ((left - 1) << 6) | ((d.top & 63) >> 2);
+    d.done = d.done || (back && left == 0);
+    d.unit = descend ? first_child + (keys.x & 3) : (back ? (d.top >> 8) + (d.top & 3) : d.unit);
 
     bool store = push && d.top != 0;
-    bool pop = back && (rest & 15) == 0;
+    bool pop = back && left <= 1;
     int below = 0;
 #if OVC_STACK_REGISTERS
     // One comparison serves both ways: nobody reads the slot again that a word was popped from.
@@ -68,7 +68,7 @@ void advance(inout Descent d, int first_child, ivec4 keys, bool leave) {
         below = d.stack[d.height];
 #endif
     d.height += store ? 1 : (pop && d.height >= 0 ? -1 : 0);
-    d.top = push ? (first_child << 4) | others : (pop ? below : (back ? rest : d.top));
+    d.top = push ? word : (pop ? below : (back ? rest : d.top));
 }
 
 #if OVC_TELL_ACTIVE && OVC_LINKED
