@@ -2,6 +2,7 @@
 // A page, walked on the CPU, offers every triangle that a ray hits; and it is as small as promised.
 #include "gpu/page.h"
 
+#include "core/parallel.h"
 #include "gpu/page_walk.h"
 #include "kdtree/test_soups.h"
 
@@ -56,6 +57,21 @@ TEST(Page, TakesAtMost52BytesATriangleWhereMostPairUpAnd96InASoup) {
     const Level1 of_soup = one_leaf(soup);
     EXPECT_LE(double(build_page(soup, Numbering(soup), of_soup.leaves[0]).bytes()),
               96.0 * double(soup.triangle_count()));
+}
+
+TEST(Page, HasTheSameBitsOnAnyNumberOfThreads) {
+    const Soup mesh = test::closed_grid(256); // several blocks of pairs, and a tree in parallel
+    const Soup soup = test::random_soup(3, 20000, 0.02);
+    for (const Soup* each : {&mesh, &soup}) {
+        const Level1 level1 = one_leaf(*each);
+        const Page page = build_page(*each, Numbering(*each), level1.leaves[0]);
+        for (const size_t threads : {1, 2, 5}) {
+            const ThreadLimit limit(threads);
+            const Page again = build_page(*each, Numbering(*each), level1.leaves[0]);
+            EXPECT_EQ(page.texels, again.texels) << threads;
+            EXPECT_EQ(page.depth, again.depth) << threads;
+        }
+    }
 }
 
 TEST(Page, NeedsFewStackWordsEvenWhereNothingCanBeSplit) {
