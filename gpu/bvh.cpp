@@ -3,6 +3,8 @@
 #include "gpu/bvh.h"
 
 #include "core/parallel.h"
+#include "gpu/bvh_items.h"
+#include "gpu/spatial_split.h"
 
 #include <algorithm>
 #include <array>
@@ -14,42 +16,18 @@ namespace {
 
 constexpr int kBins = 16;
 constexpr size_t kParallelBuild = 4096;
-
-/// A box as four floats a corner: the compiler makes one vector operation of each minimum and
-/// maximum.
-struct alignas(16) Bounds {
-    std::array<float, 4> lo;
-    std::array<float, 4> hi;
-
-    static Bounds empty() {
-        constexpr float inf = std::numeric_limits<float>::infinity();
-        return {{inf, inf, inf, inf}, {-inf, -inf, -inf, -inf}};
-    }
-    void add(const Bounds& b) {
-        for (int i = 0; i < 4; ++i) {
-            lo[i] = b.lo[i] < lo[i] ? b.lo[i] : lo[i];
-            hi[i] = b.hi[i] > hi[i] ? b.hi[i] : hi[i];
-        }
-    }
-    float half_area() const {
-        const float x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
-        return x * y + y * z + z * x;
-    }
-    Boxf box() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
-};
-
-struct Item {
-    Bounds
-        bounds; // lo[3] holds the index's bits, untouched by min and max because hi[3] is not read
-    uint32_t index() const { return std::bit_cast<uint32_t>(bounds.lo[3]); }
-    /// Twice the centre along an axis.
-    float center(int axis) const { return bounds.lo[axis] + bounds.hi[axis]; }
-};
+// A plane is looked for at nodes of so many items, where the best two sides share this much of the
+// node's area, and taken where it leaves less than this of the cost. Below, planes gain nothing
+// that could be measured.
+constexpr size_t kFewestToCut = 1024;
+constexpr float kLeastOverlap = 0.1f;
+constexpr float kWorthCutting = 0.95f;
 
 struct Split {
     float cost = std::numeric_limits<float>::infinity();
     int axis = -1;
     int bin = 0;
+    float overlap = 0; // half the surface area of what both sides' boxes share
 };
 
 /// Bin numbers of centres between two bounds, per axis; all zero along an axis without extent.
@@ -63,45 +41,57 @@ struct Binning {
     }
 };
 
+/// Items of a subtree: [first, last), and room for more up to `end`.
+struct Range {
+    size_t first;
+    size_t last;
+    size_t end;
+
+    size_t count() const { return last - first; }
+    size_t spare() const { return end - last; }
+};
+
 class Builder {
 public:
-    Builder(std::vector<Item>& items, std::vector<BvhNode>& nodes, BuildProgress* progress)
-        : items_(items), nodes_(nodes), progress_(progress) {}
+    Builder(std::vector<Item>& items, std::vector<BvhNode>& nodes,
+            std::span<const TrianglePair> pairs, BuildProgress* progress)
+        : items_(items), nodes_(nodes), pairs_(pairs), progress_(progress) {}
 
-    void build(uint32_t node, size_t first, size_t last, int depth) {
-        if (last - first <= kParallelBuild) {
-            build_alone(node, first, last, depth);
-            add(progress_, last - first);
+    void build(uint32_t node, const Range& range, int depth) {
+        if (range.count() <= kParallelBuild) {
+            build_alone(node, range, depth);
+            add(progress_, range.count());
             return;
         }
         add(progress_, 0);
-        const size_t middle = open(node, first, last, depth);
-        parallel_invoke([&] { build(node + 1, first, middle, depth + 1); },
-                        [&] { build(nodes_[node].right, middle, last, depth + 1); });
+        Range left, right;
+        open(node, range, depth, left, right);
+        parallel_invoke([&] { build(node + 1, left, depth + 1); },
+                        [&] { build(nodes_[node].right, right, depth + 1); });
     }
 
 private:
-    void build_alone(uint32_t node, size_t first, size_t last, int depth) {
-        const size_t middle = open(node, first, last, depth);
-        if (last - first == 1)
+    void build_alone(uint32_t node, const Range& range, int depth) {
+        Range left, right;
+        if (!open(node, range, depth, left, right))
             return;
-        build_alone(node + 1, first, middle, depth + 1);
-        build_alone(nodes_[node].right, middle, last, depth + 1);
+        build_alone(node + 1, left, depth + 1);
+        build_alone(nodes_[node].right, right, depth + 1);
     }
 
-    /// Fills the node in; returns where its items are divided in two, if they are.
-    size_t open(uint32_t node, size_t first, size_t last, int depth) {
+    /// Fills the node in; true where its items are divided in two.
+    bool open(uint32_t node, const Range& range, int depth, Range& left, Range& right) {
         Bounds bounds = Bounds::empty();
         Bounds centers = Bounds::empty();
-        measure(first, last, bounds, centers);
+        measure(range.first, range.last, bounds, centers);
         nodes_[node].box = bounds.box();
-        if (last - first == 1) {
-            nodes_[node].item = items_[first].index();
-            return first;
+        if (range.count() == 1) {
+            nodes_[node].item = items_[range.first].index();
+            return false;
         }
-        const size_t middle = divide(first, last, centers, depth);
-        nodes_[node].right = node + uint32_t(2 * (middle - first));
-        return middle;
+        divide(range, bounds, centers, depth, left, right);
+        nodes_[node].right = node + uint32_t(2 * (left.end - left.first));
+        return true;
     }
 
     void measure(size_t first, size_t last, Bounds& bounds, Bounds& centers) const {
@@ -115,18 +105,60 @@ private:
         }
     }
 
-    size_t divide(size_t first, size_t last, const Bounds& centers, int depth) {
-        const size_t count = last - first;
-        const int halvings = int(std::bit_width(count - 1));
-        const Binning binning = binning_of(centers, count);
-        const Split split =
-            depth + halvings < kMaxBvhDepth ? best_split(first, last, binning) : Split{};
-        if (split.axis < 0)
-            return first + count / 2; // all centres in one place, or no depth left to choose
-        const auto middle =
-            std::partition(items_.begin() + ptrdiff_t(first), items_.begin() + ptrdiff_t(last),
-                           [&](const Item& item) { return binning(item, split.axis) < split.bin; });
-        return size_t(middle - items_.begin());
+    void divide(const Range& range, const Bounds& bounds, const Bounds& centers, int depth,
+                Range& left, Range& right) {
+        const auto [first, last, end] = range;
+        const int halvings = int(std::bit_width(range.count() - 1));
+        const bool free = depth + halvings < kMaxBvhDepth; // no depth left: halves by count
+        const Binning binning = binning_of(centers, range.count());
+        const Split split = free ? best_split(first, last, binning) : Split{};
+        if (split.axis >= 0 && range.spare() > 0 &&
+            divide_in_space(range, bounds, split, left, right))
+            return;
+        size_t middle = first + range.count() / 2; // all centres in one place
+        if (split.axis >= 0)
+            middle = size_t(std::partition(items_.begin() + ptrdiff_t(first),
+                                           items_.begin() + ptrdiff_t(last),
+                                           [&](const Item& item) {
+                                               return binning(item, split.axis) < split.bin;
+                                           }) -
+                            items_.begin());
+        // The room is shared out by count.
+        const size_t room = range.spare() * (middle - first) / range.count();
+        if (room > 0)
+            std::move_backward(items_.begin() + ptrdiff_t(middle), items_.begin() + ptrdiff_t(last),
+                               items_.begin() + ptrdiff_t(last + room));
+        left = {first, middle, middle + room};
+        right = {middle + room, last + room, end};
+    }
+
+    /// Cuts the items by a plane where that gains enough.
+    bool divide_in_space(const Range& range, const Bounds& bounds, const Split& split, Range& left,
+                         Range& right) {
+        if (range.count() < kFewestToCut || split.overlap < kLeastOverlap * bounds.half_area())
+            return false;
+        const std::span<const Item> items(items_.data() + range.first, range.count());
+        const SpatialSplit plane = best_spatial_split(items, bounds, range.spare());
+        if (!(plane.cost < kWorthCutting * split.cost))
+            return false;
+        const auto [below, above] = checked(divide_by_plane(items, plane, pairs_, range.spare()),
+                                            kWorthCutting * split.cost, items.size());
+        if (below.empty())
+            return false;
+        const size_t count = below.size() + above.size();
+        const size_t room = (range.end - range.first - count) * below.size() / count;
+        left = {range.first, range.first + below.size(), range.first + below.size() + room};
+        right = {left.end, left.end + above.size(), range.end};
+        std::copy(below.begin(), below.end(), items_.begin() + ptrdiff_t(left.first));
+        std::copy(above.begin(), above.end(), items_.begin() + ptrdiff_t(right.first));
+        return true;
+    }
+
+    /// The halves, or none where they cost more, or where one of them is as large as the whole.
+    static Halves checked(Halves halves, float most_cost, size_t whole) {
+        const bool fine =
+            halves.below.size() < whole && halves.above.size() < whole && halves.cost() < most_cost;
+        return fine ? std::move(halves) : Halves{};
     }
 
     static Binning binning_of(const Bounds& centers, size_t count) {
@@ -172,32 +204,43 @@ private:
                     continue;
                 const float cost = left.bounds.half_area() * float(left.count) + right_cost[i];
                 if (cost < best.cost)
-                    best = {cost, axis, i};
+                    best = {cost, axis, i, 0};
             }
+        }
+        if (best.axis >= 0) {
+            std::array<Bounds, 2> sides{Bounds::empty(), Bounds::empty()};
+            for (int i = 0; i < binning.bins; ++i)
+                sides[i >= best.bin].add(bins[best.axis][i].bounds);
+            best.overlap = sides[0].box().intersection(sides[1].box()).half_area();
         }
         return best;
     }
 
     std::vector<Item>& items_;
     std::vector<BvhNode>& nodes_;
+    const std::span<const TrianglePair> pairs_;
     BuildProgress* progress_;
 };
 
 } // namespace
 
-std::vector<BvhNode> build_bvh(std::span<const Boxf> boxes, BuildProgress* progress) {
+std::vector<BvhNode> build_split_bvh(std::span<const Boxf> boxes,
+                                     std::span<const TrianglePair> pairs, size_t most_added,
+                                     BuildProgress* progress) {
     std::vector<BvhNode> nodes;
     if (boxes.empty())
         return nodes;
-    std::vector<Item> items(boxes.size());
-    for (size_t i = 0; i < boxes.size(); ++i) {
-        const Boxf& b = boxes[i];
-        items[i].bounds = {{b.lo.x, b.lo.y, b.lo.z, std::bit_cast<float>(uint32_t(i))},
-                           {b.hi.x, b.hi.y, b.hi.z, 0}};
-    }
-    nodes.resize(2 * boxes.size() - 1);
-    Builder(items, nodes, progress).build(0, 0, items.size(), 0);
+    const size_t most = boxes.size() + most_added;
+    std::vector<Item> items(most);
+    for (size_t i = 0; i < boxes.size(); ++i)
+        items[i] = Item::of(boxes[i], uint32_t(i));
+    nodes.resize(2 * most - 1);
+    Builder(items, nodes, pairs, progress).build(0, {0, boxes.size(), most}, 0);
     return nodes;
+}
+
+std::vector<BvhNode> build_bvh(std::span<const Boxf> boxes, BuildProgress* progress) {
+    return build_split_bvh(boxes, {}, 0, progress);
 }
 
 } // namespace ovc

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "core/build_progress.h"
+#include "core/parallel.h"
 #include "gpu/bvh.h"
+#include "gpu/collapse.h"
 #include "gpu/page.h"
 #include "shaders/layout.h"
 
@@ -27,39 +29,40 @@ struct GridHeader {
 };
 
 /// Grid: lo(box, axis) and hi(box, axis), the 16-bit coordinates of a box of the BVH.
-/// PutItem: put(item, unit) writes the four texels of a leaf of the BVH.
+/// PutItem: put(item, unit) writes the four texels of a leaf of the BVH; from several threads.
 template <class Grid, class PutItem>
 class Packer {
 public:
-    /// Keeps the references. The BVH has nodes.
+    /// Keeps the references. The BVH has nodes. Asks `progress` whether to go on.
     Packer(const std::vector<BvhNode>& nodes, const GridHeader& header, const Grid& grid,
            const PutItem& put, BuildProgress* progress)
-        : nodes_(nodes), header_(header), grid_(grid), put_(put), progress_(progress) {}
+        : nodes_(nodes),
+          header_(header),
+          grid_(grid),
+          put_(put),
+          progress_(progress),
+          collapse_(nodes, progress),
+          below_(nodes.size()) {}
 
     Page pack() {
-        add_units(1 + 1);
+        const Extent all = measure(collapse_.root());
+        page_.texels.assign(size_t(kFirstFree + all.units) * OVC_UNIT_TEXELS, uvec4(0));
+        page_.depth = all.depth;
         unit(0)[0] = {bits(header_.org.x), bits(header_.org.y), bits(header_.org.z), 0};
         unit(0)[1] = {bits(header_.cell.x), bits(header_.cell.y), bits(header_.cell.z), 0};
         unit(0)[2] = {OVC_ROOT_UNIT, 0xffffffffu, 0, 0};
-        unit(0)[3] = uvec4(0);
         // Even a single item gets a node above it, so that its box is tested.
-        pending_.push_back({0, OVC_ROOT_UNIT, 1});
-        LoopProgress loop(progress_);
-        while (!pending_.empty()) {
-            const Pending next = pending_.back();
-            pending_.pop_back();
-            page_.depth = std::max(page_.depth, next.depth);
-            pack_node(next);
-            loop.step();
-        }
-        loop.finish();
+        write(collapse_.root(), OVC_ROOT_UNIT, kFirstFree);
         return std::move(page_);
     }
 
 private:
-    struct Pending {
-        uint32_t node; // of the BVH
-        uint32_t unit;
+    static constexpr uint32_t kFirstFree = OVC_ROOT_UNIT + 1;
+    static constexpr uint32_t kParallelPack = 16384; // nodes of the BVH
+
+    /// What lies below a node: units, and nodes on the longest way, itself included.
+    struct Extent {
+        uint32_t units;
         uint32_t depth;
     };
 
@@ -69,62 +72,71 @@ private:
             .template first<OVC_UNIT_TEXELS>();
     }
 
-    uint32_t add_units(uint32_t count) {
-        const size_t first = page_.texels.size() / OVC_UNIT_TEXELS;
-        page_.texels.resize(page_.texels.size() + size_t(count) * OVC_UNIT_TEXELS, uvec4(0));
-        return uint32_t(first);
+    bool is_leaf(Subtree of) const { return nodes_[of.node].is_leaf(); }
+
+    /// Calls visit(i) for each child, in parallel where they are large.
+    template <class Visit>
+    void for_each(const Children& children, Subtree of, Visit&& visit) {
+        if (of.end - of.node <= kParallelPack) {
+            for (int i = 0; i < children.count; ++i)
+                visit(size_t(i));
+            return;
+        }
+        parallel_for(size_t(children.count), 1, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i)
+                visit(i);
+        });
+        add(progress_, 0);
     }
 
-    /// Up to four descendants that together hold the node's boxes: the widest inner one is opened
-    /// until four are found.
-    int children(uint32_t node, std::array<uint32_t, 4>& found) const {
-        if (nodes_[node].is_leaf()) {
-            found[0] = node;
-            return 1;
+    Extent measure(Subtree of) {
+        const Children children = collapse_.children(of);
+        std::array<Extent, 4> extent{};
+        for_each(children, of, [&](size_t i) {
+            if (!is_leaf(children.subtree[i]))
+                extent[i] = measure(children.subtree[i]);
+        });
+        Extent all{uint32_t(children.count), 0};
+        for (const Extent& e : extent) {
+            all.units += e.units;
+            all.depth = std::max(all.depth, e.depth);
         }
-        int count = 2;
-        found[0] = node + 1;
-        found[1] = nodes_[node].right;
-        while (count < 4) {
-            int widest = -1;
-            float area = -1;
-            for (int i = 0; i < count; ++i) {
-                const BvhNode& n = nodes_[found[i]];
-                if (!n.is_leaf() && n.box.half_area() > area) {
-                    area = n.box.half_area();
-                    widest = i;
-                }
-            }
-            if (widest < 0)
-                break;
-            const uint32_t opened = found[widest];
-            found[widest] = opened + 1;
-            found[count++] = nodes_[opened].right;
-        }
-        return count;
+        ++all.depth;
+        return below_[of.node] = all;
     }
 
-    void pack_node(const Pending& at) {
-        std::array<uint32_t, 4> child;
-        const int count = children(at.node, child);
-        const uint32_t base = add_units(uint32_t(count));
+    /// Into the unit `at`; what lies below goes into those from `free` on: the children, then what
+    /// lies below each.
+    void write(Subtree of, uint32_t at, uint32_t free) {
+        const Children children = collapse_.children(of);
+        put_boxes(children, at);
+        unit(at)[3] = {free, 0, 0, 0};
+        std::array<uint32_t, 4> free_of{};
+        uint32_t next = free + uint32_t(children.count);
+        for (size_t i = 0; i < size_t(children.count); ++i) {
+            free_of[i] = next;
+            if (!is_leaf(children.subtree[i]))
+                next += below_[children.subtree[i].node].units;
+        }
+        for_each(children, of, [&](size_t i) {
+            const Subtree child = children.subtree[i];
+            if (is_leaf(child))
+                put_(nodes_[child.node].item, unit(free + uint32_t(i)));
+            else
+                write(child, free + uint32_t(i), free_of[i]);
+        });
+    }
+
+    void put_boxes(const Children& children, uint32_t at) {
         for (int axis = 0; axis < 3; ++axis) {
             std::array<uint32_t, 4> lo{0xffff, 0xffff, 0xffff, 0xffff};
             std::array<uint32_t, 4> hi{0, 0, 0, 0};
-            for (int i = 0; i < count; ++i) {
-                lo[i] = grid_.lo(nodes_[child[i]].box, axis);
-                hi[i] = grid_.hi(nodes_[child[i]].box, axis);
+            for (size_t i = 0; i < size_t(children.count); ++i) {
+                lo[i] = grid_.lo(nodes_[children.subtree[i].node].box, axis);
+                hi[i] = grid_.hi(nodes_[children.subtree[i].node].box, axis);
             }
-            unit(at.unit)[axis] = {lo[0] | lo[1] << 16, lo[2] | lo[3] << 16, hi[0] | hi[1] << 16,
-                                   hi[2] | hi[3] << 16};
-        }
-        unit(at.unit)[3] = {base, 0, 0, 0};
-        for (int i = 0; i < count; ++i) {
-            const BvhNode& node = nodes_[child[i]];
-            if (node.is_leaf())
-                put_(node.item, unit(base + uint32_t(i)));
-            else
-                pending_.push_back({child[i], base + uint32_t(i), at.depth + 1});
+            unit(at)[size_t(axis)] = {lo[0] | lo[1] << 16, lo[2] | lo[3] << 16, hi[0] | hi[1] << 16,
+                                      hi[2] | hi[3] << 16};
         }
     }
 
@@ -133,8 +145,9 @@ private:
     const Grid& grid_;
     const PutItem& put_;
     BuildProgress* progress_;
+    const Collapse collapse_;
+    std::vector<Extent> below_; // per node of the BVH that remains
     Page page_;
-    std::vector<Pending> pending_;
 };
 
 } // namespace ovc

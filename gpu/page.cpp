@@ -72,6 +72,13 @@ void put_pair(const TrianglePair& pair, std::span<uvec4, OVC_UNIT_TEXELS> unit) 
     }
 }
 
+/// How many pairs planes may cut in two. A tenth, so that a page stays within what was planned; and
+/// units of a page are never more than if no two triangles made a pair: slivers strewn at random,
+/// where planes would cut nearly all, are left to level 1.
+size_t most_cut(size_t pairs, size_t triangles) {
+    return std::min(pairs / 10, triangles - pairs);
+}
+
 /// name: index into leaf.triangles -> what the page calls it.
 template <class Name>
 Page build_named(const Soup& soup, const Leaf& leaf, BuildProgress* progress, Name&& name) {
@@ -91,7 +98,8 @@ Page build_named(const Soup& soup, const Leaf& leaf, BuildProgress* progress, Na
         boxes[i] = {glm::clamp(boxes[i].lo, inside.lo, inside.hi),
                     glm::clamp(boxes[i].hi, inside.lo, inside.hi)};
     }
-    const std::vector<BvhNode> nodes = build_bvh(boxes, progress);
+    const std::vector<BvhNode> nodes =
+        build_split_bvh(boxes, pairs, most_cut(pairs.size(), leaf.triangles.size()), progress);
     const Grid grid({leaf.frame.to_local(leaf.grid.lo), leaf.frame.to_local(leaf.grid.hi)});
     const GridHeader header{grid.org(), grid.cell()};
     const auto put = [&](uint32_t pair, std::span<uvec4, OVC_UNIT_TEXELS> unit) {

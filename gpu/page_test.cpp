@@ -2,6 +2,8 @@
 // A page, walked on the CPU, offers every triangle that a ray hits; and it is as small as promised.
 #include "gpu/page.h"
 
+#include "core/parallel.h"
+#include "gpu/page_check.h"
 #include "gpu/page_walk.h"
 #include "kdtree/test_soups.h"
 
@@ -16,8 +18,44 @@ Level1 one_leaf(const Soup& soup) {
     return partition(soup, ids, bounds, 1u << 30);
 }
 
+/// Rods across the axes, two triangles each, one in 20 of them long: planes cut those.
+Soup rods(size_t count) {
+    test::Random random(17);
+    std::vector<vec3> corners;
+    for (size_t i = 0; i < count; ++i) {
+        const vec3 from(random.point(-1, 1));
+        const vec3 along = (i % 20 ? 0.02f : 1.0f) * vec3(random.point(-1, 1));
+        const vec3 across = 0.005f * vec3(random.point(-1, 1));
+        for (const vec3& corner : {from, from + along, from + across, from + along, from + across,
+                                   from + along + across})
+            corners.push_back(corner);
+    }
+    Soup soup;
+    soup.chunks.push_back(Chunk::owning(dvec3(0), std::move(corners)));
+    return soup;
+}
+
+uint64_t pairs_of(const Page& page) {
+    uint64_t pairs = 0;
+    for (uint64_t unit = OVC_ROOT_UNIT; unit < page.units(); ++unit)
+        pairs += page.texels[unit * OVC_UNIT_TEXELS + 3].w == OVC_PAIR;
+    return pairs;
+}
+
+TEST(Page, HoldsWhatPlanesCutInEachPart) {
+    constexpr size_t kRods = 4000;
+    const Soup soup = rods(kRods);
+    const Level1 level1 = one_leaf(soup);
+    const Page page = build_page(soup, Numbering(soup), level1.leaves[0]);
+    EXPECT_GT(pairs_of(page), kRods * 102 / 100);
+    EXPECT_LE(pairs_of(page), kRods * 110 / 100);
+    EXPECT_TRUE(is_walkable(page, uint32_t(soup.triangle_count())));
+}
+
 TEST(Page, WalkedInDoubleFindsWhatBruteForceFinds) {
-    for (const auto& [name, soup] : test::unpleasant_soups()) {
+    auto soups = test::unpleasant_soups();
+    soups.push_back({"rods", rods(3000)});
+    for (const auto& [name, soup] : soups) {
         const Level1 level1 = one_leaf(soup);
         if (level1.leaves.empty())
             continue;
@@ -56,6 +94,22 @@ TEST(Page, TakesAtMost52BytesATriangleWhereMostPairUpAnd96InASoup) {
     const Level1 of_soup = one_leaf(soup);
     EXPECT_LE(double(build_page(soup, Numbering(soup), of_soup.leaves[0]).bytes()),
               96.0 * double(soup.triangle_count()));
+}
+
+TEST(Page, HasTheSameBitsOnAnyNumberOfThreads) {
+    const Soup mesh = test::closed_grid(256); // several blocks of pairs, and a tree in parallel
+    const Soup soup = test::random_soup(3, 20000, 0.02);
+    const Soup cut = rods(4000);
+    for (const Soup* each : {&mesh, &soup, &cut}) {
+        const Level1 level1 = one_leaf(*each);
+        const Page page = build_page(*each, Numbering(*each), level1.leaves[0]);
+        for (const size_t threads : {1, 2, 5}) {
+            const ThreadLimit limit(threads);
+            const Page again = build_page(*each, Numbering(*each), level1.leaves[0]);
+            EXPECT_EQ(page.texels, again.texels) << threads;
+            EXPECT_EQ(page.depth, again.depth) << threads;
+        }
+    }
 }
 
 TEST(Page, NeedsFewStackWordsEvenWhereNothingCanBeSplit) {

@@ -61,9 +61,9 @@ bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pa
                             edge_error(v1, v2), e20_error, with_corner(depths, v1));
     Candidate b = candidate(v0, v3, v2, edge(v0, v3), edge(v3, v2), e20, edge_error(v0, v3),
                             edge_error(v3, v2), e20_error, with_corner(depths, v3));
-    // Where pages are linked, what planes of level 1 cut comes once for each leaf: it is no rival of itself.
-    bool fresh_a = OVC_LINKED == 0 || X.w != found.prim;
-    bool fresh_b = OVC_LINKED == 0 || Y.w != found.prim;
+    // What planes cut comes once for each part, within a page and in linked ones: it is no rival of itself.
+    bool fresh_a = X.w != found.prim;
+    bool fresh_b = Y.w != found.prim;
     bool took_a = take(found, a, is_pair && X.w != skip && fresh_a, X.w, Z.w);
     bool took_b = take(found, b, is_pair && Y.w != skip && Y.w != OVC_NO_TRIANGLE && fresh_b, Y.w, Z.w >> 4);
     return took_a || took_b;
