@@ -21,11 +21,6 @@ std::string_view verdict(const Bar& bar) {
     return bar.passed() ? "passed" : "failed";
 }
 
-bool all_passed(std::span<const Bar> bars) {
-    return std::none_of(bars.begin(), bars.end(),
-                        [](const Bar& bar) { return bar.measured && !bar.passed(); });
-}
-
 Bar skipped_bar(std::string what, std::string why) {
     Bar bar;
     bar.what = std::move(what);

@@ -50,12 +50,9 @@ std::vector<Bar> import_bars(std::span<const std::pair<std::string, ImportCost>>
 /// A line that was not measured, and why.
 Bar skipped_bar(std::string what, std::string why);
 
-/// Markdown, with a line end.
+/// Markdown, and a sentence on how many lines hold; with a line end.
 std::string bars_table(std::span<const Bar> bars);
 std::string bars_json(std::span<const Bar> bars, std::span<const BenchResult> results,
                       const ProgramsResult* programs);
-
-/// False: a line failed.
-bool all_passed(std::span<const Bar> bars);
 
 } // namespace ovc

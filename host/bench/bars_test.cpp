@@ -45,8 +45,6 @@ TEST(Bars, DivideThePeersKernelByOurs) {
     EXPECT_EQ(verdict(bars[3]), "passed");  // of 2.5
     EXPECT_DOUBLE_EQ(*bars[6].measured, 2); // the frame: 1 s against 0.5
     EXPECT_EQ(verdict(bars[6]), "failed");
-    EXPECT_FALSE(all_passed(bars));
-    EXPECT_TRUE(all_passed(std::span(bars).first(6)));
 }
 
 TEST(Bars, AreSkippedWithoutThePeer) {
@@ -55,7 +53,6 @@ TEST(Bars, AreSkippedWithoutThePeer) {
     const std::vector<Bar> bars = kernel_bars(r);
     EXPECT_EQ(verdict(bars[0]), "skipped");
     EXPECT_THAT(bars[0].note, testing::HasSubstr("embree-robust did not take part"));
-    EXPECT_TRUE(all_passed(std::span(bars).first(3)));
 }
 
 TEST(Bars, SumTheRaySetsOfEachPlaceInASweep) {
@@ -101,6 +98,7 @@ TEST(Bars, AreATableAndJsonOfTheSameLines) {
         EXPECT_THAT(table, testing::HasSubstr(bar["line"].get<std::string>()));
     EXPECT_THAT(table, testing::ContainsRegex("certified against fast +\\| +2.00 \\| +at most 1.25 "
                                               "\\| +1.10 \\| +failed"));
+    EXPECT_THAT(table, testing::HasSubstr("6 lines hold, 1 do not, 1 were not measured here."));
     EXPECT_EQ(document["bars"].back()["measured"], nullptr);
     EXPECT_EQ(document["scenes"].size(), 1u);
     EXPECT_EQ(document["programs"], nullptr);

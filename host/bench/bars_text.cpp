@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 namespace ovc {
 
 /// As short as the number allows: ratios to a hundredth, bytes and MB/s whole.
@@ -23,7 +25,12 @@ std::string bars_table(std::span<const Bar> bars) {
                         promised ? sign + number(bar.at_least) : "-",
                         promised ? number(bar.aim) : "-", std::string(verdict(bar)), bar.note});
     }
-    return markdown_table(rows);
+    const auto count = [&](std::string_view v) {
+        return std::count_if(bars.begin(), bars.end(),
+                             [&](const Bar& bar) { return verdict(bar) == v; });
+    };
+    return fmt::format("{}\n{} lines hold, {} do not, {} were not measured here.\n",
+                       markdown_table(rows), count("passed"), count("failed"), count("skipped"));
 }
 
 std::string bars_json(std::span<const Bar> bars, std::span<const BenchResult> results,
