@@ -256,8 +256,10 @@ private:
     void for_each_block(std::span<const Ray> rays, std::span<const TriangleId> skip,
                         const Find& find, const Tell& tell) {
         constexpr size_t most = Block<N>::kRays;
-        std::atomic<double> inside = 0; // of all threads together
+        const Stopwatch call;
+        std::atomic<double> inside = 0, all = 0; // seconds of all threads together
         parallel_for((rays.size() + most - 1) / most, 1, [&](size_t first, size_t last) {
+            const Stopwatch task;
             Block<N> block;
             for (size_t b = first; b < last; ++b) {
                 const size_t from = b * most;
@@ -269,8 +271,11 @@ private:
                 for (size_t i = 0; i < count; ++i)
                     tell(block, from + i, i);
             }
+            all += task.seconds();
         });
-        statistics_.seconds_kernel += inside / double(thread_count());
+        // Its share of the call, however many threads the machine had to give.
+        if (all > 0)
+            statistics_.seconds_kernel += call.seconds() * inside / all;
     }
 
     EmbreeMode mode_;

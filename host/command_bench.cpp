@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // overcast bench: how fast rays are answered, by the plugin certified and fast and by its peers, in
-// turn on the same rays.
-#include "core/stopwatch.h"
+// turn on the same rays; and what that comes to: bars, whole programs, growth.
 #include "host/bench/bench_arguments.h"
 #include "host/bench/bench_text.h"
-#include "host/camera.h"
+#include "host/bench/run_bars.h"
+#include "host/bench/scene_bench.h"
+#include "host/bench/sweep.h"
 #include "host/command.h"
 #include "host/interrupt.h"
 #include "host/log_arguments.h"
 #include "host/output.h"
 #include "host/scene_source.h"
-#include "host/scene_summary.h"
 #include "host/terminal_line.h"
-#include "kdtree/build.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <cstdio>
 #include <mutex>
 #include <set>
-#include <thread>
 
 namespace ovc {
 
@@ -35,6 +32,12 @@ constexpr const char* kExamples = R"(Examples:
       what leaves cost: each row says its time to the first row's
   overcast bench plants --only certified --resident all,30%
       what a budget costs that holds 30 % of the pages
+  overcast bench dragon.ply --bars --json bars.json
+      the table of what is promised: kernels, builds, import, memory, whole programs
+  overcast bench dragon.ply --programs --size 512x512
+      overcast render beside povray and tachyon, where they are installed
+  overcast bench plants --sweep budget
+      what a budget of 5 % to 100 % of the pages costs; rays, triangles, leaves likewise
   overcast bench dragon.ply --json - | jq '.scenes[].measurements[] | {contender, call_seconds}'
 
 All contenders answer the same rays with the same number of threads, and are in memory at once.
@@ -58,101 +61,89 @@ private:
     std::set<std::string> said_;
 };
 
-double load_average() {
-    double load = 0;
-    return getloadavg(&load, 1) == 1 ? load : 0;
+/// Tables for people, unless JSON goes where they would.
+void show(const BenchJob& job, const std::string& table) {
+    if (job.json == "-")
+        return;
+    fmt::print("{}", table);
+    std::fflush(stdout);
 }
 
-/// The scene's own camera and lights, or those that `overcast render` would add.
-Result<Camera> dress(Scene& scene, const ImageSize& size) {
-    const Camera camera =
-        scene.camera ? *scene.camera
-                     : framing_camera(hittable_bounds(scene.soup), size.width, size.height);
-    scene.lights = placed_lights(scene.lights, camera);
-    const Result<Done> fine = check_camera(camera);
-    return fine ? Result<Camera>(camera) : fine.error();
-}
-
-Result<std::vector<Workload>> workloads_of(const Scene& scene, const Camera& camera,
-                                           const ImageSize& size, Backend& reference,
-                                           const StopRequest& stop) {
-    Result<std::vector<RaySet>> sets =
-        make_ray_sets(scene, camera, size.width, size.height, reference);
-    if (!sets)
-        return sets.error();
-    std::vector<Workload> workloads;
-    for (RaySet& set : *sets)
-        workloads.push_back(ray_workload(std::move(set)));
-    workloads.push_back(frame_workload(scene, camera, size.width, size.height, stop));
-    return workloads;
-}
-
-/// Fewer than asked for where it was stopped.
-Result<std::vector<Entrant>> build_entrants(const BenchJob& job, ContenderBuilder& builder,
-                                            const StopRequest& stop, TerminalLine& progress) {
-    std::vector<Entrant> entrants;
-    for (const Contender& contender : job.contenders) {
-        if (stop())
-            break;
-        progress.show("building " + contender.label());
-        Result<std::shared_ptr<Backend>> backend = builder.build(contender);
-        if (!backend)
-            return Error{fmt::format("{}: {}", contender.label(), backend.error().message)};
-        entrants.push_back({contender, std::move(*backend)});
-    }
-    return entrants;
-}
-
-Result<BenchResult> bench_scene(const BenchJob& job, const std::string& source,
-                                const StopRequest& stop, const LogSink& log,
-                                TerminalLine& progress) {
-    BenchResult result;
-    result.scene = source;
-    result.width = job.size.width;
-    result.height = job.size.height;
-    result.threads = std::thread::hardware_concurrency();
-    progress.show("reading " + source);
-    const Stopwatch import;
-    Result<Scene> scene = open_scene(source, log);
-    if (!scene)
-        return scene.error();
-    result.seconds_import = import.seconds();
-    result.triangles = scene->soup.triangle_count();
-    const Result<Camera> camera = dress(*scene, job.size);
-    if (!camera)
-        return Error{fmt::format("{}: {}", source, camera.error().message)};
-
-    progress.show("building the reference");
-    const Stopwatch building;
-    const auto tree = std::make_shared<const KdTree>(build_kd_tree(scene->soup));
-    const std::shared_ptr<Backend> reference =
-        make_cpu_backend(scene->soup, tree, building.seconds());
-    ContenderBuilder builder(scene->soup, reference, tree, job.device, log);
-    Result<std::vector<Entrant>> entrants = build_entrants(job, builder, stop, progress);
-    if (!entrants)
-        return entrants.error();
-    Result<std::vector<Workload>> workloads =
-        workloads_of(*scene, *camera, job.size, *reference, stop);
-    if (!workloads)
-        return workloads.error();
-    result.load_before = load_average();
-    const auto observe = [&](const std::string& what) { progress.show(source + ": " + what); };
-    const Result<Done> done =
-        run_contenders(*entrants, *workloads, *reference, job.repeats, stop, observe, result);
-    if (!done)
-        return Error{fmt::format("{}: {}", source, done.error().message)};
-    result.load_after = load_average();
-    progress.clear();
-    return result;
-}
-
-Result<Done> save(const BenchJob& job, std::span<const BenchResult> results) {
+Result<Done> save(const BenchJob& job, const std::string& json) {
     if (job.json.empty())
         return Done{};
     if (job.json != "-")
-        return save_text(bench_json(results), job.json);
-    fmt::print("{}", bench_json(results));
+        return save_text(json, job.json);
+    fmt::print("{}", json);
     return Done{};
+}
+
+Result<Done> bench_contenders(const BenchJob& job, const BenchSurroundings& around) {
+    std::vector<BenchResult> results;
+    for (const std::string& source : job.scenes) {
+        if (around.stop())
+            break;
+        SceneBench bench;
+        bench.scene = source;
+        bench.asked.size = job.size;
+        bench.repeats = job.repeats;
+        bench.contenders = job.contenders;
+        bench.device = job.device;
+        Result<BenchResult> result = bench_scene(bench, around);
+        if (!result)
+            return result.error();
+        show(job, (results.empty() ? "" : "\n") + bench_table(*result));
+        results.push_back(std::move(*result));
+    }
+    if (const Result<Done> saved = save(job, bench_json(results)); !saved)
+        return saved;
+    for (const BenchResult& result : results)
+        if (const std::string wrong = wrong_answers(result); !wrong.empty())
+            return Error{wrong};
+    return Done{};
+}
+
+Result<Done> bench_bars(const BenchJob& job, const BenchSurroundings& around) {
+    const Result<BarsResult> r = run_bars({job.scenes[0], job.device, job.repeats}, around);
+    if (!r)
+        return r.error();
+    show(job, bars_table(r->bars));
+    if (r->programs)
+        show(job, "\n" + programs_table(*r->programs));
+    for (const BenchResult& scene : r->scenes)
+        show(job, "\n" + bench_table(scene));
+    return save(job, bars_json(r->bars, r->scenes, r->programs ? &*r->programs : nullptr));
+}
+
+Result<Done> bench_programs(const BenchJob& job, const BenchSurroundings& around) {
+    const Result<ProgramsResult> r =
+        run_programs(job.scenes[0], job.size.width, job.repeats, around);
+    if (!r)
+        return r.error();
+    show(job, programs_table(*r));
+    return save(job, programs_json(*r));
+}
+
+Result<Done> bench_sweep(const BenchJob& job, const BenchSurroundings& around) {
+    const Result<Sweep> sweep = run_sweep(job, around);
+    if (!sweep)
+        return sweep.error();
+    show(job, sweep_table(*sweep));
+    return save(job, sweep_json(*sweep));
+}
+
+Result<Done> bench_kind(const BenchJob& job, const BenchSurroundings& around) {
+    switch (job.kind) {
+    case BenchKind::Bars:
+        return bench_bars(job, around);
+    case BenchKind::Programs:
+        return bench_programs(job, around);
+    case BenchKind::Sweep:
+        return bench_sweep(job, around);
+    case BenchKind::Contenders:
+        break;
+    }
+    return bench_contenders(job, around);
 }
 
 Result<int> bench(const BenchJob& job, LogLevel level) {
@@ -160,23 +151,9 @@ Result<int> bench(const BenchJob& job, LogLevel level) {
     const StopRequest stop = [&] { return interrupt.interrupted(); };
     TerminalLine progress;
     QuietLog log(level);
-    std::vector<BenchResult> results;
-    for (const std::string& source : job.scenes) {
-        if (stop())
-            break;
-        Result<BenchResult> result = bench_scene(job, source, stop, log.sink(), progress);
-        if (!result)
-            return result.error();
-        if (job.json != "-")
-            fmt::print("{}{}", results.empty() ? "" : "\n", bench_table(*result));
-        std::fflush(stdout);
-        results.push_back(std::move(*result));
-    }
-    if (const Result<Done> saved = save(job, results); !saved)
-        return saved.error();
-    for (const BenchResult& result : results)
-        if (const std::string wrong = wrong_answers(result); !wrong.empty())
-            return Error{wrong};
+    const LogSink sink = log.sink();
+    if (const Result<Done> done = bench_kind(job, {stop, sink, progress}); !done)
+        return done.error();
     if (!stop())
         return kExitOk;
     fmt::print(stderr, "overcast: interrupted; what was measured so far is kept\n");

@@ -5,6 +5,8 @@
 #include "host/output.h"
 #include "testscenes/catalog.h"
 
+#include <array>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,15 +16,30 @@ static constexpr const char* kDefaultScene = "knot";
 /// For a sweep: the device's default, which is enough for most scenes.
 static constexpr std::string_view kAll = "all";
 
+/// In the order of SweepOver.
+static constexpr std::array<std::string_view, 4> kSweeps = {"rays", "triangles", "leaves",
+                                                            "budget"};
+
 void BenchWords::add_to(CLI::App& app) {
     app.add_option("SCENE", scenes,
                    fmt::format("Files or test scenes' names; default: {}", kDefaultScene));
+    CLI::Option* table = app.add_flag(
+        "--bars", bars, "Instead: the table of what is promised, measured over SCENE, a mesh file");
+    CLI::Option* race = app.add_flag("--programs", programs,
+                                     "Instead: overcast render, povray and tachyon on SCENE, a "
+                                     "mesh file, from file to PNG")
+                            ->excludes(table);
+    app.add_option("--sweep", sweep, "Instead: what the plugin's work costs as it grows")
+        ->type_name(choice_names(kSweeps))
+        ->excludes(table)
+        ->excludes(race);
     app.add_option("--only", only,
                    fmt::format("Contenders, or the first words of their names; default: all but "
                                "the thesis- ones of {}",
                                fmt::join(contender_names(), ", ")))
         ->type_name("NAME,...");
-    app.add_option("--size", size, "Pixels, and with them rays; default: 1024x1024")
+    app.add_option("--size", size,
+                   "Pixels, and with them rays; default: 1024x1024; of --programs 512x512")
         ->type_name("WxH");
     app.add_option("--repeats", repeats, "Timed calls of each; default: 5")->type_name("N");
     app.add_option("--leaves", leaves,
@@ -151,12 +168,48 @@ static Result<Done> check_json(const BenchJob& job) {
     return Done{};
 }
 
+/// Which of the four is asked for, and that what goes with the others is not.
+static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
+    const char* option = words.bars ? "--bars" : words.programs ? "--programs" : "--sweep";
+    job.kind = words.bars             ? BenchKind::Bars
+               : words.programs       ? BenchKind::Programs
+               : !words.sweep.empty() ? BenchKind::Sweep
+                                      : BenchKind::Contenders;
+    if (job.kind == BenchKind::Contenders)
+        return Done{};
+    for (const auto& [name, text] :
+         {std::pair("--only", &words.only), std::pair("--leaves", &words.leaves),
+          std::pair("--gpu-memory", &words.gpu_memory), std::pair("--resident", &words.resident)})
+        if (!text->empty())
+            return Error{
+                fmt::format("{} chooses what is measured itself, without {}", option, name)};
+    if (job.kind == BenchKind::Sweep) {
+        const Result<size_t> sweep = parse_choice("--sweep", words.sweep, kSweeps);
+        if (!sweep)
+            return sweep.error();
+        job.sweep = SweepOver(*sweep);
+        if (words.scenes.size() > 1)
+            return Error{"--sweep takes one scene"};
+        if (job.sweep == SweepOver::Triangles && !words.scenes.empty())
+            return Error{"--sweep triangles takes no scene: it has spheres of its own"};
+        return Done{};
+    }
+    if (words.scenes.size() != 1 || !std::filesystem::is_regular_file(words.scenes[0]))
+        return Error{fmt::format("{} needs one mesh file, such as the Stanford dragon's", option)};
+    return Done{};
+}
+
 Result<BenchJob> understand_bench(const BenchWords& words) {
     BenchJob job;
+    if (const Result<Done> fine = understand_kind(words, job); !fine)
+        return fine.error();
     job.scenes = words.scenes.empty() ? std::vector<std::string>{kDefaultScene} : words.scenes;
     job.device = words.device;
     job.json = words.json;
-    const Result<ImageSize> size = parse_size("--size", words.size);
+    const std::string size_words = !words.size.empty()               ? words.size
+                                   : job.kind == BenchKind::Programs ? "512x512"
+                                                                     : "1024x1024";
+    const Result<ImageSize> size = parse_size("--size", size_words);
     if (!size)
         return size.error();
     job.size = *size;

@@ -11,11 +11,18 @@
 
 namespace ovc {
 
+/// What is measured: contenders over scenes, the table of bars, whole programs, or how cost grows.
+enum class BenchKind { Contenders, Bars, Programs, Sweep };
+enum class SweepOver { Rays, Triangles, Leaves, Budget };
+
 /// The words as given.
 struct BenchWords {
     std::vector<std::string> scenes;
+    bool bars = false;
+    bool programs = false;
+    std::string sweep;
     std::string only;
-    std::string size = "1024x1024";
+    std::string size; // empty: 1024x1024, of programs 512x512
     std::string repeats = "5";
     std::string leaves;
     std::string gpu_memory;
@@ -27,6 +34,8 @@ struct BenchWords {
 };
 
 struct BenchJob {
+    BenchKind kind = BenchKind::Contenders;
+    SweepOver sweep = SweepOver::Rays;
     std::vector<std::string> scenes;
     ImageSize size;
     uint32_t repeats = 5;

@@ -97,5 +97,26 @@ TEST(BenchArguments, SayWhatIsWrong) {
         EXPECT_THAT(error(c.words), testing::HasSubstr(c.part));
 }
 
+TEST(BenchArguments, ChooseOneKindOfBench) {
+    EXPECT_EQ(understand_bench({})->kind, BenchKind::Contenders);
+    const Result<BenchJob> leaves = understand_bench({.sweep = "leaves"});
+    ASSERT_TRUE(bool(leaves));
+    EXPECT_EQ(leaves->kind, BenchKind::Sweep);
+    EXPECT_EQ(leaves->sweep, SweepOver::Leaves);
+    BenchWords programs;
+    programs.scenes = {OVC_SOURCE_DIR "/README.md"}; // any file
+    programs.programs = true;
+    ASSERT_TRUE(bool(understand_bench(programs)));
+    EXPECT_EQ(understand_bench(programs)->size.width, 512u);
+    EXPECT_THAT(error({.bars = true}), testing::HasSubstr("--bars needs one mesh file"));
+    EXPECT_THAT(error({.scenes = {"knot"}, .programs = true}),
+                testing::HasSubstr("--programs needs one mesh file"));
+    EXPECT_THAT(error({.sweep = "rats"}), testing::HasSubstr("did you mean 'rays'?"));
+    EXPECT_THAT(error({.sweep = "rays", .only = "fast"}),
+                testing::HasSubstr("--sweep chooses what is measured itself, without --only"));
+    EXPECT_THAT(error({.scenes = {"knot"}, .sweep = "triangles"}),
+                testing::HasSubstr("takes no scene"));
+}
+
 } // namespace
 } // namespace ovc

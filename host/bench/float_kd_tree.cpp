@@ -5,8 +5,6 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 
-#include <glm/geometric.hpp>
-
 #include <array>
 #include <bit>
 #include <cassert>

@@ -4,6 +4,7 @@
 
 #include "core/box.h"
 #include "host/camera.h"
+#include "host/memory_size.h"
 #include "host/scene_summary.h"
 #include "host/shade.h"
 #include "testscenes/random.h"
@@ -61,6 +62,11 @@ Result<std::vector<RaySet>> make_ray_sets(const Scene& scene, const Camera& came
         diffuse.rays.push_back(bounce);
     }
     return std::vector<RaySet>{std::move(primary), std::move(shadow), std::move(diffuse)};
+}
+
+RaySet make_primary_set(const Camera& camera, uint32_t width, uint32_t height) {
+    return {"primary " + human_count(uint64_t(width) * height), RayQuery::Nearest,
+            camera_rays(camera, width, height, pixel_order(width, height))};
 }
 
 } // namespace ovc

@@ -33,4 +33,7 @@ struct RaySet {
 Result<std::vector<RaySet>> make_ray_sets(const Scene& scene, const Camera& camera, uint32_t width,
                                           uint32_t height, Backend& reference);
 
+/// The first of them alone, named after how many rays it has: "primary 1,024".
+RaySet make_primary_set(const Camera& camera, uint32_t width, uint32_t height);
+
 } // namespace ovc

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the name of a scene to what everyone took.
+#include "host/bench/scene_bench.h"
+
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+#include "host/bench/ray_sets.h"
+#include "host/camera.h"
+#include "host/scene_source.h"
+#include "host/scene_summary.h"
+#include "host/shade.h"
+#include "host/terminal_line.h"
+#include "kdtree/build.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+namespace ovc {
+
+namespace {
+
+double load_average() {
+    double load = 0;
+    return getloadavg(&load, 1) == 1 ? load : 0;
+}
+
+/// The scene's own camera and lights, or those that `overcast render` would add.
+Result<Camera> dress(Scene& scene, const ImageSize& size) {
+    const Camera camera =
+        scene.camera ? *scene.camera
+                     : framing_camera(hittable_bounds(scene.soup), size.width, size.height);
+    scene.lights = placed_lights(scene.lights, camera);
+    const Result<Done> fine = check_camera(camera);
+    return fine ? Result<Camera>(camera) : fine.error();
+}
+
+Result<std::vector<Workload>> workloads_of(const Scene& scene, const Camera& camera,
+                                           const Asked& asked, Backend& reference,
+                                           const StopRequest& stop) {
+    std::vector<Workload> workloads;
+    const auto [width, height] = asked.size;
+    if (asked.ray_sets) {
+        Result<std::vector<RaySet>> sets = make_ray_sets(scene, camera, width, height, reference);
+        if (!sets)
+            return sets.error();
+        for (RaySet& set : *sets)
+            workloads.push_back(ray_workload(std::move(set)));
+    }
+    for (const uint32_t side : asked.primary_sides)
+        workloads.push_back(ray_workload(make_primary_set(camera, side, side)));
+    if (asked.frame)
+        workloads.push_back(frame_workload(scene, camera, width, height, stop));
+    return workloads;
+}
+
+/// Fewer than asked for where it was stopped.
+Result<std::vector<Entrant>> build_entrants(const SceneBench& job, ContenderBuilder& builder,
+                                            const BenchSurroundings& around) {
+    std::vector<Entrant> entrants;
+    for (const Contender& contender : job.contenders) {
+        if (around.stop())
+            break;
+        around.progress.show(fmt::format("{}: building {}", job.scene, contender.label()));
+        Result<std::shared_ptr<Backend>> backend = builder.build(contender);
+        if (!backend)
+            return Error{fmt::format("{}: {}", contender.label(), backend.error().message)};
+        entrants.push_back({contender, std::move(*backend)});
+    }
+    return entrants;
+}
+
+/// The CPU KDT and its tree, where it is the reference.
+struct Reference {
+    std::shared_ptr<const KdTree> tree;
+    std::shared_ptr<Backend> backend;
+};
+
+Reference make_reference(const SceneBench& job, const Soup& soup, const BenchSurroundings& around) {
+    if (job.first_is_reference)
+        return {};
+    around.progress.show(job.scene + ": building the reference");
+    const Stopwatch building;
+    Reference reference;
+    reference.tree = std::make_shared<const KdTree>(build_kd_tree(soup));
+    reference.backend = make_cpu_backend(soup, reference.tree, building.seconds());
+    return reference;
+}
+
+/// The rest, once the scene is there.
+Result<Done> bench_soup(const SceneBench& job, const Scene& scene, const Camera& camera,
+                        const BenchSurroundings& around, BenchResult& result) {
+    Reference reference = make_reference(job, scene.soup, around);
+    ContenderBuilder builder(scene.soup, reference.backend, reference.tree, job.device, around.log);
+    Result<std::vector<Entrant>> entrants = build_entrants(job, builder, around);
+    if (!entrants)
+        return entrants.error();
+    if (entrants->empty())
+        return Done{}; // it was stopped
+    if (!reference.backend)
+        reference.backend = entrants->front().backend;
+    Result<std::vector<Workload>> workloads =
+        workloads_of(scene, camera, job.asked, *reference.backend, around.stop);
+    if (!workloads)
+        return workloads.error();
+    result.load_before = load_average();
+    const auto observe = [&](const std::string& what) {
+        around.progress.show(fmt::format("{}: {}", job.scene, what));
+    };
+    const Result<Done> done = run_contenders(*entrants, *workloads, *reference.backend, job.repeats,
+                                             around.stop, observe, result);
+    result.load_after = load_average();
+    return done;
+}
+
+} // namespace
+
+Result<BenchResult> bench_scene(const SceneBench& job, const BenchSurroundings& around) {
+    BenchResult result;
+    result.scene = job.scene;
+    result.width = job.asked.size.width;
+    result.height = job.asked.size.height;
+    result.threads = uint32_t(thread_count());
+    around.progress.show("reading " + job.scene);
+    const Stopwatch import;
+    Result<Scene> scene = open_scene(job.scene, around.log, job.model);
+    if (!scene)
+        return scene.error();
+    result.seconds_import = import.seconds();
+    result.triangles = scene->soup.triangle_count();
+    const Result<Camera> camera = dress(*scene, job.asked.size);
+    const Result<Done> done =
+        camera ? bench_soup(job, *scene, *camera, around, result) : camera.error();
+    if (!done)
+        return Error{fmt::format("{}: {}", job.scene, done.error().message)};
+    around.progress.clear();
+    return result;
+}
+
+} // namespace ovc

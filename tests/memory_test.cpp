@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// How lean: bytes a triangle, GPU bytes under a budget, memory while reading.
+#include "importers/importer.h"
+#include "tests/abi_scene.h"
+#include "tests/real_data.h"
+#include "tests/run_command.h"
+#include "testscenes/catalog.h"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <vector>
+
+namespace ovc {
+namespace {
+
+using test::api;
+using test::sized;
+
+class Memory : public testing::Test {
+protected:
+    void SetUp() override {
+        device_ = test::open_device();
+        if (!device_)
+            GTEST_SKIP() << "no device: " << api().last_error(nullptr);
+    }
+
+    ovc_statistics statistics_of(ovc_scene scene) const {
+        auto statistics = sized<ovc_statistics>();
+        EXPECT_EQ(api().statistics(scene, &statistics), OVC_OK);
+        return statistics;
+    }
+
+    double bytes_a_triangle(const Soup& soup, uint32_t leaves) const {
+        auto config = sized<ovc_scene_config>();
+        config.leaves = leaves;
+        const auto scene = test::add_soup(device_, soup, config);
+        EXPECT_EQ(api().commit(scene.get()), OVC_OK) << api().last_error(device_.get());
+        const ovc_statistics s = statistics_of(scene.get());
+        return double(s.level2_bytes) / double(s.triangles);
+    }
+
+    test::Device device_;
+};
+
+/// Half the rays of a picture, from where no page is without rays.
+std::vector<ovc_ray> rays_around() {
+    std::vector<ovc_ray> rays;
+    for (int i = 0; i < 64; ++i)
+        for (int j = 0; j < 64; ++j)
+            rays.push_back({{-10, (i - 32) / 10.0, (j - 32) / 10.0}, 0, {1, 0, 0}, 1e9});
+    return rays;
+}
+
+TEST_F(Memory, ASmoothMeshTakes52BytesATriangle) {
+    const Result<Scene> knot = make_test_scene("knot");
+    ASSERT_TRUE(knot);
+    const double bytes = bytes_a_triangle(knot->soup, 0);
+    EXPECT_LE(bytes, 52);
+    EXPECT_GE(bytes, 32) << "half a unit a triangle is the least there can be";
+}
+
+TEST_F(Memory, TheStanfordDragonTakes52BytesATriangle) {
+    const auto data = real_data();
+    if (!data)
+        GTEST_SKIP() << kNoRealData;
+    const Result<Scene> dragon = load(*data / "meshes/stanford-dragon/dragon_vrip.ply.gz");
+    ASSERT_TRUE(dragon) << dragon.error().message;
+    EXPECT_LE(bytes_a_triangle(dragon->soup, 0), 52);
+}
+
+/// In one leaf: slivers are long, and each cut of level 1 puts many into the leaves of both sides.
+TEST_F(Memory, SliversThatNobodyCutsTake96BytesATriangle) {
+    const Result<Scene> soup = make_test_scene("soup-100");
+    ASSERT_TRUE(soup);
+    EXPECT_LE(bytes_a_triangle(soup->soup, 1), 96);
+}
+
+TEST_F(Memory, OfTheGpuStaysWithinEveryBudget) {
+    const Result<Scene> scene = make_test_scene("sphere-6"); // 4 MB of pages
+    ASSERT_TRUE(scene);
+    const std::vector<ovc_ray> rays = rays_around();
+    std::vector<ovc_hit> hits(rays.size());
+    for (const uint64_t budget : {1ull << 20, 3ull << 20, 16ull << 20}) {
+        auto config = sized<ovc_scene_config>();
+        config.gpu_memory_bytes = budget;
+        const auto built = test::add_soup(device_, scene->soup, config);
+        ASSERT_EQ(api().commit(built.get()), OVC_OK) << api().last_error(device_.get());
+        ASSERT_EQ(api().intersect(built.get(), rays.data(), rays.size(), hits.data(), nullptr),
+                  OVC_OK);
+        const ovc_statistics s = statistics_of(built.get());
+        EXPECT_LE(s.gpu_peak_bytes, budget);
+        EXPECT_GT(s.gpu_peak_bytes, budget / 4) << "a budget is there to be used";
+        if (budget < s.level2_bytes) {
+            EXPECT_GT(s.bytes_in, 0u);
+        }
+    }
+}
+
+/// In a process of its own. Of what is read, corners as they are kept are the soup.
+TEST(MemoryOfImport, IsAtMostHalfMoreThanTheSoup) {
+    const std::string ply = testing::TempDir() + "memory_" + std::to_string(getpid()) + ".ply";
+    const std::string bin = OVC_BINARY_DIR "/bin/";
+    const auto made = test::run_shell(bin + "overcast convert sphere-7 " + ply + " && " + bin +
+                                      "import_cost " + ply + "; rm -f " + ply);
+    std::smatch peak, soup;
+    ASSERT_TRUE(std::regex_search(made.output, peak, std::regex("\"peak_bytes\":(\\d+)")) &&
+                std::regex_search(made.output, soup, std::regex("\"soup_bytes\":(\\d+)")))
+        << made.output;
+    const double soup_bytes = std::stod(soup[1]);
+    EXPECT_EQ(soup_bytes, 20 * 16384 * 36.0);
+    EXPECT_LE(std::stod(peak[1]), 1.5 * soup_bytes);
+    EXPECT_GE(std::stod(peak[1]), 0.5 * soup_bytes) << "what is kept is in memory";
+}
+
+} // namespace
+} // namespace ovc
