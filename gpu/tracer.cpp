@@ -16,8 +16,9 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kMostBlocks = 2048;    // half a million rays: beyond, a pass gains nothing more
-constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
+constexpr uint32_t kMostBlocks = 2048; // half a million rays: beyond, a pass gains nothing more
+constexpr uint32_t kMostBlocksInSoftware = 512; // llvmpipe clears what it allocates
+constexpr uint64_t kSmallestPool = 16384;       // a page of some hundred triangles
 
 } // namespace
 
@@ -35,8 +36,9 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
     // An eighth for rays: batches of ten thousand and more already run at full speed, and pages
     // want the rest.
     const uint64_t blocks = budget_bytes / 8 / plan.ray_bytes();
+    const uint64_t most = device.is_software ? kMostBlocksInSoftware : kMostBlocks;
     plan.batch_rays *= uint32_t(std::clamp<uint64_t>(
-        blocks, 1, std::min<uint64_t>(kMostBlocks, device.max_texture_size / OVC_TILE)));
+        blocks, 1, std::min<uint64_t>(most, device.max_texture_size / OVC_TILE)));
     plan.pool_bytes =
         (budget_bytes - plan.ray_bytes()) / device.buffer_alignment * device.buffer_alignment;
     plan.pool_bytes = std::min(plan.pool_bytes, device.max_buffer_texels * sizeof(uvec4));
