@@ -27,7 +27,7 @@ constexpr const char* kExamples = R"(Examples:
   overcast bench dragon.ply
       camera, shadow and bounced rays, and a frame: all contenders, five times in turn
   overcast bench knot plants --only certified,embree --size 512x512 --repeats 11
-      two scenes; the plugin certified, by both kernels, and both modes of Embree
+      two scenes; the plugin certified, by both kernels, and Embree in all its qualities
   overcast bench --only certified-compute --leaves 1,8,32,128
       what leaves cost: each row says its time to the first row's
   overcast bench plants --only certified --resident all,30%
