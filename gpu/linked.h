@@ -20,7 +20,7 @@ namespace ovc {
 double doubtful_share(const Soup& soup, std::span<const TriangleId> triangles, const Frame& frame);
 
 /// Up to this share a frame suits all leaves.
-inline constexpr double kMostDoubtful = 1.0 / 64;
+inline constexpr double kMostDoubtful = 1.0 / 8;
 
 /// Where linked pages lie: one behind the other from the pool's first byte on, `top` behind them.
 struct LinkedPages {

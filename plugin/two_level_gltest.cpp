@@ -198,8 +198,9 @@ TEST_F(TwoLevelGl, TwinsAnswerAsBruteForceDoes) {
             const auto structure = build(soup, options);
             ASSERT_TRUE(structure);
             EXPECT_EQ(structure->statistics().twins, ids.size() - once.triangle_count());
-            EXPECT_EQ(structure->statistics().level2_bytes,
-                      build(once, options)->statistics().level2_bytes);
+            // Not the same: which triangles pair up depends on how they are numbered.
+            const auto alone = double(build(once, options)->statistics().level2_bytes);
+            EXPECT_NEAR(double(structure->statistics().level2_bytes), alone, 0.05 * alone);
             std::vector<Hit> hits(rays.size());
             std::vector<uint8_t> shadows(rays.size());
             ASSERT_TRUE(ok(structure->intersect(rays, skip, hits)));
