@@ -33,7 +33,7 @@ std::vector<uvec4> pack_level1(const Level1& level1) {
     texels.reserve(level1_texels(level1));
     const uint32_t root =
         OVC_LEVEL1_LEAVES + uint32_t(OVC_LEAF_TEXELS) * uint32_t(level1.leaves.size());
-    texels.push_back({root, uint32_t(scene_texel_of(level1)), 0, 0});
+    texels.push_back({root, 0, 0, 0});
     for (const Leaf& leaf : level1.leaves)
         put_leaf(texels, leaf);
     for (const KdNode& node : level1.nodes) {
@@ -42,7 +42,6 @@ std::vector<uvec4> pack_level1(const Level1& level1) {
         texel.w = node.is_leaf() ? node.first() : root + node.above();
         texels.push_back(texel);
     }
-    put_leaf(texels, scene_leaf(level1.bounds));
     return texels;
 }
 

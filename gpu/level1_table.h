@@ -16,15 +16,10 @@ std::vector<uvec4> pack_level1(const Level1& level1);
 
 /// Texels that pack_level1() makes of so many leaves and nodes.
 inline uint64_t level1_texels(uint64_t leaves, uint64_t nodes) {
-    return OVC_LEVEL1_LEAVES + OVC_LEAF_TEXELS * (leaves + 1) + nodes;
+    return OVC_LEVEL1_LEAVES + OVC_LEAF_TEXELS * leaves + nodes;
 }
 inline uint64_t level1_texels(const Level1& level1) {
     return level1_texels(level1.leaves.size(), level1.nodes.size());
-}
-
-/// Where the scene stands as one more leaf.
-inline uint64_t scene_texel_of(const Level1& level1) {
-    return level1_texels(level1) - OVC_LEAF_TEXELS;
 }
 
 /// The texel that says where a leaf's page is.

@@ -3,6 +3,7 @@
 // thesis, section 3.1.
 #include "gpu/tracer.h"
 
+#include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gpu/gl_check.h"
 #include "gpu/level1_table.h"
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 
 namespace ovc {
@@ -55,6 +57,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       page_data_(pages),
       software_(device.is_software),
       linked_(link_pages(level1, pages, plan.pool_bytes)),
+      scene_(scene_leaf(level1.bounds)),
       stack_depth_(linked_ ? stack_depth(linked_->depth) : stack_depth(pages)),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
       level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
@@ -101,15 +104,13 @@ Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const Pas
     return tracer;
 }
 
-/// Tells the kernel by a texel of level 1 at which unit of the pool a page is now.
-void Tracer::say_where(uint64_t texel, uint32_t unit) {
-    glNamedBufferSubData(level1_buffer_.id(), GLintptr(texel * sizeof(uvec4)), sizeof(unit), &unit);
-}
-
+/// Tells the kernel, by a texel of level 1, at which unit of the pool a page is now.
 void Tracer::say_where(uint32_t leaf) {
-    say_where(page_texel_of(leaf),
-              resident(leaf) ? uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES)
-                             : OVC_NOT_RESIDENT);
+    const uint32_t unit = resident(leaf)
+                              ? uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES)
+                              : OVC_NOT_RESIDENT;
+    glNamedBufferSubData(level1_buffer_.id(), GLintptr(page_texel_of(leaf) * sizeof(uvec4)),
+                         sizeof(unit), &unit);
 }
 
 Moved Tracer::bring_linked(std::span<const uint32_t> wanted) {
@@ -124,10 +125,8 @@ Moved Tracer::bring_linked(std::span<const uint32_t> wanted) {
         linked_->moved += 1;
     }
     moved.pages = wanted.size();
-    if (linked_->moved == page_data_.size()) {
+    if (linked_->moved == page_data_.size())
         put(relocated_top(*linked_), linked_->top_unit);
-        say_where(scene_texel_of(level1_data_) + OVC_LEAF_PAGE_TEXEL, linked_->top_unit);
-    }
     return moved;
 }
 
@@ -153,6 +152,43 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
     return moved;
 }
 
+void Tracer::upload(std::span<const Traveller> rays) {
+    if (linked_)
+        upload_local(rays);
+    else
+        glNamedBufferSubData(ray_buffer_.id(), 0,
+                             GLsizeiptr(whole_blocks(rays.size()) * sizeof(Traveller)),
+                             rays.data());
+}
+
+/// In the frame of linked pages; and how to come back from there.
+void Tracer::upload_local(std::span<const Traveller> rays) {
+    local_.resize(whole_blocks(rays.size()));
+    times_.resize(local_.size());
+    constexpr size_t kGrain = 1024;
+    parallel_for(local_.size(), kGrain, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const Traveller& t = rays.data()[i]; // up to the next whole block: see collect()
+            local_[i] =
+                local_ray(scene_, t.ray, t.skip, (t.first_leaf & OVC_RAY_ANY_HIT) != 0, times_[i]);
+        }
+    });
+    glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(std::span(local_).size_bytes()),
+                         local_.data());
+}
+
+/// Fast precision: t from the frame of linked pages to the rays' own.
+void Tracer::come_back(std::span<Answer> answers) const {
+    for (size_t i = 0; i < answers.size(); ++i) {
+        if (answers[i].prim >= OVC_MAX_TRIANGLES)
+            continue;
+        const double local = std::bit_cast<float>(answers[i].words[0]);
+        const auto t = std::bit_cast<uint64_t>(times_[i].enter + local / times_[i].speed);
+        answers[i].words[0] = uint32_t(t);
+        answers[i].words[1] = uint32_t(t >> 32);
+    }
+}
+
 Result<Done> Tracer::submit(std::span<const Traveller> rays) {
     assert(!rays.empty());
     ShaderConfig config;
@@ -171,8 +207,9 @@ Result<Done> Tracer::submit(std::span<const Traveller> rays) {
     if (!program)
         return program.error();
 
-    glNamedBufferSubData(ray_buffer_.id(), 0,
-                         GLsizeiptr(whole_blocks(rays.size()) * sizeof(Traveller)), rays.data());
+    upload(rays);
+    if (linked_)
+        glProgramUniform1i(*program, OVC_LOCATION_ROOT, GLint(linked_->top_unit));
 
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);
@@ -225,6 +262,8 @@ Result<Done> Tracer::collect(std::span<Answer> answers) {
         words_->read(answers);
     else
         pixels_->read(answers);
+    if (linked_ && !options_.certify)
+        come_back(answers);
     if (!software_)
         kernel_seconds_ = time_.seconds();
     return check_gl("reading the answers of a pass");

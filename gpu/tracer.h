@@ -9,6 +9,7 @@
 #include "gpu/kernel.h"
 #include "gpu/ledger.h"
 #include "gpu/linked.h"
+#include "gpu/local_ray.h"
 #include "gpu/pool.h"
 #include "shaders/layout.h"
 
@@ -107,7 +108,9 @@ private:
 
     bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
     Result<Done> set_up();
-    void say_where(uint64_t texel, uint32_t unit);
+    void upload(std::span<const Traveller> rays);
+    void upload_local(std::span<const Traveller> rays);
+    void come_back(std::span<Answer> answers) const;
     void say_where(uint32_t leaf);
     Moved bring_linked(std::span<const uint32_t> wanted);
 
@@ -118,6 +121,9 @@ private:
     std::span<const Page> page_data_;
     bool software_;
     std::optional<LinkedPages> linked_; // where all pages are to be in the pool
+    Leaf scene_;                        // as one leaf: the frame of linked pages
+    std::vector<LocalRay> local_;       // of the pass, where pages are linked
+    std::vector<LocalTime> times_;
     uint32_t stack_depth_;
     gl::Buffer ray_buffer_;
     gl::BufferTexture rays_;

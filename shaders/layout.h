@@ -25,12 +25,11 @@
 
 // Where pages are linked (gpu/linked.h) units count from the pool's first; else from the page's own.
 
-// Level 1 is an array of RGBA32UI texels: a header, the leaves, the KD-tree's nodes, the scene as one more leaf. A double is two
-// words, low one first.
+// Level 1 is an array of RGBA32UI texels: a header, the leaves, the KD-tree's nodes. A double is two words, low one first.
 //
-// header  texel of the root, texel of the scene, 0, 0
+// header  texel of the root, 0, 0, 0
 // leaf    texels 0..2: the leaf's box (doubles); texels 3 and 4: the frame's origin xyz, its scale (doubles)
-//         texel 5: the unit of the pool where the page begins, or OVC_NOT_RESIDENT; 0, 0, 0. Of the scene: of linked pages
+//         texel 5: the unit of the pool where the page begins, or OVC_NOT_RESIDENT; 0, 0, 0
 // node    split (double), axis, texel of the node above the split (the one below is next); or
 //         0, 0, 3 | number of leaves << 2, first leaf
 #define OVC_LEVEL1_START 0
@@ -46,6 +45,15 @@
 #define OVC_RAY_TEXELS 5
 #define OVC_NO_LEAF 0x7fffffffu
 #define OVC_RAY_ANY_HIT 0x80000000u
+
+// Where pages are linked a ray is two texels, in the frame that they share: org xyz, t_end (float bits); dir xyz (float bits),
+// the number of the triangle it does not see or OVC_SKIPS_NONE, with OVC_RAY_ANY_HIT added where any hit will do. It begins at
+// t = 0. t_end: OVC_NO_RAY where there is none, OVC_UNDECIDABLE where only doubles can answer it.
+#define OVC_LOCAL_RAY_TEXELS 2
+#define OVC_SKIPS_NONE 0x7fffffffu
+#define OVC_NO_RAY -1.0f
+#define OVC_UNDECIDABLE -2.0f
+
 // The answers of the fragment kernel are a texture. Rays lie in it in tiles of 4 x 4, in rows of tiles: fragments that a driver shades together are rays
 // that came one after the other.
 #define OVC_ROW_RAYS 64
@@ -59,7 +67,7 @@
 //   OVC_CAPPED    a loop was ended before it was done
 // x, y: up to two rivals, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is none; what is
 // named neither in w nor here is certainly not the answer in leaf z.
-// In fast precision x, y: t of the hit (double); z: u and v in 16 bits each.
+// In fast precision x, y: t of the hit (double; of linked pages x: t in their frame, float bits); z: u and v in 16 bits each.
 #define OVC_MISS 0x7fffffffu
 #define OVC_FLAGGED 0x7ffffffeu
 #define OVC_CAPPED 0x7ffffffdu
@@ -70,6 +78,7 @@
 // OVC_NO_LEAF. (llvmpipe stores word by word and lane by lane: four words a ray took a tenth of the time.)
 #define OVC_SAYS_MORE 0x80000000u
 #define OVC_LOCATION_PLANE 0 // of the uniform that says how many words a plane has
+#define OVC_LOCATION_ROOT 1  // of the one that says at which unit the header of linked pages is
 
 #define OVC_BINDING_PAGE 0
 #define OVC_BINDING_RAYS 1

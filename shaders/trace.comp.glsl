@@ -32,8 +32,11 @@ uint dealt_group() {
 
 void main() {
     int ray = int(dealt_group() * OVC_GROUP_SIZE + gl_LocalInvocationID.x);
-    Traveller traveller = traveller(ray);
-    uvec4 answer = OVC_LINKED != 0 ? trace_linked(traveller) : walk(traveller);
+#if OVC_LINKED
+    uvec4 answer = trace_linked(ray);
+#else
+    uvec4 answer = walk(traveller(ray));
+#endif
     const bool tells_leaf = OVC_LINKED == 0 || OVC_CERTIFY == 0;
     bool more = (tells_leaf && answer.w < OVC_MAX_TRIANGLES) || answer.w == OVC_WAITS || answer.x != OVC_NO_TRIANGLE;
     imageStore(answers, ray, uvec4(answer.w | (more ? OVC_SAYS_MORE : 0u)));

@@ -16,6 +16,10 @@
 layout(location = 0) out uvec4 answer;
 
 void main() {
-    Traveller traveller = traveller(ray_at(ivec2(gl_FragCoord.xy)));
-    answer = OVC_LINKED != 0 ? trace_linked(traveller) : walk(traveller);
+    int ray = ray_at(ivec2(gl_FragCoord.xy));
+#if OVC_LINKED
+    answer = trace_linked(ray);
+#else
+    answer = walk(traveller(ray));
+#endif
 }
