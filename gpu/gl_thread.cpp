@@ -2,7 +2,13 @@
 // GlThread: hand-over of one piece of work at a time.
 #include "gpu/gl_thread.h"
 
+#include "gpu/driver_threads.h"
+
 #include <utility>
+
+#ifdef __linux__
+#include <pthread.h>
+#endif
 
 namespace ovc {
 
@@ -77,6 +83,9 @@ Result<Done> GlThread::reopen(uint32_t generation) {
 }
 
 void GlThread::serve() {
+#ifdef __linux__
+    pthread_setname_np(pthread_self(), kDeviceThreadName);
+#endif
     Result<EglContext> context = EglContext::create(device_, log_);
     std::unique_lock lock(mutex_);
     if (!context) {

@@ -5,6 +5,7 @@
 
 #include "core/result.h"
 #include "gpu/answers.h"
+#include "gpu/driver_threads.h"
 #include "gpu/egl_context.h"
 #include "gpu/kernel.h"
 #include "gpu/ledger.h"
@@ -92,7 +93,7 @@ public:
     Result<Done> collect(std::span<Answer> answers);
 
     /// How long the kernel took in the pass that was collected last, without rays going over and
-    /// answers coming back: the device's clock; with a software renderer the wall's.
+    /// answers coming back: the device's clock; with a software renderer gpu/driver_threads.h.
     double kernel_seconds() const { return kernel_seconds_; }
 
     /// Per leaf, whether rays were traced through its page since this was asked last; none where
@@ -136,6 +137,7 @@ private:
     Pool pool_;
     gl::BufferTexture pages_;
     gl::TimeQuery time_;
+    DriverThreads driver_threads_ = DriverThreads::find();
     double kernel_seconds_ = 0;
 };
 

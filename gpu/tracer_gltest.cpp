@@ -49,6 +49,7 @@ protected:
             ASSERT_TRUE(sent) << sent.error().message;
             const Result<Done> back = tracer->collect(std::span(answers).first(rays.size()));
             ASSERT_TRUE(back) << back.error().message;
+            EXPECT_GT(tracer->kernel_seconds(), 0);
         });
         answers.resize(rays.size());
         return answers;

@@ -184,6 +184,9 @@ TEST_F(CommandLine, BadInputIsOneSentenceExitOneAndNothingWritten) {
         {"box",
          {"EGL_PLATFORM is set to 'nonsense'", "'device' and 'surfaceless'"},
          "EGL_PLATFORM=nonsense"},
+        {"box --kernel fragment --device llvmpipe",
+         {"LP_NATIVE_VECTOR_WIDTH is 512", "take the compute kernel"},
+         "LP_NATIVE_VECTOR_WIDTH=512"},
     };
     for (const auto& c : cases) {
         SCOPED_TRACE(c.arguments);

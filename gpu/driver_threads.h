@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// DriverThreads: the threads on which a software renderer runs kernels, and their clocks. Other
+// work goes on beside a pass on the same cores, so the wall's clock says little of the kernel.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+namespace ovc {
+
+/// What the thread that opens devices is called; threads that a driver starts there inherit it,
+/// unless it names them.
+inline constexpr const char* kDeviceThreadName = "ovc-device";
+
+class DriverThreads {
+public:
+    /// Those of this process now; none where the system does not tell (Linux does). Called on a
+    /// thread of that name.
+    static DriverThreads find();
+
+    void start();
+    /// CPU seconds since start() of the thread that worked longest: how long the kernel takes where
+    /// nothing else runs. None where there are no threads.
+    std::optional<double> busiest() const;
+
+private:
+    std::vector<int> threads_;
+    std::vector<double> started_;
+};
+
+} // namespace ovc
