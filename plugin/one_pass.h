@@ -89,8 +89,8 @@ private:
     }
 
     void fetch(const Answer& answer) const {
-        if (answer.prim >= OVC_MAX_TRIANGLES)
-            return;
+        if (answer.prim >= OVC_MAX_TRIANGLES || !s_.options_.certify)
+            return; // nobody looks at its corners
         const TriangleId id = s_.numbers_.id(answer.prim);
         __builtin_prefetch(s_.soup_.chunks[id.mesh].corners().data() + size_t(id.prim) * 3);
     }

@@ -471,7 +471,8 @@ TEST_F(TwoLevelGl, FastPrecisionSeesTheFloorThatEndsTheScene) {
                               vec3(1, 1, 0), vec3(0, 1, 0)})
             corners.push_back(v + vec3(float(i % 20), float(i / 20), 0));
     corners.insert(corners.end(), {vec3(0, 0, 7), vec3(1, 0, 7), vec3(0, 1, 7)});
-    const auto structure = build(test::one_chunk(std::move(corners)), {.certify = false});
+    const Soup soup = test::one_chunk(std::move(corners));
+    const auto structure = build(soup, {.certify = false});
     ASSERT_TRUE(structure);
     test::Random random(25);
     std::vector<Ray> rays(5000);
