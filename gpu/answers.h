@@ -3,7 +3,6 @@
 // (the compute kernel). The layouts: shaders/layout.h.
 #pragma once
 
-#include "core/result.h"
 #include "gpu/gl_object.h"
 #include "shaders/layout.h"
 
@@ -39,8 +38,8 @@ inline size_t whole_blocks(size_t n) {
     return (n + kBlockRays - 1) / kBlockRays * kBlockRays;
 }
 
-/// Both kinds are for up to `rays` rays, whole blocks. draw() starts the pass: the program is in
-/// use and its inputs are bound. read() waits for it.
+/// Both kinds are for up to `rays` rays, whole blocks. draw() and dispatch() start the pass: the
+/// program is in use and its inputs are bound. read() waits for it.
 class AnswerPixels {
 public:
     AnswerPixels(Ledger& ledger, uint32_t rays);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads by /proc, their clocks by pthread_getcpuclockid's formula.
+// Threads by /proc, their clocks by the formula of pthread_getcpuclockid().
 #include "gpu/driver_threads.h"
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 
 #ifdef __linux__
 #include <ctime>
+#include <pthread.h>
 #include <unistd.h>
 #endif
 
@@ -22,6 +23,10 @@ static double cpu_seconds(int thread) {
     if (clock_gettime(clockid_t(~unsigned(thread) << 3) | kPerThread | kScheduled, &time) != 0)
         return 0;
     return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+void name_device_thread() {
+    pthread_setname_np(pthread_self(), kDeviceThreadName);
 }
 
 DriverThreads DriverThreads::find() {
@@ -40,6 +45,7 @@ DriverThreads DriverThreads::find() {
 
 #else
 
+void name_device_thread() {}
 static double cpu_seconds(int) {
     return 0;
 }

@@ -12,6 +12,9 @@ namespace ovc {
 /// unless it names them.
 inline constexpr const char* kDeviceThreadName = "ovc-device";
 
+/// Calls this thread so.
+void name_device_thread();
+
 class DriverThreads {
 public:
     /// Those of this process now; none where the system does not tell (Linux does). Called on a

@@ -6,10 +6,6 @@
 
 #include <utility>
 
-#ifdef __linux__
-#include <pthread.h>
-#endif
-
 namespace ovc {
 
 Result<std::unique_ptr<GlThread>> GlThread::start(const std::string& device, LogSink log) {
@@ -83,9 +79,7 @@ Result<Done> GlThread::reopen(uint32_t generation) {
 }
 
 void GlThread::serve() {
-#ifdef __linux__
-    pthread_setname_np(pthread_self(), kDeviceThreadName);
-#endif
+    name_device_thread();
     Result<EglContext> context = EglContext::create(device_, log_);
     std::unique_lock lock(mutex_);
     if (!context) {

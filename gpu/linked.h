@@ -27,7 +27,7 @@ struct LinkedPages {
     std::vector<uint32_t> first_unit; // of the pool, per page
     Page top;              // nodes over the pages, the lowest copies of their roots; none for one
     uint32_t top_unit = 0; // where a traversal begins
-    uint32_t depth = 0;    // stack words it needs
+    uint32_t depth = 0;    // nodes on the longest way down
     uint64_t moved = 0;    // pages in the pool
 };
 

@@ -124,7 +124,7 @@ private:
     std::optional<LinkedPages> linked_; // where all pages are to be in the pool
     Leaf scene_;                        // as one leaf: the frame of linked pages
     std::vector<LocalRay> local_;       // of the pass, where pages are linked
-    std::vector<LocalTime> times_;
+    std::vector<LocalTime> times_;      // of them, in fast precision
     uint32_t stack_depth_;
     gl::Buffer ray_buffer_;
     gl::BufferTexture rays_;

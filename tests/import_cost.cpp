@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // import_cost FILE [--assimp] [--times N]: what reading a file costs, as a line of JSON, for
 // importers/measure.py. A process of its own per file, so that peaks do not mix.
+#include "host/process_cost.h"
 #include "importers/readers.h"
 
 #include <fmt/format.h>
@@ -10,35 +11,17 @@
 #include <cstdlib>
 #include <fstream>
 
-#include <time.h>
-
 namespace ovc {
 namespace {
-
-/// Of the whole process, all threads.
-double cpu_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
-/// field: VmHWM, the most memory that was resident, or VmRSS, what is resident now.
-uint64_t resident_bytes(const std::string& field) {
-    std::ifstream status("/proc/self/status");
-    for (std::string word; status >> word;)
-        if (uint64_t kilobytes = 0; word == field + ":" && status >> kilobytes)
-            return kilobytes << 10;
-    return 0;
-}
 
 int measure(const std::string& path, bool assimp, int times) {
     nlohmann::json found;
     std::vector<double> seconds;
     const uint64_t before = resident_bytes("VmRSS");
     for (int i = 0; i < times; ++i) {
-        const double start = cpu_seconds();
+        const double start = process_cpu_seconds();
         const Result<Scene> scene = assimp ? read_assimp(path, {}) : load(path);
-        seconds.push_back(cpu_seconds() - start);
+        seconds.push_back(process_cpu_seconds() - start);
         if (i == 0)
             found["peak_bytes"] = resident_bytes("VmHWM") - before;
         if (!scene) {

@@ -3,9 +3,9 @@
 #include "host/bench/bench.h"
 
 #include "core/stopwatch.h"
+#include "host/process_cost.h"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cassert>
@@ -20,12 +20,6 @@ uint64_t count_differing(std::span<const uint64_t> a, std::span<const uint64_t> 
     for (size_t i = 0; i < a.size(); ++i)
         count += a[i] != b[i];
     return count;
-}
-
-double process_cpu_seconds() {
-    timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
 /// Runs the workload once; its counters, and the seconds where `timed`.

@@ -3,11 +3,11 @@
 #include "host/bench/import_cost.h"
 
 #include "host/bench/ratios.h"
+#include "host/process_cost.h"
 #include "importers/importer.h"
 
 #include <fmt/format.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <array>
@@ -18,21 +18,6 @@
 namespace ovc {
 
 namespace {
-
-double process_cpu_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
-/// field: VmHWM, the most memory that was resident, or VmRSS, what is resident now.
-uint64_t resident_bytes(const std::string& field) {
-    std::ifstream status("/proc/self/status");
-    for (std::string word; status >> word;)
-        if (uint64_t kilobytes = 0; word == field + ":" && status >> kilobytes)
-            return kilobytes << 10;
-    return 0;
-}
 
 uint64_t soup_bytes(const Scene& scene) {
     uint64_t bytes = 0;
