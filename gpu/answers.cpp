@@ -57,11 +57,13 @@ AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays)
                               GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
 }
 
-void AnswerWords::dispatch(GLuint program, size_t rays) const {
+void AnswerWords::dispatch(GLuint program, size_t rays, size_t invocation_rays) const {
     static_assert(kBlockRays % OVC_GROUP_SIZE == 0);
     glProgramUniform1i(program, OVC_LOCATION_PLANE, GLint(rays_));
     glBindImageTexture(OVC_BINDING_ANSWERS, texture_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
-    glDispatchCompute(GLuint(whole_blocks(rays) / OVC_GROUP_SIZE), 1, 1);
+    const size_t all = whole_blocks(rays), group = OVC_GROUP_SIZE * invocation_rays;
+    glProgramUniform1i(program, OVC_LOCATION_RAYS, GLint(all));
+    glDispatchCompute(GLuint((all + group - 1) / group), 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

@@ -58,7 +58,7 @@ private:
 class AnswerWords {
 public:
     AnswerWords(Ledger& ledger, uint32_t rays);
-    void dispatch(GLuint program, size_t rays) const;
+    void dispatch(GLuint program, size_t rays, size_t invocation_rays) const;
     void read(std::span<Answer> answers);
 
 private:

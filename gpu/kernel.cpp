@@ -124,12 +124,14 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_TELL_ACTIVE {:d}\n"
                        "#define OVC_STACK_DEPTH {}\n"
                        "#define OVC_STACK_REGISTERS {:d}\n"
+                       "#define OVC_PACKET {}\n"
+                       "#define OVC_REFILL {}\n"
                        "#define OVC_BRANCHES {:d}\n"
                        "#define OVC_DEAL_GROUPS {:d}\n"
                        "#define OVC_BUFFER_IMAGES {:d}\n"
                        "#define OVC_MOST_ROUNDS {}\n",
-                       any_hit, certify, linked, tell_active, stack_depth, stack_registers,
-                       branches, deal_groups, buffer_images, most_rounds);
+                       any_hit, certify, linked, tell_active, stack_depth, stack_registers, packet,
+                       refill, branches, deal_groups, buffer_images, most_rounds);
 }
 
 Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines) {

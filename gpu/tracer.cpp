@@ -20,7 +20,16 @@ namespace {
 
 constexpr uint32_t kMostBlocks = 2048; // half a million rays: beyond, a pass gains nothing more
 constexpr uint32_t kMostBlocksInSoftware = 512; // llvmpipe clears what it allocates
-constexpr uint64_t kSmallestPool = 16384;       // a page of some hundred triangles
+// Each word is a register, and 1 % of the time; of a million rays at the Stanford dragon thirty
+// want more (docs/decisions/0012).
+constexpr uint32_t kMostStackWordsInSoftware = 8;
+constexpr size_t kMostLostShare = 256; // of rays, one in so many; else the stack is made whole
+// Rays that a lane of the compute kernel takes: neighbours that go the same way together, others
+// one after the other. The fewest of these keep two threads busy with 2048 a group.
+constexpr uint32_t kPacketRays = 2;
+constexpr uint32_t kRefills = 32;
+constexpr uint32_t kFewestRaysToRefill = 32768;
+constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
 } // namespace
 
@@ -59,6 +68,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       linked_(link_pages(level1, pages, plan.pool_bytes)),
       scene_(scene_leaf(level1.bounds)),
       stack_depth_(linked_ ? stack_depth(linked_->depth) : stack_depth(pages)),
+      stack_words_(software_ ? std::min(stack_depth_, kMostStackWordsInSoftware) : stack_depth_),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
       level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
       pool_(*ledger_, plan.pool_bytes, pages.size()) {
@@ -192,25 +202,44 @@ void Tracer::come_back(std::span<Answer> answers) const {
     }
 }
 
-Result<Done> Tracer::submit(std::span<const Traveller> rays) {
-    assert(!rays.empty());
+/// Which kernel the rays that were uploaded take.
+ShaderConfig Tracer::shader_config() const {
     ShaderConfig config;
     config.compute = options_.compute;
     config.certify = options_.certify;
     config.linked = linked_.has_value();
     config.tell_active = active_buffer_.has_value();
-    config.stack_depth = stack_depth_;
+    config.stack_depth = stack_words_;
     config.stack_registers = software_;
     config.branches = !software_;
     config.deal_groups = software_;
     config.buffer_images = software_;
     if (software_)
         config.most_rounds = kMostRoundsInSoftware;
+    if (software_ && linked_ && options_.compute) {
+        const std::span<const LocalRay> rays = std::span(local_).first(rays_sent_);
+        if (coherent(rays))
+            config.packet = kPacketRays;
+        else if (rays.size() >= kFewestRaysToRefill)
+            config.refill = kRefills;
+    }
+    return config;
+}
+
+Result<Done> Tracer::submit(std::span<const Traveller> rays) {
+    assert(!rays.empty());
+    upload(rays);
+    rays_sent_ = rays.size();
+    kernel_seconds_ = 0;
+    return launch();
+}
+
+Result<Done> Tracer::launch() {
+    const ShaderConfig config = shader_config();
     const Result<GLuint> program = kernels_.program(config);
     if (!program)
         return program.error();
 
-    upload(rays);
     if (linked_)
         glProgramUniform1i(*program, OVC_LOCATION_ROOT, GLint(linked_->top_unit));
 
@@ -233,9 +262,9 @@ Result<Done> Tracer::submit(std::span<const Traveller> rays) {
     else
         glBeginQuery(GL_TIME_ELAPSED, time_.id());
     if (words_)
-        words_->dispatch(*program, rays.size());
+        words_->dispatch(*program, rays_sent_, config.packet * config.refill);
     else
-        pixels_->draw(rays.size());
+        pixels_->draw(rays_sent_);
     if (!software_)
         glEndQuery(GL_TIME_ELAPSED);
     glPopDebugGroup();
@@ -243,7 +272,7 @@ Result<Done> Tracer::submit(std::span<const Traveller> rays) {
     // buffers that they read as images.
     if (software_) {
         glFinish();
-        kernel_seconds_ = driver_threads_.busiest().value_or(watch.seconds());
+        kernel_seconds_ += driver_threads_.busiest().value_or(watch.seconds());
     } else {
         glFlush();
     }
@@ -262,15 +291,37 @@ std::vector<uint32_t> Tracer::take_active() {
     return active;
 }
 
-Result<Done> Tracer::collect(std::span<Answer> answers) {
+void Tracer::read(std::span<Answer> answers) {
     if (words_)
         words_->read(answers);
     else
         pixels_->read(answers);
+    if (!software_)
+        kernel_seconds_ += time_.seconds();
+}
+
+/// Whether the stack was shortened too much: doubles decide a ray slower than a pass does.
+bool Tracer::lost_many(std::span<const Answer> answers) const {
+    if (stack_words_ == stack_depth_)
+        return false;
+    const auto lost = std::count_if(answers.begin(), answers.end(),
+                                    [](const Answer& a) { return a.prim == OVC_CAPPED; });
+    return size_t(lost) > answers.size() / kMostLostShare;
+}
+
+Result<Done> Tracer::collect(std::span<Answer> answers) {
+    read(answers);
+    if (lost_many(answers)) {
+        stack_words_ = stack_depth_;
+        // Linked pages stay where they were. Others may have been pushed out by now.
+        if (linked_) {
+            if (Result<Done> ok = launch(); !ok)
+                return ok;
+            read(answers);
+        }
+    }
     if (linked_ && !options_.certify)
         come_back(answers);
-    if (!software_)
-        kernel_seconds_ = time_.seconds();
     return check_gl("reading the answers of a pass");
 }
 

@@ -112,6 +112,10 @@ private:
     void upload(std::span<const Traveller> rays);
     void upload_local(std::span<const Traveller> rays);
     void come_back(std::span<Answer> answers) const;
+    ShaderConfig shader_config() const;
+    Result<Done> launch();
+    void read(std::span<Answer> answers);
+    bool lost_many(std::span<const Answer> answers) const;
     void say_where(uint32_t leaf);
     Moved bring_linked(std::span<const uint32_t> wanted);
 
@@ -125,7 +129,9 @@ private:
     Leaf scene_;                        // as one leaf: the frame of linked pages
     std::vector<LocalRay> local_;       // of the pass, where pages are linked
     std::vector<LocalTime> times_;      // of them, in fast precision
-    uint32_t stack_depth_;
+    uint32_t stack_depth_;              // with which no ray is lost
+    uint32_t stack_words_;              // of the kernel
+    size_t rays_sent_ = 0;              // of the pass
     gl::Buffer ray_buffer_;
     gl::BufferTexture rays_;
     std::optional<AnswerPixels> pixels_; // of the fragment kernel

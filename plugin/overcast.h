@@ -223,7 +223,7 @@ typedef struct ovc_statistics {
     uint64_t ray_visits;           /* rays counted once in each pass they took part in */
     uint64_t flagged;              /* answers the kernel could not decide alone: doubles chose among its candidates */
     uint64_t retraced;             /* of them with too many candidates: the ray was traced again in double */
-    uint64_t capped;               /* of them because the driver ended the kernel's loop early (llvmpipe does after 65535 rounds) */
+    uint64_t capped;               /* of them because the kernel's loop ended early: for the driver (llvmpipe, after 65535 rounds) or a full stack */
     double seconds_level1;         /* building the level-1 tree */
     double seconds_level2;         /* building and packing all pages */
     double seconds_trace;          /* inside intersect and occluded */

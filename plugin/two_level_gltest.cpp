@@ -6,6 +6,10 @@
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
 
+#include <algorithm>
+#include <numeric>
+#include <random>
+
 namespace ovc {
 namespace {
 
@@ -87,6 +91,41 @@ TEST_F(TwoLevelGl, ManyRaysAreAnsweredAsFewAre) {
     ASSERT_TRUE(ok(linked->occluded(rays, {}, occluded)));
     for (size_t i = 0; i < rays.size(); ++i)
         ASSERT_EQ(occluded[i] != 0, expected[i].is_hit()) << "ray " << i;
+}
+
+/// The compute kernel takes neighbours together where they go the same way, and others in turns.
+TEST_F(TwoLevelGl, RaysAreAnsweredAlikeInAnyOrderAndByBothKernels) {
+    const Soup soup = test::closed_grid(60);
+    constexpr int kSide = 220;
+    std::vector<Ray> ordered;
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x)
+            ordered.push_back({dvec3(0.1, 0.2, -4), 0, dvec3(x - kSide / 2, y - kSide / 2, 200)});
+    std::vector<size_t> shuffled(ordered.size());
+    std::iota(shuffled.begin(), shuffled.end(), size_t(0));
+    std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(5));
+    std::vector<Ray> rays;
+    for (const size_t i : shuffled)
+        rays.push_back(ordered[i]);
+
+    const auto fragment = build(soup, {.compute = false});
+    const auto compute = build(soup, {.compute = true});
+    ASSERT_TRUE(fragment && compute);
+    std::vector<Hit> expected(rays.size()), together(rays.size()), in_turns(rays.size());
+    ASSERT_TRUE(ok(fragment->intersect(ordered, {}, expected)));
+    ASSERT_TRUE(ok(compute->intersect(ordered, {}, together)));
+    ASSERT_TRUE(ok(compute->intersect(rays, {}, in_turns)));
+    std::vector<uint8_t> occluded(rays.size());
+    ASSERT_TRUE(ok(compute->occluded(rays, {}, occluded)));
+    size_t hit = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_TRUE(test::same(expected[i], together[i])) << "ray " << i;
+        ASSERT_TRUE(test::same(expected[shuffled[i]], in_turns[i])) << "ray " << shuffled[i];
+        ASSERT_EQ(occluded[i] != 0, in_turns[i].is_hit()) << "ray " << shuffled[i];
+        hit += in_turns[i].is_hit();
+    }
+    EXPECT_GT(hit, rays.size() / 10);
+    EXPECT_LT(hit, rays.size());
 }
 
 TEST_F(TwoLevelGl, FewOrdinaryRaysAreFlagged) {

@@ -24,29 +24,45 @@ vec4 coordinates(uvec2 words) {
     return vec4(ivec4(words.x & 0xffffu, words.x >> 16, words.y & 0xffffu, words.y >> 16));
 }
 
-vec4 near_planes(uvec4 axis, bool backward, float scale, float offset) {
-    return coordinates(backward ? axis.zw : axis.xy) * scale + offset;
+// A node's four boxes, per axis their planes in grid coordinates: lo and hi; for one ray alone the near and the far ones, which
+// are selected by the word, before they are decoded.
+struct Boxes {
+    vec4 lo[3];
+    vec4 hi[3];
+};
+
+Boxes boxes_of(uvec4 x, uvec4 y, uvec4 z, bvec3 backward) {
+#if OVC_PACKET == 1
+    x = backward.x ? x.zwxy : x;
+    y = backward.y ? y.zwxy : y;
+    z = backward.z ? z.zwxy : z;
+#endif
+    return Boxes(vec4[3](coordinates(x.xy), coordinates(y.xy), coordinates(z.xy)),
+                 vec4[3](coordinates(x.zw), coordinates(y.zw), coordinates(z.zw)));
 }
-vec4 far_planes(uvec4 axis, bool backward, float scale, float offset) {
-    return coordinates(backward ? axis.xy : axis.zw) * scale + offset;
-}
+
+ivec4 when(vec4 planes, float scale, float offset) { return floatBitsToInt(planes * scale + offset); }
 
 const int OVC_NO_CHILD = 0x7fffffff;
 
 // Sort keys of the four children: the bits of the entry t with the child's number in the two lowest, OVC_NO_CHILD where
 // the ray misses. Non-negative floats order as their bits do, and signed integer min and max are one instruction where
 // float ones are three; a negative entry loses against 0, a negative exit fails the comparison as it should.
-ivec4 child_keys(uvec4 x, uvec4 y, uvec4 z, GridRay ray, float t_end) {
-    ivec4 enter = max(
-        max(floatBitsToInt(near_planes(x, ray.backward.x, ray.scale.x, ray.offset.x)),
-            floatBitsToInt(near_planes(y, ray.backward.y, ray.scale.y, ray.offset.y))),
-        max(floatBitsToInt(near_planes(z, ray.backward.z, ray.scale.z, ray.offset.z)), ivec4(0)));
-    ivec4 exit = min(
-        min(floatBitsToInt(far_planes(x, ray.backward.x, ray.scale.x, ray.offset.x)),
-            floatBitsToInt(far_planes(y, ray.backward.y, ray.scale.y, ray.offset.y))),
-        min(floatBitsToInt(far_planes(z, ray.backward.z, ray.scale.z, ray.offset.z)),
-            ivec4(floatBitsToInt(t_end))));
+ivec4 child_keys(Boxes boxes, GridRay ray, float t_end) {
+    ivec4 enter = ivec4(0);
+    ivec4 exit = ivec4(floatBitsToInt(t_end));
+    for (int i = 0; i < 3; ++i) {
+        ivec4 a = when(boxes.lo[i], ray.scale[i], ray.offset[i]);
+        ivec4 b = when(boxes.hi[i], ray.scale[i], ray.offset[i]);
+        enter = max(enter, OVC_PACKET == 1 ? a : min(a, b));
+        exit = min(exit, OVC_PACKET == 1 ? b : max(a, b));
+    }
     return mix(ivec4(OVC_NO_CHILD), (enter & ~3) | ivec4(0, 1, 2, 3), lessThanEqual(enter, exit));
+}
+
+// A missing child is a box with hi below lo, which one ray's keys leave out by themselves.
+ivec4 keys_of_present(ivec4 keys, Boxes boxes) {
+    return OVC_PACKET == 1 ? keys : mix(ivec4(OVC_NO_CHILD), keys, lessThanEqual(boxes.lo[0], boxes.hi[0]));
 }
 
 void order(inout int a, inout int b) {

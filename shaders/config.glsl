@@ -14,11 +14,17 @@
 #define OVC_TELL_ACTIVE 0 // 1: pages that rays are traced through are marked
 #endif
 #ifndef OVC_STACK_DEPTH
-#define OVC_STACK_DEPTH 16 // words, one less than the page's depth at least. A register each on llvmpipe: 1 % of the time
+#define OVC_STACK_DEPTH 16 // words; one less than the page's depth loses no ray. A register each on llvmpipe: 1 % of the time
 #endif
 #ifndef OVC_STACK_REGISTERS
 #define OVC_STACK_REGISTERS 1 // 1: the stack is selected from by comparisons, for drivers that branch per lane on
                               // indexed writes (llvmpipe: 4 to 25 % faster); 0: a plain array
+#endif
+#ifndef OVC_PACKET
+#define OVC_PACKET 1 // rays that an invocation traces together
+#endif
+#ifndef OVC_REFILL
+#define OVC_REFILL 1 // rays, or packets, that an invocation traces one after the other
 #endif
 #ifndef OVC_BRANCHES
 #define OVC_BRANCHES 0 // 1: a step runs what its unit is for; 0: for drivers that run both sides of a branch (llvmpipe)

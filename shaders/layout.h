@@ -64,7 +64,7 @@
 //   OVC_MISS      none in any leaf on the way
 //   OVC_WAITS     the walk stopped before leaf z, which is not in the pool; x, y: the t of the cells done (double)
 //   OVC_FLAGGED   the kernel cannot tell
-//   OVC_CAPPED    a loop was ended before it was done
+//   OVC_CAPPED    a loop was ended before it was done, or the stack was full
 // x, y: up to two rivals, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is none; what is
 // named neither in w nor here is certainly not the answer in leaf z.
 // In fast precision x, y: t of the hit (double; of linked pages x: t in their frame, float bits); z: u and v in 16 bits each.
@@ -78,6 +78,7 @@
 // OVC_NO_LEAF. (llvmpipe stores word by word and lane by lane: four words a ray took a tenth of the time.)
 #define OVC_SAYS_MORE 0x80000000u
 #define OVC_LOCATION_PLANE 0 // of the uniform that says how many words a plane has
+#define OVC_LOCATION_RAYS 2  // of the one that says how many rays the pass has
 #define OVC_LOCATION_ROOT 1  // of the one that says at which unit the header of linked pages is
 
 #define OVC_BINDING_PAGE 0

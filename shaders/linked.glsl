@@ -1,26 +1,72 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ray through linked pages: all leaves share a frame, and one tree holds them.
+// Rays through linked pages: all leaves share a frame, and one tree holds them.
 
 #if OVC_LINKED
 layout(location = OVC_LOCATION_ROOT) uniform int linked_root;
 
-// The words of an answer (layout.h).
-uvec4 trace_linked(int ray) {
-    uvec4 from = ray_texel(ray * OVC_LOCAL_RAY_TEXELS);
-    uvec4 to = ray_texel(ray * OVC_LOCAL_RAY_TEXELS + 1);
-    float t_end = uintBitsToFloat(from.w);
-    bool any_hit = (to.w & OVC_RAY_ANY_HIT) != 0u;
-    Found found = nothing_found(t_end);
-    int rounds = 0;
-    bool done = t_end < 0.0;
-    if (!done)
-        done = traverse(found, linked_root, 0, uintBitsToFloat(from.xyz), t_end, direction_of(uintBitsToFloat(to.xyz)),
-                        to.w & OVC_SKIPS_NONE, any_hit, rounds);
-    uvec4 answer = answer_of(found, any_hit, OVC_NO_LEAF);
-#if !OVC_CERTIFY
-    answer.xyz = uvec3(floatBitsToUint(found.best_lo), 0u, packUnorm2x16(barycentric(found)));
-#endif
-    answer.w = t_end == OVC_UNDECIDABLE ? OVC_FLAGGED : answer.w;
-    return done ? answer : uvec4(0u, 0u, OVC_NO_LEAF, OVC_CAPPED);
+// What the wrapper does with the words of an answer.
+void give(int ray, uvec4 answer);
+
+// The rays from `first` on. Returns whether any of them is a ray.
+bool take_rays(int first, Tree tree, inout Packet packet, inout Found found[OVC_PACKET]) {
+    bool any = false;
+    for (int k = 0; k < OVC_PACKET; ++k) {
+        uvec4 from = ray_texel((first + k) * OVC_LOCAL_RAY_TEXELS);
+        uvec4 to = ray_texel((first + k) * OVC_LOCAL_RAY_TEXELS + 1);
+        float t_end = uintBitsToFloat(from.w);
+        found[k] = nothing_found(t_end);
+        set_ray(packet, k, tree, uintBitsToFloat(from.xyz), direction_of(uintBitsToFloat(to.xyz)), to.w & OVC_SKIPS_NONE,
+                (to.w & OVC_RAY_ANY_HIT) != 0u);
+        any = any || t_end >= 0.0;
+    }
+    return any;
 }
+
+void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended) {
+    for (int k = 0; k < OVC_PACKET; ++k) {
+        uvec4 answer = answer_of(found[k], packet.any_hit[k], OVC_NO_LEAF);
+#if !OVC_CERTIFY
+        answer.xyz = uvec3(floatBitsToUint(found[k].best_lo), 0u, packUnorm2x16(barycentric(found[k])));
+#endif
+        answer.w = found[k].best_hi == OVC_UNDECIDABLE ? OVC_FLAGGED : answer.w;
+        give(first + k, ended ? answer : uvec4(0u, 0u, OVC_NO_LEAF, OVC_CAPPED));
+    }
+}
+
+const int OVC_REFILL_ROUNDS = 6; // between two looks at which lanes have an answer
+
+#if OVC_REFILL == 1
+void trace_linked(int ray, int stride, int end) {
+    Tree tree = tree_of(linked_root, 0);
+    Descent d = descent(tree);
+    Packet packet;
+    Found found[OVC_PACKET];
+    int rounds = 0;
+    d.done = !take_rays(ray, tree, packet, found);
+    bool ended = run(d, found, packet, 0, OVC_MOST_ROUNDS, rounds);
+    give_answers(ray, packet, found, ended && !d.lost);
+}
+#else
+// The rays `ray`, `ray` + `stride` and so on, before `end`, one after the other: now and then lanes that have an answer go on to
+// their next rays, so that they do not wait for each other.
+// Based on: Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs" (replacing terminated rays).
+void trace_linked(int ray, int stride, int end) {
+    Tree tree = tree_of(linked_root, 0);
+    Descent d = descent(tree);
+    Packet packet;
+    Found found[OVC_PACKET];
+    int rounds = 0;
+    d.done = !take_rays(ray, tree, packet, found);
+    while (ray < end) {
+        bool ended = run(d, found, packet, 0, min(rounds + OVC_REFILL_ROUNDS, OVC_MOST_ROUNDS), rounds);
+        if (ended || rounds >= OVC_MOST_ROUNDS) {
+            give_answers(ray, packet, found, ended && !d.lost);
+            ray += stride;
+            start(d, tree);
+            d.done = !take_rays(ray, tree, packet, found);
+        }
+        ++rounds;
+    }
+}
+#endif
 #endif

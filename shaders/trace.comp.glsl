@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compute kernel: an invocation is a ray of the pass.
+// The compute kernel: an invocation takes rays of the pass, OVC_PACKET at a time, OVC_REFILL times.
 #version 450 core
 #include "layout.h"
 #include "config.glsl"
@@ -16,6 +16,7 @@
 layout(local_size_x = OVC_GROUP_SIZE) in;
 layout(r32ui, binding = OVC_BINDING_ANSWERS) uniform writeonly restrict uimageBuffer answers;
 layout(location = OVC_LOCATION_PLANE) uniform int plane;
+layout(location = OVC_LOCATION_RAYS) uniform int ray_count;
 
 // The group whose rays this one traces. Slice by slice: one of each slice in turn.
 uint dealt_group() {
@@ -30,13 +31,7 @@ uint dealt_group() {
 #endif
 }
 
-void main() {
-    int ray = int(dealt_group() * OVC_GROUP_SIZE + gl_LocalInvocationID.x);
-#if OVC_LINKED
-    uvec4 answer = trace_linked(ray);
-#else
-    uvec4 answer = walk(traveller(ray));
-#endif
+void give(int ray, uvec4 answer) {
     const bool tells_leaf = OVC_LINKED == 0 || OVC_CERTIFY == 0;
     bool more = (tells_leaf && answer.w < OVC_MAX_TRIANGLES) || answer.w == OVC_WAITS || answer.x != OVC_NO_TRIANGLE;
     imageStore(answers, ray, uvec4(answer.w | (more ? OVC_SAYS_MORE : 0u)));
@@ -46,4 +41,15 @@ void main() {
         if (tells_leaf)
             imageStore(answers, 3 * plane + ray, uvec4(answer.z));
     }
+}
+
+void main() {
+    const int group_rays = OVC_GROUP_SIZE * OVC_PACKET * OVC_REFILL;
+    int first = int(dealt_group()) * group_rays;
+    int ray = first + int(gl_LocalInvocationID.x) * OVC_PACKET;
+#if OVC_LINKED
+    trace_linked(ray, OVC_GROUP_SIZE * OVC_PACKET, min(first + group_rays, ray_count));
+#else
+    give(ray, walk(traveller(ray)));
+#endif
 }

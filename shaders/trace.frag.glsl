@@ -15,11 +15,13 @@
 
 layout(location = 0) out uvec4 answer;
 
+void give(int ray, uvec4 words) { answer = words; }
+
 void main() {
     int ray = ray_at(ivec2(gl_FragCoord.xy));
 #if OVC_LINKED
-    answer = trace_linked(ray);
+    trace_linked(ray, 1, ray + 1);
 #else
-    answer = walk(traveller(ray));
+    give(ray, walk(traveller(ray)));
 #endif
 }

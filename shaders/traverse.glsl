@@ -34,6 +34,7 @@ struct Descent {
     int height; // of the words below `top`, less one
     int stack[OVC_STACK_DEPTH];
     bool done;
+    bool lost; // the stack was too short: what has been found is not all
 };
 
 // Goes down to the nearest of the children that `keys` has; where it has none, and `leave`, to the next of the stack.
@@ -48,10 +49,10 @@ void advance(inout Descent d, int first_child, ivec4 keys, bool leave) {
 
     int left = (d.top >> 6) & 3;
     int rest = (d.top & ~255) | ((left - 1) << 6) | ((d.top & 63) >> 2);
-    d.done = d.done || (back && left == 0);
     d.unit = descend ? first_child + (keys.x & 3) : (back ? (d.top >> 8) + (d.top & 3) : d.unit);
 
     bool store = push && d.top != 0;
+    d.lost = d.lost || (store && d.height >= OVC_STACK_DEPTH - 1);
     bool pop = back && left <= 1;
     int below = 0;
 #if OVC_STACK_REGISTERS
@@ -69,6 +70,7 @@ void advance(inout Descent d, int first_child, ivec4 keys, bool leave) {
 #endif
     d.height += store ? 1 : (pop && d.height >= 0 ? -1 : 0);
     d.top = push ? word : (pop ? below : (back ? rest : d.top));
+    d.done = d.done || (back && left == 0) || d.lost;
 }
 
 #if OVC_TELL_ACTIVE && OVC_LINKED
@@ -80,54 +82,132 @@ void tell_active(Unit unit, bool here) {
 void tell_active(Unit unit, bool here) {}
 #endif
 
-// Takes into `found` what the ray may hit in the page whose header is the pool's unit `page`, and whose units count from the unit
-// `first_unit`. False: the loop was ended before it was done. rounds: of all loops of this ray so far.
-bool traverse(inout Found found, int page, int first_unit, vec3 org, float t_end, Direction direction, uint skip, bool any_hit,
-              inout int rounds) {
+// Rays that go through a tree together, so that a node is fetched, decoded and sorted once for all of them.
+struct Packet {
+    vec3 org[OVC_PACKET];
+    Basis basis[OVC_PACKET];
+    GridRay grid[OVC_PACKET];
+    uint skip[OVC_PACKET];
+    bool any_hit[OVC_PACKET];
+};
+
+// Of the page, or of all linked pages, whose header is the pool's unit `page`.
+struct Tree {
+    vec3 grid_org;
+    vec3 grid_cell;
+    ivec4 start; // fetched, because a compiler that knows the first values splits a loop's variables into masked copies (llvmpipe)
+    int first_unit; // units count from here
+};
+
+Tree tree_of(int page, int first_unit) {
     int header = page * OVC_UNIT_TEXELS;
-    GridRay grid = grid_ray(org, direction.inv_dir, uintBitsToFloat(page_texel(header).xyz), uintBitsToFloat(page_texel(header + 1).xyz));
+    return Tree(uintBitsToFloat(page_texel(header).xyz), uintBitsToFloat(page_texel(header + 1).xyz),
+                ivec4(page_texel(header + 2)), first_unit);
+}
 
-    // Fetched, because a compiler that knows the first values splits the loop's variables into masked copies (llvmpipe).
-    ivec4 first = ivec4(page_texel(header + 2));
+void set_ray(inout Packet packet, int k, Tree tree, vec3 org, Direction direction, uint skip, bool any_hit) {
+    packet.org[k] = org;
+    packet.basis[k] = direction.basis;
+    packet.grid[k] = grid_ray(org, direction.inv_dir, tree.grid_org, tree.grid_cell);
+    packet.skip[k] = skip;
+    packet.any_hit[k] = any_hit;
+}
+
+void start(inout Descent d, Tree tree) {
+    d.unit = tree.start.x;
+    d.height = tree.start.y;
+    d.top = tree.start.z;
+    d.done = tree.start.w != 0;
+    d.lost = tree.start.w != 0;
+}
+
+Descent descent(Tree tree) {
     Descent d;
-    d.unit = first.x;
-    d.height = first.y;
-    d.top = first.z;
     for (int i = 0; i < OVC_STACK_DEPTH; ++i)
-        d.stack[i] = first.z;
+        d.stack[i] = tree.start.z;
+    start(d, tree);
+    return d;
+}
 
+// The children of the node that any ray of the packet meets. Where not `here` the unit is a pair, whose bits mean nothing as
+// boxes: an end before the beginning lets none of them through.
+ivec4 keys_of(Unit node, Packet packet, Found found[OVC_PACKET], bool here) {
+    Boxes boxes = boxes_of(node.x, node.y, node.z, packet.grid[0].backward);
+    ivec4 keys = ivec4(OVC_NO_CHILD);
+    for (int k = 0; k < OVC_PACKET; ++k)
+        keys = min(keys, child_keys(boxes, packet.grid[k], here ? found[k].best_hi : OVC_ENOUGH));
+    return keys_of_present(keys, boxes);
+}
+
+// Tests the pair with the rays that still look for something, where `here`.
+void take_pairs(inout Found found[OVC_PACKET], Unit pair, Packet packet, bool here) {
+    for (int k = 0; k < OVC_PACKET; ++k) {
+        bool took = take_pair(found[k], pair.x, pair.y, pair.z, pair.w, here && found[k].best_hi >= 0.0,
+                              packet.org[k], packet.basis[k], packet.skip[k]);
+        found[k].best_hi = packet.any_hit[k] && took ? OVC_ENOUGH : found[k].best_hi;
+    }
+}
+
+bool all_have_enough(Found found[OVC_PACKET]) {
+    bool all = true;
+    for (int k = 0; k < OVC_PACKET; ++k)
+        all = all && found[k].best_hi < 0.0;
+    return all;
+}
+
+void go_round(inout Descent d, inout Found found[OVC_PACKET], Packet packet, int first_unit) {
+#if OVC_BRANCHES
+    Unit unit = unit_at(first_unit + d.unit);
+    ivec4 keys = ivec4(OVC_NO_CHILD);
+    if (is_pair(unit)) {
+        take_pairs(found, unit, packet, true);
+    } else {
+        tell_active(unit, true);
+        keys = keys_of(unit, packet, found, true);
+    }
+    advance(d, int(unit.w.x), keys, true);
+#else
+    Unit node = unit_at(first_unit + d.unit);
+    bool here = !is_pair(node); // a pair waits for the second step
+    tell_active(node, here);
+    advance(d, int(node.w.x), keys_of(node, packet, found, here), here);
+
+    Unit unit = unit_at(first_unit + d.unit);
+    bool pair = is_pair(unit) && !d.done;
+    here = !is_pair(unit) && !d.done;
+    tell_active(unit, here);
+    ivec4 keys = keys_of(unit, packet, found, here);
+    take_pairs(found, unit, packet, pair);
+    advance(d, int(unit.w.x), keys, true);
+#endif
+    d.done = d.done || all_have_enough(found);
+}
+
+// Takes into `found` what the rays may hit, until the end or for some rounds; rounds: of all loops of this invocation so far.
+// True: the end, for good or because something was lost.
+bool run(inout Descent d, inout Found found[OVC_PACKET], Packet packet, int first_unit, int most_rounds, inout int rounds) {
     // Tested at the top, and fetched as well: llvmpipe (22.3) keeps, behind a loop, only what was known at its top for lanes
     // that left early; what the rest of the body computed it computes again, for the lanes that go on.
-    d.done = first.w != 0;
-    while (!d.done && rounds < OVC_MOST_ROUNDS) {
-#if OVC_BRANCHES
-        Unit unit = unit_at(first_unit + d.unit);
-        bool took = false;
-        ivec4 keys = ivec4(OVC_NO_CHILD);
-        if (is_pair(unit)) {
-            took = take_pair(found, unit.x, unit.y, unit.z, unit.w, true, org, direction.basis, skip);
-        } else {
-            tell_active(unit, true);
-            keys = child_keys(unit.x, unit.y, unit.z, grid, found.best_hi);
-        }
-        advance(d, int(unit.w.x), keys, true);
-#else
-        Unit node = unit_at(first_unit + d.unit);
-        bool here = !is_pair(node); // a pair waits for the second step
-        tell_active(node, here);
-        // A pair's bits mean nothing as boxes: an end before the beginning lets none of them through.
-        advance(d, int(node.w.x), child_keys(node.x, node.y, node.z, grid, here ? found.best_hi : -1.0), here);
-
-        Unit unit = unit_at(first_unit + d.unit);
-        bool pair = is_pair(unit) && !d.done;
-        here = !is_pair(unit) && !d.done;
-        tell_active(unit, here);
-        ivec4 keys = child_keys(unit.x, unit.y, unit.z, grid, here ? found.best_hi : -1.0);
-        bool took = take_pair(found, unit.x, unit.y, unit.z, unit.w, pair, org, direction.basis, skip);
-        advance(d, int(unit.w.x), keys, true);
-#endif
-        d.done = d.done || (any_hit && took);
+    while (!d.done && rounds < most_rounds) {
+        go_round(d, found, packet, first_unit);
         ++rounds;
     }
     return d.done;
 }
+
+#if OVC_PACKET == 1
+// A ray by itself, until the end, in the page whose header is the pool's unit `page`; its units count from there. False: it was
+// ended before that, and whoever counts rounds ends as well.
+bool traverse(inout Found found, int page, vec3 org, Direction direction, uint skip, bool any_hit, inout int rounds) {
+    Tree tree = tree_of(page, page);
+    Descent d = descent(tree);
+    Packet packet;
+    set_ray(packet, 0, tree, org, direction, skip, any_hit);
+    Found one[1] = Found[1](found);
+    bool ended = run(d, one, packet, tree.first_unit, OVC_MOST_ROUNDS, rounds);
+    found = one[0];
+    ended = ended && !d.lost;
+    rounds = ended ? rounds : OVC_MOST_ROUNDS;
+    return ended;
+}
+#endif

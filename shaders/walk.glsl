@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A ray's way through level 1: from leaf to leaf as long as they are in the pool, until one has an answer for it.
 
+#if !OVC_LINKED
 // The words of an answer (layout.h).
 uvec4 walk(Traveller traveller) {
     WorldRay ray = traveller.ray;
@@ -50,7 +51,7 @@ uvec4 walk(Traveller traveller) {
                 mark_active(leaf);
 #endif
                 Found found = nothing_found(local.t_end);
-                if (traverse(found, int(page), int(page), local.org, local.t_end, direction, traveller.skip, traveller.any_hit, rounds)) {
+                if (traverse(found, int(page), local.org, direction, traveller.skip, traveller.any_hit, rounds)) {
                     answer = answer_of(found, traveller.any_hit, uint(leaf));
                     done = answer.w != OVC_MISS || answer.x != OVC_NO_TRIANGLE;
 #if !OVC_CERTIFY
@@ -72,3 +73,4 @@ uvec4 walk(Traveller traveller) {
     // way out of the loops is there so that no compiler takes `done` for true behind them.
     return done ? answer : uvec4(0u, 0u, 0u, OVC_CAPPED);
 }
+#endif

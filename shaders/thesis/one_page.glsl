@@ -7,7 +7,7 @@ uvec4 trace_page(int page, vec3 org, float t_end, vec3 dir, uint skip, bool any_
     int rounds = int(page_texel(page * OVC_UNIT_TEXELS + 2).w); // 0, fetched
     bool done = t_end < 0.0;
     if (!done)
-        done = traverse(found, page, page, org, t_end, direction_of(dir), skip, any_hit, rounds);
+        done = traverse(found, page, org, direction_of(dir), skip, any_hit, rounds);
     return done ? frame_answer(found, any_hit) : uvec4(0u, 0u, 0u, OVC_CAPPED);
 }
 
