@@ -7,6 +7,7 @@
 #include "gpu/gl_thread.h"
 #include "plugin/failure.h"
 #include "plugin/overcast.h"
+#include "plugin/single_rays.h"
 #include "plugin/structure.h"
 
 #include <atomic>
@@ -59,7 +60,8 @@ struct ovc_scene_t {
     ovc_scene_config config{sizeof(ovc_scene_config)};
     ovc::Soup soup;
     std::unique_ptr<ovc::Structure> structure; // set by commit
-    std::atomic<std::thread::id> streaming;    // the thread that is inside stream(), if any
+    ovc::SingleRays single_rays;
+    std::atomic<std::thread::id> streaming; // the thread that is inside stream(), if any
 };
 
 namespace ovc {

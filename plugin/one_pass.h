@@ -28,6 +28,9 @@ public:
             begin_part(batch);
     }
 
+    /// Rays of the query that have begun.
+    size_t begun() const { return next_; }
+
     void settle(const Batch& batch) {
         parallel_for(batch.rays.size(), kGrain, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j) {

@@ -49,6 +49,20 @@ typedef struct ovc_ray {
     double t_max;
 } ovc_ray;
 
+/* The same in half the bytes, where ovc_query.ray_format says so; what it holds is taken as the doubles that it is, and answers are
+ * the same bits as for a ray of those. 32 bytes. */
+typedef struct ovc_ray_float {
+    float org[3];
+    float t_min;
+    float dir[3];
+    float t_max;
+} ovc_ray_float;
+
+typedef enum ovc_ray_format {
+    OVC_RAY_DOUBLE = 0, /* ovc_ray */
+    OVC_RAY_FLOAT = 1   /* ovc_ray_float: the call's `rays` is cast from a pointer to them */
+} ovc_ray_format;
+
 /* The nearest hit, at org + t dir = (1-u-v) a + u b + v c of the triangle's corners a, b, c; equal t goes to the smaller
  * (mesh, prim). A miss: mesh = prim = OVC_NONE, t = infinity. 32 bytes. */
 typedef struct ovc_hit {
@@ -176,6 +190,13 @@ typedef struct ovc_query {
     uint32_t* leaf;   /* ray_count, or NULL: the level-1 leaf that the hit of ray i lies in; OVC_NONE: a miss */
     uint32_t* passes; /* ray_count, or NULL: kernel launches that ray i took part in; 0: it meets no leaf's box, or doubles alone could walk it */
     uint32_t* flagged; /* ray_count, or NULL: 1 where the kernel was not certain and doubles decided; else 0 */
+    uint32_t ray_format; /* ovc_ray_format */
+    uint32_t reserved;   /* 0 */
+    /* NULL, or asked between the passes of intersect and occluded; not for single rays and push. done: the share of rays that is
+     * answered; stage: "rays". It runs on the thread that called. Not 0: the call ends with OVC_ERROR_CANCELLED after the pass under
+     * way, and its answers are undefined. Structures but two-level ask before the first ray only. */
+    ovc_progress_function progress;
+    void* progress_user;
 } ovc_query;
 
 /* What commit would make of the meshes added so far, told without making it. Numbers of leaves, bytes and pages are estimates:
@@ -234,6 +255,7 @@ typedef struct ovc_statistics {
     uint64_t longest_queue;        /* rays */
     uint64_t from_saved;           /* 1: commit took them from ovc_scene_config.saved; else 0 */
     double seconds_pass;           /* of seconds_trace, passes: from sending rays until their answers are here, pages moved in beside */
+    uint64_t single_rays;          /* of nearest_rays and occlusion_rays, those of intersect1 and occluded1 */
 } ovc_statistics;
 
 /* The pages that rays went through since this was asked last, or since the commit; experimental. */
@@ -320,6 +342,14 @@ typedef struct ovc_api {
      * same meshes. It is for this version on this kind of machine: whatever else takes it builds anew. OVC_ERROR_CANCELLED where
      * `write` says so; OVC_ERROR_INVALID_ARGUMENT for structures that cannot be saved. `write` may call nothing on the scene. */
     ovc_result (*save)(ovc_scene scene, ovc_write_function write, void* user);
+
+    /* One ray, for renderers that need an answer before they know the next ray: made to be called from many threads at once, beside
+     * all other calls on the scene, none of which it waits for, and from within the functions of a stream. The calling thread walks
+     * the CPU's tree. Answers are those of intersect, bit for bit; in OVC_PRECISION_FAST those of doubles. query may be NULL; its
+     * arrays have one element. For structures but two-level it is intersect with a ray_count of 1. */
+    ovc_result (*intersect1)(ovc_scene scene, const ovc_ray* ray, ovc_hit* hit, const ovc_query* query);
+    /* The same for occlusion: *occluded = 1 when the ray hits anything, else 0. */
+    ovc_result (*occluded1)(ovc_scene scene, const ovc_ray* ray, uint8_t* occluded, const ovc_query* query);
 } ovc_api;
 
 #if defined(_WIN32)

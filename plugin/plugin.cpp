@@ -4,6 +4,7 @@
 #include "plugin/overcast.h"
 #include "plugin/scene.h"
 #include "plugin/stream_call.h"
+#include "plugin/trace_call.h"
 
 extern "C" const ovc_api* ovc_get_api(uint32_t abi_version) {
     static constexpr ovc_api api = {
@@ -12,6 +13,7 @@ extern "C" const ovc_api* ovc_get_api(uint32_t abi_version) {
         ovc::create_scene, ovc::add_mesh,      ovc::commit,          ovc::intersect,
         ovc::occluded,     ovc::statistics,    ovc::destroy_scene,   ovc::stream,
         ovc::push,         ovc::plan,          ovc::active,          ovc::save,
+        ovc::intersect1,   ovc::occluded1,
     };
     return abi_version == OVC_ABI_VERSION ? &api : nullptr;
 }

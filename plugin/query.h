@@ -2,6 +2,7 @@
 // What nearest-hit and occlusion queries differ in: the kernel, and what becomes of an answer.
 #pragma once
 
+#include "core/ray_span.h"
 #include "core/triangle.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace ovc {
 
 struct NearestQuery {
     static constexpr bool kAnyHit = false;
-    std::span<const Ray> rays;
+    RaySpan rays;
     std::span<const TriangleId> skip; // empty, or one per ray
     std::span<Hit> results;
     std::span<uint32_t> passes;  // empty, or counts each ray's
@@ -41,7 +42,7 @@ struct NearestQuery {
 
 struct OcclusionQuery {
     static constexpr bool kAnyHit = true;
-    std::span<const Ray> rays;
+    RaySpan rays;
     std::span<const TriangleId> skip;
     std::span<uint8_t> results;
 

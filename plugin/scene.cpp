@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes: meshes in, commit, rays, statistics. Arguments are checked here; what is below trusts
+// Scenes: meshes in, commit, statistics. Arguments are checked here; what is below trusts
 // them.
 #include "plugin/scene.h"
 
@@ -55,11 +55,6 @@ std::vector<vec3> copied_corners(const ovc_mesh& mesh, size_t stride) {
         std::memcpy(&corners[i], base + vertex * stride, sizeof(vec3));
     }
     return corners;
-}
-
-void check_buffers(const char* call, const void* rays, const void* answers, size_t ray_count) {
-    if (ray_count && (!rays || !answers))
-        invalid(fmt::format("{}: rays or the answers' buffer is NULL", call));
 }
 
 void check_choice(const char* field, uint32_t value, uint32_t last) {
@@ -164,32 +159,8 @@ ovc_result commit(ovc_scene scene) {
             if (progress)
                 progress->finish(); // the last chance to be cancelled
             scene->structure = std::move(*built);
+            scene->single_rays.serve(scene->structure.get());
         });
-    });
-}
-
-ovc_result intersect(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits,
-                     const ovc_query* query) {
-    return on_scene(scene, "intersect", [&] {
-        check_buffers("intersect", rays, hits, ray_count);
-        Structure& structure = committed(scene, "intersect");
-        const auto skip = skip_of(query, ray_count);
-        const RayNotes notes = notes_of(query, ray_count);
-        if (notes.any() && !structure.takes_notes())
-            invalid("intersect: this structure cannot tell ovc_query.leaf, passes or flagged");
-        check(structure.intersect_noted({reinterpret_cast<const Ray*>(rays), ray_count}, skip,
-                                        {reinterpret_cast<Hit*>(hits), ray_count}, notes));
-    });
-}
-
-ovc_result occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded,
-                    const ovc_query* query) {
-    return on_scene(scene, "occluded", [&] {
-        check_buffers("occluded", rays, occluded, ray_count);
-        refuse_notes("occluded", query, ray_count);
-        check(committed(scene, "occluded")
-                  .occluded({reinterpret_cast<const Ray*>(rays), ray_count},
-                            skip_of(query, ray_count), {occluded, ray_count}));
     });
 }
 
@@ -200,6 +171,7 @@ ovc_result statistics(ovc_scene scene, ovc_statistics* statistics) {
         const size_t size = statistics->struct_size;
         check_size<ovc_statistics>("ovc_statistics", size, offsetof(ovc_statistics, host_bytes));
         ovc_statistics all = committed(scene, "statistics").report();
+        scene->single_rays.add_to(all);
         all.struct_size = size;
         std::memcpy(statistics, &all, size);
     });
@@ -254,6 +226,7 @@ void destroy_scene(ovc_scene scene) {
         return;
     {
         const std::lock_guard turn(scene->turn); // a call that is still running ends first
+        scene->single_rays.serve(nullptr);
         scene->structure.reset();
     }
     --scene->device->scenes;

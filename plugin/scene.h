@@ -9,10 +9,6 @@ namespace ovc {
 ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_scene* scene);
 ovc_result add_mesh(ovc_scene scene, const ovc_mesh* mesh, uint32_t* mesh_id);
 ovc_result commit(ovc_scene scene);
-ovc_result intersect(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits,
-                     const ovc_query* query);
-ovc_result occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded,
-                    const ovc_query* query);
 ovc_result statistics(ovc_scene scene, ovc_statistics* statistics);
 ovc_result plan(ovc_scene scene, ovc_plan* plan);
 ovc_result active(ovc_scene scene, ovc_active* active);

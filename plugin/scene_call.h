@@ -23,13 +23,19 @@ static_assert(sizeof(ovc_triangle) == sizeof(TriangleId) && OVC_NONE == kNone);
     throw Failure{OVC_ERROR_INVALID_ARGUMENT, std::move(message)};
 }
 
-/// body() with the scene's turn taken.
+/// body() beside all other calls on the scene, without its turn.
 template <class Body>
-ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
+ovc_result beside_scene(ovc_scene scene, const char* call, Body&& body) {
     if (!scene || scene->magic != kSceneMagic)
         return fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
                                    fmt::format("{}: scene is NULL or not a scene", call).c_str());
-    return guard(scene->device->messages, [&] {
+    return guard(scene->device->messages, std::forward<Body>(body));
+}
+
+/// body() with the scene's turn taken.
+template <class Body>
+ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
+    return beside_scene(scene, call, [&] {
         if (scene->streaming == std::this_thread::get_id())
             throw Failure{OVC_ERROR_INVALID_STATE,
                           fmt::format("{}: called from within the scene's own stream, where push "
@@ -40,40 +46,13 @@ ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
     });
 }
 
-/// The triangles that rays do not see, as a span; empty for none.
-inline std::span<const TriangleId> skip_of(const ovc_query* query, size_t ray_count) {
-    if (!query)
-        return {};
-    if (query->struct_size != sizeof(ovc_query) &&
-        query->struct_size != offsetof(ovc_query, leaf) &&
-        query->struct_size != offsetof(ovc_query, flagged))
-        invalid(fmt::format("ovc_query.struct_size is {}, expected sizeof(ovc_query) = {}",
-                            query->struct_size, sizeof(ovc_query)));
-    if (!query->skip)
-        return {};
-    return {reinterpret_cast<const TriangleId*>(query->skip), ray_count};
-}
-
-/// What else is to be told of rays. The query's size is in order: see skip_of().
-inline RayNotes notes_of(const ovc_query* query, size_t ray_count) {
-    if (!query || query->struct_size <= offsetof(ovc_query, leaf))
-        return {};
-    const auto span = [&](uint32_t* notes) {
-        return notes ? std::span(notes, ray_count) : std::span<uint32_t>();
-    };
-    const bool has_flagged = query->struct_size > offsetof(ovc_query, flagged);
-    return {span(query->leaf), span(query->passes), span(has_flagged ? query->flagged : nullptr)};
-}
-
-inline void refuse_notes(const char* call, const ovc_query* query, size_t ray_count) {
-    if (notes_of(query, ray_count).any())
-        invalid(fmt::format("{}: ovc_query.leaf, passes and flagged are for intersect", call));
+[[noreturn]] inline void not_committed(const char* call) {
+    throw Failure{OVC_ERROR_INVALID_STATE, fmt::format("{}: the scene is not committed yet", call)};
 }
 
 inline Structure& committed(ovc_scene scene, const char* call) {
     if (!scene->structure)
-        throw Failure{OVC_ERROR_INVALID_STATE,
-                      fmt::format("{}: the scene is not committed yet", call)};
+        not_committed(call);
     return *scene->structure;
 }
 

@@ -2,7 +2,8 @@
 // Streams: the caller's functions as a StreamHost, and what it pushes.
 #include "plugin/stream_call.h"
 
-#include "plugin/scene_call.h"
+#include "plugin/host_mode.h"
+#include "plugin/query_call.h"
 
 /// Lives as long as the call to stream().
 struct ovc_stream_t {
@@ -17,7 +18,7 @@ namespace {
 
 class CallbackHost final : public StreamHost {
 public:
-    CallbackHost(ovc_stream_t& stream, const ovc_stream_host& host, const std::fenv_t& mode)
+    CallbackHost(ovc_stream_t& stream, const ovc_stream_host& host, HostFloatMode& mode)
         : stream_(stream), host_(host), mode_(mode) {}
 
     bool more(RayStream& rays, size_t wanted) override {
@@ -39,21 +40,17 @@ private:
         return call(rays, [&] { return host_.answered(host_.user, &stream_, &answers); });
     }
 
-    /// In the floating-point mode of the host, which may change it.
     template <class Function>
     bool call(RayStream& rays, Function&& function) {
         stream_.rays = &rays;
-        std::fesetenv(&mode_);
-        const int stop = function();
-        std::fegetenv(&mode_);
-        std::fesetenv(FE_DFL_ENV);
+        const int stop = mode_.call(function);
         stream_.rays = nullptr;
         return stop == 0;
     }
 
     ovc_stream_t& stream_;
     const ovc_stream_host& host_;
-    std::fenv_t mode_;
+    HostFloatMode& mode_;
 };
 
 /// Marks the scene as streaming on this thread while it lives.
@@ -72,8 +69,7 @@ private:
 } // namespace
 
 ovc_result stream(ovc_scene scene, const ovc_stream_host* host) {
-    std::fenv_t mode;
-    std::fegetenv(&mode);
+    HostFloatMode mode;
     return on_scene(scene, "stream", [&] {
         if (!host)
             invalid("stream: host is NULL");
@@ -107,10 +103,13 @@ ovc_result push(ovc_stream stream, const ovc_ray* rays, const uint64_t* tokens, 
             invalid("push: rays or tokens is NULL");
         if (any_hit > 1)
             invalid(fmt::format("push: any_hit is {}, expected 0 or 1", any_hit));
-        refuse_notes("push", query, ray_count);
+        const ovc_query asked = complete(query);
+        refuse_notes("push", asked);
+        refuse_progress("push", asked);
+        std::vector<Ray> room;
         stream->rays->push({any_hit == 1,
-                            {reinterpret_cast<const Ray*>(rays), ray_count},
-                            skip_of(query, ray_count),
+                            rays_of(asked, rays, ray_count).in_double(room),
+                            skip_of(asked, ray_count),
                             {tokens, ray_count}});
     });
 }

@@ -8,7 +8,7 @@
 #include "core/batched_stream.h"
 #include "core/build_progress.h"
 #include "core/log.h"
-#include "core/ray.h"
+#include "core/ray_span.h"
 #include "core/result.h"
 #include "core/soup.h"
 #include "gpu/gl_thread.h"
@@ -20,28 +20,57 @@
 
 namespace ovc {
 
-/// Built over a soup. One call at a time.
+/// Who waits for rays, and may stop their tracing.
+class TraceWatch {
+public:
+    /// done: the share of the rays that is answered. false: stop.
+    virtual bool goes_on(double done) = 0;
+
+protected:
+    ~TraceWatch() = default;
+};
+
+/// Built over a soup. One call at a time, but for those that say otherwise.
 class Structure {
 public:
     virtual ~Structure() = default;
 
+    /// While it lives, calls of intersect and occluded ask `watch` between passes, if it is not
+    /// nullptr and the structure knows passes; Error of the kind Cancelled where it says so.
+    class Watched {
+    public:
+        Watched(Structure& structure, TraceWatch* watch) : structure_(structure) {
+            structure_.watch_ = watch;
+        }
+        ~Watched() { structure_.watch_ = nullptr; }
+        Watched(const Watched&) = delete;
+
+    private:
+        Structure& structure_;
+    };
+
     /// hits[i] for rays[i]; skip: empty, or per ray the triangle it does not see.
-    virtual Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    virtual Result<Done> intersect(RaySpan rays, std::span<const TriangleId> skip,
                                    std::span<Hit> hits) = 0;
     /// occluded[i] = 1 or 0 for rays[i].
-    virtual Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    virtual Result<Done> occluded(RaySpan rays, std::span<const TriangleId> skip,
                                   std::span<uint8_t> occluded) = 0;
     /// Traces what the host pushes until there is no more. Error of the kind Cancelled: the host
     /// stopped it. Here: batch after batch, for structures that know no better.
     virtual Result<Done> stream(StreamHost& host) { return stream_in_batches(*this, host); }
     /// intersect(), which fills in the notes as well. Only where takes_notes().
-    virtual Result<Done> intersect_noted(std::span<const Ray> rays,
-                                         std::span<const TriangleId> skip, std::span<Hit> hits,
+    virtual Result<Done> intersect_noted(RaySpan rays, std::span<const TriangleId> skip,
+                                         std::span<Hit> hits,
                                          [[maybe_unused]] const RayNotes& notes) {
         assert(!notes.any());
         return intersect(rays, skip, hits);
     }
     virtual bool takes_notes() const { return false; }
+    /// Whether single rays can be answered on the CPU, from any thread and beside all other calls:
+    /// the same bits as intersect() and occluded(), those of certified precision.
+    virtual bool has_cpu_tree() const { return false; }
+    virtual Hit nearest_on_cpu(const Ray&, TriangleId) const { return {}; }
+    virtual bool occluded_on_cpu(const Ray&, TriangleId) const { return false; }
     /// The pages that rays were traced through since this was asked last. Error: a structure that
     /// cannot tell, or was not asked to when it was built.
     virtual Result<ovc_active> take_active() {
@@ -54,6 +83,17 @@ public:
     }
     /// Counted since it was built. What a structure does not have is 0.
     virtual ovc_statistics report() const = 0;
+
+protected:
+    /// What a call of so many rays asks between passes.
+    Result<Done> go_on(size_t answered, size_t rays) const {
+        if (watch_ && !watch_->goes_on(double(answered) / double(rays)))
+            return Error{"cancelled", ErrorKind::Cancelled};
+        return Done{};
+    }
+
+private:
+    TraceWatch* watch_ = nullptr;
 };
 
 /// Throws a Failure for what this library cannot do on the device, as far as that can be told

@@ -326,11 +326,14 @@ Result<Done> TwoLevel::trace_in_waves(const Query& query) {
         std::vector<uint32_t> all(count);
         std::iota(all.begin(), all.end(), 0u);
         wave.start(all);
-        while (wave.ready() + wave.waiting() > 0)
+        while (const size_t left = wave.ready() + wave.waiting()) {
+            if (Result<Done> asked = go_on(first + count - left, query.rays.size()); !asked)
+                return asked;
             if (Result<Done> done = round(
                     plan_.batch_rays, [] {}, wave);
                 !done)
                 return done;
+        }
     }
     return Done{};
 }
@@ -343,13 +346,18 @@ Result<Done> TwoLevel::trace_in_one_pass(const Query& query) {
     Batch* other = &batches_[1];
     other->rays.clear();
     rays.begin(*now);
+    size_t traced = 0;
     while (!now->rays.empty()) {
+        if (Result<Done> asked = go_on(traced, query.rays.size()); !asked)
+            return asked;
+        const size_t begun = rays.begun();
         const Result<size_t> moved = pass(*now, now->rays.size(), {}, [&] {
             rays.settle(*other);
             rays.begin(*other);
         });
         if (!moved)
             return moved.error();
+        traced = begun;
         std::swap(now, other);
     }
     rays.settle(*other);
@@ -380,12 +388,12 @@ Result<ovc_active> TwoLevel::take_active() {
     return active;
 }
 
-Result<Done> TwoLevel::intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+Result<Done> TwoLevel::intersect(RaySpan rays, std::span<const TriangleId> skip,
                                  std::span<Hit> hits) {
     return trace(NearestQuery{rays, skip, hits, {}, {}});
 }
 
-Result<Done> TwoLevel::intersect_noted(std::span<const Ray> rays, std::span<const TriangleId> skip,
+Result<Done> TwoLevel::intersect_noted(RaySpan rays, std::span<const TriangleId> skip,
                                        std::span<Hit> hits, const RayNotes& notes) {
     std::fill(notes.passes.begin(), notes.passes.end(), 0);
     std::fill(notes.flagged.begin(), notes.flagged.end(), 0);
@@ -400,7 +408,22 @@ Result<Done> TwoLevel::intersect_noted(std::span<const Ray> rays, std::span<cons
     return Done{};
 }
 
-Result<Done> TwoLevel::occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+Hit TwoLevel::nearest_on_cpu(const Ray& ray, TriangleId skip) const {
+    return on_cpu</* kAnyHit= */ false>(ray, skip);
+}
+
+bool TwoLevel::occluded_on_cpu(const Ray& ray, TriangleId skip) const {
+    return on_cpu</* kAnyHit= */ true>(ray, skip).is_hit();
+}
+
+template <bool kAnyHit>
+Hit TwoLevel::on_cpu(const Ray& ray, TriangleId skip) const {
+    if (!ray.valid())
+        return {};
+    return arbitrate<kAnyHit>(soup_, numbers_, twins_, level1_, pages_, PreparedRay(ray, skip));
+}
+
+Result<Done> TwoLevel::occluded(RaySpan rays, std::span<const TriangleId> skip,
                                 std::span<uint8_t> occluded) {
     return trace(OcclusionQuery{rays, skip, occluded});
 }

@@ -90,13 +90,16 @@ public:
                                                    BuildProgress* progress = nullptr);
     ~TwoLevel() override;
 
-    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> intersect(RaySpan rays, std::span<const TriangleId> skip,
                            std::span<Hit> hits) override;
-    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> occluded(RaySpan rays, std::span<const TriangleId> skip,
                           std::span<uint8_t> occluded) override;
-    Result<Done> intersect_noted(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> intersect_noted(RaySpan rays, std::span<const TriangleId> skip,
                                  std::span<Hit> hits, const RayNotes& notes) override;
     bool takes_notes() const override { return true; }
+    bool has_cpu_tree() const override { return true; }
+    Hit nearest_on_cpu(const Ray& ray, TriangleId skip) const override;
+    bool occluded_on_cpu(const Ray& ray, TriangleId skip) const override;
     Result<Done> stream(StreamHost& host) override; // two_level_stream.cpp
     ovc_statistics report() const override;         // make_two_level.cpp
     Result<ovc_active> take_active() override;
@@ -160,6 +163,8 @@ private:
     };
     Result<size_t> pass(Batch& batch, size_t count, std::span<const uint32_t> wanted,
                         const std::function<void()>& meanwhile);
+    template <bool kAnyHit>
+    Hit on_cpu(const Ray& ray, TriangleId skip) const;
     template <class Query>
     Result<Done> trace(const Query& query);
     template <class Query>

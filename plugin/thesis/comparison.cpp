@@ -239,12 +239,12 @@ Result<Done> Comparison::trace(const Query& query) {
     return Done{};
 }
 
-Result<Done> Comparison::intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+Result<Done> Comparison::intersect(RaySpan rays, std::span<const TriangleId> skip,
                                    std::span<Hit> hits) {
     return trace(NearestQuery{rays, skip, hits});
 }
 
-Result<Done> Comparison::occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+Result<Done> Comparison::occluded(RaySpan rays, std::span<const TriangleId> skip,
                                   std::span<uint8_t> occluded) {
     return trace(OcclusionQuery{rays, skip, occluded});
 }

@@ -21,9 +21,9 @@ public:
                                                     BuildProgress* progress = nullptr);
     ~Comparison() override;
 
-    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> intersect(RaySpan rays, std::span<const TriangleId> skip,
                            std::span<Hit> hits) override;
-    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> occluded(RaySpan rays, std::span<const TriangleId> skip,
                           std::span<uint8_t> occluded) override;
     ovc_statistics report() const override { return statistics_; }
 

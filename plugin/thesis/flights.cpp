@@ -39,15 +39,15 @@ uint32_t Flights::slot() {
     return i;
 }
 
-void Flights::add(const StreamRays& rays) {
-    assert(under_way() + rays.rays.size() <= kMost);
-    for (size_t i = 0; i < rays.rays.size(); ++i) {
+void Flights::add(bool any_hit, const RaySpan& rays, std::span<const TriangleId> skip,
+                  std::span<const uint64_t> tokens) {
+    assert(under_way() + rays.size() <= kMost);
+    for (size_t i = 0; i < rays.size(); ++i) {
         const uint32_t at = slot();
-        flights_[at] = {rays.rays[i], rays.skip.empty() ? TriangleId{} : rays.skip[i],
-                        rays.tokens[i], rays.any_hit};
+        flights_[at] = {rays[i], skip.empty() ? TriangleId{} : skip[i], tokens[i], any_hit};
         level1_queue_.push_back(at);
     }
-    (rays.any_hit ? s_.statistics.occlusion_rays : s_.statistics.nearest_rays) += rays.rays.size();
+    (any_hit ? s_.statistics.occlusion_rays : s_.statistics.nearest_rays) += rays.size();
 }
 
 void Flights::walk_level1() {

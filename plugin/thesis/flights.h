@@ -3,7 +3,8 @@
 // algorithms 3, 4 and 6 of the thesis are made of.
 #pragma once
 
-#include "core/stream.h"
+#include "core/ray_span.h"
+#include "core/result.h"
 #include "core/triangle.h"
 #include "plugin/thesis/queued_scene.h"
 #include "plugin/thesis/queues.h"
@@ -35,8 +36,10 @@ public:
     ~Flights();
     Flights(const Flights&) = delete;
 
-    /// Puts rays into the queue of level 1; with those under way, at most kMost.
-    void add(const StreamRays& rays);
+    /// Puts rays into the queue of level 1; with those under way, at most kMost. skip: empty, or
+    /// one per ray, as the tokens.
+    void add(bool any_hit, const RaySpan& rays, std::span<const TriangleId> skip,
+             std::span<const uint64_t> tokens);
     size_t under_way() const { return flights_.size() - free_.size(); }
     static constexpr size_t kMost = size_t(1) << 20; // some 200 bytes each
 

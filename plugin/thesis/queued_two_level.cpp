@@ -85,9 +85,8 @@ private:
 
     void start(Backlog& backlog, bool any_hit) {
         const size_t count = std::min(backlog.size(), Flights::kMost - flights_.under_way());
-        StreamRays rays = backlog.last(count);
-        rays.any_hit = any_hit;
-        flights_.add(rays);
+        const StreamRays rays = backlog.last(count);
+        flights_.add(any_hit, rays.rays, rays.skip, rays.tokens);
         backlog.drop_last(count);
     }
 
@@ -133,8 +132,7 @@ Result<Done> QueuedTwoLevel::trace(const Query& query) {
     for (size_t first = 0; first < query.rays.size(); first += Flights::kMost) {
         const size_t count = std::min(Flights::kMost, query.rays.size() - first);
         const Query part = query.part(first, count);
-        flights.add(
-            {Query::kAnyHit, part.rays, part.skip, std::span(tokens).subspan(first, count)});
+        flights.add(Query::kAnyHit, part.rays, part.skip, std::span(tokens).subspan(first, count));
         if (Result<Done> done = trace_in_rounds(flights); !done)
             return done;
         flights.take_answered([&](const Flight& flight) { query.set(flight.token, flight.hit); });
@@ -143,12 +141,12 @@ Result<Done> QueuedTwoLevel::trace(const Query& query) {
     return Done{};
 }
 
-Result<Done> QueuedTwoLevel::intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+Result<Done> QueuedTwoLevel::intersect(RaySpan rays, std::span<const TriangleId> skip,
                                        std::span<Hit> hits) {
     return trace(NearestQuery{rays, skip, hits});
 }
 
-Result<Done> QueuedTwoLevel::occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+Result<Done> QueuedTwoLevel::occluded(RaySpan rays, std::span<const TriangleId> skip,
                                       std::span<uint8_t> occluded) {
     return trace(OcclusionQuery{rays, skip, occluded});
 }

@@ -14,9 +14,9 @@ class QueuedTwoLevel final : public Structure {
 public:
     explicit QueuedTwoLevel(std::unique_ptr<QueuedScene> scene) : scene_(std::move(scene)) {}
 
-    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> intersect(RaySpan rays, std::span<const TriangleId> skip,
                            std::span<Hit> hits) override;
-    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> occluded(RaySpan rays, std::span<const TriangleId> skip,
                           std::span<uint8_t> occluded) override;
     Result<Done> stream(StreamHost& host) override;
     ovc_statistics report() const override { return scene_->statistics; }

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// RaySpan: somebody else's rays, in doubles or in floats, read as doubles.
+#pragma once
+
+#include "core/ray.h"
+
+#include <cassert>
+#include <concepts>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+/// A ray in half the bytes; the same ray in double, for floats are doubles.
+struct FloatRay {
+    vec3 org;
+    float t_min;
+    vec3 dir;
+    float t_max;
+};
+static_assert(sizeof(FloatRay) == 32 && offsetof(FloatRay, dir) == 16);
+
+class RaySpan {
+public:
+    RaySpan() = default;
+    template <class Rays>
+    requires std::convertible_to<const Rays&, std::span<const Ray>> RaySpan(const Rays& rays)
+        : RaySpan(std::span<const Ray>(rays)) {}
+    RaySpan(std::span<const Ray> rays) : doubles_(rays.data()), size_(rays.size()) {}
+    explicit RaySpan(std::span<const FloatRay> rays) : floats_(rays.data()), size_(rays.size()) {}
+
+    size_t size() const { return size_; }
+
+    Ray operator[](size_t i) const {
+        assert(i < size_);
+        if (!floats_)
+            return doubles_[i];
+        const FloatRay& ray = floats_[i];
+        return {dvec3(ray.org), ray.t_min, dvec3(ray.dir), ray.t_max};
+    }
+
+    /// The rays themselves where they are in double; else a copy of them in `room`.
+    std::span<const Ray> in_double(std::vector<Ray>& room) const {
+        if (!floats_)
+            return {doubles_, size_};
+        for (size_t i = 0; i < size_; ++i)
+            room.push_back((*this)[i]);
+        return room;
+    }
+
+    RaySpan subspan(size_t first, size_t count) const {
+        assert(first <= size_ && count <= size_ - first);
+        return floats_ ? RaySpan(std::span(floats_ + first, count))
+                       : RaySpan(std::span(doubles_ + first, count));
+    }
+
+private:
+    const Ray* doubles_ = nullptr;
+    const FloatRay* floats_ = nullptr; // set: these
+    size_t size_ = 0;
+};
+
+} // namespace ovc
