@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parallel loops. The only file that sees oneTBB.
+//
+// A host may call us from its own oneTBB tasks, and we loop with locks taken. A thread that waits
+// for the rest of such a loop must not be given another task of the host meanwhile: that could call
+// us again, and wait for a lock which its own thread holds. So every loop is isolated.
 #pragma once
 
 #include <oneapi/tbb/blocked_range.h>
@@ -8,6 +12,7 @@
 #include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/parallel_reduce.h>
 #include <oneapi/tbb/parallel_sort.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <cstddef>
 #include <utility>
@@ -18,20 +23,24 @@ namespace ovc {
 /// where possible, from several threads. What body throws is thrown here.
 template <class Body>
 void parallel_for(size_t count, size_t grain, Body&& body) {
-    oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<size_t>(0, count, grain),
-                              [&](const auto& range) { body(range.begin(), range.end()); });
+    oneapi::tbb::this_task_arena::isolate([&] {
+        oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<size_t>(0, count, grain),
+                                  [&](const auto& range) { body(range.begin(), range.end()); });
+    });
 }
 
 /// body(first, last, T) -> T over ranges that cover [0, count), joined by join(T, T) -> T. Both
 /// must be associative and commutative for the result to be the same on every run.
 template <class T, class Body, class Join>
 T parallel_reduce(size_t count, T identity, Body&& body, Join&& join) {
-    return oneapi::tbb::parallel_reduce(
-        oneapi::tbb::blocked_range<size_t>(0, count, 4096), std::move(identity),
-        [&](const auto& range, T value) {
-            return body(range.begin(), range.end(), std::move(value));
-        },
-        std::forward<Join>(join));
+    return oneapi::tbb::this_task_arena::isolate([&] {
+        return oneapi::tbb::parallel_reduce(
+            oneapi::tbb::blocked_range<size_t>(0, count, 4096), std::move(identity),
+            [&](const auto& range, T value) {
+                return body(range.begin(), range.end(), std::move(value));
+            },
+            std::forward<Join>(join));
+    });
 }
 
 /// While it lives, loops of the whole process run on at most so many threads.
@@ -53,13 +62,14 @@ inline size_t thread_count() {
 /// Sorts [first, last) by <. Equal elements come in any order.
 template <class Iterator>
 void parallel_sort(Iterator first, Iterator last) {
-    oneapi::tbb::parallel_sort(first, last);
+    oneapi::tbb::this_task_arena::isolate([&] { oneapi::tbb::parallel_sort(first, last); });
 }
 
 /// Runs both, perhaps at the same time.
 template <class A, class B>
 void parallel_invoke(A&& a, B&& b) {
-    oneapi::tbb::parallel_invoke(std::forward<A>(a), std::forward<B>(b));
+    oneapi::tbb::this_task_arena::isolate(
+        [&] { oneapi::tbb::parallel_invoke(std::forward<A>(a), std::forward<B>(b)); });
 }
 
 } // namespace ovc

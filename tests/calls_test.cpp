@@ -6,6 +6,10 @@
 
 #include <gmock/gmock.h>
 
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
 #include <cstring>
 #include <thread>
 
@@ -223,6 +227,30 @@ TEST_F(Calls, SingleRaysRefuseWhatTheyCannotDo) {
     const test::AbiScene open = test::add_soup(device, soup, config);
     EXPECT_EQ(api().intersect1(open.get(), asked, &hit, nullptr), OVC_ERROR_INVALID_STATE);
     EXPECT_EQ(error(), "intersect1: the scene is not committed yet");
+}
+
+/// A thread that waits for a part of its call, and is given another task of the host's meanwhile,
+/// waits for its own turn. Of two scenes, so that threads in the one help with the other's parts.
+TEST_F(Calls, AHostMayCallFromItsOwnTasks) {
+    const Soup soup = test::closed_grid(60);
+    const test::AbiScene scenes[] = {committed(soup), committed(soup)};
+    const auto rays = test::unpleasant_rays(soup, 11, 20000);
+    const auto expected = nearest(scenes[0], rays);
+    const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
+                                              8);
+    oneapi::tbb::task_arena arena(8);
+    std::atomic<size_t> wrong{0};
+    arena.execute([&] {
+        oneapi::tbb::parallel_for(size_t(0), size_t(100), [&](size_t i) {
+            const test::AbiScene& scene = scenes[i / 7 % 2];
+            if (i % 2)
+                wrong += !same_bits(nearest(scene, rays), expected);
+            ovc_hit hit{};
+            wrong += api().intersect1(scene.get(), as_abi(rays) + i, &hit, nullptr) != OVC_OK ||
+                     std::memcmp(&hit, &expected[i], sizeof(hit)) != 0;
+        });
+    });
+    EXPECT_EQ(wrong, 0u);
 }
 
 TEST_F(Calls, ACallStopsWhenItsProgressSaysSo) {

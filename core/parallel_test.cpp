@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Loops of ours inside tasks of a host that uses oneTBB as well.
+#include "core/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <oneapi/tbb/task_arena.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+#include <vector>
+
+namespace ovc {
+namespace {
+
+thread_local bool inside_call = false;
+
+void work_for_a_while() {
+    std::this_thread::sleep_for(std::chrono::microseconds(300));
+}
+
+/// Runs call() as a host does from many of its tasks, more threads than cores; returns how often a
+/// thread that waited within one call was given another: where a call holds a lock, it would wait
+/// for itself.
+template <class Call>
+size_t calls_within_calls(Call&& call) {
+    const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
+                                              8);
+    std::atomic<size_t> nested{0};
+    oneapi::tbb::task_arena arena(8);
+    arena.execute([&] {
+        oneapi::tbb::parallel_for(0, 200, [&](int) {
+            nested += inside_call;
+            const bool before = std::exchange(inside_call, true);
+            call();
+            inside_call = before;
+        });
+    });
+    return nested;
+}
+
+TEST(Parallel, AThreadThatWaitsInALoopTakesUpNoTaskOfTheHost) {
+    EXPECT_EQ(
+        calls_within_calls([] { parallel_for(16, 1, [](size_t, size_t) { work_for_a_while(); }); }),
+        0u);
+}
+
+TEST(Parallel, NorInALoopWithinALoop) {
+    EXPECT_EQ(calls_within_calls([] {
+                  parallel_for(4, 1, [](size_t, size_t) {
+                      parallel_for(4, 1, [](size_t, size_t) { work_for_a_while(); });
+                      parallel_invoke(work_for_a_while, work_for_a_while);
+                  });
+              }),
+              0u);
+}
+
+TEST(Parallel, NorInTheOtherForms) {
+    EXPECT_EQ(calls_within_calls([] {
+                  parallel_invoke(work_for_a_while, work_for_a_while);
+                  parallel_reduce(
+                      40000, 0,
+                      [](size_t, size_t, int value) {
+                          work_for_a_while();
+                          return value;
+                      },
+                      [](int a, int) { return a; });
+                  std::vector<int> numbers(5000);
+                  for (size_t i = 0; i < numbers.size(); ++i)
+                      numbers[i] = int(i * 7919 % 5000);
+                  parallel_sort(numbers.begin(), numbers.end());
+                  EXPECT_TRUE(std::is_sorted(numbers.begin(), numbers.end()));
+              }),
+              0u);
+}
+
+} // namespace
+} // namespace ovc
