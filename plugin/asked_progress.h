@@ -2,7 +2,7 @@
 // ovc_query.progress as a structure asks it: between passes, but fifty times a second at most.
 #pragma once
 
-#include "plugin/host_mode.h"
+#include "plugin/float_mode.h"
 #include "plugin/overcast.h"
 #include "plugin/structure.h"
 

@@ -122,6 +122,12 @@ void destroy_device(ovc_device device) {
                         device->scenes.load()));
         return;
     }
+    if (device->tickets > 0) {
+        say(device->log, LogLevel::Error,
+            fmt::format("destroy_device: {} tickets are not released; the device stays",
+                        device->tickets.load()));
+        return;
+    }
     device->magic = 0;
     delete device;
 }

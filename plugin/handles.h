@@ -6,12 +6,13 @@
 #include "core/soup.h"
 #include "gpu/gl_thread.h"
 #include "plugin/failure.h"
+#include "plugin/float_mode.h"
 #include "plugin/overcast.h"
 #include "plugin/single_rays.h"
 #include "plugin/structure.h"
+#include "plugin/submissions.h"
 
 #include <atomic>
-#include <cfenv>
 #include <exception>
 #include <map>
 #include <memory>
@@ -42,6 +43,7 @@ private:
 inline constexpr uint32_t kDeviceMagic = 0x6f766344;
 inline constexpr uint32_t kSceneMagic = 0x6f766353;
 inline constexpr uint32_t kStreamMagic = 0x6f766354;
+inline constexpr uint32_t kTicketMagic = 0x6f766355;
 
 } // namespace ovc
 
@@ -51,6 +53,7 @@ struct ovc_device_t {
     ovc::LogSink log;
     std::unique_ptr<ovc::GlThread> gl;
     std::atomic<int> scenes{0};
+    std::atomic<int> tickets{0};
 };
 
 struct ovc_scene_t {
@@ -60,30 +63,16 @@ struct ovc_scene_t {
     ovc_scene_config config{sizeof(ovc_scene_config)};
     ovc::Soup soup;
     std::unique_ptr<ovc::Structure> structure; // set by commit
-    ovc::SingleRays single_rays;
+    ovc::Submissions submissions;
+    ovc::SingleRays single_rays{turn, streaming};
     std::atomic<std::thread::id> streaming; // the thread that is inside stream(), if any
 };
 
 namespace ovc {
 
-/// The thread's floating-point mode as the host set it, replaced by the default while this lives:
-/// proofs about rounding hold in no other.
-class DefaultFloatMode {
-public:
-    DefaultFloatMode() {
-        std::fegetenv(&host_);
-        std::fesetenv(FE_DFL_ENV);
-    }
-    ~DefaultFloatMode() { std::fesetenv(&host_); }
-    DefaultFloatMode(const DefaultFloatMode&) = delete;
-
-private:
-    std::fenv_t host_;
-};
-
-/// Runs body; whatever it throws becomes a code, and a message in `messages`.
-template <class Body>
-ovc_result guard(Messages& messages, Body&& body) {
+/// Runs body; whatever it throws becomes a code, and a message in `messages`: something with set().
+template <class Keeper, class Body>
+ovc_result guard(Keeper& messages, Body&& body) {
     try {
         const DefaultFloatMode mode;
         body();

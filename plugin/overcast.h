@@ -24,6 +24,7 @@ extern "C" {
 typedef struct ovc_device_t* ovc_device;
 typedef struct ovc_scene_t* ovc_scene;
 typedef struct ovc_stream_t* ovc_stream;
+typedef struct ovc_ticket_t* ovc_ticket;
 
 typedef enum ovc_result {
     OVC_OK = 0,
@@ -193,7 +194,7 @@ typedef struct ovc_query {
     uint32_t ray_format; /* ovc_ray_format */
     uint32_t reserved;   /* 0 */
     /* NULL, or asked between the passes of intersect and occluded; not for single rays and push. done: the share of rays that is
-     * answered; stage: "rays". It runs on the thread that called. Not 0: the call ends with OVC_ERROR_CANCELLED after the pass under
+     * answered; stage: "rays". It runs on the thread that called, of a submitted call on one of the library's. Not 0: the call ends with OVC_ERROR_CANCELLED after the pass under
      * way, and its answers are undefined. Structures but two-level ask before the first ray only. */
     ovc_progress_function progress;
     void* progress_user;
@@ -256,6 +257,7 @@ typedef struct ovc_statistics {
     uint64_t from_saved;           /* 1: commit took them from ovc_scene_config.saved; else 0 */
     double seconds_pass;           /* of seconds_trace, passes: from sending rays until their answers are here, pages moved in beside */
     uint64_t single_rays;          /* of nearest_rays and occlusion_rays, those of intersect1 and occluded1 */
+    uint64_t gathered_rays;        /* of single_rays, those that the GPU answered in batches; the CPU did the others */
 } ovc_statistics;
 
 /* The pages that rays went through since this was asked last, or since the commit; experimental. */
@@ -345,11 +347,34 @@ typedef struct ovc_api {
 
     /* One ray, for renderers that need an answer before they know the next ray: made to be called from many threads at once, beside
      * all other calls on the scene, none of which it waits for, and from within the functions of a stream. The calling thread walks
-     * the CPU's tree. Answers are those of intersect, bit for bit; in OVC_PRECISION_FAST those of doubles. query may be NULL; its
-     * arrays have one element. For structures but two-level it is intersect with a ray_count of 1. */
+     * the CPU's tree, or what all threads ask is gathered into batches for the GPU, whichever is faster: short trials tell, now and
+     * then while the calls go on. Answers are those of intersect, bit for bit; in OVC_PRECISION_FAST those of doubles where the CPU
+     * answers. query may be NULL; its arrays have one element. For structures but two-level it is intersect of one ray. */
     ovc_result (*intersect1)(ovc_scene scene, const ovc_ray* ray, ovc_hit* hit, const ovc_query* query);
     /* The same for occlusion: *occluded = 1 when the ray hits anything, else 0. */
     ovc_result (*occluded1)(ovc_scene scene, const ovc_ray* ray, uint8_t* occluded, const ovc_query* query);
+
+    /* intersect and occluded that return at once, with a ticket, and are done on a thread of the library's. What is submitted to one
+     * scene is done in its order; any number may be open. All buffers, those in the query too, stay the caller's: valid and
+     * untouched until the ticket is done; the query itself is copied. Arguments are checked before these return; where that fails
+     * there is no ticket (NULL). Destroying the scene cancels its tickets and waits until they are done; they are released as ever,
+     * and all before the device is destroyed. */
+    ovc_result (*submit_intersect)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits, const ovc_query* query,
+                                   ovc_ticket* ticket);
+    ovc_result (*submit_occluded)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded, const ovc_query* query,
+                                  ovc_ticket* ticket);
+    /* Returns when the ticket is done, with what the call came to: OVC_OK, or its error, whose sentence last_error() then has.
+     * OVC_ERROR_CANCELLED: cancelled; the answers are undefined. As often as wished, from any thread; but from within the scene's
+     * stream, which it would wait for, it is OVC_ERROR_INVALID_STATE. */
+    ovc_result (*wait)(ovc_ticket ticket);
+    /* Whether the ticket is done, without waiting: *done = 1 or 0. progress: NULL, or set to the share of rays answered, from 0 to
+     * 1. Errors are those of this call; what the ticket came to is what wait() returns. */
+    ovc_result (*poll)(ovc_ticket ticket, uint32_t* done, double* progress);
+    /* Asks for an end, and does not wait for it: a ticket that has not begun is done at once, one under way after its pass, both
+     * with OVC_ERROR_CANCELLED; one that is done, or just getting done, stays as it is. */
+    ovc_result (*cancel)(ovc_ticket ticket);
+    /* Cancels the ticket, waits until it is done, and forgets it. NULL is nothing to do. */
+    void (*release)(ovc_ticket ticket);
 } ovc_api;
 
 #if defined(_WIN32)

@@ -4,16 +4,18 @@
 #include "plugin/overcast.h"
 #include "plugin/scene.h"
 #include "plugin/stream_call.h"
+#include "plugin/ticket_call.h"
 #include "plugin/trace_call.h"
 
 extern "C" const ovc_api* ovc_get_api(uint32_t abi_version) {
     static constexpr ovc_api api = {
-        sizeof(ovc_api),   OVC_ABI_VERSION,    OVC_VERSION,          ovc::last_error,
-        ovc::list_devices, ovc::create_device, ovc::describe_device, ovc::destroy_device,
-        ovc::create_scene, ovc::add_mesh,      ovc::commit,          ovc::intersect,
-        ovc::occluded,     ovc::statistics,    ovc::destroy_scene,   ovc::stream,
-        ovc::push,         ovc::plan,          ovc::active,          ovc::save,
-        ovc::intersect1,   ovc::occluded1,
+        sizeof(ovc_api),   OVC_ABI_VERSION,    OVC_VERSION,           ovc::last_error,
+        ovc::list_devices, ovc::create_device, ovc::describe_device,  ovc::destroy_device,
+        ovc::create_scene, ovc::add_mesh,      ovc::commit,           ovc::intersect,
+        ovc::occluded,     ovc::statistics,    ovc::destroy_scene,    ovc::stream,
+        ovc::push,         ovc::plan,          ovc::active,           ovc::save,
+        ovc::intersect1,   ovc::occluded1,     ovc::submit_intersect, ovc::submit_occluded,
+        ovc::wait,         ovc::poll,          ovc::cancel,           ovc::release,
     };
     return abi_version == OVC_ABI_VERSION ? &api : nullptr;
 }

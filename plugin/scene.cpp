@@ -224,6 +224,7 @@ ovc_result save(ovc_scene scene, ovc_write_function write, void* user) {
 void destroy_scene(ovc_scene scene) {
     if (!scene || scene->magic != kSceneMagic)
         return;
+    scene->submissions.stop();
     {
         const std::lock_guard turn(scene->turn); // a call that is still running ends first
         scene->single_rays.serve(nullptr);

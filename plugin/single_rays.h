@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single rays: calls of one ray each from many threads at once, beside all else on the scene. They
-// share no lock and no cache line.
+// Single rays: calls of one ray each from many threads at once, beside all else on the scene. Each
+// thread walks the CPU's tree, or what all ask is gathered for the GPU, whichever is faster.
 #pragma once
 
-#include "core/ray.h"
+#include "plugin/faster_way.h"
+#include "plugin/gathering.h"
 #include "plugin/structure.h"
 
 #include <array>
@@ -11,6 +12,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <thread>
 
 namespace ovc {
@@ -19,6 +21,10 @@ class SingleRays {
     struct Shard;
 
 public:
+    /// turn: of the scene; streaming: the thread that has it and may call from within, if any.
+    SingleRays(std::mutex& turn, const std::atomic<std::thread::id>& streaming)
+        : turn_(turn), streaming_(streaming) {}
+
     /// The structure that calls are answered by, from now on; calls that were made before this
     /// returns are over. nullptr: none.
     void serve(Structure* structure) {
@@ -41,20 +47,29 @@ public:
         /// nullptr: there is none.
         Structure* structure() const { return structure_; }
 
-        Hit nearest(const Ray& ray, TriangleId skip) {
-            count(shard_.nearest, ray);
-            return structure_->nearest_on_cpu(ray, skip);
-        }
-        bool occluded(const Ray& ray, TriangleId skip) {
-            count(shard_.occlusion, ray);
-            return structure_->occluded_on_cpu(ray, skip);
+        /// Answers a ray. Needs a structure that has_cpu_tree().
+        void answer(SingleRay& asked) {
+            const FasterWay::Use use = rays_.way_.begin();
+            if (use.way == kGathered && rays_.gather(*structure_, asked))
+                add_one(shard_.gathered);
+            else
+                answer_on_cpu(asked);
+            rays_.way_.end(use, shard_.asked() % 64 == 0);
         }
 
     private:
-        void count(std::atomic<uint64_t>& kind, const Ray& ray) {
-            kind.fetch_add(1, std::memory_order_relaxed);
-            if (!ray.valid())
-                shard_.invalid.fetch_add(1, std::memory_order_relaxed);
+        void answer_on_cpu(SingleRay& asked) {
+            add_one(asked.any_hit ? shard_.occlusion : shard_.nearest);
+            if (!asked.ray.valid())
+                add_one(shard_.invalid);
+            if (asked.any_hit)
+                asked.occluded = structure_->occluded_on_cpu(asked.ray, asked.skip);
+            else
+                asked.hit = structure_->nearest_on_cpu(asked.ray, asked.skip);
+        }
+
+        static void add_one(std::atomic<uint64_t>& count) {
+            count.fetch_add(1, std::memory_order_relaxed);
         }
 
         SingleRays& rays_;
@@ -62,23 +77,29 @@ public:
         Structure* structure_;
     };
 
-    /// Adds what was counted.
+    /// Adds what was counted; the structure has counted what was gathered.
     void add_to(ovc_statistics& statistics) const {
         for (const Shard& shard : shards_) {
             statistics.nearest_rays += shard.nearest;
             statistics.occlusion_rays += shard.occlusion;
             statistics.invalid_rays += shard.invalid;
-            statistics.single_rays += shard.nearest + shard.occlusion;
+            statistics.single_rays += shard.asked();
+            statistics.gathered_rays += shard.gathered;
         }
     }
 
 private:
+    enum { kOnCpu = 0, kGathered = 1 }; // the ways
+
     /// What some of the threads write; each has one that is always the same.
     struct alignas(64) Shard {
-        std::atomic<uint32_t> inside{0}; // calls under way
-        std::atomic<uint64_t> nearest{0};
+        std::atomic<uint32_t> inside{0};  // calls under way
+        std::atomic<uint64_t> nearest{0}; // on the CPU, as the next
         std::atomic<uint64_t> occlusion{0};
         std::atomic<uint64_t> invalid{0};
+        std::atomic<uint64_t> gathered{0};
+
+        uint64_t asked() const { return nearest + occlusion + gathered; }
     };
 
     Shard& own_shard() {
@@ -86,7 +107,48 @@ private:
         return shards_[(hash * 0x9e3779b97f4a7c15u) >> 58];
     }
 
+    /// false: not now. Never waits for a call of another kind.
+    bool gather(Structure& structure, SingleRay& asked) {
+        return gathering_.answer(asked, [&](std::span<SingleRay* const> batch) {
+            if (streaming_ == std::this_thread::get_id())
+                return false;
+            const std::unique_lock turn(turn_, std::try_to_lock);
+            return turn.owns_lock() && trace(structure, batch, /* any_hit= */ false) &&
+                   trace(structure, batch, /* any_hit= */ true);
+        });
+    }
+
+    /// Those of the batch that ask so.
+    static bool trace(Structure& structure, std::span<SingleRay* const> batch, bool any_hit) {
+        std::vector<SingleRay*> asked;
+        std::vector<Ray> rays;
+        std::vector<TriangleId> skip;
+        for (SingleRay* single : batch)
+            if (single->any_hit == any_hit) {
+                asked.push_back(single);
+                rays.push_back(single->ray);
+                skip.push_back(single->skip);
+            }
+        if (asked.empty())
+            return true;
+        std::vector<Hit> hits(any_hit ? 0 : asked.size());
+        std::vector<uint8_t> occluded(any_hit ? asked.size() : 0);
+        if (!(any_hit ? structure.occluded(rays, skip, occluded)
+                      : structure.intersect(rays, skip, hits)))
+            return false;
+        for (size_t i = 0; i < asked.size(); ++i)
+            if (any_hit)
+                asked[i]->occluded = occluded[i] != 0;
+            else
+                asked[i]->hit = hits[i];
+        return true;
+    }
+
+    std::mutex& turn_;
+    const std::atomic<std::thread::id>& streaming_;
     std::atomic<Structure*> structure_{nullptr};
+    FasterWay way_;
+    Gathering gathering_;
     std::array<Shard, 64> shards_;
 };
 

@@ -2,7 +2,7 @@
 // Streams: the caller's functions as a StreamHost, and what it pushes.
 #include "plugin/stream_call.h"
 
-#include "plugin/host_mode.h"
+#include "plugin/float_mode.h"
 #include "plugin/query_call.h"
 
 /// Lives as long as the call to stream().

@@ -13,11 +13,10 @@ void trace_asked(ovc_scene scene, const RayCall& call, HostFloatMode& mode) {
     trace(call, committed(scene, call.name), call.query.progress ? &progress : nullptr);
 }
 
-/// Answers one ray by answer(call, ray, skip), beside other calls; `batch` does where the structure
-/// has no tree on the CPU.
-template <class Answer, class Batch>
+/// Answers one ray beside other calls; batch() does where the structure has no tree on the CPU.
+template <class Batch>
 ovc_result single(ovc_scene scene, const char* name, const ovc_ray* ray, const void* result,
-                  const ovc_query* query, Answer&& answer, Batch&& batch) {
+                  const ovc_query* query, SingleRay& single, Batch&& batch) {
     bool on_cpu = true;
     const ovc_result done = beside_scene(scene, name, [&] {
         check_buffers(name, ray, result, 1);
@@ -28,9 +27,12 @@ ovc_result single(ovc_scene scene, const char* name, const ovc_ray* ray, const v
         if (!call.structure())
             not_committed(name);
         on_cpu = call.structure()->has_cpu_tree();
-        if (on_cpu)
-            answer(call, rays_of(asked, ray, 1)[0],
-                   asked.skip ? skip_of(asked, 1)[0] : TriangleId{});
+        if (!on_cpu)
+            return;
+        single.ray = rays_of(asked, ray, 1)[0];
+        if (asked.skip)
+            single.skip = skip_of(asked, 1)[0];
+        call.answer(single);
     });
     return on_cpu ? done : batch();
 }
@@ -54,22 +56,27 @@ ovc_result occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint
 }
 
 ovc_result intersect1(ovc_scene scene, const ovc_ray* ray, ovc_hit* hit, const ovc_query* query) {
-    return single(
-        scene, "intersect1", ray, hit, query,
-        [&](SingleRays::Call& call, const Ray& asked, TriangleId skip) {
-            *reinterpret_cast<Hit*>(hit) = call.nearest(asked, skip);
-        },
-        [&] { return intersect(scene, ray, 1, hit, query); });
+    SingleRay asked;
+    const ovc_result done = single(scene, "intersect1", ray, hit, query, asked, [&] {
+        return intersect(scene, ray, 1, reinterpret_cast<ovc_hit*>(&asked.hit), query);
+    });
+    if (done == OVC_OK)
+        *reinterpret_cast<Hit*>(hit) = asked.hit;
+    return done;
 }
 
 ovc_result occluded1(ovc_scene scene, const ovc_ray* ray, uint8_t* occluded,
                      const ovc_query* query) {
-    return single(
-        scene, "occluded1", ray, occluded, query,
-        [&](SingleRays::Call& call, const Ray& asked, TriangleId skip) {
-            *occluded = call.occluded(asked, skip);
-        },
-        [&] { return ovc::occluded(scene, ray, 1, occluded, query); });
+    SingleRay asked{.any_hit = true};
+    const ovc_result done = single(scene, "occluded1", ray, occluded, query, asked, [&] {
+        uint8_t answer = 0;
+        const ovc_result traced = ovc::occluded(scene, ray, 1, &answer, query);
+        asked.occluded = answer != 0;
+        return traced;
+    });
+    if (done == OVC_OK)
+        *occluded = asked.occluded;
+    return done;
 }
 
 } // namespace ovc

@@ -115,6 +115,44 @@ TEST_F(Calls, SingleRaysFromManyThreadsAreAnsweredAsBatchesAre) {
     }
 }
 
+/// Goes on until trials have sent some rays either way, beside batches that take their turns.
+TEST_F(Calls, SingleRaysHaveTheSameBitsWhicheverWayTheyGo) {
+    const Soup soup = test::closed_grid(40);
+    const auto scene = committed(soup);
+    const auto rays = test::unpleasant_rays(soup, 12, 4000);
+    const auto expected = nearest(scene, rays);
+    const auto expected_shadows = occlusion(scene, rays);
+    std::atomic<size_t> wrong{0}, asked{0};
+    std::atomic<bool> enough{false};
+    std::thread batches([&] {
+        while (!enough) {
+            wrong += !same_bits(nearest(scene, rays), expected);
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+    });
+    auto statistics = sized<ovc_statistics>();
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (statistics.gathered_rays < 500 && std::chrono::steady_clock::now() < end) {
+        on_threads(64, 6400, [&](size_t k) {
+            const size_t i = k % rays.size();
+            ovc_hit hit{};
+            uint8_t shadow = 2;
+            wrong += api().intersect1(scene.get(), as_abi(rays) + i, &hit, nullptr) != OVC_OK ||
+                     std::memcmp(&hit, &expected[i], sizeof(hit)) != 0;
+            wrong += api().occluded1(scene.get(), as_abi(rays) + i, &shadow, nullptr) != OVC_OK ||
+                     shadow != expected_shadows[i];
+            asked += 2;
+        });
+        ASSERT_EQ(api().statistics(scene.get(), &statistics), OVC_OK);
+    }
+    enough = true;
+    batches.join();
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_GE(statistics.gathered_rays, 500u);
+    EXPECT_EQ(statistics.single_rays, asked) << "none is lost";
+    EXPECT_LT(statistics.gathered_rays, statistics.single_rays);
+}
+
 TEST_F(Calls, ASingleRayDoesNotSeeWhatItSkips) {
     const Soup soup = test::closed_grid(30);
     const auto scene = committed(soup);
