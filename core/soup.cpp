@@ -5,23 +5,83 @@
 #include "core/parallel.h"
 
 #include <cassert>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace ovc {
 
-Chunk::Chunk(dvec3 origin, std::vector<vec3> owned, std::span<const vec3> corners)
-    : origin_(origin), owned_(std::move(owned)), corners_(corners) {
-    assert(corners_.size() % 3 == 0);
-    assert(corners_.size() / 3 < kNone);
+namespace {
+
+/// Within 2^-256 is 0 and beyond 2^256 infinite: so products of three differences, which decide
+/// hits, neither overflow nor lose a bit to underflow (docs/numerics.md, "What it covers").
+double in_range(double x) {
+    const double size = std::abs(x);
+    if (size < 0x1p-256)
+        return 0;
+    return size > 0x1p256 ? std::numeric_limits<double>::infinity() : x;
 }
 
+} // namespace
+
 Chunk Chunk::owning(dvec3 origin, std::vector<vec3> corners) {
-    const std::span<const vec3> view(corners);
-    return Chunk(origin, std::move(corners), view);
+    Chunk chunk(origin);
+    chunk.owned_ = std::move(corners);
+    chunk.corners_ = chunk.owned_;
+    assert(chunk.has_whole_triangles());
+    return chunk;
+}
+
+Chunk Chunk::owning_doubles(dvec3 origin, std::vector<dvec3> corners) {
+    Chunk chunk = borrowing_doubles(origin, corners);
+    chunk.owned_doubles_ = std::move(corners);
+    return chunk;
 }
 
 Chunk Chunk::borrowing(dvec3 origin, std::span<const vec3> corners) {
-    return Chunk(origin, {}, corners);
+    Chunk chunk(origin);
+    chunk.corners_ = corners;
+    assert(chunk.has_whole_triangles());
+    return chunk;
+}
+
+Chunk Chunk::borrowing_doubles(dvec3 origin, std::span<const dvec3> corners) {
+    Chunk chunk(origin);
+    chunk.double_corners_ = corners;
+    chunk.plain_ = false;
+    assert(chunk.has_whole_triangles());
+    return chunk;
+}
+
+Chunk Chunk::instance() const {
+    Chunk chunk(origin_);
+    chunk.corners_ = corners_;
+    chunk.double_corners_ = double_corners_;
+    chunk.plain_ = plain_;
+    if (placement_)
+        chunk.placement_ = std::make_unique<Placement>(*placement_);
+    return chunk;
+}
+
+void Chunk::place(const Placement& placement) {
+    placement_ = std::make_unique<Placement>(placement_ ? then(*placement_, placement) : placement);
+    plain_ = false;
+}
+
+bool Chunk::has_whole_triangles() const {
+    const size_t count = corners_.size() + double_corners_.size();
+    return count % 3 == 0 && count / 3 < kNone;
+}
+
+Triangle Chunk::placed_triangle(uint32_t prim) const {
+    Triangle triangle;
+    for (size_t i = 0; i < 3; ++i) {
+        const size_t at = size_t(prim) * 3 + i;
+        const dvec3 offset = corners_.empty() ? double_corners_[at] : dvec3(corners_[at]);
+        const dvec3 p = placement_ ? (*placement_)(origin_ + offset) : origin_ + offset;
+        triangle[i] = {in_range(p.x), in_range(p.y), in_range(p.z)};
+    }
+    return triangle;
 }
 
 uint64_t Soup::triangle_count() const {

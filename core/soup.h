@@ -4,10 +4,12 @@
 
 #include "core/box.h"
 #include "core/build_progress.h"
+#include "core/placement.h"
 #include "core/ray.h"
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,38 +19,64 @@ namespace ovc {
 using Triangle = std::array<dvec3, 3>;
 
 /// The triangles of one mesh: corner i of triangle p lies at origin + corners[3 p + i], added in
-/// double. Move-only: the corners are owned, or borrowed from a caller who keeps them alive and
-/// unchanged.
+/// double; in an instance, where its placement then puts that. Move-only: the corners are owned, or
+/// borrowed from a caller who keeps them alive and unchanged.
 class Chunk {
 public:
     static Chunk owning(dvec3 origin, std::vector<vec3> corners);
+    static Chunk owning_doubles(dvec3 origin, std::vector<dvec3> corners);
     static Chunk borrowing(dvec3 origin, std::span<const vec3> corners);
+    static Chunk borrowing_doubles(dvec3 origin, std::span<const dvec3> corners);
+    /// The same triangles once more. Borrows this chunk's corners.
+    Chunk instance() const;
+    /// Moves the triangles from where they are.
+    void place(const Placement& placement);
 
     Chunk(Chunk&&) = default;
     Chunk& operator=(Chunk&&) = default;
 
     const dvec3& origin() const { return origin_; }
-    /// 3 x size() offsets, 12 bytes each.
+    /// 3 x size() offsets, 12 bytes each; none where they are doubles.
     std::span<const vec3> corners() const { return corners_; }
-    uint32_t size() const { return uint32_t(corners_.size() / 3); }
-    uint64_t owned_bytes() const { return owned_.capacity() * sizeof(vec3); }
-    /// Takes the corners out of an owning chunk, which is empty then.
+    /// 3 x size() offsets, 24 bytes each; none where they are floats.
+    std::span<const dvec3> double_corners() const { return double_corners_; }
+    /// Null: the corners are where they are.
+    const Placement* placement() const { return placement_.get(); }
+    uint32_t size() const { return uint32_t((corners_.size() + double_corners_.size()) / 3); }
+    uint64_t owned_bytes() const {
+        return owned_.capacity() * sizeof(vec3) + owned_doubles_.capacity() * sizeof(dvec3);
+    }
+    /// Takes the corners out of an owning chunk of floats, which is empty then.
     std::vector<vec3> take_corners() {
         corners_ = {};
         return std::exchange(owned_, {});
     }
 
     Triangle triangle(uint32_t prim) const {
+        if (!plain_) [[unlikely]]
+            return placed_triangle(prim);
         const vec3* c = corners_.data() + size_t(prim) * 3;
         return {origin_ + dvec3(c[0]), origin_ + dvec3(c[1]), origin_ + dvec3(c[2])};
     }
+    /// Where triangle() reads.
+    const void* address_of(uint32_t prim) const {
+        return double_corners_.empty()
+                   ? static_cast<const void*>(corners_.data() + size_t(prim) * 3)
+                   : double_corners_.data() + size_t(prim) * 3;
+    }
 
 private:
-    Chunk(dvec3 origin, std::vector<vec3> owned, std::span<const vec3> corners);
+    explicit Chunk(dvec3 origin) : origin_(origin) {}
+    bool has_whole_triangles() const;
+    Triangle placed_triangle(uint32_t prim) const;
 
     dvec3 origin_;
     std::vector<vec3> owned_; // its heap block survives a move, so corners_ may point into it
-    std::span<const vec3> corners_;
+    std::vector<dvec3> owned_doubles_;
+    std::span<const vec3> corners_; // these or the next
+    std::span<const dvec3> double_corners_;
+    std::unique_ptr<const Placement> placement_;
+    bool plain_ = true; // floats, not placed
 };
 
 /// Chunk m holds the triangles (m, 0) … (m, size - 1).

@@ -3,6 +3,7 @@
 #include "plugin/device.h"
 
 #include "plugin/handles.h"
+#include "plugin/struct_size.h"
 
 #include <fmt/format.h>
 
@@ -22,15 +23,8 @@ void copy(char (&to)[N], const std::string& from) {
     to[length] = '\0';
 }
 
-void check_size(const char* name, size_t found, size_t expected) {
-    if (found != expected)
-        throw Failure{OVC_ERROR_INVALID_ARGUMENT,
-                      fmt::format("{}.struct_size is {}, expected sizeof({}) = {}", name, found,
-                                  name, expected)};
-}
-
 void fill(ovc_device_info& to, const DeviceInfo& from) {
-    check_size("ovc_device_info", to.struct_size, sizeof(ovc_device_info));
+    check_size<ovc_device_info>("ovc_device_info", to.struct_size);
     copy(to.renderer, from.renderer);
     copy(to.vendor, from.vendor);
     copy(to.version, from.version);
@@ -55,7 +49,7 @@ bool is_device(ovc_device device) {
 }
 
 ovc_result fail_without_device(ovc_result code, const char* message) {
-    no_device.set(message);
+    no_device.set(code, message);
     return code;
 }
 
@@ -76,30 +70,33 @@ ovc_result list_devices(ovc_device_info* infos, uint32_t capacity, uint32_t* cou
     });
 }
 
-ovc_result create_device(const ovc_device_config* config, ovc_device* device) {
-    return guard(no_device, [&] {
+ovc_result create_device(const ovc_device_config* given, ovc_device* device) {
+    ovc_device_config config{sizeof(ovc_device_config)};
+    const ovc_result result = guard(no_device, [&] {
+        if (given)
+            config = whole("ovc_device_config", given, offsetof(ovc_device_config, error));
         if (!device)
             throw Failure{OVC_ERROR_INVALID_ARGUMENT, "create_device: device is NULL"};
         *device = nullptr;
         auto created = std::make_unique<ovc_device_t>();
-        std::string name;
-        if (config) {
-            check_size("ovc_device_config", config->struct_size, sizeof(ovc_device_config));
-            name = config->name ? config->name : "";
-            if (config->log)
-                created->log = [log = config->log,
-                                user = config->log_user](LogLevel level, const std::string& text) {
-                    log(user, ovc_log_level(level), text.c_str());
-                };
-        }
+        created->messages.tell(config.error, config.error_user);
+        if (config.log)
+            created->log = [log = config.log, user = config.log_user](LogLevel level,
+                                                                      const std::string& text) {
+                log(user, ovc_log_level(level), text.c_str());
+            };
         if (const Result<Done> environment = check_egl_environment(); !environment)
             throw Failure{OVC_ERROR_INVALID_ARGUMENT, environment.error().message};
-        Result<std::unique_ptr<GlThread>> gl = GlThread::start(name, created->log);
+        Result<std::unique_ptr<GlThread>> gl =
+            GlThread::start(config.name ? config.name : "", created->log);
         if (!gl)
             throw Failure{OVC_ERROR_NO_DEVICE, gl.error().message};
         created->gl = std::move(*gl);
         *device = created.release();
     });
+    if (result != OVC_OK && config.error)
+        config.error(config.error_user, result, no_device.get());
+    return result;
 }
 
 ovc_result describe_device(ovc_device device, ovc_device_info* info) {

@@ -23,12 +23,22 @@
 
 namespace ovc {
 
-/// The last message per thread.
+/// The last message per thread, and who is told of each.
 class Messages {
 public:
-    void set(std::string message) {
-        const std::lock_guard lock(mutex_);
-        messages_[std::this_thread::get_id()] = std::move(message);
+    /// Before any call fails. The function is the host's: it may ask for the message, on any
+    /// thread.
+    void tell(ovc_error_function function, void* user) {
+        function_ = function;
+        user_ = user;
+    }
+    void set(ovc_result code, std::string message) {
+        {
+            const std::lock_guard lock(mutex_);
+            messages_[std::this_thread::get_id()] = std::move(message);
+        }
+        if (function_)
+            function_(user_, code, get());
     }
     const char* get() {
         const std::lock_guard lock(mutex_);
@@ -38,6 +48,8 @@ public:
 private:
     std::mutex mutex_;
     std::map<std::thread::id, std::string> messages_;
+    ovc_error_function function_ = nullptr;
+    void* user_ = nullptr;
 };
 
 inline constexpr uint32_t kDeviceMagic = 0x6f766344;
@@ -62,6 +74,7 @@ struct ovc_scene_t {
     std::mutex turn; // calls on one scene wait here
     ovc_scene_config config{sizeof(ovc_scene_config)};
     ovc::Soup soup;
+    std::map<uint32_t, ovc::Chunk> templates;  // by number; each an empty chunk of the soup
     std::unique_ptr<ovc::Structure> structure; // set by commit
     ovc::Submissions submissions;
     ovc::SingleRays single_rays{turn, streaming};
@@ -70,25 +83,26 @@ struct ovc_scene_t {
 
 namespace ovc {
 
-/// Runs body; whatever it throws becomes a code, and a message in `messages`: something with set().
+/// Runs body; whatever it throws becomes a code, and a message in `messages`: something with set(),
+/// which is called in the host's floating-point mode.
 template <class Keeper, class Body>
 ovc_result guard(Keeper& messages, Body&& body) {
+    const auto fail = [&](ovc_result code, std::string message) {
+        messages.set(code, std::move(message));
+        return code;
+    };
     try {
         const DefaultFloatMode mode;
         body();
         return OVC_OK;
     } catch (const Failure& failure) {
-        messages.set(failure.message);
-        return failure.code;
+        return fail(failure.code, failure.message);
     } catch (const std::bad_alloc&) {
-        messages.set("out of host memory");
-        return OVC_ERROR_OUT_OF_MEMORY;
+        return fail(OVC_ERROR_OUT_OF_MEMORY, "out of host memory");
     } catch (const std::exception& e) {
-        messages.set(std::string("internal error: ") + e.what());
-        return OVC_ERROR_INTERNAL;
+        return fail(OVC_ERROR_INTERNAL, std::string("internal error: ") + e.what());
     } catch (...) {
-        messages.set("internal error");
-        return OVC_ERROR_INTERNAL;
+        return fail(OVC_ERROR_INTERNAL, "internal error");
     }
 }
 

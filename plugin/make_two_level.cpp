@@ -108,7 +108,8 @@ ovc_statistics TwoLevel::report() const {
             s.queued_rays,
             s.longest_queue,
             s.from_saved,
-            s.seconds_pass};
+            s.seconds_pass,
+            tracer_ ? tracer_->ledger().in_use : 0};
 }
 
 } // namespace ovc

@@ -95,7 +95,7 @@ private:
         if (answer.prim >= OVC_MAX_TRIANGLES || !s_.options_.certify)
             return; // nobody looks at its corners
         const TriangleId id = s_.numbers_.id(answer.prim);
-        __builtin_prefetch(s_.soup_.chunks[id.mesh].corners().data() + size_t(id.prim) * 3);
+        __builtin_prefetch(s_.soup_.chunks[id.mesh].address_of(id.prim));
     }
 
     const size_t part_rays_;

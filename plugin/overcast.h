@@ -5,7 +5,8 @@
  *
  * Every call returns an ovc_result; on anything but OVC_OK, last_error() has one sentence. Nothing throws, exits, or keeps a
  * pointer of the caller's after it returns, except the positions of a mesh added with OVC_MESH_SHARED. The caller owns every
- * buffer. Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero.
+ * buffer. Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero. Structs
+ * and the table only ever grow at their end: the struct_size of an earlier header is fine. The manual is docs/abi.md.
  * Calls may come from any thread; calls on one scene wait their turn. The caller's GL context, floating-point state and
  * environment are left alone: each device has a thread of its own. */
 #ifndef OVERCAST_H
@@ -85,11 +86,18 @@ typedef enum ovc_log_level { OVC_LOG_ERROR = 0, OVC_LOG_WARNING = 1, OVC_LOG_INF
 /* One sentence without a line end; valid during the call only. May come from the device's thread. */
 typedef void (*ovc_log_function)(void* user, ovc_log_level level, const char* message);
 
+/* A call has failed: with this code, and with the sentence that last_error() has from now on; valid during the call only. Called on
+ * the thread whose call it is, before that call returns and in the caller's floating-point mode; from several threads at once, where
+ * several calls fail. May call last_error, and nothing else; must not throw. */
+typedef void (*ovc_error_function)(void* user, ovc_result result, const char* message);
+
 typedef struct ovc_device_config {
     size_t struct_size;
     const char* name; /* NULL: the first GPU, else the software renderer. A number as listed, or a part of the renderer's name, any case */
     ovc_log_function log; /* NULL: silent */
     void* log_user;
+    ovc_error_function error; /* NULL: nobody is told. Every call on the device and its scenes that fails, and its own create_device */
+    void* error_user;
 } ovc_device_config;
 
 typedef struct ovc_device_info {
@@ -167,21 +175,44 @@ typedef struct ovc_scene_config {
 } ovc_scene_config;
 
 typedef enum ovc_mesh_flags {
-    OVC_MESH_SHARED = 1 /* positions are used in place, and stay valid and unchanged until the scene is destroyed.
-                           Needs stride 12 and no indices */
+    OVC_MESH_SHARED = 1, /* positions are used in place, and stay valid and unchanged until the scene is destroyed.
+                            Needs stride 12, or 24 of doubles, and no indices */
+    OVC_MESH_TEMPLATE = 2 /* no ray hits the mesh itself: it is there for its instances. It counts for no triangles */
 } ovc_mesh_flags;
 
+/* Corners are kept as they are given: floats as floats, doubles as doubles (twice the host memory). Where there are doubles or a
+ * transform, a coordinate beyond 2^256 counts as infinite and one within 2^-256 as 0. */
 typedef struct ovc_mesh {
     size_t struct_size;
     const float* positions;   /* vertex_count x 3 offsets from origin, stride bytes apart, aligned to 4 */
-    size_t stride;            /* bytes from one vertex to the next; 0: 12 */
+    size_t stride;            /* bytes from one vertex to the next; 0: 12, or 24 of doubles */
     uint64_t vertex_count;
     const uint32_t* indices;  /* 3 per triangle, each < vertex_count; NULL: vertices 3i, 3i+1, 3i+2 make triangle i */
     uint64_t triangle_count;  /* 0 without indices: vertex_count / 3 */
     double origin[3];         /* added to every position, in double */
     uint32_t flags;           /* ovc_mesh_flags */
     uint32_t reserved;        /* 0 */
+    const double* positions_double; /* instead of positions, which is NULL then: the same in double, stride and address aligned to 8 */
+    const double* transform;  /* 12 finite numbers, or NULL: as in ovc_instance; applied after origin is added */
 } ovc_mesh;
+
+/* A mesh that is there once more, somewhere else. It has a number of its own, which its hits tell, and the prims of its mesh.
+ *
+ * transform: three rows of four numbers. A corner (x, y, z) of the mesh comes to lie at ((r0 x + r1 y) + r2 z) + r3 for each row r,
+ * in doubles, every operation rounded; and there it is, in certified precision, to the last bit. So tiles whose corners these sums
+ * bring to the same doubles share them, and no ray falls between them: shifts by whole numbers and quarter turns do that to short
+ * numbers; else corners that should meet may be roundings of a double apart. Corners keep their order, so a mirroring transform
+ * turns the other side out. A singular one flattens: triangles left without area are dropped and counted, as are those that
+ * overflow.
+ *
+ * What it costs: the positions are kept once, for all instances, but commit builds pages for the triangles of every instance, as if
+ * they were meshes of their own: some 45 to 80 bytes each, in host memory and, while rays go there, in the pool. */
+typedef struct ovc_instance {
+    size_t struct_size;
+    uint32_t mesh;           /* the number of a mesh added before, or of an instance: then that one's transform comes first, in one product of both */
+    uint32_t reserved;       /* 0 */
+    const double* transform; /* 12 finite numbers, or NULL: where the mesh is. Read during the call */
+} ovc_instance;
 
 /* The struct_size of an earlier header is fine. */
 typedef struct ovc_query {
@@ -256,6 +287,8 @@ typedef struct ovc_statistics {
     uint64_t longest_queue;        /* rays */
     uint64_t from_saved;           /* 1: commit took them from ovc_scene_config.saved; else 0 */
     double seconds_pass;           /* of seconds_trace, passes: from sending rays until their answers are here, pages moved in beside */
+    uint64_t gpu_bytes;            /* of GL buffers and textures alive now; after purge 0, until rays are traced again */
+    uint64_t soup_bytes;           /* positions in host memory, without shared ones; instances share those of their mesh */
     uint64_t single_rays;          /* of nearest_rays and occlusion_rays, those of intersect1 and occluded1 */
     uint64_t gathered_rays;        /* of single_rays, those that the GPU answered in batches; the CPU did the others */
 } ovc_statistics;
@@ -344,6 +377,13 @@ typedef struct ovc_api {
      * same meshes. It is for this version on this kind of machine: whatever else takes it builds anew. OVC_ERROR_CANCELLED where
      * `write` says so; OVC_ERROR_INVALID_ARGUMENT for structures that cannot be saved. `write` may call nothing on the scene. */
     ovc_result (*save)(ovc_scene scene, ovc_write_function write, void* user);
+
+    /* Adds an instance of a mesh. It is numbered as meshes are, in the order that both are added; mesh_id may be NULL. */
+    ovc_result (*add_instance)(ovc_scene scene, const ovc_instance* instance, uint32_t* mesh_id);
+    /* Gives back the scene's GPU memory, all of it, and what host memory only serves speed: for a host that goes to do something
+     * else. The next call that traces rays brings it in again, and takes as much longer; answers are the same. Before commit there
+     * is nothing to give back. OVC_ERROR_INVALID_ARGUMENT for structures that cannot. */
+    ovc_result (*purge)(ovc_scene scene);
 
     /* One ray, for renderers that need an answer before they know the next ray: made to be called from many threads at once, beside
      * all other calls on the scene, none of which it waits for, and from within the functions of a stream. The calling thread walks

@@ -71,6 +71,9 @@ uint64_t checksum_of_soup(const Soup& soup) {
         sum.add(bytes_of(std::span<const dvec3>(&chunk.origin(), 1)));
         sum.add_value(uint64_t(chunk.size()));
         sum.add(bytes_of(chunk.corners()));
+        sum.add(bytes_of(chunk.double_corners()));
+        if (chunk.placement())
+            sum.add(bytes_of(std::span<const Placement>(chunk.placement(), 1)));
     }
     return sum.value();
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes: meshes in, commit, statistics. Arguments are checked here; what is below trusts
+// Scenes: commit, statistics. Arguments are checked here; what is below trusts
 // them.
 #include "plugin/scene.h"
 
 #include "core/build_progress.h"
 #include "core/stopwatch.h"
 #include "plugin/scene_call.h"
+#include "plugin/struct_size.h"
 
 #include <cstddef>
 #include <cstring>
@@ -13,62 +14,10 @@
 namespace ovc {
 namespace {
 
-void check_mesh(const ovc_mesh& mesh, size_t stride) {
-    if (mesh.struct_size != sizeof(ovc_mesh))
-        invalid(fmt::format("ovc_mesh.struct_size is {}, expected sizeof(ovc_mesh) = {}",
-                            mesh.struct_size, sizeof(ovc_mesh)));
-    if (!mesh.positions && mesh.vertex_count)
-        invalid("ovc_mesh.positions is NULL");
-    if (stride < 12 || stride % 4 || reinterpret_cast<uintptr_t>(mesh.positions) % 4)
-        invalid(fmt::format(
-            "ovc_mesh.stride is {}, expected 12 or more and, as positions, a multiple of 4",
-            stride));
-    if (mesh.flags & ~uint32_t(OVC_MESH_SHARED) || mesh.reserved)
-        invalid("ovc_mesh.flags or reserved has bits that this version does not know");
-    if (!mesh.indices && mesh.vertex_count % 3)
-        invalid(fmt::format("ovc_mesh.vertex_count is {} without indices, expected a multiple of 3",
-                            mesh.vertex_count));
-    const uint64_t triangles = mesh.indices ? mesh.triangle_count : mesh.vertex_count / 3;
-    if (!mesh.indices && mesh.triangle_count && mesh.triangle_count != triangles)
-        invalid(
-            fmt::format("ovc_mesh.triangle_count is {}, but {} vertices without indices make {}",
-                        mesh.triangle_count, mesh.vertex_count, triangles));
-    if (triangles >= kNone)
-        invalid(fmt::format("a mesh holds fewer than {} triangles, not {}; split it", kNone,
-                            triangles));
-    if ((mesh.flags & OVC_MESH_SHARED) && (stride != 12 || mesh.indices))
-        invalid("OVC_MESH_SHARED needs stride 12 and no indices");
-    for (int axis = 0; axis < 3; ++axis)
-        if (!std::isfinite(mesh.origin[axis]))
-            invalid("ovc_mesh.origin is not finite");
-}
-
-std::vector<vec3> copied_corners(const ovc_mesh& mesh, size_t stride) {
-    const uint64_t count = mesh.indices ? mesh.triangle_count * 3 : mesh.vertex_count;
-    std::vector<vec3> corners(count);
-    const char* base = reinterpret_cast<const char*>(mesh.positions);
-    for (uint64_t i = 0; i < count; ++i) {
-        const uint64_t vertex = mesh.indices ? mesh.indices[i] : i;
-        if (vertex >= mesh.vertex_count)
-            invalid(fmt::format("ovc_mesh.indices[{}] is {}, expected less than vertex_count = {}",
-                                i, vertex, mesh.vertex_count));
-        std::memcpy(&corners[i], base + vertex * stride, sizeof(vec3));
-    }
-    return corners;
-}
-
 void check_choice(const char* field, uint32_t value, uint32_t last) {
     if (value > last)
         invalid(fmt::format("ovc_scene_config.{} is {}, expected {}{}", field, value,
                             last ? "0 to " : "", last));
-}
-
-/// A struct of this header, or of an earlier one, which had `least` bytes at least.
-template <class T>
-void check_size(const char* name, size_t size, size_t least) {
-    if (size < least || size > sizeof(T))
-        invalid(fmt::format("{}.struct_size is {}, expected sizeof({}) = {}", name, size, name,
-                            sizeof(T)));
 }
 
 /// body(progress), told to the config's function; body's Cancelled becomes a code.
@@ -87,6 +36,15 @@ void with_progress(const ovc_scene_config& config, const char* call, Body&& body
         throw Failure{OVC_ERROR_CANCELLED,
                       fmt::format("{}: cancelled by ovc_scene_config.progress", call)};
     }
+}
+
+uint64_t soup_bytes(const ovc_scene_t& scene) {
+    uint64_t bytes = 0;
+    for (const Chunk& chunk : scene.soup.chunks)
+        bytes += chunk.owned_bytes();
+    for (const auto& [number, chunk] : scene.templates)
+        bytes += chunk.owned_bytes();
+    return bytes;
 }
 
 } // namespace
@@ -126,26 +84,6 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
     });
 }
 
-ovc_result add_mesh(ovc_scene scene, const ovc_mesh* mesh, uint32_t* mesh_id) {
-    return on_scene(scene, "add_mesh", [&] {
-        if (!mesh)
-            invalid("add_mesh: mesh is NULL");
-        if (scene->structure)
-            throw Failure{OVC_ERROR_INVALID_STATE,
-                          "add_mesh: the scene is committed; it takes no more meshes"};
-        const size_t stride = mesh->stride ? mesh->stride : 12;
-        check_mesh(*mesh, stride);
-        const dvec3 origin(mesh->origin[0], mesh->origin[1], mesh->origin[2]);
-        const vec3* positions = reinterpret_cast<const vec3*>(mesh->positions);
-        scene->soup.chunks.push_back(
-            mesh->flags & OVC_MESH_SHARED
-                ? Chunk::borrowing(origin, {positions, size_t(mesh->vertex_count)})
-                : Chunk::owning(origin, copied_corners(*mesh, stride)));
-        if (mesh_id)
-            *mesh_id = uint32_t(scene->soup.chunks.size() - 1);
-    });
-}
-
 ovc_result commit(ovc_scene scene) {
     return on_scene(scene, "commit", [&] {
         if (scene->structure)
@@ -173,6 +111,7 @@ ovc_result statistics(ovc_scene scene, ovc_statistics* statistics) {
         ovc_statistics all = committed(scene, "statistics").report();
         scene->single_rays.add_to(all);
         all.struct_size = size;
+        all.soup_bytes = soup_bytes(*scene);
         std::memcpy(statistics, &all, size);
     });
 }
@@ -205,6 +144,16 @@ ovc_result active(ovc_scene scene, ovc_active* active) {
                           "active: " + told.error().message};
         *active = *told;
         active->struct_size = sizeof(ovc_active);
+    });
+}
+
+ovc_result purge(ovc_scene scene) {
+    return on_scene(scene, "purge", [&] {
+        if (!scene->structure)
+            return;
+        if (const Result<Done> purged = scene->structure->purge(); !purged)
+            throw Failure{code_of(purged.error().kind, OVC_ERROR_INVALID_ARGUMENT),
+                          "purge: " + purged.error().message};
     });
 }
 

@@ -8,11 +8,13 @@ namespace ovc {
 
 ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_scene* scene);
 ovc_result add_mesh(ovc_scene scene, const ovc_mesh* mesh, uint32_t* mesh_id);
+ovc_result add_instance(ovc_scene scene, const ovc_instance* instance, uint32_t* mesh_id);
 ovc_result commit(ovc_scene scene);
 ovc_result statistics(ovc_scene scene, ovc_statistics* statistics);
 ovc_result plan(ovc_scene scene, ovc_plan* plan);
 ovc_result active(ovc_scene scene, ovc_active* active);
 ovc_result save(ovc_scene scene, ovc_write_function write, void* user);
+ovc_result purge(ovc_scene scene);
 void destroy_scene(ovc_scene scene);
 
 } // namespace ovc

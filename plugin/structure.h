@@ -81,6 +81,9 @@ public:
     virtual Result<Done> save(const ByteSink&) const {
         return Error{"only two-level can be saved"};
     }
+    /// Gives back all GPU memory, and host memory that only serves speed; the next call that needs
+    /// it brings it in again. Error: a structure that cannot.
+    virtual Result<Done> purge() { return Error{"only two-level can be purged"}; }
     /// Counted since it was built. What a structure does not have is 0.
     virtual ovc_statistics report() const = 0;
 

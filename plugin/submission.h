@@ -20,7 +20,7 @@ public:
         ovc_result result = OVC_OK;
         std::string message;
 
-        void set(std::string text) { message = std::move(text); }
+        void set(ovc_result code, std::string text) { *this = {code, std::move(text)}; }
     };
 
     explicit Submission(const RayCall& call) : call_(call) {}

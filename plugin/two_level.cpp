@@ -190,11 +190,18 @@ Result<Done> TwoLevel::make_tracer(BuildProgress* progress) {
     return Done{};
 }
 
-/// Makes anew what went with an earlier context.
+/// Makes anew what went with an earlier context, or with purge().
 Result<Done> TwoLevel::ready_device() {
-    if (pages_.empty() || tracer_generation_ == gl_.generation())
+    if (pages_.empty() || (tracer_ && tracer_generation_ == gl_.generation()))
         return Done{};
     return make_tracer(nullptr);
+}
+
+Result<Done> TwoLevel::purge() {
+    if (tracer_)
+        gl_.run([&](GlState&) { tracer_.reset(); });
+    batches_ = {};
+    return Done{};
 }
 
 /// The context is dead: a new one for the calls to come.

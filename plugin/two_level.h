@@ -104,6 +104,7 @@ public:
     ovc_statistics report() const override;         // make_two_level.cpp
     Result<ovc_active> take_active() override;
     Result<Done> save(const ByteSink& sink) const override;
+    Result<Done> purge() override;
 
     const TwoLevelStatistics& statistics() const { return statistics_; }
     const MemoryPlan& plan() const { return plan_; }
@@ -184,7 +185,7 @@ private:
     Level1 level1_;          // without twins
     std::vector<Page> pages_;
     std::vector<uint8_t> was_active_; // per leaf: when take_active() was asked last
-    std::unique_ptr<Tracer> tracer_;  // made and destroyed on the thread of gl_
+    std::unique_ptr<Tracer> tracer_;  // made and destroyed on the thread of gl_; none after purge()
     uint32_t tracer_generation_ = 0;  // of the context that it was made in
     std::array<Batch, 2> batches_;    // kept between calls
     TwoLevelStatistics statistics_;
