@@ -36,7 +36,14 @@ struct BoxT {
         return d.x * d.y + d.y * d.z + d.z * d.x;
     }
 
-    /// This box, larger by `margin` (>= 0) on each side.
+    /// At least what its coordinates round by when something small is added to them. Far from the
+    /// origin it may be more than the box is large.
+    T rounding() const {
+        return std::numeric_limits<T>::epsilon() *
+               max_component(glm::max(glm::abs(lo), glm::abs(hi)));
+    }
+
+    /// This box, larger by `margin` (>= 0) on each side; to the next number that there is.
     BoxT padded(T margin) const { return {lo - Vec(margin), hi + Vec(margin)}; }
 
     /// The common part; empty when the boxes are apart.

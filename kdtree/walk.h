@@ -24,7 +24,8 @@ void walk(std::span<const KdNode> nodes, const Box& bounds, const PreparedRay& p
     };
     std::array<Entry, 128> stack; // deeper than any tree of build.cpp
     int top = 0;
-    const Interval whole = clip(p, bounds.padded(margin), p.ray.t_min, p.ray.t_max);
+    const Interval whole =
+        clip(p, bounds.padded(margin + bounds.rounding()), p.ray.t_min, p.ray.t_max);
     if (!whole.empty())
         stack[top++] = {0, whole.enter, whole.exit};
     while (top > 0) {

@@ -144,7 +144,8 @@ private:
     /// would send it back: t must grow, or two cells at a corner pass a ray to and fro.
     bool go_on_behind(uint32_t i, uint32_t leaf, const PreparedRay& p, double end) {
         const Box& cell = s_.level1_.leaves[leaf].cell;
-        const Box safe = cell.padded(-p.margin(cell)); // no rounding leads out of the cell
+        // No rounding leads out of the cell.
+        const Box safe = cell.padded(-(p.margin(cell) + cell.rounding()));
         const double exit = clip(p, cell, p.ray.t_min, p.ray.t_max).exit;
         if (end <= clip(p, safe, p.ray.t_min, p.ray.t_max).exit || exit >= end)
             return true;

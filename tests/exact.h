@@ -69,7 +69,8 @@ inline std::optional<ExactHit> exact_nearest(const Soup& soup, const std::vector
     for (const TriangleId id : ids) {
         const Triangle triangle = soup.triangle(id);
         const Box box = bounds_of(triangle);
-        const Box wide = box.padded(1e-6 * max_component(box.extent()) + 1e3 * p.margin(box));
+        const Box wide = box.padded(1e-6 * max_component(box.extent()) + 1e3 * p.margin(box) +
+                                    4 * box.rounding());
         if (clip(p, wide, ray.t_min, ray.t_max).empty())
             continue;
         if (const auto t = exact_hit(ray, triangle))
