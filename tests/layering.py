@@ -53,6 +53,8 @@ def check(root, path):
                 continue
             if folder == "host" and target == "plugin/overcast.h":
                 continue
+            if name == "plugin/overcast.hpp" and target == "overcast.h":
+                continue
             if folder == "plugin" and name.endswith("overcast.h"):
                 yield f"{name} includes {target}; the C header includes nothing of ours"
             elif folder not in MAY_INCLUDE or other not in MAY_INCLUDE[folder]:

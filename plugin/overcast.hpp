@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// overcast.h for C++20: owners for its handles, spans for its buffers, exceptions for its errors.
+// No more than that: what a call does and promises stands in overcast.h and docs/abi.md, and any
+// call may be made through the table as well.
+#pragma once
+
+#include "overcast.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <new>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace overcast {
+
+/// A call that did not return OVC_OK: its code, and what() is the sentence of last_error().
+class Error : public std::runtime_error {
+public:
+    Error(ovc_result code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    ovc_result code() const { return code_; }
+
+private:
+    ovc_result code_;
+};
+
+/// A struct of overcast.h with its struct_size set and all else the default.
+template <class T>
+T make() {
+    T value{};
+    value.struct_size = sizeof(T);
+    return value;
+}
+
+/// Three rows of four, as in ovc_instance.
+using Transform = std::array<double, 12>;
+
+/// The table of the library that the program is linked with. Throws where that is too old.
+inline const ovc_api& linked_api() {
+    if (const ovc_api* api = ovc_get_api(OVC_ABI_VERSION))
+        return *api;
+    throw Error(OVC_ERROR_NO_DEVICE, "libovercast.so does not have the ABI of overcast.h");
+}
+
+/// Owns a device, and its thread. Outlives its scenes. Move-only; a moved-from one is empty.
+class Device {
+public:
+    explicit Device(const ovc_device_config& config = make<ovc_device_config>(),
+                    const ovc_api& api = linked_api())
+        : api_(&api) {
+        ovc_device created = nullptr;
+        if (const ovc_result result = api.create_device(&config, &created); result != OVC_OK)
+            throw Error(result, api.last_error(nullptr));
+        handle_ = {created, Destroy{&api}};
+    }
+
+    /// All there are.
+    static std::vector<ovc_device_info> list(const ovc_api& api = linked_api()) {
+        uint32_t count = 0;
+        ovc_result result = api.list_devices(nullptr, 0, &count);
+        std::vector<ovc_device_info> infos(count, make<ovc_device_info>());
+        if (result == OVC_OK)
+            result = api.list_devices(infos.data(), count, &count);
+        if (result != OVC_OK)
+            throw Error(result, api.last_error(nullptr));
+        return infos;
+    }
+
+    ovc_device_info describe() const {
+        auto info = make<ovc_device_info>();
+        check(api_->describe_device(get(), &info));
+        return info;
+    }
+
+    ovc_device get() const { return handle_.get(); }
+    const ovc_api& api() const { return *api_; }
+    /// Throws unless it is OVC_OK: for calls through the table, on this thread.
+    void check(ovc_result result) const {
+        if (result != OVC_OK)
+            throw Error(result, api_->last_error(get()));
+    }
+
+private:
+    struct Destroy {
+        const ovc_api* api;
+        void operator()(ovc_device device) const { api->destroy_device(device); }
+    };
+    const ovc_api* api_;
+    std::unique_ptr<ovc_device_t, Destroy> handle_{nullptr, Destroy{nullptr}};
+};
+
+/// Rays pushed from within the functions of Scene::stream().
+class Stream {
+public:
+    Stream(const Device& device, ovc_stream handle) : device_(device), handle_(handle) {}
+    void push(std::span<const ovc_ray> rays, std::span<const uint64_t> tokens, bool any_hit,
+              const ovc_query* query = nullptr) {
+        if (tokens.size() != rays.size())
+            throw Error(OVC_ERROR_INVALID_ARGUMENT, "push: rays and tokens differ in number");
+        device_.check(
+            device_.api().push(handle_, rays.data(), tokens.data(), rays.size(), any_hit, query));
+    }
+
+private:
+    const Device& device_;
+    ovc_stream handle_;
+};
+
+/// Owns a scene. The device stays where it is, and outlives it. Move-only.
+class Scene {
+public:
+    explicit Scene(const Device& device, const ovc_scene_config& config = make<ovc_scene_config>())
+        : device_(&device) {
+        ovc_scene created = nullptr;
+        device.check(api().create_scene(device.get(), &config, &created));
+        handle_ = {created, Destroy{&api()}};
+    }
+
+    /// Its number.
+    uint32_t add(const ovc_mesh& mesh) {
+        uint32_t number = OVC_NONE;
+        check(api().add_mesh(get(), &mesh, &number));
+        return number;
+    }
+    /// positions: 3 numbers a vertex, float or double. indices: 3 a triangle; none: three vertices
+    /// after each other are one.
+    template <class Number>
+    uint32_t add(std::span<const Number> positions, std::span<const uint32_t> indices = {},
+                 uint32_t flags = 0) {
+        auto mesh = make<ovc_mesh>();
+        if constexpr (std::is_same_v<Number, double>)
+            mesh.positions_double = positions.data();
+        else
+            mesh.positions = positions.data();
+        if (positions.size() % 3 || indices.size() % 3)
+            throw Error(OVC_ERROR_INVALID_ARGUMENT,
+                        "add: positions and indices come three at a time");
+        mesh.vertex_count = positions.size() / 3;
+        mesh.indices = indices.empty() ? nullptr : indices.data();
+        mesh.triangle_count = indices.size() / 3;
+        mesh.flags = flags;
+        return add(mesh);
+    }
+    uint32_t add_instance(uint32_t mesh, const Transform& transform) {
+        auto instance = make<ovc_instance>();
+        instance.mesh = mesh;
+        instance.transform = transform.data();
+        uint32_t number = OVC_NONE;
+        check(api().add_instance(get(), &instance, &number));
+        return number;
+    }
+    void commit() { check(api().commit(get())); }
+
+    /// hits: as many as rays.
+    void intersect(std::span<const ovc_ray> rays, std::span<ovc_hit> hits,
+                   const ovc_query* query = nullptr) const {
+        same_number("intersect", rays.size(), hits.size());
+        check(api().intersect(get(), rays.data(), rays.size(), hits.data(), query));
+    }
+    std::vector<ovc_hit> intersect(std::span<const ovc_ray> rays,
+                                   const ovc_query* query = nullptr) const {
+        std::vector<ovc_hit> hits(rays.size());
+        intersect(rays, hits, query);
+        return hits;
+    }
+    /// occluded: as many as rays, 1 or 0.
+    void occluded(std::span<const ovc_ray> rays, std::span<uint8_t> occluded,
+                  const ovc_query* query = nullptr) const {
+        same_number("occluded", rays.size(), occluded.size());
+        check(api().occluded(get(), rays.data(), rays.size(), occluded.data(), query));
+    }
+    /// One ray; from any number of threads at once.
+    ovc_hit intersect1(const ovc_ray& ray, const ovc_query* query = nullptr) const {
+        ovc_hit hit;
+        check(api().intersect1(get(), &ray, &hit, query));
+        return hit;
+    }
+    bool occluded1(const ovc_ray& ray, const ovc_query* query = nullptr) const {
+        uint8_t occluded = 0;
+        check(api().occluded1(get(), &ray, &occluded, query));
+        return occluded != 0;
+    }
+
+    /// more(Stream&, wanted), answered(Stream&, const ovc_stream_answers&): what they throw stops
+    /// the stream and is thrown here.
+    template <class More, class Answered>
+    void stream(More&& more, Answered&& answered) const {
+        StreamHost<More, Answered> host{more, answered, *device_};
+        auto functions = make<ovc_stream_host>();
+        functions.user = &host;
+        functions.more = [](void* user, ovc_stream handle, size_t wanted) {
+            auto& h = *static_cast<StreamHost<More, Answered>*>(user);
+            return h.run(handle, [&](Stream& stream) { h.more(stream, wanted); });
+        };
+        functions.answered = [](void* user, ovc_stream handle, const ovc_stream_answers* answers) {
+            auto& h = *static_cast<StreamHost<More, Answered>*>(user);
+            return h.run(handle, [&](Stream& stream) { h.answered(stream, *answers); });
+        };
+        const ovc_result result = api().stream(get(), &functions);
+        if (host.thrown)
+            std::rethrow_exception(host.thrown);
+        check(result);
+    }
+
+    ovc_plan plan() const { return told<ovc_plan>(api().plan); }
+    ovc_statistics statistics() const { return told<ovc_statistics>(api().statistics); }
+    ovc_active active() const { return told<ovc_active>(api().active); }
+    void purge() const { check(api().purge(get())); }
+    /// For ovc_scene_config.saved of a later scene.
+    std::vector<std::byte> save() const {
+        std::vector<std::byte> bytes;
+        const auto append = [](void* user, const void* from, size_t size) {
+            const auto* first = static_cast<const std::byte*>(from);
+            try {
+                auto& to = *static_cast<std::vector<std::byte>*>(user);
+                to.insert(to.end(), first, first + size);
+                return 0;
+            } catch (const std::bad_alloc&) {
+                return 1;
+            }
+        };
+        check(api().save(get(), append, &bytes));
+        return bytes;
+    }
+
+    ovc_scene get() const { return handle_.get(); }
+
+private:
+    struct Destroy {
+        const ovc_api* api;
+        void operator()(ovc_scene scene) const { api->destroy_scene(scene); }
+    };
+    /// What throws must not cross C: it is kept until stream() is back.
+    template <class More, class Answered>
+    struct StreamHost {
+        std::remove_reference_t<More>& more;
+        std::remove_reference_t<Answered>& answered;
+        const Device& device;
+        std::exception_ptr thrown{};
+
+        template <class Call>
+        int run(ovc_stream handle, Call&& call) {
+            try {
+                Stream stream(device, handle);
+                call(stream);
+                return 0;
+            } catch (...) {
+                thrown = std::current_exception();
+                return 1;
+            }
+        }
+    };
+
+    const ovc_api& api() const { return device_->api(); }
+    void check(ovc_result result) const { device_->check(result); }
+    static void same_number(const char* call, size_t rays, size_t answers) {
+        if (rays != answers)
+            throw Error(OVC_ERROR_INVALID_ARGUMENT,
+                        std::string(call) + ": " + std::to_string(rays) + " rays, but room for " +
+                            std::to_string(answers) + " answers");
+    }
+    template <class T>
+    T told(ovc_result (*tell)(ovc_scene, T*)) const {
+        auto value = make<T>();
+        check(tell(get(), &value));
+        return value;
+    }
+
+    const Device* device_;
+    std::unique_ptr<ovc_scene_t, Destroy> handle_{nullptr, Destroy{nullptr}};
+};
+
+} // namespace overcast
