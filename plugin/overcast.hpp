@@ -113,6 +113,38 @@ private:
     ovc_stream handle_;
 };
 
+/// A call that was submitted. Its buffers stay as they are until it is done. Destroying it cancels
+/// the call and waits until it has ended. Move-only; before the device is destroyed.
+class Ticket {
+public:
+    Ticket(const Device& device, ovc_ticket handle)
+        : device_(&device), handle_(handle, Release{&device.api()}) {}
+    /// Throws what the call came to.
+    void wait() const { device_->check(device_->api().wait(get())); }
+    bool done() const {
+        uint32_t done = 0;
+        device_->check(device_->api().poll(get(), &done, nullptr));
+        return done != 0;
+    }
+    /// The share of rays answered, from 0 to 1.
+    double progress() const {
+        uint32_t done = 0;
+        double share = 0;
+        device_->check(device_->api().poll(get(), &done, &share));
+        return share;
+    }
+    void cancel() const { device_->check(device_->api().cancel(get())); }
+    ovc_ticket get() const { return handle_.get(); }
+
+private:
+    struct Release {
+        const ovc_api* api;
+        void operator()(ovc_ticket ticket) const { api->release(ticket); }
+    };
+    const Device* device_;
+    std::unique_ptr<ovc_ticket_t, Release> handle_;
+};
+
 /// Owns a scene. The device stays where it is, and outlives it. Move-only.
 class Scene {
 public:
@@ -186,6 +218,23 @@ public:
         uint8_t occluded = 0;
         check(api().occluded1(get(), &ray, &occluded, query));
         return occluded != 0;
+    }
+
+    /// The same on a thread of the library's; see ovc_api.submit_intersect.
+    [[nodiscard]] Ticket submit_intersect(std::span<const ovc_ray> rays, std::span<ovc_hit> hits,
+                                          const ovc_query* query = nullptr) const {
+        same_number("submit_intersect", rays.size(), hits.size());
+        ovc_ticket ticket = nullptr;
+        check(api().submit_intersect(get(), rays.data(), rays.size(), hits.data(), query, &ticket));
+        return Ticket(*device_, ticket);
+    }
+    [[nodiscard]] Ticket submit_occluded(std::span<const ovc_ray> rays, std::span<uint8_t> occluded,
+                                         const ovc_query* query = nullptr) const {
+        same_number("submit_occluded", rays.size(), occluded.size());
+        ovc_ticket ticket = nullptr;
+        check(api().submit_occluded(get(), rays.data(), rays.size(), occluded.data(), query,
+                                    &ticket));
+        return Ticket(*device_, ticket);
     }
 
     /// more(Stream&, wanted), answered(Stream&, const ovc_stream_answers&): what they throw stops

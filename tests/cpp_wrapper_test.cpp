@@ -97,6 +97,28 @@ TEST_F(CppWrapper, ErrorsCarryCodeAndSentence) {
     EXPECT_EQ(error_of([&] { overcast::Device other(config); }).code(), OVC_ERROR_NO_DEVICE);
 }
 
+TEST_F(CppWrapper, TicketsWaitCancelAndReleaseThemselves) {
+    const overcast::Scene scene = committed();
+    const std::vector<ovc_ray> rays(10'000, kDown);
+    std::vector<ovc_hit> hits(rays.size());
+    std::vector<uint8_t> occluded(rays.size());
+    const overcast::Ticket nearest = scene.submit_intersect(rays, hits);
+    overcast::Ticket any = scene.submit_occluded(rays, occluded);
+    nearest.wait();
+    EXPECT_TRUE(nearest.done());
+    EXPECT_EQ(nearest.progress(), 1);
+    EXPECT_EQ(hits.back().t, 1);
+    overcast::Ticket moved = std::move(any);
+    moved.wait();
+    EXPECT_EQ(occluded.back(), 1);
+    const overcast::Ticket cancelled = scene.submit_intersect(rays, hits);
+    cancelled.cancel();
+    const auto error = error_of([&] { cancelled.wait(); });
+    EXPECT_TRUE(error.code() == OVC_OK || error.code() == OVC_ERROR_CANCELLED) << error.what();
+    EXPECT_THAT(error_of([&] { (void)scene.submit_occluded(rays, {}); }).what(),
+                HasSubstr("room for 0 answers"));
+}
+
 TEST_F(CppWrapper, StreamsAndWhatTheirFunctionsThrowArrives) {
     const overcast::Scene scene = committed();
     const std::array rays = {kDown, kAside};
