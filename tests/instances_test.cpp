@@ -2,6 +2,7 @@
 // Doubles, transforms and instances through the ABI, against the same triangles moved by hand:
 // every bit against brute force, a sample against exact rationals, and ids against Embree's own
 // instances.
+#include "core/test_archive.h"
 #include "kdtree/test_soups.h"
 #include "tests/abi_scene.h"
 #include "tests/exact.h"
@@ -455,6 +456,37 @@ TEST_F(Instances, TheMeshOfAnEarlierHeaderIsFine) {
     EXPECT_EQ(api().add_mesh(w.scene.get(), &mesh, nullptr), OVC_OK) << w.error();
     w.commit();
     EXPECT_EQ(w.intersect({{{0.25, 0.25, 1}, 0, {0, 0, -1}}})[0].t, 1);
+}
+
+/// What was saved fits the same instances, and no others.
+TEST_F(Instances, AreSavedWithTheirTransforms) {
+    test::Random random(13);
+    const auto corners = random_corners<vec3>(random, 80, 0.3);
+    const Transform here = any_transform(random, 2);
+    Transform there = here;
+    there[3] = std::nextafter(there[3], 9.0);
+    const auto made_of = [&](const Transform& m) {
+        World w = world();
+        w.instance(w.add(corners, dvec3(0), nullptr), &m);
+        w.commit();
+        return w;
+    };
+    const World built = made_of(here);
+    EXPECT_EQ(built.statistics().from_saved, 0u);
+    test::ArchiveMemory saved;
+    const auto append = [](void* user, const void* bytes, size_t size) {
+        static_cast<test::ArchiveMemory*>(user)->append(
+            {static_cast<const std::byte*>(bytes), size});
+        return 0;
+    };
+    ASSERT_EQ(api().save(built.scene.get(), append, &saved), OVC_OK) << built.error();
+    config.saved = saved.bytes().data();
+    config.saved_bytes = saved.bytes().size();
+    const World again = made_of(here), other = made_of(there);
+    EXPECT_EQ(again.statistics().from_saved, 1u);
+    EXPECT_EQ(other.statistics().from_saved, 0u) << "a transform one rounding apart";
+    expect_brute_force(again, rays_at(again.expected, 1000, 14), 50);
+    expect_brute_force(other, rays_at(other.expected, 1000, 14), 50);
 }
 
 /// Embree with instances of its own, whose transforms are floats; robust.
