@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What callers hand over as arrays, checked: a wrong type or shape is one sentence that names the argument."""
+
+from __future__ import annotations
+
+import operator
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+def numbers(name: str, value: ArrayLike, columns: int = 0, kinds: str = "fiu") -> NDArray:
+    """The value as an array of real numbers, without a copy where it is one; (..., columns), where columns are given."""
+    expected = ("whole numbers" if "f" not in kinds else "real numbers") + (f" of shape (..., {columns})" if columns else "")
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise ValueError(f"{name} must be {expected}, not rows of different lengths") from None
+    if array.dtype.kind not in kinds and array.size:
+        raise TypeError(f"{name} must be {expected}, not {array.dtype}")
+    if columns and array.shape == (0,):  # an empty list has no columns
+        array = array.reshape(0, columns)
+    if columns and array.shape[-1:] != (columns,):
+        raise ValueError(f"{name} must be {expected}, not of shape {array.shape}")
+    return array
+
+
+def as_uint32(name: str, value: ArrayLike, columns: int) -> NDArray[np.uint32]:
+    """Whole numbers of 32 bits, C-contiguous; without a copy where they are that."""
+    array = numbers(name, value, columns, "iu")
+    if array.dtype != np.uint32 and array.size and (array.min() < 0 or array.max() > 0xFFFFFFFF):
+        wrong = array.min() if array.min() < 0 else array.max()
+        raise ValueError(f"{name} must be whole numbers from 0 to 4294967295, not {wrong}")
+    return np.require(array, np.uint32, "CA")
+
+
+def count(name: str, value: int, most: int = 2**64 - 1) -> int:
+    """A whole number from 0 to `most`."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be a whole number, not {type(value).__name__}") from None
+    if not 0 <= number <= most:
+        raise ValueError(f"{name} must be from 0 to {most}, not {number}")
+    return number
+
+
+def choice(name: str, value: str, choices: tuple[str, ...]) -> int:
+    """The value's place among the choices."""
+    if value not in choices:
+        raise ValueError(f"{name} must be {' or '.join(map(repr, choices))}, not {value!r}")
+    return choices.index(value)

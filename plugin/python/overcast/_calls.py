@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Python functions that the library calls, and calls that Ctrl-C ends."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import contextlib
+import ctypes
+import threading
+from collections.abc import Callable, Iterator
+from typing import BinaryIO
+
+from . import _abi
+from ._library import Error, Result
+
+
+class Raised:
+    """What a function of ours raised while the library was calling it: it ends the library's call, and is raised by it."""
+
+    def __init__(self) -> None:
+        self.error: BaseException | None = None
+
+    def run(self, function: Callable[[], object]) -> int:
+        """0, or 1 where the library is to stop."""
+        try:
+            function()
+        except BaseException as error:  # nothing may pass through C
+            self.error = error
+        return int(self.error is not None)
+
+    @contextlib.contextmanager
+    def raising(self) -> Iterator[None]:
+        """Around the library's call: its own error, that it was stopped, gives way to why."""
+        self.error = None
+        try:
+            yield
+        except Error as stopped:
+            if stopped.code != Result.CANCELLED or self.error is None:
+                raise
+            raise self.error from None
+
+
+class Progress:
+    """ovc_scene_config.progress."""
+
+    def __init__(self) -> None:
+        self._told: Callable[[float, str], object] | None = None
+        raised = self._raised = Raised()
+
+        def tell(_user: int, done: float, stage: bytes) -> int:
+            return raised.run(lambda: self._told and self._told(done, stage.decode(errors="replace")))
+
+        self.function = _abi.ProgressFunction(tell)
+
+    def watch(self, call: Callable[[], object], told: Callable[[float, str], object] | None = None) -> None:
+        """Runs a call of the library, which calls told(done, stage); Ctrl-C stops it.
+
+        Python delivers Ctrl-C on the main thread alone, and not within C; so there the call runs beside it.
+        """
+        self._told = told
+        with self._raised.raising():
+            if threading.current_thread() is not threading.main_thread():
+                call()
+                return
+            outcome: concurrent.futures.Future[None] = concurrent.futures.Future()
+            threading.Thread(target=_run, args=(call, outcome)).start()
+            try:
+                outcome.result()
+            except KeyboardInterrupt as interrupt:
+                self._raised.error = interrupt
+                concurrent.futures.wait([outcome])
+                raise
+
+
+def _run(call: Callable[[], object], outcome: concurrent.futures.Future[None]) -> None:
+    try:
+        call()
+        outcome.set_result(None)
+    except BaseException as error:
+        outcome.set_exception(error)
+
+
+class Writer:
+    """ovc_write_function into a file."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        raised = self._raised = Raised()
+
+        def write(_user: int, data: int, size: int) -> int:
+            return raised.run(lambda: file.write((ctypes.c_char * size).from_address(data)))
+
+        self.function = _abi.WriteFunction(write)
+        self.raising = raised.raising

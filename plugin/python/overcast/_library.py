@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Finding libovercast.so, loading it once, and turning its codes into exceptions."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import enum
+import functools
+import os
+import pathlib
+import threading
+import weakref
+from collections.abc import Callable, Iterator
+
+from . import _abi
+
+SONAME = f"libovercast.so.{_abi.ABI_VERSION}"
+
+
+class Result(enum.IntEnum):
+    """What went wrong: ovc_result of the C header."""
+
+    INVALID_ARGUMENT = 1
+    INVALID_STATE = 2
+    NO_DEVICE = 3
+    OUT_OF_BUDGET = 4
+    OUT_OF_MEMORY = 5
+    DEVICE_LOST = 6
+    INTERNAL = 7
+    CANCELLED = 8
+
+
+class Error(Exception):
+    """A call that failed: str() is the library's sentence, `code` its Result, or None where the library could not be asked."""
+
+    def __init__(self, sentence: str, code: Result | None = None) -> None:
+        super().__init__(sentence)
+        self.code = code
+
+
+def _places() -> list[str]:
+    """What to try: the file that OVC_PLUGIN names; else beside this module, where it was installed, the system's loader."""
+    if named := os.environ.get("OVC_PLUGIN"):
+        return [named]
+    here = pathlib.Path(__file__).resolve().parent
+    folders = [here]
+    try:
+        from ._location import LIBRARY_FOLDER  # written by the build: the way from here to the library
+        folders.append(here / LIBRARY_FOLDER)
+    except ImportError:
+        pass
+    return [str(folder / SONAME) for folder in folders if (folder / SONAME).exists()] + [SONAME]
+
+
+@functools.cache
+def api() -> _abi.ovc_api:
+    """The library's table. Loaded by the first who asks, and never unloaded."""
+    path = _places()[0]
+    try:
+        library = ctypes.CDLL(path)
+    except OSError as error:
+        raise Error(f"cannot load the library: {error}; the environment variable OVC_PLUGIN may name its file") from None
+    try:
+        get_api = library.ovc_get_api
+    except AttributeError:
+        raise Error(f"'{path}' is not Overcast's library: it has no ovc_get_api") from None
+    get_api.restype = ctypes.POINTER(_abi.ovc_api)
+    get_api.argtypes = [ctypes.c_uint32]
+    table = get_api(_abi.ABI_VERSION)
+    if not table:
+        raise Error(f"the library '{path}' does not speak version {_abi.ABI_VERSION} of the interface")
+    if table.contents.struct_size < ctypes.sizeof(_abi.ovc_api):
+        raise Error(f"the library '{path}' is older than this module: its table has {table.contents.struct_size} bytes, "
+                    f"{ctypes.sizeof(_abi.ovc_api)} are needed")
+    return table.contents
+
+
+def check(result: int, device: int | None = None) -> None:
+    """Raises what the library says of the call that has just failed on this device, or, with None, without one."""
+    if result:
+        sentence = api().last_error(device).decode(errors="replace")
+        raise Error(sentence or f"the library failed with code {result}", Result(result))
+
+
+class Handle:
+    """A device or a scene of the library. Destroyed once: by close(), when nobody refers to it any more, or at the end of the program."""
+
+    def __init__(self, what: str, value: int, destroy: Callable[[int], None], *kept_alive: object) -> None:
+        self._what = what
+        self._value = value
+        self._process = os.getpid()
+        self._turn = threading.Lock()
+        self._end = weakref.finalize(self, _destroy_here, self._process, destroy, value, kept_alive)
+
+    @contextlib.contextmanager
+    def use(self) -> Iterator[int]:
+        """The handle for a call; close() waits until the call is over."""
+        if self._process != os.getpid():
+            raise Error(f"the {self._what} was opened by process {self._process} and does not live on in its fork; "
+                        "open one in the process that uses it")
+        with self._turn:
+            if not self._end.alive:
+                raise Error(f"the {self._what} is closed")
+            yield self._value
+
+    def close(self) -> None:
+        with self._turn:
+            self._end()
+
+
+def _destroy_here(process: int, destroy: Callable[[int], None], value: int, _kept_alive: tuple[object, ...]) -> None:
+    if process == os.getpid():  # the library's threads are not in a fork
+        destroy(value)

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Devices: GPUs, and Mesa's software renderer."""
+
+from __future__ import annotations
+
+import ctypes
+import dataclasses
+import functools
+import logging
+import os
+
+from . import _abi
+from ._library import Handle, api, check
+
+_LOG = logging.getLogger("overcast")
+_LOG_LEVELS = (logging.ERROR, logging.WARNING, logging.INFO)
+
+
+@dataclasses.dataclass(frozen=True)
+class DeviceInfo:
+    """What a device is and can."""
+
+    renderer: str
+    vendor: str
+    version: str
+    is_software: bool
+    max_texture_size: int
+    """Texels a side."""
+    max_buffer_texels: int
+    memory_bytes: int
+    """Free GPU memory as the driver reports it; 1 GiB on a software renderer."""
+    default_budget_bytes: int
+    """What gpu_memory=0 means."""
+
+    @classmethod
+    def _of(cls, info: _abi.ovc_device_info) -> DeviceInfo:
+        values = {field.name: getattr(info, field.name) for field in dataclasses.fields(cls)}
+        values.update({name: value.decode(errors="replace") for name, value in values.items() if isinstance(value, bytes)})
+        return cls(**{**values, "is_software": bool(info.is_software)})
+
+
+def devices() -> list[DeviceInfo]:
+    """The devices there are, by number: Device("0") opens the first."""
+    count = ctypes.c_uint32()
+    check(api().list_devices(None, 0, count))
+    infos = (_abi.ovc_device_info * count.value)()
+    for info in infos:
+        info.struct_size = ctypes.sizeof(info)
+    check(api().list_devices(infos, count.value, count))
+    return [DeviceInfo._of(info) for info in infos[:count.value]]
+
+
+class Device:
+    """An open device, with a thread of its own: your OpenGL context is left alone.
+
+    name: a number as listed by devices(), or a part of the renderer's name in any case; None: the first GPU, else the software
+    renderer. Raises Error where there is none.
+    """
+
+    def __init__(self, name: str | int | None = None) -> None:
+        config = _abi.ovc_device_config(name=None if name is None else str(name).encode(), log=_log)
+        handle = ctypes.c_void_p()
+        check(api().create_device(config, handle))
+        self._handle = Handle("device", handle.value, api().destroy_device)
+
+    @property
+    def info(self) -> DeviceInfo:
+        """What it is and can."""
+        info = _abi.ovc_device_info()
+        with self._handle.use() as handle:
+            check(api().describe_device(handle, info), handle)
+        return DeviceInfo._of(info)
+
+    def __repr__(self) -> str:
+        return f"<overcast.Device {self.info.renderer!r}>"
+
+
+@_abi.LogFunction
+def _log(_user: int, level: int, message: bytes) -> None:
+    _LOG.log(_LOG_LEVELS[level], "%s", message.decode(errors="replace"))
+
+
+def default_device() -> Device:
+    """The device of scenes that name none: opened by the first of them in each process."""
+    return _device_of_process(os.getpid())
+
+
+@functools.cache
+def _device_of_process(_process: int) -> Device:
+    return Device()

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rays in records, as the library reads them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._arrays import numbers
+
+RAY = np.dtype([("origin", "f8", 3), ("t_min", "f8"), ("direction", "f8", 3), ("t_max", "f8")])
+"""A ray: 64 bytes, the ovc_ray of the C header."""
+
+
+def rays(origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_max: ArrayLike = math.inf) -> NDArray[np.void]:
+    """Makes records of the rays origins + t directions, t_min <= t <= t_max, for intersect_rays and occluded_rays.
+
+    origins, directions: (..., 3); t_min, t_max: (...); each is broadcast, so one origin serves all directions.
+    Returns an array of RAY in the shape that they have together. Records are what calls without a copy take: make them once,
+    and write to their fields (records["t_max"] = 5) from then on.
+
+    A ray with NaN or infinity in it (but t_max may be infinite), with a zero direction or with t_min > t_max misses.
+    """
+    origins, directions = numbers("origins", origins, 3), numbers("directions", directions, 3)
+    t_min, t_max = numbers("t_min", t_min), numbers("t_max", t_max)
+    shapes = (origins.shape[:-1], directions.shape[:-1], t_min.shape, t_max.shape)
+    try:
+        shape = np.broadcast_shapes(*shapes)
+    except ValueError:
+        raise ValueError("the rays' shapes do not go together: origins {} + (3,), directions {} + (3,), t_min {}, t_max {}"
+                         .format(*shapes)) from None
+    records = np.empty(shape, RAY)
+    records["origin"], records["direction"] = origins, directions
+    records["t_min"], records["t_max"] = t_min, t_max
+    return records
+
+
+def as_rays(records: NDArray[np.void]) -> NDArray[np.void]:
+    """The same array where it lies as the library reads it, else a copy of it that does."""
+    if not isinstance(records, np.ndarray) or records.dtype != RAY:
+        found = f"an array of {records.dtype}" if isinstance(records, np.ndarray) else type(records).__name__
+        raise TypeError(f"rays must be an array of overcast.RAY, as overcast.rays() makes it, not {found}")
+    return np.require(records, requirements="CA")

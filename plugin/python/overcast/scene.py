@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes: meshes in, commit, rays."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import os
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _abi
+from ._arrays import as_uint32, choice, count
+from ._calls import Progress, Writer
+from ._library import Handle, api, check
+from ._mesh import mesh_of
+from .device import Device, default_device
+from .hits import HIT, Hits
+from .rays import as_rays, rays
+
+
+class Scene:
+    """Triangles that rays are traced against: add() meshes, commit(), then intersect() and occluded().
+
+    device: where; None: the first GPU, else the software renderer, shared by all scenes of this process that name none.
+    gpu_memory: bytes that pages, rays and answers may take on the device together; 0: what the device has free, less headroom.
+        Scenes larger than that are traced in parts. Too small for any: an Error that names the smallest that works.
+    precision: "certified": the answers of double precision, bit for bit; "fast": the kernel's own in float32.
+    leaf_triangles, leaves: into how many parts the scene is cut; 0: as suits the budget. kernel: "auto", "fragment" or "compute".
+    saved: a file that save() wrote of a scene with the same meshes, so that commit need not build.
+
+    A scene is closed when nobody refers to it any more, at the end of a `with` block, or by close().
+    """
+
+    def __init__(self, device: Device | None = None, *, gpu_memory: int = 0, precision: str = "certified",
+                 leaf_triangles: int = 0, leaves: int = 0, kernel: str = "auto",
+                 saved: str | os.PathLike[str] | None = None) -> None:
+        self._progress = Progress()
+        self._kept: list[object] = [self._progress]  # what the library reads until the scene is destroyed
+        config = _abi.ovc_scene_config(
+            gpu_memory_bytes=count("gpu_memory", gpu_memory), leaf_triangles=count("leaf_triangles", leaf_triangles),
+            leaves=count("leaves", leaves, 2**32 - 1), precision=choice("precision", precision, ("certified", "fast")),
+            kernel=choice("kernel", kernel, ("auto", "fragment", "compute")), progress=self._progress.function)
+        if saved is not None:
+            mapped = np.memmap(saved, mode="r")
+            self._kept.append(mapped)
+            config.saved, config.saved_bytes = mapped.ctypes.data, mapped.size
+        if device is not None and not isinstance(device, Device):
+            raise TypeError(f"device must be an overcast.Device, not {type(device).__name__}")
+        self._device = device or default_device()
+        handle = ctypes.c_void_p()
+        with self._device._handle.use() as device_handle:
+            self._device_handle = device_handle
+            check(api().create_scene(device_handle, config, handle), device_handle)
+        self._handle = Handle("scene", handle.value, api().destroy_scene, self._device, self._kept)
+
+    def _call(self, function: str, *arguments: object) -> None:
+        with self._handle.use() as scene:
+            check(getattr(api(), function)(scene, *arguments), self._device_handle)
+
+    def add(self, vertices: ArrayLike, triangles: ArrayLike | None = None, *, origin: ArrayLike = (0, 0, 0),
+            shared: bool = False) -> int:
+        """Adds a mesh and returns its number: 0, 1, 2, ...
+
+        vertices: (n, 3) real numbers. Taken as float32, with the double-precision `origin` added to each; float64 that float32
+            cannot hold is rounded about the middle of the mesh.
+        triangles: (m, 3) whole numbers below n; None: each three vertices are a triangle, and (m, 3, 3) will do as well.
+        shared: the library reads the array where it lies, C-contiguous float32 without triangles, instead of a copy; do not
+            change it until the scene is closed.
+        """
+        mesh, kept = mesh_of(vertices, triangles, origin, shared)
+        number = ctypes.c_uint32()
+        self._call("add_mesh", mesh, number)
+        if shared:
+            self._kept.append(kept)
+        return number.value
+
+    def commit(self, progress: Callable[[float, str], object] | None = None) -> None:
+        """Builds the scene. Afterwards it takes rays and no more meshes.
+
+        progress(done, stage): called up to fifty times a second, from any thread, with done from 0 to 1. What it raises ends
+        the commit and is raised here; so does Ctrl-C. The scene may be committed again then.
+        """
+        self._progress.watch(lambda: self._call("commit"), progress)
+
+    def intersect(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_max: ArrayLike = math.inf, *,
+                  skip: Hits | ArrayLike | None = None, out: Hits | None = None) -> Hits:
+        """Finds the nearest hit of each ray origins + t directions, t_min <= t <= t_max.
+
+        origins, directions: (..., 3) real numbers; t_min, t_max: (...). Each is broadcast: one origin serves all directions.
+        skip: the triangle that each ray starts on and does not see: Hits, or (..., 2) of mesh and prim; NONE, NONE: none.
+        out: Hits of an earlier call on as many rays, to be written again.
+        Returns Hits in the rays' shape.
+        """
+        return self.intersect_rays(rays(origins, directions, t_min, t_max), skip=skip, out=out)
+
+    def intersect_rays(self, rays: NDArray[np.void], *, skip: Hits | ArrayLike | None = None, out: Hits | None = None) -> Hits:
+        """intersect() of rays in records (see overcast.rays): nothing is copied."""
+        rays = as_rays(rays)
+        hits = Hits(np.empty(rays.shape, HIT)) if out is None else out
+        answers = getattr(hits, "records", None)
+        if not isinstance(answers, np.ndarray) or (answers.dtype, answers.shape) != (HIT, rays.shape):
+            raise ValueError(f"out must be Hits of the rays' shape {rays.shape}, not {out!r}")
+        if not answers.flags.carray:
+            raise ValueError("out must be Hits whose records are contiguous and writeable")
+        self._call("intersect", rays.ctypes.data, rays.size, answers.ctypes.data, _query(skip, rays.shape))
+        return hits
+
+    def occluded(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_max: ArrayLike = math.inf, *,
+                 skip: Hits | ArrayLike | None = None) -> NDArray[np.bool_]:
+        """Tells which rays hit anything: True or False for each, in the rays' shape. Arguments are those of intersect()."""
+        return self.occluded_rays(rays(origins, directions, t_min, t_max), skip=skip)
+
+    def occluded_rays(self, rays: NDArray[np.void], *, skip: Hits | ArrayLike | None = None) -> NDArray[np.bool_]:
+        """occluded() of rays in records (see overcast.rays): nothing is copied."""
+        rays = as_rays(rays)
+        answers = np.empty(rays.shape, np.bool_)
+        self._call("occluded", rays.ctypes.data, rays.size, answers.ctypes.data, _query(skip, rays.shape))
+        return answers
+
+    def plan(self) -> dict[str, int | float]:
+        """Tells what commit() makes of the meshes added so far, without making it: leaves, bytes, the smallest budget that works,
+        whether it fits; ovc_plan of the C header says what each number is."""
+        plan = _abi.ovc_plan()
+        self._progress.watch(lambda: self._call("plan", plan))
+        return _as_dict(plan)
+
+    def statistics(self) -> dict[str, int | float]:
+        """What was built and what rays took, in all since commit(): triangles, bytes, passes, seconds; ovc_statistics of the C
+        header says what each number is."""
+        statistics = _abi.ovc_statistics()
+        self._call("statistics", statistics)
+        return _as_dict(statistics)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes what commit() has built to a file, for Scene(saved=path) with the same meshes. A file that is there is replaced
+        when all is written."""
+        unfinished = f"{os.fspath(path)}.unfinished"
+        try:
+            with open(unfinished, "wb") as file:
+                writer = Writer(file)
+                with writer.raising():
+                    self._call("save", writer.function, None)
+            os.replace(unfinished, path)
+        finally:
+            if os.path.exists(unfinished):
+                os.remove(unfinished)
+
+    def close(self) -> None:
+        """Frees all that the scene holds; waits for a call that is still running. A closed scene answers no more calls."""
+        self._handle.close()
+
+    def __enter__(self) -> Scene:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def _query(skip: Hits | ArrayLike | None, shape: tuple[int, ...]) -> _abi.ovc_query | None:
+    if skip is None:
+        return None
+    names = np.stack([skip.mesh, skip.prim], axis=-1) if isinstance(skip, Hits) else as_uint32("skip", skip, 2)
+    try:
+        names = np.ascontiguousarray(np.broadcast_to(names, (*shape, 2)))
+    except ValueError:
+        raise ValueError(f"skip names triangles for rays of shape {names.shape[:-1]}, not {shape}") from None
+    query = _abi.ovc_query(skip=names.ctypes.data)
+    query.names = names  # lives as long as the query
+    return query
+
+
+def _as_dict(struct: ctypes.Structure) -> dict[str, int | float]:
+    return {name: getattr(struct, name) for name, *_ in struct._fields_ if name not in ("struct_size", "reserved")}

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The examples of README and of help(overcast) run, and say what they promise."""
+
+import os
+import pathlib
+import pydoc
+import re
+import textwrap
+import unittest
+
+import numpy as np
+
+import overcast
+from scenes_for_tests import brute_force, skip_without_device, soup
+
+setUpModule = skip_without_device
+
+
+class Examples(unittest.TestCase):
+    def test_readme(self):
+        readme = pathlib.Path(os.environ["OVC_SOURCE_DIR"], "README.md").read_text()
+        example = re.search(r"```python\n(.*?)```", readme, re.DOTALL).group(1)
+        self.assertLessEqual(len(example.splitlines()), 12)
+        names = {}
+        exec(example, names)
+        self.assertTrue(names["hits"].hit.any())
+
+    def test_docstring(self):
+        example = re.search(r"\n\n(    import numpy.*?)\n\n[A-Z]", overcast.__doc__, re.DOTALL).group(1)
+        corners = soup(1, 100)
+        directions = np.random.default_rng(2).random((48, 64, 3)) - [0.5, 0.5, 5]
+        names = {"vertices": corners.reshape(-1, 3), "triangles": np.arange(300).reshape(-1, 3),
+                 "origins": np.array([0.5, 0.5, 5]), "directions": directions, "light": np.array([0, 0, 9.0])}
+        exec(textwrap.dedent(example), names)
+        expected = brute_force(corners, np.broadcast_to([0.5, 0.5, 5], (48 * 64, 3)), directions.reshape(-1, 3))
+        np.testing.assert_array_equal(names["hits"].prim.ravel(), expected[3])
+        self.assertEqual(names["shadow"].shape, (48, 64))
+        self.assertTrue(names["hits"].hit.any() and names["shadow"].any())
+
+    def test_help_teaches_every_public_name(self):
+        text = pydoc.plain(pydoc.render_doc(overcast))
+        for name in overcast.__all__:
+            self.assertIn(name, text)
+        for name in ("Scene", "Hits", "Device"):
+            public = getattr(overcast, name)
+            silent = [member for member, value in vars(public).items()
+                      if not member.startswith("_") and member not in ("records", "shape") and not getattr(value, "__doc__", None)]
+            self.assertEqual(silent, [], f"of {name} without a docstring")

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The structs in ctypes and the records in NumPy, field by field against the C header: a C compiler is the judge."""
+
+import ctypes
+import os
+import shutil
+import subprocess
+import unittest
+
+import overcast
+from overcast import _abi
+
+COMPILER = os.environ.get("CC", "cc")
+RECORDS = {"ovc_ray": (overcast.RAY, {"origin": "org", "direction": "dir"}), "ovc_hit": (overcast.HIT, {})}
+
+
+def claims():
+    """What C must agree with."""
+    structs = [_abi.ovc_api] + _abi.Sized.__subclasses__()
+    for struct in structs:
+        for name, *_ in struct._fields_:
+            field = getattr(struct, name)
+            yield struct.__name__, name, field.offset, field.size
+    for struct, (dtype, names) in RECORDS.items():
+        for name, (field, offset) in dtype.fields.items():
+            yield struct, names.get(name, name), offset, field.itemsize
+
+
+def refused(lines):
+    source = '#include "plugin/overcast.h"\n#include <stddef.h>\n' + "\n".join(lines)
+    return subprocess.run([COMPILER, "-std=c11", "-fsyntax-only", "-I", os.environ["OVC_SOURCE_DIR"], "-x", "c", "-"],
+                          input=source, text=True, capture_output=True).stderr
+
+
+def assertion(struct, name, offset, size):
+    return (f'_Static_assert(offsetof({struct}, {name}) == {offset} && sizeof((({struct}*)0)->{name}) == {size}, '
+            f'"{struct}.{name} lies elsewhere");')
+
+
+@unittest.skipUnless(shutil.which(COMPILER), "no C compiler")
+class Layout(unittest.TestCase):
+    def test_every_field_lies_where_c_has_it(self):
+        self.assertEqual(refused(assertion(*claim) for claim in claims()), "")
+
+    def test_a_field_elsewhere_would_be_noticed(self):
+        self.assertIn("ovc_mesh.stride lies elsewhere", refused([assertion("ovc_mesh", "stride", 24, 8)]))
+
+    def test_records_have_the_size_of_c(self):
+        for struct, (dtype, _) in RECORDS.items():
+            self.assertEqual(refused([f'_Static_assert(sizeof({struct}) == {dtype.itemsize}, "{struct}");']), "")
+
+    def test_results_are_those_of_c(self):
+        for result in overcast.Result:
+            self.assertEqual(refused([f'_Static_assert(OVC_ERROR_{result.name} == {result.value}, "{result.name}");']), "")
+
+    def test_the_table_holds_all_that_the_module_calls(self):
+        from overcast._library import api
+        self.assertGreaterEqual(api().struct_size, ctypes.sizeof(_abi.ovc_api))

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What callers get wrong: one sentence, and the program goes on."""
+
+import logging
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import overcast
+from scenes_for_tests import skip_without_device, soup
+
+setUpModule = skip_without_device
+
+DOWN = ([0.25, 0.25, 1], [0, 0, -1])
+TRIANGLE = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
+
+
+def committed():
+    scene = overcast.Scene()
+    scene.add(TRIANGLE)
+    scene.commit()
+    return scene
+
+
+class Sentences(unittest.TestCase):
+    """(exception, sentence, call): sentences are part of the contract."""
+
+    def check(self, cases):
+        for error, sentence, call in cases:
+            with self.subTest(sentence):
+                with self.assertRaises(error) as raised:
+                    call()
+                self.assertEqual(str(raised.exception), sentence)
+
+    def test_of_rays(self):
+        scene = committed()
+        self.check([
+            (ValueError, "origins must be real numbers of shape (..., 3), not of shape (2,)",
+             lambda: scene.intersect([0, 0], [0, 0, 1])),
+            (ValueError, "directions must be real numbers of shape (..., 3), not of shape ()",
+             lambda: scene.intersect([0, 0, 0], 1)),
+            (TypeError, "directions must be real numbers of shape (..., 3), not complex128",
+             lambda: scene.occluded([0, 0, 0], [0, 0, 1j])),
+            (TypeError, "origins must be real numbers of shape (..., 3), not <U1", lambda: scene.intersect(["x"] * 3, DOWN[1])),
+            (ValueError, "origins must be real numbers of shape (..., 3), not rows of different lengths",
+             lambda: scene.intersect([[0, 0, 0], [0]], DOWN[1])),
+            (ValueError, "the rays' shapes do not go together: origins (4,) + (3,), directions (5,) + (3,), t_min (), t_max ()",
+             lambda: scene.intersect(np.zeros((4, 3)), np.zeros((5, 3)))),
+            (TypeError, "t_max must be real numbers, not object", lambda: scene.intersect(*DOWN, t_max=None)),
+            (TypeError, "rays must be an array of overcast.RAY, as overcast.rays() makes it, not an array of float64",
+             lambda: scene.intersect_rays(np.zeros((3, 8)))),
+            (TypeError, "rays must be an array of overcast.RAY, as overcast.rays() makes it, not list",
+             lambda: scene.occluded_rays([1])),
+            (TypeError, "skip must be whole numbers of shape (..., 2), not float64",
+             lambda: scene.intersect(*DOWN, skip=[0.0, 1.0])),
+            (ValueError, "skip names triangles for rays of shape (3,), not ()",
+             lambda: scene.intersect(*DOWN, skip=np.zeros((3, 2), int))),
+            (ValueError, "out must be Hits of the rays' shape (), not <overcast.Hits of shape (2,), 1 hit>",
+             lambda: scene.intersect(*DOWN, out=two_hits())),
+            (ValueError, "out must be Hits of the rays' shape (), not array(1)", lambda: scene.intersect(*DOWN, out=np.array(1))),
+        ])
+
+    def test_of_meshes(self):
+        scene = overcast.Scene()
+        self.check([
+            (ValueError, "vertices must be of shape (n, 3), not (3,)", lambda: scene.add([1, 2, 3])),
+            (ValueError, "vertices must be real numbers of shape (..., 3), not of shape (3, 2)",
+             lambda: scene.add(TRIANGLE[:, :2])),
+            (TypeError, "vertices must be real numbers of shape (..., 3), not bool", lambda: scene.add(TRIANGLE == 1)),
+            (TypeError, "triangles must be whole numbers of shape (..., 3), not float64",
+             lambda: scene.add(TRIANGLE, [[0, 1, 2.0]])),
+            (ValueError, "triangles must be of shape (m, 3), not (3,)", lambda: scene.add(TRIANGLE, [0, 1, 2])),
+            (ValueError, "triangles must be whole numbers from 0 to 4294967295, not -1",
+             lambda: scene.add(TRIANGLE, [[0, 1, -1]])),
+            (overcast.Error, "ovc_mesh.indices[2] is 3, expected less than vertex_count = 3",
+             lambda: scene.add(TRIANGLE, [[0, 1, 3]])),
+            (overcast.Error, "ovc_mesh.vertex_count is 2 without indices, expected a multiple of 3",
+             lambda: scene.add(TRIANGLE[:2])),
+            (ValueError, "a shared mesh needs C-contiguous float32 vertices and no triangles",
+             lambda: scene.add(TRIANGLE.astype(np.float64), shared=True)),
+            (ValueError, "origin must be of shape (3,), not (1, 3)", lambda: scene.add(TRIANGLE, origin=[[0, 0, 0]])),
+        ])
+        self.assertEqual(scene.add(TRIANGLE), 0, "the scene is as it was")
+
+    def test_of_scenes_and_devices(self):
+        self.check([
+            (ValueError, "gpu_memory must be from 0 to 18446744073709551615, not -1", lambda: overcast.Scene(gpu_memory=-1)),
+            (TypeError, "gpu_memory must be a whole number, not str", lambda: overcast.Scene(gpu_memory="1G")),
+            (ValueError, "precision must be 'certified' or 'fast', not 'exact'", lambda: overcast.Scene(precision="exact")),
+            (ValueError, "leaves must be from 0 to 4294967295, not 4294967296", lambda: overcast.Scene(leaves=2**32)),
+            (TypeError, "device must be an overcast.Device, not str", lambda: overcast.Scene("llvmpipe")),
+        ])
+        with self.assertRaisesRegex(overcast.Error, "^a GPU budget of 1 bytes is too small: the smallest that works is"):
+            overcast.Scene(gpu_memory=1)
+        with self.assertRaisesRegex(overcast.Error, "no device is called 'nonsense'") as raised:
+            overcast.Device("nonsense")
+        self.assertEqual(raised.exception.code, overcast.Result.NO_DEVICE)
+
+    def test_of_order(self):
+        scene = overcast.Scene()
+        self.check([(overcast.Error, "intersect: the scene is not committed yet", lambda: scene.intersect(*DOWN))])
+        scene.commit()
+        self.assertFalse(scene.intersect(*DOWN).hit)
+        self.check([
+            (overcast.Error, "add_mesh: the scene is committed; it takes no more meshes", lambda: scene.add(TRIANGLE)),
+            (overcast.Error, "commit: the scene is committed already", scene.commit),
+        ])
+        scene.close()
+        scene.close()
+        self.check([(overcast.Error, "the scene is closed", lambda: scene.intersect(*DOWN)),
+                    (overcast.Error, "the scene is closed", scene.statistics)])
+
+    def test_of_files(self):
+        scene = committed()
+        with self.assertRaises(FileNotFoundError):
+            overcast.Scene(saved="/no/such/file")
+        with self.assertRaises(FileNotFoundError):
+            scene.save("/no/such/folder/file")
+
+
+def two_hits():
+    records = np.zeros(2, overcast.HIT)
+    records["mesh"][1] = overcast.NONE
+    return overcast.Hits(records)
+
+
+class Running(unittest.TestCase):
+    def test_what_progress_raises_ends_the_commit_and_is_raised(self):
+        scene = overcast.Scene()
+        scene.add(TRIANGLE)
+        with self.assertRaisesRegex(ZeroDivisionError, "division by zero"):
+            scene.commit(lambda done, stage: 1 / 0)
+        told = []
+        scene.commit(lambda done, stage: told.append((done, stage)))
+        self.assertEqual(told[-1][0], 1)
+        self.assertEqual(sorted(told, key=lambda step: step[0]), told)
+        self.assertTrue(scene.intersect(*DOWN).hit)
+
+    def test_control_c_ends_a_commit(self):
+        scene = overcast.Scene()
+        scene.add(soup(1, 300000, 0.01))
+        done = threading.Event()
+
+        def interrupt():
+            if not done.wait(0.1):
+                os.kill(os.getpid(), signal.SIGINT)
+        sender = threading.Thread(target=interrupt)
+        sender.start()
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                scene.commit()
+                done.set()
+                self.skipTest("built before it could be interrupted")
+        finally:
+            sender.join()
+        scene.commit()
+        self.assertTrue(scene.intersect([0.5, 0.5, -1], [0, 0, 1]).hit)
+
+    def test_close_waits_for_a_call(self):
+        scene = overcast.Scene()
+        scene.add(soup(1, 100000, 0.01))
+        began = threading.Event()
+        failures = []
+
+        def build():
+            try:
+                scene.commit(lambda done, stage: began.set())
+            except overcast.Error as error:
+                failures.append(error)
+        thread = threading.Thread(target=build)
+        thread.start()
+        began.wait()
+        scene.close()
+        self.assertEqual(failures, [])
+        thread.join()
+        with self.assertRaisesRegex(overcast.Error, "the scene is closed"):
+            scene.intersect(*DOWN)
+
+    def test_a_scene_outlives_the_name_of_its_device(self):
+        scene = overcast.Scene(overcast.Device())
+        scene.add(TRIANGLE)
+        scene.commit()
+        self.assertTrue(scene.intersect(*DOWN).hit)
+
+    def test_a_fork_is_told_and_ends(self):
+        scene = committed()
+        child = os.fork()
+        if child == 0:
+            code = 1
+            try:
+                scene.intersect(*DOWN)
+            except overcast.Error as error:
+                code = 0 if "does not live on in its fork" in str(error) else 2
+            scene.close()
+            del scene
+            os._exit(code)
+        deadline = time.monotonic() + 60
+        while (ended := os.waitpid(child, os.WNOHANG))[0] == 0 and time.monotonic() < deadline:
+            time.sleep(0.01)
+        if ended[0] == 0:
+            os.kill(child, signal.SIGKILL)
+        self.assertEqual(os.waitstatus_to_exitcode(ended[1]), 0)
+        self.assertTrue(scene.intersect(*DOWN).hit)
+
+    def test_the_library_logs_to_logging(self):
+        with self.assertLogs("overcast", logging.WARNING) as logs:
+            scene = overcast.Scene()
+            scene.add(np.full((3, 3), np.nan))
+            scene.commit()
+        self.assertRegex("\n".join(logs.output), "1 triangle")
+
+
+class Programs(unittest.TestCase):
+    """Whole programs, as their ends are where lifetimes go wrong."""
+
+    def run_program(self, text, **environment):
+        return subprocess.run([sys.executable, "-c", text], env={**os.environ, **environment}, capture_output=True, text=True,
+                              timeout=120)
+
+    def test_a_program_may_end_with_all_open(self):
+        program = ("import overcast, numpy; device = overcast.Device(); scene = overcast.Scene(device); "
+                   "scene.add(numpy.eye(3)); scene.commit(); print(scene.intersect([1, 1, 1], [-1, -1, -1]).hit)")
+        ended = self.run_program(program)
+        self.assertEqual((ended.returncode, ended.stdout), (0, "True\n"), ended.stderr)
+
+    def test_a_library_that_is_none_is_said_so(self):
+        for library, sentence in {"/no/such.so": "cannot load the library: /no/such.so",
+                                  "libm.so.6": "'libm.so.6' is not Overcast's library: it has no ovc_get_api"}.items():
+            ended = self.run_program("import overcast; overcast.devices()", OVC_PLUGIN=library)
+            self.assertEqual(ended.returncode, 1)
+            self.assertIn(sentence, ended.stderr)

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Answers of the module against every triangle tested in NumPy, however the arrays come."""
+
+import os
+import tempfile
+import threading
+import unittest
+
+import numpy as np
+
+import overcast
+from scenes_for_tests import brute_force, rays_at_unit_cube, skip_without_device, soup
+
+setUpModule = skip_without_device
+
+RAYS = 4000
+TRIANGLES = 1500
+
+
+def scene_of(*meshes, **options):
+    scene = overcast.Scene(**options)
+    for mesh in meshes:
+        scene.add(*mesh)
+    scene.commit()
+    return scene
+
+
+class Nearest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.corners = soup(1, TRIANGLES)
+        cls.origins, cls.directions = rays_at_unit_cube(2, RAYS)
+        cls.t, cls.u, cls.v, cls.prim = brute_force(cls.corners, cls.origins, cls.directions)
+        assert RAYS / 4 < (cls.prim != overcast.NONE).sum() < RAYS, "some rays hit, some miss"
+
+    def check(self, hits, prim_of=lambda hits: hits.prim):
+        np.testing.assert_array_equal(prim_of(hits), self.prim)
+        np.testing.assert_array_equal(hits.hit, self.prim != overcast.NONE)
+        np.testing.assert_allclose(hits.t, self.t, rtol=1e-10)
+        hit = hits[hits.hit]
+        np.testing.assert_allclose(hit.u, self.u[hits.hit], atol=1e-10)
+        np.testing.assert_allclose(hit.v, self.v[hits.hit], atol=1e-10)
+
+    def test_small_budgets_and_many_leaves_change_nothing(self):
+        for options in ({}, {"leaves": 20}, {"gpu_memory": 192 << 10}, {"kernel": "fragment"}):
+            with self.subTest(options), scene_of([self.corners], **options) as scene:
+                self.check(scene.intersect(self.origins, self.directions))
+
+    def test_vertices_as_they_come(self):
+        """float32 in place, by index, in columns of a wider array, doubles that floats hold, backwards, read-only."""
+        flat = self.corners.reshape(-1, 3)
+        shuffle = np.random.default_rng(3).permutation(len(flat))
+        indices = np.argsort(shuffle).reshape(-1, 3)
+        wide = np.zeros((len(flat), 7), np.float32)
+        wide[:, 2:5] = flat
+        frozen = flat.copy()
+        frozen.flags.writeable = False
+        for name, mesh in {"indexed": (flat[shuffle], indices), "uint32": (flat[shuffle], indices.astype(np.uint32)),
+                           "int16": (flat[shuffle], indices.astype(np.int16)), "columns": (wide[:, 2:5],),
+                           "doubles": (flat.astype(np.float64),), "fortran": (np.asfortranarray(flat),),
+                           "backwards": (flat[::-1], len(flat) - 1 - np.arange(len(flat)).reshape(-1, 3)),
+                           "read-only": (frozen,), "lists": (flat.tolist(), indices[:0].tolist())}.items():
+            with self.subTest(name), scene_of(mesh) as scene:
+                if name == "lists":  # no triangles, though vertices
+                    self.assertFalse(scene.intersect(self.origins, self.directions).hit.any())
+                else:
+                    self.check(scene.intersect(self.origins, self.directions))
+
+    def test_a_shared_mesh_is_read_in_place_and_kept_alive(self):
+        corners = self.corners.copy()
+        scene = overcast.Scene()
+        scene.add(corners, shared=True)
+        del corners
+        scene.commit()
+        self.check(scene.intersect(self.origins, self.directions))
+
+    def test_meshes_are_numbered(self):
+        half = TRIANGLES // 2
+        with scene_of([self.corners[:half]], [np.empty((0, 3))], [self.corners[half:]]) as scene:
+            self.check(scene.intersect(self.origins, self.directions),
+                       lambda hits: np.where(hits.mesh == 2, hits.prim + half, hits.prim).astype(np.uint32))
+
+    def test_shapes_broadcast(self):
+        with scene_of([self.corners]) as scene:
+            hits = scene.intersect(self.origins.reshape(40, -1, 3), self.directions.reshape(40, -1, 3))
+            self.assertEqual(hits.shape, (40, RAYS // 40))
+            self.check(overcast.Hits(hits.records.ravel()))
+            fan = scene.intersect([0.5, 0.5, -2], self.directions)
+            one_by_one = [scene.intersect([0.5, 0.5, -2], direction) for direction in self.directions[:5]]
+            self.assertEqual([hits.shape for hits in one_by_one], [()] * 5)
+            self.assertEqual([hits.records.item() for hits in one_by_one], fan.records[:5].tolist())
+            self.assertEqual(scene.intersect(np.empty((0, 3)), [0, 0, 1]).shape, (0,))
+
+    def test_limits_of_t(self):
+        t_min, t_max = 0.7, np.linspace(0.8, 1.2, RAYS)
+        corners = self.corners
+        expected = np.array([brute_force(corners, o[None], d[None], t_min, most)[3][0]
+                             for o, d, most in zip(self.origins[:500], self.directions, t_max)])
+        with scene_of([corners]) as scene:
+            limits = t_min, t_max[:500]
+            hits = scene.intersect(self.origins[:500], self.directions[:500], *limits)
+            np.testing.assert_array_equal(hits.prim, expected)
+            np.testing.assert_array_equal(scene.occluded(self.origins[:500], self.directions[:500], *limits),
+                                          expected != overcast.NONE)
+
+    def test_skipped_triangles_are_not_seen(self):
+        with scene_of([self.corners]) as scene:
+            first = scene.intersect(self.origins, self.directions)
+            second = scene.intersect(self.origins, self.directions, skip=first)
+            self.assertTrue((second.t >= first.t).all())
+            self.assertFalse(((second.prim == first.prim) & first.hit).any())
+            by_name = scene.intersect(self.origins, self.directions, skip=np.stack([first.mesh, first.prim], axis=-1))
+            np.testing.assert_array_equal(by_name.records, second.records)
+            np.testing.assert_array_equal(scene.occluded(self.origins, self.directions, skip=first), second.hit)
+
+    def test_records_are_traced_in_place(self):
+        with scene_of([self.corners]) as scene:
+            records = overcast.rays(self.origins, self.directions)
+            out = scene.intersect_rays(records)
+            self.check(out)
+            memory = out.records.ctypes.data
+            records["t_max"] = 0
+            self.assertIs(scene.intersect_rays(records, out=out), out)
+            self.assertEqual((out.records.ctypes.data, out.hit.any()), (memory, False))
+            records["t_max"] = np.inf
+            self.check(scene.intersect_rays(np.repeat(records, 2)[::2]))  # not contiguous: copied
+            np.testing.assert_array_equal(scene.occluded_rays(records), self.prim != overcast.NONE)
+
+    def test_saved_scenes_answer_the_same(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "soup.saved")
+            with scene_of([self.corners]) as scene:
+                scene.save(path)
+            self.assertEqual(os.listdir(folder), ["soup.saved"])
+            with scene_of([self.corners], saved=path) as scene:
+                self.assertEqual(scene.statistics()["from_saved"], 1)
+                self.check(scene.intersect(self.origins, self.directions))
+
+    def test_threads_share_a_scene(self):
+        answers = {}
+        with scene_of([self.corners]) as scene:
+            def trace(i):
+                answers[i] = scene.intersect(self.origins, self.directions)
+            threads = [threading.Thread(target=trace, args=(i,)) for i in range(8)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+        self.assertEqual(len(answers), 8)
+        for hits in answers.values():
+            self.check(hits)
+
+
+class Numbers(unittest.TestCase):
+    def test_doubles_far_from_the_origin_keep_their_detail(self):
+        corners = soup(5, 300).astype(np.float64) + 0.1
+        far = np.array([4.5e6, 6e6, 10])
+        origins, directions = rays_at_unit_cube(6, 1000)
+        t, _, _, prim = brute_force(corners, origins, directions)
+        with scene_of([corners + far]) as scene:
+            hits = scene.intersect(origins + far, directions)
+        self.assertLess((hits.prim != prim).mean(), 0.01, "they moved by 1e-7 at most")
+        same = hits.hit & (hits.prim == prim)
+        np.testing.assert_allclose(hits.t[same], t[same], atol=1e-4)
+
+    def test_plan_and_statistics_count(self):
+        corners = soup(1, 500)
+        corners[7] = np.nan
+        scene = overcast.Scene(gpu_memory=1 << 20)
+        scene.add(corners)
+        plan = scene.plan()
+        self.assertEqual((plan["triangles"], plan["hittable"], plan["fits"]), (500, 499, 1))
+        scene.commit()
+        scene.occluded([0, 0, 0], [0, 0, 1])
+        scene.intersect([[0, 0, np.nan], [0, 0, 0]], [0, 0, 1])
+        statistics = scene.statistics()
+        self.assertEqual((statistics["dropped_not_finite"], statistics["nearest_rays"], statistics["occlusion_rays"],
+                          statistics["invalid_rays"]), (1, 2, 1, 1))
+        self.assertLessEqual(statistics["gpu_peak_bytes"], 1 << 20)
