@@ -45,7 +45,9 @@ Result<const ovc_api*> load_plugin(const std::string& library) {
         return load_from(named);
     std::error_code error;
     const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (const fs::path& path : {folder / library, folder.parent_path() / "lib" / library})
+    const fs::path installed = (folder / OVC_LIBRARY_FROM_COMMAND).lexically_normal();
+    for (const fs::path& path :
+         {folder / library, installed / library, installed / "overcast" / library})
         if (!error && fs::exists(path))
             return load_from(path);
     return load_from(library);

@@ -14,12 +14,13 @@
 namespace ovc {
 
 /// The libraries that speak the ABI: two-level's, and that of the systems it is compared with.
-inline constexpr const char* kProduct = "libovercast.so";
+inline constexpr const char* kProduct = "libovercast.so.1"; // by its soname
+static_assert(OVC_ABI_VERSION == 1);
 inline constexpr const char* kThesis = "libovercast-thesis.so";
 
-/// Loads a library: beside this program, in ../lib from there, or where the system's loader looks;
-/// the product from the file that the environment variable OVC_PLUGIN names, if there is one. It
-/// stays loaded until the program ends.
+/// Loads a library: beside this program, where it is installed as seen from there, or where the
+/// system's loader looks; the product from the file that the environment variable OVC_PLUGIN names,
+/// if there is one. It stays loaded until the program ends.
 Result<const ovc_api*> load_plugin(const std::string& library = kProduct);
 
 struct DestroyDevice {
