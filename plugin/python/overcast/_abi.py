@@ -39,13 +39,18 @@ class ovc_scene_config(Sized):
                 ("saved", c.c_void_p), ("saved_bytes", c.c_uint64)]
 
 
-MESH_SHARED = 1
+MESH_SHARED, MESH_TEMPLATE = 1, 2
 
 
 class ovc_mesh(Sized):
     _fields_ = [("struct_size", c.c_size_t), ("positions", c.c_void_p), ("stride", c.c_size_t),
                 ("vertex_count", c.c_uint64), ("indices", c.c_void_p), ("triangle_count", c.c_uint64),
-                ("origin", c.c_double * 3), ("flags", c.c_uint32), ("reserved", c.c_uint32)]
+                ("origin", c.c_double * 3), ("flags", c.c_uint32), ("reserved", c.c_uint32),
+                ("positions_double", c.c_void_p), ("transform", c.c_void_p)]
+
+
+class ovc_instance(Sized):
+    _fields_ = [("struct_size", c.c_size_t), ("mesh", c.c_uint32), ("reserved", c.c_uint32), ("transform", c.c_void_p)]
 
 
 class ovc_query(Sized):
@@ -72,7 +77,7 @@ class ovc_statistics(Sized):
                 ("seconds_level1", c.c_double), ("seconds_level2", c.c_double), ("seconds_trace", c.c_double),
                 ("seconds_kernel", c.c_double), ("host_bytes", c.c_uint64), ("queues", c.c_uint64),
                 ("queued_rays", c.c_uint64), ("longest_queue", c.c_uint64), ("from_saved", c.c_uint64),
-                ("seconds_pass", c.c_double)]
+                ("seconds_pass", c.c_double), ("gpu_bytes", c.c_uint64), ("soup_bytes", c.c_uint64)]
 
 
 def _call(*arguments: type) -> type:
@@ -103,4 +108,6 @@ class ovc_api(c.Structure):
         ("plan", _call(_Handle, c.POINTER(ovc_plan))),
         ("active", _Pointer),
         ("save", _call(_Handle, WriteFunction, c.c_void_p)),
+        ("add_instance", _call(_Handle, c.POINTER(ovc_instance), c.POINTER(c.c_uint32))),
+        ("purge", _call(_Handle)),
     ]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Vertices and triangles as the library takes them, where they lie if that can be."""
+"""Vertices, triangles and transforms as the library takes them, where they lie if that can be."""
 
 from __future__ import annotations
 
@@ -10,45 +10,54 @@ from . import _abi
 from ._arrays import as_uint32, numbers
 
 
-def mesh_of(vertices: ArrayLike, triangles: ArrayLike | None, origin: ArrayLike, shared: bool) -> tuple[_abi.ovc_mesh, object]:
-    """The struct for add_mesh, and the array that it points to for as long as the mesh is shared."""
-    corners = numbers("vertices", vertices, 3)
-    if corners.ndim == 3 and corners.shape[1] == 3 and triangles is None:
-        corners = corners.reshape(-1, 3)
-    if corners.ndim != 2:
-        raise ValueError(f"vertices must be of shape (n, 3), not {corners.shape}")
-    shift = numbers("origin", origin, 3).astype(np.float64)
+def mesh_of(vertices: ArrayLike, triangles: ArrayLike | None, origin: ArrayLike, transform: ArrayLike | None,
+            flags: int) -> _abi.ovc_mesh:
+    """The struct for add_mesh. Its `arrays` live as long as it does."""
+    corners = corners_of(vertices, triangles is None, shared=bool(flags & _abi.MESH_SHARED))
+    shift = numbers("origin", origin, 3)
     if shift.ndim != 1:
         raise ValueError(f"origin must be of shape (3,), not {shift.shape}")
-    if shared:
-        if triangles is not None or corners.dtype != np.float32 or not corners.flags.c_contiguous:
-            raise ValueError("a shared mesh needs C-contiguous float32 vertices and no triangles")
-    elif corners.dtype != np.float32 or not lies_well(corners):
-        corners, shift = rounded(corners, shift)
-    mesh = _abi.ovc_mesh(positions=corners.ctypes.data, vertex_count=len(corners), origin=tuple(shift),
-                         stride=corners.strides[0] if len(corners) > 1 else 0, flags=_abi.MESH_SHARED if shared else 0)
-    mesh.arrays = [corners]  # live as long as the struct
+    mesh = _abi.ovc_mesh(vertex_count=len(corners), origin=tuple(map(float, shift)), flags=flags,
+                         stride=corners.strides[0] if len(corners) > 1 else 0)
+    setattr(mesh, "positions" if corners.dtype == np.float32 else "positions_double", corners.ctypes.data)
+    mesh.arrays = [corners, transform_of(transform)]
+    mesh.transform = address(mesh.arrays[1])
     if triangles is not None:
         indices = as_uint32("triangles", triangles, 3)
         if indices.ndim != 2:
             raise ValueError(f"triangles must be of shape (m, 3), not {indices.shape}")
         mesh.indices, mesh.triangle_count = indices.ctypes.data, len(indices)
         mesh.arrays.append(indices)
-    return mesh, corners
+    return mesh
 
 
-def lies_well(corners: NDArray) -> bool:
-    """Whether the library can read these float32 corners where they are."""
-    return corners.flags.aligned and corners.strides[1] == 4 and corners.strides[0] >= 12 or not corners.size
+def corners_of(vertices: ArrayLike, are_triangles: bool, shared: bool) -> NDArray:
+    """(n, 3) of float32 or float64, rows at any distance: the caller's array where it is that."""
+    corners = numbers("vertices", vertices, 3)
+    if are_triangles and corners.ndim == 3 and corners.shape[1] == 3:
+        corners = corners.reshape(-1, 3)
+    if corners.ndim != 2:
+        raise ValueError(f"vertices must be of shape (n, 3), not {corners.shape}")
+    if shared and (not are_triangles or corners.dtype not in (np.float32, np.float64) or not (corners.flags.c_contiguous and corners.flags.aligned)):
+        raise ValueError("a shared mesh needs C-contiguous float32 or float64 vertices and no triangles")
+    size = 4 if corners.dtype in (np.float32, np.float16) else 8
+    corners = np.require(corners, np.dtype(f"f{size}"), "A")
+    rows_lie_well = corners.strides[1] == size and corners.strides[0] >= 3 * size and corners.strides[0] % size == 0
+    return corners if rows_lie_well or not corners.size else np.ascontiguousarray(corners)
 
 
-def rounded(corners: NDArray, shift: NDArray[np.float64]) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
-    """float32 corners, and the origin that is added to them: the middle of the mesh where float32 does not hold it as it is."""
-    with np.errstate(over="ignore"):
-        exact = np.ascontiguousarray(corners, np.float32)
-    finite = corners[np.isfinite(corners).all(axis=-1)].astype(np.float64)
-    if not len(finite) or np.array_equal(exact, corners, equal_nan=True):
-        return exact, shift
-    middle = finite.min(axis=0) / 2 + finite.max(axis=0) / 2
-    with np.errstate(over="ignore"):
-        return np.ascontiguousarray(corners - middle, np.float32), shift + middle
+def transform_of(transform: ArrayLike | None) -> NDArray[np.float64] | None:
+    """Twelve doubles, three rows of four."""
+    if transform is None:
+        return None
+    matrix = numbers("transform", transform)
+    if matrix.shape == (4, 4) and np.array_equal(matrix[3], (0, 0, 0, 1)):
+        matrix = matrix[:3]
+    if matrix.shape != (3, 4):
+        raise ValueError("transform must be of shape (3, 4), or (4, 4) with the last row 0 0 0 1, "
+                         + (f"not {matrix[3]}" if matrix.shape == (4, 4) else f"not {matrix.shape}"))
+    return np.ascontiguousarray(matrix, np.float64)
+
+
+def address(array: NDArray | None) -> int | None:
+    return None if array is None else array.ctypes.data

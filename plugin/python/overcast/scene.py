@@ -15,7 +15,7 @@ from . import _abi
 from ._arrays import as_uint32, choice, count
 from ._calls import Progress, Writer
 from ._library import Handle, api, check
-from ._mesh import mesh_of
+from ._mesh import address, mesh_of, transform_of
 from .device import Device, default_device
 from .hits import HIT, Hits
 from .rays import as_rays, rays
@@ -60,21 +60,35 @@ class Scene:
         with self._handle.use() as scene:
             check(getattr(api(), function)(scene, *arguments), self._device_handle)
 
-    def add(self, vertices: ArrayLike, triangles: ArrayLike | None = None, *, origin: ArrayLike = (0, 0, 0),
-            shared: bool = False) -> int:
+    def add(self, vertices: ArrayLike, triangles: ArrayLike | None = None, *, transform: ArrayLike | None = None,
+            origin: ArrayLike = (0, 0, 0), template: bool = False, shared: bool = False) -> int:
         """Adds a mesh and returns its number: 0, 1, 2, ...
 
-        vertices: (n, 3) real numbers. Taken as float32, with the double-precision `origin` added to each; float64 that float32
-            cannot hold is rounded about the middle of the mesh.
+        vertices: (n, 3) real numbers. float32 is kept as it is, all else as float64, in twice the memory.
         triangles: (m, 3) whole numbers below n; None: each three vertices are a triangle, and (m, 3, 3) will do as well.
-        shared: the library reads the array where it lies, C-contiguous float32 without triangles, instead of a copy; do not
-            change it until the scene is closed.
+        transform: (3, 4) or (4, 4), applied to each vertex after `origin` is added to it, all in double precision.
+        template: no ray hits the mesh itself; it is there for add_instance().
+        shared: the library reads the array where it lies, C-contiguous and without triangles, instead of a copy; do not change
+            it until the scene is closed.
         """
-        mesh, kept = mesh_of(vertices, triangles, origin, shared)
+        flags = _abi.MESH_SHARED * bool(shared) | _abi.MESH_TEMPLATE * bool(template)
+        mesh = mesh_of(vertices, triangles, origin, transform, flags)
         number = ctypes.c_uint32()
         self._call("add_mesh", mesh, number)
         if shared:
-            self._kept.append(kept)
+            self._kept.append(mesh)
+        return number.value
+
+    def add_instance(self, mesh: int, transform: ArrayLike | None = None) -> int:
+        """Adds a mesh, or an instance, once more, and returns the number of the new one, which its hits tell.
+
+        transform: (3, 4) or (4, 4) from where the mesh is; of an instance, after its own. Vertices are kept once for all, but
+            pages are built for each.
+        """
+        matrix = transform_of(transform)
+        instance = _abi.ovc_instance(mesh=count("mesh", mesh, 2**32 - 1), transform=address(matrix))
+        number = ctypes.c_uint32()
+        self._call("add_instance", instance, number)
         return number.value
 
     def commit(self, progress: Callable[[float, str], object] | None = None) -> None:
@@ -147,6 +161,10 @@ class Scene:
         finally:
             if os.path.exists(unfinished):
                 os.remove(unfinished)
+
+    def purge(self) -> None:
+        """Gives the GPU memory back, all of it, until rays are traced again."""
+        self._call("purge")
 
     def close(self) -> None:
         """Frees all that the scene holds; waits for a call that is still running. A closed scene answers no more calls."""

@@ -82,8 +82,13 @@ class Sentences(unittest.TestCase):
              lambda: scene.add(TRIANGLE, [[0, 1, 3]])),
             (overcast.Error, "ovc_mesh.vertex_count is 2 without indices, expected a multiple of 3",
              lambda: scene.add(TRIANGLE[:2])),
-            (ValueError, "a shared mesh needs C-contiguous float32 vertices and no triangles",
-             lambda: scene.add(TRIANGLE.astype(np.float64), shared=True)),
+            (ValueError, "a shared mesh needs C-contiguous float32 or float64 vertices and no triangles",
+             lambda: scene.add(TRIANGLE.astype(int), shared=True)),
+            (ValueError, "transform must be of shape (3, 4), or (4, 4) with the last row 0 0 0 1, not (3, 3)",
+             lambda: scene.add(TRIANGLE, transform=np.eye(3))),
+            (ValueError, "transform must be of shape (3, 4), or (4, 4) with the last row 0 0 0 1, not [1. 1. 1. 1.]",
+             lambda: scene.add_instance(0, np.ones((4, 4)))),
+            (TypeError, "mesh must be a whole number, not str", lambda: scene.add_instance("0")),
             (ValueError, "origin must be of shape (3,), not (1, 3)", lambda: scene.add(TRIANGLE, origin=[[0, 0, 0]])),
         ])
         self.assertEqual(scene.add(TRIANGLE), 0, "the scene is as it was")

@@ -47,7 +47,7 @@ class Nearest(unittest.TestCase):
                 self.check(scene.intersect(self.origins, self.directions))
 
     def test_vertices_as_they_come(self):
-        """float32 in place, by index, in columns of a wider array, doubles that floats hold, backwards, read-only."""
+        """By index, in columns of a wider array, in doubles, backwards, read-only, of too few rows."""
         flat = self.corners.reshape(-1, 3)
         shuffle = np.random.default_rng(3).permutation(len(flat))
         indices = np.argsort(shuffle).reshape(-1, 3)
@@ -57,7 +57,8 @@ class Nearest(unittest.TestCase):
         frozen.flags.writeable = False
         for name, mesh in {"indexed": (flat[shuffle], indices), "uint32": (flat[shuffle], indices.astype(np.uint32)),
                            "int16": (flat[shuffle], indices.astype(np.int16)), "columns": (wide[:, 2:5],),
-                           "doubles": (flat.astype(np.float64),), "fortran": (np.asfortranarray(flat),),
+                           "doubles": (flat.astype(np.float64),), "columns of doubles": (wide.astype(np.float64)[:, 2:5],),
+                           "big-endian": (flat.astype(">f4"),), "fortran": (np.asfortranarray(flat),),
                            "backwards": (flat[::-1], len(flat) - 1 - np.arange(len(flat)).reshape(-1, 3)),
                            "read-only": (frozen,), "lists": (flat.tolist(), indices[:0].tolist())}.items():
             with self.subTest(name), scene_of(mesh) as scene:
@@ -67,12 +68,14 @@ class Nearest(unittest.TestCase):
                     self.check(scene.intersect(self.origins, self.directions))
 
     def test_a_shared_mesh_is_read_in_place_and_kept_alive(self):
-        corners = self.corners.copy()
-        scene = overcast.Scene()
-        scene.add(corners, shared=True)
-        del corners
-        scene.commit()
-        self.check(scene.intersect(self.origins, self.directions))
+        for dtype in (np.float32, np.float64):
+            corners = self.corners.astype(dtype)
+            scene = overcast.Scene()
+            scene.add(corners, shared=True)
+            del corners
+            scene.commit()
+            self.assertEqual(scene.statistics()["soup_bytes"], 0)
+            self.check(scene.intersect(self.origins, self.directions))
 
     def test_meshes_are_numbered(self):
         half = TRIANGLES // 2
@@ -153,15 +156,17 @@ class Nearest(unittest.TestCase):
 
 class Numbers(unittest.TestCase):
     def test_doubles_far_from_the_origin_keep_their_detail(self):
-        corners = soup(5, 300).astype(np.float64) + 0.1
         far = np.array([4.5e6, 6e6, 10])
+        corners = soup(5, 300).astype(np.float64) + far  # rounded to doubles
         origins, directions = rays_at_unit_cube(6, 1000)
-        t, _, _, prim = brute_force(corners, origins, directions)
-        with scene_of([corners + far]) as scene:
-            hits = scene.intersect(origins + far, directions)
-        self.assertLess((hits.prim != prim).mean(), 0.01, "they moved by 1e-7 at most")
-        same = hits.hit & (hits.prim == prim)
-        np.testing.assert_allclose(hits.t[same], t[same], atol=1e-4)
+        origins += far  # all of these lie on the doubles there, so that taking `far` away again is exact
+        t, _, _, prim = brute_force(corners - far, origins - far, directions)
+        with scene_of([corners]) as scene:
+            hits = scene.intersect(origins, directions)
+        np.testing.assert_array_equal(hits.prim, prim)
+        np.testing.assert_allclose(hits.t, t, rtol=1e-10)
+        with scene_of([(corners - far).astype(np.float32)]) as scene:
+            self.assertTrue((scene.intersect(origins - far, directions).t != t).any(), "floats would not do")
 
     def test_plan_and_statistics_count(self):
         corners = soup(1, 500)
@@ -177,3 +182,44 @@ class Numbers(unittest.TestCase):
         self.assertEqual((statistics["dropped_not_finite"], statistics["nearest_rays"], statistics["occlusion_rays"],
                           statistics["invalid_rays"]), (1, 2, 1, 1))
         self.assertLessEqual(statistics["gpu_peak_bytes"], 1 << 20)
+
+
+class Instances(unittest.TestCase):
+    def setUp(self):
+        random = np.random.default_rng(9)
+        self.corners = soup(8, 200)
+        self.transforms = random.normal(size=(5, 3, 4))
+        self.moved = [(self.corners @ matrix[:, :3].T + matrix[:, 3]) for matrix in self.transforms]
+        self.origins, self.directions = rays_at_unit_cube(10, 2000)
+
+    def test_are_meshes_elsewhere(self):
+        t, _, _, prim = brute_force(np.concatenate(self.moved), self.origins, self.directions)
+        scene = overcast.Scene()
+        template = scene.add(self.corners, template=True)
+        numbers = [scene.add_instance(template, np.vstack([self.transforms[0], [0, 0, 0, 1]]))]
+        numbers += [scene.add_instance(template, matrix) for matrix in self.transforms[1:4]]
+        numbers.append(scene.add(self.corners, transform=self.transforms[4]))
+        self.assertEqual(numbers, [1, 2, 3, 4, 5])
+        scene.commit()
+        hits = scene.intersect(self.origins, self.directions)
+        self.assertGreater(hits.hit.sum(), 200)
+        np.testing.assert_array_equal(hits.hit, np.isfinite(t))
+        np.testing.assert_array_equal(hits.mesh[hits.hit], 1 + prim[hits.hit] // 200)
+        np.testing.assert_array_equal(hits.prim[hits.hit], prim[hits.hit] % 200)
+        np.testing.assert_allclose(hits.t, t, rtol=1e-9)
+
+    def test_of_instances_come_after_theirs(self):
+        scene = overcast.Scene()
+        first = scene.add_instance(scene.add(self.corners, template=True), np.eye(3, 4) * 2)
+        scene.add_instance(first, np.hstack([np.eye(3), [[3], [4], [5]]]))
+        scene.commit()
+        hits = scene.intersect(self.corners.mean(axis=1) * 2 + [3, 4, 5] - [0, 0, 9], [0, 0, 9])
+        self.assertTrue((hits.mesh == 2).all())
+
+    def test_memory_is_given_back_until_the_next_ray(self):
+        with scene_of([self.corners]) as scene:
+            before = scene.intersect(self.origins, self.directions)
+            scene.purge()
+            self.assertEqual(scene.statistics()["gpu_bytes"], 0)
+            np.testing.assert_array_equal(scene.intersect(self.origins, self.directions).records, before.records)
+            self.assertGreater(scene.statistics()["gpu_bytes"], 0)
