@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import operator
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 
-def numbers(name: str, value: ArrayLike, columns: int = 0, kinds: str = "fiu") -> NDArray:
+def numbers(name: str, value: ArrayLike, columns: int = 0, kinds: str = "fiu") -> NDArray[Any]:
     """The value as an array of real numbers, without a copy where it is one; (..., columns), where columns are given."""
     expected = ("whole numbers" if "f" not in kinds else "real numbers") + (f" of shape (..., {columns})" if columns else "")
     try:
@@ -31,7 +32,7 @@ def as_uint32(name: str, value: ArrayLike, columns: int) -> NDArray[np.uint32]:
     if array.dtype != np.uint32 and array.size and (array.min() < 0 or array.max() > 0xFFFFFFFF):
         wrong = array.min() if array.min() < 0 else array.max()
         raise ValueError(f"{name} must be whole numbers from 0 to 4294967295, not {wrong}")
-    return np.require(array, np.uint32, "CA")
+    return np.require(array, np.uint32, ["C", "A"])
 
 
 def count(name: str, value: int, most: int = 2**64 - 1) -> int:

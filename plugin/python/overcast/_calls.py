@@ -87,7 +87,7 @@ class Writer:
         raised = self._raised = Raised()
 
         def write(_user: int, data: int, size: int) -> int:
-            return raised.run(lambda: file.write((ctypes.c_char * size).from_address(data)))
+            return raised.run(lambda: file.write(memoryview((ctypes.c_char * size).from_address(data))))
 
         self.function = _abi.WriteFunction(write)
         self.raising = raised.raising

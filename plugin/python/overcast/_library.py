@@ -73,7 +73,8 @@ def api() -> _abi.ovc_api:
     if table.contents.struct_size < ctypes.sizeof(_abi.ovc_api):
         raise Error(f"the library '{path}' is older than this module: its table has {table.contents.struct_size} bytes, "
                     f"{ctypes.sizeof(_abi.ovc_api)} are needed")
-    return table.contents
+    contents: _abi.ovc_api = table.contents
+    return contents
 
 
 def check(result: int, device: int | None = None) -> None:
@@ -86,7 +87,7 @@ def check(result: int, device: int | None = None) -> None:
 class Handle:
     """A device or a scene of the library. Destroyed once: by close(), when nobody refers to it any more, or at the end of the program."""
 
-    def __init__(self, what: str, value: int, destroy: Callable[[int], None], *kept_alive: object) -> None:
+    def __init__(self, what: str, value: int | None, destroy: Callable[[int | None], None], *kept_alive: object) -> None:
         self._what = what
         self._value = value
         self._process = os.getpid()
@@ -94,7 +95,7 @@ class Handle:
         self._end = weakref.finalize(self, _destroy_here, self._process, destroy, value, kept_alive)
 
     @contextlib.contextmanager
-    def use(self) -> Iterator[int]:
+    def use(self) -> Iterator[int | None]:
         """The handle for a call; close() waits until the call is over."""
         if self._process != os.getpid():
             raise Error(f"the {self._what} was opened by process {self._process} and does not live on in its fork; "
@@ -109,6 +110,6 @@ class Handle:
             self._end()
 
 
-def _destroy_here(process: int, destroy: Callable[[int], None], value: int, _kept_alive: tuple[object, ...]) -> None:
+def _destroy_here(process: int, destroy: Callable[[int | None], None], value: int | None, _kept_alive: tuple[object, ...]) -> None:
     if process == os.getpid():  # the library's threads are not in a fork
         destroy(value)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -31,7 +33,7 @@ def mesh_of(vertices: ArrayLike, triangles: ArrayLike | None, origin: ArrayLike,
     return mesh
 
 
-def corners_of(vertices: ArrayLike, are_triangles: bool, shared: bool) -> NDArray:
+def corners_of(vertices: ArrayLike, are_triangles: bool, shared: bool) -> NDArray[Any]:
     """(n, 3) of float32 or float64, rows at any distance: the caller's array where it is that."""
     corners = numbers("vertices", vertices, 3)
     if are_triangles and corners.ndim == 3 and corners.shape[1] == 3:
@@ -41,7 +43,7 @@ def corners_of(vertices: ArrayLike, are_triangles: bool, shared: bool) -> NDArra
     if shared and (not are_triangles or corners.dtype not in (np.float32, np.float64) or not (corners.flags.c_contiguous and corners.flags.aligned)):
         raise ValueError("a shared mesh needs C-contiguous float32 or float64 vertices and no triangles")
     size = 4 if corners.dtype in (np.float32, np.float16) else 8
-    corners = np.require(corners, np.dtype(f"f{size}"), "A")
+    corners = np.require(corners, np.dtype(f"f{size}"), ["A"])
     rows_lie_well = corners.strides[1] == size and corners.strides[0] >= 3 * size and corners.strides[0] % size == 0
     return corners if rows_lie_well or not corners.size else np.ascontiguousarray(corners)
 
@@ -59,5 +61,5 @@ def transform_of(transform: ArrayLike | None) -> NDArray[np.float64] | None:
     return np.ascontiguousarray(matrix, np.float64)
 
 
-def address(array: NDArray | None) -> int | None:
+def address(array: NDArray[Any] | None) -> int | None:
     return None if array is None else array.ctypes.data

@@ -34,9 +34,9 @@ class DeviceInfo:
 
     @classmethod
     def _of(cls, info: _abi.ovc_device_info) -> DeviceInfo:
-        values = {field.name: getattr(info, field.name) for field in dataclasses.fields(cls)}
-        values.update({name: value.decode(errors="replace") for name, value in values.items() if isinstance(value, bytes)})
-        return cls(**{**values, "is_software": bool(info.is_software)})
+        texts = (text.decode(errors="replace") for text in (info.renderer, info.vendor, info.version))
+        return cls(*texts, bool(info.is_software), info.max_texture_size, info.max_buffer_texels, info.memory_bytes,
+                   info.default_budget_bytes)
 
 
 def devices() -> list[DeviceInfo]:

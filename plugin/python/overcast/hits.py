@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,7 +30,8 @@ class Hits:
     @property
     def hit(self) -> NDArray[np.bool_]:
         """True where there is a hit."""
-        return self.records["mesh"] != NONE
+        hit: NDArray[np.bool_] = self.records["mesh"] != NONE
+        return hit
 
     @property
     def t(self) -> NDArray[np.float64]:
@@ -62,7 +65,7 @@ class Hits:
     def __len__(self) -> int:
         return len(self.records)
 
-    def __getitem__(self, index: object) -> Hits:
+    def __getitem__(self, index: Any) -> Hits:
         return Hits(self.records[index])
 
     def __repr__(self) -> str:

@@ -42,4 +42,4 @@ def as_rays(records: NDArray[np.void]) -> NDArray[np.void]:
     if not isinstance(records, np.ndarray) or records.dtype != RAY:
         found = f"an array of {records.dtype}" if isinstance(records, np.ndarray) else type(records).__name__
         raise TypeError(f"rays must be an array of overcast.RAY, as overcast.rays() makes it, not {found}")
-    return np.require(records, requirements="CA")
+    return np.require(records, requirements=["C", "A"])
