@@ -26,6 +26,7 @@ install(FILES ${PROJECT_BINARY_DIR}/OvercastConfig.cmake ${PROJECT_BINARY_DIR}/O
 
 # pkg-config overcast
 file(RELATIVE_PATH OVC_PREFIX_FROM_PC ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+string(REGEX REPLACE "/$" "" OVC_PREFIX_FROM_PC ${OVC_PREFIX_FROM_PC})
 configure_file(cmake/overcast.pc.in ${PROJECT_BINARY_DIR}/overcast.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/overcast.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT overcast)
 

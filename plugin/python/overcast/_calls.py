@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import BinaryIO
 
 from . import _abi
-from ._library import Error, Result
+from ._library import Error, Result, called_back
 
 
 class Raised:
@@ -22,10 +22,13 @@ class Raised:
 
     def run(self, function: Callable[[], object]) -> int:
         """0, or 1 where the library is to stop."""
+        called_back.now = True
         try:
             function()
         except BaseException as error:  # nothing may pass through C
             self.error = error
+        finally:
+            called_back.now = False
         return int(self.error is not None)
 
     @contextlib.contextmanager

@@ -84,6 +84,10 @@ def check(result: int, device: int | None = None) -> None:
         raise Error(sentence or f"the library failed with code {result}", Result(result))
 
 
+called_back = threading.local()
+"""`now` is set on a thread on which the library calls a function of ours, which may not call the library in turn."""
+
+
 class Handle:
     """A device or a scene of the library. Destroyed once: by close(), when nobody refers to it any more, or at the end of the program."""
 
@@ -100,6 +104,8 @@ class Handle:
         if self._process != os.getpid():
             raise Error(f"the {self._what} was opened by process {self._process} and does not live on in its fork; "
                         "open one in the process that uses it")
+        if getattr(called_back, "now", False):
+            raise Error(f"a progress function may not use the {self._what}: the call that it tells of is still running")
         with self._turn:
             if not self._end.alive:
                 raise Error(f"the {self._what} is closed")
