@@ -53,10 +53,10 @@ install(FILES ${words}/_overcast DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor
 function(ovc_install_python folder)
     file(RELATIVE_PATH OVC_LIBRARY_FOLDER ${CMAKE_INSTALL_PREFIX}/${folder}/overcast ${CMAKE_INSTALL_FULL_LIBDIR})
     string(MAKE_C_IDENTIFIER ${folder} name)
-    configure_file(plugin/python/location.py.in ${PROJECT_BINARY_DIR}/python_location/${name}/_location.py @ONLY)
+    configure_file(plugin/python/built.py.in ${PROJECT_BINARY_DIR}/python_built/${name}/_built.py @ONLY)
     install(DIRECTORY plugin/python/overcast DESTINATION ${folder} ${ARGN} FILES_MATCHING PATTERN "*.py" PATTERN "py.typed"
         PATTERN "__pycache__" EXCLUDE)
-    install(FILES ${PROJECT_BINARY_DIR}/python_location/${name}/_location.py DESTINATION ${folder}/overcast ${ARGN})
+    install(FILES ${PROJECT_BINARY_DIR}/python_built/${name}/_built.py DESTINATION ${folder}/overcast ${ARGN})
 endfunction()
 ovc_install_python(${OVC_PYTHON_DIR} COMPONENT local)
 ovc_install_python(lib/python3/dist-packages COMPONENT debian EXCLUDE_FROM_ALL)

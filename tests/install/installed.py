@@ -52,7 +52,7 @@ class Tree:
         for file in [self.prefix / "bin/overcast", *self.libraries.glob("libovercast.so"), *self.libraries.glob("overcast/*.so")]:
             self.assertNotRegex(run("readelf", "--dynamic", file), "R(UN)?PATH")
         for file in [*self.libraries.glob("cmake/Overcast/*.cmake"), self.libraries / "pkgconfig/overcast.pc",
-                     self.modules / "overcast/_location.py"]:
+                     self.modules / "overcast/_built.py"]:
             self.assertNotIn(str(BUILD), file.read_text(), file)
 
     def test_the_command_finds_its_libraries(self):

@@ -25,10 +25,12 @@ What the library has to say besides goes to logging's logger "overcast".
 """
 
 from ._abi import NONE
+from ._built import VERSION as __version__
 from ._library import Error, Result
+from ._rays import RAY, RAY_FLOAT, rays
 from .device import Device, DeviceInfo, devices
 from .hits import HIT, Hits
-from .rays import RAY, rays
 from .scene import Scene
 
-__all__ = ["Scene", "Hits", "rays", "Device", "DeviceInfo", "devices", "Error", "Result", "RAY", "HIT", "NONE"]
+__all__ = ["Scene", "Hits", "rays", "Device", "DeviceInfo", "devices", "Error", "Result", "RAY", "RAY_FLOAT", "HIT",
+           "NONE"]

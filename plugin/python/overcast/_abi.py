@@ -54,7 +54,9 @@ class ovc_instance(Sized):
 
 
 class ovc_query(Sized):
-    _fields_ = [("struct_size", c.c_size_t), ("skip", c.c_void_p)]
+    _fields_ = [("struct_size", c.c_size_t), ("skip", c.c_void_p), ("leaf", c.c_void_p), ("passes", c.c_void_p),
+                ("flagged", c.c_void_p), ("ray_format", c.c_uint32), ("reserved", c.c_uint32),
+                ("progress", ProgressFunction), ("progress_user", c.c_void_p)]
 
 
 class ovc_plan(Sized):
@@ -77,7 +79,8 @@ class ovc_statistics(Sized):
                 ("seconds_level1", c.c_double), ("seconds_level2", c.c_double), ("seconds_trace", c.c_double),
                 ("seconds_kernel", c.c_double), ("host_bytes", c.c_uint64), ("queues", c.c_uint64),
                 ("queued_rays", c.c_uint64), ("longest_queue", c.c_uint64), ("from_saved", c.c_uint64),
-                ("seconds_pass", c.c_double), ("gpu_bytes", c.c_uint64), ("soup_bytes", c.c_uint64)]
+                ("seconds_pass", c.c_double), ("gpu_bytes", c.c_uint64), ("soup_bytes", c.c_uint64),
+                ("single_rays", c.c_uint64)]
 
 
 def _call(*arguments: type) -> type:

@@ -14,6 +14,7 @@ import weakref
 from collections.abc import Callable, Iterator
 
 from . import _abi
+from ._built import LIBRARY_FOLDER
 
 SONAME = f"libovercast.so.{_abi.ABI_VERSION}"
 
@@ -39,24 +40,18 @@ class Error(Exception):
         self.code = code
 
 
-def _places() -> list[str]:
-    """What to try: the file that OVC_PLUGIN names; else beside this module, where it was installed, the system's loader."""
+def _path() -> str:
+    """The file that OVC_PLUGIN names; else the one built or installed with this module; else what the system's loader finds."""
     if named := os.environ.get("OVC_PLUGIN"):
-        return [named]
-    here = pathlib.Path(__file__).resolve().parent
-    folders = [here]
-    try:
-        from ._location import LIBRARY_FOLDER  # written by the build: the way from here to the library
-        folders.append(here / LIBRARY_FOLDER)
-    except ImportError:
-        pass
-    return [str(folder / SONAME) for folder in folders if (folder / SONAME).exists()] + [SONAME]
+        return named
+    ours = pathlib.Path(__file__).resolve().parent / LIBRARY_FOLDER / SONAME
+    return str(ours) if ours.exists() else SONAME
 
 
 @functools.cache
 def api() -> _abi.ovc_api:
     """The library's table. Loaded by the first who asks, and never unloaded."""
-    path = _places()[0]
+    path = _path()
     try:
         library = ctypes.CDLL(path)
     except OSError as error:

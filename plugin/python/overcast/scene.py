@@ -7,6 +7,7 @@ import ctypes
 import math
 import os
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,9 +17,9 @@ from ._arrays import as_uint32, choice, count
 from ._calls import Progress, Writer
 from ._library import Handle, api, check
 from ._mesh import address, mesh_of, transform_of
+from ._rays import FORMATS, as_rays, rays
 from .device import Device, default_device
 from .hits import HIT, Hits
-from .rays import as_rays, rays
 
 
 class Scene:
@@ -94,8 +95,8 @@ class Scene:
     def commit(self, progress: Callable[[float, str], object] | None = None) -> None:
         """Builds the scene. Afterwards it takes rays and no more meshes.
 
-        progress(done, stage): called up to fifty times a second, from any thread, with done from 0 to 1. What it raises ends
-        the commit and is raised here; so does Ctrl-C. The scene may be committed again then.
+        progress(done, stage): called up to fifty times a second, from any thread, with done from 0 to 1; it may not use the
+        scene. What it raises ends the commit and is raised here; so does Ctrl-C. The scene may be committed again then.
         """
         self._progress.watch(lambda: self._call("commit"), progress)
 
@@ -119,7 +120,7 @@ class Scene:
             raise ValueError(f"out must be Hits of the rays' shape {rays.shape}, not {out!r}")
         if not answers.flags.carray:
             raise ValueError("out must be Hits whose records are contiguous and writeable")
-        self._call("intersect", rays.ctypes.data, rays.size, answers.ctypes.data, _query(skip, rays.shape))
+        self._trace("intersect", rays, answers, skip)
         return hits
 
     def occluded(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_max: ArrayLike = math.inf, *,
@@ -131,8 +132,23 @@ class Scene:
         """occluded() of rays in records (see overcast.rays): nothing is copied."""
         rays = as_rays(rays)
         answers = np.empty(rays.shape, np.bool_)
-        self._call("occluded", rays.ctypes.data, rays.size, answers.ctypes.data, _query(skip, rays.shape))
+        self._trace("occluded", rays, answers, skip)
         return answers
+
+    def _trace(self, function: str, rays: NDArray[np.void], answers: NDArray[Any], skip: Hits | ArrayLike | None) -> None:
+        query = _abi.ovc_query(ray_format=FORMATS.index(rays.dtype))
+        if skip is not None:
+            query.names = names_of(skip, rays.shape)  # lives as long as the query
+            query.skip = query.names.ctypes.data
+
+        def call() -> None:
+            self._call(function, rays.ctypes.data, rays.size, answers.ctypes.data, query)
+        if rays.size < _WORTH_WATCHING:
+            call()
+        else:
+            progress = Progress()
+            query.progress = progress.function
+            progress.watch(call)
 
     def plan(self) -> dict[str, int | float]:
         """Tells what commit() makes of the meshes added so far, without making it: leaves, bytes, the smallest budget that works,
@@ -177,17 +193,17 @@ class Scene:
         self.close()
 
 
-def _query(skip: Hits | ArrayLike | None, shape: tuple[int, ...]) -> _abi.ovc_query | None:
-    if skip is None:
-        return None
+_WORTH_WATCHING = 100_000
+"""Rays: fewer are answered before anyone could press Ctrl-C, and a thread more would be felt."""
+
+
+def names_of(skip: Hits | ArrayLike, shape: tuple[int, ...]) -> NDArray[np.uint32]:
+    """(*shape, 2): the mesh and the prim that each ray skips."""
     names = np.stack([skip.mesh, skip.prim], axis=-1) if isinstance(skip, Hits) else as_uint32("skip", skip, 2)
     try:
-        names = np.ascontiguousarray(np.broadcast_to(names, (*shape, 2)))
+        return np.ascontiguousarray(np.broadcast_to(names, (*shape, 2)))
     except ValueError:
         raise ValueError(f"skip names triangles for rays of shape {names.shape[:-1]}, not {shape}") from None
-    query = _abi.ovc_query(skip=names.ctypes.data)
-    query.names = names  # lives as long as the query
-    return query
 
 
 def _as_dict(struct: ctypes.Structure) -> dict[str, int | float]:

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The examples of README and of help(overcast) run, and say what they promise."""
 
+import contextlib
 import os
 import pathlib
 import pydoc
 import re
+import tempfile
 import textwrap
 import unittest
 
@@ -24,6 +26,18 @@ class Examples(unittest.TestCase):
         names = {}
         exec(example, names)
         self.assertTrue(names["hits"].hit.any())
+
+    def test_picture(self):
+        """Lit and shadowed floor, lit and dark knot, and sky around it."""
+        text = pathlib.Path(os.environ["OVC_SOURCE_DIR"], "docs/python.md").read_text()
+        names = {}
+        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+            exec(re.search(r"```python\n(.*?)```", text, re.DOTALL).group(1), names)
+            header, pixels = pathlib.Path("knot.pgm").read_bytes().split(b"\n", 1)
+        self.assertEqual((header, len(pixels)), (b"P5 450 360 255", 450 * 360))
+        mesh, lit = names["hits"].mesh, names["lit"]
+        for part in (mesh == overcast.NONE, (mesh == 0) & lit, (mesh == 0) & ~lit, (mesh == 1) & lit, (mesh == 1) & ~lit):
+            self.assertGreater(part.mean(), 0.01)
 
     def test_docstring(self):
         example = re.search(r"\n\n(    import numpy.*?)\n\n[A-Z]", overcast.__doc__, re.DOTALL).group(1)

@@ -11,7 +11,8 @@ import overcast
 from overcast import _abi
 
 COMPILER = os.environ.get("CC", "cc")
-RECORDS = {"ovc_ray": (overcast.RAY, {"origin": "org", "direction": "dir"}), "ovc_hit": (overcast.HIT, {})}
+RAY_NAMES = {"origin": "org", "direction": "dir"}
+RECORDS = {"ovc_ray": (overcast.RAY, RAY_NAMES), "ovc_ray_float": (overcast.RAY_FLOAT, RAY_NAMES), "ovc_hit": (overcast.HIT, {})}
 
 
 def claims():
@@ -52,6 +53,11 @@ class Layout(unittest.TestCase):
     def test_results_are_those_of_c(self):
         for result in overcast.Result:
             self.assertEqual(refused([f'_Static_assert(OVC_ERROR_{result.name} == {result.value}, "{result.name}");']), "")
+
+    def test_the_version_is_that_of_c(self):
+        major, minor, patch = map(int, overcast.__version__.split("."))
+        number = major * 10000 + minor * 100 + patch
+        self.assertEqual(refused([f'_Static_assert(OVC_VERSION == {number}, "OVC_VERSION");']), "")
 
     def test_the_table_holds_all_that_the_module_calls(self):
         from overcast._library import api

@@ -13,7 +13,7 @@ import unittest
 import numpy as np
 
 import overcast
-from scenes_for_tests import skip_without_device, soup
+from scenes_for_tests import rays_at_unit_cube, skip_without_device, soup
 
 setUpModule = skip_without_device
 
@@ -53,9 +53,9 @@ class Sentences(unittest.TestCase):
             (ValueError, "the rays' shapes do not go together: origins (4,) + (3,), directions (5,) + (3,), t_min (), t_max ()",
              lambda: scene.intersect(np.zeros((4, 3)), np.zeros((5, 3)))),
             (TypeError, "t_max must be real numbers, not object", lambda: scene.intersect(*DOWN, t_max=None)),
-            (TypeError, "rays must be an array of overcast.RAY, as overcast.rays() makes it, not an array of float64",
+            (TypeError, "rays must be an array of overcast.RAY or RAY_FLOAT, as overcast.rays() makes it, not an array of float64",
              lambda: scene.intersect_rays(np.zeros((3, 8)))),
-            (TypeError, "rays must be an array of overcast.RAY, as overcast.rays() makes it, not list",
+            (TypeError, "rays must be an array of overcast.RAY or RAY_FLOAT, as overcast.rays() makes it, not list",
              lambda: scene.occluded_rays([1])),
             (TypeError, "skip must be whole numbers of shape (..., 2), not float64",
              lambda: scene.intersect(*DOWN, skip=[0.0, 1.0])),
@@ -147,6 +147,14 @@ class Running(unittest.TestCase):
         self.assertEqual(sorted(told, key=lambda step: step[0]), told)
         self.assertTrue(scene.intersect(*DOWN).hit)
 
+    def test_progress_may_not_use_the_scene(self):
+        scene = overcast.Scene()
+        scene.add(TRIANGLE)
+        with self.assertRaisesRegex(overcast.Error, "^a progress function may not use the scene: the call that it tells of is"):
+            scene.commit(lambda done, stage: scene.statistics())
+        scene.commit()
+        self.assertTrue(scene.intersect(*DOWN).hit)
+
     def test_control_c_ends_a_commit(self):
         scene = overcast.Scene()
         scene.add(soup(1, 300000, 0.01))
@@ -166,6 +174,21 @@ class Running(unittest.TestCase):
             sender.join()
         scene.commit()
         self.assertTrue(scene.intersect([0.5, 0.5, -1], [0, 0, 1]).hit)
+
+    def test_control_c_ends_a_call(self):
+        scene = overcast.Scene()
+        scene.add(soup(1, 100000, 0.01))
+        scene.commit()
+        records = np.repeat(overcast.rays(*rays_at_unit_cube(2, 10000)), 500)  # five million: far longer than the signal takes
+        untouched = 12345
+        out = overcast.Hits(np.full(records.shape, untouched, overcast.HIT))
+        timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            scene.intersect_rays(records, out=out)
+        timer.join()
+        self.assertEqual(out.mesh[-1], untouched, "it went on to the end")
+        self.assertEqual(scene.intersect_rays(records[:10]).shape, (10,))
 
     def test_close_waits_for_a_call(self):
         scene = overcast.Scene()

@@ -129,6 +129,16 @@ class Nearest(unittest.TestCase):
             self.check(scene.intersect_rays(np.repeat(records, 2)[::2]))  # not contiguous: copied
             np.testing.assert_array_equal(scene.occluded_rays(records), self.prim != overcast.NONE)
 
+    def test_float_records_are_the_doubles_that_they_are(self):
+        with scene_of([self.corners]) as scene:
+            short = overcast.rays(self.origins, self.directions, dtype=overcast.RAY_FLOAT)
+            self.assertEqual(short.nbytes, 32 * RAYS)
+            long = overcast.rays(short["origin"], short["direction"])
+            np.testing.assert_array_equal(scene.intersect_rays(short).records, scene.intersect_rays(long).records)
+            np.testing.assert_array_equal(scene.occluded_rays(short), scene.occluded_rays(long))
+            eight = np.hstack([short["origin"], short["t_min"][:, None], short["direction"], short["t_max"][:, None]])
+            np.testing.assert_array_equal(eight.view(overcast.RAY_FLOAT)[..., 0], short)
+
     def test_saved_scenes_answer_the_same(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "soup.saved")

@@ -13,13 +13,21 @@ from ._arrays import numbers
 RAY = np.dtype([("origin", "f8", 3), ("t_min", "f8"), ("direction", "f8", 3), ("t_max", "f8")])
 """A ray: 64 bytes, the ovc_ray of the C header."""
 
+RAY_FLOAT = np.dtype([("origin", "f4", 3), ("t_min", "f4"), ("direction", "f4", 3), ("t_max", "f4")])
+"""The same in 32 bytes, the ovc_ray_float of the C header; it is taken as the doubles that its numbers are."""
 
-def rays(origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_max: ArrayLike = math.inf) -> NDArray[np.void]:
+FORMATS = (RAY, RAY_FLOAT)  # by ovc_ray_format
+
+
+def rays(origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_max: ArrayLike = math.inf, *,
+         dtype: np.dtype[np.void] = RAY) -> NDArray[np.void]:
     """Makes records of the rays origins + t directions, t_min <= t <= t_max, for intersect_rays and occluded_rays.
 
     origins, directions: (..., 3); t_min, t_max: (...); each is broadcast, so one origin serves all directions.
-    Returns an array of RAY in the shape that they have together. Records are what calls without a copy take: make them once,
-    and write to their fields (records["t_max"] = 5) from then on.
+    dtype: RAY, or RAY_FLOAT, to which numbers are rounded: half the bytes, and exact for what is in float32 already.
+    Returns an array of dtype in the shape that they have together. Records are what calls without a copy take: make them once,
+    and write to their fields (records["t_max"] = 5) from then on. A float32 array (..., 8) of origin, t_min, direction, t_max,
+    as a GPU may hold it, becomes records by array.view(overcast.RAY_FLOAT)[..., 0].
 
     A ray with NaN or infinity in it (but t_max may be infinite), with a zero direction or with t_min > t_max misses.
     """
@@ -31,7 +39,9 @@ def rays(origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_ma
     except ValueError:
         raise ValueError("the rays' shapes do not go together: origins {} + (3,), directions {} + (3,), t_min {}, t_max {}"
                          .format(*shapes)) from None
-    records = np.empty(shape, RAY)
+    if dtype not in FORMATS:
+        raise ValueError("dtype must be overcast.RAY or overcast.RAY_FLOAT")
+    records = np.empty(shape, dtype)
     records["origin"], records["direction"] = origins, directions
     records["t_min"], records["t_max"] = t_min, t_max
     return records
@@ -39,7 +49,7 @@ def rays(origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_ma
 
 def as_rays(records: NDArray[np.void]) -> NDArray[np.void]:
     """The same array where it lies as the library reads it, else a copy of it that does."""
-    if not isinstance(records, np.ndarray) or records.dtype != RAY:
+    if not isinstance(records, np.ndarray) or records.dtype not in FORMATS:
         found = f"an array of {records.dtype}" if isinstance(records, np.ndarray) else type(records).__name__
-        raise TypeError(f"rays must be an array of overcast.RAY, as overcast.rays() makes it, not {found}")
+        raise TypeError(f"rays must be an array of overcast.RAY or RAY_FLOAT, as overcast.rays() makes it, not {found}")
     return np.require(records, requirements=["C", "A"])
