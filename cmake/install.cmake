@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake --install: the command, the library, its header, CMake package, pkg-config file, manual, completions, Python module. All find
+# cmake --install: the command, the library, its headers, CMake package, pkg-config file, manual, completions, Python module. All find
 # each other by the way from one to the next, so that an installed tree may be moved. docs/install.md.
 #
 # Components: `overcast` goes to the same places everywhere; `local` is what Debian's packages have elsewhere than what is
@@ -13,7 +13,9 @@ install(TARGETS overcast_plugin EXPORT Overcast LIBRARY COMPONENT overcast NAMEL
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 # Loaded by the command alone.
 install(TARGETS overcast_thesis LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/overcast COMPONENT overcast)
-install(FILES plugin/overcast.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/overcast COMPONENT overcast)
+install(FILES plugin/overcast.h plugin/overcast.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/overcast COMPONENT overcast)
+
+install(FILES plugin/examples/hills.c plugin/examples/sunlit.cpp DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT overcast)
 
 # find_package(Overcast): the target Overcast::overcast
 set_target_properties(overcast_plugin PROPERTIES EXPORT_NAME overcast)

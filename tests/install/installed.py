@@ -87,9 +87,11 @@ class Tree:
     def test_a_consumer_builds_with_find_package(self):
         build = self.folder / "by_find_package"
         run("cmake", "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}", f"-DCMAKE_C_COMPILER={os.environ['CC']}",
+            f"-DCMAKE_CXX_COMPILER={os.environ['CXX']}", f"-DEXAMPLES={self.prefix / 'share/doc/overcast/examples'}",
             "-DCMAKE_FIND_USE_CMAKE_SYSTEM_PATH=OFF")
         run("cmake", "--build", build)
         self.assertEqual(run(build / "consumer"), "hit 5 0.25 0.5\n")
+        self.assertRegex(run(build / "sunlit"), "^[1-9][0-9]* of [0-9]+ rays hit, [1-9][0-9]* of those in the sun\n$")
         self.assertEqual(loaded_from(build / "consumer", name="libovercast"), {str(self.libraries / "libovercast.so.1")})
 
     def test_a_consumer_builds_with_pkg_config(self):
