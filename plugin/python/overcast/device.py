@@ -34,8 +34,8 @@ class DeviceInfo:
 
     @classmethod
     def _of(cls, info: _abi.ovc_device_info) -> DeviceInfo:
-        texts = (text.decode(errors="replace") for text in (info.renderer, info.vendor, info.version))
-        return cls(*texts, bool(info.is_software), info.max_texture_size, info.max_buffer_texels, info.memory_bytes,
+        renderer, vendor, version = (text.decode(errors="replace") for text in (info.renderer, info.vendor, info.version))
+        return cls(renderer, vendor, version, bool(info.is_software), info.max_texture_size, info.max_buffer_texels, info.memory_bytes,
                    info.default_budget_bytes)
 
 
@@ -75,9 +75,11 @@ class Device:
         return f"<overcast.Device {self.info.renderer!r}>"
 
 
-@_abi.LogFunction
-def _log(_user: int, level: int, message: bytes) -> None:
+def _to_logging(_user: int, level: int, message: bytes) -> None:
     _LOG.log(_LOG_LEVELS[level], "%s", message.decode(errors="replace"))
+
+
+_log = _abi.LogFunction(_to_logging)
 
 
 def default_device() -> Device:
