@@ -40,7 +40,8 @@ def corners_of(vertices: ArrayLike, are_triangles: bool, shared: bool) -> NDArra
         corners = corners.reshape(-1, 3)
     if corners.ndim != 2:
         raise ValueError(f"vertices must be of shape (n, 3), not {corners.shape}")
-    if shared and (not are_triangles or corners.dtype not in (np.float32, np.float64) or not (corners.flags.c_contiguous and corners.flags.aligned)):
+    in_place = corners.dtype in (np.float32, np.float64) and corners.flags.c_contiguous and corners.flags.aligned
+    if shared and not (are_triangles and in_place):
         raise ValueError("a shared mesh needs C-contiguous float32 or float64 vertices and no triangles")
     size = 4 if corners.dtype in (np.float32, np.float16) else 8
     corners = np.require(corners, np.dtype(f"f{size}"), ["A"])
