@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stands before Tachyon's rt_renderscene in a program that has this library preloaded: whatever has
+// filled the scene, its triangles go to Overcast, and Tachyon renders.
+//
+// usage: LD_PRELOAD=libovercast_tachyon.so PROGRAM..., or the command overcast-tachyon
+#include "plugin/hosts/tachyon/taken_triangles.h"
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <stdexcept>
+#include <string>
+
+#include <dlfcn.h>
+
+namespace ovc::tachyon {
+
+static Settings settings_from_environment() {
+    Settings settings;
+    if (const char* device = std::getenv("OVC_TACHYON_DEVICE"))
+        settings.device = device;
+    if (const char* bytes = std::getenv("OVC_TACHYON_GPU_MEMORY"))
+        settings.gpu_memory_bytes = std::strtoull(bytes, nullptr, 10);
+    return settings;
+}
+
+static void tell(const Taken& taken, double seconds) {
+    if (taken.left > 0)
+        std::printf("Overcast: %zu triangles stay Tachyon's: their corners are no floats\n",
+                    taken.left);
+    if (!taken.rays)
+        return;
+    const ovc_statistics s = taken.rays->statistics();
+    std::printf("Overcast: %zu triangles in %llu leaves, %.4f seconds, %s\n", taken.triangles,
+                static_cast<unsigned long long>(s.leaves), seconds, taken.rays->renderer().c_str());
+}
+
+static void prepare(scenedef& scene) {
+    static const Intersect intersect = triangle_intersect();
+    const auto start = std::chrono::steady_clock::now();
+    const Taken taken = take_triangles(scene, intersect, settings_from_environment());
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    tell(taken, took.count());
+}
+
+} // namespace ovc::tachyon
+
+extern "C" __attribute__((visibility("default"))) void rt_renderscene(SceneHandle scene) {
+    using Render = void (*)(SceneHandle);
+    const auto render = reinterpret_cast<Render>(dlsym(RTLD_NEXT, "rt_renderscene"));
+    try {
+        if (!render)
+            throw std::runtime_error("there is no Tachyon behind this library: it is preloaded "
+                                     "into a program that is linked with Tachyon's");
+        ovc::tachyon::prepare(*static_cast<scenedef*>(scene));
+    } catch (const std::exception& e) {
+        std::fprintf(stderr, "overcast: %s\n", e.what());
+        std::exit(EXIT_FAILURE);
+    }
+    render(scene);
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles in a scene of Overcast's, asked ray by ray from any thread.
+#pragma once
+
+#include "plugin/overcast.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ovc::tachyon {
+
+struct Settings {
+    std::string device;            // empty: Overcast's default
+    uint64_t gpu_memory_bytes = 0; // 0: the device's default
+};
+
+class SingleRays {
+public:
+    /// corners: three floats each, three corners a triangle, kept as they are. Throws
+    /// std::runtime_error with Overcast's sentence.
+    SingleRays(std::vector<float> corners, const Settings& settings);
+    ~SingleRays();
+    SingleRays(const SingleRays&) = delete;
+    SingleRays& operator=(const SingleRays&) = delete;
+
+    /// The nearest triangle on the ray, or nothing. Throws as the constructor does.
+    std::optional<ovc_hit> nearest(const ovc_ray& ray) const;
+
+    std::span<const float> corners() const { return corners_; }
+    ovc_statistics statistics() const;
+    std::string renderer() const;
+
+private:
+    void check(ovc_result result) const;
+
+    std::vector<float> corners_;
+    const ovc_api* api_;
+    ovc_device device_ = nullptr;
+    ovc_scene scene_ = nullptr;
+};
+
+} // namespace ovc::tachyon

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles with the same three corners: Overcast names the smallest of them for all, but a
+// renderer may give each another look.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace ovc::tachyon {
+
+class TwinSets {
+public:
+    TwinSets() = default;
+    /// corners: three floats each, three corners a triangle. Corners may be in any order.
+    explicit TwinSets(std::span<const float> corners);
+
+    /// The others of the set whose smallest is `prim`, ascending; none where it has no twins.
+    std::span<const uint32_t> of(uint32_t prim) const;
+
+private:
+    std::unordered_map<uint32_t, std::vector<uint32_t>> others_; // by smallest
+};
+
+} // namespace ovc::tachyon
