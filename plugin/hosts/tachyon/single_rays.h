@@ -26,8 +26,9 @@ public:
     SingleRays(const SingleRays&) = delete;
     SingleRays& operator=(const SingleRays&) = delete;
 
-    /// The nearest triangle on the ray, or nothing. Throws as the constructor does.
-    std::optional<ovc_hit> nearest(const ovc_ray& ray) const;
+    /// The nearest triangle on the ray but `skip` (OVC_NONE: none), or nothing. From any thread.
+    /// Throws as the constructor does.
+    std::optional<ovc_hit> nearest(const ovc_ray& ray, uint32_t skip) const;
 
     std::span<const float> corners() const { return corners_; }
     ovc_statistics statistics() const;

@@ -4,6 +4,7 @@
 
 #include "plugin/hosts/tachyon/twin_sets.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -35,20 +36,48 @@ bool offer(const object* triangle, ray& r) {
     return r.maxdist < before;
 }
 
-bool offer_set(const Stand& stand, uint32_t prim, ray& r) {
+/// The triangles last offered to a ray.
+class Offered {
+public:
+    bool has(uint32_t prim) const { return std::ranges::find(last_, prim) != last_.end(); }
+    void add(uint32_t prim) { last_[count_++ % last_.size()] = prim; }
+
+private:
+    std::array<uint32_t, 8> last_{OVC_NONE, OVC_NONE, OVC_NONE, OVC_NONE,
+                                  OVC_NONE, OVC_NONE, OVC_NONE, OVC_NONE};
+    size_t count_ = 0;
+};
+
+/// Offers the triangle and its twins, which Overcast does not name beside it.
+bool offer_all(const Stand& stand, uint32_t prim, ray& r, Offered& offered) {
     bool taken = offer(stand.triangles[prim], r);
-    for (const uint32_t twin : stand.twins.of(prim))
+    offered.add(prim);
+    for (const uint32_t twin : stand.twins.of(prim)) {
         taken = offer(stand.triangles[twin], r) || taken;
+        offered.add(twin);
+    }
     return taken;
 }
 
+/// Offers the triangles on the ray, nearest first, until Tachyon takes one.
 void ask(const Stand& stand, ray& r) {
     ovc_ray asked{{r.o.x, r.o.y, r.o.z}, EPSILON, {r.d.x, r.d.y, r.d.z}, r.maxdist};
+    Offered offered;
+    uint32_t skip = OVC_NONE;
     while (asked.t_min < asked.t_max) {
-        const std::optional<ovc_hit> hit = stand.rays->nearest(asked);
-        if (!hit || offer_set(stand, hit->prim, r))
+        const std::optional<ovc_hit> hit = stand.rays->nearest(asked, skip);
+        if (!hit)
             return;
-        asked.t_min = std::nextafter(hit->t, std::numeric_limits<double>::infinity());
+        asked.t_min = std::max(asked.t_min, hit->t);
+        skip = hit->prim;
+        if (offered.has(hit->prim)) {
+            // At an edge two are equally near, t is rounded, and whoever skips a triangle is
+            // shown its twin: one may come again.
+            asked.t_min = std::nextafter(asked.t_min, std::numeric_limits<double>::infinity());
+            continue;
+        }
+        if (offer_all(stand, hit->prim, r, offered))
+            return;
     }
 }
 
@@ -99,48 +128,67 @@ std::optional<std::array<float, 9>> float_corners(const Triangle& t) {
     return corners;
 }
 
-/// Links everything but the stand's triangles behind the stand, in the order it was.
-void replace_triangles(scenedef& scene, Stand& stand) {
-    object* head = reinterpret_cast<object*>(&stand);
-    void** end = &head->nextobj;
-    size_t prim = 0;
+struct Objects {
+    std::vector<object*> taken;  // triangles whose corners floats hold, as Tachyon lists them
+    std::vector<object*> others; // the rest of the list
+    size_t left = 0;             // triangles among the others
+};
+
+Objects sort_objects(const scenedef& scene, Intersect triangle_intersect) {
+    Objects sorted;
     for (object* o = scene.objgroup.boundedobj; o; o = static_cast<object*>(o->nextobj)) {
-        if (prim < stand.triangles.size() && o == stand.triangles[prim]) {
-            ++prim;
+        const bool triangle = o->methods->intersect == triangle_intersect;
+        if (triangle && float_corners(*reinterpret_cast<const Triangle*>(o))) {
+            sorted.taken.push_back(o);
             continue;
         }
-        *end = o;
-        end = &o->nextobj;
+        sorted.others.push_back(o);
+        sorted.left += triangle;
     }
-    *end = nullptr;
-    scene.objgroup.boundedobj = head;
+    return sorted;
+}
+
+/// Of equally near triangles Tachyon sees the one it tests first. Its list begins with the last one
+/// added, and so does what it tests; unless it makes a grid, whose cells begin with the first (and
+/// crowded cells, which become grids themselves, with the last again: those are not told apart).
+void order_as_tested(const scenedef& scene, std::vector<object*>& triangles, size_t objects) {
+    if (scene.boundmode == RT_BOUNDING_ENABLED && objects > size_t(scene.boundthresh))
+        std::ranges::reverse(triangles);
+}
+
+/// Makes the stand and then the others the scene's list.
+void relink(scenedef& scene, Stand& stand, const std::vector<object*>& others) {
+    object* last = reinterpret_cast<object*>(&stand);
+    scene.objgroup.boundedobj = last;
+    for (object* o : others) {
+        last->nextobj = o;
+        last = o;
+    }
+    last->nextobj = nullptr;
 }
 
 } // namespace
 
 Taken take_triangles(scenedef& scene, Intersect triangle_intersect, const Settings& settings) {
-    Taken taken;
-    auto stand = std::make_unique<Stand>();
-    std::vector<float> corners;
-    for (object* o = scene.objgroup.boundedobj; o; o = static_cast<object*>(o->nextobj)) {
-        if (o->methods->intersect != triangle_intersect)
-            continue;
-        if (const auto nine = float_corners(*reinterpret_cast<const Triangle*>(o))) {
-            corners.insert(corners.end(), nine->begin(), nine->end());
-            stand->triangles.push_back(o);
-        } else {
-            ++taken.left;
-        }
-    }
-    taken.triangles = stand->triangles.size();
-    if (stand->triangles.empty())
+    Objects objects = sort_objects(scene, triangle_intersect);
+    Taken taken{objects.taken.size(), objects.left, nullptr};
+    if (objects.taken.empty())
         return taken;
+    auto stand = std::make_unique<Stand>();
     stand->methods = &stand_methods;
+    stand->triangles = std::move(objects.taken);
+    order_as_tested(scene, stand->triangles, stand->triangles.size() + objects.others.size());
+    std::vector<float> corners;
+    corners.reserve(9 * stand->triangles.size());
+    for (const object* o : stand->triangles) {
+        const auto nine = float_corners(*reinterpret_cast<const Triangle*>(o));
+        corners.insert(corners.end(), nine->begin(), nine->end());
+    }
     stand->rays = std::make_unique<SingleRays>(std::move(corners), settings);
     if (stand->rays->statistics().twins > 0)
         stand->twins = TwinSets(stand->rays->corners());
     taken.rays = stand->rays.get();
-    replace_triangles(scene, *stand.release());
+    relink(scene, *stand.release(), objects.others);
     return taken;
 }
 
