@@ -57,7 +57,7 @@ std::optional<ovc_hit> SingleRays::nearest(const ovc_ray& ray, uint32_t skip) co
     query.struct_size = sizeof(query);
     query.skip = &skipped;
     ovc_hit hit;
-    check(api_->intersect(scene_, &ray, 1, &hit, &query));
+    check(api_->intersect1(scene_, &ray, &hit, &query));
     return hit.prim == OVC_NONE ? std::nullopt : std::optional(hit);
 }
 
