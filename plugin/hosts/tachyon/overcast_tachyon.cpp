@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // overcast-tachyon: Debian's tachyon, whose triangles Overcast finds.
+#include "plugin/hosts/tachyon/settings.h"
+
 #include <cerrno>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <unistd.h>
 
 namespace fs = std::filesystem;
+using namespace ovc::tachyon;
 
 static constexpr const char* kHelp =
     R"(usage: overcast-tachyon [--device NAME] [--gpu-memory BYTES] [tachyon's own arguments]
@@ -33,24 +34,6 @@ static int fail(const std::string& sentence) {
     return EXIT_FAILURE;
 }
 
-/// Bytes of "256M"; nothing for what is no such number.
-static std::optional<uint64_t> bytes_of(const std::string& text) {
-    char* end = nullptr;
-    errno = 0;
-    const uint64_t number = std::strtoull(text.c_str(), &end, 10);
-    if (text.empty() || text[0] < '0' || text[0] > '9' || errno != 0)
-        return std::nullopt;
-    const std::string_view unit = end;
-    const int shift = unit == "K"    ? 10
-                      : unit == "M"  ? 20
-                      : unit == "G"  ? 30
-                      : unit.empty() ? 0
-                                     : -1;
-    if (shift < 0 || number == 0 || number > UINT64_MAX >> shift)
-        return std::nullopt;
-    return number << shift;
-}
-
 /// Beside this program, or in ../lib of it.
 static std::optional<fs::path> find_library() {
     std::error_code error;
@@ -61,13 +44,25 @@ static std::optional<fs::path> find_library() {
     return std::nullopt;
 }
 
+/// The environment that brings the library into tachyon and, where OVC_PLUGIN names another
+/// libovercast.so, that one before ours.
+static void preload(const fs::path& library) {
+    std::string list;
+    if (const char* plugin = std::getenv("OVC_PLUGIN"); plugin && *plugin)
+        list = std::string(plugin) + ":";
+    list += library;
+    if (const char* others = std::getenv("LD_PRELOAD"); others && *others)
+        list += ":" + std::string(others);
+    setenv("LD_PRELOAD", list.c_str(), /* overwrite= */ 1);
+}
+
 int main(int argc, char** argv) {
     std::vector<char*> command = {const_cast<char*>("tachyon")};
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
-        const bool device = word == "--device";
         if (word == "--help")
             std::fputs(kHelp, stdout);
+        const bool device = word == "--device";
         if (!device && word != "--gpu-memory") {
             command.push_back(argv[i]);
             continue;
@@ -75,21 +70,15 @@ int main(int argc, char** argv) {
         if (++i == argc)
             return fail(word + " is followed by nothing; expected " +
                         (device ? "the name of a device" : "bytes, such as 256M"));
-        const std::optional<uint64_t> bytes = device ? 0 : bytes_of(argv[i]);
-        if (!bytes)
-            return fail("--gpu-memory " + std::string(argv[i]) +
-                        " is no number of bytes; expected such as 256M");
-        setenv(device ? "OVC_TACHYON_DEVICE" : "OVC_TACHYON_GPU_MEMORY",
-               device ? argv[i] : std::to_string(*bytes).c_str(), /* overwrite= */ 1);
+        if (!device && !bytes_of(argv[i]))
+            return fail(no_bytes(word, argv[i]));
+        setenv(device ? kDevice : kGpuMemory, argv[i], /* overwrite= */ 1);
     }
     std::fflush(stdout);
     const std::optional<fs::path> library = find_library();
     if (!library)
         return fail(std::string(kLibrary) + " is neither beside this program nor in ../lib of it");
-    const char* others = std::getenv("LD_PRELOAD");
-    const std::string preload =
-        library->string() + (others && *others ? ":" + std::string(others) : "");
-    setenv("LD_PRELOAD", preload.c_str(), /* overwrite= */ 1);
+    preload(*library);
     command.push_back(nullptr);
     execvp(command[0], command.data());
     return fail("cannot run tachyon: " + std::string(std::strerror(errno)) +

@@ -10,20 +10,10 @@
 #include <cstdlib>
 #include <exception>
 #include <stdexcept>
-#include <string>
 
 #include <dlfcn.h>
 
 namespace ovc::tachyon {
-
-static Settings settings_from_environment() {
-    Settings settings;
-    if (const char* device = std::getenv("OVC_TACHYON_DEVICE"))
-        settings.device = device;
-    if (const char* bytes = std::getenv("OVC_TACHYON_GPU_MEMORY"))
-        settings.gpu_memory_bytes = std::strtoull(bytes, nullptr, 10);
-    return settings;
-}
 
 static void tell(const Taken& taken, double seconds) {
     if (taken.left > 0)

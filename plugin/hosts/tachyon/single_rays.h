@@ -2,6 +2,7 @@
 // Triangles in a scene of Overcast's, asked ray by ray from any thread.
 #pragma once
 
+#include "plugin/hosts/tachyon/settings.h"
 #include "plugin/overcast.h"
 
 #include <cstdint>
@@ -11,11 +12,6 @@
 #include <vector>
 
 namespace ovc::tachyon {
-
-struct Settings {
-    std::string device;            // empty: Overcast's default
-    uint64_t gpu_memory_bytes = 0; // 0: the device's default
-};
 
 class SingleRays {
 public:
