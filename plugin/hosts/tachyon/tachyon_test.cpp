@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of Debian's tachyon with Overcast beside those without, pixel by pixel.
 #include "plugin/hosts/tachyon/test_scenes.h"
+#include "tests/real_data.h"
 #include "tests/run_command.h"
 
 #include <gmock/gmock.h>
@@ -128,6 +129,20 @@ TEST_F(TachyonHost, FieldOfInstancesLooksTheSame) {
                           0.41 * j - 1, 0.17);
     EXPECT_THAT(expect_same(write("field.dat", scene(field)) + " -numthreads 2"),
                 HasSubstr("Overcast: 18144 triangles"));
+}
+
+TEST_F(TachyonHost, StanfordModelsLookTheSame) {
+    const auto data = real_data();
+    if (!data)
+        GTEST_SKIP() << kNoRealData;
+    const CommandResult compared = run_shell(
+        OVC_PYTHON " " OVC_SOURCE_DIR "/plugin/hosts/tachyon/compare.py --build " OVC_BINARY_DIR
+                   " --size 256 --runs 0 --meshes " +
+        (*data / "meshes").string());
+    EXPECT_EQ(compared.exit_code, 0) << compared.output;
+    for (const char* drawn :
+         {"| dragon | 871306 | overcast-tachyon |", "| bunny | 69451 |", "| field | 586836 |"})
+        EXPECT_THAT(compared.output, HasSubstr(drawn));
 }
 
 TEST_F(TachyonHost, SceneWithoutTrianglesIsTachyonsAlone) {
