@@ -32,6 +32,7 @@ PLACES = {
     r"png\.h": ["importers/png.cpp"],
     r"embree": ["host/backend_embree.cpp"],
     r"boost/": ["importers/csg/exact.h"],
+    r"tachyon\.h": ["plugin/hosts/tachyon/tachyon_triangle.h"],
     r"(gtest|gmock)/": [],
 }
 
@@ -55,6 +56,9 @@ def check(root, path):
                 continue
             if name == "plugin/overcast.hpp" and target == "overcast.h":
                 continue
+            hosts = "/".join(name.split("/")[:3])
+            if not is_test and hosts.startswith("plugin/hosts/") and target != "plugin/overcast.h" and not target.startswith(hosts):
+                yield f"{name} includes {target}; a host knows its own folder and plugin/overcast.h"
             if folder == "plugin" and name.endswith("overcast.h"):
                 yield f"{name} includes {target}; the C header includes nothing of ours"
             elif folder not in MAY_INCLUDE or other not in MAY_INCLUDE[folder]:
