@@ -2,6 +2,7 @@
 // Tachyon's object_methods for triangles that Overcast finds.
 #include "plugin/hosts/tachyon/taken_triangles.h"
 
+#include "plugin/hosts/tachyon/beside.h"
 #include "plugin/hosts/tachyon/twin_sets.h"
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -59,6 +61,25 @@ bool offer_all(const Stand& stand, uint32_t prim, ray& r, Offered& offered) {
     return taken;
 }
 
+/// Offers the triangle and, where the ray passes a side of it within rounding errors, its
+/// neighbours, in the order in which Tachyon tests: it may find the ray in one, in both or in none.
+bool offer_found(const Stand& stand, const ovc_ray& asked, const ovc_hit& hit, ray& r,
+                 Offered& offered) {
+    const auto& triangle = *reinterpret_cast<const Triangle*>(stand.triangles[hit.prim]);
+    const RaysBeside rays = rays_beside(asked, hit, triangle);
+    if (rays.count == 0)
+        return offer_all(stand, hit.prim, r, offered);
+    std::set<uint32_t> prims = {hit.prim};
+    for (const ovc_ray& beside : rays)
+        if (const std::optional<ovc_hit> other = stand.rays->nearest(beside, hit.prim))
+            prims.insert(other->prim);
+    bool taken = false;
+    for (const uint32_t prim : prims)
+        if (!offered.has(prim))
+            taken = offer_all(stand, prim, r, offered) || taken;
+    return taken;
+}
+
 /// Offers the triangles on the ray, nearest first, until Tachyon takes one.
 void ask(const Stand& stand, ray& r) {
     ovc_ray asked{{r.o.x, r.o.y, r.o.z}, EPSILON, {r.d.x, r.d.y, r.d.z}, r.maxdist};
@@ -76,7 +97,7 @@ void ask(const Stand& stand, ray& r) {
             asked.t_min = std::nextafter(asked.t_min, std::numeric_limits<double>::infinity());
             continue;
         }
-        if (offer_all(stand, hit->prim, r, offered))
+        if (offer_found(stand, asked, *hit, r, offered))
             return;
     }
 }
