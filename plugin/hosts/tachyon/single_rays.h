@@ -2,22 +2,20 @@
 // Triangles in a scene of Overcast's, asked ray by ray from any thread.
 #pragma once
 
+#include "plugin/hosts/tachyon/corners.h"
 #include "plugin/hosts/tachyon/settings.h"
 #include "plugin/overcast.h"
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
-#include <vector>
 
 namespace ovc::tachyon {
 
 class SingleRays {
 public:
-    /// corners: three floats each, three corners a triangle, kept as they are. Throws
-    /// std::runtime_error with Overcast's sentence.
-    SingleRays(std::vector<float> corners, const Settings& settings);
+    /// Keeps the corners. Throws std::runtime_error with Overcast's sentence.
+    SingleRays(Corners corners, const Settings& settings);
     ~SingleRays();
     SingleRays(const SingleRays&) = delete;
     SingleRays& operator=(const SingleRays&) = delete;
@@ -26,14 +24,14 @@ public:
     /// Throws as the constructor does.
     std::optional<ovc_hit> nearest(const ovc_ray& ray, uint32_t skip) const;
 
-    std::span<const float> corners() const { return corners_; }
+    const Corners& corners() const { return corners_; }
     ovc_statistics statistics() const;
     std::string renderer() const;
 
 private:
     void check(ovc_result result) const;
 
-    std::vector<float> corners_;
+    Corners corners_;
     const ovc_api* api_;
     ovc_device device_ = nullptr;
     ovc_scene scene_ = nullptr;

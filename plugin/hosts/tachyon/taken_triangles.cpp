@@ -129,42 +129,34 @@ void free_stand(void* self) {
 object_methods stand_methods = {intersect, /* normal: of Tachyon's triangle */ nullptr, bounds,
                                 free_stand};
 
-/// The corners where floats hold them; else nothing.
-std::optional<std::array<float, 9>> float_corners(const Triangle& t) {
-    const flt exact[9] = {t.v0.x,
-                          t.v0.y,
-                          t.v0.z,
-                          t.v0.x + t.edge1.x,
-                          t.v0.y + t.edge1.y,
-                          t.v0.z + t.edge1.z,
-                          t.v0.x + t.edge2.x,
-                          t.v0.y + t.edge2.y,
-                          t.v0.z + t.edge2.z};
-    std::array<float, 9> corners;
-    for (size_t i = 0; i < 9; ++i) {
-        corners[i] = float(exact[i]);
-        if (flt(corners[i]) != exact[i])
-            return std::nullopt;
+vector sum(const vector& a, const vector& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+/// As floats where they are none but floats, as doubles otherwise.
+Corners corners_of(const std::vector<object*>& triangles) {
+    std::vector<double> exact;
+    exact.reserve(9 * triangles.size());
+    for (const object* o : triangles) {
+        const auto* t = reinterpret_cast<const Triangle*>(o);
+        for (const vector& v : {t->v0, sum(t->v0, t->edge1), sum(t->v0, t->edge2)})
+            exact.insert(exact.end(), {v.x, v.y, v.z});
     }
-    return corners;
+    if (std::ranges::all_of(exact, [](double x) { return double(float(x)) == x; }))
+        return std::vector<float>(exact.begin(), exact.end());
+    return exact;
 }
 
 struct Objects {
-    std::vector<object*> taken;  // triangles whose corners floats hold, as Tachyon lists them
-    std::vector<object*> others; // the rest of the list
-    size_t left = 0;             // triangles among the others
+    std::vector<object*> triangles; // as Tachyon lists them
+    std::vector<object*> others;
 };
 
 Objects sort_objects(const scenedef& scene, Intersect triangle_intersect) {
     Objects sorted;
     for (object* o = scene.objgroup.boundedobj; o; o = static_cast<object*>(o->nextobj)) {
         const bool triangle = o->methods->intersect == triangle_intersect;
-        if (triangle && float_corners(*reinterpret_cast<const Triangle*>(o))) {
-            sorted.taken.push_back(o);
-            continue;
-        }
-        sorted.others.push_back(o);
-        sorted.left += triangle;
+        (triangle ? sorted.triangles : sorted.others).push_back(o);
     }
     return sorted;
 }
@@ -190,27 +182,21 @@ void relink(scenedef& scene, Stand& stand, const std::vector<object*>& others) {
 
 } // namespace
 
-Taken take_triangles(scenedef& scene, Intersect triangle_intersect, const Settings& settings) {
+const SingleRays* take_triangles(scenedef& scene, Intersect triangle_intersect,
+                                 const Settings& settings) {
     Objects objects = sort_objects(scene, triangle_intersect);
-    Taken taken{objects.taken.size(), objects.left, nullptr};
-    if (objects.taken.empty())
-        return taken;
+    if (objects.triangles.empty())
+        return nullptr;
     auto stand = std::make_unique<Stand>();
     stand->methods = &stand_methods;
-    stand->triangles = std::move(objects.taken);
+    stand->triangles = std::move(objects.triangles);
     order_as_tested(scene, stand->triangles, stand->triangles.size() + objects.others.size());
-    std::vector<float> corners;
-    corners.reserve(9 * stand->triangles.size());
-    for (const object* o : stand->triangles) {
-        const auto nine = float_corners(*reinterpret_cast<const Triangle*>(o));
-        corners.insert(corners.end(), nine->begin(), nine->end());
-    }
-    stand->rays = std::make_unique<SingleRays>(std::move(corners), settings);
+    stand->rays = std::make_unique<SingleRays>(corners_of(stand->triangles), settings);
     if (stand->rays->statistics().twins > 0)
         stand->twins = TwinSets(stand->rays->corners());
-    taken.rays = stand->rays.get();
+    const SingleRays* rays = stand->rays.get();
     relink(scene, *stand.release(), objects.others);
-    return taken;
+    return rays;
 }
 
 } // namespace ovc::tachyon

@@ -7,32 +7,41 @@
 
 namespace ovc::tachyon {
 
-using Corner = std::array<float, 3>;
+template <class Number>
+using Sorted = std::array<std::array<Number, 3>, 3>;
 
-static std::array<Corner, 3> sorted_corners(std::span<const float> corners, size_t prim) {
-    std::array<Corner, 3> sorted;
+template <class Number>
+static Sorted<Number> sorted_corners(const std::vector<Number>& corners, size_t prim) {
+    Sorted<Number> sorted;
     for (size_t i = 0; i < 9; ++i)
-        sorted[i / 3][i % 3] = corners[9 * prim + i] + 0.0f; // -0 becomes 0
+        sorted[i / 3][i % 3] = corners[9 * prim + i] + Number(0); // -0 becomes 0
     std::ranges::sort(sorted);
     return sorted;
 }
 
-TwinSets::TwinSets(std::span<const float> corners) {
-    struct Keyed {
-        std::array<Corner, 3> key;
-        uint32_t prim;
-        auto operator<=>(const Keyed&) const = default;
-    };
-    std::vector<Keyed> all(corners.size() / 9);
+/// Calls found(prim, twin) for each triangle that has a smaller twin, the smallest of its set.
+template <class Number, class Found>
+static void find_twins(const std::vector<Number>& corners, Found&& found) {
+    std::vector<std::pair<Sorted<Number>, uint32_t>> all(corners.size() / 9);
     for (size_t prim = 0; prim < all.size(); ++prim)
         all[prim] = {sorted_corners(corners, prim), uint32_t(prim)};
-    std::ranges::sort(all, [](const Keyed& a, const Keyed& b) { return a < b; });
+    std::ranges::sort(all, [](const auto& a, const auto& b) { return a < b; });
     for (size_t first = 0, i = 1; i < all.size(); ++i) {
-        if (all[i].key == all[first].key)
-            others_[all[first].prim].push_back(all[i].prim);
+        if (all[i].first == all[first].first)
+            found(all[first].second, all[i].second);
         else
             first = i;
     }
+}
+
+TwinSets::TwinSets(const Corners& corners) {
+    std::visit(
+        [&](const auto& numbers) {
+            find_twins(numbers, [&](uint32_t smallest, uint32_t twin) {
+                others_[smallest].push_back(twin);
+            });
+        },
+        corners);
 }
 
 std::span<const uint32_t> TwinSets::of(uint32_t prim) const {

@@ -3,6 +3,8 @@
 // renderer may give each another look.
 #pragma once
 
+#include "plugin/hosts/tachyon/corners.h"
+
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -13,8 +15,8 @@ namespace ovc::tachyon {
 class TwinSets {
 public:
     TwinSets() = default;
-    /// corners: three floats each, three corners a triangle. Corners may be in any order.
-    explicit TwinSets(std::span<const float> corners);
+    /// The corners of two twins may be in any order.
+    explicit TwinSets(const Corners& corners);
 
     /// The others of the set whose smallest is `prim`, ascending; none where it has no twins.
     std::span<const uint32_t> of(uint32_t prim) const;

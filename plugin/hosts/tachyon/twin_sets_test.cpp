@@ -11,19 +11,21 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 TEST(TwinSets, SmallestHasAllOthersInAnyOrderOfCorners) {
-    const std::vector<float> corners = {
-        9, 9, 9, 1, 0, 0, 0,     1, 0, //
-        0, 0, 0, 1, 0, 0, 0,     1, 0, // the smallest of a set of three
-        1, 0, 0, 0, 1, 0, 0,     0, 0, // turned
-        0, 0, 0, 1, 0, 0, 0,     1, 1, // almost
-        0, 1, 0, 1, 0, 0, -0.0f, 0, 0, // wound the other way, and a negative zero
-        9, 9, 9, 0, 1, 0, 1,     0, 0,
+    const std::vector<double> corners = {
+        9, 9, 9, 1, 0, 0, 0,    1, 0, //
+        0, 0, 0, 1, 0, 0, 0,    1, 0, // the smallest of a set of three
+        1, 0, 0, 0, 1, 0, 0,    0, 0, // turned
+        0, 0, 0, 1, 0, 0, 0,    1, 1, // almost
+        0, 1, 0, 1, 0, 0, -0.0, 0, 0, // wound the other way, and a negative zero
+        9, 9, 9, 0, 1, 0, 1,    0, 0,
     };
-    const TwinSets twins(corners);
-    EXPECT_THAT(twins.of(0), ElementsAre(5));
-    EXPECT_THAT(twins.of(1), ElementsAre(2, 4));
-    EXPECT_THAT(twins.of(2), IsEmpty());
-    EXPECT_THAT(twins.of(3), IsEmpty());
+    for (const TwinSets& twins :
+         {TwinSets(corners), TwinSets(std::vector<float>(corners.begin(), corners.end()))}) {
+        EXPECT_THAT(twins.of(0), ElementsAre(5));
+        EXPECT_THAT(twins.of(1), ElementsAre(2, 4));
+        EXPECT_THAT(twins.of(2), IsEmpty());
+        EXPECT_THAT(twins.of(3), IsEmpty());
+    }
 }
 
 TEST(TwinSets, NoTrianglesHaveNoTwins) {
