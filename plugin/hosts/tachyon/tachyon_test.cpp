@@ -119,6 +119,10 @@ TEST_F(TachyonHost, OfCoincidingTrianglesTheOneThatTachyonSeesIsSeen) {
     expect_same(write("gridded.dat", scene(pair + kBalls)));
     const std::string glass = above + "glass\n" + turned + "glass\n";
     expect_same(write("filtered_twice.dat", scene(glass + kBalls)));
+    std::string pane;
+    for (int i = 0; i < 6; ++i)
+        pane += glass;
+    expect_same(write("filtered_often.dat", scene(pane + kBalls)));
 }
 
 // A camera above a sheet whose sides run straight away from it: rays along them pass within a

@@ -38,7 +38,7 @@ bool offer(const object* triangle, ray& r) {
     return r.maxdist < before;
 }
 
-/// The triangles last offered to a ray.
+/// The triangles last offered to a ray, of twins the smallest.
 class Offered {
 public:
     bool has(uint32_t prim) const { return std::ranges::find(last_, prim) != last_.end(); }
@@ -54,10 +54,8 @@ private:
 bool offer_all(const Stand& stand, uint32_t prim, ray& r, Offered& offered) {
     bool taken = offer(stand.triangles[prim], r);
     offered.add(prim);
-    for (const uint32_t twin : stand.twins.of(prim)) {
+    for (const uint32_t twin : stand.twins.of(prim))
         taken = offer(stand.triangles[twin], r) || taken;
-        offered.add(twin);
-    }
     return taken;
 }
 
@@ -67,12 +65,13 @@ bool offer_found(const Stand& stand, const ovc_ray& asked, const ovc_hit& hit, r
                  Offered& offered) {
     const auto& triangle = *reinterpret_cast<const Triangle*>(stand.triangles[hit.prim]);
     const RaysBeside rays = rays_beside(asked, hit, triangle);
+    const uint32_t found = stand.twins.smallest(hit.prim);
     if (rays.count == 0)
-        return offer_all(stand, hit.prim, r, offered);
-    std::set<uint32_t> prims = {hit.prim};
+        return offer_all(stand, found, r, offered);
+    std::set<uint32_t> prims = {found};
     for (const ovc_ray& beside : rays)
         if (const std::optional<ovc_hit> other = stand.rays->nearest(beside, hit.prim))
-            prims.insert(other->prim);
+            prims.insert(stand.twins.smallest(other->prim));
     bool taken = false;
     for (const uint32_t prim : prims)
         if (!offered.has(prim))
@@ -91,7 +90,7 @@ void ask(const Stand& stand, ray& r) {
             return;
         asked.t_min = std::max(asked.t_min, hit->t);
         skip = hit->prim;
-        if (offered.has(hit->prim)) {
+        if (offered.has(stand.twins.smallest(hit->prim))) {
             // At an edge two are equally near, t is rounded, and whoever skips a triangle is
             // shown its twin: one may come again.
             asked.t_min = std::nextafter(asked.t_min, std::numeric_limits<double>::infinity());

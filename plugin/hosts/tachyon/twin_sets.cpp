@@ -39,6 +39,7 @@ TwinSets::TwinSets(const Corners& corners) {
         [&](const auto& numbers) {
             find_twins(numbers, [&](uint32_t smallest, uint32_t twin) {
                 others_[smallest].push_back(twin);
+                smallest_[twin] = smallest;
             });
         },
         corners);
@@ -49,6 +50,13 @@ std::span<const uint32_t> TwinSets::of(uint32_t prim) const {
         return {};
     const auto found = others_.find(prim);
     return found == others_.end() ? std::span<const uint32_t>() : found->second;
+}
+
+uint32_t TwinSets::smallest(uint32_t prim) const {
+    if (smallest_.empty())
+        return prim;
+    const auto found = smallest_.find(prim);
+    return found == smallest_.end() ? prim : found->second;
 }
 
 } // namespace ovc::tachyon

@@ -21,8 +21,12 @@ public:
     /// The others of the set whose smallest is `prim`, ascending; none where it has no twins.
     std::span<const uint32_t> of(uint32_t prim) const;
 
+    /// The smallest of the set that `prim` is in; `prim` where it has no twins.
+    uint32_t smallest(uint32_t prim) const;
+
 private:
     std::unordered_map<uint32_t, std::vector<uint32_t>> others_; // by smallest
+    std::unordered_map<uint32_t, uint32_t> smallest_;            // of all but the smallest
 };
 
 } // namespace ovc::tachyon

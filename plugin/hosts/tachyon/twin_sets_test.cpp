@@ -25,6 +25,10 @@ TEST(TwinSets, SmallestHasAllOthersInAnyOrderOfCorners) {
         EXPECT_THAT(twins.of(1), ElementsAre(2, 4));
         EXPECT_THAT(twins.of(2), IsEmpty());
         EXPECT_THAT(twins.of(3), IsEmpty());
+        EXPECT_EQ(twins.smallest(5), 0u);
+        EXPECT_EQ(twins.smallest(4), 1u);
+        EXPECT_EQ(twins.smallest(1), 1u);
+        EXPECT_EQ(twins.smallest(3), 3u);
     }
 }
 
