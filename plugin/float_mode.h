@@ -18,12 +18,15 @@ using FloatMode = unsigned;
 inline FloatMode float_mode() {
     return _mm_getcsr();
 }
+/// Looking is cheaper than setting, and mostly there is nothing to set.
 inline void set_float_mode(FloatMode mode) {
-    _mm_setcsr(mode);
+    if (_mm_getcsr() != mode)
+        _mm_setcsr(mode);
 }
 inline void set_default_float_mode() {
-    constexpr FloatMode kRoundToNearestAllMasked = 0x1f80;
-    _mm_setcsr(kRoundToNearestAllMasked);
+    constexpr FloatMode kRoundToNearestAllMasked = 0x1f80, kFlags = 0x3f;
+    if ((_mm_getcsr() & ~kFlags) != kRoundToNearestAllMasked)
+        _mm_setcsr(kRoundToNearestAllMasked);
 }
 #else
 using FloatMode = std::fenv_t;

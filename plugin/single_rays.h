@@ -50,26 +50,26 @@ public:
         /// Answers a ray. Needs a structure that has_cpu_tree().
         void answer(SingleRay& asked) {
             const FasterWay::Use use = rays_.way_.begin();
-            if (use.way == kGathered && rays_.gather(*structure_, asked))
-                add_one(shard_.gathered);
-            else
-                answer_on_cpu(asked);
-            rays_.way_.end(use, shard_.asked() % 64 == 0);
+            const uint64_t before = use.way == kGathered && rays_.gather(*structure_, asked)
+                                        ? add_one(shard_.gathered)
+                                        : answer_on_cpu(asked);
+            rays_.way_.end(use, /* may_look= */ before % 64 == 0);
         }
 
     private:
-        void answer_on_cpu(SingleRay& asked) {
-            add_one(asked.any_hit ? shard_.occlusion : shard_.nearest);
+        uint64_t answer_on_cpu(SingleRay& asked) {
             if (!asked.ray.valid())
                 add_one(shard_.invalid);
-            if (asked.any_hit)
+            else if (asked.any_hit)
                 asked.occluded = structure_->occluded_on_cpu(asked.ray, asked.skip);
             else
                 asked.hit = structure_->nearest_on_cpu(asked.ray, asked.skip);
+            return add_one(asked.any_hit ? shard_.occlusion : shard_.nearest);
         }
 
-        static void add_one(std::atomic<uint64_t>& count) {
-            count.fetch_add(1, std::memory_order_relaxed);
+        /// Returns the count before.
+        static uint64_t add_one(std::atomic<uint64_t>& count) {
+            return count.fetch_add(1, std::memory_order_relaxed);
         }
 
         SingleRays& rays_;

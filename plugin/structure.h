@@ -66,8 +66,8 @@ public:
         return intersect(rays, skip, hits);
     }
     virtual bool takes_notes() const { return false; }
-    /// Whether single rays can be answered on the CPU, from any thread and beside all other calls:
-    /// the same bits as intersect() and occluded(), those of certified precision.
+    /// Whether single rays, valid ones, can be answered on the CPU, from any thread and beside all
+    /// other calls: the same bits as intersect() and occluded(), those of certified precision.
     virtual bool has_cpu_tree() const { return false; }
     virtual Hit nearest_on_cpu(const Ray&, TriangleId) const { return {}; }
     virtual bool occluded_on_cpu(const Ray&, TriangleId) const { return false; }

@@ -425,8 +425,6 @@ bool TwoLevel::occluded_on_cpu(const Ray& ray, TriangleId skip) const {
 
 template <bool kAnyHit>
 Hit TwoLevel::on_cpu(const Ray& ray, TriangleId skip) const {
-    if (!ray.valid())
-        return {};
     return arbitrate<kAnyHit>(soup_, numbers_, twins_, level1_, pages_, PreparedRay(ray, skip));
 }
 
