@@ -132,7 +132,7 @@ TEST_F(Calls, SingleRaysHaveTheSameBitsWhicheverWayTheyGo) {
     });
     auto statistics = sized<ovc_statistics>();
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-    while (statistics.gathered_rays < 500 && std::chrono::steady_clock::now() < end) {
+    while (statistics.gathered_rays < 20 && std::chrono::steady_clock::now() < end) {
         on_threads(64, 6400, [&](size_t k) {
             const size_t i = k % rays.size();
             ovc_hit hit{};
@@ -148,7 +148,7 @@ TEST_F(Calls, SingleRaysHaveTheSameBitsWhicheverWayTheyGo) {
     enough = true;
     batches.join();
     EXPECT_EQ(wrong, 0u);
-    EXPECT_GE(statistics.gathered_rays, 500u);
+    EXPECT_GE(statistics.gathered_rays, 20u);
     EXPECT_EQ(statistics.single_rays, asked) << "none is lost";
     EXPECT_LT(statistics.gathered_rays, statistics.single_rays);
 }
