@@ -85,13 +85,14 @@ inline void delete_program(GLuint id) {
 using Shader = Handle<delete_shader>;
 using Program = Handle<delete_program>;
 
-/// Immutable storage, filled by sub-buffer updates.
+/// Immutable storage, filled by sub-buffer updates or through a map.
 class Buffer {
 public:
     Buffer(Ledger& ledger, uint64_t bytes, std::string_view label)
         : handle_(create()), entry_(ledger, bytes) {
         if (ledger.driver_has_room())
-            glNamedBufferStorage(id(), GLsizeiptr(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
+            glNamedBufferStorage(id(), GLsizeiptr(bytes), nullptr,
+                                 GL_DYNAMIC_STORAGE_BIT | GL_MAP_WRITE_BIT);
         glObjectLabel(GL_BUFFER, id(), GLsizei(label.size()), label.data());
     }
     GLuint id() const { return handle_.id(); }

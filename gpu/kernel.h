@@ -24,6 +24,7 @@ struct ShaderConfig {
     bool any_hit = false;
     bool certify = true;
     bool linked = false;
+    bool links = false;
     bool tell_active = false;
     uint32_t stack_depth = 16;
     bool stack_registers = true;

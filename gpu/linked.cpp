@@ -12,6 +12,8 @@
 namespace ovc {
 namespace {
 
+constexpr uint32_t kNoLo = 0xffff; // of a missing child
+
 /// Boxes that are in grid coordinates already.
 struct Counted {
     uint32_t lo(const Boxf& box, int axis) const { return uint32_t(box.lo[axis]); }
@@ -41,21 +43,22 @@ GridHeader header_of(const Page& page) {
     return {vector(0), vector(1)};
 }
 
-bool is_pair(const Page& page, uint64_t unit) {
-    return page.view()[unit * OVC_UNIT_TEXELS + 3].w == OVC_PAIR;
-}
-
 Page shifted(const Page& page, uint32_t units) {
     Page moved;
-    moved.texels.assign(page.view().begin(), page.view().end());
+    moved.texels.resize(page.view().size());
     moved.depth = page.depth;
-    if (moved.texels.empty())
-        return moved;
-    moved.texels[2].x += units;
-    for (uint64_t unit = OVC_ROOT_UNIT; unit < moved.units(); ++unit)
-        if (!is_pair(moved, unit))
-            moved.texels[unit * OVC_UNIT_TEXELS + 3].x += units;
+    copy_relocated(page, units, moved.texels);
     return moved;
+}
+
+/// A tree over the boxes of all pages; put(leaf, unit) writes its lowest units.
+template <class Put>
+Page tree_over(std::span<const Page> pages, const Put& put) {
+    std::vector<Boxf> boxes;
+    for (const Page& page : pages)
+        boxes.push_back(root_box(page));
+    const std::vector<BvhNode> nodes = build_bvh(boxes, nullptr);
+    return Packer(nodes, header_of(pages[0]), Counted(), put, nullptr).pack();
 }
 
 } // namespace
@@ -102,9 +105,6 @@ std::optional<LinkedPages> link_pages(const Level1& level1, std::span<const Page
         linked.depth = deepest;
     } else {
         linked.top_unit = uint32_t(units);
-        std::vector<Boxf> boxes;
-        for (const Page& page : pages)
-            boxes.push_back(root_box(page));
         const auto put = [&](uint32_t leaf, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
             const auto root =
                 pages[leaf].view().subspan<OVC_ROOT_UNIT * OVC_UNIT_TEXELS, OVC_UNIT_TEXELS>();
@@ -113,14 +113,61 @@ std::optional<LinkedPages> link_pages(const Level1& level1, std::span<const Page
             unit[3].x += linked.first_unit[leaf] - linked.top_unit;
             unit[3].y = leaf + 1;
         };
-        const std::vector<BvhNode> nodes = build_bvh(boxes, nullptr);
-        linked.top = Packer(nodes, header_of(pages[0]), Counted(), put, nullptr).pack();
+        linked.top = tree_over(pages, put);
         linked.depth = linked.top.depth + deepest;
     }
     units += linked.top.units();
     if (units >= OVC_MAX_UNITS || units * OVC_UNIT_BYTES > pool_bytes)
         return {};
     return linked;
+}
+
+std::optional<LinkTree> make_link_tree(const Level1& level1, std::span<const Page> pages,
+                                       uint64_t pool_bytes) {
+    if (!level1.shares_frame || pages.empty() ||
+        pool_bytes / OVC_UNIT_BYTES >= uint64_t(OVC_MAX_UNITS))
+        return {};
+    LinkTree tree;
+    uint64_t largest = 0;
+    for (const Page& page : pages) {
+        tree.depth = std::max(tree.depth, page.depth);
+        largest = std::max(largest, page.bytes());
+    }
+    tree.top = tree_over(pages, [&](uint32_t leaf, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
+        const Boxf box = root_box(pages[leaf]);
+        for (int axis = 0; axis < 3; ++axis)
+            unit[size_t(axis)] = {uint32_t(box.lo[axis]) | kNoLo << 16, kNoLo | kNoLo << 16,
+                                  uint32_t(box.hi[axis]), 0};
+        unit[3] = {OVC_LEADS_NOWHERE, leaf + 1, 0, 0};
+    });
+    tree.depth += tree.top.depth + 1;
+    if (tree.top.bytes() + largest > pool_bytes)
+        return {};
+    tree.link_unit.resize(pages.size());
+    for (uint32_t unit = OVC_ROOT_UNIT; unit < tree.top.units(); ++unit)
+        if (const uint32_t leaf = tree.top.view()[size_t(unit) * OVC_UNIT_TEXELS + 3].y)
+            tree.link_unit[leaf - 1] = unit;
+    return tree;
+}
+
+void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to) {
+    constexpr size_t kGrain = 4096; // units a task
+    const std::span<const uvec4> from = page.view();
+    assert(to.size() == from.size());
+    parallel_for(page.units(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t unit = begin; unit < end; ++unit) {
+            const uvec4* const source = from.data() + unit * OVC_UNIT_TEXELS;
+            uvec4* const texel = to.data() + unit * OVC_UNIT_TEXELS;
+            texel[0] = source[0];
+            texel[1] = source[1];
+            texel[2] = source[2];
+            uvec4 last = source[3];
+            last.x += last.w == OVC_PAIR || unit < OVC_ROOT_UNIT ? 0 : first_unit;
+            texel[3] = last;
+        }
+    });
+    if (!from.empty())
+        to[2].x = from[2].x + first_unit;
 }
 
 Page relocated(const Page& page, uint32_t first_unit, uint32_t leaf) {

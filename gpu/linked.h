@@ -31,6 +31,14 @@ struct LinkedPages {
     uint64_t moved = 0;    // pages in the pool
 };
 
+/// Where not all pages are in the pool: a tree that lies at its first unit, whose lowest nodes are
+/// links to pages (shaders/layout.h). A ray meets them by t, and waits for those that lead nowhere.
+struct LinkTree {
+    Page top;
+    std::vector<uint32_t> link_unit; // of the pool, per page
+    uint32_t depth = 0;              // nodes on the longest way down
+};
+
 /// Bytes that linked pages of `level2_bytes` take in the pool, at most.
 uint64_t most_linked_bytes(uint64_t level2_bytes, uint64_t leaves);
 
@@ -38,6 +46,15 @@ uint64_t most_linked_bytes(uint64_t level2_bytes, uint64_t leaves);
 /// units cannot be counted in a stack word.
 std::optional<LinkedPages> link_pages(const Level1& level1, std::span<const Page> pages,
                                       uint64_t pool_bytes);
+
+/// The tree, all its links leading nowhere; none where leaves do not share a frame, the pool has no
+/// room for the largest page beside it, or its units cannot be counted in a stack word.
+std::optional<LinkTree> make_link_tree(const Level1& level1, std::span<const Page> pages,
+                                       uint64_t pool_bytes);
+
+/// Writes a page as it must be where it begins at `first_unit` and units count from the pool's
+/// first; on all cores. to: as large as the page.
+void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to);
 
 /// The page of a leaf, or the top, as it must be where it begins at `first_unit`: its units count
 /// from the pool's first, and its root says whose it is.

@@ -94,9 +94,44 @@ TEST_P(Linked, TakeNoMoreThanTold) {
     EXPECT_FALSE(link_pages(built.level1, built.pages, bytes - 1)) << "not all pages fit";
 }
 
+constexpr uint64_t kRoom = 1 << 28;
+
+/// A link holds the box of its page's root and leads nowhere, and there is one for each page.
+TEST_P(Linked, TheTreeHasALinkForEachPage) {
+    const Built built = build(test::closed_grid(24), GetParam(), /* shared= */ true);
+    const auto tree = make_link_tree(built.level1, built.pages, kRoom);
+    ASSERT_TRUE(tree);
+    ASSERT_EQ(tree->link_unit.size(), built.pages.size());
+    std::vector<uint32_t> units = tree->link_unit;
+    std::sort(units.begin(), units.end());
+    EXPECT_EQ(std::unique(units.begin(), units.end()), units.end());
+    for (uint32_t leaf = 0; leaf < built.pages.size(); ++leaf) {
+        const auto link = tree->top.view().subspan(size_t(tree->link_unit[leaf]) * OVC_UNIT_TEXELS);
+        EXPECT_EQ(link[3], uvec4(OVC_LEADS_NOWHERE, leaf + 1, 0, 0));
+        for (size_t axis = 0; axis < 3; ++axis) {
+            const uvec4 root = built.pages[leaf].view()[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + axis];
+            const uint32_t lo = link[axis].x & 0xffff, hi = link[axis].z & 0xffff;
+            EXPECT_LE(lo, std::min(root.x & 0xffff, root.x >> 16));
+            EXPECT_GE(hi, std::max(root.z & 0xffff, root.z >> 16));
+            EXPECT_EQ(link[axis].x >> 16, 0xffffu) << "a second child";
+        }
+    }
+}
+
+TEST(LinkedPages, NeedRoomForThePageBesideTheTree) {
+    const Built built = build(test::closed_grid(24), 9, /* shared= */ true);
+    uint64_t largest = 0;
+    for (const Page& page : built.pages)
+        largest = std::max(largest, page.bytes());
+    const uint64_t top = make_link_tree(built.level1, built.pages, kRoom)->top.bytes();
+    EXPECT_TRUE(make_link_tree(built.level1, built.pages, top + largest));
+    EXPECT_FALSE(make_link_tree(built.level1, built.pages, top + largest - 1));
+}
+
 TEST(LinkedPages, NeedAFrameThatAllLeavesShare) {
     const Built built = build(test::closed_grid(24), 9, /* shared= */ false);
     EXPECT_FALSE(link_pages(built.level1, built.pages, 1u << 30));
+    EXPECT_FALSE(make_link_tree(built.level1, built.pages, kRoom));
 }
 
 TEST(DoubtfulShare, GrowsAsTrianglesShrinkInTheFrame) {

@@ -33,6 +33,20 @@ bool near(const vec3& a, const vec3& b) {
     return std::max({apart.x, apart.y, apart.z}) < kNear;
 }
 
+template <class At>
+bool most_near(size_t count, At&& at) {
+    constexpr size_t kStep = 64;
+    size_t pairs = 0, together = 0;
+    for (size_t i = 0; i + 1 < count; i += kStep) {
+        const LocalRay &a = at(i), &b = at(i + 1);
+        if (a.t_end < 0 || b.t_end < 0)
+            continue;
+        pairs += 1;
+        together += near(a.dir, b.dir) && near(a.org, b.org);
+    }
+    return 2 * together >= pairs;
+}
+
 double largest(const dvec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
@@ -66,16 +80,11 @@ LocalRay local_ray(const Leaf& leaf, const Ray& ray, uint32_t skip, bool any_hit
 }
 
 bool coherent(std::span<const LocalRay> rays) {
-    constexpr size_t kStep = 64;
-    size_t pairs = 0, together = 0;
-    for (size_t i = 0; i + 1 < rays.size(); i += kStep) {
-        const LocalRay &a = rays[i], &b = rays[i + 1];
-        if (a.t_end < 0 || b.t_end < 0)
-            continue;
-        pairs += 1;
-        together += near(a.dir, b.dir) && near(a.org, b.org);
-    }
-    return 2 * together >= pairs;
+    return most_near(rays.size(), [&](size_t i) -> const LocalRay& { return rays[i]; });
+}
+
+bool coherent(std::span<const ResumedRay> rays) {
+    return most_near(rays.size(), [&](size_t i) -> const LocalRay& { return rays[i].ray; });
 }
 
 } // namespace ovc

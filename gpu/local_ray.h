@@ -22,6 +22,14 @@ struct LocalRay {
 };
 static_assert(sizeof(LocalRay) == OVC_LOCAL_RAY_TEXELS * 16);
 
+/// Where pages hang under links.
+struct ResumedRay {
+    LocalRay ray;
+    uint32_t done_unit; // of the link that it waited for, or 0
+    uint32_t zeros[3];
+};
+static_assert(sizeof(ResumedRay) == OVC_RESUMED_RAY_TEXELS * 16);
+
 /// How to come back: t of the ray = enter + local t / speed.
 struct LocalTime {
     double enter = 0;
@@ -34,5 +42,6 @@ LocalRay local_ray(const Leaf& leaf, const Ray& ray, uint32_t skip, bool any_hit
 /// Whether most neighbours in the sequence go nearly the same way: their directions differ by less
 /// than 1/16, and they begin nearer to each other than 1/16 of the frame. Looks at a sample.
 bool coherent(std::span<const LocalRay> rays);
+bool coherent(std::span<const ResumedRay> rays);
 
 } // namespace ovc

@@ -86,7 +86,7 @@ TEST(LocalRay, NeighboursThatGoTheSameWayAreCoherent) {
     for (LocalRay& ray : scattered)
         ray.t_end = OVC_NO_RAY;
     EXPECT_TRUE(coherent(scattered)) << "none at all";
-    EXPECT_TRUE(coherent({}));
+    EXPECT_TRUE(coherent(std::span<const LocalRay>()));
 }
 
 } // namespace

@@ -21,7 +21,8 @@ struct Slot {
 /// needed.
 class Residency {
 public:
-    Residency(uint64_t bytes, uint64_t alignment, size_t leaves);
+    /// Pages lie in [begin, end) of the pool, in bytes.
+    Residency(uint64_t end, uint64_t alignment, size_t leaves, uint64_t begin = 0);
 
     bool resident(uint32_t leaf) const { return slots_[leaf].bytes != 0; }
     const Slot& slot(uint32_t leaf) const { return slots_[leaf]; }
@@ -47,7 +48,8 @@ private:
     };
     Range cheapest_range(uint64_t bytes) const;
 
-    uint64_t bytes_;
+    uint64_t begin_;
+    uint64_t end_;
     uint64_t alignment_;
     uint64_t clock_ = 0;
     std::vector<Slot> slots_;
@@ -58,14 +60,15 @@ private:
 /// The buffer and its books. Needs the context current.
 class Pool {
 public:
-    Pool(Ledger& ledger, uint64_t bytes, size_t leaves)
-        : buffer_(ledger, bytes, "page pool"), residency_(bytes, OVC_UNIT_BYTES, leaves) {}
+    /// Pages come behind the first `begin` bytes.
+    Pool(Ledger& ledger, uint64_t bytes, size_t leaves, uint64_t begin = 0)
+        : buffer_(ledger, bytes, "page pool"), residency_(bytes, OVC_UNIT_BYTES, leaves, begin) {}
 
     Residency& residency() { return residency_; }
     const Residency& residency() const { return residency_; }
 
-    /// Writes the page at `offset`, in bytes.
-    void upload(uint64_t offset, const Page& page) const;
+    /// Writes the page at `offset`, in bytes, its units counted from `first_unit` on.
+    void upload(uint64_t offset, const Page& page, uint32_t first_unit = 0) const;
 
     const gl::Buffer& buffer() const { return buffer_; }
 

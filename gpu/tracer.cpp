@@ -66,12 +66,16 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       page_data_(pages),
       software_(device.is_software),
       linked_(link_pages(level1, pages, plan.pool_bytes)),
+      links_(linked_ || !options.certify ? std::optional<LinkTree>()
+                                         : make_link_tree(level1, pages, plan.pool_bytes)),
       scene_(scene_leaf(level1.bounds)),
-      stack_depth_(linked_ ? stack_depth(linked_->depth) : stack_depth(pages)),
+      stack_depth_(linked_  ? stack_depth(linked_->depth)
+                   : links_ ? stack_depth(links_->depth)
+                            : stack_depth(pages)),
       stack_words_(software_ ? std::min(stack_depth_, kMostStackWordsInSoftware) : stack_depth_),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
       level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
-      pool_(*ledger_, plan.pool_bytes, pages.size()) {
+      pool_(*ledger_, plan.pool_bytes, pages.size(), links_ ? links_->top.bytes() : 0) {
     if (options.compute)
         words_.emplace(*ledger_, plan.batch_rays);
     else
@@ -91,6 +95,8 @@ Result<Done> Tracer::set_up() {
                          table.data());
     level1_.show(level1_buffer_, GL_RGBA32UI, 0, level1_buffer_.bytes());
     rays_.show(ray_buffer_, GL_RGBA32UI, 0, ray_buffer_.bytes());
+    if (links_)
+        pool_.upload(0, links_->top);
     pages_.show(pool_.buffer(), GL_RGBA32UI, 0, pool_.buffer().bytes());
     if (active_buffer_) {
         active_.show(*active_buffer_, GL_R32UI, 0, active_buffer_->bytes());
@@ -114,11 +120,17 @@ Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const Pas
     return tracer;
 }
 
-/// Tells the kernel, by a texel of level 1, at which unit of the pool a page is now.
+/// Tells the kernel, by a link or a texel of level 1, at which unit of the pool a page is now.
 void Tracer::say_where(uint32_t leaf) {
-    const uint32_t unit = resident(leaf)
-                              ? uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES)
-                              : OVC_NOT_RESIDENT;
+    const uint32_t page = uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES);
+    if (links_) {
+        const uint32_t unit = resident(leaf) ? page + OVC_ROOT_UNIT : OVC_LEADS_NOWHERE;
+        const size_t texel = size_t(links_->link_unit[leaf]) * OVC_UNIT_TEXELS + 3;
+        glNamedBufferSubData(pool_.buffer().id(), GLintptr(texel * sizeof(uvec4)), sizeof(unit),
+                             &unit);
+        return;
+    }
+    const uint32_t unit = resident(leaf) ? page : OVC_NOT_RESIDENT;
     glNamedBufferSubData(level1_buffer_.id(), GLintptr(page_texel_of(leaf) * sizeof(uvec4)),
                          sizeof(unit), &unit);
 }
@@ -152,7 +164,8 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
         const Page& page = page_data_[leaf];
         if (!pool_.residency().admit(leaf, page.bytes(), keep, evicted))
             break;
-        pool_.upload(pool_.residency().slot(leaf).offset, page);
+        const uint64_t offset = pool_.residency().slot(leaf).offset;
+        pool_.upload(offset, page, links_ ? uint32_t(offset / OVC_UNIT_BYTES) : 0);
         say_where(leaf);
         moved.pages += 1;
         moved.bytes += page.bytes();
@@ -164,7 +177,9 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
 
 void Tracer::upload(std::span<const Traveller> rays) {
     if (linked_)
-        upload_local(rays);
+        upload_local(rays, local_);
+    else if (links_)
+        upload_local(rays, resumed_);
     else
         glNamedBufferSubData(ray_buffer_.id(), 0,
                              GLsizeiptr(whole_blocks(rays.size()) * sizeof(Traveller)),
@@ -172,22 +187,29 @@ void Tracer::upload(std::span<const Traveller> rays) {
 }
 
 /// In the frame of linked pages; and how to come back from there.
-void Tracer::upload_local(std::span<const Traveller> rays) {
-    local_.resize(whole_blocks(rays.size()));
-    times_.resize(options_.certify ? 0 : local_.size());
+template <class Sent>
+void Tracer::upload_local(std::span<const Traveller> rays, std::vector<Sent>& sent) {
+    sent.resize(whole_blocks(rays.size()));
+    times_.resize(options_.certify ? 0 : sent.size());
     constexpr size_t kGrain = 1024;
-    parallel_for(local_.size(), kGrain, [&](size_t first, size_t last) {
+    parallel_for(sent.size(), kGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const Traveller& t = rays.data()[i]; // up to the next whole block: see collect()
             LocalTime time;
-            local_[i] =
+            const LocalRay ray =
                 local_ray(scene_, t.ray, t.skip, (t.first_leaf & OVC_RAY_ANY_HIT) != 0, time);
+            if constexpr (std::is_same_v<Sent, LocalRay>) {
+                sent[i] = ray;
+            } else {
+                const uint32_t leaf = t.first_leaf & OVC_NO_LEAF;
+                sent[i] = {ray, leaf == OVC_NO_LEAF ? 0 : links_->link_unit[leaf], {}};
+            }
             if (!options_.certify)
                 times_[i] = time;
         }
     });
-    glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(std::span(local_).size_bytes()),
-                         local_.data());
+    glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(std::span(sent).size_bytes()),
+                         sent.data());
 }
 
 /// Fast precision: t from the frame of linked pages to the rays' own.
@@ -207,7 +229,8 @@ ShaderConfig Tracer::shader_config() const {
     ShaderConfig config;
     config.compute = options_.compute;
     config.certify = options_.certify;
-    config.linked = linked_.has_value();
+    config.linked = linked_ || links_;
+    config.links = links_.has_value();
     config.tell_active = active_buffer_.has_value();
     config.stack_depth = stack_words_;
     config.stack_registers = software_;
@@ -216,11 +239,11 @@ ShaderConfig Tracer::shader_config() const {
     config.buffer_images = software_;
     if (software_)
         config.most_rounds = kMostRoundsInSoftware;
-    if (software_ && linked_ && options_.compute) {
-        const std::span<const LocalRay> rays = std::span(local_).first(rays_sent_);
-        if (coherent(rays))
+    if (software_ && config.linked && options_.compute) {
+        if (links_ ? coherent(std::span(resumed_).first(rays_sent_))
+                   : coherent(std::span(local_).first(rays_sent_)))
             config.packet = kPacketRays;
-        else if (rays.size() >= kFewestRaysToRefill)
+        else if (rays_sent_ >= kFewestRaysToRefill)
             config.refill = kRefills;
     }
     return config;
@@ -240,8 +263,8 @@ Result<Done> Tracer::launch() {
     if (!program)
         return program.error();
 
-    if (linked_)
-        glProgramUniform1i(*program, OVC_LOCATION_ROOT, GLint(linked_->top_unit));
+    if (config.linked)
+        glProgramUniform1i(*program, OVC_LOCATION_ROOT, linked_ ? GLint(linked_->top_unit) : 0);
 
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);

@@ -25,11 +25,12 @@ namespace ovc {
 /// A ray on its way through level 1, in the layout of shaders/layout.h. In the world's coordinates:
 /// finite, of a direction whose reciprocals are finite, as can_walk() of kdtree/restart.h asks.
 struct Traveller {
-    Ray ray;             // t_max < t_min: no ray
-    double t_from;       // the walk begins in the cell after this t; ray.t_min at first
-    uint32_t skip;       // number of a triangle it does not see, or OVC_NO_TRIANGLE
-    uint32_t first_leaf; // of that cell, where the ray has been in it; else OVC_NO_LEAF; with
-                         // OVC_RAY_ANY_HIT added: any hit will do
+    Ray ray;       // t_max < t_min: no ray
+    double t_from; // the walk begins in the cell after this t; ray.t_min at first
+    uint32_t skip; // number of a triangle it does not see, or OVC_NO_TRIANGLE
+    uint32_t
+        first_leaf; // of that cell, where the ray has been in it; else OVC_NO_LEAF; under links
+                    // the leaf it waited for; with OVC_RAY_ANY_HIT added: any hit will do
 };
 static_assert(sizeof(Traveller) == 80);
 
@@ -81,6 +82,10 @@ public:
     /// All pages are in the pool, under one tree: a pass answers its rays for good.
     bool all_linked() const { return linked_ && linked_->moved == page_data_.size(); }
 
+    /// Pages hang under links: an answer is that of all leaves on the way to the one it names,
+    /// which the ray waits for, or of all.
+    bool has_links() const { return links_.has_value(); }
+
     /// Marks a leaf as used now: others are pushed out before it.
     void touch(uint32_t leaf) { pool_.residency().touch(leaf); }
 
@@ -110,7 +115,6 @@ private:
     bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
     Result<Done> set_up();
     void upload(std::span<const Traveller> rays);
-    void upload_local(std::span<const Traveller> rays);
     void come_back(std::span<Answer> answers) const;
     ShaderConfig shader_config() const;
     Result<Done> launch();
@@ -118,6 +122,8 @@ private:
     bool lost_many(std::span<const Answer> answers) const;
     void say_where(uint32_t leaf);
     Moved bring_linked(std::span<const uint32_t> wanted);
+    template <class Sent>
+    void upload_local(std::span<const Traveller> rays, std::vector<Sent>& sent);
 
     std::unique_ptr<Ledger> ledger_; // the objects below keep its address
     KernelCache& kernels_;
@@ -126,8 +132,10 @@ private:
     std::span<const Page> page_data_;
     bool software_;
     std::optional<LinkedPages> linked_; // where all pages are to be in the pool
+    std::optional<LinkTree> links_;     // where they share a frame, and not all are
     Leaf scene_;                        // as one leaf: the frame of linked pages
     std::vector<LocalRay> local_;       // of the pass, where pages are linked
+    std::vector<ResumedRay> resumed_;   // where they hang under links
     std::vector<LocalTime> times_;      // of them, in fast precision
     uint32_t stack_depth_;              // with which no ray is lost
     uint32_t stack_words_;              // of the kernel

@@ -25,7 +25,8 @@ ovc_statistics counted_between(const ovc_statistics& before, const ovc_statistic
          {&ovc_statistics::passes, &ovc_statistics::pages_in, &ovc_statistics::bytes_in,
           &ovc_statistics::nearest_rays, &ovc_statistics::occlusion_rays,
           &ovc_statistics::invalid_rays, &ovc_statistics::ray_visits, &ovc_statistics::flagged,
-          &ovc_statistics::retraced, &ovc_statistics::queues, &ovc_statistics::queued_rays})
+          &ovc_statistics::retraced, &ovc_statistics::queues, &ovc_statistics::queued_rays,
+          &ovc_statistics::stragglers})
         counted.*count -= before.*count;
     counted.seconds_trace -= before.seconds_trace;
     counted.seconds_pass -= before.seconds_pass;
@@ -48,7 +49,10 @@ static Json rays_of(const RayCounts& rays) {
 }
 
 static Json queues_of(const ovc_statistics& t) {
-    return {{"count", t.queues}, {"rays", t.queued_rays}, {"longest", t.longest_queue}};
+    return {{"count", t.queues},
+            {"rays", t.queued_rays},
+            {"longest", t.longest_queue},
+            {"stragglers", t.stragglers}};
 }
 
 static Json active_of(const std::optional<ovc_active>& active) {

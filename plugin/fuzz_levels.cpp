@@ -33,7 +33,7 @@ namespace {
 
 /// A soup with twins, its saved levels, and rays to ask.
 struct Subject {
-    static constexpr LeafLimits kLimits{30, 1 << 20, 1 << 22};
+    static constexpr LeafLimits kLimits{30, 1 << 20};
 
     Soup soup = test::random_soup(5, 120, 0.3);
     Numbering numbers;

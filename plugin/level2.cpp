@@ -69,13 +69,11 @@ private:
         return limits_.triangles_at(PageRates(soup_, triangles, sample, rate, progress_).mean());
     }
 
-    /// Where all pages will be in the pool, and small triangles are not lost in the scene.
+    /// Where small triangles are not lost in the scene.
     void share_frame_where_it_suits(std::span<const TriangleId> triangles) {
         Level1& level1 = levels_.level1;
-        const uint64_t least = level1.reference_count() * kLeastBytesPerTriangle;
         if (level1.leaves.size() == 1 ||
-            (least <= limits_.pool_bytes &&
-             doubtful_share(soup_, triangles, scene_leaf(level1.bounds).frame) <= kMostDoubtful))
+            doubtful_share(soup_, triangles, scene_leaf(level1.bounds).frame) <= kMostDoubtful)
             share_frame(level1);
     }
 

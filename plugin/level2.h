@@ -19,12 +19,10 @@ struct Levels {
     double seconds_level2 = 0;
 };
 
-/// What leaves may be: so many triangles at most (> 0), and so many bytes of a page, of those that
-/// the pool has.
+/// What leaves may be: so many triangles at most (> 0), and so many bytes of a page.
 struct LeafLimits {
     uint64_t triangles;
     uint64_t page_bytes;
-    uint64_t pool_bytes;
 
     /// Whether a page could be too large at all: else triangles alone decide.
     bool pages_matter() const;

@@ -291,6 +291,7 @@ typedef struct ovc_statistics {
     uint64_t soup_bytes;           /* positions in host memory, without shared ones; instances share those of their mesh */
     uint64_t single_rays;          /* of nearest_rays and occlusion_rays, those of intersect1 and occluded1 */
     uint64_t gathered_rays;        /* of single_rays, those that the GPU answered in batches; the CPU did the others */
+    uint64_t stragglers;           /* rays that doubles answered on the CPU, because too few waited for a page to be worth moving */
 } ovc_statistics;
 
 /* The pages that rays went through since this was asked last, or since the commit; experimental. */

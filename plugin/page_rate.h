@@ -15,8 +15,6 @@ namespace ovc {
 inline constexpr uint64_t kPageStart = 128;
 /// No page takes more a triangle: no two in a pair, and a node above every other triangle.
 inline constexpr uint64_t kMostBytesPerTriangle = 128;
-/// Nor less: all in pairs, four children to every node.
-inline constexpr uint64_t kLeastBytesPerTriangle = 42;
 
 /// Pages of some cubes, each with all the triangles that touch it. Cubes lie around triangles of a
 /// sample, so where triangles are many there are many cubes.

@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view kKind = "ovc levels";
 /// To be raised when a build makes other leaves or pages of the same soup; a change of layout.h is
 /// noticed without.
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 
 /// Where all of it is the same, a build makes the same levels.
 struct Key {
@@ -26,7 +26,6 @@ struct Key {
     uint64_t soup = 0;           // checksum of origins and corners
     uint64_t leaf_triangles = 0; // limits
     uint64_t page_bytes = 0;     // 0 where no page could come near it
-    uint64_t all_resident = 0;   // 1 where all pages may be: then leaves may share a frame
 
     bool operator==(const Key&) const = default;
 };
@@ -41,7 +40,7 @@ struct Summary {
     Box bounds;
     double padding = 0;
 };
-static_assert(sizeof(Summary) == 17 * 8);
+static_assert(sizeof(Summary) == 16 * 8);
 
 struct SavedLeaf {
     Box cell;
@@ -78,10 +77,9 @@ uint64_t checksum_of_soup(const Soup& soup) {
     return sum.value();
 }
 
-void put_limits(Key& key, const LeafLimits& limits, uint64_t references) {
+void put_limits(Key& key, const LeafLimits& limits) {
     key.leaf_triangles = limits.triangles;
     key.page_bytes = limits.pages_matter() ? limits.page_bytes : 0;
-    key.all_resident = references * kLeastBytesPerTriangle <= limits.pool_bytes;
 }
 
 bool is_sound(const Box& box) {
@@ -242,7 +240,7 @@ bool save_levels(const Soup& soup, const BuiltLevelsView& levels, const ByteSink
     Summary summary;
     summary.key.layout = checksum_of_layout();
     summary.key.soup = checksum_of_soup(soup);
-    put_limits(summary.key, levels.limits, levels.level1.reference_count());
+    put_limits(summary.key, levels.limits);
     summary.not_finite = levels.dropped.not_finite;
     summary.degenerate = levels.dropped.degenerate;
     summary.twins = levels.twins.count();
@@ -288,7 +286,7 @@ restore_levels(Bytes saved, const Soup& soup,
     Key key;
     key.layout = checksum_of_layout();
     const LeafLimits limits = limits_for(summary.triangles);
-    put_limits(key, limits, archive->unchecked("lists").size() / sizeof(TriangleId));
+    put_limits(key, limits);
     key.soup = summary.key.soup; // the rest first: this takes a while
     if (key != summary.key || checksum_of_soup(soup) != key.soup)
         return std::optional<BuiltLevels>();

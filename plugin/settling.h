@@ -69,6 +69,9 @@ protected:
             decide_in_double(i, prepare(query_, i));
     }
 
+    /// Answers ray i for good, whatever it has met.
+    void answer_in_double(uint32_t i) { arbitrate_ray(i, prepare(query_, i)); }
+
     TwoLevel& s_;
     Query query_;
 
@@ -117,9 +120,13 @@ private:
         return nearest.offer(s_.soup_.triangle(seen), seen);
     }
 
-    void decide_in_double(uint32_t i, const PreparedRay& p) {
+    void arbitrate_ray(uint32_t i, const PreparedRay& p) {
         query_.set(i, arbitrate<Query::kAnyHit>(s_.soup_, s_.numbers_, s_.twins_, s_.level1_,
                                                 s_.pages_, p));
+    }
+
+    void decide_in_double(uint32_t i, const PreparedRay& p) {
+        arbitrate_ray(i, p);
         count_flagged(i);
         ++retraced_;
     }

@@ -38,8 +38,7 @@ LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uin
     return {options.leaf_triangles ? options.leaf_triangles
                                    : std::max<uint64_t>(uint64_t(std::ceil(most)), 1),
             std::min<uint64_t>(plan.pool_bytes / kPagesAtOnce,
-                               uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES),
-            plan.pool_bytes};
+                               uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES)};
 }
 
 Result<Done> check_count(const Soup& soup) {

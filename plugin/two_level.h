@@ -70,6 +70,7 @@ struct TwoLevelStatistics {
     uint64_t queues = 0; // of rays waiting for a leaf that was moved in
     uint64_t queued_rays = 0;
     uint64_t longest_queue = 0;
+    uint64_t stragglers = 0; // answered in double, because too few waited to move a page for
     uint64_t peak_bytes = 0;
     uint64_t host_bytes = 0;
     double seconds_level1 = 0;

@@ -33,15 +33,20 @@ private:
     size_t count_ = 0;
 };
 
+/// Moving so many bytes takes as long as answering a ray in double: 1 us on a core, either of them
+/// (docs/decisions/0013).
+inline constexpr uint64_t kBytesARay = 8192;
+
 /// Of the leaves that rays wait for, counts[leaf] of them: those worth moving in, most rays per
 /// byte first, but none that is worth less than an eighth of the first: its queue may grow until it
-/// is.
+/// is; nor one with less than a ray for `bytes_a_ray`, which doubles answer sooner than it is
+/// moved.
 inline std::vector<uint32_t> worth_moving(std::span<const size_t> counts,
-                                          std::span<const Page> pages) {
+                                          std::span<const Page> pages, uint64_t bytes_a_ray) {
     constexpr double kLeastShare = 1.0 / 8;
     std::vector<std::pair<double, uint32_t>> leaves;
     for (uint32_t leaf = 0; leaf < counts.size(); ++leaf)
-        if (counts[leaf] > 0)
+        if (counts[leaf] > 0 && counts[leaf] >= pages[leaf].bytes() / bytes_a_ray)
             leaves.emplace_back(-double(counts[leaf]) / double(pages[leaf].bytes()), leaf);
     std::sort(leaves.begin(), leaves.end());
     std::vector<uint32_t> wanted;

@@ -57,6 +57,21 @@ public:
         }
     }
 
+    /// Answers all rays that wait, in double.
+    void answer_waiting() {
+        std::vector<uint32_t> rays;
+        for (uint32_t leaf = 0; leaf < s_.pages_.size(); ++leaf) {
+            const std::vector<uint32_t> queue = waiting_.take(leaf);
+            rays.insert(rays.end(), queue.begin(), queue.end());
+        }
+        parallel_for(rays.size(), kGrain, [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j)
+                this->answer_in_double(rays[j]);
+        });
+        s_.statistics_.stragglers += rays.size();
+        finished_.insert(finished_.end(), rays.begin(), rays.end());
+    }
+
     /// The rays that were answered since this was asked last.
     std::vector<uint32_t> take_finished() { return std::exchange(finished_, {}); }
 
@@ -116,9 +131,12 @@ private:
     /// Takes in the kernel's answer for ray i, and says in positions_[i] where the ray goes from
     /// here.
     void settle_one(uint32_t i, const Answer& answer) {
-        positions_[i].state = Position::Done;
+        Position& at = positions_[i];
+        at.state = Position::Done;
+        if (s_.tracer_->has_links())
+            return settle_under_links(i, answer);
         if (answer.prim == OVC_WAITS) {
-            positions_[i] = {answer.t(), positions_[i].t_end, answer.leaf(), Position::Waits};
+            at = {answer.t(), at.t_end, answer.leaf(), Position::Waits};
             return;
         }
         note_use(answer);
@@ -126,6 +144,20 @@ private:
                       [&](uint32_t ray, uint32_t leaf, const PreparedRay& p, double end) {
                           return go_on_behind(ray, leaf, p, end);
                       });
+    }
+
+    /// The same where the answer is that of all leaves before the one it names, if any.
+    void settle_under_links(uint32_t i, const Answer& answer) {
+        Position& at = positions_[i];
+        if (answer.leaf() != OVC_NO_LEAF)
+            at = {at.t_from, at.t_end, answer.leaf(), Position::Waits};
+        if (answer.prim == OVC_MISS && answer.rivals()[0] == OVC_NO_TRIANGLE)
+            return;
+        at.state = Position::Done;
+        this->take_in(i, answer, [&](uint32_t, uint32_t leaf, const PreparedRay&, double end) {
+            at = {at.t_from, end, leaf, Position::Waits};
+            return true;
+        });
     }
 
     /// In certified precision an answer that names a triangle names the leaf it ended in.
@@ -170,7 +202,8 @@ std::vector<uint32_t> TwoLevel::wanted_by(const Wave<Queries>&... waves) const {
     std::vector<size_t> counts(pages_.size());
     for (uint32_t leaf = 0; leaf < counts.size(); ++leaf)
         counts[leaf] = (waves.queues().count(leaf) + ...);
-    return worth_moving(counts, pages_);
+    // Where active pages are told, each that a ray goes through is to be in the pool.
+    return worth_moving(counts, pages_, options_.tell_active ? ~uint64_t(0) : kBytesARay);
 }
 
 template <class Meanwhile, class... Queries>
@@ -180,6 +213,10 @@ Result<Done> TwoLevel::round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&.
     const std::vector<uint32_t> before = wanted_by(waves...);
     const auto moved = std::span(before).first(before.empty() ? 0 : bring(before));
     (waves.call_up(moved), ...);
+    if (before.empty() && (waves.ready() + ...) == 0) { // no queue is worth its page
+        (waves.answer_waiting(), ...);
+        return Done{};
+    }
     if ((waves.ready() + ...) == 0)
         return lost(); // nothing could be moved in
     most = std::min<size_t>(most, plan_.batch_rays);

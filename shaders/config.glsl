@@ -10,6 +10,9 @@
 #ifndef OVC_LINKED
 #define OVC_LINKED 0 // 1: all pages are in the pool, under one tree, and units count from the pool's first
 #endif
+#ifndef OVC_LINKS
+#define OVC_LINKS 0 // 1, with OVC_LINKED: pages hang under links, and a ray waits where one leads to a page that is not in the pool
+#endif
 #ifndef OVC_TELL_ACTIVE
 #define OVC_TELL_ACTIVE 0 // 1: pages that rays are traced through are marked
 #endif

@@ -24,6 +24,9 @@
 #define OVC_MAX_UNITS 0x800000 // a stack word has 23 bits for a unit and must not be negative
 
 // Where pages are linked (gpu/linked.h) units count from the pool's first; else from the page's own.
+// Where not all linked pages are in the pool, each hangs under a link: a node of one child, the page's root, in texel 3 its unit
+// or OVC_LEADS_NOWHERE, 1 + its leaf, 0, 0.
+#define OVC_LEADS_NOWHERE 0
 
 // Level 1 is an array of RGBA32UI texels: a header, the leaves, the KD-tree's nodes. A double is two words, low one first.
 //
@@ -53,6 +56,9 @@
 #define OVC_SKIPS_NONE 0x7fffffffu
 #define OVC_NO_RAY -1.0f
 #define OVC_UNDECIDABLE -2.0f
+// Where pages hang under links, a third texel says which one the ray waited for, 0 for none; 0, 0, 0. It is done with those that it
+// meets before, by t and then by unit.
+#define OVC_RESUMED_RAY_TEXELS 3
 
 // The answers of the fragment kernel are a texture. Rays lie in it in tiles of 4 x 4, in rows of tiles: fragments that a driver shades together are rays
 // that came one after the other.
@@ -60,7 +66,7 @@
 #define OVC_TILE 4
 
 // An answer is RGBA32UI; triangles are named by their numbers in the soup. w: the certain nearest hit in leaf z, or where z is
-// OVC_NO_LEAF in the scene; or
+// OVC_NO_LEAF in the scene; where pages hang under links, in those that the ray met before leaf z, which it waits for; or
 //   OVC_MISS      none in any leaf on the way
 //   OVC_WAITS     the walk stopped before leaf z, which is not in the pool; x, y: the t of the cells done (double)
 //   OVC_FLAGGED   the kernel cannot tell

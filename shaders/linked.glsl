@@ -9,14 +9,20 @@ void give(int ray, uvec4 answer);
 
 // The rays from `first` on. Returns whether any of them is a ray.
 bool take_rays(int first, Tree tree, inout Packet packet, inout Found found[OVC_PACKET]) {
+    const int texels = OVC_LINKS == 0 ? OVC_LOCAL_RAY_TEXELS : OVC_RESUMED_RAY_TEXELS;
     bool any = false;
     for (int k = 0; k < OVC_PACKET; ++k) {
-        uvec4 from = ray_texel((first + k) * OVC_LOCAL_RAY_TEXELS);
-        uvec4 to = ray_texel((first + k) * OVC_LOCAL_RAY_TEXELS + 1);
+        uvec4 from = ray_texel((first + k) * texels);
+        uvec4 to = ray_texel((first + k) * texels + 1);
         float t_end = uintBitsToFloat(from.w);
         found[k] = nothing_found(t_end);
         set_ray(packet, k, tree, uintBitsToFloat(from.xyz), direction_of(uintBitsToFloat(to.xyz)), to.w & OVC_SKIPS_NONE,
                 (to.w & OVC_RAY_ANY_HIT) != 0u);
+#if OVC_LINKS
+        int done = int(ray_texel((first + k) * texels + 2).x);
+        packet.links[k].done_unit = done;
+        packet.links[k].done_key = done != 0 ? link_key(unit_at(done), packet.grid[k]) : -1;
+#endif
         any = any || t_end >= 0.0;
     }
     return any;
@@ -25,6 +31,12 @@ bool take_rays(int first, Tree tree, inout Packet packet, inout Found found[OVC_
 void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended) {
     for (int k = 0; k < OVC_PACKET; ++k) {
         uvec4 answer = answer_of(found[k], packet.any_hit[k], OVC_NO_LEAF);
+#if OVC_LINKS
+        // What lies beyond the best hit is not waited for.
+        Links links = packet.links[k];
+        if (links.waits_key <= floatBitsToInt(found[k].best_hi))
+            answer.z = page_texel(links.waits_unit * OVC_UNIT_TEXELS + 3).y - 1u;
+#endif
 #if !OVC_CERTIFY
         answer.xyz = uvec3(floatBitsToUint(found[k].best_lo), 0u, packUnorm2x16(barycentric(found[k])));
 #endif

@@ -32,8 +32,9 @@ uint dealt_group() {
 }
 
 void give(int ray, uvec4 answer) {
-    const bool tells_leaf = OVC_LINKED == 0 || OVC_CERTIFY == 0;
-    bool more = (tells_leaf && answer.w < OVC_MAX_TRIANGLES) || answer.w == OVC_WAITS || answer.x != OVC_NO_TRIANGLE;
+    const bool tells_leaf = OVC_LINKED == 0 || OVC_LINKS != 0 || OVC_CERTIFY == 0;
+    bool more = answer.x != OVC_NO_TRIANGLE || answer.w == OVC_WAITS ||
+                (OVC_LINKS == 0 ? tells_leaf && answer.w < OVC_MAX_TRIANGLES : answer.z != OVC_NO_LEAF);
     imageStore(answers, ray, uvec4(answer.w | (more ? OVC_SAYS_MORE : 0u)));
     if (more) {
         imageStore(answers, plane + ray, uvec4(answer.x));

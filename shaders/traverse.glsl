@@ -73,13 +73,57 @@ void advance(inout Descent d, int first_child, ivec4 keys, bool leave) {
     d.done = d.done || (back && left == 0) || d.lost;
 }
 
-#if OVC_TELL_ACTIVE && OVC_LINKED
+#if OVC_TELL_ACTIVE && OVC_LINKED && !OVC_LINKS
 void tell_active(Unit unit, bool here) {
     if (here && unit.w.y != 0u)
         mark_active(int(unit.w.y) - 1);
 }
 #else
 void tell_active(Unit unit, bool here) {}
+#endif
+
+// Links on a ray's way, by the bits of the t where it meets them and then by their units: it is done with those before `done`, and
+// waits for the first of the others that leads nowhere.
+struct Links {
+    int done_key;
+    int done_unit;
+    int waits_key;
+    int waits_unit;
+};
+
+Links no_links() { return Links(-1, 0, OVC_NO_CHILD, 0); }
+
+#if OVC_LINKS
+bool before(int key, int unit, int other_key, int other_unit) {
+    return key < other_key || (key == other_key && unit < other_unit);
+}
+
+// Where the ray meets a link's box. Precise: it must have the same bits wherever it is asked.
+int link_key(Unit link, GridRay ray) {
+    ivec3 lo = ivec3(link.x.x, link.y.x, link.z.x) & 0xffff;
+    ivec3 hi = ivec3(link.x.z, link.y.z, link.z.z) & 0xffff;
+    vec3 near = vec3(mix(lo, hi, ray.backward));
+    precise vec3 enter = near * ray.scale + ray.offset;
+    return max(max(floatBitsToInt(enter.x), floatBitsToInt(enter.y)), max(floatBitsToInt(enter.z), 0));
+}
+
+// The children that a ray goes down to from `unit`: none where it is a link that it is done with, or to which it does not come.
+ivec4 follow(inout Links links, Unit unit, int at, bool here, GridRay grid, ivec4 keys) {
+    bool link = here && unit.w.y != 0u;
+    int key = link_key(unit, grid);
+    bool open = link && keys.x != OVC_NO_CHILD && !before(key, at, links.done_key, links.done_unit) &&
+                before(key, at, links.waits_key, links.waits_unit);
+    bool nowhere = int(unit.w.x) == OVC_LEADS_NOWHERE;
+    links.waits_key = open && nowhere ? key : links.waits_key;
+    links.waits_unit = open && nowhere ? at : links.waits_unit;
+#if OVC_TELL_ACTIVE
+    if (open && !nowhere)
+        mark_active(int(unit.w.y) - 1);
+#endif
+    return link && (!open || nowhere) ? ivec4(OVC_NO_CHILD) : keys;
+}
+#else
+ivec4 follow(inout Links links, Unit unit, int at, bool here, GridRay grid, ivec4 keys) { return keys; }
 #endif
 
 // Rays that go through a tree together, so that a node is fetched, decoded and sorted once for all of them.
@@ -89,6 +133,7 @@ struct Packet {
     GridRay grid[OVC_PACKET];
     uint skip[OVC_PACKET];
     bool any_hit[OVC_PACKET];
+    Links links[OVC_PACKET];
 };
 
 // Of the page, or of all linked pages, whose header is the pool's unit `page`.
@@ -111,6 +156,7 @@ void set_ray(inout Packet packet, int k, Tree tree, vec3 org, Direction directio
     packet.grid[k] = grid_ray(org, direction.inv_dir, tree.grid_org, tree.grid_cell);
     packet.skip[k] = skip;
     packet.any_hit[k] = any_hit;
+    packet.links[k] = no_links();
 }
 
 void start(inout Descent d, Tree tree) {
@@ -129,13 +175,15 @@ Descent descent(Tree tree) {
     return d;
 }
 
-// The children of the node that any ray of the packet meets. Where not `here` the unit is a pair, whose bits mean nothing as
+// The children of the node, the unit `at`, that any ray of the packet meets. Where not `here` the unit is a pair, whose bits mean nothing as
 // boxes: an end before the beginning lets none of them through.
-ivec4 keys_of(Unit node, Packet packet, Found found[OVC_PACKET], bool here) {
+ivec4 keys_of(Unit node, int at, inout Packet packet, Found found[OVC_PACKET], bool here) {
     Boxes boxes = boxes_of(node.x, node.y, node.z, packet.grid[0].backward);
     ivec4 keys = ivec4(OVC_NO_CHILD);
-    for (int k = 0; k < OVC_PACKET; ++k)
-        keys = min(keys, child_keys(boxes, packet.grid[k], here ? found[k].best_hi : OVC_ENOUGH));
+    for (int k = 0; k < OVC_PACKET; ++k) {
+        ivec4 own = child_keys(boxes, packet.grid[k], here ? found[k].best_hi : OVC_ENOUGH);
+        keys = min(keys, follow(packet.links[k], node, at, here, packet.grid[k], own));
+    }
     return keys_of_present(keys, boxes);
 }
 
@@ -155,7 +203,7 @@ bool all_have_enough(Found found[OVC_PACKET]) {
     return all;
 }
 
-void go_round(inout Descent d, inout Found found[OVC_PACKET], Packet packet, int first_unit) {
+void go_round(inout Descent d, inout Found found[OVC_PACKET], inout Packet packet, int first_unit) {
 #if OVC_BRANCHES
     Unit unit = unit_at(first_unit + d.unit);
     ivec4 keys = ivec4(OVC_NO_CHILD);
@@ -163,20 +211,20 @@ void go_round(inout Descent d, inout Found found[OVC_PACKET], Packet packet, int
         take_pairs(found, unit, packet, true);
     } else {
         tell_active(unit, true);
-        keys = keys_of(unit, packet, found, true);
+        keys = keys_of(unit, d.unit, packet, found, true);
     }
     advance(d, int(unit.w.x), keys, true);
 #else
     Unit node = unit_at(first_unit + d.unit);
     bool here = !is_pair(node); // a pair waits for the second step
     tell_active(node, here);
-    advance(d, int(node.w.x), keys_of(node, packet, found, here), here);
+    advance(d, int(node.w.x), keys_of(node, d.unit, packet, found, here), here);
 
     Unit unit = unit_at(first_unit + d.unit);
     bool pair = is_pair(unit) && !d.done;
     here = !is_pair(unit) && !d.done;
     tell_active(unit, here);
-    ivec4 keys = keys_of(unit, packet, found, here);
+    ivec4 keys = keys_of(unit, d.unit, packet, found, here);
     take_pairs(found, unit, packet, pair);
     advance(d, int(unit.w.x), keys, true);
 #endif
@@ -185,7 +233,7 @@ void go_round(inout Descent d, inout Found found[OVC_PACKET], Packet packet, int
 
 // Takes into `found` what the rays may hit, until the end or for some rounds; rounds: of all loops of this invocation so far.
 // True: the end, for good or because something was lost.
-bool run(inout Descent d, inout Found found[OVC_PACKET], Packet packet, int first_unit, int most_rounds, inout int rounds) {
+bool run(inout Descent d, inout Found found[OVC_PACKET], inout Packet packet, int first_unit, int most_rounds, inout int rounds) {
     // Tested at the top, and fetched as well: llvmpipe (22.3) keeps, behind a loop, only what was known at its top for lanes
     // that left early; what the rest of the body computed it computes again, for the lanes that go on.
     while (!d.done && rounds < most_rounds) {
