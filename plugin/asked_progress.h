@@ -3,6 +3,7 @@
 #pragma once
 
 #include "plugin/float_mode.h"
+#include "plugin/host_function.h"
 #include "plugin/overcast.h"
 #include "plugin/structure.h"
 
@@ -19,7 +20,10 @@ public:
         if (!progress_ || Clock::now() < next_)
             return true;
         next_ = Clock::now() + std::chrono::milliseconds(20);
-        return mode_.call([&] { return progress_(user_, done, "rays") == 0; });
+        return mode_.call([&] {
+            const HostFunction mark;
+            return progress_(user_, done, "rays") == 0;
+        });
     }
 
 private:

@@ -2,7 +2,7 @@
 // Devices: listing, opening, describing.
 #include "plugin/device.h"
 
-#include "plugin/handles.h"
+#include "plugin/device_call.h"
 #include "plugin/struct_size.h"
 
 #include <fmt/format.h>
@@ -14,7 +14,21 @@
 namespace ovc {
 namespace {
 
-thread_local Messages no_device;
+/// The last message of a thread that has no device to keep it; cut where it is too long. Trivial,
+/// as in_host_function.
+class ThreadMessage {
+public:
+    void set(ovc_result, const std::string& message) {
+        const size_t length = std::min(message.size(), sizeof(text_) - 1);
+        std::memcpy(text_, message.data(), length);
+        text_[length] = '\0';
+    }
+    const char* get() const { return text_; }
+
+private:
+    char text_[2048]{};
+};
+constinit thread_local ThreadMessage no_device;
 
 template <size_t N>
 void copy(char (&to)[N], const std::string& from) {
@@ -44,17 +58,30 @@ Result<std::vector<DeviceInfo>> list_on_own_thread() {
 
 } // namespace
 
-bool is_device(ovc_device device) {
-    return device && device->magic == kDeviceMagic;
+bool is_device(ovc_device device, const char* call) {
+    if (!device || device->magic != kDeviceMagic)
+        no_device.set(OVC_ERROR_INVALID_ARGUMENT,
+                      fmt::format("{}: device is NULL or not a device", call));
+    else if (device->mark.forked())
+        no_device.set(OVC_ERROR_INVALID_ARGUMENT,
+                      fmt::format("{}: the device belongs to the process that this one was forked "
+                                  "from",
+                                  call));
+    else
+        return true;
+    return false;
 }
 
-ovc_result fail_without_device(ovc_result code, const char* message) {
+ovc_result fail_without_device(ovc_result code, const std::string& message) {
     no_device.set(code, message);
     return code;
 }
 
 const char* last_error(ovc_device device) {
-    return is_device(device) ? device->messages.get() : no_device.get();
+    if (!device || device->magic != kDeviceMagic || device->mark.forked())
+        return no_device.get();
+    const CallsInside::Call call(device->calls);
+    return device->messages.get();
 }
 
 ovc_result list_devices(ovc_device_info* infos, uint32_t capacity, uint32_t* count) {
@@ -83,6 +110,9 @@ ovc_result create_device(const ovc_device_config* given, ovc_device* device) {
         if (config.log)
             created->log = [log = config.log, user = config.log_user](LogLevel level,
                                                                       const std::string& text) {
+                if (in_host_function)
+                    return; // what a call from within such a function says is its code
+                const HostFunction mark;
                 log(user, ovc_log_level(level), text.c_str());
             };
         if (const Result<Done> environment = check_egl_environment(); !environment)
@@ -100,10 +130,7 @@ ovc_result create_device(const ovc_device_config* given, ovc_device* device) {
 }
 
 ovc_result describe_device(ovc_device device, ovc_device_info* info) {
-    if (!is_device(device))
-        return fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
-                                   "describe_device: device is NULL or not a device");
-    return guard(device->messages, [&] {
+    return on_device(device, "describe_device", [&] {
         if (!info)
             throw Failure{OVC_ERROR_INVALID_ARGUMENT, "describe_device: info is NULL"};
         fill(*info, device->gl->info());
@@ -111,21 +138,28 @@ ovc_result describe_device(ovc_device device, ovc_device_info* info) {
 }
 
 void destroy_device(ovc_device device) {
-    if (!is_device(device))
+    if (!is_device(device, "destroy_device") || in_host_function)
         return;
-    if (device->scenes > 0) {
-        say(device->log, LogLevel::Error,
-            fmt::format("destroy_device: {} scenes are still alive; the device stays",
-                        device->scenes.load()));
+    const auto refused = [device] {
+        const int scenes = device->scenes, tickets = device->tickets;
+        if (scenes > 0 || tickets > 0)
+            say(device->log, LogLevel::Error,
+                scenes > 0
+                    ? fmt::format("destroy_device: {} scenes are still alive; the device stays",
+                                  scenes)
+                    : fmt::format("destroy_device: {} tickets are not released; the device "
+                                  "stays",
+                                  tickets));
+        return scenes > 0 || tickets > 0;
+    };
+    uint32_t alive = kDeviceMagic;
+    if (refused() || !device->magic.compare_exchange_strong(alive, kDestroyed))
+        return;
+    device->calls.wait_until_none();
+    if (refused()) { // one of them has made a scene
+        device->magic = kDeviceMagic;
         return;
     }
-    if (device->tickets > 0) {
-        say(device->log, LogLevel::Error,
-            fmt::format("destroy_device: {} tickets are not released; the device stays",
-                        device->tickets.load()));
-        return;
-    }
-    device->magic = 0;
     delete device;
 }
 

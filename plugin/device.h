@@ -4,6 +4,8 @@
 
 #include "plugin/overcast.h"
 
+#include <string>
+
 namespace ovc {
 
 const char* last_error(ovc_device device);
@@ -12,9 +14,10 @@ ovc_result create_device(const ovc_device_config* config, ovc_device* device);
 ovc_result describe_device(ovc_device device, ovc_device_info* info);
 void destroy_device(ovc_device device);
 
-/// Runs body for a call on `device`; a null or foreign handle is reported on this thread instead.
-bool is_device(ovc_device device);
+/// Not null, of a device that lives, and not of the process that this one was forked from; else
+/// there is a message for last_error(NULL), which begins with the name of the call.
+bool is_device(ovc_device device, const char* call);
 /// Records a message for last_error(NULL) and returns the code.
-ovc_result fail_without_device(ovc_result code, const char* message);
+ovc_result fail_without_device(ovc_result code, const std::string& message);
 
 } // namespace ovc

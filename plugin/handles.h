@@ -5,14 +5,18 @@
 #include "core/log.h"
 #include "core/soup.h"
 #include "gpu/gl_thread.h"
+#include "plugin/calls_inside.h"
 #include "plugin/failure.h"
 #include "plugin/float_mode.h"
+#include "plugin/fork_mark.h"
+#include "plugin/host_function.h"
 #include "plugin/overcast.h"
 #include "plugin/single_rays.h"
 #include "plugin/structure.h"
 #include "plugin/submissions.h"
 
 #include <atomic>
+#include <deque>
 #include <exception>
 #include <map>
 #include <memory>
@@ -37,8 +41,10 @@ public:
             const std::lock_guard lock(mutex_);
             messages_[std::this_thread::get_id()] = std::move(message);
         }
-        if (function_)
-            function_(user_, code, get());
+        if (!function_ || in_host_function)
+            return;
+        const HostFunction mark;
+        function_(user_, code, get());
     }
     const char* get() {
         const std::lock_guard lock(mutex_);
@@ -56,20 +62,30 @@ inline constexpr uint32_t kDeviceMagic = 0x6f766344;
 inline constexpr uint32_t kSceneMagic = 0x6f766353;
 inline constexpr uint32_t kStreamMagic = 0x6f766354;
 inline constexpr uint32_t kTicketMagic = 0x6f766355;
+inline constexpr uint32_t kDestroyed = 0x6f766300;
+
+class RayStream;
 
 } // namespace ovc
 
-struct ovc_device_t {
-    uint32_t magic = ovc::kDeviceMagic;
-    ovc::Messages messages;
-    ovc::LogSink log;
-    std::unique_ptr<ovc::GlThread> gl;
-    std::atomic<int> scenes{0};
-    std::atomic<int> tickets{0};
+/// What push() is called with: part of its scene, so that a handle kept too long is still an error.
+struct ovc_stream_t {
+    std::atomic<uint32_t> magic{0}; // kStreamMagic while stream() runs
+    ovc_scene scene = nullptr;
+    ovc::RayStream* rays = nullptr; // set while a function of the host runs
+};
+
+struct ovc_ticket_t {
+    std::atomic<uint32_t> magic{ovc::kTicketMagic};
+    ovc::CallsInside calls;
+    ovc_device device = nullptr;
+    ovc_scene scene = nullptr; // alive until the submission is done
+    std::shared_ptr<ovc::Submission> submission;
 };
 
 struct ovc_scene_t {
-    uint32_t magic = ovc::kSceneMagic;
+    std::atomic<uint32_t> magic{ovc::kSceneMagic};
+    ovc::CallsInside calls;
     ovc_device device = nullptr;
     std::mutex turn; // calls on one scene wait here
     ovc_scene_config config{sizeof(ovc_scene_config)};
@@ -79,6 +95,43 @@ struct ovc_scene_t {
     ovc::Submissions submissions;
     ovc::SingleRays single_rays{turn, streaming};
     std::atomic<std::thread::id> streaming; // the thread that is inside stream(), if any
+    ovc_stream_t stream;
+};
+
+namespace ovc {
+
+/// The handles that a device had last, empty: they are still told from others, so that a thread
+/// that comes too late gets an error.
+template <class Handle>
+class DestroyedHandles {
+public:
+    void add(std::unique_ptr<Handle> handle) {
+        const std::lock_guard lock(mutex_);
+        handles_.push_back(std::move(handle));
+        if (handles_.size() > kMost && handles_.front()->calls.none())
+            handles_.pop_front();
+    }
+
+private:
+    static constexpr size_t kMost = 1000;
+
+    std::mutex mutex_;
+    std::deque<std::unique_ptr<Handle>> handles_;
+};
+
+} // namespace ovc
+
+struct ovc_device_t {
+    std::atomic<uint32_t> magic{ovc::kDeviceMagic};
+    ovc::CallsInside calls;
+    ovc::ForkMark mark;
+    ovc::Messages messages;
+    ovc::LogSink log;
+    std::unique_ptr<ovc::GlThread> gl;
+    std::atomic<int> scenes{0};
+    std::atomic<int> tickets{0};
+    ovc::DestroyedHandles<ovc_scene_t> destroyed;
+    ovc::DestroyedHandles<ovc_ticket_t> released;
 };
 
 namespace ovc {
@@ -93,6 +146,11 @@ ovc_result guard(Keeper& messages, Body&& body) {
     };
     try {
         const DefaultFloatMode mode;
+        if (in_host_function)
+            throw Failure{
+                OVC_ERROR_INVALID_STATE,
+                "called from within a function for errors, logs, progress or what is saved, where "
+                "last_error is the only call"};
         body();
         return OVC_OK;
     } catch (const Failure& failure) {

@@ -8,7 +8,8 @@
  * buffer. Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero. Structs
  * and the table only ever grow at their end: the struct_size of an earlier header is fine. The manual is docs/abi.md.
  * Calls may come from any thread; calls on one scene wait their turn. The caller's GL context, floating-point state and
- * environment are left alone: each device has a thread of its own. */
+ * environment are left alone: each device has a thread of its own. The functions that a caller hands in for logs, progress and
+ * what is saved may call last_error and nothing else. In a process that is forked, the parent's handles are errors. */
 #ifndef OVERCAST_H
 #define OVERCAST_H
 
@@ -340,7 +341,8 @@ typedef struct ovc_api {
     /* Opens a device and its thread. config may be NULL. */
     ovc_result (*create_device)(const ovc_device_config* config, ovc_device* device);
     ovc_result (*describe_device)(ovc_device device, ovc_device_info* info);
-    /* Its scenes must be destroyed before. NULL is nothing to do. */
+    /* Its scenes must be destroyed before. NULL is nothing to do. Afterwards its handle, and those of the scenes it had, are as
+     * memory that is freed. */
     void (*destroy_device)(ovc_device device);
 
     /* config may be NULL. */
@@ -355,7 +357,8 @@ typedef struct ovc_api {
     /* occluded[i] = 1 when ray i hits anything, else 0. query may be NULL. */
     ovc_result (*occluded)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded, const ovc_query* query);
     ovc_result (*statistics)(ovc_scene scene, ovc_statistics* statistics);
-    /* NULL is nothing to do. */
+    /* NULL is nothing to do. A call that is running ends first; those that wait for their turn end with OVC_ERROR_INVALID_STATE.
+     * As long as the device lives, the handle is an error wherever it is used. */
     void (*destroy_scene)(ovc_scene scene);
 
     /* The mixed form: rays of both kinds are under way together, and what the caller pushes joins them before the next leaves are

@@ -5,6 +5,7 @@
 
 #include "core/build_progress.h"
 #include "core/stopwatch.h"
+#include "plugin/device_call.h"
 #include "plugin/scene_call.h"
 #include "plugin/struct_size.h"
 
@@ -28,6 +29,7 @@ void with_progress(const ovc_scene_config& config, const char* call, Body&& body
         return;
     }
     BuildProgress progress([&](double done, const char* stage) {
+        const HostFunction mark;
         return config.progress(config.progress_user, done, stage) == 0;
     });
     try {
@@ -50,10 +52,7 @@ uint64_t soup_bytes(const ovc_scene_t& scene) {
 } // namespace
 
 ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_scene* scene) {
-    if (!is_device(device))
-        return fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
-                                   "create_scene: device is NULL or not a device");
-    return guard(device->messages, [&] {
+    return on_device(device, "create_scene", [&] {
         if (!scene)
             invalid("create_scene: scene is NULL");
         *scene = nullptr;
@@ -162,6 +161,7 @@ ovc_result save(ovc_scene scene, ovc_write_function write, void* user) {
         if (!write)
             invalid("save: write is NULL");
         const Result<Done> saved = committed(scene, "save").save([&](Bytes bytes) {
+            const HostFunction mark;
             return write(user, bytes.data(), bytes.size()) == 0;
         });
         if (!saved)
@@ -171,17 +171,28 @@ ovc_result save(ovc_scene scene, ovc_write_function write, void* user) {
 }
 
 void destroy_scene(ovc_scene scene) {
-    if (!scene || scene->magic != kSceneMagic)
+    if (!is_scene(scene, "destroy_scene") || in_host_function)
         return;
+    ovc_device device = scene->device;
+    if (scene->streaming == std::this_thread::get_id()) {
+        say(device->log, LogLevel::Error,
+            "destroy_scene: called from within the scene's own stream; the scene stays");
+        return;
+    }
+    uint32_t alive = kSceneMagic;
+    if (!scene->magic.compare_exchange_strong(alive, kDestroyed))
+        return; // another thread destroys it
     scene->submissions.stop();
     {
         const std::lock_guard turn(scene->turn); // a call that is still running ends first
         scene->single_rays.serve(nullptr);
         scene->structure.reset();
+        scene->soup = {};
+        scene->templates.clear();
     }
-    --scene->device->scenes;
-    scene->magic = 0;
-    delete scene;
+    scene->calls.wait_until_none(); // those who waited for their turn use the device yet
+    device->destroyed.add(std::unique_ptr<ovc_scene_t>(scene));
+    --device->scenes;
 }
 
 } // namespace ovc

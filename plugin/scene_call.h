@@ -23,12 +23,28 @@ static_assert(sizeof(ovc_triangle) == sizeof(TriangleId) && OVC_NONE == kNone);
     throw Failure{OVC_ERROR_INVALID_ARGUMENT, std::move(message)};
 }
 
+/// Not null, a scene that lives, and not of the process that this one was forked from; else there
+/// is a message for last_error(NULL).
+inline bool is_scene(ovc_scene scene, const char* call) {
+    if (scene && scene->magic == kSceneMagic)
+        return is_device(scene->device, call);
+    const bool destroyed = scene && scene->magic == kDestroyed;
+    const std::string message = fmt::format(
+        "{}: {}", call, destroyed ? "the scene is destroyed" : "scene is NULL or not a scene");
+    if (destroyed && is_device(scene->device, call))
+        scene->device->messages.set(OVC_ERROR_INVALID_ARGUMENT, message);
+    fail_without_device(OVC_ERROR_INVALID_ARGUMENT, message);
+    return false;
+}
+
 /// body() beside all other calls on the scene, without its turn.
 template <class Body>
 ovc_result beside_scene(ovc_scene scene, const char* call, Body&& body) {
-    if (!scene || scene->magic != kSceneMagic)
-        return fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
-                                   fmt::format("{}: scene is NULL or not a scene", call).c_str());
+    if (!is_scene(scene, call))
+        return OVC_ERROR_INVALID_ARGUMENT;
+    const CallsInside::Call inside(scene->calls);
+    if (!is_scene(scene, call)) // it was not counted yet when destroy_scene looked
+        return OVC_ERROR_INVALID_ARGUMENT;
     return guard(scene->device->messages, std::forward<Body>(body));
 }
 
@@ -42,6 +58,9 @@ ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
                                       "is the only call on it",
                                       call)};
         const std::lock_guard turn(scene->turn);
+        if (scene->magic != kSceneMagic)
+            throw Failure{OVC_ERROR_INVALID_STATE,
+                          fmt::format("{}: the scene was destroyed before its turn came", call)};
         body();
     });
 }

@@ -5,14 +5,6 @@
 #include "plugin/float_mode.h"
 #include "plugin/query_call.h"
 
-/// Lives as long as the call to stream().
-struct ovc_stream_t {
-    uint32_t magic = ovc::kStreamMagic;
-    ovc_device device = nullptr;
-    ovc::RayStream* rays = nullptr; // set while a function of the host runs
-    std::thread::id thread = std::this_thread::get_id();
-};
-
 namespace ovc {
 namespace {
 
@@ -58,8 +50,13 @@ class Streaming {
 public:
     explicit Streaming(ovc_scene scene) : scene_(scene) {
         scene_->streaming = std::this_thread::get_id();
+        scene_->stream.scene = scene;
+        scene_->stream.magic = kStreamMagic;
     }
-    ~Streaming() { scene_->streaming = std::thread::id(); }
+    ~Streaming() {
+        scene_->stream.magic = 0;
+        scene_->streaming = std::thread::id();
+    }
     Streaming(const Streaming&) = delete;
 
 private:
@@ -81,12 +78,8 @@ ovc_result stream(ovc_scene scene, const ovc_stream_host* host) {
             invalid("ovc_stream_host.more or answered is NULL");
         Structure& structure = committed(scene, "stream");
         const Streaming streaming(scene);
-        ovc_stream_t handle;
-        handle.device = scene->device;
-        CallbackHost callbacks(handle, *host, mode);
-        const Result<Done> done = structure.stream(callbacks);
-        handle.magic = 0;
-        check(done);
+        CallbackHost callbacks(scene->stream, *host, mode);
+        check(structure.stream(callbacks));
     });
 }
 
@@ -95,8 +88,12 @@ ovc_result push(ovc_stream stream, const ovc_ray* rays, const uint64_t* tokens, 
     if (!stream || stream->magic != kStreamMagic)
         return fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
                                    "push: stream is NULL or not a stream");
-    return guard(stream->device->messages, [&] {
-        if (!stream->rays || stream->thread != std::this_thread::get_id())
+    // Of the stream's own thread alone: others could not know when the stream ends.
+    if (stream->scene->streaming != std::this_thread::get_id())
+        return fail_without_device(OVC_ERROR_INVALID_STATE,
+                                   "push: called from another thread than the stream's");
+    return guard(stream->scene->device->messages, [&] {
+        if (!stream->rays)
             throw Failure{OVC_ERROR_INVALID_STATE,
                           "push: called from outside of the functions of the stream's host"};
         if (ray_count && (!rays || !tokens))

@@ -4,13 +4,6 @@
 
 #include "plugin/submission.h"
 
-struct ovc_ticket_t {
-    uint32_t magic = ovc::kTicketMagic;
-    ovc_device device = nullptr;
-    ovc_scene scene = nullptr; // alive until the submission is done
-    std::shared_ptr<ovc::Submission> submission;
-};
-
 namespace ovc {
 namespace {
 
@@ -52,12 +45,24 @@ ovc_result submit(ovc_scene scene, const char* name, ovc_ticket* ticket, Check&&
     });
 }
 
+/// Not null, not released, and not of the process that this one was forked from; else there is a
+/// message for last_error(NULL).
+bool is_ticket(ovc_ticket ticket, const char* call) {
+    if (ticket && ticket->magic == kTicketMagic)
+        return is_device(ticket->device, call);
+    fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
+                        fmt::format("{}: ticket is NULL, released, or not a ticket", call));
+    return false;
+}
+
 /// body(submission) for a ticket that is one.
 template <class Body>
 ovc_result on_ticket(ovc_ticket ticket, const char* call, Body&& body) {
-    if (!ticket || ticket->magic != kTicketMagic)
-        return fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
-                                   fmt::format("{}: ticket is NULL or not a ticket", call).c_str());
+    if (!is_ticket(ticket, call))
+        return OVC_ERROR_INVALID_ARGUMENT;
+    const CallsInside::Call inside(ticket->calls);
+    if (!is_ticket(ticket, call)) // it was not counted yet when release looked
+        return OVC_ERROR_INVALID_ARGUMENT;
     return guard(ticket->device->messages, [&] { body(*ticket->submission); });
 }
 
@@ -104,13 +109,16 @@ ovc_result cancel(ovc_ticket ticket) {
 }
 
 void release(ovc_ticket ticket) {
-    if (!ticket || ticket->magic != kTicketMagic)
+    uint32_t alive = kTicketMagic;
+    if (!is_ticket(ticket, "release") || in_host_function ||
+        !ticket->magic.compare_exchange_strong(alive, kDestroyed))
         return;
     ticket->submission->cancel();
     ticket->submission->wait([] {});
-    ticket->magic = 0;
-    --ticket->device->tickets;
-    delete ticket;
+    ticket->calls.wait_until_none();
+    ovc_device device = ticket->device;
+    device->released.add(std::unique_ptr<ovc_ticket_t>(ticket));
+    --device->tickets;
 }
 
 } // namespace ovc

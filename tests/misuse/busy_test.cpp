@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Many threads at once, and handles that are destroyed while others use them: every call ends with
+// the right answer or an error.
+#include "tests/misuse/field.h"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <functional>
+#include <thread>
+
+namespace ovc {
+namespace {
+
+using test::api;
+using test::sized;
+
+/// body(i) on so many threads at once.
+void on_threads(int count, const std::function<void(int)>& body) {
+    std::vector<std::thread> threads;
+    for (int i = 0; i < count; ++i)
+        threads.emplace_back([&body, i] { body(i); });
+    for (std::thread& thread : threads)
+        thread.join();
+}
+
+class Busy : public test::MisuseTest {};
+
+TEST_F(Busy, SixtyFourThreadsOnTwoDevicesAndFourScenesGetTheirAnswers) {
+    const test::Device other = test::open_device();
+    ASSERT_TRUE(other);
+    std::vector<test::AbiScene> scenes;
+    for (ovc_device of : {device.get(), device.get(), other.get(), other.get()})
+        scenes.emplace_back(test::make_field(of));
+    std::atomic<int> wrong{0};
+    on_threads(64, [&](int i) {
+        for (int round = 0; round < 5; ++round)
+            wrong += !test::field_answers(scenes[size_t(i + round) % 4].get());
+    });
+    EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(Busy, SixtyFourThreadsMakeAndDestroyScenesOfOneDevice) {
+    std::atomic<int> wrong{0};
+    on_threads(64, [&](int) {
+        const test::AbiScene scene(test::make_field(device.get()));
+        wrong += !scene || !test::field_answers(scene.get());
+    });
+    EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(Busy, ASceneDestroyedWhileThreadsUseItAnswersThemOrSaysSo) {
+    for (int round = 0; round < 20; ++round) {
+        ovc_scene scene = test::make_field(device.get());
+        ASSERT_TRUE(scene);
+        std::atomic<int> started{0}, wrong{0};
+        on_threads(17, [&](int i) {
+            if (i == 16) {
+                while (started < 16)
+                    std::this_thread::yield();
+                api().destroy_scene(scene);
+                return;
+            }
+            ++started;
+            ovc_result result = OVC_OK;
+            while (result == OVC_OK) {
+                const ovc_ray ray = test::into_cell(uint32_t(i), 3);
+                ovc_hit hit{};
+                result = api().intersect(scene, &ray, 1, &hit, nullptr);
+                wrong += result == OVC_OK && !test::is_in_cell(hit, uint32_t(i), 3);
+            }
+            wrong += result != OVC_ERROR_INVALID_STATE && result != OVC_ERROR_INVALID_ARGUMENT;
+        });
+        EXPECT_EQ(wrong, 0);
+    }
+}
+
+TEST_F(Busy, ThreadsThatAllDestroyOneSceneDestroyItOnce) {
+    const test::AbiScene stays(test::make_field(device.get()));
+    for (int round = 0; round < 50; ++round) {
+        ovc_scene scene = test::make_field(device.get());
+        on_threads(8, [&](int) { api().destroy_scene(scene); });
+    }
+    EXPECT_TRUE(test::field_answers(stays.get()));
+}
+
+TEST_F(Busy, ADestroyedSceneIsAnErrorAsLongAsItsDeviceLives) {
+    ovc_scene scene = test::make_field(device.get());
+    api().destroy_scene(scene);
+    EXPECT_EQ(api().commit(scene), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_STREQ(api().last_error(device.get()), "commit: the scene is destroyed");
+    EXPECT_STREQ(api().last_error(nullptr), "commit: the scene is destroyed");
+    api().destroy_scene(scene);
+    for (int later = 0; later < 2000; ++later) { // more than are remembered
+        ovc_scene other = nullptr;
+        ASSERT_EQ(api().create_scene(device.get(), nullptr, &other), OVC_OK);
+        api().destroy_scene(other);
+    }
+}
+
+TEST_F(Busy, ADeviceDestroyedWhileScenesAreMadeStaysOrGoesWhole) {
+    for (int round = 0; round < 20; ++round) {
+        ovc_device other = nullptr;
+        ASSERT_EQ(api().create_device(nullptr, &other), OVC_OK);
+        // One scene is alive throughout, so that the device must stay.
+        ovc_scene alive = nullptr;
+        ASSERT_EQ(api().create_scene(other, nullptr, &alive), OVC_OK);
+        on_threads(8, [&](int i) {
+            if (i == 0)
+                return api().destroy_device(other);
+            ovc_scene scene = nullptr;
+            if (api().create_scene(other, nullptr, &scene) == OVC_OK)
+                api().destroy_scene(scene);
+        });
+        auto info = sized<ovc_device_info>();
+        EXPECT_EQ(api().describe_device(other, &info), OVC_OK);
+        api().destroy_scene(alive);
+        api().destroy_device(other);
+    }
+}
+
+} // namespace
+} // namespace ovc
