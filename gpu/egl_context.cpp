@@ -3,6 +3,7 @@
 // EGL_MESA_platform_surfaceless where there is none.
 #include "gpu/egl_context.h"
 
+#include "gpu/fork_mark.h"
 #include "gpu/gl.h"
 
 #include <fmt/format.h>
@@ -129,6 +130,12 @@ Result<Done> check_egl_environment() {
 }
 
 Result<std::vector<EglContext::Platform>> EglContext::platforms() {
+    // EGL is one for the whole process. What it began before a fork looks open in the child, but
+    // llvmpipe's threads are not there, and libGLX forgets which context is current.
+    static const ForkMark began_here;
+    if (began_here.forked())
+        return Error{"OpenGL began in the process that this one was forked from, and does not "
+                     "work on both sides; fork before a device is opened or listed"};
     if (Result<Done> checked = check_egl_environment(); !checked)
         return checked.error();
     std::vector<Platform> found;

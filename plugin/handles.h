@@ -4,11 +4,11 @@
 
 #include "core/log.h"
 #include "core/soup.h"
+#include "gpu/fork_mark.h"
 #include "gpu/gl_thread.h"
 #include "plugin/calls_inside.h"
 #include "plugin/failure.h"
 #include "plugin/float_mode.h"
-#include "plugin/fork_mark.h"
 #include "plugin/host_function.h"
 #include "plugin/overcast.h"
 #include "plugin/single_rays.h"

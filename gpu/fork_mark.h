@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ForkMark: tells whether this process is the one that made the mark, or was forked from it since:
-// there the device's thread does not exist, and whoever waits for it waits for ever.
+// there a device's thread does not exist, nor do a driver's, and who waits for them waits for ever.
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rows of rays: batches and streams.
+#include "tests/misuse/entries.h"
+
+namespace ovc::test {
+namespace {
+
+ovc_result use_rays(Subject& s) {
+    return field_answers(s.field) ? OVC_OK : OVC_ERROR_INTERNAL;
+}
+Misuses misuse_intersect(Subject& s) {
+    Wrong wrong(s);
+    const ovc_ray ray = into_cell(0, 1);
+    ovc_hit hit;
+    ovc_query unsized{};
+    wrong.without_device("scene NULL", api().intersect(nullptr, &ray, 1, &hit, nullptr));
+    wrong.argument("rays NULL", api().intersect(s.field, nullptr, 1, &hit, nullptr));
+    wrong.argument("hits NULL", api().intersect(s.field, &ray, 1, nullptr, nullptr));
+    wrong.argument("struct_size 0", api().intersect(s.field, &ray, 1, &hit, &unsized));
+    wrong.state("before commit", api().intersect(s.empty, &ray, 1, &hit, nullptr));
+    return wrong.found();
+}
+Misuses misuse_occluded(Subject& s) {
+    Wrong wrong(s);
+    const ovc_ray ray = into_cell(0, 1);
+    uint8_t answer;
+    uint32_t note;
+    ovc_query unsized{};
+    auto noted = sized<ovc_query>();
+    noted.leaf = &note;
+    wrong.without_device("scene NULL", api().occluded(nullptr, &ray, 1, &answer, nullptr));
+    wrong.argument("rays NULL", api().occluded(s.field, nullptr, 1, &answer, nullptr));
+    wrong.argument("occluded NULL", api().occluded(s.field, &ray, 1, nullptr, nullptr));
+    wrong.argument("struct_size 0", api().occluded(s.field, &ray, 1, &answer, &unsized));
+    wrong.argument("notes", api().occluded(s.field, &ray, 1, &answer, &noted));
+    wrong.state("before commit", api().occluded(s.empty, &ray, 1, &answer, nullptr));
+    return wrong.found();
+}
+
+/// A stream's host that pushes a ray into each cell, and counts what is right.
+struct Streamer {
+    Subject& subject;
+    uint32_t pushed = 0;
+    uint32_t right = 0;
+    Misuses (*within)(Subject&, ovc_stream) = nullptr; // asked once, within the stream
+    Misuses misuses;
+    ovc_stream stream = nullptr; // the handle, to be misused later
+
+    static int more(void* user, ovc_stream stream, size_t) {
+        Streamer& self = *static_cast<Streamer*>(user);
+        self.stream = stream;
+        if (self.pushed == kCells)
+            return 0;
+        if (self.within)
+            self.misuses = self.within(self.subject, stream);
+        for (uint64_t cell = 0; cell < kCells; ++cell) {
+            const ovc_ray ray = into_cell(uint32_t(cell), 1);
+            self.pushed += api().push(stream, &ray, &cell, 1, 0, nullptr) == OVC_OK;
+        }
+        return 0;
+    }
+    static int answered(void* user, ovc_stream, const ovc_stream_answers* answers) {
+        Streamer& self = *static_cast<Streamer*>(user);
+        for (size_t i = 0; i < answers->count; ++i)
+            self.right += is_in_cell(answers->hits[i], uint32_t(answers->tokens[i]), 1);
+        return 0;
+    }
+    ovc_stream_host host() {
+        auto host = sized<ovc_stream_host>();
+        host.user = this;
+        host.more = more;
+        host.answered = answered;
+        return host;
+    }
+};
+
+ovc_result use_stream(Subject& s) {
+    Streamer streamer{s};
+    const ovc_stream_host host = streamer.host();
+    const ovc_result result = api().stream(s.field, &host);
+    return streamer.right == kCells ? result : OVC_ERROR_INTERNAL;
+}
+Misuses misuse_stream(Subject& s) {
+    Wrong wrong(s);
+    Streamer streamer{s};
+    const ovc_stream_host host = streamer.host();
+    ovc_stream_host spoilt = host;
+    wrong.without_device("scene NULL", api().stream(nullptr, &host));
+    wrong.argument("host NULL", api().stream(s.field, nullptr));
+    wrong.state("before commit", api().stream(s.empty, &host));
+    spoilt.answered = nullptr;
+    wrong.argument("answered NULL", api().stream(s.field, &spoilt));
+    spoilt.struct_size = 0;
+    wrong.argument("struct_size 0", api().stream(s.field, &spoilt));
+    return wrong.found();
+}
+
+Misuses misuse_push_within(Subject& s, ovc_stream stream) {
+    Wrong wrong(s);
+    const ovc_ray ray = into_cell(0, 1);
+    const uint64_t token = 0;
+    uint32_t note;
+    ovc_query unsized{};
+    auto noted = sized<ovc_query>();
+    noted.passes = &note;
+    wrong.argument("rays NULL", api().push(stream, nullptr, &token, 1, 0, nullptr));
+    wrong.argument("tokens NULL", api().push(stream, &ray, nullptr, 1, 0, nullptr));
+    wrong.argument("any_hit 2", api().push(stream, &ray, &token, 1, 2, nullptr));
+    wrong.argument("struct_size 0", api().push(stream, &ray, &token, 1, 0, &unsized));
+    wrong.argument("notes", api().push(stream, &ray, &token, 1, 0, &noted));
+    wrong.state("commit within a stream", api().commit(s.field));
+    api().destroy_scene(s.field); // refused: else the stream would wait for itself
+    return wrong.found();
+}
+Misuses misuse_push(Subject& s) {
+    Wrong wrong(s);
+    const ovc_ray ray = into_cell(0, 1);
+    const uint64_t token = 0;
+    Streamer streamer{s};
+    streamer.within = misuse_push_within;
+    const ovc_stream_host host = streamer.host();
+    EXPECT_EQ(api().stream(s.field, &host), OVC_OK);
+    EXPECT_EQ(streamer.right, kCells);
+    wrong.without_device("stream NULL", api().push(nullptr, &ray, &token, 1, 0, nullptr));
+    wrong.without_device("after the stream",
+                         api().push(streamer.stream, &ray, &token, 1, 0, nullptr));
+    Misuses all = wrong.found();
+    all.insert(all.end(), streamer.misuses.begin(), streamer.misuses.end());
+    return all;
+}
+
+constexpr Entry kEntries[] = {
+    OVC_ENTRY(intersect, use_rays, misuse_intersect),
+    OVC_ENTRY(occluded, use_rays, misuse_occluded),
+    OVC_ENTRY(stream, use_stream, misuse_stream),
+    OVC_ENTRY(push, use_stream, misuse_push),
+};
+
+} // namespace
+
+std::span<const Entry> ray_entries() {
+    return kEntries;
+}
+
+} // namespace ovc::test
