@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// What belongs to the host is byte for byte the same before and after each function of the table,
+// used or misused: in all floating-point modes, and with the host's own GL context current.
+#include "tests/misuse/host_state.h"
+
+#include "gpu/egl_context.h"
+#include "gpu/gl.h"
+#include "tests/misuse/entries.h"
+
+#include <csignal>
+#include <cstdlib>
+#include <fenv.h>
+#include <xmmintrin.h>
+
+namespace ovc {
+namespace {
+
+using test::api;
+
+/// A mode that a host may run in, by MXCSR and the x87's control word.
+struct FloatMode {
+    const char* name;
+    uint32_t mxcsr;
+    uint16_t x87_control;
+};
+
+constexpr uint32_t kMasked = 0x1f80, kFlushes = 0x8040;
+constexpr FloatMode kModes[] = {
+    {"default", kMasked, 0x37f},
+    {"down", kMasked | 0x2000, 0x77f},
+    {"up", kMasked | 0x4000, 0xb7f},
+    {"to zero", kMasked | 0x6000, 0xf7f},
+    {"FTZ and DAZ", kMasked | kFlushes, 0x37f},
+    {"FTZ, DAZ, up, x87 in single", kMasked | kFlushes | 0x4000, 0x87f},
+    {"all flags raised", kMasked | 0x3f, 0x37f},
+    {"exceptions that trap", 0x0000, 0x340},
+};
+
+void set(const FloatMode& mode) {
+    asm volatile("fnclex; fldcw %0" ::"m"(mode.x87_control));
+    _mm_setcsr(mode.mxcsr);
+}
+
+/// The function in a mode, between two looks at the host's state.
+template <class Function>
+void expect_untouched(const FloatMode& mode, const std::string& what, Function&& function) {
+    set(mode);
+    const uint32_t before_mxcsr = _mm_getcsr();
+    const test::HostState before = test::host_state();
+    set(mode); // the look computed
+    function();
+    const uint32_t after_mxcsr = _mm_getcsr();
+    const test::HostState after = test::host_state();
+    set(kModes[0]);
+    EXPECT_EQ(before_mxcsr, after_mxcsr) << what << ", " << mode.name;
+    EXPECT_EQ(test::difference(before, after), "") << what << ", " << mode.name;
+}
+
+void expect_all_untouched(ovc_device device) {
+    test::Subject subject(device);
+    for (const FloatMode& mode : kModes)
+        for (const test::Entry& entry : test::entries()) {
+            ovc_result result = OVC_ERROR_INTERNAL;
+            expect_untouched(mode, entry.name, [&] { result = entry.use(subject); });
+            EXPECT_EQ(result, OVC_OK) << entry.name << ", " << mode.name;
+            expect_untouched(mode, std::string(entry.name) + " misused", [&] {
+                for (const test::Misuse& misuse : entry.misuse(subject))
+                    if (misuse.got != misuse.expected)
+                        result = misuse.got;
+            });
+            EXPECT_EQ(result, OVC_OK) << entry.name << " misused, " << mode.name;
+        }
+}
+
+class Host : public test::MisuseTest {};
+
+TEST_F(Host, KeepsItsFloatingPointEnvironmentAndSignals) {
+    setenv("OVC_MISUSE_TEST", "mine", 1);
+    std::signal(SIGUSR1, [](int) {});
+    std::signal(SIGFPE, SIG_DFL);
+    expect_all_untouched(device.get());
+    std::signal(SIGUSR1, SIG_DFL);
+    unsetenv("OVC_MISUSE_TEST");
+}
+
+/// A context of the host's, on the display that the plugin's device has too, in the middle of work.
+TEST_F(Host, KeepsItsGlContextWithAllThatIsSetInIt) {
+    const Result<EglContext> mine = EglContext::create("", {});
+    ASSERT_TRUE(mine) << mine.error().message;
+    GLuint names[4];
+    glGenTextures(1, &names[0]);
+    glBindTexture(GL_TEXTURE_2D, names[0]);
+    glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, 4, 4);
+    glGenFramebuffers(1, &names[1]);
+    glBindFramebuffer(GL_FRAMEBUFFER, names[1]);
+    glFramebufferTexture(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, names[0], 0);
+    glClearColor(0.25f, 0.5f, 0.75f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glGenBuffers(1, &names[2]);
+    glBindBuffer(GL_SHADER_STORAGE_BUFFER, names[2]);
+    glGenVertexArrays(1, &names[3]);
+    glBindVertexArray(names[3]);
+    glViewport(1, 2, 3, 4);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(1, 1, 2, 2);
+    glPixelStorei(GL_PACK_ALIGNMENT, 2);
+    ASSERT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+    expect_all_untouched(device.get());
+    EXPECT_TRUE(mine->alive());
+}
+
+TEST_F(Host, KeepsItsChoiceOfAnotherClientApi) {
+    ASSERT_TRUE(eglBindAPI(EGL_OPENGL_ES_API));
+    expect_all_untouched(device.get());
+    EXPECT_EQ(eglQueryAPI(), EGLenum(EGL_OPENGL_ES_API));
+    eglBindAPI(EGL_OPENGL_API);
+}
+
+} // namespace
+} // namespace ovc
