@@ -19,13 +19,26 @@
 
 namespace ovc {
 
+/// loop(context) in isolation. In that context it runs in this thread's floating-point mode; else
+/// it would run in that of the thread on which oneTBB began, which may be the host's: with
+/// subnormals flushed, say.
+template <class Loop>
+auto isolated(Loop&& loop) {
+    using Context = oneapi::tbb::task_group_context;
+    return oneapi::tbb::this_task_arena::isolate([&] {
+        Context context(Context::bound, Context::default_traits | Context::fp_settings);
+        return loop(context);
+    });
+}
+
 /// Calls body(first, last) on disjoint ranges that cover [0, count), of at least `grain` items
 /// where possible, from several threads. What body throws is thrown here.
 template <class Body>
 void parallel_for(size_t count, size_t grain, Body&& body) {
-    oneapi::tbb::this_task_arena::isolate([&] {
-        oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<size_t>(0, count, grain),
-                                  [&](const auto& range) { body(range.begin(), range.end()); });
+    isolated([&](auto& context) {
+        oneapi::tbb::parallel_for(
+            oneapi::tbb::blocked_range<size_t>(0, count, grain),
+            [&](const auto& range) { body(range.begin(), range.end()); }, context);
     });
 }
 
@@ -33,14 +46,29 @@ void parallel_for(size_t count, size_t grain, Body&& body) {
 /// must be associative and commutative for the result to be the same on every run.
 template <class T, class Body, class Join>
 T parallel_reduce(size_t count, T identity, Body&& body, Join&& join) {
-    return oneapi::tbb::this_task_arena::isolate([&] {
+    return isolated([&](auto& context) {
         return oneapi::tbb::parallel_reduce(
             oneapi::tbb::blocked_range<size_t>(0, count, 4096), std::move(identity),
             [&](const auto& range, T value) {
                 return body(range.begin(), range.end(), std::move(value));
             },
-            std::forward<Join>(join));
+            std::forward<Join>(join), context);
     });
+}
+
+/// Runs both, perhaps at the same time.
+template <class A, class B>
+void parallel_invoke(A&& a, B&& b) {
+    isolated([&](auto& context) {
+        oneapi::tbb::parallel_invoke(std::forward<A>(a), std::forward<B>(b), context);
+    });
+}
+
+/// Sorts [first, last) by <. Equal elements come in any order.
+template <class Iterator>
+void parallel_sort(Iterator first, Iterator last) {
+    // It takes no context, but has that of the loop that it is part of.
+    parallel_invoke([&] { oneapi::tbb::parallel_sort(first, last); }, [] {});
 }
 
 /// While it lives, loops of the whole process run on at most so many threads.
@@ -57,19 +85,6 @@ private:
 inline size_t thread_count() {
     return oneapi::tbb::global_control::active_value(
         oneapi::tbb::global_control::max_allowed_parallelism);
-}
-
-/// Sorts [first, last) by <. Equal elements come in any order.
-template <class Iterator>
-void parallel_sort(Iterator first, Iterator last) {
-    oneapi::tbb::this_task_arena::isolate([&] { oneapi::tbb::parallel_sort(first, last); });
-}
-
-/// Runs both, perhaps at the same time.
-template <class A, class B>
-void parallel_invoke(A&& a, B&& b) {
-    oneapi::tbb::this_task_arena::isolate(
-        [&] { oneapi::tbb::parallel_invoke(std::forward<A>(a), std::forward<B>(b)); });
 }
 
 } // namespace ovc
