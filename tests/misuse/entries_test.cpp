@@ -36,7 +36,8 @@ TEST_F(Entries, EachMisuseIsAnErrorWithASentenceAndLeavesNothingBehind) {
     for (const test::Entry& entry : test::entries()) {
         for (const test::Misuse& misuse : entry.misuse(subject)) {
             EXPECT_EQ(misuse.got, misuse.expected) << entry.name << ": " << misuse.what;
-            EXPECT_GT(misuse.said.size(), 10u) << entry.name << ": " << misuse.what;
+            const bool told = misuse.expected == OVC_OK || misuse.said.size() > 10;
+            EXPECT_TRUE(told) << entry.name << ": " << misuse.what;
         }
         EXPECT_EQ(entry.use(subject), OVC_OK) << entry.name << " after misuse";
     }
