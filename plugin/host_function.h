@@ -5,8 +5,8 @@
 
 namespace ovc {
 
-/// Whether this thread is inside such a function. Trivial, as all that is thread_local here: a
-/// destructor would keep the library loaded until the thread ends.
+/// Whether this thread is inside such a function. Trivial, as all that is thread_local here: when a
+/// thread of the host's ends, no code of ours runs.
 inline constinit thread_local bool in_host_function = false;
 
 /// Marks the thread while it lives.
