@@ -8,8 +8,8 @@
 namespace ovc {
 
 /// Calls functions of the table in the order and with the arguments that `data` says, on a few
-/// scenes of one device, which lasts as long as the process. Aborts where an answer is not that of a
-/// plain loop over all triangles, or an error has no sentence. False: there is no device.
+/// scenes of one device, which lasts as long as the process. Aborts where an answer is not that of
+/// a plain loop over all triangles, or an error has no sentence. False: there is no device.
 bool fuzz_calls(const uint8_t* data, size_t size);
 
 } // namespace ovc
