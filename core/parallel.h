@@ -17,7 +17,13 @@
 #include <cstddef>
 #include <utility>
 
+#ifdef __SANITIZE_THREAD__
+#include "core/parallel_threads.h"
+#endif
+
 namespace ovc {
+
+#ifndef __SANITIZE_THREAD__
 
 /// loop(context) in isolation. In that context it runs in this thread's floating-point mode; else
 /// it would run in that of the thread on which oneTBB began, which may be the host's: with
@@ -70,6 +76,8 @@ void parallel_sort(Iterator first, Iterator last) {
     // It takes no context, but has that of the loop that it is part of.
     parallel_invoke([&] { oneapi::tbb::parallel_sort(first, last); }, [] {});
 }
+
+#endif
 
 /// While it lives, loops of the whole process run on at most so many threads.
 class ThreadLimit {
