@@ -49,11 +49,12 @@ struct Entry {
 std::span<const Entry> device_entries();
 std::span<const Entry> scene_entries();
 std::span<const Entry> ray_entries();
+std::span<const Entry> ticket_entries();
 
 /// All of them.
 inline std::vector<Entry> entries() {
     std::vector<Entry> all;
-    for (const auto part : {device_entries(), scene_entries(), ray_entries()})
+    for (const auto part : {device_entries(), scene_entries(), ray_entries(), ticket_entries()})
         all.insert(all.end(), part.begin(), part.end());
     return all;
 }

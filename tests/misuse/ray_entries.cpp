@@ -37,6 +37,45 @@ Misuses misuse_occluded(Subject& s) {
     return wrong.found();
 }
 
+ovc_result use_single_rays(Subject& s) {
+    for (uint32_t cell = 0; cell < kCells; ++cell) {
+        const ovc_ray ray = into_cell(cell, 3);
+        ovc_hit hit{};
+        uint8_t occluded = 0;
+        const ovc_result nearest = api().intersect1(s.field, &ray, &hit, nullptr);
+        const ovc_result any = api().occluded1(s.field, &ray, &occluded, nullptr);
+        if (nearest != OVC_OK || any != OVC_OK)
+            return nearest != OVC_OK ? nearest : any;
+        if (!is_in_cell(hit, cell, 3) || !occluded)
+            return OVC_ERROR_INTERNAL;
+    }
+    return OVC_OK;
+}
+Misuses misuse_intersect1(Subject& s) {
+    Wrong wrong(s);
+    const ovc_ray ray = into_cell(0, 1);
+    ovc_hit hit;
+    ovc_query unsized{};
+    wrong.without_device("scene NULL", api().intersect1(nullptr, &ray, &hit, nullptr));
+    wrong.argument("ray NULL", api().intersect1(s.field, nullptr, &hit, nullptr));
+    wrong.argument("hit NULL", api().intersect1(s.field, &ray, nullptr, nullptr));
+    wrong.argument("struct_size 0", api().intersect1(s.field, &ray, &hit, &unsized));
+    wrong.state("before commit", api().intersect1(s.empty, &ray, &hit, nullptr));
+    return wrong.found();
+}
+Misuses misuse_occluded1(Subject& s) {
+    Wrong wrong(s);
+    const ovc_ray ray = into_cell(0, 1);
+    uint8_t answer;
+    ovc_query unsized{};
+    wrong.without_device("scene NULL", api().occluded1(nullptr, &ray, &answer, nullptr));
+    wrong.argument("ray NULL", api().occluded1(s.field, nullptr, &answer, nullptr));
+    wrong.argument("occluded NULL", api().occluded1(s.field, &ray, nullptr, nullptr));
+    wrong.argument("struct_size 0", api().occluded1(s.field, &ray, &answer, &unsized));
+    wrong.state("before commit", api().occluded1(s.empty, &ray, &answer, nullptr));
+    return wrong.found();
+}
+
 /// A stream's host that pushes a ray into each cell, and counts what is right.
 struct Streamer {
     Subject& subject;
@@ -133,6 +172,8 @@ Misuses misuse_push(Subject& s) {
 constexpr Entry kEntries[] = {
     OVC_ENTRY(intersect, use_rays, misuse_intersect),
     OVC_ENTRY(occluded, use_rays, misuse_occluded),
+    OVC_ENTRY(intersect1, use_single_rays, misuse_intersect1),
+    OVC_ENTRY(occluded1, use_single_rays, misuse_occluded1),
     OVC_ENTRY(stream, use_stream, misuse_stream),
     OVC_ENTRY(push, use_stream, misuse_push),
 };

@@ -166,6 +166,41 @@ Misuses misuse_save(Subject& s) {
     return wrong.found();
 }
 
+ovc_result use_add_instance(Subject& s) {
+    const AbiScene scene = new_scene(s);
+    const ovc_mesh mesh = field_mesh();
+    auto instance = sized<ovc_instance>();
+    const ovc_result added = api().add_mesh(scene.get(), &mesh, nullptr);
+    return added == OVC_OK ? api().add_instance(scene.get(), &instance, nullptr) : added;
+}
+Misuses misuse_add_instance(Subject& s) {
+    Wrong wrong(s);
+    const double transform[12] = {NAN};
+    auto instance = sized<ovc_instance>();
+    wrong.without_device("scene NULL", api().add_instance(nullptr, &instance, nullptr));
+    wrong.argument("instance NULL", api().add_instance(s.empty, nullptr, nullptr));
+    wrong.argument("no such mesh", api().add_instance(s.empty, &instance, nullptr));
+    wrong.state("after commit", api().add_instance(s.field, &instance, nullptr));
+    const AbiScene scene = new_scene(s);
+    const ovc_mesh mesh = field_mesh();
+    api().add_mesh(scene.get(), &mesh, nullptr);
+    instance.transform = transform;
+    if (scene)
+        wrong.argument("transform NaN", api().add_instance(scene.get(), &instance, nullptr));
+    return wrong.found();
+}
+
+ovc_result use_purge(Subject& s) {
+    const ovc_result purged = api().purge(s.field);
+    return purged != OVC_OK || field_answers(s.field) ? purged : OVC_ERROR_INTERNAL;
+}
+Misuses misuse_purge(Subject& s) {
+    Wrong wrong(s);
+    wrong.without_device("scene NULL", api().purge(nullptr));
+    wrong.on_device("before commit: nothing to do", OVC_OK, api().purge(s.empty));
+    return wrong.found();
+}
+
 constexpr Entry kEntries[] = {
     OVC_ENTRY(create_scene, use_create_scene, misuse_create_scene),
     OVC_ENTRY(add_mesh, use_add_mesh, misuse_add_mesh),
@@ -175,6 +210,8 @@ constexpr Entry kEntries[] = {
     OVC_ENTRY(plan, use_plan, misuse_plan),
     OVC_ENTRY(active, use_active, misuse_active),
     OVC_ENTRY(save, use_save, misuse_save),
+    OVC_ENTRY(add_instance, use_add_instance, misuse_add_instance),
+    OVC_ENTRY(purge, use_purge, misuse_purge),
 };
 
 } // namespace
