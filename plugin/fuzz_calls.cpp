@@ -98,10 +98,13 @@ public:
 
     void play() {
         static constexpr void (Player::*kCalls[])() = {
-            &Player::create_scene,  &Player::create_scene, &Player::add_mesh,  &Player::add_mesh,
-            &Player::commit,        &Player::commit,       &Player::intersect, &Player::intersect,
-            &Player::occluded,      &Player::tell,         &Player::save,      &Player::stream,
-            &Player::destroy_scene, &Player::ask_device,   &Player::race};
+            &Player::create_scene,  &Player::create_scene, &Player::add_mesh,
+            &Player::add_mesh,      &Player::commit,       &Player::commit,
+            &Player::intersect,     &Player::intersect,    &Player::occluded,
+            &Player::tell,          &Player::save,         &Player::stream,
+            &Player::destroy_scene, &Player::ask_device,   &Player::race,
+            &Player::add_instance,  &Player::purge,        &Player::ask_one_by_one,
+            &Player::submit};
         for (int calls = 0; calls < 60 && !choices_.over(); ++calls)
             (this->*kCalls[choices_.below(std::size(kCalls))])();
     }
@@ -111,6 +114,8 @@ private:
 
     /// The expected result, or a failure that says why.
     void check(ovc_result got, ovc_result expected) {
+        if (got != expected)
+            std::fprintf(stderr, "%d, not %d: %s\n", got, expected, api().last_error(device_));
         OVC_REQUIRE(got == expected);
         if (got != OVC_OK)
             OVC_REQUIRE(std::strlen(api().last_error(device_)) > 10 ||
@@ -213,10 +218,29 @@ private:
         OVC_REQUIRE(id + 1 == slot.soup.chunks.size());
     }
 
+    /// Where its mesh is: all its triangles are twins, and the smaller number answers.
+    void add_instance() {
+        Slot& slot = any_slot();
+        auto instance = sized<ovc_instance>();
+        instance.mesh = choices_.below(4);
+        const ovc_result result = api().add_instance(slot.scene, &instance, nullptr);
+        const ovc_result expected = slot.expected(false);
+        const bool there = instance.mesh < slot.soup.chunks.size();
+        check(result, expected == OVC_OK && !there ? OVC_ERROR_INVALID_ARGUMENT : expected);
+        if (result == OVC_OK)
+            slot.soup.chunks.push_back(slot.soup.chunks[instance.mesh].instance());
+    }
+
+    void purge() {
+        Slot& slot = any_slot();
+        const bool alive = slot.state == Slot::Open || slot.state == Slot::Committed;
+        check(api().purge(slot.scene), alive ? OVC_OK : OVC_ERROR_INVALID_ARGUMENT);
+    }
+
     bool spoil(ovc_mesh& mesh) {
         switch (choices_.below(5)) {
         case 0:
-            mesh.struct_size -= 8;
+            mesh.struct_size = choices_.below(40);
             break;
         case 1:
             mesh.stride = 1 + choices_.below(11);
@@ -334,8 +358,7 @@ private:
             query.struct_size = choices_.below(16);
         const ovc_result result =
             api().intersect(slot.scene, asked.data(), asked.size(), hits.data(), &query);
-        const ovc_result expected = slot.expected(true);
-        check(result, expected == OVC_OK && spoilt ? OVC_ERROR_INVALID_ARGUMENT : expected);
+        check(result, spoilt ? OVC_ERROR_INVALID_ARGUMENT : slot.expected(true));
         for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
             check_hit(slot, asked[i], skip[i], hits[i]);
     }
@@ -352,6 +375,50 @@ private:
         check(result, slot.expected(true));
         for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
             OVC_REQUIRE(answers[i] == truth(slot, asked[i], skip[i]).is_hit());
+    }
+
+    void ask_one_by_one() {
+        Slot& slot = any_slot();
+        for (const ovc_ray& ray : rays(slot)) {
+            ovc_hit hit{};
+            uint8_t shadow = 7;
+            check(api().intersect1(slot.scene, &ray, &hit, nullptr), slot.expected(true));
+            check(api().occluded1(slot.scene, &ray, &shadow, nullptr), slot.expected(true));
+            if (slot.state != Slot::Committed)
+                return;
+            check_hit(slot, ray, {OVC_NONE, OVC_NONE}, hit);
+            OVC_REQUIRE(shadow == (hit.mesh != OVC_NONE));
+        }
+    }
+
+    /// Waits for it, cancels it, or destroys its scene.
+    void submit() {
+        Slot& slot = any_slot();
+        const std::vector<ovc_ray> asked = rays(slot);
+        std::vector<ovc_hit> hits(asked.size());
+        ovc_ticket ticket = nullptr;
+        const ovc_result submitted = api().submit_intersect(slot.scene, asked.data(), asked.size(),
+                                                            hits.data(), nullptr, &ticket);
+        check(submitted, slot.expected(true));
+        OVC_REQUIRE((submitted == OVC_OK) == (ticket != nullptr));
+        const uint32_t end = choices_.below(4);
+        if (ticket && end == 1)
+            check(api().cancel(ticket), OVC_OK);
+        if (ticket && end == 2) {
+            api().destroy_scene(slot.scene);
+            slot.state = Slot::Destroyed;
+        }
+        const ovc_result result = api().wait(ticket);
+        if (!ticket)
+            return check(result, OVC_ERROR_INVALID_ARGUMENT);
+        OVC_REQUIRE(result == OVC_OK || (result == OVC_ERROR_CANCELLED && (end == 1 || end == 2)));
+        for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
+            check_hit(slot, asked[i], {OVC_NONE, OVC_NONE}, hits[i]);
+        uint32_t done = 0;
+        check(api().poll(ticket, &done, nullptr), OVC_OK);
+        OVC_REQUIRE(done == 1);
+        api().release(ticket);
+        check(api().poll(ticket, &done, nullptr), OVC_ERROR_INVALID_ARGUMENT);
     }
 
     void tell() {

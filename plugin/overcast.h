@@ -8,8 +8,8 @@
  * buffer. Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero. Structs
  * and the table only ever grow at their end: the struct_size of an earlier header is fine. The manual is docs/abi.md.
  * Calls may come from any thread; calls on one scene wait their turn. The caller's GL context, floating-point state and
- * environment are left alone: each device has a thread of its own. The functions that a caller hands in for logs, progress and
- * what is saved may call last_error and nothing else. In a process that is forked, the parent's handles are errors. */
+ * environment are left alone: each device has a thread of its own. The functions that a caller hands in for errors, logs, progress
+ * and what is saved may call last_error and nothing else. In a process that is forked, the parent's handles are errors. */
 #ifndef OVERCAST_H
 #define OVERCAST_H
 
