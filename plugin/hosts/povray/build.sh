@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: AGPL-3.0-or-later
+# Builds povray-overcast: Debian's source package of POV-Ray 3.7 with povray.patch and the overcast_*.cpp beside this script.
+# usage: build.sh FOLDER        FOLDER/povray-overcast; the sources and objects go to FOLDER/povray-source
+# JOBS: how many compilers at once (nproc). CXX: such as "ccache g++". Takes some 12 minutes of one core the first time.
+# Exit 77: the source package, or what it needs to be built, is not to be had here; the last line says what is missing.
+set -euo pipefail
+
+version=3.7.0.10
+here=$(cd "$(dirname "$(readlink -f "$0")")" && pwd)
+root=$(cd "$here/../../.." && pwd)
+
+usage() {
+    sed -n '3,6s/^# \{0,1\}//p' "$0"
+}
+
+cannot() {
+    echo "build.sh: $1" >&2
+    exit 77
+}
+
+# Debian's source package, by lists of our own: the system's may lack deb-src, and are left alone.
+fetch_source() {
+    local list=$PWD/apt
+    command -v apt-get >/dev/null && command -v dpkg-source >/dev/null || cannot "apt-get and dpkg-source (package dpkg-dev) are needed"
+    mkdir -p "$list/lists/partial"
+    local mirror
+    mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | grep -m1 '/debian/*$') || mirror=http://deb.debian.org/debian
+    echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror bookworm main" > "$list/sources.list"
+    local apt=(apt-get -qq -o Dir::Etc::SourceList="$list/sources.list" -o Dir::Etc::SourceParts=/dev/null -o Dir::State::Lists="$list/lists")
+    if [[ $(id -u) -eq 0 ]]; then
+        apt+=(-o APT::Sandbox::User=root)
+    fi
+    "${apt[@]}" update || cannot "the list of Debian's source packages is not to be had from $mirror"
+    "${apt[@]}" source --only-source "povray=1:$version-2" || cannot "Debian's source package of povray $version is not to be had from $mirror"
+}
+
+# As debian/rules does, but for documents and packaging.
+configure() {
+    mv libraries libraries.donotuse # Debian's own are used instead
+    local macro
+    for macro in unix/config/*.m4; do
+        if [[ ! -h $macro && -f /usr/share/aclocal/${macro##*/} ]]; then
+            ln -sf "/usr/share/aclocal/${macro##*/}" "$macro"
+        fi
+    done
+    (cd unix && ./prebuild.sh)
+    ./configure --prefix=/usr --sysconfdir=/etc --disable-dependency-tracking --disable-optimiz --disable-strip \
+        --with-boost-thread=boost_thread COMPILED_BY="the Overcast project, with povray.patch" \
+        CPPFLAGS="-I$root" CXXFLAGS=-O3 LIBS="$PWD/../libovercast_mesh.a -ldl"
+}
+
+# Our own files, a library beside POV-Ray's sources: quick to make anew each time.
+compile_ours() {
+    local source
+    rm -f libovercast_mesh.a
+    for source in "$here"/overcast_{device,mesh,settings}.cpp; do
+        ${CXX:-g++} -std=c++17 -O2 -I"$root" -c "$source"
+    done
+    ar rcs libovercast_mesh.a overcast_{device,mesh,settings}.o
+}
+
+if [[ $# -ne 1 || $1 == -* ]]; then
+    usage
+    [[ ${1:-} == -h || ${1:-} == --help ]] || exit 1
+    exit 0
+fi
+mkdir -p "$1"
+out=$(cd "$1" && pwd)
+mkdir -p "$out/povray-source"
+cd "$out/povray-source"
+compile_ours
+
+# POV-Ray with another patch is built anew.
+stamp=$(sha256sum < "$here/povray.patch")
+if [[ ! -f patched || $(cat patched) != "$stamp" ]]; then
+    rm -rf "povray-$version" patched
+    [[ -f povray_$version-2.dsc ]] || fetch_source
+    rm -rf "povray-$version"
+    dpkg-source -x "povray_$version-2.dsc" >/dev/null
+    missing=$(dpkg-checkbuilddeps "povray-$version/debian/control" 2>&1) ||
+        cannot "${missing#*error: }; as root: apt-get install what is listed"
+    patch -d "povray-$version" -p1 --fuzz=0 < "$here/povray.patch"
+    (cd "povray-$version" && configure) > configure.log 2>&1 || {
+        tail -n 5 configure.log >&2
+        echo "build.sh: configuring POV-Ray failed; all it said is in $PWD/configure.log" >&2
+        exit 1
+    }
+    echo "$stamp" > patched
+fi
+rm -f "povray-$version/unix/povray" # make does not see that our library is new
+make -C "povray-$version" -j "${JOBS:-$(nproc)}" > make.log 2>&1 || {
+    grep -m5 -E 'error|Error' make.log >&2 || tail -n 5 make.log >&2
+    echo "build.sh: compiling POV-Ray failed; all it said is in $PWD/make.log" >&2
+    exit 1
+}
+cp "povray-$version/unix/povray" "$out/povray-overcast.new"
+mv "$out/povray-overcast.new" "$out/povray-overcast"
+echo "$out/povray-overcast"
