@@ -37,7 +37,7 @@ public:
 
     bool hit(const ovc_ray& ray, OvercastHit& hit) const {
         ovc_hit found;
-        device_->check(device_->api().intersect(scene_, &ray, 1, &found, nullptr));
+        device_->check(device_->api().intersect1(scene_, &ray, &found, nullptr));
         hit = {found.t, long(found.prim)};
         return found.mesh != OVC_NONE;
     }

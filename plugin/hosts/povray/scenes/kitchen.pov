@@ -3,10 +3,9 @@
 #include "stage.inc"
 #include "kitchen.inc"
 #local Low = min_extent(kitchen);
-#local High = max_extent(kitchen);
-#local Middle = (Low + High) / 2;
-camera { location Middle + <0.9, 0.55, -0.9> * vlength(High - Low) look_at Middle angle 40 }
-light_source { Middle + <-0.4, 1.5, -0.7> * vlength(High - Low) rgb 1 area_light 20 * x, 20 * z, 3, 3 }
-light_source { Middle + <1, 0.8, -1> * vlength(High - Low) rgb 0.5 }
+#local Size = max_extent(kitchen) - Low;
+camera { location Low + <0.5, 0.6, 0.5> * Size look_at Low + <0.9, 0.3, 0.15> * Size angle 75 }
+light_source { Low + <0.6, 0.9, 0.5> * Size rgb 0.9 area_light 0.1 * Size.x * x, 0.1 * Size.x * z, 3, 3 }
+light_source { Low + <0.9, 0.8, 0.3> * Size rgb 0.4 shadowless }
 background { rgb 0.6 }
 object { kitchen }
