@@ -6,9 +6,10 @@
 
 #include <dlfcn.h>
 
+/// From the start of a line: POV-Ray counts words there while it parses.
 static void say(void*, ovc_log_level level, const char* message) {
     if (level != OVC_LOG_INFO)
-        std::fprintf(stderr, "povray-overcast: %s\n", message);
+        std::fprintf(stderr, "\rpovray-overcast: %s\n", message);
 }
 
 /// The library stays loaded: its code may run until the process ends.

@@ -76,7 +76,7 @@ static void say_once(const std::string& sentence) {
     static std::string last;
     const std::lock_guard lock(mutex);
     if (sentence != last)
-        std::fprintf(stderr, "povray-overcast: %s; meshes stay POV-Ray's\n", sentence.c_str());
+        std::fprintf(stderr, "\rpovray-overcast: %s; meshes stay POV-Ray's\n", sentence.c_str());
     last = sentence;
 }
 

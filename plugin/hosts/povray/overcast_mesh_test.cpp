@@ -38,6 +38,7 @@ protected:
     PovrayMesh() {
         setenv("OVC_PLUGIN", OVC_BINARY_DIR "/bin/libovercast.so", 1);
         setenv("OVC_POVRAY_GPU_MEMORY", "64M", 1);
+        setenv("OVC_POVRAY_TRIANGLES", "1", 1);
         std::uniform_real_distribution<float> place(-1, 1);
         for (vec3& vertex : vertices_)
             vertex = {place(random_), place(random_), place(random_)};
@@ -150,7 +151,7 @@ TEST_F(PovrayMesh, BudgetsThatDoNotWorkLeaveTheMeshToPovrayAndSayWhy) {
     EXPECT_EQ(overcast_take(triangles()), nullptr);
     EXPECT_EQ(overcast_take(triangles()), nullptr);
     EXPECT_THAT(testing::internal::GetCapturedStderr(),
-                testing::MatchesRegex("povray-overcast: .*1024.*; meshes stay POV-Ray's\n.*"));
+                testing::MatchesRegex("\rpovray-overcast: .*1024.*; meshes stay POV-Ray's\n.*"));
 }
 
 TEST_F(PovrayMesh, VariablesWithoutMeaningAreErrors) {
