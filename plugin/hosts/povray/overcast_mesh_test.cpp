@@ -96,7 +96,7 @@ TEST_F(PovrayMesh, HitsAreThoseOfEveryTriangleTestedInTurn) {
     const Owned mesh(overcast_take(triangles()), overcast_release);
     ASSERT_TRUE(mesh);
     int hits = 0;
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 30; ++i) {
         Ray ray = some_ray();
         OvercastHit hit, expected = by_all(ray);
         while (ask(*mesh, ray, hit)) { // as POV-Ray goes on where solids are cut
