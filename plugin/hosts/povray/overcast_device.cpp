@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "plugin/hosts/povray/overcast_device.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 
@@ -61,6 +62,13 @@ OvercastDevice::~OvercastDevice() {
         stderr, "povray-overcast: meshes: %llu, triangles: %llu, rays: %llu, renderer: %s\n",
         static_cast<unsigned long long>(meshes_), static_cast<unsigned long long>(triangles_),
         static_cast<unsigned long long>(rays_), info_.renderer);
+}
+
+uint64_t OvercastDevice::budget_for(long triangles) const {
+    constexpr uint64_t kSmallest = 1 << 20;
+    constexpr uint64_t kTriangleBytes = 256; // pages take up to 115, an eighth of a budget is rays'
+    return std::min<uint64_t>(info_.default_budget_bytes,
+                              kSmallest + kTriangleBytes * uint64_t(triangles));
 }
 
 void OvercastDevice::count(long triangles, uint64_t rays) {

@@ -28,6 +28,10 @@ public:
 
     const ovc_api& api() const { return *api_; }
     ovc_device handle() const { return device_; }
+    /// GPU memory that suits a mesh of so many triangles: meshes share the device's, and the
+    /// library's own default is for one scene alone.
+    uint64_t budget_for(long triangles) const;
+
     /// To be told at the end, when the device is closed.
     void count(long triangles, uint64_t rays);
 

@@ -16,7 +16,7 @@ public:
         : device_(std::move(device)), count_(triangles.triangle_count) {
         ovc_scene_config config{};
         config.struct_size = sizeof config;
-        config.gpu_memory_bytes = gpu_memory_bytes;
+        config.gpu_memory_bytes = gpu_memory_bytes ? gpu_memory_bytes : device_->budget_for(count_);
         device_->check(device_->api().create_scene(device_->handle(), &config, &scene_));
         try {
             build(triangles);
