@@ -32,7 +32,8 @@ fetch_source() {
         apt+=(-o APT::Sandbox::User=root)
     fi
     "${apt[@]}" update || cannot "the list of Debian's source packages is not to be had from $mirror"
-    "${apt[@]}" source --only-source "povray=1:$version-2" || cannot "Debian's source package of povray $version is not to be had from $mirror"
+    "${apt[@]}" source --download-only --only-source "povray=1:$version-2" || cannot "Debian's source package of povray $version is not to be had from $mirror"
+    touch fetched
 }
 
 # As debian/rules does, but for documents and packaging.
@@ -75,8 +76,7 @@ compile_ours
 stamp=$(sha256sum < "$here/povray.patch")
 if [[ ! -f patched || $(cat patched) != "$stamp" ]]; then
     rm -rf "povray-$version" patched
-    [[ -f povray_$version-2.dsc ]] || fetch_source
-    rm -rf "povray-$version"
+    [[ -f fetched ]] || fetch_source
     dpkg-source -x "povray_$version-2.dsc" >/dev/null
     missing=$(dpkg-checkbuilddeps "povray-$version/debian/control" 2>&1) ||
         cannot "${missing#*error: }; as root: apt-get install what is listed"
