@@ -4,6 +4,10 @@
 // A host may call us from its own oneTBB tasks, and we loop with locks taken. A thread that waits
 // for the rest of such a loop must not be given another task of the host meanwhile: that could call
 // us again, and wait for a lock which its own thread holds. So every loop is isolated.
+//
+// A loop runs whole, or throws. In a group of tasks that is cancelled, the host's or that of a loop
+// of ours around it whose other parts threw, oneTBB would leave parts of it out and say nothing; so
+// every loop is a group of its own, which only what its own parts throw can end.
 #pragma once
 
 #include <oneapi/tbb/blocked_range.h>
@@ -25,14 +29,14 @@ namespace ovc {
 
 #ifndef __SANITIZE_THREAD__
 
-/// loop(context) in isolation. In that context it runs in this thread's floating-point mode; else
-/// it would run in that of the thread on which oneTBB began, which may be the host's: with
-/// subnormals flushed, say.
+/// loop(context) in isolation and in a group of its own. In that context it runs in this thread's
+/// floating-point mode; else it would run in that of the thread on which oneTBB began, which may be
+/// the host's: with subnormals flushed, say.
 template <class Loop>
 auto isolated(Loop&& loop) {
     using Context = oneapi::tbb::task_group_context;
     return oneapi::tbb::this_task_arena::isolate([&] {
-        Context context(Context::bound, Context::default_traits | Context::fp_settings);
+        Context context(Context::isolated, Context::default_traits | Context::fp_settings);
         return loop(context);
     });
 }

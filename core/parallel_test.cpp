@@ -6,8 +6,10 @@
 
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -73,6 +75,70 @@ TEST(Parallel, NorInTheOtherForms) {
                   EXPECT_TRUE(std::is_sorted(numbers.begin(), numbers.end()));
               }),
               0u);
+}
+
+/// Runs call() in a group of tasks that its host has cancelled.
+template <class Call>
+void in_a_cancelled_group(Call&& call) {
+    oneapi::tbb::task_group_context group;
+    bool called = false;
+    oneapi::tbb::parallel_for(
+        0, 1,
+        [&](int) {
+            group.cancel_group_execution();
+            call();
+            called = true;
+        },
+        group);
+    ASSERT_TRUE(called);
+}
+
+TEST(Parallel, RunsWholeWhereTheGroupAroundItIsCancelled) {
+    in_a_cancelled_group([] {
+        std::atomic<size_t> items{0};
+        parallel_for(1000, 1, [&](size_t first, size_t last) { items += last - first; });
+        EXPECT_EQ(items, 1000u);
+
+        std::atomic<int> invoked{0};
+        parallel_invoke([&] { ++invoked; }, [&] { ++invoked; });
+        EXPECT_EQ(invoked, 2);
+
+        const size_t sum = parallel_reduce(
+            100000, size_t(0),
+            [](size_t first, size_t last, size_t value) { return value + last - first; },
+            [](size_t a, size_t b) { return a + b; });
+        EXPECT_EQ(sum, 100000u);
+
+        std::vector<int> numbers(5000);
+        for (size_t i = 0; i < numbers.size(); ++i)
+            numbers[i] = int(i * 7919 % 5000);
+        parallel_sort(numbers.begin(), numbers.end());
+        EXPECT_TRUE(std::is_sorted(numbers.begin(), numbers.end()));
+    });
+}
+
+/// What one part of a loop throws must not cut short a loop within another part.
+TEST(Parallel, ALoopWithinALoopRunsWholeWhereThatOneThrows) {
+    const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
+                                              4);
+    for (int round = 0; round < 50; ++round) {
+        std::atomic<bool> thrown{false};
+        std::atomic<size_t> cut{0};
+        const auto part = [&](size_t first, size_t) {
+            if (first == 0) {
+                work_for_a_while();
+                thrown = true;
+                throw std::runtime_error("enough");
+            }
+            while (!thrown) {
+                std::atomic<size_t> items{0};
+                parallel_for(100, 1, [&](size_t from, size_t to) { items += to - from; });
+                cut += items != 100;
+            }
+        };
+        EXPECT_THROW(parallel_for(2, 1, part), std::runtime_error);
+        EXPECT_EQ(cut, 0u);
+    }
 }
 
 } // namespace

@@ -96,7 +96,7 @@ TEST_F(TwoLevelGl, ManyRaysAreAnsweredAsFewAre) {
 /// The compute kernel takes neighbours together where they go the same way, and others in turns.
 TEST_F(TwoLevelGl, RaysAreAnsweredAlikeInAnyOrderAndByBothKernels) {
     const Soup soup = test::closed_grid(60);
-    constexpr int kSide = 220;
+    constexpr int kSide = 300;
     std::vector<Ray> ordered;
     for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x)
