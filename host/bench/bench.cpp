@@ -2,6 +2,7 @@
 // Rounds of calls, and what each took.
 #include "host/bench/bench.h"
 
+#include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "host/process_cost.h"
 
@@ -20,6 +21,18 @@ uint64_t count_differing(std::span<const uint64_t> a, std::span<const uint64_t> 
     for (size_t i = 0; i < a.size(); ++i)
         count += a[i] != b[i];
     return count;
+}
+
+/// What the kernel took, without bringing rays and answers. Of one on the CPU, its share of the CPU
+/// time a thread had: as on a machine that has nothing else to do, where that is the share of the
+/// call. A software renderer's kernel comes as CPU time already (gpu/driver_threads.h).
+double kernel_alone(const ovc_statistics& before, const ovc_statistics& after, double seconds,
+                    double cpu_seconds) {
+    const double kernel = after.seconds_kernel - before.seconds_kernel;
+    if (after.seconds_pass > before.seconds_pass)
+        return kernel;
+    const double share = kernel > 0 ? kernel / seconds : 1;
+    return share * cpu_seconds / double(thread_count());
 }
 
 /// Runs the workload once; its counters, and the seconds where `timed`.
@@ -42,7 +55,7 @@ Result<Done> call(const Workload& workload, Backend& backend, bool timed, Measur
         m.seconds.push_back(seconds);
         m.cpu_seconds.push_back(cpu_seconds);
         m.pass_seconds.push_back(after.seconds_pass - before.seconds_pass);
-        m.kernel_seconds.push_back(after.seconds_kernel - before.seconds_kernel);
+        m.kernel_seconds.push_back(kernel_alone(before, after, seconds, cpu_seconds));
     }
     return Done{};
 }

@@ -34,7 +34,7 @@ struct Measurement {
     std::vector<double>
         cpu_seconds; // of all threads: what is left on a machine that others use too
     std::vector<double> pass_seconds;   // of seconds, passes: ovc_statistics.seconds_pass
-    std::vector<double> kernel_seconds; // of seconds, the kernel alone; 0 for who has none
+    std::vector<double> kernel_seconds; // the kernel alone; of a CPU tree, what a thread took
 };
 
 struct BenchEntrant {

@@ -2,7 +2,13 @@
 // Taking turns, counting what differs, and stopping, with backends that answer what they are told.
 #include "host/bench/bench.h"
 
+#include "core/parallel.h"
+#include "host/process_cost.h"
+
 #include <gmock/gmock.h>
+
+#include <chrono>
+#include <thread>
 
 namespace ovc {
 namespace {
@@ -76,6 +82,36 @@ TEST_F(RunContenders, TakeTurns) {
         EXPECT_EQ(m.flagged, 3u);
     }
     EXPECT_EQ(result.entrants[1].renderer, "scripted b");
+}
+
+/// Works for 20 ms on a CPU, and waits for 200, as where others take it.
+class Interrupted final : public Backend {
+public:
+    Result<Done> intersect(std::span<const Ray>, std::span<const TriangleId>,
+                           std::span<Hit>) override {
+        const double begin = process_cpu_seconds();
+        while (process_cpu_seconds() < begin + 0.02) {
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        return Done{};
+    }
+    Result<Done> occluded(std::span<const Ray>, std::span<const TriangleId>,
+                          std::span<uint8_t>) override {
+        return Done{};
+    }
+    ovc_statistics statistics() const override { return {}; }
+    std::string renderer() const override { return "interrupted"; }
+};
+
+TEST_F(RunContenders, OnTheCpuAreTimedByWhatAThreadTook) {
+    entrants.push_back({Contender{}, std::make_shared<Interrupted>()});
+    workloads.push_back(ray_workload({"rays", RayQuery::Nearest, std::vector<Ray>(3)}));
+    ASSERT_TRUE(run(1));
+    ASSERT_EQ(result.measurements.size(), 1u);
+    const Measurement& m = result.measurements[0];
+    EXPECT_GE(m.seconds[0], 0.22);
+    EXPECT_DOUBLE_EQ(m.kernel_seconds[0], m.cpu_seconds[0] / double(thread_count()));
+    EXPECT_GE(m.cpu_seconds[0], 0.02);
 }
 
 TEST_F(RunContenders, CountAnswersUnlikeTheReferences) {

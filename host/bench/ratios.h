@@ -22,7 +22,8 @@ Spread spread_of(std::span<const double> values);
 std::optional<double> mrays(const Measurement& m, double seconds);
 
 /// What a contender takes to answer rays that are where it wants them: a median. Of the plugin the
-/// kernel alone, of Embree what its own functions take; of the others the whole call.
+/// kernel alone, of Embree what its own functions take; of the others the whole call. Of those that
+/// run on the CPU, software renderers included, CPU seconds of a thread.
 double kernel_seconds(const Measurement& m);
 
 /// The peer's kernel seconds over these, at the same workload. Nothing where the peer did not take
