@@ -28,6 +28,13 @@ LOUD = 2      # code values
 TIMES = re.compile(r"^\s*(Parse|Photon|Radiosity|Trace) Time:.*\n.*?([\d.]+) CPU-seconds", re.M)
 ANSWERED = re.compile(r"^povray-overcast: meshes: .*rays: (\d+)", re.M)
 
+# Linux counts as a child's most memory also what its parent had when it came into being: so it gets a parent that has little.
+SMALL_PARENT = """import os, sys
+_, status, used = os.wait4(os.posix_spawnp(sys.argv[2], sys.argv[2:], os.environ), 0)
+with open(sys.argv[1], "w") as file:
+    print(os.waitstatus_to_exitcode(status), used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, file=file)
+"""
+
 
 class Run:
     """One picture, and what it took."""
@@ -37,18 +44,15 @@ class Run:
         command = [program, f"+I{scene}", f"+O{picture}", "+FP8", "File_Gamma=sRGB", "-D", "-A", "+HR", f"+WT{threads}", f"+L{options.output}", f"+L{HERE / 'scenes'}",
                    f"+L{scene.parent}", f"+W{options.width}", f"+H{options.height}"]
         environment = dict(os.environ, OVC_POVRAY_TRIANGLES=os.environ.get("OVC_POVRAY_TRIANGLES", "1"))
-        log = picture.with_suffix(".log")
+        log, took = picture.with_suffix(".log"), picture.with_suffix(".took")
         start = time.monotonic()
         with open(log, "wb") as said:
-            process = subprocess.Popen(command, stdout=said, stderr=said, stdin=subprocess.DEVNULL, cwd=scene.parent, env=environment)
-            _, status, used = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
+            subprocess.run([sys.executable, "-SE", "-c", SMALL_PARENT, took, *command], stdout=said, stderr=said, stdin=subprocess.DEVNULL, cwd=scene.parent, env=environment, check=True)
         self.wall = time.monotonic() - start
         text = log.read_text(errors="replace")
-        if process.returncode != 0:
-            sys.exit(f"compare.py: {' '.join(map(str, command))} ended with {process.returncode}; what it said is in {log}")
-        self.cpu = used.ru_utime + used.ru_stime
-        self.megabytes = used.ru_maxrss / 1024
+        code, self.cpu, self.megabytes = map(float, took.read_text().split())
+        if code != 0:
+            sys.exit(f"compare.py: {' '.join(map(str, command))} ended with {code:.0f}; what it said is in {log}")
         self.trace = sum(float(seconds) for phase, seconds in TIMES.findall(text) if phase != "Parse")
         rays = ANSWERED.findall(text)
         self.rays = int(rays[-1]) if rays else 0
