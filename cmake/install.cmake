@@ -13,6 +13,11 @@ install(TARGETS overcast_plugin EXPORT Overcast LIBRARY COMPONENT overcast NAMEL
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 # Loaded by the command alone.
 install(TARGETS overcast_thesis LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/overcast COMPONENT overcast)
+# tachyon with Overcast in it, where it is built; the module is preloaded by its command alone.
+if(TARGET overcast_tachyon)
+    install(TARGETS overcast-tachyon RUNTIME COMPONENT overcast)
+    install(TARGETS overcast_tachyon LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/overcast COMPONENT overcast)
+endif()
 install(FILES plugin/overcast.h plugin/overcast.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/overcast COMPONENT overcast)
 
 install(FILES plugin/examples/hills.c plugin/examples/sunlit.cpp DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT overcast)
@@ -43,8 +48,13 @@ add_custom_command(OUTPUT ${words}/overcast.1.gz ${words}/overcast.bash ${words}
     COMMAND overcast completion zsh > ${words}/_overcast
     COMMAND overcast completion fish > ${words}/overcast.fish
     DEPENDS overcast VERBATIM)
-add_custom_target(overcast_words ALL DEPENDS ${words}/overcast.1.gz)
-install(FILES ${words}/overcast.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT overcast)
+add_custom_command(OUTPUT ${words}/overcast-tachyon.1.gz
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${words}
+    COMMAND ${OVC_GZIP} -9nc ${PROJECT_SOURCE_DIR}/plugin/hosts/tachyon/overcast-tachyon.1 > ${words}/overcast-tachyon.1.gz
+    DEPENDS plugin/hosts/tachyon/overcast-tachyon.1 VERBATIM)
+set(manuals ${words}/overcast.1.gz $<$<TARGET_EXISTS:overcast_tachyon>:${words}/overcast-tachyon.1.gz>)
+add_custom_target(overcast_words ALL DEPENDS ${manuals})
+install(FILES ${manuals} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT overcast)
 install(FILES ${words}/overcast.bash RENAME overcast
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT overcast)
 install(FILES ${words}/overcast.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT overcast)

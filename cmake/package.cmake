@@ -40,13 +40,13 @@ a fixed budget of GPU memory and answers proven right, through OpenGL on a GPU
 or on Mesa's software renderer.
 
 This package has the library libovercast.so with its header, the command
-overcast, which renders .ply, .obj, .pbrt and .pov scenes, and the Python
-module overcast.")
+overcast, which renders .ply, .obj, .pbrt and .pov scenes, the Python module
+overcast, and overcast-tachyon, which runs tachyon with the library in it.")
 # dpkg-shlibdeps finds the libraries that are linked. EGL is loaded while the library runs, and takes a driver.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl-mesa0, libgl1-mesa-dri, python3, python3-numpy")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "pkg-config, cmake")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "pkg-config, cmake, tachyon")
 # What programs that link the library depend on, and the linker's cache.
 configure_file(cmake/debian/symbols.in ${debian}/symbols @ONLY)
 configure_file(cmake/debian/shlibs.in ${debian}/shlibs @ONLY)

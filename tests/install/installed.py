@@ -49,7 +49,7 @@ class Tree:
         self.assertEqual(os.readlink(library), "libovercast.so.1")
 
     def test_nothing_knows_the_folders_it_was_built_in(self):
-        for file in [self.prefix / "bin/overcast", *self.libraries.glob("libovercast.so"), *self.libraries.glob("overcast/*.so")]:
+        for file in [*self.prefix.glob("bin/*"), *self.libraries.glob("libovercast.so"), *self.libraries.glob("overcast/*.so")]:
             self.assertNotRegex(run("readelf", "--dynamic", file), "R(UN)?PATH")
         for file in [*self.libraries.glob("cmake/Overcast/*.cmake"), self.libraries / "pkgconfig/overcast.pc",
                      self.modules / "overcast/_built.py"]:
@@ -72,6 +72,18 @@ class Tree:
         for shell, file in {"bash": "bash-completion/completions/overcast", "zsh": self.zsh,
                             "fish": "fish/vendor_completions.d/overcast.fish"}.items():
             self.assertEqual((share / file).read_text(), run(command, "completion", shell))
+
+    def test_tachyon_is_given_the_libraries_of_the_tree(self):
+        program = self.prefix / "bin/overcast-tachyon"
+        if not program.exists() or not shutil.which("tachyon"):
+            self.skipTest("tachyon, or the header that overcast-tachyon is built with, is not installed")
+        (self.folder / "triangle.dat").write_text(
+            "BEGIN_SCENE RESOLUTION 8 8 CAMERA ZOOM 1 ASPECTRATIO 1 ANTIALIASING 0 RAYDEPTH 1 CENTER 0 0 -3 VIEWDIR 0 0 1 UPDIR 0 1 0 END_CAMERA "
+            "TRI V0 -9 -9 0 V1 9 -9 0 V2 0 9 0 TEXTURE AMBIENT 1 DIFFUSE 0 SPECULAR 0 OPACITY 1 COLOR 1 1 1 TEXFUNC 0 END_SCENE\n")
+        command = "env", "-C", self.folder, program, "triangle.dat", "-format", "PPM", "-o", "triangle.ppm"  # tachyon takes no blanks
+        loaded = {pathlib.Path(file).resolve() for file in loaded_from(*command, name="libovercast")}
+        self.assertEqual(loaded, {(self.libraries / file).resolve() for file in ("libovercast.so.1", "overcast/libovercast_tachyon.so")})
+        self.assertEqual((self.folder / "triangle.ppm").read_bytes()[-3 * 36:-3 * 35], b"\xff" * 3, "the pixel in the middle")
 
     def test_python_finds_the_library(self):
         if not PYTHON:

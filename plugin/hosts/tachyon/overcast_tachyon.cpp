@@ -34,26 +34,33 @@ static int fail(const std::string& sentence) {
     return EXIT_FAILURE;
 }
 
-/// Beside this program, or in ../lib of it.
-static std::optional<fs::path> find_library() {
+/// The folders of libovercast.so and of ours, for LD_LIBRARY_PATH: this program's own where it was
+/// built, else where both were installed.
+static std::optional<std::string> find_libraries() {
     std::error_code error;
     const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (const fs::path& path : {folder / kLibrary, folder.parent_path() / "lib" / kLibrary})
-        if (!error && fs::exists(path, error))
-            return path;
+    const fs::path installed = (folder / OVC_LIBRARY_FROM_COMMAND).lexically_normal();
+    if (!error && fs::exists(folder / kLibrary, error))
+        return folder.string();
+    if (!error && fs::exists(installed / "overcast" / kLibrary, error))
+        return (installed / "overcast").string() + ":" + installed.string();
     return std::nullopt;
 }
 
+/// Puts `more` before what a variable of the environment lists.
+static void prepend(const char* variable, const std::string& more) {
+    const char* others = std::getenv(variable);
+    setenv(variable, (others && *others ? more + ":" + others : more).c_str(),
+           /* overwrite= */ 1);
+}
+
 /// The environment that brings the library into tachyon and, where OVC_PLUGIN names another
-/// libovercast.so, that one before ours.
-static void preload(const fs::path& library) {
-    std::string list;
+/// libovercast.so, that one before ours. By name, as LD_PRELOAD knows no way to write a blank.
+static void preload(const std::string& folders) {
+    prepend("LD_LIBRARY_PATH", folders);
+    prepend("LD_PRELOAD", kLibrary);
     if (const char* plugin = std::getenv("OVC_PLUGIN"); plugin && *plugin)
-        list = std::string(plugin) + ":";
-    list += library;
-    if (const char* others = std::getenv("LD_PRELOAD"); others && *others)
-        list += ":" + std::string(others);
-    setenv("LD_PRELOAD", list.c_str(), /* overwrite= */ 1);
+        prepend("LD_PRELOAD", plugin);
 }
 
 int main(int argc, char** argv) {
@@ -75,10 +82,14 @@ int main(int argc, char** argv) {
         setenv(device ? kDevice : kGpuMemory, argv[i], /* overwrite= */ 1);
     }
     std::fflush(stdout);
-    const std::optional<fs::path> library = find_library();
-    if (!library)
-        return fail(std::string(kLibrary) + " is neither beside this program nor in ../lib of it");
-    preload(*library);
+    const std::optional<std::string> folders = find_libraries();
+    if (!folders)
+        return fail(std::string(kLibrary) +
+                    " is neither beside this program nor where it installs");
+    if (const char* plugin = std::getenv("OVC_PLUGIN"); plugin && std::strpbrk(plugin, " :"))
+        return fail("OVC_PLUGIN is '" + std::string(plugin) +
+                    "'; a file is preloaded only from a folder without blanks and colons");
+    preload(*folders);
     command.push_back(nullptr);
     execvp(command[0], command.data());
     return fail("cannot run tachyon: " + std::string(std::strerror(errno)) +
