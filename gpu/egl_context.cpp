@@ -295,7 +295,11 @@ EglContext::~EglContext() {
 }
 
 bool EglContext::alive() const {
+    // Whoever shares the display may have ended it: eglTerminate(). EGL is asked before GL, whose
+    // functions libepoxy may have to look up, which ends the process where there is no context.
+    EGLint type = 0;
     return context_ && eglGetCurrentContext() == context_ &&
+           eglQueryContext(display_, context_, EGL_CONTEXT_CLIENT_TYPE, &type) &&
            glGetGraphicsResetStatus() == GL_NO_ERROR;
 }
 

@@ -51,8 +51,8 @@ public:
 
     const DeviceInfo& info() const { return info_; }
 
-    /// False when it is not current on this thread any more, or the driver says that a reset of the
-    /// GPU has taken it and all that was in it.
+    /// False when it is not current on this thread any more, the display was ended by whoever
+    /// shares it, or the driver says that a reset of the GPU has taken it and all that was in it.
     bool alive() const;
 
     /// For tests: what a reset does.

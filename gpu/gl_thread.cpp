@@ -78,6 +78,14 @@ Result<Done> GlThread::reopen(uint32_t generation) {
     return done;
 }
 
+/// Names in a context that is dead are not deleted: GL would be called without one.
+void GlThread::forget_if_dead(GlState& state) {
+    if (gl::context_generation != state.generation || state.context.alive())
+        return;
+    ++gl::context_generation;
+    state.context.lose();
+}
+
 void GlThread::serve() {
     name_device_thread();
     Result<EglContext> context = EglContext::create(device_, log_);
@@ -97,6 +105,7 @@ void GlThread::serve() {
             break;
         lock.unlock();
         std::exception_ptr thrown;
+        forget_if_dead(state);
         try {
             (*job_->work)(state);
         } catch (...) {

@@ -85,6 +85,7 @@ private:
     void wait_for(const Job& job);
     void finish(const Job& job);
     void serve();
+    static void forget_if_dead(GlState& state);
 
     const std::string device_;
     const LogSink log_;

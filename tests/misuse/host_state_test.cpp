@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <fenv.h>
+#include <vector>
 #include <xmmintrin.h>
 
 namespace ovc {
@@ -107,6 +108,52 @@ TEST_F(Host, KeepsItsGlContextWithAllThatIsSetInIt) {
     ASSERT_EQ(glGetError(), GLenum(GL_NO_ERROR));
     expect_all_untouched(device.get());
     EXPECT_TRUE(mine->alive());
+}
+
+/// Ends all displays of the machine's EGL devices, as a host does that is done with them.
+void end_displays() {
+    EGLDeviceEXT devices[16];
+    EGLint count = 0;
+    ASSERT_TRUE(eglQueryDevicesEXT(16, devices, &count));
+    std::vector<EGLDisplay> displays = {
+        eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)};
+    for (EGLint i = 0; i < count; ++i)
+        displays.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
+    for (const EGLDisplay display : displays)
+        eglTerminate(display);
+}
+
+/// The plugin's context is gone with the display that it shares with the host.
+TEST_F(Host, MayEndTheDisplayThatItShares) {
+    const ovc_scene traced = test::make_field(device.get());
+    ASSERT_TRUE(test::field_answers(traced));
+    const ovc_scene fresh = test::make_field(device.get());
+    const ovc_scene idle = test::make_field(device.get());
+    end_displays();
+    const ovc_ray ray = test::into_cell(7, 1);
+    const std::vector<ovc_ray> rays(10000, ray);
+    std::vector<ovc_hit> hits(rays.size());
+    for (const ovc_scene scene : {fresh, traced}) {
+        ovc_result result = api().intersect(scene, rays.data(), rays.size(), hits.data(), nullptr);
+        if (result == OVC_ERROR_DEVICE_LOST) {
+            EXPECT_STREQ(api().last_error(device.get()),
+                         "the GPU's context was lost; the device is open again, and the next "
+                         "call will work");
+            result = api().intersect(scene, rays.data(), rays.size(), hits.data(), nullptr);
+        }
+        ASSERT_EQ(result, OVC_OK) << api().last_error(device.get());
+        EXPECT_TRUE(test::is_in_cell(hits.back(), 7, 1));
+        EXPECT_TRUE(test::field_answers(scene));
+    }
+    end_displays();
+    for (const ovc_scene scene : {fresh, traced, idle})
+        api().destroy_scene(scene);
+    const ovc_scene later = test::make_field(device.get());
+    const bool again = !later; // the first call that needs the device says that it was lost
+    const ovc_scene last = again ? test::make_field(device.get()) : later;
+    ASSERT_TRUE(last) << api().last_error(device.get());
+    EXPECT_TRUE(test::field_answers(last));
+    api().destroy_scene(last);
 }
 
 TEST_F(Host, KeepsItsChoiceOfAnotherClientApi) {
