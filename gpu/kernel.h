@@ -26,6 +26,7 @@ struct ShaderConfig {
     bool linked = false;
     bool links = false;
     bool tell_active = false;
+    bool loose_pairs = false;
     uint32_t stack_depth = 16;
     bool stack_registers = true;
     uint32_t packet = 1; // rays that an invocation traces together

@@ -81,6 +81,10 @@ double doubtful_share(const Soup& soup, std::span<const TriangleId> triangles, c
     return count > 0 ? sum / double(count) : 0;
 }
 
+bool one_frame_suits(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds) {
+    return doubtful_share(soup, triangles, scene_leaf(bounds).frame) <= kMostDoubtful;
+}
+
 uint64_t most_linked_bytes(uint64_t level2_bytes, uint64_t leaves) {
     // A header, the pages' roots, and nodes of two children at least.
     return level2_bytes + (leaves > 1 ? (2 * leaves + 1) * OVC_UNIT_BYTES : 0);
@@ -162,7 +166,7 @@ void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to) 
             texel[1] = source[1];
             texel[2] = source[2];
             uvec4 last = source[3];
-            last.x += last.w == OVC_PAIR || unit < OVC_ROOT_UNIT ? 0 : first_unit;
+            last.x += last.w & OVC_PAIR || unit < OVC_ROOT_UNIT ? 0 : first_unit;
             texel[3] = last;
         }
     });

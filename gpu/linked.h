@@ -22,6 +22,9 @@ double doubtful_share(const Soup& soup, std::span<const TriangleId> triangles, c
 /// Up to this share a frame suits all leaves.
 inline constexpr double kMostDoubtful = 1.0 / 8;
 
+/// Whether the frame of a scene in `bounds` suits all its leaves.
+bool one_frame_suits(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds);
+
 /// Where linked pages lie: one behind the other from the pool's first byte on, `top` behind them.
 struct LinkedPages {
     std::vector<uint32_t> first_unit; // of the pool, per page

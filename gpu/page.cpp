@@ -3,6 +3,7 @@
 #include "gpu/page.h"
 
 #include "gpu/bvh.h"
+#include "gpu/loose_pairs.h"
 #include "gpu/packer.h"
 #include "gpu/pairs.h"
 #include "shaders/layout.h"
@@ -73,39 +74,77 @@ void put_pair(const TrianglePair& pair, std::span<uvec4, OVC_UNIT_TEXELS> unit) 
 }
 
 /// How many pairs planes may cut in two. A tenth, so that a page stays within what was planned; and
-/// units of a page are never more than if no two triangles made a pair: slivers strewn at random,
-/// where planes would cut nearly all, are left to level 1.
-size_t most_cut(size_t pairs, size_t triangles) {
-    return std::min(pairs / 10, triangles - pairs);
+/// units of a page are never more than if no two triangles made a pair. Loose pairs leave room for
+/// more, which the plan foresees (plugin/page_rate.h): among slivers a ray takes a fifth fewer
+/// steps.
+size_t most_cut(size_t pairs, size_t triangles, bool loose) {
+    return loose ? size_t(kMostCutOfLoose * double(pairs))
+                 : std::min(pairs / 10, triangles - pairs);
 }
 
-/// name: index into leaf.triangles -> what the page calls it.
-template <class Name>
-Page build_named(const Soup& soup, const Leaf& leaf, BuildProgress* progress, Name&& name) {
-    assert(!leaf.triangles.empty());
-    const Box box{leaf.frame.to_local(leaf.box.lo), leaf.frame.to_local(leaf.box.hi)};
-    std::vector<TrianglePair> pairs = pair_triangles(local_triangles(soup, leaf), progress);
-    for (TrianglePair& pair : pairs) {
-        pair.a = name(pair.a);
-        pair.b = pair.b == kNone ? kNone : name(pair.b);
+/// Pairs in a page's units, with the boxes of what matters of them.
+class PageItems {
+public:
+    /// name: index into leaf.triangles -> what the page calls it.
+    template <class Name>
+    PageItems(const Soup& soup, const Leaf& leaf, BuildProgress* progress, LoosePairs loose,
+              Name&& name)
+        : pairs_(pair_triangles(local_triangles(soup, leaf), progress)),
+          is_loose_(loose == LoosePairs::Allowed &&
+                    worth_loosening(pairs_.size(), leaf.triangles.size())) {
+        for (TrianglePair& pair : pairs_) {
+            pair.a = name(pair.a);
+            pair.b = pair.b == kNone ? kNone : name(pair.b);
+        }
+        const Box box{leaf.frame.to_local(leaf.box.lo), leaf.frame.to_local(leaf.box.hi)};
+        nodes_ =
+            build_split_bvh(boxes({vec3(box.lo), vec3(box.hi)}), pairs_,
+                            most_cut(pairs_.size(), leaf.triangles.size(), is_loose_), progress);
+        if (is_loose_)
+            loose_ = join_loose(nodes_, pairs_);
+        // As the kernel sees them: boxes are tighter without.
+        for (TrianglePair& pair : pairs_)
+            for (vec3& corner : pair.corners)
+                corner = is_loose_ ? in_steps(corner) : corner;
     }
-    // Hits count inside the leaf's box only, so what reaches out of it need not be in the boxes.
-    const Boxf inside{vec3(box.lo), vec3(box.hi)};
-    std::vector<Boxf> boxes(pairs.size());
-    for (size_t i = 0; i < pairs.size(); ++i) {
-        for (const vec3& corner : pairs[i].corners)
-            boxes[i].add(corner);
-        boxes[i] = {glm::clamp(boxes[i].lo, inside.lo, inside.hi),
-                    glm::clamp(boxes[i].hi, inside.lo, inside.hi)};
+
+    const std::vector<BvhNode>& nodes() const { return nodes_; }
+    bool is_loose() const { return is_loose_; }
+
+    void put(uint32_t item, std::span<uvec4, OVC_UNIT_TEXELS> unit) const {
+        if (item < pairs_.size())
+            return put_pair(pairs_[item], unit);
+        const auto [first, second] = loose_[item - pairs_.size()];
+        put_loose(pairs_[first], pairs_[second], unit);
     }
-    const std::vector<BvhNode> nodes =
-        build_split_bvh(boxes, pairs, most_cut(pairs.size(), leaf.triangles.size()), progress);
+
+private:
+    /// Hits count inside the leaf's box only, so what reaches out of it need not be in the boxes.
+    std::vector<Boxf> boxes(const Boxf& inside) const {
+        std::vector<Boxf> boxes(pairs_.size());
+        for (size_t i = 0; i < pairs_.size(); ++i) {
+            for (const vec3& corner : pairs_[i].corners)
+                boxes[i].add(corner);
+            boxes[i] = {glm::clamp(boxes[i].lo, inside.lo, inside.hi),
+                        glm::clamp(boxes[i].hi, inside.lo, inside.hi)};
+        }
+        return boxes;
+    }
+
+    std::vector<TrianglePair> pairs_;
+    const bool is_loose_;
+    std::vector<BvhNode> nodes_;
+    std::vector<LoosePair> loose_;
+};
+
+Page pack(const PageItems& items, const Leaf& leaf, BuildProgress* progress) {
     const Grid grid({leaf.frame.to_local(leaf.grid.lo), leaf.frame.to_local(leaf.grid.hi)});
     const GridHeader header{grid.org(), grid.cell()};
-    const auto put = [&](uint32_t pair, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
-        put_pair(pairs[pair], unit);
+    const auto put = [&](uint32_t item, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
+        items.put(item, unit);
     };
-    Page page = Packer(nodes, header, grid, put, progress).pack();
+    Page page = Packer(items.nodes(), header, grid, put, progress).pack();
+    page.texels[OVC_LOOSE_TEXEL].x = items.is_loose() ? OVC_HAS_LOOSE_PAIRS : 0;
     assert(page.texels.size() / OVC_UNIT_TEXELS < OVC_MAX_UNITS);
     return page;
 }
@@ -113,13 +152,16 @@ Page build_named(const Soup& soup, const Leaf& leaf, BuildProgress* progress, Na
 } // namespace
 
 Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf,
-                BuildProgress* progress) {
-    return build_named(soup, leaf, progress,
-                       [&](uint32_t i) { return numbers.of(leaf.triangles[i]); });
+                BuildProgress* progress, LoosePairs loose) {
+    assert(!leaf.triangles.empty());
+    const auto name = [&](uint32_t i) { return numbers.of(leaf.triangles[i]); };
+    return pack(PageItems(soup, leaf, progress, loose, name), leaf, progress);
 }
 
-Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress) {
-    return build_named(soup, leaf, progress, [](uint32_t i) { return i; });
+Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress, LoosePairs loose) {
+    assert(!leaf.triangles.empty());
+    const auto name = [](uint32_t i) { return i; };
+    return pack(PageItems(soup, leaf, progress, loose, name), leaf, progress);
 }
 
 uint32_t stack_depth(uint32_t depth) {

@@ -23,6 +23,9 @@ struct Page {
     std::span<const uvec4> view() const { return borrowed.empty() ? texels : borrowed; }
     uint64_t units() const { return view().size() / OVC_UNIT_TEXELS; }
     uint64_t bytes() const { return view().size_bytes(); }
+    bool has_loose_pairs() const {
+        return !view().empty() && view()[OVC_LOOSE_TEXEL].x == OVC_HAS_LOOSE_PAIRS;
+    }
 };
 
 /// Stack words that the kernel needs for all of these pages, rounded up: few programs, and no
@@ -30,12 +33,20 @@ struct Page {
 uint32_t stack_depth(std::span<const Page> pages);
 uint32_t stack_depth(uint32_t depth);
 
+/// Whether triangles that share no side may lie in one unit (loose_pairs.h): where that is worth
+/// it, and only for kernels with OVC_LOOSE_PAIRS.
+enum class LoosePairs { Refused, Allowed };
+
+/// Of the triangles of a page with loose pairs: how many planes may cut in two, at most.
+inline constexpr double kMostCutOfLoose = 0.3;
+
 /// Builds and packs the BVH of a leaf. Its triangles go by their numbers in the soup. Each is about
 /// two units of progress.
 Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf,
-                BuildProgress* progress = nullptr);
+                BuildProgress* progress = nullptr, LoosePairs loose = LoosePairs::Refused);
 
 /// The same; triangle i of the page is leaf.triangles[i].
-Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress = nullptr);
+Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress = nullptr,
+                LoosePairs loose = LoosePairs::Refused);
 
 } // namespace ovc

@@ -51,7 +51,9 @@ private:
     }
 
     bool check_unit(const Pending& at) {
-        if (texel(at.unit, 3).w == OVC_PAIR && at.unit != OVC_ROOT_UNIT) {
+        if ((texel(at.unit, 3).w & OVC_PAIR) && at.unit != OVC_ROOT_UNIT) {
+            if ((texel(at.unit, 3).w & OVC_LOOSE_PAIR) && !page_.has_loose_pairs())
+                return false;
             const uint32_t b = texel(at.unit, 1).w;
             return texel(at.unit, 0).w < triangle_count_ &&
                    (b < triangle_count_ || b == OVC_NO_TRIANGLE);

@@ -42,6 +42,34 @@ uint64_t pairs_of(const Page& page) {
     return pairs;
 }
 
+Page loosened(const Soup& soup) {
+    return build_page(soup, Numbering(soup), one_leaf(soup).leaves[0], nullptr,
+                      LoosePairs::Allowed);
+}
+
+TEST(Page, HoldsTwoSliversInAUnit) {
+    const Soup soup = test::random_soup(3, 20000, 0.02);
+    const Page page = loosened(soup);
+    EXPECT_TRUE(page.has_loose_pairs());
+    EXPECT_TRUE(is_walkable(page, uint32_t(soup.triangle_count())));
+    EXPECT_LE(double(page.bytes()), 80.0 * double(soup.triangle_count()));
+}
+
+TEST(Page, HoldsNoLoosePairsWhereMostPairUp) {
+    const Soup mesh = test::closed_grid(64);
+    const Level1 level1 = one_leaf(mesh);
+    const Page page = loosened(mesh);
+    EXPECT_FALSE(page.has_loose_pairs());
+    EXPECT_EQ(page.texels, build_page(mesh, Numbering(mesh), level1.leaves[0]).texels);
+}
+
+TEST(Page, IsNotWalkableWhereItsHeaderHidesLoosePairs) {
+    const Soup soup = test::random_soup(3, 2000, 0.02);
+    Page page = loosened(soup);
+    page.texels[OVC_LOOSE_TEXEL].x = 0;
+    EXPECT_FALSE(is_walkable(page, uint32_t(soup.triangle_count())));
+}
+
 TEST(Page, HoldsWhatPlanesCutInEachPart) {
     constexpr size_t kRods = 4000;
     const Soup soup = rods(kRods);
@@ -61,7 +89,7 @@ TEST(Page, WalkedInDoubleFindsWhatBruteForceFinds) {
             continue;
         ASSERT_EQ(level1.leaves.size(), 1u);
         const Leaf& leaf = level1.leaves[0];
-        const Page page = build_page(soup, Numbering(soup), leaf);
+        const Page page = build_page(soup, Numbering(soup), leaf, nullptr, LoosePairs::Allowed);
         const auto rays = test::unpleasant_rays(soup, 77, 800);
         for (size_t i = 0; i < rays.size(); ++i) {
             if (!rays[i].valid())
@@ -101,11 +129,10 @@ TEST(Page, HasTheSameBitsOnAnyNumberOfThreads) {
     const Soup soup = test::random_soup(3, 20000, 0.02);
     const Soup cut = rods(4000);
     for (const Soup* each : {&mesh, &soup, &cut}) {
-        const Level1 level1 = one_leaf(*each);
-        const Page page = build_page(*each, Numbering(*each), level1.leaves[0]);
+        const Page page = loosened(*each);
         for (const size_t threads : {1, 2, 5}) {
             const ThreadLimit limit(threads);
-            const Page again = build_page(*each, Numbering(*each), level1.leaves[0]);
+            const Page again = loosened(*each);
             EXPECT_EQ(page.texels, again.texels) << threads;
             EXPECT_EQ(page.depth, again.depth) << threads;
         }

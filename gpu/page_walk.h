@@ -49,7 +49,7 @@ bool walk_page(const Page& page, const Leaf& leaf, const PreparedRay& p, double 
         const Entry entry = stack[--top];
         if (entry.enter > limit())
             continue;
-        if (texel(entry.unit, 3).w == OVC_PAIR) {
+        if (texel(entry.unit, 3).w & OVC_PAIR) {
             const uint32_t a = texel(entry.unit, 0).w;
             const uint32_t b = texel(entry.unit, 1).w;
             if (visit(a) || (b != OVC_NO_TRIANGLE && visit(b)))

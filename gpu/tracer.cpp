@@ -232,6 +232,7 @@ ShaderConfig Tracer::shader_config() const {
     config.linked = linked_ || links_;
     config.links = links_.has_value();
     config.tell_active = active_buffer_.has_value();
+    config.loose_pairs = std::ranges::any_of(page_data_, &Page::has_loose_pairs);
     config.stack_depth = stack_words_;
     config.stack_registers = software_;
     config.branches = !software_;

@@ -17,14 +17,14 @@ protected:
             gl->run([&](GlState&) { tracer.reset(); });
     }
 
-    void load(const Soup& soup) {
+    void load(const Soup& soup, LoosePairs loose = LoosePairs::Refused) {
         Box bounds;
         const auto ids = hittable_triangles(soup, nullptr, &bounds);
         gl->run([&](GlState&) { tracer.reset(); });
         level1 = partition(soup, ids, bounds, 1u << 30);
         ASSERT_EQ(level1.leaves.size(), 1u);
         numbers = Numbering(soup);
-        pages = {build_page(soup, numbers, level1.leaves[0])};
+        pages = {build_page(soup, numbers, level1.leaves[0], nullptr, loose)};
         const Result<MemoryPlan> plan = plan_memory(64u << 20, gl->info());
         ASSERT_TRUE(plan);
         MemoryPlan shared = *plan;
@@ -55,6 +55,8 @@ protected:
         return answers;
     }
 
+    void expect_truth(const Soup& soup, std::span<const Ray> rays);
+
     static constexpr Ray kNoRay{dvec3(0), 0, dvec3(0, 0, 1), -1};
     std::unique_ptr<Tracer> tracer;
     Level1 level1;
@@ -76,38 +78,65 @@ bool is_certain(const Answer& answer) {
     return answer.prim != OVC_FLAGGED && answer.rivals()[0] == OVC_NO_TRIANGLE;
 }
 
+/// What is certain of the rays is what brute force finds.
+void KernelGl::expect_truth(const Soup& soup, std::span<const Ray> rays) {
+    const Leaf& leaf = leaf_of(level1);
+    const auto nearest = trace(rays);
+    const auto any = trace(rays, /* any_hit= */ true);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const Hit expected = test::brute_force(soup, leaf.triangles, rays[i]);
+        if (is_certain(nearest[i])) {
+            const bool hit = nearest[i].prim != OVC_MISS;
+            // Beyond its box a leaf promises nothing.
+            const bool inside = !expected.is_hit() || leaf.cell.contains(rays[i].at(expected.t));
+            if (!inside)
+                continue;
+            ASSERT_EQ(hit, expected.is_hit()) << "ray " << i;
+            if (hit) {
+                ASSERT_EQ(numbers.id(nearest[i].prim), expected.id) << "ray " << i;
+            }
+        }
+        if (is_certain(any[i])) {
+            ASSERT_EQ(any[i].prim != OVC_MISS, expected.is_hit()) << "ray " << i;
+        }
+    }
+}
+
 TEST_F(KernelGl, WhatItCallsCertainIsTrue) {
     for (const auto& [name, soup] : test::unpleasant_soups()) {
         if (soup.triangle_count() == 0)
             continue;
         SCOPED_TRACE(name);
-        load(soup);
-        const Leaf& leaf = leaf_of(level1);
-        test::Random random(4);
-        std::vector<Ray> rays;
-        for (int i = 0; i < 2000; ++i)
-            rays.push_back(random_ray(random, leaf));
-        const auto nearest = trace(rays);
-        const auto any = trace(rays, /* any_hit= */ true);
-        for (size_t i = 0; i < rays.size(); ++i) {
-            const Hit expected = test::brute_force(soup, leaf.triangles, rays[i]);
-            if (is_certain(nearest[i])) {
-                const bool hit = nearest[i].prim != OVC_MISS;
-                // Beyond its box a leaf promises nothing.
-                const bool inside =
-                    !expected.is_hit() || leaf.cell.contains(rays[i].at(expected.t));
-                if (!inside)
-                    continue;
-                ASSERT_EQ(hit, expected.is_hit()) << "ray " << i;
-                if (hit) {
-                    ASSERT_EQ(numbers.id(nearest[i].prim), expected.id) << "ray " << i;
-                }
-            }
-            if (is_certain(any[i])) {
-                ASSERT_EQ(any[i].prim != OVC_MISS, expected.is_hit()) << "ray " << i;
-            }
+        for (const LoosePairs loose : {LoosePairs::Refused, LoosePairs::Allowed}) {
+            load(soup, loose);
+            test::Random random(4);
+            std::vector<Ray> rays;
+            for (int i = 0; i < 2000; ++i)
+                rays.push_back(random_ray(random, leaf_of(level1)));
+            expect_truth(soup, rays);
         }
     }
+}
+
+/// Rays at sides of triangles, some roundings to either side: where corners in steps of 2^-23 would
+/// be seen if the bound did not hold for them.
+TEST_F(KernelGl, WhatItCallsCertainIsTrueAtSidesOfLoosePairs) {
+    const Soup soup = test::random_soup(11, 1500, 0.3);
+    load(soup, LoosePairs::Allowed);
+    ASSERT_TRUE(pages[0].has_loose_pairs());
+    test::Random random(12);
+    const double rounding = 0x1p-24 / leaf_of(level1).frame.scale;
+    std::vector<Ray> rays;
+    for (const TriangleId id : leaf_of(level1).triangles)
+        for (int k = 0; k < 4; ++k) {
+            const Triangle t = soup.triangle(id);
+            const double share = 0.5 + 0.5 * random.point(-1, 1).x;
+            const dvec3 on_side = t[0] + share * (t[1] - t[0]);
+            const dvec3 from = on_side + 0.3 * random.point(-1, 1);
+            const dvec3 to = on_side + 20 * rounding * random.point(-1, 1);
+            rays.push_back({from, 0, to - from});
+        }
+    expect_truth(soup, rays);
 }
 
 TEST_F(KernelGl, FlagsRaysAtSharedEdgesAndVertices) {

@@ -16,6 +16,9 @@
 #ifndef OVC_TELL_ACTIVE
 #define OVC_TELL_ACTIVE 0 // 1: pages that rays are traced through are marked
 #endif
+#ifndef OVC_LOOSE_PAIRS
+#define OVC_LOOSE_PAIRS 0 // 1: a page may hold two triangles that share no side in a unit
+#endif
 #ifndef OVC_STACK_DEPTH
 #define OVC_STACK_DEPTH 16 // words; one less than the page's depth loses no ray. A register each on llvmpipe: 1 % of the time
 #endif

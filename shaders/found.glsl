@@ -49,6 +49,35 @@ bool take(inout Found found, Candidate c, bool valid, uint prim, uint order) {
     return better;
 }
 
+#if OVC_LOOSE_PAIRS
+// The coordinate in the upper 24 bits of a word, and the one in the low bytes of three.
+float upper(uint word) { return float(int(word) >> 8) * float(OVC_LOOSE_STEP); }
+float low(uvec4 words) {
+    return upper((words.z << 24) | ((words.y & 0xffu) << 16) | ((words.x & 0xffu) << 8));
+}
+vec3 upper(uvec4 words) { return vec3(ivec3(words.xyz) >> 8) * float(OVC_LOOSE_STEP); }
+
+// A pair of either kind: where it is not a loose one, two of B's corners are A's.
+bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pair, vec3 org, Basis basis,
+               uint skip) {
+    bool loose = (W.w & OVC_LOOSE_PAIR) != 0u;
+    vec3 p0 = loose ? upper(X) : uintBitsToFloat(X.xyz);
+    vec3 p1 = loose ? upper(Y) : uintBitsToFloat(Y.xyz);
+    vec3 p2 = loose ? upper(Z) : uintBitsToFloat(Z.xyz);
+    vec3 p3 = loose ? upper(W) : uintBitsToFloat(W.xyz);
+    vec3 b1 = vec3(low(X), low(Y), low(Z));
+    vec3 b2 = vec3(low(W), upper(Z.w), upper((Z.w << 24) | ((W.w & 0xffffu) << 8)));
+    uint order = loose ? OVC_OWN_ORDER : Z.w;
+    Corner a[3] = Corner[3](corner(p0, org, basis), corner(p1, org, basis), corner(p2, org, basis));
+    Corner b[3] = Corner[3](corner(loose ? p3 : p0, org, basis), corner(loose ? b1 : p3, org, basis),
+                            corner(loose ? b2 : p2, org, basis));
+    bool fresh_a = X.w != found.prim;
+    bool fresh_b = Y.w != found.prim;
+    bool took_a = take(found, candidate(a), is_pair && X.w != skip && fresh_a, X.w, order);
+    bool took_b = take(found, candidate(b), is_pair && Y.w != skip && Y.w != OVC_NO_TRIANGLE && fresh_b, Y.w, order >> 4);
+    return took_a || took_b;
+}
+#else
 bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pair, vec3 org, Basis basis,
                uint skip) {
     Corner v0 = corner(uintBitsToFloat(X.xyz), org, basis);
@@ -69,6 +98,7 @@ bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pa
     bool took_b = take(found, b, is_pair && Y.w != skip && Y.w != OVC_NO_TRIANGLE && fresh_b, Y.w, Z.w >> 4);
     return took_a || took_b;
 }
+#endif
 
 // The weights of the pair's corners as u and v of the triangle's own: order says which of its corners v0 and v2 are.
 vec2 barycentric(Found found) {

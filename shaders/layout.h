@@ -9,17 +9,26 @@
 // header  texel 0: grid origin xyz (float bits), 0
 //         texel 1: grid cell xyz (float bits), 0
 //         texel 2: the traversal's first state: the root's unit, -1 (the stack's height, less one), 0 (no word), 0
-//         texel 3: 0
+//         texel 3: OVC_HAS_LOOSE_PAIRS or 0, 0, 0, 0
 // node    texels 0..2: per axis, the 16-bit grid coordinates of four children's boxes: lo0|lo1<<16, lo2|lo3<<16,
 //                      hi0|hi1<<16, hi2|hi3<<16. A missing child has lo = 0xffff > hi = 0.
 //         texel 3: unit of the first child (children are contiguous), 0 or for a root of linked pages 1 + its leaf, 0, 0
 // pair    texels 0..3: corners v0 v1 v2 v3 (float bits) of the triangles A = (v0, v1, v2) and B = (v0, v3, v2);
 //         w of texel 0: number of A; w of texel 1: that of B or OVC_NO_TRIANGLE; w of texel 3: OVC_PAIR;
 //         w of texel 2: which corner of the triangle itself the pair's v0 and v2 are, two bits each, A's then B's
+// loose   a pair of triangles that share no side, OVC_LOOSE_PAIR set besides: corners A0 A1 A2 B0 in the upper 24 bits of x, y, z of texels
+// pair    0..3, as signed numbers of OVC_LOOSE_STEP; B1 and x of B2 each in the low bytes of x, y, z of a texel, the lowest in x's; y of B2 in
+//         the upper 24 bits of w of texel 2, z of B2 in its low byte (the highest of three) and the low 16 bits of w of texel 3. A and B as above;
+//         corners are in the triangle's own order.
 #define OVC_UNIT_TEXELS 4
 #define OVC_UNIT_BYTES 64
 #define OVC_ROOT_UNIT 1
 #define OVC_PAIR 0x80000000u
+#define OVC_LOOSE_PAIR 0x40000000u
+#define OVC_LOOSE_STEP 1.1920928955078125e-7 // 2^-23
+#define OVC_LOOSE_TEXEL 3 // of the header
+#define OVC_HAS_LOOSE_PAIRS 1u
+#define OVC_OWN_ORDER 0x88u // both triangles' corners 0 and 2 are the pair's
 #define OVC_NO_TRIANGLE 0xffffffffu
 #define OVC_MAX_UNITS 0x800000 // a stack word has 23 bits for a unit and must not be negative
 

@@ -110,3 +110,8 @@ Candidate candidate(Corner a, Corner b, Corner c, float ab, float bc, float ca, 
     result.hi = result.certain ? t + t_error : depths.hi + depths.error;
     return result;
 }
+
+Candidate candidate(Corner v[3]) {
+    return candidate(v[0], v[1], v[2], edge(v[0], v[1]), edge(v[1], v[2]), edge(v[2], v[0]), edge_error(v[0], v[1]),
+                     edge_error(v[1], v[2]), edge_error(v[2], v[0]), with_corner(depths_of(v[0], v[2]), v[1]));
+}
