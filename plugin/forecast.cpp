@@ -89,8 +89,8 @@ public:
     Sizes estimate(LimitsFor&& limits_for) {
         draw(sample_rate(triangles_.size(), limits_for(triangles_.size()).triangles));
         const LeafLimits limits = limits_for(distinct());
-        rates_.emplace(soup_, triangles_, sample_, rate_, progress_);
-        most_ = limits.pages_matter() ? limits.triangles_at(rates_->mean())
+        rates_.emplace(soup_, triangles_, sample_, rate_, bounds_, progress_);
+        most_ = limits.pages_matter() ? limits.triangles_at(mean_rate(double(limits.triangles)))
                                       : uint32_t(std::min<uint64_t>(limits.triangles, kNone - 1));
         if (const uint32_t rate = sample_rate(distinct(), most_); rate != rate_)
             draw(rate);
@@ -107,7 +107,10 @@ public:
         return std::move(sizes_);
     }
 
-    const PageRates& rates() const { return *rates_; }
+    /// Of pages of so many triangles.
+    double mean_rate(double page_triangles) const {
+        return rates_->mean() * rates_->with_cuts(page_triangles);
+    }
     uint32_t most() const { return most_; }
     uint64_t distinct() const {
         return uint64_t(std::llround(double(triangles_.size()) * distinct_share_));
@@ -123,12 +126,13 @@ private:
     }
 
     void add_cell(const Box& cell, uint64_t count, const LeafLimits& limits) {
-        const double rate = rates_->within(cell);
         // What holds more than the sample made believe is cut again, and so are too large pages.
         uint64_t parts = (count + most_ - 1) / most_;
-        const auto page = [&] {
-            return kPageStart + uint64_t(rate * double(count) / double(parts));
+        const auto page_at = [&](double rate) {
+            const double triangles = double(count) / double(parts);
+            return kPageStart + uint64_t(rate * rates_->with_cuts(triangles) * triangles);
         };
+        const auto page = [&] { return page_at(rates_->within(cell)); };
         if (parts > 0 && page() > limits.page_bytes) {
             const double again = kFill * limits.triangles_again(count / parts, page());
             parts = std::max<uint64_t>(2 * parts, uint64_t(std::ceil(double(count) / again)));
@@ -138,10 +142,8 @@ private:
         if (parts == 0)
             return;
         sizes_.pages.insert(sizes_.pages.end(), parts, page());
-        const double worst =
-            double(kPageStart) + rates_->worst_within(cell) * double(count) / double(parts);
-        sizes_.largest_page =
-            std::max(sizes_.largest_page, std::min(uint64_t(worst), limits.page_bytes));
+        const uint64_t worst = page_at(rates_->worst_within(cell));
+        sizes_.largest_page = std::max(sizes_.largest_page, std::min(worst, limits.page_bytes));
     }
 
     const Soup& soup_;
@@ -236,8 +238,8 @@ Result<Forecast> forecast(const Soup& soup, const TwoLevelOptions& options,
         Estimator estimator(soup, triangles, bounds, progress);
         sizes = estimator.estimate([&](uint64_t n) { return limits_of(options, *plan, n); });
         growth.triangles = double(estimator.distinct());
-        growth.rate = estimator.rates().mean();
         most = estimator.most();
+        growth.rate = estimator.mean_rate(most);
     }
     f.leaves = sizes.pages.size();
     f.references = sizes.references;

@@ -41,7 +41,7 @@ public:
     Result<Levels> build(std::span<const TriangleId> triangles, const Box& bounds) {
         const Stopwatch watch;
         begin(progress_, "level 1", 0.35, 2 * triangles.size());
-        const uint32_t most = first_most(triangles);
+        const uint32_t most = first_most(triangles, bounds);
         levels_.level1 = partition(soup_, triangles, bounds, most, progress_);
         share_frame_where_it_suits(triangles);
         levels_.seconds_level1 = watch.seconds();
@@ -59,22 +59,27 @@ public:
     }
 
 private:
-    uint32_t first_most(std::span<const TriangleId> triangles) const {
+    uint32_t first_most(std::span<const TriangleId> triangles, const Box& bounds) const {
         if (!limits_.pages_matter() || triangles.empty())
             return uint32_t(std::min<uint64_t>(limits_.triangles, kNone - 1));
         const uint32_t rate = sample_rate(triangles.size(), limits_.triangles);
         const auto sample = sample_triangles(soup_, triangles, rate, progress_);
         if (sample.empty())
             return limits_.triangles_at(kMostBytesPerTriangle);
-        return limits_.triangles_at(PageRates(soup_, triangles, sample, rate, progress_).mean());
+        const PageRates rates(soup_, triangles, sample, rate, bounds, progress_);
+        return limits_.triangles_at(rates.mean() * rates.with_cuts(double(limits_.triangles)));
     }
 
     /// Where small triangles are not lost in the scene.
     void share_frame_where_it_suits(std::span<const TriangleId> triangles) {
         Level1& level1 = levels_.level1;
-        if (level1.leaves.size() == 1 ||
-            doubtful_share(soup_, triangles, scene_leaf(level1.bounds).frame) <= kMostDoubtful)
+        if (level1.leaves.size() == 1 || one_frame_suits(soup_, triangles, level1.bounds))
             share_frame(level1);
+    }
+
+    /// In a frame of its own a leaf may have triangles that reach far beyond it.
+    LoosePairs loose_pairs() const {
+        return levels_.level1.shares_frame ? LoosePairs::Allowed : LoosePairs::Refused;
     }
 
     void build_missing_pages() {
@@ -82,8 +87,8 @@ private:
         parallel_for(levels_.pages.size(), 1, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
                 if (levels_.pages[i].texels.empty())
-                    levels_.pages[i] =
-                        build_page(soup_, numbers_, levels_.level1.leaves[i], progress_);
+                    levels_.pages[i] = build_page(soup_, numbers_, levels_.level1.leaves[i],
+                                                  progress_, loose_pairs());
         });
         levels_.seconds_level2 += watch.seconds();
     }

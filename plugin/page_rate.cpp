@@ -4,9 +4,11 @@
 
 #include "core/parallel.h"
 #include "core/twins.h"
+#include "gpu/linked.h"
 #include "gpu/page.h"
 #include "kdtree/clip.h"
 #include "kdtree/partition.h"
+#include "shaders/layout.h"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +21,10 @@ namespace {
 constexpr size_t kMostCubes = 64; // a word has a bit for each
 constexpr uint64_t kFewestTriangles = 4096;
 constexpr uint64_t kMostTriangles = 32768;
-constexpr size_t kMostInACube = 4096;
+constexpr size_t kMostOverfull = 8; // times the triangles that a cube was made for
+// Cubes in which planes cut triangles, as in pages.
+constexpr size_t kLargeCubes = 4;
+constexpr size_t kInALargeCube = 8192;
 
 /// The cube around `center` that holds so many of the other centres.
 Box cube_around(const dvec3& center, std::span<const dvec3> centers, size_t count,
@@ -129,30 +134,96 @@ std::vector<std::vector<TriangleId>> members_of(std::span<const Box> cubes, cons
     return members;
 }
 
+/// Makes pages of cubes as they would be made of leaves.
+class CubePages {
+public:
+    CubePages(const Soup& soup, std::span<const TriangleId> triangles,
+              std::span<const TriangleId> sample, uint32_t rate, const Box& bounds,
+              BuildProgress* progress)
+        : soup_(soup),
+          triangles_(triangles),
+          sample_(sample),
+          rate_(rate),
+          frame_(scene_leaf(bounds).frame),
+          loose_(one_frame_suits(soup, triangles, bounds) ? LoosePairs::Allowed
+                                                          : LoosePairs::Refused),
+          progress_(progress) {}
+
+    struct CubePage {
+        dvec3 center;
+        size_t triangles;
+        Page page;
+    };
+
+    /// Of so many cubes, those that triangles touch. Each holds about so many.
+    std::vector<CubePage> make(size_t cubes, size_t triangles_each) const {
+        const std::vector<Box> chosen = choose_cubes(soup_, sample_, rate_, cubes, triangles_each);
+        std::vector<std::vector<TriangleId>> members =
+            members_of(chosen, soup_, triangles_, progress_);
+        std::vector<CubePage> made(cubes);
+        parallel_for(cubes, 1, [&](size_t first, size_t last) {
+            for (size_t c = first; c < last; ++c) {
+                // Where triangles are far larger than what lies between them, very many touch a
+                // cube.
+                members[c].resize(std::min(members[c].size(), kMostOverfull * triangles_each));
+                Twins::take_out(soup_, members[c]);
+                if (!members[c].empty())
+                    made[c] = {chosen[c].center(), members[c].size(),
+                               page_of(members[c], chosen[c])};
+                add(progress_, 0);
+            }
+        });
+        std::erase_if(made, [](const CubePage& cube) { return cube.triangles == 0; });
+        return made;
+    }
+
+private:
+    Page page_of(std::span<const TriangleId> triangles, const Box& cube) const {
+        Leaf leaf = whole_leaf(soup_, triangles, cube);
+        if (loose_ == LoosePairs::Allowed)
+            leaf.frame = frame_;
+        return build_page(soup_, leaf, nullptr, loose_);
+    }
+
+    const Soup& soup_;
+    const std::span<const TriangleId> triangles_, sample_;
+    const uint32_t rate_;
+    const Frame frame_;
+    const LoosePairs loose_;
+    BuildProgress* const progress_;
+};
+
+/// Triangles in units beyond one each, per triangle.
+double cut_share(const CubePages::CubePage& cube) {
+    size_t count = 0;
+    for (uint64_t unit = OVC_ROOT_UNIT; unit < cube.page.units(); ++unit) {
+        const uvec4* const texel = &cube.page.view()[unit * OVC_UNIT_TEXELS];
+        if (texel[3].w & OVC_PAIR)
+            count += texel[1].w == OVC_NO_TRIANGLE ? 1 : 2;
+    }
+    return double(count) / double(cube.triangles) - 1;
+}
+
 } // namespace
 
 PageRates::PageRates(const Soup& soup, std::span<const TriangleId> triangles,
-                     std::span<const TriangleId> sample, uint32_t rate, BuildProgress* progress) {
+                     std::span<const TriangleId> sample, uint32_t rate, const Box& bounds,
+                     BuildProgress* progress) {
+    const CubePages pages(soup, triangles, sample, rate, bounds, progress);
     const uint64_t in_all =
         std::clamp<uint64_t>(triangles.size() / 64, kFewestTriangles, kMostTriangles);
     const size_t cubes = std::clamp<size_t>(in_all / 512, 8, kMostCubes);
-    const std::vector<Box> chosen = choose_cubes(soup, sample, rate, cubes, in_all / cubes);
-    std::vector<std::vector<TriangleId>> members = members_of(chosen, soup, triangles, progress);
-    std::vector<uint64_t> bytes(cubes, 0);
-    parallel_for(cubes, 1, [&](size_t first, size_t last) {
-        for (size_t c = first; c < last; ++c) {
-            // Where triangles are far larger than what lies between them, very many touch a cube.
-            members[c].resize(std::min(members[c].size(), kMostInACube));
-            Twins::take_out(soup, members[c]);
-            if (!members[c].empty())
-                bytes[c] = build_page(soup, whole_leaf(soup, members[c], chosen[c])).bytes();
-            add(progress, 0);
-        }
-    });
-    for (size_t c = 0; c < cubes; ++c)
-        if (!members[c].empty())
-            clusters_.push_back(
-                {chosen[c].center(), double(bytes[c] - kPageStart) / double(members[c].size())});
+    size_t loose = 0;
+    for (const auto& cube : pages.make(cubes, in_all / cubes)) {
+        clusters_.push_back(
+            {cube.center, double(cube.page.bytes() - kPageStart) / double(cube.triangles)});
+        loose += cube.page.has_loose_pairs();
+    }
+    if (loose > 0) {
+        const auto large = pages.make(kLargeCubes, kInALargeCube);
+        for (const auto& cube : large)
+            cut_ += cut_share(cube) / double(large.size());
+    }
     for (const Cluster& cluster : clusters_)
         mean_ += cluster.rate / double(clusters_.size());
     double squares = 0;
@@ -182,6 +253,13 @@ double PageRates::worst_within(const Box& box) const {
     double sum = mean_;
     const size_t cubes = cubes_in(box, sum);
     return cubes ? sum / double(cubes + 1) : mean_ + spread_;
+}
+
+double PageRates::with_cuts(double triangles) const {
+    // From nodes of 1,024 triangles on, level by level up to those of the large cubes.
+    constexpr double kFewestToCut = 1024;
+    const double levels = std::log2(std::max(triangles, kFewestToCut) / kFewestToCut);
+    return 1 + cut_ * std::min(levels / std::log2(double(kInALargeCube) / kFewestToCut), 1.0);
 }
 
 } // namespace ovc

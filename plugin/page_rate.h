@@ -13,25 +13,30 @@ namespace ovc {
 
 /// Bytes of a page that do not grow with it: the header and the root.
 inline constexpr uint64_t kPageStart = 128;
-/// No page takes more a triangle: no two in a pair, and a node above every other triangle.
-inline constexpr uint64_t kMostBytesPerTriangle = 128;
+/// No page takes more a triangle: no two in a pair, a node above every other triangle; and three
+/// tenths of them cut by planes where pairs were to be loose and hardly any is.
+inline constexpr uint64_t kMostBytesPerTriangle = 167;
 
 /// Pages of some cubes, each with all the triangles that touch it. Cubes lie around triangles of a
 /// sample, so where triangles are many there are many cubes.
 class PageRates {
 public:
-    /// sample: of `triangles`, one in `rate`; not empty. Costs about a sixtieth of building all
-    /// pages, and a look at every triangle, a unit of progress each.
+    /// sample: of `triangles`, one in `rate`; not empty. bounds: of all. Costs about a sixtieth of
+    /// building all pages, and a look at every triangle, a unit of progress each.
     PageRates(const Soup& soup, std::span<const TriangleId> triangles,
-              std::span<const TriangleId> sample, uint32_t rate, BuildProgress* progress = nullptr);
+              std::span<const TriangleId> sample, uint32_t rate, const Box& bounds,
+              BuildProgress* progress = nullptr);
 
-    /// Bytes a triangle, on average.
+    /// Bytes a triangle, on average; cubes are too small to be cut.
     double mean() const { return mean_; }
     /// The same in `box`, by the cubes that lie in it, the average and nothing else where none do.
     double within(const Box& box) const;
     /// What the worst of many such boxes may take: where no cube lies, one may be worse than the
     /// average by as much as cubes differ.
     double worst_within(const Box& box) const;
+    /// By how much pages of so many triangles take more than all these, where they hold loose
+    /// pairs: because planes cut many of those, but hardly any in small cubes.
+    double with_cuts(double triangles) const;
 
 private:
     size_t cubes_in(const Box& box, double& sum) const;
@@ -42,6 +47,7 @@ private:
     };
     std::vector<Cluster> clusters_;
     double mean_ = 0;
+    double cut_ = 0;
     double spread_ = 0; // standard deviation
 };
 
