@@ -109,7 +109,8 @@ private:
                 Range& left, Range& right) {
         const auto [first, last, end] = range;
         const int halvings = int(std::bit_width(range.count() - 1));
-        const bool free = depth + halvings < kMaxBvhDepth; // no depth left: halves by count
+        // Two are halved; and where no depth is left, all are, by count.
+        const bool free = range.count() > 2 && depth + halvings < kMaxBvhDepth;
         const Binning binning = binning_of(centers, range.count());
         const Split split = free ? best_split(first, last, binning) : Split{};
         if (split.axis >= 0 && range.spare() > 0 &&
@@ -175,10 +176,12 @@ private:
 
     Split best_split(size_t first, size_t last, const Binning& binning) const {
         struct Bin {
-            Bounds bounds = Bounds::empty();
-            uint32_t count = 0;
+            Bounds bounds;
+            uint32_t count;
         };
-        std::array<std::array<Bin, kBins>, 3> bins;
+        std::array<std::array<Bin, kBins>, 3> bins; // most nodes have few items, and few bins
+        for (auto& along : bins)
+            std::fill_n(along.begin(), binning.bins, Bin{Bounds::empty(), 0});
         for (size_t i = first; i < last; ++i)
             for (int axis = 0; axis < 3; ++axis) {
                 Bin& bin = bins[axis][binning(items_[i], axis)];
@@ -190,13 +193,13 @@ private:
             if (binning.scale[axis] == 0)
                 continue;
             std::array<float, kBins> right_cost;
-            Bin right;
+            Bin right{Bounds::empty(), 0};
             for (int i = binning.bins - 1; i > 0; --i) {
                 right.bounds.add(bins[axis][i].bounds);
                 right.count += bins[axis][i].count;
                 right_cost[i] = right.count ? right.bounds.half_area() * float(right.count) : -1;
             }
-            Bin left;
+            Bin left{Bounds::empty(), 0};
             for (int i = 1; i < binning.bins; ++i) {
                 left.bounds.add(bins[axis][i - 1].bounds);
                 left.count += bins[axis][i - 1].count;
