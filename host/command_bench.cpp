@@ -12,9 +12,11 @@
 #include "host/output.h"
 #include "host/scene_source.h"
 #include "host/terminal_line.h"
+#include "host/vector_width.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <mutex>
 #include <set>
@@ -132,7 +134,15 @@ Result<Done> bench_sweep(const BenchJob& job, const BenchSurroundings& around) {
     return save(job, sweep_json(*sweep));
 }
 
+/// Contenders are in one process, and so have one width of vectors.
+bool any_fragment_kernel(const std::vector<Contender>& contenders) {
+    return std::ranges::any_of(contenders, [](const Contender& c) {
+        return c.on_gpu() && (c.kernel == OVC_KERNEL_FRAGMENT || c.kind == ContenderKind::Thesis);
+    });
+}
+
 Result<Done> bench_kind(const BenchJob& job, const BenchSurroundings& around) {
+    use_wide_vectors(job.kind == BenchKind::Contenders && any_fragment_kernel(job.contenders));
     switch (job.kind) {
     case BenchKind::Bars:
         return bench_bars(job, around);

@@ -8,6 +8,7 @@
 #include "host/log_arguments.h"
 #include "host/scene_source.h"
 #include "host/trace_stream.h"
+#include "host/vector_width.h"
 
 #include <unistd.h>
 
@@ -57,6 +58,7 @@ public:
         if (const Result<Done> fine = source_.check(); !fine)
             return fine.error();
         const LogSink log = standard_error_log(*level);
+        use_wide_vectors(*backend_options);
         DeviceOpening opening(*backend_options);
         const Result<Scene> scene = open_scene(source_, log);
         if (!scene)

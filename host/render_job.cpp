@@ -15,6 +15,7 @@
 #include "host/scene_summary.h"
 #include "host/stats.h"
 #include "host/unfinished.h"
+#include "host/vector_width.h"
 #include "host/version.h"
 #include "importers/scene_bytes.h"
 #include "importers/scene_fields.h"
@@ -327,6 +328,7 @@ Result<int> render(const RenderJob& job) {
     const std::optional<ThreadLimit> threads = limit_threads(job.threads);
     const LogSink log = standard_error_log(job.log_level);
     RenderStats stats;
+    use_wide_vectors(job.backend);
     DeviceOpening opening(job.backend);
     SceneCache cache(job.cache, job.scene, job.backend, job.size);
     Result<Scene> scene = cache.open(log);

@@ -8,7 +8,7 @@ layout(location = OVC_LOCATION_ROOT) uniform int linked_root;
 void give(int ray, uvec4 answer);
 
 // The rays from `first` on. Returns whether any of them is a ray.
-bool take_rays(int first, Tree tree, inout Packet packet, inout Found found[OVC_PACKET]) {
+bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACKET]) {
     const int texels = OVC_LINKS == 0 ? OVC_LOCAL_RAY_TEXELS : OVC_RESUMED_RAY_TEXELS;
     bool any = false;
     for (int k = 0; k < OVC_PACKET; ++k) {
@@ -18,6 +18,7 @@ bool take_rays(int first, Tree tree, inout Packet packet, inout Found found[OVC_
         found[k] = nothing_found(t_end);
         set_ray(packet, k, tree, uintBitsToFloat(from.xyz), direction_of(uintBitsToFloat(to.xyz)), to.w & OVC_SKIPS_NONE,
                 (to.w & OVC_RAY_ANY_HIT) != 0u);
+        packet.links[k] = no_links();
 #if OVC_LINKS
         int done = int(ray_texel((first + k) * texels + 2).x);
         packet.links[k].done_unit = done;

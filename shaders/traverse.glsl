@@ -156,7 +156,6 @@ void set_ray(inout Packet packet, int k, Tree tree, vec3 org, Direction directio
     packet.grid[k] = grid_ray(org, direction.inv_dir, tree.grid_org, tree.grid_cell);
     packet.skip[k] = skip;
     packet.any_hit[k] = any_hit;
-    packet.links[k] = no_links();
 }
 
 void start(inout Descent d, Tree tree) {
@@ -250,6 +249,7 @@ bool traverse(inout Found found, int page, vec3 org, Direction direction, uint s
     Tree tree = tree_of(page, page);
     Descent d = descent(tree);
     Packet packet;
+    packet.links[0] = no_links();
     set_ray(packet, 0, tree, org, direction, skip, any_hit);
     Found one[1] = Found[1](found);
     bool ended = run(d, one, packet, tree.first_unit, OVC_MOST_ROUNDS, rounds);
