@@ -12,7 +12,7 @@ namespace {
 
 // How much larger than both boxes together the joint box may be. Measured on soup-500: up to here
 // pages shrink and a ray takes no more steps, since a node above two triangles is one the less.
-constexpr float kMostGrowth = 1.5f;
+constexpr float kMostGrowth = 2;
 // What a coordinate may be for its rounding to fit into 24 bits.
 constexpr float kReach = 1 - 0x1p-20f;
 
@@ -38,6 +38,72 @@ void put_byte(uint32_t& word, uint32_t of, int i) {
     word |= of >> (8 + 8 * i) & 0xff;
 }
 
+/// Joins leaves two by two, from the deepest nodes up.
+class Joiner {
+public:
+    Joiner(std::vector<BvhNode>& nodes, std::span<const TrianglePair> pairs)
+        : nodes_(nodes), pairs_(pairs) {}
+
+    std::vector<LoosePair> join() {
+        for (size_t i = nodes_.size(); i-- > 0;) // what lies below a node comes behind it
+            if (!nodes_[i].is_leaf())
+                join_below(uint32_t(i));
+        return std::move(loose_);
+    }
+
+private:
+    void join_below(uint32_t node) {
+        const uint32_t left = node + 1, right = nodes_[node].right;
+        if (is_alone(left) && is_alone(right)) {
+            if (worth_joining(left, right))
+                nodes_[node] = joined(left, right);
+        } else if (is_alone(left)) {
+            join_across(node, left, right);
+        } else if (is_alone(right)) {
+            join_across(node, right, left);
+        }
+    }
+
+    /// Joins a child of the node that is a leaf with a leaf below the other child, of which the
+    /// rest then takes the place.
+    void join_across(uint32_t node, uint32_t alone, uint32_t sibling) {
+        if (nodes_[sibling].is_leaf())
+            return;
+        const uint32_t first = sibling + 1, second = nodes_[sibling].right;
+        const uint32_t partner = is_alone(first) ? first : second;
+        if (!is_alone(partner) || !worth_joining(alone, partner))
+            return;
+        const BvhNode pair = joined(alone, partner);
+        nodes_[node].right = partner == first ? second : first;
+        nodes_[node + 1] = pair;
+    }
+
+    bool is_alone(uint32_t node) const {
+        const BvhNode& n = nodes_[node];
+        return n.is_leaf() && n.item < pairs_.size() && can_be_loose(pairs_[n.item]);
+    }
+
+    Boxf box_of(uint32_t a, uint32_t b) const {
+        Boxf both = nodes_[a].box;
+        both.add(nodes_[b].box);
+        return both;
+    }
+
+    bool worth_joining(uint32_t a, uint32_t b) const {
+        const float apart = nodes_[a].box.half_area() + nodes_[b].box.half_area();
+        return box_of(a, b).half_area() <= kMostGrowth * apart;
+    }
+
+    BvhNode joined(uint32_t a, uint32_t b) {
+        loose_.push_back({nodes_[a].item, nodes_[b].item});
+        return {box_of(a, b), 0, uint32_t(pairs_.size() + loose_.size() - 1)};
+    }
+
+    std::vector<BvhNode>& nodes_;
+    const std::span<const TrianglePair> pairs_;
+    std::vector<LoosePair> loose_;
+};
+
 } // namespace
 
 bool worth_loosening(size_t pairs, size_t triangles) {
@@ -46,25 +112,7 @@ bool worth_loosening(size_t pairs, size_t triangles) {
 
 std::vector<LoosePair> join_loose(std::vector<BvhNode>& nodes,
                                   std::span<const TrianglePair> pairs) {
-    std::vector<LoosePair> loose;
-    // From the back: what lies below a node comes behind it.
-    for (size_t i = nodes.size(); i-- > 0;) {
-        BvhNode& node = nodes[i];
-        if (node.is_leaf())
-            continue;
-        const BvhNode& left = nodes[i + 1];
-        const BvhNode& right = nodes[node.right];
-        const float apart = left.box.half_area() + right.box.half_area();
-        const auto fits = [&](const BvhNode& n) {
-            return n.is_leaf() && n.item < pairs.size() && can_be_loose(pairs[n.item]);
-        };
-        if (!fits(left) || !fits(right) || node.box.half_area() > kMostGrowth * apart)
-            continue;
-        loose.push_back({left.item, right.item});
-        node.right = 0;
-        node.item = uint32_t(pairs.size() + loose.size() - 1);
-    }
-    return loose;
+    return Joiner(nodes, pairs).join();
 }
 
 vec3 in_steps(const vec3& corner) {

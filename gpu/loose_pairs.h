@@ -22,9 +22,10 @@ bool worth_loosening(size_t pairs, size_t triangles);
 /// Two pairs of one triangle each, by their numbers.
 using LoosePair = std::array<uint32_t, 2>;
 
-/// Makes leaves of nodes that hold two triangles, where the box of both costs little more than two
-/// boxes do: item pairs.size() + i is then the loose pair i. nodes: of the BVH over `pairs`.
-/// Triangles that reach beyond the frame's [-1, 1] stay alone, and so do pairs.
+/// Makes one leaf of two that hold a triangle each and have the same parent, or one the other's
+/// grandparent, where the box of both costs little more than two boxes do: its item is
+/// pairs.size() + i for the loose pair i. nodes: of the BVH over `pairs`. Triangles that reach
+/// beyond the frame's [-1, 1] stay alone, and so do pairs.
 std::vector<LoosePair> join_loose(std::vector<BvhNode>& nodes, std::span<const TrianglePair> pairs);
 
 /// A corner in steps of OVC_LOOSE_STEP. In a page with loose pairs all corners are: triangles that

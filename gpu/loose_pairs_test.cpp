@@ -71,6 +71,47 @@ TEST(LoosePairs, JoinWhatIsNear) {
     EXPECT_FALSE(far[0].is_leaf());
 }
 
+/// How often each triangle is in a leaf of the node, whose box holds those of its children.
+void count_below(const std::vector<BvhNode>& nodes, uint32_t node,
+                 const std::vector<LoosePair>& loose, std::vector<int>& count) {
+    const BvhNode& n = nodes[node];
+    if (n.is_leaf()) {
+        if (n.item < count.size()) {
+            ++count[n.item];
+            return;
+        }
+        for (const uint32_t item : loose[n.item - count.size()])
+            ++count[item];
+        return;
+    }
+    for (const uint32_t child : {node + 1, n.right}) {
+        Boxf both = n.box;
+        both.add(nodes[child].box);
+        EXPECT_EQ(both.lo, n.box.lo);
+        EXPECT_EQ(both.hi, n.box.hi);
+        count_below(nodes, child, loose, count);
+    }
+}
+
+TEST(LoosePairs, LeaveEveryTriangleInOneLeaf) {
+    for (const size_t triangles : {1, 2, 3, 5, 1000}) {
+        test::Random random(triangles);
+        std::vector<TrianglePair> pairs;
+        std::vector<Boxf> boxes;
+        for (uint32_t i = 0; i < triangles; ++i) {
+            pairs.push_back(alone(random, i));
+            const vec3 at(random.point(-0.9, 0.9));
+            boxes.push_back({at, at + 0.3f});
+        }
+        std::vector<BvhNode> nodes = build_bvh(boxes);
+        const std::vector<LoosePair> loose = join_loose(nodes, pairs);
+        EXPECT_TRUE(triangles < 1000 || loose.size() > triangles / 4) << loose.size();
+        std::vector<int> count(triangles, 0);
+        count_below(nodes, 0, loose, count);
+        EXPECT_EQ(count, std::vector<int>(triangles, 1));
+    }
+}
+
 TEST(LoosePairs, LeaveWhatIsPairedOrBeyondTheFrame) {
     test::Random random(7);
     const std::vector<TrianglePair> pairs{alone(random, 0), alone(random, 1)};

@@ -38,7 +38,7 @@ uint32_t stack_depth(uint32_t depth);
 enum class LoosePairs { Refused, Allowed };
 
 /// Of the triangles of a page with loose pairs: how many planes may cut in two, at most.
-inline constexpr double kMostCutOfLoose = 0.3;
+inline constexpr double kMostCutOfLoose = 0.4;
 
 /// Builds and packs the BVH of a leaf. Its triangles go by their numbers in the soup. Each is about
 /// two units of progress.

@@ -239,7 +239,7 @@ Result<Forecast> forecast(const Soup& soup, const TwoLevelOptions& options,
         sizes = estimator.estimate([&](uint64_t n) { return limits_of(options, *plan, n); });
         growth.triangles = double(estimator.distinct());
         most = estimator.most();
-        growth.rate = estimator.mean_rate(most);
+        growth.rate = estimator.mean_rate(1); // the smallest budget has small leaves
     }
     f.leaves = sizes.pages.size();
     f.references = sizes.references;

@@ -13,9 +13,9 @@ namespace ovc {
 
 /// Bytes of a page that do not grow with it: the header and the root.
 inline constexpr uint64_t kPageStart = 128;
-/// No page takes more a triangle: no two in a pair, a node above every other triangle; and three
+/// No page takes more a triangle: no two in a pair, a node above every other triangle; and four
 /// tenths of them cut by planes where pairs were to be loose and hardly any is.
-inline constexpr uint64_t kMostBytesPerTriangle = 167;
+inline constexpr uint64_t kMostBytesPerTriangle = 180;
 
 /// Pages of some cubes, each with all the triangles that touch it. Cubes lie around triangles of a
 /// sample, so where triangles are many there are many cubes.
