@@ -6,6 +6,7 @@
 #include "gpu/loose_pairs.h"
 #include "gpu/packer.h"
 #include "gpu/pairs.h"
+#include "gpu/reinsert.h"
 #include "shaders/layout.h"
 
 #include <algorithm>
@@ -102,6 +103,7 @@ public:
                             most_cut(pairs_.size(), leaf.triangles.size(), is_loose_), progress);
         if (is_loose_)
             loose_ = join_loose(nodes_, pairs_);
+        reinsert(nodes_, progress); // now: the fewer leaves, the less to look for
         // As the kernel sees them: boxes are tighter without.
         for (TrianglePair& pair : pairs_)
             for (vec3& corner : pair.corners)
