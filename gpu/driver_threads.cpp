@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #ifdef __linux__
 #include <ctime>
@@ -61,11 +62,20 @@ void DriverThreads::start() {
         started_.push_back(cpu_seconds(thread));
 }
 
-std::optional<double> DriverThreads::busiest() const {
-    std::optional<double> most;
-    for (size_t i = 0; i < started_.size(); ++i)
-        most = std::max(most.value_or(0), cpu_seconds(threads_[i]) - started_[i]);
-    return most;
+std::optional<double> DriverThreads::seconds_each() const {
+    constexpr double kIdle = 1e-3; // what a thread takes to come into being, and more
+    double all = 0;
+    unsigned workers = 0;
+    for (size_t i = 0; i < started_.size(); ++i) {
+        const double now = cpu_seconds(threads_[i]);
+        all += now - started_[i];
+        workers += now > kIdle;
+    }
+    // A driver that has threads for each kind of kernel runs one kind at a time.
+    workers = std::min(workers, std::max(std::thread::hardware_concurrency(), 1u));
+    if (threads_.empty())
+        return {};
+    return all / std::max(workers, 1u);
 }
 
 } // namespace ovc

@@ -22,9 +22,10 @@ public:
     static DriverThreads find();
 
     void start();
-    /// CPU seconds since start() of the thread that worked longest: how long the kernel takes where
-    /// nothing else runs. None where there are no threads.
-    std::optional<double> busiest() const;
+    /// CPU seconds since start(), shared out evenly among the threads that have had work so far:
+    /// how long the kernel takes where nothing else runs, since work is dealt to whoever is free.
+    /// None where there are no threads.
+    std::optional<double> seconds_each() const;
 
 private:
     std::vector<int> threads_;

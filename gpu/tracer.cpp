@@ -296,7 +296,7 @@ Result<Done> Tracer::launch() {
     // buffers that they read as images.
     if (software_) {
         glFinish();
-        kernel_seconds_ += driver_threads_.busiest().value_or(watch.seconds());
+        kernel_seconds_ += driver_threads_.seconds_each().value_or(watch.seconds());
     } else {
         glFlush();
     }
