@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace ovc {
 
@@ -58,6 +59,14 @@ public:
         return total;
     }
 
+    /// 2^exponent times this, exactly as long as no component comes below 2^-1022.
+    Expansion scaled(int exponent) const {
+        Expansion result = *this;
+        for (int i = 0; i < size_; ++i)
+            result.components_[i] = std::ldexp(components_[i], exponent);
+        return result;
+    }
+
     /// -1, 0 or 1. The last component outweighs all others.
     int sign() const {
         if (size_ == 0)
@@ -88,6 +97,11 @@ private:
     void add(double b) {
         if (size_ == kCapacity)
             compress();
+        if (size_ == kCapacity) { // something was not finite
+            components_[0] = std::numeric_limits<double>::quiet_NaN();
+            size_ = 1;
+            return;
+        }
         int kept = 0;
         for (int i = 0; i < size_; ++i) {
             const double c = components_[i];

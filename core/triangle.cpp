@@ -4,7 +4,9 @@
 
 #include "core/refined.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace ovc {
 namespace {
@@ -89,13 +91,25 @@ std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& t
         support};
 }
 
+/// Depth and area, both by a power of two smaller where their products might overflow.
+static ExactTriangle in_reach(ExactTriangle t) {
+    constexpr int kMost = 500;
+    const int most =
+        std::ilogb(std::max(std::abs(t.depth.estimate()), std::abs(t.area.estimate())));
+    if (most > kMost) {
+        t.depth = t.depth.scaled(kMost - most);
+        t.area = t.area.scaled(kMost - most);
+    }
+    return t;
+}
+
 bool Nearest::wins_exactly(const Candidate& candidate, const Triangle& triangle) const {
     const TriangleId id = candidate.hit.id;
     if (same_support(triangle, candidate.support, triangle_, best_.support) ||
         share_axis_plane(triangle, triangle_))
         return id < best_.hit.id;
-    const ExactTriangle mine(p_, triangle_);
-    const ExactTriangle other(p_, triangle);
+    const ExactTriangle mine = in_reach(ExactTriangle(p_, triangle_));
+    const ExactTriangle other = in_reach(ExactTriangle(p_, triangle));
     // t = depth / (area dir[kz]), and dir[kz] is the same for both.
     const int sign = (other.depth * mine.area - mine.depth * other.area).sign() * mine.area.sign() *
                      other.area.sign() * (p_.ray.dir[p_.kz] > 0 ? 1 : -1);
