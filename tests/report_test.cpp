@@ -127,7 +127,7 @@ protected:
     }
     void expect_all_numbers_in_json(const std::string& html) {
         const std::vector<std::string> numbers = between(html, "<data value=\"", "</data>");
-        EXPECT_GT(numbers.size(), 20u);
+        EXPECT_FALSE(numbers.empty());
         for (const std::string& data : numbers)
             expect_in_its_json(data);
         const std::vector<std::string> sections = between(html, "<section id=\"", "</section>");
@@ -163,6 +163,13 @@ TEST_P(Report, HasEveryNumberInItsJsonAndRepeatsNothing) {
     expect_all_numbers_in_json(html);
     expect_all_plots(html);
     EXPECT_THAT(text_of(folder / "summary.md"), testing::HasSubstr("](plots/"));
+    for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder / "raw"))
+        if (file.path().extension() == ".png") {
+            const std::string png =
+                test::run_shell("base64 -w0 '" + file.path().string() + "'").output;
+            EXPECT_TRUE(html.find("src=\"data:image/png;base64," + png + "\"") != std::string::npos)
+                << file.path() << " is not on the page";
+        }
     std::map<fs::path, fs::file_time_type> raw;
     for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder / "raw"))
         raw[file.path()] = fs::last_write_time(file);
@@ -173,7 +180,9 @@ TEST_P(Report, HasEveryNumberInItsJsonAndRepeatsNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Experiments, Report,
                          testing::Values("error --scene sphere-4", "scale --scene sphere-6",
-                                         "hard-cases", "dragons --scene dragons-1", "dragonball",
+                                         "hard-cases", "claims --scene sphere-5",
+                                         "pictures --scene sphere-6", "left-out --scene sphere-3",
+                                         "dragons --scene dragons-1", "dragonball",
                                          "plants --scene plants-1",
                                          "powerplant --scene powerplant-200000"),
                          [](const testing::TestParamInfo<const char*>& one) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Error against run time: every contender of the bench, under several leaves and budgets, against
 // the CPU KD-tree in doubles.
+#include "host/bench/contender.h"
 #include "host/report/experiment_table.h"
 #include "host/report/frontier.h"
 
@@ -27,9 +28,10 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
     std::vector<ReportRun> runs;
     for (const std::string& scene : scenes)
         runs.push_back({fmt::format("scene-{}", runs.size() + 1),
-                        {"bench", scene, "--only", "certified,fast,cpu,embree", "--leaves",
-                         "auto,1,100", "--resident", "all,30%", "--workloads",
-                         "primary,diffuse,edges", "--size", plan.quick ? "512x512" : "1024x1024",
+                        {"bench", scene, "--only",
+                         has_embree() ? "certified,fast,cpu,embree" : "certified,fast,cpu",
+                         "--leaves", "auto,1,100", "--resident", "all,30%", "--workloads",
+                         "primary,diffuse,edges", "--size", plan.quick ? "320x320" : "1024x1024",
                          "--repeats", plan.quick ? "3" : "5", "--json", "{}/bench.json"},
                         "bench.json",
                         plan.quick ? 75.0 : 240.0});

@@ -26,12 +26,15 @@ struct ReportRun {
     std::string result;             // the JSON file it leaves in the folder
     double seconds = 10;            // about so long on two cores
     bool may_refuse = false;        // its one sentence is a result as well: {"refused": "..."}
+    /// A picture it leaves as well, which is kept: .png; or .exr, of which leaf_patches() is kept.
+    std::string picture = {};
 };
 
 /// What a run left behind.
 struct RawResult {
     ReportRun run;
     Json result;
+    std::string picture = {}; // .png, within the report's folder; empty: none
 };
 
 struct Experiment {

@@ -12,7 +12,12 @@ Experiment error_experiment();
 Experiment hard_experiment();
 /// Rays, triangles, leaves and budgets from few to many.
 Experiment scale_experiment();
+/// What renderings have no need of.
+Experiment left_out_experiment();
+/// What README.md and docs/benchmarks.md claim.
+Experiment claims_experiment();
 /// Chapter 4 of the thesis, a scene each.
+Experiment pictures_experiment();
 Experiment dragons_experiment();
 Experiment dragonball_experiment();
 Experiment plants_experiment();

@@ -32,7 +32,7 @@ a { color: var(--link); }
 figure { margin: 1rem 0; }
 .plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 440px), 1fr)); gap: 1rem; }
 .plots figure { margin: 0; padding: .6rem; background: var(--panel); border-radius: 8px; min-width: 0; }
-.plots svg { display: block; width: 100%; height: auto; }
+.plots svg, .plots img { display: block; width: 100%; height: auto; }
 /* A long table scrolls within itself, below its header. */
 .scroll { overflow: auto; max-height: 34rem; border: 1px solid var(--line); border-radius: 8px; }
 table { border-collapse: collapse; width: 100%; font-size: .85rem; font-variant-numeric: tabular-nums; }
@@ -112,7 +112,8 @@ public:
                                        escaped(section_.title));
         bool in_plots = false; // plots that follow each other stand side by side
         for (const Block& block : section_.blocks) {
-            const bool is_plot = std::holds_alternative<Plot>(block);
+            const bool is_plot =
+                std::holds_alternative<Plot>(block) || std::holds_alternative<Picture>(block);
             if (is_plot != in_plots)
                 text += is_plot ? "<div class=\"plots\">\n" : "</div>\n";
             in_plots = is_plot;
@@ -167,6 +168,12 @@ private:
     std::string html_of(const Plot& plot) const {
         return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
                            pictures_.at(plot.name), escaped(plot.caption));
+    }
+
+    std::string html_of(const Picture& picture) const {
+        return fmt::format(
+            "<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
+            pictures_.at(picture.file), escaped(picture.caption), escaped(picture.caption));
     }
 
     const Section& section_;

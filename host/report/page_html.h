@@ -16,8 +16,8 @@ struct Page {
     std::vector<std::string> troubles; // runs that failed or are missing, a sentence each
 };
 
-/// pictures: SVG by the names of the plots. A number is <data value="..."
-/// data-at="error.json#/...">.
+/// pictures: SVG by the names of the plots, "data:" addresses by the files of the pictures. A
+/// number is <data value="..." data-at="error.json#/...">.
 std::string page_html(const Page& page, const std::map<std::string, std::string>& pictures);
 
 /// Plots are links to plots/NAME.png.

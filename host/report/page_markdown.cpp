@@ -35,6 +35,10 @@ std::string markdown_of(const Plot& plot) {
     return fmt::format("![{}](plots/{}.png)\n\n", plot.caption, plot.name);
 }
 
+std::string markdown_of(const Picture& picture) {
+    return fmt::format("![{}]({})\n\n", picture.caption, picture.file);
+}
+
 } // namespace
 
 std::string page_markdown(const Page& page) {

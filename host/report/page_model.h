@@ -40,7 +40,13 @@ struct Plot {
     std::string script;
 };
 
-using Block = std::variant<Text, Table, Plot>;
+/// A .png file that is there already.
+struct Picture {
+    std::string file; // within the report's folder
+    std::string caption;
+};
+
+using Block = std::variant<Text, Table, Plot, Picture>;
 
 struct Section {
     std::string name; // of its experiment

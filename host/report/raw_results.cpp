@@ -28,12 +28,28 @@ std::filesystem::path raw_path(const std::filesystem::path& folder, const Experi
            fmt::format("{}-{:016x}.json", run.key, checksum_of(std::as_bytes(std::span(what))));
 }
 
+std::filesystem::path picture_path(const std::filesystem::path& raw) {
+    return std::filesystem::path(raw).replace_extension(".png");
+}
+
+std::string picture_in_report(const std::filesystem::path& picture) {
+    const std::filesystem::path folder = picture.parent_path();
+    return (folder.parent_path().filename() / folder.filename() / picture.filename()).string();
+}
+
 std::optional<RawResult> load_raw(const std::filesystem::path& path, const ReportRun& run) {
     std::ifstream file(path);
     const Json raw = Json::parse(file, nullptr, /* allow_exceptions= */ false);
     if (!raw.is_object() || !raw.contains("result"))
         return {};
-    return RawResult{run, raw["result"]};
+    RawResult result{run, raw["result"]};
+    if (run.picture.empty())
+        return result;
+    const std::filesystem::path picture = picture_path(path);
+    if (!std::filesystem::exists(picture))
+        return {};
+    result.picture = picture_in_report(picture);
+    return result;
 }
 
 Result<Done> save_raw(const std::filesystem::path& path, const RawResult& result, double seconds) {

@@ -16,6 +16,11 @@ namespace ovc {
 std::filesystem::path raw_path(const std::filesystem::path& folder, const Experiment& experiment,
                                const ReportRun& run);
 
+/// Of its picture, beside it.
+std::filesystem::path picture_path(const std::filesystem::path& raw);
+/// "raw/NAME/KEY-HASH.png", as the page links to it.
+std::string picture_in_report(const std::filesystem::path& picture);
+
 /// Nothing where the run is not done, or its file is not what save_raw() writes.
 std::optional<RawResult> load_raw(const std::filesystem::path& path, const ReportRun& run);
 

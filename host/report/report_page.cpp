@@ -14,6 +14,8 @@
 
 #include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace ovc {
 
@@ -52,8 +54,29 @@ void add_section(const Outcome& outcome, Page& page) {
     page.sections.push_back(std::move(section));
 }
 
-/// The pictures of a page's plots by name; what cannot be drawn is a trouble of the page.
-std::map<std::string, std::string> draw_plots(Page& page, const fs::path& folder) {
+constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+/// RFC 4648, base 64.
+std::string base64(std::string_view bytes) {
+    std::string text;
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        uint32_t group = 0;
+        for (size_t k = 0; k < 3; ++k)
+            group = group << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
+        for (size_t k = 0; k < 4; ++k)
+            text += i + k <= bytes.size() ? kLetters[group >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
+/// As what an image's address may be.
+std::string data_address(const fs::path& png) {
+    std::ifstream file(png, std::ios::binary);
+    return "data:image/png;base64," + base64(std::string{std::istreambuf_iterator<char>(file), {}});
+}
+
+/// What a page's plots and pictures are drawn by; what cannot be drawn is a trouble of the page.
+std::map<std::string, std::string> draw_all(Page& page, const fs::path& folder) {
     std::map<std::string, std::string> pictures;
     for (const Section& section : page.sections)
         for (const Block& block : section.blocks)
@@ -62,6 +85,8 @@ std::map<std::string, std::string> draw_plots(Page& page, const fs::path& folder
                 pictures[plot->name] = svg ? std::move(*svg) : std::string();
                 if (!svg)
                     page.troubles.push_back(svg.error().message);
+            } else if (const Picture* picture = std::get_if<Picture>(&block)) {
+                pictures[picture->file] = data_address(folder / picture->file);
             }
     return pictures;
 }
@@ -72,7 +97,7 @@ Result<Done> write_page(Page& page, const fs::path& folder) {
                 save_text(section.figures.dump(1) + "\n", folder / (section.name + ".json"));
             !saved)
             return saved;
-    const std::map<std::string, std::string> pictures = draw_plots(page, folder);
+    const std::map<std::string, std::string> pictures = draw_all(page, folder);
     if (const Result<Done> saved = save_text(page_markdown(page), folder / "summary.md"); !saved)
         return saved;
     return save_text(page_html(page, pictures), folder / "index.html");

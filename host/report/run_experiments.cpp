@@ -3,12 +3,15 @@
 #include "host/report/run_experiments.h"
 
 #include "host/bench/run_program.h"
+#include "host/output.h"
+#include "host/report/leaf_patches.h"
 #include "host/report/raw_results.h"
 #include "host/terminal_line.h"
 
 #include <fmt/format.h>
 
 #include <fstream>
+#include <iterator>
 
 namespace ovc {
 
@@ -54,6 +57,13 @@ std::vector<std::string> words_of(const ReportRun& run, const std::string& progr
 Json read_json(const fs::path& path) {
     std::ifstream file(path);
     return Json::parse(file, nullptr, /* allow_exceptions= */ false);
+}
+
+Result<std::string> read_bytes(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    return bytes.empty() ? Result<std::string>(Error{path.string() + " is not there"})
+                         : std::move(bytes);
 }
 
 /// How far the whole report is, in expected seconds.
@@ -135,11 +145,30 @@ private:
                 end.too_long ? fmt::format("ended after {:.0f} s", end.seconds) : end.said));
             return true;
         }
+        if (const Result<Done> kept = keep_picture(raw, left.parent_path(), *outcome.experiment);
+            !kept) {
+            outcome.failures.push_back(fmt::format("{}: {}", run.key, kept.error().message));
+            return true;
+        }
         if (end.exit_code == 0)
             return keep(std::move(raw), end.seconds, outcome);
         outcome.remarks.push_back(fmt::format("{}: {}", run.key, end.said));
         outcome.results.push_back(std::move(raw)); // and run again next time
         return true;
+    }
+
+    /// Beside where its result will be; of an .exr file the patches of leaves.
+    Result<Done> keep_picture(RawResult& raw, const fs::path& left, const Experiment& experiment) {
+        if (raw.run.picture.empty())
+            return Done{};
+        const fs::path from = left / raw.run.picture;
+        const Result<std::string> png =
+            from.extension() == ".exr" ? leaf_patches(from) : read_bytes(from);
+        if (!png)
+            return png.error();
+        const fs::path to = picture_path(path_of(experiment, raw.run));
+        raw.picture = picture_in_report(to);
+        return save_text(*png, to);
     }
 
     Result<bool> keep(RawResult raw, double seconds, Outcome& outcome) {
