@@ -178,6 +178,36 @@ TEST_P(Report, HasEveryNumberInItsJsonAndRepeatsNothing) {
         EXPECT_EQ(fs::last_write_time(path), time) << path << " was made anew";
 }
 
+/// The same library, but for one line of its kernel: tests/broken_kernel.
+TEST(BrokenKernel, ShowsUpAsWrongIds) {
+    if (test::run_shell("command -v gnuplot").exit_code != 0)
+        GTEST_SKIP() << "gnuplot is not installed";
+    const fs::path folder = fs::path(OVC_BINARY_DIR) / "tests" / "report_broken";
+    fs::remove_all(folder);
+    const test::CommandResult made =
+        test::run_shell("OVC_PLUGIN=" OVC_BINARY_DIR "/bin/libovercast-broken.so " OVC_BINARY_DIR
+                        "/bin/overcast report --quick --only error --scene sphere-4 -o '" +
+                        folder.string() + "'");
+    EXPECT_EQ(made.exit_code, 1);
+    EXPECT_THAT(made.output, testing::HasSubstr("answered wrong"));
+    EXPECT_THAT(text_of(folder / "index.html"), testing::HasSubstr("class=\"trouble\""));
+    const Json figures = Json::parse(text_of(folder / "error.json"));
+    const auto wrong_of = [&](const Json& workload, const std::string& family) {
+        double most = 0;
+        for (const Json& choice : workload["choices"])
+            if (choice["choice"].get<std::string>().starts_with(family))
+                most = std::max(most, choice["wrong_per_million"].get<double>());
+        return most;
+    };
+    for (const Json& workload : figures["scenes"][0]["workloads"])
+        if (workload["workload"] == "edges") { // where the broken line decides
+            EXPECT_GT(wrong_of(workload, "certified"), 1000);
+            EXPECT_EQ(wrong_of(workload, "cpu-kdtree"), 0);
+            return;
+        }
+    FAIL() << "no rays at edges";
+}
+
 INSTANTIATE_TEST_SUITE_P(Experiments, Report,
                          testing::Values("error --scene sphere-4", "scale --scene sphere-6",
                                          "hard-cases", "claims --scene sphere-5",
