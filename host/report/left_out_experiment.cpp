@@ -145,10 +145,9 @@ Plot saved_plot(const Json& figures) {
     }
     return {"left-out-saved",
             "What leaving it out saves of the CPU seconds of tracing and shading.", data,
-            fmt::format("unset key\nset style fill solid 0.8\nset boxwidth 0.7\n"
-                        "set xtics ({}) rotate by -40 left font ',11'\nset xrange [-0.6:{}.4]\n"
-                        "set ylabel 'saved, % of the time with it'\nset rmargin 12\n"
-                        "plot datafile using 1:2 with boxes ls 1\n",
+            fmt::format("unset key\nset style fill solid 0.8\nset ytics ({}) font ',11'\n"
+                        "set yrange [{}.5:-0.5]\nset xlabel 'saved, % of the time with it'\n"
+                        "plot datafile using ($2/2):1:($2/2):(0.35) with boxxyerror ls 1\n",
                         tics, bar - 1)};
 }
 
