@@ -88,6 +88,8 @@ Result<Done> bench_contenders(const BenchJob& job, const BenchSurroundings& arou
         SceneBench bench;
         bench.scene = source;
         bench.asked.size = job.size;
+        bench.asked.only = job.workloads;
+        bench.asked.edges = !job.workloads.empty();
         bench.repeats = job.repeats;
         bench.contenders = job.contenders;
         bench.device = job.device;

@@ -8,9 +8,11 @@
 #include "host/output.h"
 #include "host/report/leak_cases.h"
 #include "host/report/optics.h"
+#include "host/report/report_page.h"
+#include "host/report/stability_grid.h"
+#include "host/report/stability_meshes.h"
 #include "host/report/stability_table.h"
 #include "host/scene_source.h"
-#include "host/suggestion.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,7 +27,11 @@
 namespace ovc {
 
 static constexpr const char* kExamples =
-    R"(stability: rays at the edges and vertices of closed meshes, near and far; slivers, duplicates, deep
+    R"(The page is DIR/index.html, with all it needs within; beside it lie summary.md, the figures of
+each experiment as NAME.json, the plots, and in raw/ what each run left. Runs that are done are not
+repeated. Ctrl-C ends the run that goes on; the same command goes on from there. It needs gnuplot.
+
+stability: rays at the edges and vertices of closed meshes, near and far; slivers, duplicates, deep
 trees; a ground of 1e7 m with detail of 1 mm; grazing rays, rays along axes and in planes; NaN and
 infinity. Wrong answers and leaks of certified and fast mode, and of Embree's default and robust mode
 where this program was built with Embree. Then stiff optics: rays spawned on a thousand shapes from
@@ -36,10 +42,14 @@ leaks: certified mode alone, in large numbers: rays at edges and vertices of clo
 inside and outside, at the origin and far from it, small and large. With --data also at edges and
 vertices of the dragon that its triangles surround without a gap; elsewhere it has holes.
 
+grid: strips of triangles at every pair of scale and offset, for several aspects; as stability.
+
 The tables go to standard output. Ctrl-C ends them early, with what there is so far. A report ends
 with an error when certified mode, or the shading over it, answered anything wrong.
 
 Examples:
+  overcast report -o out --quick                       the page, in minutes
+  overcast report -o out --data DATA                   with the Stanford dragon, up to two hours
   overcast report --only stability --quick             a minute
   overcast report --only stability -o out              out/stability.md and out/stability.json too
   overcast report --only leaks --rays 1e8 -o out       the long run; the files grow case by case)";
@@ -56,25 +66,18 @@ struct ReportArguments {
     std::string times;
     std::string rays;
     std::string name_part;
+    std::vector<std::string> scenes;
     bool quick = false;
 };
 
-/// All of the design; the first two are there.
-constexpr std::string_view kReports[] = {"stability", "leaks", "speed", "memory", "scenes"};
+/// Tables by themselves; every other name is an experiment of the page.
+constexpr std::string_view kReports[] = {"stability", "leaks", "grid"};
 
 /// In the order of ovc_kernel.
 constexpr std::string_view kKernels[] = {"auto", "fragment", "compute"};
 
-Result<Done> check_name(const std::string& name) {
-    if (name == kReports[0] || name == kReports[1])
-        return Done{};
-    if (name.empty())
-        return Error{"the whole report is not there yet; there are --only stability and leaks"};
-    if (std::find(std::begin(kReports), std::end(kReports), name) != std::end(kReports))
-        return Error{
-            fmt::format("the report '{}' is not there yet; there are stability and leaks", name)};
-    return Error{fmt::format("no report is called '{}'; there are stability and leaks{}", name,
-                             did_you_mean(name, kReports))};
+bool is_page(const std::string& name) {
+    return std::find(std::begin(kReports), std::end(kReports), name) == std::end(kReports);
 }
 
 /// "100000000" or "1e8".
@@ -131,20 +134,31 @@ Result<Done> choose(Report& report, const std::string& part) {
     return Done{};
 }
 
+Result<Report> chosen_of(Report report, const std::string& part) {
+    const Result<Done> chosen = choose(report, part);
+    return chosen ? Result<Report>(std::move(report)) : chosen.error();
+}
+
 Result<Report> stability_report(const ReportArguments& given) {
     if (!given.rays.empty())
-        return Error{"--rays means nothing to the report stability; there is --times"};
+        return Error{
+            fmt::format("--rays means nothing to the report {}; there is --times", given.only)};
     Result<StabilityOptions> options = options_of(given);
     if (!options)
         return options.error();
+    if (given.only == kReports[2])
+        return chosen_of({"grid",
+                          "Scale, offset and aspect",
+                          stability_grid_cases(given.quick),
+                          {},
+                          std::move(*options)},
+                         given.name_part);
     Result<std::vector<StabilityCase>> cases = stability_cases(given.data);
     if (!cases)
         return cases.error();
-    Report report{"stability", "Numerical stability", std::move(*cases), optics_cases(),
-                  std::move(*options)};
-    if (const Result<Done> chosen = choose(report, given.name_part); !chosen)
-        return chosen.error();
-    return report;
+    return chosen_of({"stability", "Numerical stability", std::move(*cases), optics_cases(),
+                      std::move(*options)},
+                     given.name_part);
 }
 
 Result<Report> leak_report(const ReportArguments& given) {
@@ -276,17 +290,69 @@ Result<int> make_report(const Report& report, const std::string& folder) {
     return interrupt.interrupted() ? kExitInterrupted : kExitOk;
 }
 
+/// What goes with tables and not with the page.
+Result<Done> check_page_words(const ReportArguments& given) {
+    if (given.folder.empty())
+        return Error{"the report needs a folder: overcast report -o DIR"};
+    for (const auto& [name, text] :
+         {std::pair("--times", &given.times), std::pair("--rays", &given.rays),
+          std::pair("--case", &given.name_part), std::pair("--device", &given.device)})
+        if (!text->empty())
+            return Error{fmt::format("{} goes with --only stability, leaks or grid", name)};
+    return Done{};
+}
+
+Result<std::vector<const Experiment*>> chosen_experiments(const std::string& only) {
+    std::vector<const Experiment*> chosen;
+    for (const Experiment& one : experiments())
+        chosen.push_back(&one);
+    if (only.empty())
+        return chosen;
+    const Result<const Experiment*> one = find_experiment(only);
+    return one ? Result<std::vector<const Experiment*>>(std::vector{*one}) : one.error();
+}
+
+Result<ReportJob> page_job(const ReportArguments& given) {
+    Result<std::vector<const Experiment*>> chosen = chosen_experiments(given.only);
+    if (!chosen)
+        return chosen.error();
+    if (const Result<Done> fine = check_page_words(given); !fine)
+        return fine.error();
+    ReportJob job;
+    job.experiments = std::move(*chosen);
+    job.folder = given.folder;
+    job.plan.quick = given.quick;
+    job.plan.scenes = given.scenes;
+    if (!given.data.empty()) {
+        Result<std::string> dragon = dragon_file(given.data);
+        if (!dragon)
+            return dragon.error();
+        job.plan.mesh = std::move(*dragon);
+    }
+    return job;
+}
+
+std::string experiments_text() {
+    std::string text;
+    for (const Experiment& one : experiments())
+        text += fmt::format("  {}: {}\n", one.name, one.about);
+    return text;
+}
+
 class ReportCommand final : public Subcommand {
 public:
     void add_to(CLI::App& app) override {
         app.description("Measures what the documents claim.");
-        app.add_option("--only", given_.only, "The report to make: stability or leaks")
-            ->type_name("stability|leaks");
+        app.add_option("--only", given_.only,
+                       "One experiment of the page; or one of the tables stability, leaks and grid")
+            ->type_name("NAME");
         app.add_option("-o,--output", given_.folder,
-                       "Also write NAME.md and NAME.json into this folder")
+                       "The folder of the page; tables: also write NAME.md and NAME.json there")
             ->type_name("DIR");
-        app.add_flag("--quick", given_.quick,
-                     "The short form: a tenth of the rays; for leaks, 1e6");
+        app.add_flag("--quick", given_.quick, "The short form, in minutes; for leaks, 1e6 rays");
+        app.add_option("--scene", given_.scenes,
+                       "Instead of the scenes of the page's experiments; may come several times")
+            ->type_name("SCENE");
         app.add_option("--times", given_.times,
                        "For stability: so many times the rays of the short form; default: 10")
             ->type_name("N");
@@ -307,14 +373,18 @@ public:
             ->type_name("NAME");
         app.add_option("--kernel", given_.kernel, "auto (the faster one), fragment or compute")
             ->type_name(choice_names(kKernels));
-        app.footer(kExamples);
+        app.footer("The experiments of the page:\n" + experiments_text() + "\n" + kExamples);
     }
 
     Result<int> run() override {
-        if (const Result<Done> known = check_name(given_.only); !known)
-            return known.error();
+        if (is_page(given_.only)) {
+            const Result<ReportJob> job = page_job(given_);
+            return job ? make_report_page(*job) : job.error();
+        }
+        if (!given_.scenes.empty())
+            return Error{"--scene goes with the page, not with --only stability, leaks or grid"};
         Result<Report> report =
-            given_.only == kReports[0] ? stability_report(given_) : leak_report(given_);
+            given_.only == kReports[1] ? leak_report(given_) : stability_report(given_);
         if (!report)
             return report.error();
         return make_report(*report, given_.folder);

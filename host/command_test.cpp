@@ -376,13 +376,18 @@ TEST_F(CommandTest, MoreTrianglesThanAllowedAreRefusedWithTheirCount) {
 }
 
 TEST_F(CommandTest, ReportSaysWhichReportsThereAre) {
-    EXPECT_EQ(error({"report"}),
-              "the whole report is not there yet; there are --only stability and leaks");
-    EXPECT_EQ(error({"report", "--only", "speed"}),
-              "the report 'speed' is not there yet; there are stability and leaks");
-    EXPECT_EQ(error({"report", "--only", "stabilty"}),
-              "no report is called 'stabilty'; there are stability and leaks; did you mean "
-              "'stability'?");
+    EXPECT_EQ(error({"report"}), "the report needs a folder: overcast report -o DIR");
+    EXPECT_EQ(error({"report", "--only", "error"}),
+              "the report needs a folder: overcast report -o DIR");
+    EXPECT_THAT(error({"report", "--only", "tessellation"}),
+                testing::StartsWith("the experiment 'tessellation' is not there yet; there are error"));
+    EXPECT_THAT(error({"report", "--only", "stabilty"}),
+                testing::AllOf(testing::StartsWith("no report is called 'stabilty'; there are "),
+                               testing::EndsWith("did you mean 'stability'?")));
+    EXPECT_EQ(error({"report", "-o", path("r"), "--rays", "5"}),
+              "--rays goes with --only stability, leaks or grid");
+    EXPECT_EQ(error({"report", "--only", "leaks", "--scene", "box"}),
+              "--scene goes with the page, not with --only stability, leaks or grid");
     EXPECT_EQ(error({"report", "--only", "leaks", "--rays", "1e-3"}),
               "--rays needs a whole number from 1 to 1e+12, such as 1e8, not '1e-3'");
     EXPECT_EQ(error({"report", "--only", "leaks", "--case", "teapot"}),

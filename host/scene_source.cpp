@@ -19,9 +19,11 @@ void SceneArguments::add_to(CLI::App& app, const char* name) {
                    "A file (.ply .obj .pbrt .pov, also .gz; .ovc, or what Assimp reads) or a test "
                    "scene's name")
         ->required();
-    app.add_option("--model", model,
-                   "For dragons-N and dragonball: the model they show instead of a generated one")
-        ->type_name("FILE");
+    app.add_option(
+           "--model", model,
+           "For dragons-N and dragonball: the model they show instead of a generated one, a "
+           "file or a test scene's name")
+        ->type_name("SCENE");
     app.add_flag("--strict", strict,
                  "For .pbrt: what is unknown, missing or unusable is an error, not a warning");
     app.add_option("--max-triangles", max_triangles,
@@ -50,14 +52,15 @@ std::vector<NamedFile> SceneArguments::files() const {
     std::vector<NamedFile> files;
     if (!is_test_scene(scene))
         files.push_back({"input", scene});
-    if (!model.empty())
+    if (!model.empty() && !is_test_scene(model))
         files.push_back({"model", model});
     return files;
 }
 
 static Result<Scene> make_with_model(const std::string& name, const ImportOptions& options,
                                      const std::string& model) {
-    const Result<Scene> loaded = load(model, options);
+    const Result<Scene> loaded =
+        is_test_scene(model) ? make_test_scene(model) : load(model, options);
     if (!loaded)
         return loaded.error();
     Result<Scene> scene = make_test_scene(name, &loaded->soup);

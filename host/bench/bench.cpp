@@ -15,6 +15,15 @@ namespace ovc {
 
 namespace {
 
+struct Answers {
+    std::vector<uint64_t> names;
+    std::vector<double> distances; // none of a frame
+};
+
+Answers answers_of(const Workload& workload) {
+    return {workload.answers(), workload.distances ? workload.distances() : std::vector<double>()};
+}
+
 uint64_t count_differing(std::span<const uint64_t> a, std::span<const uint64_t> b) {
     assert(a.size() == b.size());
     uint64_t count = 0;
@@ -76,7 +85,7 @@ public:
 
     /// False: it was stopped.
     Result<bool> warm_up() {
-        std::vector<uint64_t> right;
+        Answers right;
         for (Measurement& m : measurements) {
             if (m.entrant == 0) {
                 Result<Done> answered = ask_reference(m.workload, right);
@@ -86,9 +95,11 @@ public:
             const Result<bool> done = step(m, /* timed= */ false, "first call");
             if (!done || !*done)
                 return done;
-            const std::vector<uint64_t> answers = workloads_[m.workload].answers();
-            m.checksum = checksum(answers);
-            m.differing = count_differing(answers, right);
+            const Answers answers = answers_of(workloads_[m.workload]);
+            m.checksum = checksum(answers.names);
+            m.differing = count_differing(answers.names, right.names);
+            if (!right.distances.empty())
+                m.error = distance_error(answers.distances, right.distances);
         }
         return true;
     }
@@ -107,11 +118,11 @@ public:
     std::vector<Measurement> measurements;
 
 private:
-    Result<Done> ask_reference(size_t workload, std::vector<uint64_t>& right) {
+    Result<Done> ask_reference(size_t workload, Answers& right) {
         const Result<uint64_t> done = workloads_[workload].run(reference_);
         if (!done)
             return done.error();
-        right = workloads_[workload].answers();
+        right = answers_of(workloads_[workload]);
         return Done{};
     }
 

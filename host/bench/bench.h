@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,7 +26,8 @@ struct Measurement {
     size_t workload = 0;
     uint64_t rays = 0;
     uint64_t checksum = 0;
-    uint64_t differing = 0; // answers unlike the reference's
+    uint64_t differing = 0;             // answers unlike the reference's
+    std::optional<DistanceError> error; // of rays; none of a frame
     uint64_t flagged = 0;
     uint64_t retraced = 0;
     uint64_t passes = 0;

@@ -3,8 +3,10 @@
 #include "host/bench/bench_arguments.h"
 
 #include "host/output.h"
+#include "host/suggestion.h"
 #include "testscenes/catalog.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fmt/format.h>
@@ -15,10 +17,14 @@ namespace ovc {
 static constexpr const char* kDefaultScene = "knot";
 /// For a sweep: the device's default, which is enough for most scenes.
 static constexpr std::string_view kAll = "all";
+static constexpr std::string_view kAuto = "auto";
 
 /// In the order of SweepOver.
 static constexpr std::array<std::string_view, 4> kSweeps = {"rays", "triangles", "leaves",
                                                             "budget"};
+
+static constexpr std::array<std::string_view, 5> kWorkloads = {"primary", "shadow", "diffuse",
+                                                               "edges", "frame"};
 
 void BenchWords::add_to(CLI::App& app) {
     app.add_option("SCENE", scenes,
@@ -33,6 +39,12 @@ void BenchWords::add_to(CLI::App& app) {
         ->type_name(choice_names(kSweeps))
         ->excludes(table)
         ->excludes(race);
+    app.add_option("--most", most,
+                   "The last row of --sweep rays, triangles or leaves has at most so many")
+        ->type_name("N");
+    app.add_option("--workloads", workloads,
+                   fmt::format("Which of {}; default: all but edges", fmt::join(kWorkloads, ", ")))
+        ->type_name("NAME,...");
     app.add_option("--only", only,
                    fmt::format("Contenders, or the first words of their names; default: all but "
                                "the thesis- ones of {}",
@@ -43,7 +55,7 @@ void BenchWords::add_to(CLI::App& app) {
         ->type_name("WxH");
     app.add_option("--repeats", repeats, "Timed calls of each; default: 5")->type_name("N");
     app.add_option("--leaves", leaves,
-                   "The plugin with about so many level-1 leaves, a row for each")
+                   "The plugin with about so many level-1 leaves, or auto, a row for each")
         ->type_name("N,...");
     CLI::Option* memory =
         app.add_option("--gpu-memory", gpu_memory,
@@ -100,6 +112,8 @@ static Result<std::vector<Choice>> parse_sweep(std::string_view option, std::str
 Result<std::vector<LeavesChoice>> parse_leaves_sweep(std::string_view text) {
     return parse_sweep<LeavesChoice>(
         "--leaves", text, [](const std::string& item) -> Result<LeavesChoice> {
+            if (item == kAuto)
+                return LeavesChoice{0, item};
             const Result<uint64_t> leaves = parse_count("--leaves", item, 1, 1000000);
             if (!leaves)
                 return leaves.error();
@@ -151,6 +165,19 @@ static Result<std::vector<Contender>> contenders_of(const BenchWords& words) {
     return choose_contenders(only, *leaves, *budgets);
 }
 
+static Result<std::vector<std::string>> workloads_of(const std::string& words) {
+    if (words.empty())
+        return std::vector<std::string>();
+    Result<std::vector<std::string>> names = parse_list("--workloads", words);
+    if (!names)
+        return names;
+    for (const std::string& name : *names)
+        if (std::ranges::find(kWorkloads, name) == kWorkloads.end())
+            return Error{fmt::format("--workloads: there is no workload '{}'; there are {}{}", name,
+                                     fmt::join(kWorkloads, ", "), did_you_mean(name, kWorkloads))};
+    return names;
+}
+
 /// The file for JSON can be written and is none of the scenes.
 static Result<Done> check_json(const BenchJob& job) {
     if (job.json.empty() || job.json == "-")
@@ -175,11 +202,14 @@ static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
                : words.programs       ? BenchKind::Programs
                : !words.sweep.empty() ? BenchKind::Sweep
                                       : BenchKind::Contenders;
+    if (!words.most.empty() && (job.kind != BenchKind::Sweep || words.sweep == kSweeps[3]))
+        return Error{"--most goes with --sweep rays, triangles or leaves"};
     if (job.kind == BenchKind::Contenders)
         return Done{};
     for (const auto& [name, text] :
          {std::pair("--only", &words.only), std::pair("--leaves", &words.leaves),
-          std::pair("--gpu-memory", &words.gpu_memory), std::pair("--resident", &words.resident)})
+          std::pair("--workloads", &words.workloads), std::pair("--gpu-memory", &words.gpu_memory),
+          std::pair("--resident", &words.resident)})
         if (!text->empty())
             return Error{
                 fmt::format("{} chooses what is measured itself, without {}", option, name)};
@@ -217,6 +247,16 @@ Result<BenchJob> understand_bench(const BenchWords& words) {
     if (!repeats)
         return repeats.error();
     job.repeats = uint32_t(*repeats);
+    if (!words.most.empty()) {
+        const Result<uint64_t> most = parse_count("--most", words.most, 1, 1'000'000'000);
+        if (!most)
+            return most.error();
+        job.most = *most;
+    }
+    Result<std::vector<std::string>> workloads = workloads_of(words.workloads);
+    if (!workloads)
+        return workloads.error();
+    job.workloads = std::move(*workloads);
     Result<std::vector<Contender>> contenders = contenders_of(words);
     if (!contenders)
         return contenders.error();

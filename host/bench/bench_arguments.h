@@ -21,7 +21,9 @@ struct BenchWords {
     bool bars = false;
     bool programs = false;
     std::string sweep;
+    std::string most;
     std::string only;
+    std::string workloads;
     std::string size; // empty: 1024x1024, of programs 512x512
     std::string repeats = "5";
     std::string leaves;
@@ -36,6 +38,8 @@ struct BenchWords {
 struct BenchJob {
     BenchKind kind = BenchKind::Contenders;
     SweepOver sweep = SweepOver::Rays;
+    uint64_t most = UINT64_MAX;         // of rays, triangles or leaves of a sweep
+    std::vector<std::string> workloads; // empty: all but edges
     std::vector<std::string> scenes;
     ImageSize size;
     uint32_t repeats = 5;
@@ -50,7 +54,7 @@ Result<BenchJob> understand_bench(const BenchWords& words);
 /// "a,b,c" without its commas. Error: an empty item. option: named in the error.
 Result<std::vector<std::string>> parse_list(std::string_view option, std::string_view text);
 
-/// "8,32"; empty: one choice, the plugin's own.
+/// "8,32,auto"; auto, and empty: the plugin's own choice.
 Result<std::vector<LeavesChoice>> parse_leaves_sweep(std::string_view text);
 
 /// "all,12M,50%": as `overcast render` takes them, and all for the device's default; empty: that

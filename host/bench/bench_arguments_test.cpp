@@ -61,9 +61,10 @@ TEST(BenchArguments, SweepThePluginAlone) {
 }
 
 TEST(BenchArguments, UnderstandTheValuesOfSweeps) {
-    const auto leaves = parse_leaves_sweep("8,128");
+    const auto leaves = parse_leaves_sweep("auto,8,128");
     ASSERT_TRUE(bool(leaves));
-    EXPECT_EQ((*leaves)[1].leaves, 128u);
+    EXPECT_EQ((*leaves)[0].leaves, 0u);
+    EXPECT_EQ((*leaves)[2].leaves, 128u);
     const auto memory = parse_memory_sweep("all,12M,50%");
     ASSERT_TRUE(bool(memory));
     EXPECT_EQ((*memory)[0].memory.of(1000), 0u);
@@ -77,6 +78,14 @@ TEST(BenchArguments, UnderstandTheValuesOfSweeps) {
     EXPECT_EQ((*resident)[1].pages_share, 0);
 }
 
+TEST(BenchArguments, ChooseWorkloadsAndHowFarASweepGoes) {
+    const Result<BenchJob> job = understand_bench({.workloads = "edges,primary"});
+    ASSERT_TRUE(bool(job));
+    EXPECT_THAT(job->workloads, testing::ElementsAre("edges", "primary"));
+    EXPECT_TRUE(understand_bench({})->workloads.empty());
+    EXPECT_EQ(understand_bench({.sweep = "leaves", .most = "300"})->most, 300u);
+}
+
 TEST(BenchArguments, SayWhatIsWrong) {
     const struct {
         BenchWords words;
@@ -88,6 +97,11 @@ TEST(BenchArguments, SayWhatIsWrong) {
         {{.leaves = "8,,9"}, "--leaves has an empty item"},
         {{.leaves = "8,9,8"}, "--leaves has '8' twice"},
         {{.gpu_memory = "abc"}, "--gpu-memory: 'abc' is no memory size"},
+        {{.workloads = "primary,shadows"}, "did you mean 'shadow'?"},
+        {{.sweep = "rays", .workloads = "primary"}, "measured itself, without --workloads"},
+        {{.most = "5"}, "--most goes with --sweep rays, triangles or leaves"},
+        {{.sweep = "budget", .most = "5"}, "--most goes with --sweep rays, triangles or leaves"},
+        {{.sweep = "rays", .most = "x"}, "--most needs a whole number"},
         {{.resident = "12M"}, "--resident needs a share such as 30%, or all, not '12M'"},
         {{.json = "no/such/folder/b.json"}, "does not exist"},
         {{.scenes = {OVC_SOURCE_DIR "/README.md"}, .json = OVC_SOURCE_DIR "/README.md"},

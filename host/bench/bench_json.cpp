@@ -35,6 +35,7 @@ Json json_of(const BenchResult& r, const BenchEntrant& e) {
                    {"level2_bytes", nullptr},
                    {"bytes_a_triangle", json_of(bytes_a_triangle(r, e))},
                    {"gpu_budget_bytes", nullptr},
+                   {"gpu_peak_bytes", nullptr},
                    {"build_seconds",
                     {{"level1", e.built.seconds_level1},
                      {"level2", e.built.seconds_level2},
@@ -44,6 +45,7 @@ Json json_of(const BenchResult& r, const BenchEntrant& e) {
         object["leaves"] = e.built.leaves;
         object["level2_bytes"] = e.built.level2_bytes;
         object["gpu_budget_bytes"] = e.built.gpu_budget_bytes;
+        object["gpu_peak_bytes"] = e.after.gpu_peak_bytes;
     }
     return object;
 }
@@ -69,6 +71,9 @@ Json json_of(const BenchResult& r, const Measurement& m) {
             {"call_time_to_first", json_of(ratios.call_time_to_first)},
             {"kernel_time_to_first", json_of(ratios.kernel_time_to_first)},
             {"differ", m.differing},
+            {"missed", m.error ? Json(m.error->missed) : Json(nullptr)},
+            {"t_error_largest", m.error ? Json(m.error->largest) : Json(nullptr)},
+            {"t_error_rms", m.error ? Json(m.error->rms) : Json(nullptr)},
             {"flagged", m.flagged},
             {"retraced", m.retraced},
             {"passes", m.passes},

@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <thread>
 
 namespace ovc {
@@ -159,6 +161,26 @@ TEST_F(RunContenders, HandOnWhatAContenderSays) {
     const Result<Done> done = run(1);
     ASSERT_FALSE(done);
     EXPECT_EQ(done.error().message, "reference does not do that");
+}
+
+TEST_F(RunContenders, MeasureHowFarDistancesAreOff) {
+    enter("a", 7);
+    workloads.push_back(ray_workload({"rays", RayQuery::Nearest, std::vector<Ray>(3)}));
+    ASSERT_TRUE(run(1));
+    ASSERT_TRUE(result.measurements[0].error);
+    EXPECT_EQ(result.measurements[0].error->missed, 0u);
+    EXPECT_EQ(result.measurements[0].error->largest, 0);
+}
+
+TEST(DistanceError, IsRelativeAndOfWhatBothHit) {
+    const double none = std::numeric_limits<double>::infinity();
+    const DistanceError error = distance_error(std::vector{1.0, 2.2, none, 5.0, none},
+                                               std::vector{1.0, 2.0, 3.0, none, none});
+    EXPECT_EQ(error.missed, 1u);
+    EXPECT_NEAR(error.largest, 0.1, 1e-12);
+    EXPECT_NEAR(error.rms, 0.1 / std::sqrt(2), 1e-12);
+    EXPECT_EQ(distance_error(std::vector{0.5}, std::vector{0.0}).largest, 1);
+    EXPECT_EQ(distance_error(std::vector{none}, std::vector{none}).rms, 0);
 }
 
 TEST(Checksum, IsFnv1a) {

@@ -67,7 +67,7 @@ static Result<Done> check_names(std::span<const std::string> only) {
     return Done{};
 }
 
-static bool has_embree() {
+bool has_embree() {
     return bool(make_embree_backend(Soup{}, EmbreeMode::Medium));
 }
 

@@ -78,4 +78,7 @@ private:
     std::map<uint32_t, uint64_t> pages_bytes_; // by leaves
 };
 
+/// Whether this program was built with Embree.
+bool has_embree();
+
 } // namespace ovc

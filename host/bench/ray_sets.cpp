@@ -3,6 +3,7 @@
 #include "host/bench/ray_sets.h"
 
 #include "core/box.h"
+#include "core/triangle.h"
 #include "host/camera.h"
 #include "host/memory_size.h"
 #include "host/scene_summary.h"
@@ -62,6 +63,32 @@ Result<std::vector<RaySet>> make_ray_sets(const Scene& scene, const Camera& came
         diffuse.rays.push_back(bounce);
     }
     return std::vector<RaySet>{std::move(primary), std::move(shadow), std::move(diffuse)};
+}
+
+/// A corner, or as often a point between it and the next.
+static dvec3 target_of(const Triangle& triangle, Random& random) {
+    const uint32_t corner = random.below(3);
+    const double along = random.chance(0.5) ? 0 : random.uniform();
+    return glm::mix(triangle[corner], triangle[(corner + 1) % 3], along);
+}
+
+Result<RaySet> make_edge_set(const Scene& scene, const Camera& camera, uint32_t width,
+                             uint32_t height, Backend& reference) {
+    const std::vector<uint32_t> pixels = pixel_order(width, height);
+    const std::vector<Ray> from = camera_rays(camera, width, height, pixels);
+    std::vector<Hit> hits(from.size());
+    if (const Result<Done> traced = reference.intersect(from, {}, hits); !traced)
+        return traced.error();
+    RaySet edges{"edges", RayQuery::Nearest, {}};
+    for (size_t i = 0; i < hits.size(); ++i) {
+        if (!hits[i].is_hit())
+            continue;
+        Random random(kSeed, pixels[i]);
+        Ray ray = from[i];
+        ray.dir = glm::normalize(target_of(scene.soup.triangle(hits[i].id), random) - ray.org);
+        edges.rays.push_back(ray);
+    }
+    return edges;
 }
 
 RaySet make_primary_set(const Camera& camera, uint32_t width, uint32_t height) {

@@ -33,6 +33,12 @@ struct RaySet {
 Result<std::vector<RaySet>> make_ray_sets(const Scene& scene, const Camera& camera, uint32_t width,
                                           uint32_t height, Backend& reference);
 
+/// "edges": the nearest hit, one ray from each pixel that hits, from the camera at a corner of the
+/// triangle there or a point of its edges: what falls through where neighbours do not meet. Where
+/// the camera is, and what is said above, hold.
+Result<RaySet> make_edge_set(const Scene& scene, const Camera& camera, uint32_t width,
+                             uint32_t height, Backend& reference);
+
 /// The first of them alone, named after how many rays it has: "primary 1,024".
 RaySet make_primary_set(const Camera& camera, uint32_t width, uint32_t height);
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace ovc {
@@ -76,6 +77,39 @@ TEST(RaySets, BouncesLeaveAConvexBody) {
     ASSERT_TRUE(make_cpu_backend(scene.soup)->intersect(diffuse.rays, {}, hits));
     for (size_t i = 0; i < hits.size(); ++i)
         EXPECT_FALSE(hits[i].is_hit()) << "ray " << i;
+}
+
+/// How far a ray passes a point.
+double distance(const Ray& ray, dvec3 point) {
+    return glm::length(glm::cross(glm::normalize(ray.dir), point - ray.org));
+}
+
+/// On a convex body what is aimed at is hit, but for the few edges that it is seen along.
+TEST(RaySets, RaysAtEdgesHitWhatTheyAimAt) {
+    const Scene scene = lit("sphere-3");
+    const Camera camera = framing_camera(hittable_bounds(scene.soup), kWidth, kHeight);
+    const auto reference = make_cpu_backend(scene.soup);
+    const Result<RaySet> edges = make_edge_set(scene, camera, kWidth, kHeight, *reference);
+    ASSERT_TRUE(bool(edges));
+    EXPECT_EQ(edges->name, "edges");
+    EXPECT_EQ(edges->rays.size(), sets_of(scene)[1].rays.size());
+    std::vector<Hit> hits(edges->rays.size());
+    ASSERT_TRUE(reference->intersect(edges->rays, {}, hits));
+    size_t at_corners = 0, missed = 0;
+    for (size_t i = 0; i < hits.size(); ++i) {
+        if (!hits[i].is_hit()) {
+            ++missed;
+            continue;
+        }
+        EXPECT_LT(std::min({hits[i].u, hits[i].v, 1 - hits[i].u - hits[i].v}), 1e-9) << "ray " << i;
+        const Triangle triangle = scene.soup.triangle(hits[i].id);
+        at_corners += std::ranges::any_of(std::array{0, 1, 2}, [&](int c) {
+            return distance(edges->rays[i], triangle[c]) < 1e-9;
+        });
+    }
+    EXPECT_LT(missed, hits.size() / 20);
+    EXPECT_GT(at_corners, hits.size() / 3);
+    EXPECT_LT(at_corners, hits.size() * 2 / 3);
 }
 
 /// The mean of the cosine, of directions distributed as the cosine, is 2/3; its deviation 0.236.

@@ -6,14 +6,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 #include <vector>
 
@@ -30,15 +34,6 @@ bool is_installed(const std::string& program) {
     return false;
 }
 
-/// All that comes until the other end is closed.
-static std::string read_all(int pipe) {
-    std::string text;
-    std::array<char, 4096> block;
-    for (ssize_t size; (size = read(pipe, block.data(), block.size())) > 0;)
-        text.append(block.data(), size_t(size));
-    return text;
-}
-
 static std::string last_line(const std::string& text) {
     std::istringstream lines(text);
     std::string last = "without a word";
@@ -48,7 +43,17 @@ static std::string last_line(const std::string& text) {
     return last;
 }
 
-Result<double> run_program(std::span<const std::string> words) {
+namespace {
+
+constexpr double kGrace = 10; // seconds between asking to end and ending
+constexpr int kLookMilliseconds = 50;
+
+struct Child {
+    pid_t id = 0;
+    int errors = -1; // the end of its standard error that is read
+};
+
+Result<Child> start(std::span<const std::string> words) {
     std::vector<char*> arguments;
     for (const std::string& word : words)
         arguments.push_back(const_cast<char*>(word.c_str()));
@@ -61,23 +66,72 @@ Result<double> run_program(std::span<const std::string> words) {
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-    const Stopwatch watch;
-    pid_t child = 0;
+    Child child;
     const int failed =
-        posix_spawnp(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environ);
+        posix_spawnp(&child.id, words[0].c_str(), &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     close(ends[1]);
-    const std::string said = failed ? "" : read_all(ends[0]);
+    child.errors = ends[0];
+    if (!failed)
+        return child;
     close(ends[0]);
-    if (failed)
-        return Error{fmt::format("{} cannot be started: {}", words[0], std::strerror(failed))};
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    return Error{fmt::format("{} cannot be started: {}", words[0], std::strerror(failed))};
+}
+
+/// False when the other end is closed. Waits no longer than a look.
+bool read_some(int pipe, std::string& text) {
+    pollfd look{pipe, POLLIN, 0};
+    if (poll(&look, 1, kLookMilliseconds) <= 0)
+        return true;
+    std::array<char, 4096> block;
+    const ssize_t size = read(pipe, block.data(), block.size());
+    if (size > 0)
+        text.append(block.data(), size_t(size));
+    return size > 0 || (size < 0 && errno == EINTR);
+}
+
+} // namespace
+
+Result<ProgramEnd> watch_program(std::span<const std::string> words, double limit_seconds,
+                                 const std::function<bool()>& stop) {
+    const Stopwatch watch;
+    const Result<Child> child = start(words);
+    if (!child)
+        return child.error();
+    ProgramEnd end;
+    std::string said;
+    double asked_at = std::numeric_limits<double>::infinity();
+    while (read_some(child->errors, said)) {
+        const double now = watch.seconds();
+        const bool asked = std::isfinite(asked_at);
+        end.stopped = end.stopped || (stop && stop());
+        end.too_long = end.too_long || now > limit_seconds;
+        if (!asked && (end.stopped || end.too_long)) {
+            kill(child->id, SIGINT);
+            asked_at = now;
+        } else if (now > asked_at + kGrace) {
+            kill(child->id, SIGKILL);
+        }
     }
-    const double seconds = watch.seconds();
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        return Error{fmt::format("{} failed: {}", words[0], last_line(said))};
-    return seconds;
+    end.stopped = end.stopped || (stop && stop()); // Ctrl-C may have reached the program first
+    close(child->errors);
+    int status = 0;
+    while (waitpid(child->id, &status, 0) < 0 && errno == EINTR) {
+    }
+    end.seconds = watch.seconds();
+    end.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    end.said = last_line(said);
+    return end;
+}
+
+Result<double> run_program(std::span<const std::string> words) {
+    const Result<ProgramEnd> end =
+        watch_program(words, std::numeric_limits<double>::infinity(), {});
+    if (!end)
+        return end.error();
+    if (end->exit_code != 0)
+        return Error{fmt::format("{} failed: {}", words[0], end->said)};
+    return end->seconds;
 }
 
 } // namespace ovc

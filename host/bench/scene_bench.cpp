@@ -15,6 +15,8 @@
 #include <fmt/format.h>
 #include <stdlib.h>
 
+#include <algorithm>
+
 namespace ovc {
 
 namespace {
@@ -46,10 +48,20 @@ Result<std::vector<Workload>> workloads_of(const Scene& scene, const Camera& cam
         for (RaySet& set : *sets)
             workloads.push_back(ray_workload(std::move(set)));
     }
+    if (asked.edges) {
+        Result<RaySet> edges = make_edge_set(scene, camera, width, height, reference);
+        if (!edges)
+            return edges.error();
+        workloads.push_back(ray_workload(std::move(*edges)));
+    }
     for (const uint32_t side : asked.primary_sides)
         workloads.push_back(ray_workload(make_primary_set(camera, side, side)));
     if (asked.frame)
         workloads.push_back(frame_workload(scene, camera, width, height, stop));
+    if (!asked.only.empty())
+        std::erase_if(workloads, [&](const Workload& workload) {
+            return std::ranges::find(asked.only, workload.name) == asked.only.end();
+        });
     return workloads;
 }
 

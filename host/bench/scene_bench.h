@@ -16,9 +16,12 @@ class TerminalLine;
 
 /// Which rays contenders are asked.
 struct Asked {
+    /// Keeps those workloads alone that have these names; empty: all that is asked for below.
+    std::vector<std::string> only;
     ImageSize size;
     bool ray_sets = true; // primary, shadow, diffuse
     bool frame = true;
+    bool edges = false;                  // rays at edges and corners
     std::vector<uint32_t> primary_sides; // besides: camera rays of squares of so many pixels a side
 };
 

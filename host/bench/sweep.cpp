@@ -47,10 +47,22 @@ SceneBench bench_of(const BenchJob& job, std::string scene, Asked asked,
     return bench;
 }
 
+Error nothing_within(const BenchJob& job, uint64_t least) {
+    return Error{fmt::format("--most {} leaves no row; the first has {}", job.most, least)};
+}
+
+constexpr uint64_t sphere_triangles(uint32_t n) {
+    return uint64_t(20) << 2 * n;
+}
+
 /// A row for each workload, which are named after their rays; a column for each contender.
 Result<Sweep> over_rays(const BenchJob& job, const BenchSurroundings& around) {
     Asked asked{.size = job.size, .ray_sets = false, .frame = false};
-    asked.primary_sides.assign(kSides.begin(), kSides.end());
+    for (const uint32_t side : kSides)
+        if (uint64_t(side) * side <= job.most)
+            asked.primary_sides.push_back(side);
+    if (asked.primary_sides.empty())
+        return nothing_within(job, uint64_t(kSides[0]) * kSides[0]);
     const Result<BenchResult> r =
         bench_scene(bench_of(job, job.scenes[0], asked, with_robust()), around);
     if (!r)
@@ -92,6 +104,8 @@ Sweep by_entrant(const BenchResult& r, std::string over,
 Result<Sweep> over_leaves(const BenchJob& job, const BenchSurroundings& around) {
     std::vector<Contender> contenders;
     for (const uint32_t leaves : kLeaves) {
+        if (leaves > job.most)
+            break;
         contenders.push_back(kCertified);
         contenders.back().leaves = {leaves, std::to_string(leaves)};
     }
@@ -125,7 +139,11 @@ Result<Sweep> over_triangles(const BenchJob& job, const BenchSurroundings& aroun
                 true};
     Asked asked{.size = job.size, .ray_sets = false, .frame = false};
     asked.primary_sides = {job.size.width};
+    if (sphere_triangles(kFirstSphere) > job.most)
+        return nothing_within(job, sphere_triangles(kFirstSphere));
     for (uint32_t n = kFirstSphere; n <= kLastSphere && !around.stop(); ++n) {
+        if (sphere_triangles(n) > job.most)
+            break;
         const Result<BenchResult> r =
             bench_scene(bench_of(job, fmt::format("sphere-{}", n), asked, {kCertified}), around);
         if (!r)

@@ -5,10 +5,14 @@
 #include "host/render.h"
 
 #include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
 #include <memory>
 
 namespace ovc {
 
+static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 static constexpr uint64_t kFnvStart = 0xcbf29ce484222325u;
 
 static uint64_t fnv(uint64_t hash, uint64_t value) {
@@ -22,6 +26,33 @@ uint64_t checksum(std::span<const uint64_t> answers) {
     for (const uint64_t answer : answers)
         hash = fnv(hash, answer);
     return hash;
+}
+
+static double relative_error(double t, double right) {
+    if (t == right)
+        return 0;
+    return right == 0 ? 1 : std::abs(t - right) / std::abs(right);
+}
+
+DistanceError distance_error(std::span<const double> distances, std::span<const double> right) {
+    assert(distances.size() == right.size());
+    DistanceError error;
+    uint64_t both = 0;
+    double squares = 0;
+    for (size_t i = 0; i < right.size(); ++i) {
+        if (!std::isfinite(right[i]))
+            continue;
+        if (!std::isfinite(distances[i])) {
+            ++error.missed;
+            continue;
+        }
+        const double one = relative_error(distances[i], right[i]);
+        error.largest = std::max(error.largest, one);
+        squares += one * one;
+        ++both;
+    }
+    error.rms = both ? std::sqrt(squares / double(both)) : 0;
+    return error;
 }
 
 static Workload nearest_workload(RaySet set) {
@@ -38,6 +69,13 @@ static Workload nearest_workload(RaySet set) {
                 for (const Hit& hit : *hits)
                     names.push_back(uint64_t(hit.id.mesh) << 32 | hit.id.prim);
                 return names;
+            },
+            [hits] {
+                std::vector<double> distances;
+                distances.reserve(hits->size());
+                for (const Hit& hit : *hits)
+                    distances.push_back(hit.is_hit() ? hit.t : kInfinity);
+                return distances;
             }};
 }
 
@@ -49,7 +87,14 @@ static Workload occlusion_workload(RaySet set) {
                 const Result<Done> traced = backend.occluded(*rays, {}, *occluded);
                 return traced ? Result<uint64_t>(rays->size()) : traced.error();
             },
-            [occluded] { return std::vector<uint64_t>(occluded->begin(), occluded->end()); }};
+            [occluded] { return std::vector<uint64_t>(occluded->begin(), occluded->end()); },
+            [occluded] {
+                std::vector<double> distances;
+                distances.reserve(occluded->size());
+                for (const uint8_t hit : *occluded)
+                    distances.push_back(hit ? 0 : kInfinity);
+                return distances;
+            }};
 }
 
 Workload ray_workload(RaySet set) {
@@ -81,7 +126,8 @@ Workload frame_workload(const Scene& scene, const Camera& camera, uint32_t width
                 for (const vec4& pixel : image->pixels)
                     answers.push_back(answer_of(pixel));
                 return answers;
-            }};
+            },
+            {}};
 }
 
 } // namespace ovc

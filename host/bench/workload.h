@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,20 @@ struct Workload {
     /// What the last run answered: a number for each ray or pixel that is equal where the answer
     /// is.
     std::function<std::vector<uint64_t>()> answers;
+    /// And how far along each ray its answer is: t, infinity for a miss; occlusion: 0, or infinity.
+    /// Of a frame there is none.
+    std::function<std::vector<double>()> distances;
 };
+
+/// How far distances are from the right ones.
+struct DistanceError {
+    uint64_t missed = 0; // answered as a miss, and the right answer is a hit
+    double largest = 0;  // |t - right t| / |right t| where both hit, whatever triangle
+    double rms = 0;      // its root mean square
+};
+
+/// As many of each. A right t of 0 is met or counts as an error of 1.
+DistanceError distance_error(std::span<const double> distances, std::span<const double> right);
 
 /// True asks a running workload to end early; what it was doing is then lost.
 using StopRequest = std::function<bool()>;

@@ -100,20 +100,19 @@ std::span<const NamedPlace> unpleasant_places() {
     return places;
 }
 
-static std::filesystem::path dragon_file(const std::string& data) {
+Result<std::string> dragon_file(const std::string& data) {
     const std::filesystem::path folder = std::filesystem::path(data) / "meshes" / "stanford-dragon";
     for (const char* name : {"dragon_vrip.ply", "dragon_vrip.ply.gz"})
         if (std::filesystem::exists(folder / name))
-            return folder / name;
-    return {};
+            return (folder / name).string();
+    return Error{fmt::format("--data: '{}' holds no meshes/stanford-dragon/dragon_vrip.ply", data)};
 }
 
 Result<std::shared_ptr<const Scene>> load_dragon(const std::string& data) {
-    const std::filesystem::path file = dragon_file(data);
-    if (file.empty())
-        return Error{
-            fmt::format("--data: '{}' holds no meshes/stanford-dragon/dragon_vrip.ply", data)};
-    Result<Scene> scene = load(file.string());
+    const Result<std::string> file = dragon_file(data);
+    if (!file)
+        return file.error();
+    Result<Scene> scene = load(*file);
     if (!scene)
         return scene.error();
     return std::make_shared<const Scene>(std::move(*scene));

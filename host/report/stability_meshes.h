@@ -38,6 +38,9 @@ struct NamedPlace {
 /// Far from the origin, small and large.
 std::span<const NamedPlace> unpleasant_places();
 
+/// The scan's file in the folder `data`. Error: there is none.
+Result<std::string> dragon_file(const std::string& data);
+
 /// The scan in the folder `data`, meshes/stanford-dragon/dragon_vrip.ply or the same packed. It is
 /// not closed: it has holes where no scanner looked. Error: there is none, or it cannot be read.
 Result<std::shared_ptr<const Scene>> load_dragon(const std::string& data);

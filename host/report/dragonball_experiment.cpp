@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// Dragonball: the size of leaves, as figures 4.7 to 4.9 of the thesis.
+#include "host/report/experiment_table.h"
+#include "host/report/thesis_runs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ovc {
+
+namespace {
+
+constexpr std::string_view kScene = "dragonball";
+constexpr std::string_view kLeafSystems[] = {"batched", "mixed", "product-batched"};
+/// The partition of figure 4.8.
+constexpr const char* kFew = "3";
+
+std::vector<const char*> leaf_choices(bool quick) {
+    if (quick)
+        return {"2", "3", "8", "30", "120", "400"};
+    return {"2", "3", "4", "6", "9", "13", "20", "30", "50", "80", "130", "220", "400"};
+}
+
+std::vector<ReportRun> runs(const ReportPlan& plan) {
+    if (!plan.scenes.empty() && std::ranges::find(plan.scenes, kScene) == plan.scenes.end())
+        return {};
+    FramesAsked asked{std::string(kScene),
+                      plan.quick ? "0:99:50" : "0:99:20",
+                      plan.quick ? "192x192" : "512x512",
+                      {}};
+    const std::vector<std::string> model = model_words(plan, "sphere-7");
+    std::vector<ReportRun> runs;
+    for (const char* leaves : leaf_choices(plan.quick))
+        for (const std::string_view system : kLeafSystems) {
+            asked.more = model;
+            asked.more.insert(asked.more.end(), {"--leaves", leaves});
+            runs.push_back(frames_run(fmt::format("leaves-{}", leaves), thesis_system(system),
+                                      asked, plan.quick ? 2 : 20));
+        }
+    if (!plan.quick)
+        asked.frames = "0:99:5";
+    for (const std::string_view system : {"kdt", "batched", "mixed", "product-batched"}) {
+        asked.more = model;
+        if (system != "kdt")
+            asked.more.insert(asked.more.end(), {"--leaves", kFew});
+        runs.push_back(frames_run("few", thesis_system(system), asked, plan.quick ? 2 : 40));
+    }
+    return runs;
+}
+
+/// A row for each partition: leaves are those that were made.
+Json rows_of(std::span<const RawResult> results) {
+    Json rows = Json::array();
+    std::string partition;
+    for (const RawResult& raw : results) {
+        const auto [key, system] = split_run_key(raw.run.key);
+        if (key == "few")
+            continue;
+        if (key != partition) {
+            partition = key;
+            const double leaves = raw.result["leaves"];
+            rows.push_back(
+                {{"leaves", leaves},
+                 {"average_mb", 1e-6 * raw.result["level2_bytes"].get<double>() / leaves},
+                 {"systems", Json::array()}});
+        }
+        rows.back()["systems"].push_back(frames_of(system, raw.result));
+    }
+    return rows;
+}
+
+/// The leaves with which a system is fastest.
+Json fastest(const Json& rows, std::string_view system) {
+    Json leaves = nullptr, least = nullptr;
+    for (const Json& row : rows)
+        if (const Json* one = find_system(row["systems"], system);
+            one && (least.is_null() || (*one)["mean_seconds"] < least)) {
+            least = (*one)["mean_seconds"];
+            leaves = row["leaves"];
+        }
+    return leaves;
+}
+
+/// Milliseconds that a further GPU call costs, between the fewest leaves and the most.
+Json call_milliseconds(const Json& rows, std::string_view system) {
+    const Json *few = find_system(rows.front()["systems"], system),
+               *many = find_system(rows.back()["systems"], system);
+    if (!few || !many || (*few)["mean_calls"] == (*many)["mean_calls"])
+        return nullptr;
+    const auto more = [&](const char* mean) {
+        return (*many)[mean].get<double>() - (*few)[mean].get<double>();
+    };
+    return 1e3 * more("mean_seconds") / more("mean_calls");
+}
+
+Json figures(std::span<const RawResult> results) {
+    const Json rows = rows_of(results);
+    Json few = Json::array();
+    for (const RawResult& raw : results)
+        if (const auto [key, system] = split_run_key(raw.run.key); key == "few")
+            few.push_back(frames_of(system, raw.result));
+    const std::vector<Finding> findings = {
+        {"leaves with which batched is fastest", "2, the fewest", fastest(rows, "batched"),
+         fastest(rows, "product-batched")},
+        {"leaves with which mixed is fastest", "2, the fewest", fastest(rows, "mixed"), nullptr},
+        {"two-level, batched: times as fast as the CPU KD-tree", "about 3",
+         ratio_of(few, "mean_seconds", "kdt", "batched"),
+         ratio_of(few, "mean_seconds", "kdt", "product-batched")},
+        {"GPU calls, mixed over batched", "about 0.5",
+         ratio_of(few, "mean_calls", "mixed", "batched"), nullptr},
+        {"time, mixed over batched", "slightly below 1",
+         ratio_of(few, "mean_seconds", "mixed", "batched"), nullptr}};
+    return {{"model", model_text(results[0].run)},
+            {"renderer", renderer_text(results)},
+            {"triangles", results[0].result["triangles"]},
+            {"findings", findings_of(findings)},
+            {"call_ms", rows.empty() ? Json(nullptr) : call_milliseconds(rows, "batched")},
+            {"rows", rows},
+            {"few", few}};
+}
+
+Plot leaf_plot(const Json& figures) {
+    std::string data, curves;
+    int block = 0;
+    for (const std::string_view key : kLeafSystems) {
+        std::string lines;
+        for (const Json& row : figures["rows"])
+            if (const Json* one = find_system(row["systems"], key))
+                lines += fmt::format("{} {:.6g}\n", row["leaves"].get<double>(),
+                                     (*one)["mean_seconds"].get<double>());
+        data += fmt::format("# {}: leaves, s a frame\n{}\n\n", key, lines);
+        curves += fmt::format("{}datafile index {} using 1:2 with linespoints ls {} title '{}'",
+                              block ? ", " : "", block, block + 1, thesis_system(key).name);
+        ++block;
+    }
+    return {"dragonball-leaves",
+            "Figure 4.7 (b) of the thesis, here: seconds a frame against leaves.", data,
+            fmt::format("set logscale x\nset xlabel 'leaves of level 1'\nset ylabel 's a frame'\n"
+                        "set yrange [0:*]\nplot {}\n",
+                        curves)};
+}
+
+Plot size_plot(const Json& figures) {
+    std::string data = "# leaves, average MB of a page\n";
+    for (const Json& row : figures["rows"])
+        data += fmt::format("{} {:.6g}\n", row["leaves"].get<double>(),
+                            row["average_mb"].get<double>());
+    return {"dragonball-size",
+            "Figure 4.7 (a) of the thesis, here: the average page against leaves.", data,
+            "set logscale xy\nset xlabel 'leaves of level 1'\nset ylabel 'MB a page'\n"
+            "plot datafile using 1:2 with linespoints ls 1 title 'average page'\n"};
+}
+
+Table leaf_table(const Json& figures) {
+    Table table;
+    table.caption = "Leaves, and what they cost; s and GPU calls a frame";
+    table.header = {"leaves", "MB a page"};
+    for (const std::string_view key : kLeafSystems)
+        for (const char* what : {"s", "calls"})
+            table.header.push_back(fmt::format("{}: {}", thesis_system(key).name, what));
+    for (size_t r = 0; r < figures["rows"].size(); ++r) {
+        const std::string at = fmt::format("/rows/{}", r);
+        table.rows.push_back(
+            {{number(figures, at + "/leaves")}, {number(figures, at + "/average_mb")}});
+        const Json& systems = figures["rows"][r]["systems"];
+        for (const std::string_view key : kLeafSystems) {
+            const auto found =
+                std::ranges::find_if(systems, [&](const Json& one) { return one["key"] == key; });
+            for (const char* mean : {"mean_seconds", "mean_calls"})
+                table.rows.back().push_back(
+                    found == systems.end()
+                        ? Text{"-"}
+                        : Text{number(figures, fmt::format("{}/systems/{}/{}", at,
+                                                           found - systems.begin(), mean))});
+        }
+    }
+    return table;
+}
+
+std::vector<Block> blocks(const Json& figures) {
+    return {
+        Text{"A dragon of ", number(figures, "/triangles"),
+             " triangles with the rest of its scene, mirrors, glass and waves. The thesis "
+             "expected the best size of leaves somewhere in the middle, and found the fewest "
+             "leaves fastest, since a call cost more than moving a large page."},
+        findings_table(figures),
+        Text{"Here a further GPU call of the thesis' system costs ", number(figures, "/call_ms"),
+             " ms, between the fewest leaves and the most: calls and reading back cost what "
+             "they cost there, moving a page is a copy within one memory. The product walks the "
+             "upper level within the kernel, so that its calls do not grow with the leaves."},
+        leaf_plot(figures),
+        size_plot(figures),
+        frames_plot("dragonball-time",
+                    "Figure 4.8 (a) of the thesis, here: 3 leaves, with the CPU KD-tree.",
+                    figures["few"], {"kdt", "batched", "mixed", "product-batched"}, "seconds",
+                    "s a frame"),
+        frames_plot("dragonball-calls",
+                    "Figure 4.9 of the thesis, here: GPU calls a frame, 3 leaves.", figures["few"],
+                    {"batched", "mixed", "product-batched"}, "calls", "GPU calls"),
+        leaf_table(figures),
+        systems_table(figures, "/few", "3 leaves: means of the frames")};
+}
+
+} // namespace
+
+Experiment dragonball_experiment() {
+    return {"dragonball",
+            "The thesis: dragonball",
+            "figures 4.7 to 4.9 of the thesis: leaves of level 1 from 2 to 400, and frame by frame",
+            runs,
+            figures,
+            blocks};
+}
+
+} // namespace ovc

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of experiments.
+#include "host/report/experiment.h"
+
+#include "host/report/experiment_table.h"
+#include "host/suggestion.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace ovc {
+
+/// Of the design, and not written yet.
+static constexpr std::string_view kMissing[] = {"tessellation"};
+
+static const Experiment kExperiments[] = {
+    error_experiment(),      hard_experiment(),    scale_experiment(),      left_out_experiment(),
+    pictures_experiment(),   dragons_experiment(), dragonball_experiment(), plants_experiment(),
+    powerplant_experiment(), claims_experiment()};
+
+std::span<const Experiment> experiments() {
+    return kExperiments;
+}
+
+Result<const Experiment*> find_experiment(const std::string& name) {
+    std::vector<std::string_view> names;
+    for (const Experiment& one : kExperiments) {
+        if (one.name == name)
+            return &one;
+        names.push_back(one.name);
+    }
+    if (std::ranges::find(kMissing, name) != std::end(kMissing))
+        return Error{fmt::format("the experiment '{}' is not there yet; there are {}", name,
+                                 fmt::join(names, ", "))};
+    names.insert(names.end(), {"stability", "leaks", "grid"}); // tables of their own
+    return Error{fmt::format("no report is called '{}'; there are {}{}", name,
+                             fmt::join(names, ", "), did_you_mean(name, names))};
+}
+
+} // namespace ovc

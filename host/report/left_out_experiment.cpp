@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// Left out: what a rendering has no need of, and what that saves, by switching it back on.
+#include "host/report/experiment_table.h"
+#include "host/report/thesis_runs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ovc {
+
+namespace {
+
+/// Something that is not there unless it is asked for.
+struct Switch {
+    const char* key;
+    const char* name;
+    std::vector<std::string> without, with;
+};
+
+const std::vector<Switch>& switches() {
+    static const std::vector<Switch> all = {
+        {"shadows", "shadow rays", {"--no-shadows"}, {}},
+        {"proofs", "proofs of answers", {"--precision", "fast"}, {}},
+        {"leaves", "leaves of level 1", {"--leaves", "1"}, {"--leaves", "100"}},
+        {"telling", "telling which pages are used", {}, {"--working-set"}},
+        {"bounces", "reflection and refraction", {"--max-depth", "0"}, {}}};
+    return all;
+}
+
+std::string scene_key(const std::string& scene, const Switch& one, bool with, int repeat) {
+    std::string name;
+    for (const char c : scene.substr(scene.find_last_of('/') + 1))
+        name += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
+    return fmt::format("{}--{}-{}-{}", name, one.key, with ? "with" : "without", repeat);
+}
+
+std::vector<ReportRun> runs(const ReportPlan& plan) {
+    std::vector<std::string> scenes = plan.scenes;
+    if (scenes.empty()) {
+        scenes = {"knot", "mirrors"};
+        if (!plan.quick)
+            scenes.insert(scenes.end(), {"glass", "city", "plants-10", "powerplant-400000"});
+        if (!plan.mesh.empty())
+            scenes.insert(scenes.begin(), plan.mesh);
+    }
+    std::vector<ReportRun> runs;
+    for (const std::string& scene : scenes)
+        for (const Switch& one : switches())
+            for (int repeat = 0; repeat < (plan.quick ? 3 : 7); ++repeat)
+                for (const bool with : {false, true}) { // in turn
+                    ReportRun run{scene_key(scene, one, with, repeat),
+                                  {"render", scene, "--size", plan.quick ? "256x256" : "1024x1024"},
+                                  "stats.json",
+                                  plan.quick ? 0.6 : 2};
+                    const std::vector<std::string>& words = with ? one.with : one.without;
+                    run.words.insert(run.words.end(), words.begin(), words.end());
+                    run.words.insert(run.words.end(), {"--quiet", "--stats", "{}/stats.json", "-o",
+                                                       "{}/picture.png"});
+                    runs.push_back(std::move(run));
+                }
+    return runs;
+}
+
+double rays_of(const Json& stats) {
+    double sum = 0;
+    for (const Json& of_a_kind : stats["rays"])
+        sum += of_a_kind.get<double>();
+    return sum;
+}
+
+/// Medians over the repeats of one side of a switch.
+Json side_of(const std::vector<const Json*>& stats) {
+    const auto median = [&](const auto& value) {
+        std::vector<double> values;
+        for (const Json* one : stats)
+            values.push_back(value(*one));
+        std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(values.size() / 2));
+        return values[values.size() / 2];
+    };
+    return {
+        {"cpu_ms", median([](const Json& s) { return 1e3 * s["time"]["cpu"].get<double>(); })},
+        {"kernel_ms",
+         median([](const Json& s) { return 1e3 * s["time"]["kernel"].get<double>(); })},
+        {"pages_kb", median([](const Json& s) { return 1e-3 * s["level2_bytes"].get<double>(); })},
+        {"gpu_kb", median([](const Json& s) { return 1e-3 * s["gpu_peak_bytes"].get<double>(); })},
+        {"rays", median(rays_of)}};
+}
+
+Json row_of(const std::string& scene, const Switch& one, const std::vector<const Json*>& without,
+            const std::vector<const Json*>& with) {
+    Json row = {{"scene", scene},
+                {"what", one.name},
+                {"without", side_of(without)},
+                {"with", side_of(with)}};
+    const double off = row["without"]["cpu_ms"], on = row["with"]["cpu_ms"];
+    row["saved_percent"] = on > 0 ? Json(100 * (on - off) / on) : Json(nullptr);
+    return row;
+}
+
+/// What the program says that it left out of a scene, with bytes; of its first run.
+Json told_of(const std::string& scene, const Json& stats) {
+    Json told = Json::array();
+    for (const Json& one : stats["left_out"])
+        if (one["bytes"].get<double>() > 0)
+            told.push_back({{"scene", scene},
+                            {"what", one["what"]},
+                            {"kb", 1e-3 * one["bytes"].get<double>()},
+                            {"pages_kb", 1e-3 * stats["level2_bytes"].get<double>()}});
+    return told;
+}
+
+Json figures(std::span<const RawResult> results) {
+    Json rows = Json::array(), told = Json::array();
+    for (size_t i = 0; i < results.size();) {
+        const auto [scene, first] = split_run_key(results[i].run.key);
+        const std::string what = first.substr(0, first.find('-'));
+        if (i == 0 || split_run_key(results[i - 1].run.key).first != scene)
+            for (const Json& one : told_of(scene, results[i].result))
+                told.push_back(one);
+        std::vector<const Json*> without, with;
+        for (; i < results.size(); ++i) {
+            const auto [other, key] = split_run_key(results[i].run.key);
+            if (other != scene || !key.starts_with(what + "-"))
+                break;
+            (key.starts_with(what + "-without") ? without : with).push_back(&results[i].result);
+        }
+        const auto found = std::ranges::find(switches(), what, &Switch::key);
+        if (found != switches().end() && !without.empty() && !with.empty())
+            rows.push_back(row_of(scene, *found, without, with));
+    }
+    return {{"rows", rows}, {"told", told}};
+}
+
+Plot saved_plot(const Json& figures) {
+    std::string data = "# bar, saved %, scene and what\n", tics;
+    size_t bar = 0;
+    for (const Json& row : figures["rows"]) {
+        if (row["saved_percent"].is_null())
+            continue;
+        data += fmt::format("{} {:.4g}\n", bar, row["saved_percent"].get<double>());
+        tics += fmt::format("{}'{}: {}' {}", bar ? ", " : "", row["scene"].get<std::string>(),
+                            row["what"].get<std::string>(), bar);
+        ++bar;
+    }
+    return {"left-out-saved",
+            "What leaving it out saves of the CPU seconds of tracing and shading.", data,
+            fmt::format("unset key\nset style fill solid 0.8\nset ytics ({}) font ',11'\n"
+                        "set yrange [{}.5:-0.5]\nset xlabel 'saved, % of the time with it'\n"
+                        "plot datafile using ($2/2):1:($2/2):(0.35) with boxxyerror ls 1\n",
+                        tics, bar - 1)};
+}
+
+Table rows_table(const Json& figures) {
+    Table table;
+    table.caption = "Each with and without, medians of runs in turn";
+    table.header = {"scene",
+                    "what",
+                    "CPU ms without",
+                    "with",
+                    "saved %",
+                    "kernel ms without",
+                    "with",
+                    "GPU kB without",
+                    "with",
+                    "pages kB without",
+                    "with",
+                    "rays without",
+                    "with"};
+    for (size_t r = 0; r < figures["rows"].size(); ++r) {
+        const std::string at = fmt::format("/rows/{}", r);
+        const auto side = [&](const char* which, const char* key) {
+            return Text{number(figures, fmt::format("{}/{}/{}", at, which, key))};
+        };
+        std::vector<Text> row = {{figures["rows"][r]["scene"].get<std::string>()},
+                                 {figures["rows"][r]["what"].get<std::string>()},
+                                 side("without", "cpu_ms"),
+                                 side("with", "cpu_ms"),
+                                 {number(figures, at + "/saved_percent")}};
+        for (const char* key : {"kernel_ms", "gpu_kb", "pages_kb", "rays"})
+            for (const char* which : {"without", "with"})
+                row.push_back(side(which, key));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+Table told_table(const Json& figures) {
+    Table table;
+    table.caption =
+        "Bytes that are not stored, beside the bytes of all pages, as the program tells";
+    table.header = {"scene", "left out", "kB", "pages kB"};
+    for (size_t i = 0; i < figures["told"].size(); ++i) {
+        const std::string at = fmt::format("/told/{}", i);
+        table.rows.push_back({{figures["told"][i]["scene"].get<std::string>()},
+                              {figures["told"][i]["what"].get<std::string>()},
+                              {number(figures, at + "/kb")},
+                              {number(figures, at + "/pages_kb")}});
+    }
+    return table;
+}
+
+std::vector<Block> blocks(const Json& figures) {
+    return {
+        Text{"A scene, and what is asked of it, decide what is stored, moved, compiled and "
+             "traced. Each of these is switched on and off on the same scene, in turn; the "
+             "time is of all threads while rays are traced and shaded. Where a scene has no "
+             "mirrors, reflection and refraction cost nothing even when they are allowed: "
+             "the difference is noise. Compiling is not told apart: programs are kept on disk."},
+        saved_plot(figures), rows_table(figures), told_table(figures)};
+}
+
+} // namespace
+
+Experiment left_out_experiment() {
+    return {"left-out",
+            "Left out",
+            "what renderings have no need of, and what that saves, by switching it on and off",
+            runs,
+            figures,
+            blocks};
+}
+
+} // namespace ovc

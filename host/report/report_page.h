@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// `overcast report -o DIR`: runs, figures, plots, page.
+#pragma once
+
+#include "core/result.h"
+#include "host/report/experiment.h"
+
+namespace ovc {
+
+struct ReportJob {
+    std::vector<const Experiment*> experiments;
+    ReportPlan plan;
+    std::string folder;
+};
+
+/// Writes DIR/index.html, summary.md, NAME.json with the figures of each experiment, plots/, and
+/// raw/ with what the runs left. Returns an exit code; with Ctrl-C the page has the experiments
+/// that are done. Error: something cannot be written or drawn, or a run failed; the page, which
+/// says so, is there even then.
+Result<int> make_report_page(const ReportJob& job);
+
+} // namespace ovc

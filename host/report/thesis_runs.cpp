@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames of the thesis' scenes, as figures, tables and plots.
+#include "host/report/thesis_runs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <filesystem>
+
+namespace ovc {
+
+static constexpr std::string_view kBetween = "--";
+
+std::span<const ThesisSystem> thesis_systems() {
+    static const std::vector<ThesisSystem> systems = {
+        {"kdt", "CPU KD-tree", {"--backend", "cpu-kdtree"}},
+        {"single", "single texture", {"--backend", "single-texture"}},
+        {"batched", "two-level, batched", {"--backend", "thesis-two-level", "--mode", "batched"}},
+        {"mixed", "two-level, mixed", {"--backend", "thesis-two-level", "--mode", "mixed"}},
+        {"product-batched",
+         "the product, batched",
+         {"--backend", "two-level", "--mode", "batched"}},
+        {"product-mixed", "the product, mixed", {"--backend", "two-level", "--mode", "mixed"}}};
+    return systems;
+}
+
+const ThesisSystem& thesis_system(std::string_view key) {
+    const auto found = std::ranges::find(thesis_systems(), key, &ThesisSystem::key);
+    assert(found != thesis_systems().end());
+    return *found;
+}
+
+ReportRun frames_run(const std::string& key, const ThesisSystem& system, const FramesAsked& asked,
+                     double seconds) {
+    ReportRun run{fmt::format("{}{}{}", key, kBetween, system.key),
+                  {"render", asked.scene, "--frames", asked.frames, "--size", asked.size},
+                  "stats.json",
+                  seconds};
+    run.words.insert(run.words.end(), system.words.begin(), system.words.end());
+    run.words.insert(run.words.end(), asked.more.begin(), asked.more.end());
+    run.words.insert(run.words.end(),
+                     {"--quiet", "--stats", "{}/stats.json", "-o", "{}/frame-####.png"});
+    return run;
+}
+
+ReportRun working_set_run(const std::string& key, const FramesAsked& asked, double seconds) {
+    FramesAsked told = asked;
+    told.more.push_back("--working-set");
+    ReportRun run = frames_run(key, thesis_system("product-batched"), told, seconds);
+    run.key = fmt::format("{}{}active", key, kBetween);
+    return run;
+}
+
+std::vector<std::string> model_words(const ReportPlan& plan, const char* quick_model) {
+    if (!plan.mesh.empty())
+        return {"--model", plan.mesh};
+    return plan.quick ? std::vector<std::string>{"--model", quick_model}
+                      : std::vector<std::string>();
+}
+
+std::string model_text(const ReportRun& run) {
+    const auto found = std::ranges::find(run.words, "--model");
+    return found == run.words.end()
+               ? ""
+               : fmt::format(" In the place of the dragon stands {}.",
+                             std::filesystem::path(*(found + 1)).filename().string());
+}
+
+std::string renderer_text(std::span<const RawResult> results) {
+    for (const RawResult& raw : results) {
+        if (split_run_key(raw.run.key).second == "kdt" || !raw.result.contains("renderer"))
+            continue;
+        const std::string renderer = raw.result["renderer"];
+        return "The GPU's part was done by " + renderer +
+               (renderer.starts_with("llvmpipe")
+                    ? ": a software renderer on the cores that the CPU KD-tree has as well, so "
+                      "that "
+                      "no GPU's lead over it can show here. Calls, rays and bytes are what they "
+                      "would be on a GPU."
+                    : ".");
+    }
+    return "";
+}
+
+std::pair<std::string, std::string> split_run_key(const std::string& key) {
+    const size_t at = key.rfind(kBetween);
+    assert(at != std::string::npos);
+    return {key.substr(0, at), key.substr(at + kBetween.size())};
+}
+
+static Json mean_of(const Json& list) {
+    double sum = 0;
+    for (const Json& value : list) {
+        if (value.is_null())
+            return nullptr;
+        sum += value.get<double>();
+    }
+    return list.empty() ? Json(nullptr) : Json(sum / double(list.size()));
+}
+
+static Json share_of(const Json& frame, const char* bytes, const Json& stats) {
+    const double all = stats["level2_bytes"];
+    return frame["active"].is_null() || all == 0 ? Json(nullptr)
+                                                 : Json(frame["active"][bytes].get<double>() / all);
+}
+
+static double rays_of(const Json& rays) {
+    double sum = 0;
+    for (const Json& of_a_kind : rays)
+        sum += of_a_kind.get<double>();
+    return sum;
+}
+
+Json frames_of(const std::string& key, const Json& stats) {
+    const auto known = std::ranges::find(thesis_systems(), key, &ThesisSystem::key);
+    Json of = {{"key", key},
+               {"name", known == thesis_systems().end() ? key : std::string(known->name)}};
+    for (const char* list : {"frame", "seconds", "calls", "rays", "active", "incremental"})
+        of[list] = Json::array();
+    for (const Json& frame : stats["frames"]) {
+        of["frame"].push_back(frame["frame"]);
+        of["seconds"].push_back(frame["time"]["render"]);
+        of["calls"].push_back(key == "kdt" ? Json(nullptr) : frame["passes"]);
+        of["rays"].push_back(rays_of(frame["rays"]));
+        of["active"].push_back(share_of(frame, "bytes", stats));
+        of["incremental"].push_back(share_of(frame, "new_bytes", stats));
+    }
+    for (const char* list : {"seconds", "calls", "rays"})
+        of[std::string("mean_") + list] = mean_of(of[list]);
+    const Json& time = stats["time"];
+    of["build_seconds"] = time["level1"].get<double>() + time["level2"].get<double>();
+    of["shade_seconds"] = time["shade"].get<double>() / double(stats["frames"].size());
+    return of;
+}
+
+const Json* find_system(const Json& systems, std::string_view key) {
+    for (const Json& one : systems)
+        if (one["key"] == key)
+            return &one;
+    return nullptr;
+}
+
+Json ratio_of(const Json& systems, const char* mean, std::string_view a, std::string_view b) {
+    const Json *over = find_system(systems, a), *under = find_system(systems, b);
+    if (!over || !under || (*over)[mean].is_null() || (*under)[mean].is_null() ||
+        (*under)[mean].get<double>() == 0)
+        return nullptr;
+    return (*over)[mean].get<double>() / (*under)[mean].get<double>();
+}
+
+Json findings_of(const std::vector<Finding>& findings) {
+    Json list = Json::array();
+    for (const Finding& one : findings)
+        list.push_back({{"what", one.what},
+                        {"reported", one.reported},
+                        {"as_thesis", one.as_thesis},
+                        {"product", one.product}});
+    return list;
+}
+
+Table findings_table(const Json& figures) {
+    Table table;
+    table.caption = "What the thesis found, and what is measured here";
+    table.header = {"", "the thesis reports", "its system, here", "the product"};
+    for (size_t i = 0; i < figures["findings"].size(); ++i) {
+        const std::string at = fmt::format("/findings/{}", i);
+        const Json& one = figures["findings"][i];
+        table.rows.push_back({{one["what"].get<std::string>()},
+                              {one["reported"].get<std::string>()},
+                              {number(figures, at + "/as_thesis")},
+                              {number(figures, at + "/product")}});
+    }
+    return table;
+}
+
+/// A cell of a data file; gnuplot leaves out what is no number.
+static std::string cell(const Json& value) {
+    return value.is_null() ? " NaN" : fmt::format(" {:.6g}", value.get<double>());
+}
+
+static bool has(const Json& list) {
+    return std::ranges::any_of(list, [](const Json& value) { return !value.is_null(); });
+}
+
+Plot frames_plot(const std::string& name, const std::string& caption, const Json& systems,
+                 const std::vector<std::string_view>& keys, const std::string& quantity,
+                 const std::string& label) {
+    std::string data, curves;
+    int block = 0;
+    for (const std::string_view key : keys) {
+        const Json* one = find_system(systems, key);
+        if (!one || !has((*one)[quantity]))
+            continue;
+        data += fmt::format("# {}: frame, {}\n", (*one)["name"].get<std::string>(), quantity);
+        for (size_t i = 0; i < (*one)["frame"].size(); ++i)
+            data += fmt::format("{}{}\n", (*one)["frame"][i].get<int>(), cell((*one)[quantity][i]));
+        data += "\n\n";
+        curves +=
+            fmt::format("{}datafile index {} using 1:2 with linespoints ls {} title '{}'",
+                        block ? ", " : "", block, block + 1, (*one)["name"].get<std::string>());
+        ++block;
+    }
+    return {name, caption, data,
+            fmt::format("set xlabel 'frame'\nset ylabel '{}'\nset yrange [0:*]\nplot {}\n", label,
+                        curves)};
+}
+
+Table systems_table(const Json& figures, const std::string& at, const std::string& caption) {
+    Table table;
+    table.caption = caption;
+    table.header = {"system",       "s a frame",         "GPU calls a frame",
+                    "rays a frame", "shading s a frame", "build s"};
+    const Json& systems = figures.at(Json::json_pointer(at));
+    for (size_t i = 0; i < systems.size(); ++i) {
+        if (systems[i]["key"] == "active")
+            continue;
+        table.rows.push_back({{systems[i]["name"].get<std::string>()}});
+        for (const char* key :
+             {"mean_seconds", "mean_calls", "mean_rays", "shade_seconds", "build_seconds"})
+            table.rows.back().push_back({number(figures, fmt::format("{}/{}/{}", at, i, key))});
+    }
+    return table;
+}
+
+} // namespace ovc
