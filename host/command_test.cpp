@@ -379,8 +379,9 @@ TEST_F(CommandTest, ReportSaysWhichReportsThereAre) {
     EXPECT_EQ(error({"report"}), "the report needs a folder: overcast report -o DIR");
     EXPECT_EQ(error({"report", "--only", "error"}),
               "the report needs a folder: overcast report -o DIR");
-    EXPECT_THAT(error({"report", "--only", "tessellation"}),
-                testing::StartsWith("the experiment 'tessellation' is not there yet; there are error"));
+    EXPECT_THAT(
+        error({"report", "--only", "tessellation"}),
+        testing::StartsWith("the experiment 'tessellation' is not there yet; there are error"));
     EXPECT_THAT(error({"report", "--only", "stabilty"}),
                 testing::AllOf(testing::StartsWith("no report is called 'stabilty'; there are "),
                                testing::EndsWith("did you mean 'stability'?")));
