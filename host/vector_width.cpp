@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <system_error>
 
 namespace ovc {
 namespace fs = std::filesystem;
@@ -47,8 +48,13 @@ static bool cpu_has_avx512() {
 }
 
 void use_wide_vectors(bool fragment_kernels) {
-    for (const auto& [name, value] : wide_vectors(std::getenv, cpu_has_avx512(), fragment_kernels))
+    for (const auto& [name, value] :
+         wide_vectors(std::getenv, cpu_has_avx512(), fragment_kernels)) {
+        std::error_code error; // then Mesa keeps nothing, and compiles each time
+        if (name == kMesaCache)
+            fs::create_directories(value, error); // Mesa makes the last folder alone
         setenv(name.c_str(), value.c_str(), /* overwrite= */ 1);
+    }
 }
 
 void use_wide_vectors(const BackendOptions& options) {
