@@ -37,15 +37,22 @@ inline bool is_scene(ovc_scene scene, const char* call) {
     return false;
 }
 
+/// body() beside all other calls on the handle, of a scene or a ticket, which stays until it ends.
+/// lives(handle, call): whether it is one; else there is a message.
+template <class Handle, class Lives, class Body>
+ovc_result beside_calls(Handle* handle, const char* call, Lives&& lives, Body&& body) {
+    if (!lives(handle, call))
+        return OVC_ERROR_INVALID_ARGUMENT;
+    const CallsInside::Call inside(handle->calls);
+    if (!lives(handle, call)) // it was not counted yet when whoever ends the handle looked
+        return OVC_ERROR_INVALID_ARGUMENT;
+    return guard(handle->device->messages, std::forward<Body>(body));
+}
+
 /// body() beside all other calls on the scene, without its turn.
 template <class Body>
 ovc_result beside_scene(ovc_scene scene, const char* call, Body&& body) {
-    if (!is_scene(scene, call))
-        return OVC_ERROR_INVALID_ARGUMENT;
-    const CallsInside::Call inside(scene->calls);
-    if (!is_scene(scene, call)) // it was not counted yet when destroy_scene looked
-        return OVC_ERROR_INVALID_ARGUMENT;
-    return guard(scene->device->messages, std::forward<Body>(body));
+    return beside_calls(scene, call, is_scene, std::forward<Body>(body));
 }
 
 /// body() with the scene's turn taken.

@@ -58,12 +58,7 @@ bool is_ticket(ovc_ticket ticket, const char* call) {
 /// body(submission) for a ticket that is one.
 template <class Body>
 ovc_result on_ticket(ovc_ticket ticket, const char* call, Body&& body) {
-    if (!is_ticket(ticket, call))
-        return OVC_ERROR_INVALID_ARGUMENT;
-    const CallsInside::Call inside(ticket->calls);
-    if (!is_ticket(ticket, call)) // it was not counted yet when release looked
-        return OVC_ERROR_INVALID_ARGUMENT;
-    return guard(ticket->device->messages, [&] { body(*ticket->submission); });
+    return beside_calls(ticket, call, is_ticket, [&] { body(*ticket->submission); });
 }
 
 } // namespace

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// A soup behind the C ABI, for tests: handles with owners, structs with their size set.
+// A soup behind the C ABI, for tests: handles with owners, structs with their size set, and the
+// fixture of tests that need a device.
 #pragma once
 
+#include "core/ray.h"
 #include "core/soup.h"
 #include "plugin/overcast.h"
 
+#include <gtest/gtest.h>
+
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace ovc::test {
 
@@ -56,5 +61,36 @@ inline AbiScene add_soup(const Device& device, const Soup& soup, const ovc_scene
     }
     return owner;
 }
+
+inline const ovc_ray* as_abi(const std::vector<Ray>& rays) {
+    return reinterpret_cast<const ovc_ray*>(rays.data());
+}
+
+inline std::vector<ovc_hit> answers(const AbiScene& scene, const std::vector<Ray>& rays) {
+    std::vector<ovc_hit> hits(rays.size());
+    EXPECT_EQ(api().intersect(scene.get(), as_abi(rays), rays.size(), hits.data(), nullptr),
+              OVC_OK);
+    return hits;
+}
+
+inline ovc_statistics statistics(const AbiScene& scene) {
+    auto statistics = sized<ovc_statistics>();
+    EXPECT_EQ(api().statistics(scene.get(), &statistics), OVC_OK);
+    return statistics;
+}
+
+/// A device, or the test is skipped.
+class DeviceTest : public testing::Test {
+protected:
+    void SetUp() override {
+        device = open_device();
+        if (!device)
+            GTEST_SKIP() << api().last_error(nullptr);
+    }
+
+    std::string error() const { return api().last_error(device.get()); }
+
+    Device device;
+};
 
 } // namespace ovc::test

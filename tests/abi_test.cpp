@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The C ABI under misuse: an error with its sentence, never a crash; and what it promises about
 // numbers.
-#include "plugin/overcast.h"
+#include "tests/abi_scene.h"
 
 #include <gmock/gmock.h>
 
@@ -14,18 +14,9 @@
 
 namespace {
 
+using ovc::test::api;
+using ovc::test::sized;
 using testing::HasSubstr;
-
-const ovc_api& api() {
-    return *ovc_get_api(OVC_ABI_VERSION);
-}
-
-template <class T>
-T sized() {
-    T value{};
-    value.struct_size = sizeof(T);
-    return value;
-}
 
 constexpr float kTriangle[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 constexpr ovc_ray kDown = {{0.25, 0.25, 1}, 0, {0, 0, -1}, HUGE_VAL};

@@ -17,6 +17,7 @@ namespace ovc {
 namespace {
 
 using test::api;
+using test::as_abi;
 using test::sized;
 
 template <class T>
@@ -24,18 +25,8 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-const ovc_ray* as_abi(const std::vector<Ray>& rays) {
-    return reinterpret_cast<const ovc_ray*>(rays.data());
-}
-
-class Calls : public testing::Test {
+class Calls : public test::DeviceTest {
 protected:
-    void SetUp() override {
-        device = test::open_device();
-        if (!device)
-            GTEST_SKIP() << api().last_error(nullptr);
-    }
-
     test::AbiScene committed(const Soup& soup) {
         auto config = sized<ovc_scene_config>();
         config.leaf_triangles = 300;
@@ -44,8 +35,6 @@ protected:
         EXPECT_EQ(api().commit(scene.get()), OVC_OK) << error();
         return scene;
     }
-
-    std::string error() const { return api().last_error(device.get()); }
 
     std::vector<ovc_hit> nearest(const test::AbiScene& scene, const std::vector<Ray>& rays,
                                  const ovc_query* query = nullptr) {
@@ -63,8 +52,6 @@ protected:
             << error();
         return occluded;
     }
-
-    test::Device device;
 };
 
 /// body(i) for i in [0, count), shared out among so many threads of the host's.

@@ -5,9 +5,9 @@
 #include "core/test_archive.h"
 #include "kdtree/test_soups.h"
 #include "tests/abi_scene.h"
+#include "tests/embree_instances.h"
 #include "tests/exact.h"
 
-#include <embree3/rtcore.h>
 #include <gmock/gmock.h>
 
 #include <cstring>
@@ -204,17 +204,16 @@ void expect_brute_force(const World& world, const std::vector<Ray>& rays, size_t
     }
 }
 
-class Instances : public testing::Test {
+class Instances : public test::DeviceTest {
 protected:
     void SetUp() override {
-        device = test::open_device();
-        if (!device)
-            GTEST_SKIP() << api().last_error(nullptr);
+        DeviceTest::SetUp();
+        if (IsSkipped())
+            return;
         config.leaf_triangles = 50;
     }
     World world() const { return World(device.get(), config); }
 
-    test::Device device;
     ovc_scene_config config = sized<ovc_scene_config>();
 };
 
@@ -489,79 +488,10 @@ TEST_F(Instances, AreSavedWithTheirTransforms) {
     expect_brute_force(other, rays_at(other.expected, 1000, 14), 50);
 }
 
-/// Embree with instances of its own, whose transforms are floats; robust.
-class EmbreeInstances {
-public:
-    EmbreeInstances() : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {}
-    ~EmbreeInstances() {
-        rtcReleaseScene(scene_);
-        for (RTCScene mesh : meshes_)
-            rtcReleaseScene(mesh);
-        rtcReleaseDevice(device_);
-    }
-    void add_mesh(const std::vector<vec3>& corners) {
-        RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        std::memcpy(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
-                                            corners.size()),
-                    corners.data(), corners.size() * 12);
-        auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
-            mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, corners.size() / 3));
-        for (uint32_t i = 0; i < corners.size(); ++i)
-            indices[i] = i;
-        rtcCommitGeometry(mesh);
-        RTCScene scene = rtcNewScene(device_);
-        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-        rtcAttachGeometry(scene, mesh);
-        rtcReleaseGeometry(mesh);
-        rtcCommitScene(scene);
-        meshes_.push_back(scene);
-    }
-    void add_instance(size_t mesh, const Transform& m) {
-        RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
-        rtcSetGeometryInstancedScene(instance, meshes_[mesh]);
-        const std::vector<float> rows(m.begin(), m.end());
-        rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, rows.data());
-        rtcCommitGeometry(instance);
-        rtcAttachGeometry(scene_, instance);
-        rtcReleaseGeometry(instance);
-    }
-    void commit() {
-        rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-        rtcCommitScene(scene_);
-    }
-    TriangleId nearest(const Ray& ray) const {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        RTCRayHit query{};
-        query.ray = {float(ray.org.x),
-                     float(ray.org.y),
-                     float(ray.org.z),
-                     0,
-                     float(ray.dir.x),
-                     float(ray.dir.y),
-                     float(ray.dir.z),
-                     0,
-                     INFINITY,
-                     ~0u,
-                     0,
-                     0};
-        query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene_, &context, &query);
-        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
-            return {};
-        return {query.hit.instID[0], query.hit.primID};
-    }
-
-private:
-    RTCDevice device_;
-    RTCScene scene_;
-    std::vector<RTCScene> meshes_;
-};
-
 TEST_F(Instances, NameTheTrianglesThatEmbreesInstancesName) {
     test::Random random(11);
     World w = world();
-    EmbreeInstances embree;
+    test::EmbreeInstances embree;
     for (uint32_t mesh = 0; mesh < 4; ++mesh) {
         const auto corners = random_corners<vec3>(random, 50, 0.4);
         w.add(corners, dvec3(0), nullptr, OVC_MESH_TEMPLATE);

@@ -17,32 +17,26 @@ namespace {
 using test::api;
 using test::sized;
 
-class Plan : public testing::Test {
+class Plan : public test::DeviceTest {
 protected:
-    void SetUp() override {
-        device = test::open_device();
-        if (!device)
-            GTEST_SKIP() << api().last_error(nullptr);
-    }
-
     ovc_plan plan_of(ovc_scene scene) const {
         auto plan = sized<ovc_plan>();
-        EXPECT_EQ(api().plan(scene, &plan), OVC_OK) << api().last_error(device.get());
+        EXPECT_EQ(api().plan(scene, &plan), OVC_OK) << error();
         return plan;
     }
 
     ovc_statistics statistics_of(ovc_scene scene) const {
         auto statistics = sized<ovc_statistics>();
-        EXPECT_EQ(api().statistics(scene, &statistics), OVC_OK) << api().last_error(device.get());
+        EXPECT_EQ(api().statistics(scene, &statistics), OVC_OK) << error();
         return statistics;
     }
 
     /// Plans, commits and compares; returns what was committed.
     ovc_statistics compare(const Soup& soup, const ovc_scene_config& config) const {
         const auto scene = test::add_soup(device, soup, config);
-        EXPECT_TRUE(scene) << api().last_error(device.get());
+        EXPECT_TRUE(scene) << error();
         const ovc_plan plan = plan_of(scene.get());
-        EXPECT_EQ(api().commit(scene.get()), OVC_OK) << api().last_error(device.get());
+        EXPECT_EQ(api().commit(scene.get()), OVC_OK) << error();
         const ovc_statistics made = statistics_of(scene.get());
         EXPECT_EQ(plan.triangles, made.triangles);
         EXPECT_EQ(plan.hittable,
@@ -95,8 +89,6 @@ protected:
         EXPECT_LE(std::abs(double(planned) - double(made)), most)
             << what << ": planned " << planned << ", made " << made;
     }
-
-    test::Device device;
 };
 
 TEST_F(Plan, OfMeshes) {
@@ -159,7 +151,7 @@ TEST_F(Plan, TellsTheSmallestBudgetThatWorksToATenth) {
         config.gpu_memory_bytes = smallest + smallest / 10;
         const auto enough = test::add_soup(device, scene->soup, config);
         EXPECT_TRUE(plan_of(enough.get()).fits);
-        EXPECT_EQ(api().commit(enough.get()), OVC_OK) << api().last_error(device.get());
+        EXPECT_EQ(api().commit(enough.get()), OVC_OK) << error();
         config.gpu_memory_bytes = smallest - smallest / 10;
         const auto short_of = test::add_soup(device, scene->soup, config);
         EXPECT_FALSE(plan_of(short_of.get()).fits);
@@ -195,7 +187,7 @@ TEST_F(Plan, ChecksItsArguments) {
     EXPECT_EQ(api().plan(scene.get(), nullptr), OVC_ERROR_INVALID_ARGUMENT);
     ovc_plan plan{};
     EXPECT_EQ(api().plan(scene.get(), &plan), OVC_ERROR_INVALID_ARGUMENT);
-    EXPECT_THAT(api().last_error(device.get()), testing::HasSubstr("ovc_plan.struct_size is 0"));
+    EXPECT_THAT(error(), testing::HasSubstr("ovc_plan.struct_size is 0"));
 }
 
 } // namespace

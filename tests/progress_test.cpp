@@ -49,16 +49,8 @@ struct Listener {
     }
 };
 
-class Commit : public testing::Test {
+class Commit : public test::DeviceTest {
 protected:
-    void SetUp() override {
-        device = test::open_device();
-        if (!device)
-            GTEST_SKIP() << api().last_error(nullptr);
-    }
-
-    std::string error() const { return api().last_error(device.get()); }
-
     /// Nearest hits along a row of rays through the middle.
     std::vector<ovc_hit> hits(ovc_scene scene) const {
         std::vector<ovc_ray> rays;
@@ -69,8 +61,6 @@ protected:
             << error();
         return found;
     }
-
-    test::Device device;
 };
 
 TEST_F(Commit, TellsHowFarItIs) {

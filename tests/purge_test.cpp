@@ -18,32 +18,17 @@ using test::api;
 using test::sized;
 using testing::HasSubstr;
 
-ovc_statistics statistics(const test::AbiScene& scene) {
-    auto statistics = sized<ovc_statistics>();
-    EXPECT_EQ(api().statistics(scene.get(), &statistics), OVC_OK);
-    return statistics;
-}
-
-std::vector<ovc_hit> answers(const test::AbiScene& scene, const std::vector<Ray>& rays) {
-    std::vector<ovc_hit> hits(rays.size());
-    EXPECT_EQ(api().intersect(scene.get(), reinterpret_cast<const ovc_ray*>(rays.data()),
-                              rays.size(), hits.data(), nullptr),
-              OVC_OK);
-    return hits;
-}
-
-class Purge : public testing::Test {
+class Purge : public test::DeviceTest {
 protected:
     void SetUp() override {
-        device = test::open_device();
-        if (!device)
-            GTEST_SKIP() << api().last_error(nullptr);
+        DeviceTest::SetUp();
+        if (IsSkipped())
+            return;
         test::Random random(1);
         for (int i = 0; i < 5000; ++i)
             rays.push_back({random.point(-2, 2), 0, random.point(-1, 1)});
     }
 
-    test::Device device;
     Soup soup = test::closed_grid(40);
     std::vector<Ray> rays;
 };

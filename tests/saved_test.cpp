@@ -63,20 +63,6 @@ protected:
         return memory;
     }
 
-    static ovc_statistics statistics(const test::AbiScene& scene) {
-        auto statistics = test::sized<ovc_statistics>();
-        EXPECT_EQ(api().statistics(scene.get(), &statistics), OVC_OK);
-        return statistics;
-    }
-
-    std::vector<ovc_hit> answers(const test::AbiScene& scene, const std::vector<Ray>& rays) {
-        std::vector<ovc_hit> hits(rays.size());
-        EXPECT_EQ(api().intersect(scene.get(), reinterpret_cast<const ovc_ray*>(rays.data()),
-                                  rays.size(), hits.data(), nullptr),
-                  OVC_OK);
-        return hits;
-    }
-
     std::string log;
     test::Device device;
 };

@@ -14,18 +14,15 @@ namespace ovc {
 namespace {
 
 using test::api;
+using test::as_abi;
 using test::sized;
 
-const ovc_ray* as_abi(const std::vector<Ray>& rays) {
-    return reinterpret_cast<const ovc_ray*>(rays.data());
-}
-
-class Tickets : public testing::Test {
+class Tickets : public test::DeviceTest {
 public:
     void SetUp() override {
-        device = test::open_device();
-        if (!device)
-            GTEST_SKIP() << api().last_error(nullptr);
+        DeviceTest::SetUp();
+        if (IsSkipped())
+            return;
         scene = committed();
         rays = test::unpleasant_rays(soup, 3, 400000);
     }
@@ -35,8 +32,6 @@ public:
         EXPECT_EQ(api().commit(made.get()), OVC_OK) << error();
         return made;
     }
-
-    std::string error() const { return api().last_error(device.get()); }
 
     ovc_ticket submit(size_t first, size_t count, ovc_hit* hits, const ovc_query* query = nullptr) {
         ovc_ticket ticket = nullptr;
@@ -48,7 +43,6 @@ public:
     }
 
     const Soup soup = test::closed_grid(60);
-    test::Device device;
     test::AbiScene scene;
     std::vector<Ray> rays;
 };

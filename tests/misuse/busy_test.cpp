@@ -24,7 +24,7 @@ void on_threads(int count, const std::function<void(int)>& body) {
         thread.join();
 }
 
-class Busy : public test::MisuseTest {};
+class Busy : public test::DeviceTest {};
 
 TEST_F(Busy, SixtyFourThreadsOnTwoDevicesAndFourScenesGetTheirAnswers) {
     const test::Device other = test::open_device();

@@ -12,7 +12,7 @@ namespace {
 
 using test::api;
 
-class Entries : public test::MisuseTest {};
+class Entries : public test::DeviceTest {};
 
 TEST_F(Entries, EveryFunctionOfTheTableHasARow) {
     std::set<size_t> offsets;

@@ -73,16 +73,4 @@ inline bool field_answers(ovc_scene scene) {
     return hits.back().mesh == OVC_NONE && occluded.back() == 0;
 }
 
-/// A device, or the test is skipped.
-class MisuseTest : public testing::Test {
-protected:
-    void SetUp() override {
-        device = open_device();
-        if (!device)
-            GTEST_SKIP() << api().last_error(nullptr);
-    }
-
-    Device device;
-};
-
 } // namespace ovc::test

@@ -29,7 +29,7 @@ int in_child(const std::function<int()>& body) {
     return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
 }
 
-class Fork : public test::MisuseTest {};
+class Fork : public test::DeviceTest {};
 
 TEST_F(Fork, EveryFunctionReturnsInTheChild) {
     test::Subject subject(device.get());

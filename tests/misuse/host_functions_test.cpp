@@ -44,7 +44,7 @@ int write(void* user, const void*, size_t) {
     return 0;
 }
 
-class HostFunctions : public test::MisuseTest {};
+class HostFunctions : public test::DeviceTest {};
 
 TEST_F(HostFunctions, ALogThatCallsBackGetsErrors) {
     Intruder intruder;

@@ -73,7 +73,7 @@ void expect_all_untouched(ovc_device device) {
         }
 }
 
-class Host : public test::MisuseTest {};
+class Host : public test::DeviceTest {};
 
 TEST_F(Host, KeepsItsFloatingPointEnvironmentAndSignals) {
     setenv("OVC_MISUSE_TEST", "mine", 1);

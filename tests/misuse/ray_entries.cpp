@@ -51,29 +51,26 @@ ovc_result use_single_rays(Subject& s) {
     }
     return OVC_OK;
 }
-Misuses misuse_intersect1(Subject& s) {
+/// Of intersect1 or occluded1, by what they answer in.
+template <class Answer>
+Misuses misuse_single(Subject& s,
+                      ovc_result (*call)(ovc_scene, const ovc_ray*, Answer*, const ovc_query*)) {
     Wrong wrong(s);
     const ovc_ray ray = into_cell(0, 1);
-    ovc_hit hit;
+    Answer answer;
     ovc_query unsized{};
-    wrong.without_device("scene NULL", api().intersect1(nullptr, &ray, &hit, nullptr));
-    wrong.argument("ray NULL", api().intersect1(s.field, nullptr, &hit, nullptr));
-    wrong.argument("hit NULL", api().intersect1(s.field, &ray, nullptr, nullptr));
-    wrong.argument("struct_size 0", api().intersect1(s.field, &ray, &hit, &unsized));
-    wrong.state("before commit", api().intersect1(s.empty, &ray, &hit, nullptr));
+    wrong.without_device("scene NULL", call(nullptr, &ray, &answer, nullptr));
+    wrong.argument("ray NULL", call(s.field, nullptr, &answer, nullptr));
+    wrong.argument("answer NULL", call(s.field, &ray, nullptr, nullptr));
+    wrong.argument("struct_size 0", call(s.field, &ray, &answer, &unsized));
+    wrong.state("before commit", call(s.empty, &ray, &answer, nullptr));
     return wrong.found();
 }
+Misuses misuse_intersect1(Subject& s) {
+    return misuse_single(s, api().intersect1);
+}
 Misuses misuse_occluded1(Subject& s) {
-    Wrong wrong(s);
-    const ovc_ray ray = into_cell(0, 1);
-    uint8_t answer;
-    ovc_query unsized{};
-    wrong.without_device("scene NULL", api().occluded1(nullptr, &ray, &answer, nullptr));
-    wrong.argument("ray NULL", api().occluded1(s.field, nullptr, &answer, nullptr));
-    wrong.argument("occluded NULL", api().occluded1(s.field, &ray, nullptr, nullptr));
-    wrong.argument("struct_size 0", api().occluded1(s.field, &ray, &answer, &unsized));
-    wrong.state("before commit", api().occluded1(s.empty, &ray, &answer, nullptr));
-    return wrong.found();
+    return misuse_single(s, api().occluded1);
 }
 
 /// A stream's host that pushes a ray into each cell, and counts what is right.
