@@ -17,9 +17,8 @@ namespace {
 constexpr int kBins = 16;
 constexpr size_t kParallelBuild = 4096;
 // A plane is looked for at nodes of so many items, where the best two sides share this much of the
-// node's area, and taken where it leaves less than this of the cost. Below, planes gain nothing
-// that could be measured.
-constexpr size_t kFewestToCut = 1024;
+// node's area, and taken where it leaves less than this of the cost.
+constexpr size_t kFewestToCut = 64;
 constexpr float kLeastOverlap = 0.1f;
 constexpr float kWorthCutting = 0.95f;
 

@@ -76,11 +76,10 @@ void put_pair(const TrianglePair& pair, std::span<uvec4, OVC_UNIT_TEXELS> unit) 
 
 /// How many pairs planes may cut in two. A tenth, so that a page stays within what was planned; and
 /// units of a page are never more than if no two triangles made a pair. Loose pairs leave room for
-/// more, which the plan foresees (plugin/page_rate.h): among slivers a ray takes a fifth fewer
-/// steps.
-size_t most_cut(size_t pairs, size_t triangles, bool loose) {
-    return loose ? size_t(kMostCutOfLoose * double(pairs))
-                 : std::min(pairs / 10, triangles - pairs);
+/// more, which the plan foresees (plugin/page_rate.h).
+size_t most_cut(size_t pairs, size_t triangles, bool is_loose, const LoosePairs& loose) {
+    return is_loose ? size_t(loose.most_cut() * double(pairs))
+                    : std::min(pairs / 10, triangles - pairs);
 }
 
 /// Pairs in a page's units, with the boxes of what matters of them.
@@ -88,19 +87,18 @@ class PageItems {
 public:
     /// name: index into leaf.triangles -> what the page calls it.
     template <class Name>
-    PageItems(const Soup& soup, const Leaf& leaf, BuildProgress* progress, LoosePairs loose,
+    PageItems(const Soup& soup, const Leaf& leaf, BuildProgress* progress, const LoosePairs& loose,
               Name&& name)
         : pairs_(pair_triangles(local_triangles(soup, leaf), progress)),
-          is_loose_(loose == LoosePairs::Allowed &&
-                    worth_loosening(pairs_.size(), leaf.triangles.size())) {
+          is_loose_(loose.allowed && worth_loosening(pairs_.size(), leaf.triangles.size())) {
         for (TrianglePair& pair : pairs_) {
             pair.a = name(pair.a);
             pair.b = pair.b == kNone ? kNone : name(pair.b);
         }
         const Box box{leaf.frame.to_local(leaf.box.lo), leaf.frame.to_local(leaf.box.hi)};
-        nodes_ =
-            build_split_bvh(boxes({vec3(box.lo), vec3(box.hi)}), pairs_,
-                            most_cut(pairs_.size(), leaf.triangles.size(), is_loose_), progress);
+        nodes_ = build_split_bvh(boxes({vec3(box.lo), vec3(box.hi)}), pairs_,
+                                 most_cut(pairs_.size(), leaf.triangles.size(), is_loose_, loose),
+                                 progress);
         if (is_loose_)
             loose_ = join_loose(nodes_, pairs_);
         reinsert(nodes_, progress); // now: the fewer leaves, the less to look for
@@ -154,13 +152,14 @@ Page pack(const PageItems& items, const Leaf& leaf, BuildProgress* progress) {
 } // namespace
 
 Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf,
-                BuildProgress* progress, LoosePairs loose) {
+                BuildProgress* progress, const LoosePairs& loose) {
     assert(!leaf.triangles.empty());
     const auto name = [&](uint32_t i) { return numbers.of(leaf.triangles[i]); };
     return pack(PageItems(soup, leaf, progress, loose, name), leaf, progress);
 }
 
-Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress, LoosePairs loose) {
+Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress,
+                const LoosePairs& loose) {
     assert(!leaf.triangles.empty());
     const auto name = [](uint32_t i) { return i; };
     return pack(PageItems(soup, leaf, progress, loose, name), leaf, progress);

@@ -9,6 +9,7 @@
 #include "kdtree/partition.h"
 #include "shaders/layout.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,20 +34,27 @@ struct Page {
 uint32_t stack_depth(std::span<const Page> pages);
 uint32_t stack_depth(uint32_t depth);
 
+/// Of triangles in loose pairs: how many cuts by planes there may be, at most, level 1's and the
+/// page's together.
+inline constexpr double kMostCutOfLoose = 0.8;
+
 /// Whether triangles that share no side may lie in one unit (loose_pairs.h): where that is worth
 /// it, and only for kernels with OVC_LOOSE_PAIRS.
-enum class LoosePairs { Refused, Allowed };
+struct LoosePairs {
+    bool allowed = false;
+    double copies = 1; // of a triangle in all leaves, on average: 1 where level 1 cut none
 
-/// Of the triangles of a page with loose pairs: how many planes may cut in two, at most.
-inline constexpr double kMostCutOfLoose = 0.4;
+    /// Of a page's pairs, how many planes may cut in two.
+    double most_cut() const { return std::max((1 + kMostCutOfLoose) / copies - 1, 0.0); }
+};
 
 /// Builds and packs the BVH of a leaf. Its triangles go by their numbers in the soup. Each is about
 /// two units of progress.
 Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf,
-                BuildProgress* progress = nullptr, LoosePairs loose = LoosePairs::Refused);
+                BuildProgress* progress = nullptr, const LoosePairs& loose = {});
 
 /// The same; triangle i of the page is leaf.triangles[i].
 Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress = nullptr,
-                LoosePairs loose = LoosePairs::Refused);
+                const LoosePairs& loose = {});
 
 } // namespace ovc

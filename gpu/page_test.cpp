@@ -43,8 +43,7 @@ uint64_t pairs_of(const Page& page) {
 }
 
 Page loosened(const Soup& soup) {
-    return build_page(soup, Numbering(soup), one_leaf(soup).leaves[0], nullptr,
-                      LoosePairs::Allowed);
+    return build_page(soup, Numbering(soup), one_leaf(soup).leaves[0], nullptr, LoosePairs{true});
 }
 
 TEST(Page, HoldsTwoSliversInAUnit) {
@@ -89,7 +88,7 @@ TEST(Page, WalkedInDoubleFindsWhatBruteForceFinds) {
             continue;
         ASSERT_EQ(level1.leaves.size(), 1u);
         const Leaf& leaf = level1.leaves[0];
-        const Page page = build_page(soup, Numbering(soup), leaf, nullptr, LoosePairs::Allowed);
+        const Page page = build_page(soup, Numbering(soup), leaf, nullptr, LoosePairs{true});
         const auto rays = test::unpleasant_rays(soup, 77, 800);
         for (size_t i = 0; i < rays.size(); ++i) {
             if (!rays[i].valid())

@@ -17,7 +17,7 @@ protected:
             gl->run([&](GlState&) { tracer.reset(); });
     }
 
-    void load(const Soup& soup, LoosePairs loose = LoosePairs::Refused) {
+    void load(const Soup& soup, LoosePairs loose = LoosePairs{}) {
         Box bounds;
         const auto ids = hittable_triangles(soup, nullptr, &bounds);
         gl->run([&](GlState&) { tracer.reset(); });
@@ -107,7 +107,7 @@ TEST_F(KernelGl, WhatItCallsCertainIsTrue) {
         if (soup.triangle_count() == 0)
             continue;
         SCOPED_TRACE(name);
-        for (const LoosePairs loose : {LoosePairs::Refused, LoosePairs::Allowed}) {
+        for (const LoosePairs loose : {LoosePairs{}, LoosePairs{true}}) {
             load(soup, loose);
             test::Random random(4);
             std::vector<Ray> rays;
@@ -122,7 +122,7 @@ TEST_F(KernelGl, WhatItCallsCertainIsTrue) {
 /// be seen if the bound did not hold for them.
 TEST_F(KernelGl, WhatItCallsCertainIsTrueAtSidesOfLoosePairs) {
     const Soup soup = test::random_soup(11, 1500, 0.3);
-    load(soup, LoosePairs::Allowed);
+    load(soup, LoosePairs{true});
     ASSERT_TRUE(pages[0].has_loose_pairs());
     test::Random random(12);
     const double rounding = 0x1p-24 / leaf_of(level1).frame.scale;

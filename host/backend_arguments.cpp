@@ -46,11 +46,11 @@ void BackendArguments::add_to(CLI::App& app) {
                    "driver reports, less headroom")
         ->group(group)
         ->type_name("SIZE");
-    CLI::Option* per_leaf =
-        app.add_option("--leaf-triangles", leaf_triangles,
-                       "The most triangles of a level-1 leaf; default: a tenth of the scene")
-            ->group(group)
-            ->type_name("N");
+    CLI::Option* per_leaf = app.add_option("--leaf-triangles", leaf_triangles,
+                                           "The most triangles of a level-1 leaf; default: "
+                                           "all where they fit the budget, else a tenth")
+                                ->group(group)
+                                ->type_name("N");
     app.add_option("--leaves", leaves, "Instead: about so many level-1 leaves")
         ->group(group)
         ->type_name("N")

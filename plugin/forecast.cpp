@@ -84,14 +84,20 @@ public:
               BuildProgress* progress)
         : soup_(soup), triangles_(triangles), bounds_(bounds), progress_(progress) {}
 
-    /// limits_for(n): the limits where n triangles can be hit and are no twins.
+    /// Takes the sample. limits_for(n): the limits where n triangles can be hit and are no twins.
     template <class LimitsFor>
-    Sizes estimate(LimitsFor&& limits_for) {
+    LeafLimits begin(LimitsFor&& limits_for) {
         draw(sample_rate(triangles_.size(), limits_for(triangles_.size()).triangles));
-        const LeafLimits limits = limits_for(distinct());
         rates_.emplace(soup_, triangles_, sample_, rate_, bounds_, progress_);
-        most_ = limits.pages_matter() ? limits.triangles_at(mean_rate(double(limits.triangles)))
-                                      : uint32_t(std::min<uint64_t>(limits.triangles, kNone - 1));
+        return limits_for(distinct());
+    }
+
+    /// Of leaves that keep to the limits.
+    Sizes estimate(const LeafLimits& limits) {
+        sizes_ = {};
+        most_ = limits.most_of(
+            distinct(), one_frame_suits(soup_, triangles_, bounds_),
+            [&](uint64_t page, double copies) { return rates_->mean_of(double(page), copies); });
         if (const uint32_t rate = sample_rate(distinct(), most_); rate != rate_)
             draw(rate);
         const KdTree tree = cut_sample(soup_, sample_, rate_, bounds_,
@@ -101,16 +107,15 @@ public:
         const std::vector<uint64_t> counts = counted(soup_, CellFinder(tree.nodes, cells, padding),
                                                      cells.size(), triangles_, progress_);
         sizes_.nodes = tree.nodes.size();
+        const uint64_t references = std::accumulate(counts.begin(), counts.end(), uint64_t(0));
+        copies_ = std::max(double(references) / double(triangles_.size()), 1.0);
         for (size_t c = 0; c < cells.size(); ++c)
             add_cell(cells[c].padded, uint64_t(std::llround(double(counts[c]) * distinct_share_)),
-                     limits);
+                     limits.page_bytes_of(cells.size()), limits);
         return std::move(sizes_);
     }
 
-    /// Of pages of so many triangles.
-    double mean_rate(double page_triangles) const {
-        return rates_->mean() * rates_->with_cuts(page_triangles);
-    }
+    const PageRates& rates() const { return *rates_; }
     uint32_t most() const { return most_; }
     uint64_t distinct() const {
         return uint64_t(std::llround(double(triangles_.size()) * distinct_share_));
@@ -125,15 +130,15 @@ private:
         distinct_share_ = 1 - double(twins.count()) / all;
     }
 
-    void add_cell(const Box& cell, uint64_t count, const LeafLimits& limits) {
+    void add_cell(const Box& cell, uint64_t count, uint64_t page_bytes, const LeafLimits& limits) {
         // What holds more than the sample made believe is cut again, and so are too large pages.
         uint64_t parts = (count + most_ - 1) / most_;
         const auto page_at = [&](double rate) {
             const double triangles = double(count) / double(parts);
-            return kPageStart + uint64_t(rate * rates_->with_cuts(triangles) * triangles);
+            return kPageStart + uint64_t(rate * rates_->with_cuts(triangles, copies_) * triangles);
         };
         const auto page = [&] { return page_at(rates_->within(cell)); };
-        if (parts > 0 && page() > limits.page_bytes) {
+        if (parts > 0 && page() > page_bytes) {
             const double again = kFill * limits.triangles_again(count / parts, page());
             parts = std::max<uint64_t>(2 * parts, uint64_t(std::ceil(double(count) / again)));
         }
@@ -143,7 +148,7 @@ private:
             return;
         sizes_.pages.insert(sizes_.pages.end(), parts, page());
         const uint64_t worst = page_at(rates_->worst_within(cell));
-        sizes_.largest_page = std::max(sizes_.largest_page, std::min(worst, limits.page_bytes));
+        sizes_.largest_page = std::max(sizes_.largest_page, std::min(worst, page_bytes));
     }
 
     const Soup& soup_;
@@ -155,6 +160,7 @@ private:
     double distinct_share_ = 1;      // of triangles that are no twins
     std::optional<PageRates> rates_;
     uint32_t most_ = 1;
+    double copies_ = 1; // of a triangle in all leaves
     Sizes sizes_;
 };
 
@@ -163,13 +169,13 @@ private:
 struct Growth {
     double triangles;
     double cut; // references beyond one a triangle, of leaves of one triangle
-    double rate;
+    std::function<double(double most, double copies)> rate; // as PageRates::mean_of()
     double nodes_per_leaf;
     double fill; // of leaves
 
-    double leaves(double most) const {
-        return triangles * (1 + cut / std::sqrt(most)) / (fill * most);
-    }
+    double copies(double most) const { return 1 + cut / std::sqrt(most); }
+    double leaves(double most) const { return triangles * copies(most) / (fill * most); }
+    double page(double most) const { return double(kPageStart) + most * rate(most, copies(most)); }
     double level1_bytes(double most) const {
         return 16 * (1 + OVC_LEAF_TEXELS + leaves(most) * (OVC_LEAF_TEXELS + nodes_per_leaf));
     }
@@ -184,8 +190,10 @@ uint64_t smallest_budget(const Growth& growth, uint64_t largest_page, uint64_t t
         if (!plan)
             return false;
         const LeafLimits limits = limits_for(*plan);
-        const double most = std::min<double>(limits.triangles_at(growth.rate), double(triangles));
-        const double page = std::min<double>(double(limits.page_bytes), double(largest_page));
+        const double most = std::min<double>(limits.triangles_at(growth.rate(1, kCopiesOfLeaves)),
+                                             double(triangles));
+        const double page =
+            std::min({double(limits.page_bytes), double(largest_page), growth.page(most)});
         return growth.level1_bytes(most) + page <= double(plan->pool_bytes);
     };
     uint64_t low = 0, high = 1 << 16;
@@ -221,37 +229,49 @@ Result<Forecast> forecast(const Soup& soup, const TwoLevelOptions& options,
     f.triangles = triangles.size();
     if (triangles.empty())
         return f;
-    Sizes sizes;
+    Sizes sizes, leaves; // leaves: how it would be cut if it had to be
     Growth growth{};
     double most = 1;
     if (triangles.size() <= kBuiltAtOnce) {
         Twins::take_out(soup, triangles, progress);
         const LeafLimits limits = limits_of(options, *plan, triangles.size());
-        Result<Sizes> built = sizes_built(soup, triangles, bounds, limits, progress);
+        const Result<Sizes> built = sizes_built(soup, triangles, bounds, limits, progress);
         if (!built)
             return built.error();
-        sizes = std::move(*built);
+        const Result<Sizes> cut = sizes_built(soup, triangles, bounds, limits.cut(), progress);
+        if (!cut)
+            return cut.error();
+        sizes = *built;
+        leaves = *cut;
         growth.triangles = double(triangles.size());
         most = double(std::min<uint64_t>(limits.triangles, triangles.size()));
-        growth.rate = double(sizes.level2_bytes()) / double(sizes.references);
+        const double rate = double(leaves.level2_bytes()) / double(leaves.references);
+        growth.rate = [rate](double, double) { return rate; };
     } else {
         Estimator estimator(soup, triangles, bounds, progress);
-        sizes = estimator.estimate([&](uint64_t n) { return limits_of(options, *plan, n); });
+        const LeafLimits limits =
+            estimator.begin([&](uint64_t n) { return limits_of(options, *plan, n); });
+        sizes = estimator.estimate(limits);
+        leaves = limits.whole_bytes ? estimator.estimate(limits.cut()) : sizes;
         growth.triangles = double(estimator.distinct());
         most = estimator.most();
-        growth.rate = estimator.mean_rate(1); // the smallest budget has small leaves
+        growth.rate = [rates = estimator.rates()](double n, double copies) {
+            return rates.mean_of(n, copies);
+        };
     }
     f.leaves = sizes.pages.size();
     f.references = sizes.references;
     f.level2_bytes = sizes.level2_bytes();
     f.largest_page_bytes = sizes.largest_page;
     f.level1_bytes = level1_texels(f.leaves, sizes.nodes) * sizeof(uvec4);
-    growth.nodes_per_leaf = double(sizes.nodes) / double(f.leaves);
-    growth.cut = (double(f.references) / growth.triangles - 1) * std::sqrt(most);
-    growth.fill = f.leaves < kMany ? kFill : double(f.references) / (double(f.leaves) * most);
-    f.smallest_budget_bytes = smallest_budget(
-        growth, f.largest_page_bytes, f.triangles, device,
-        [&](const MemoryPlan& p) { return limits_of(options, p, uint64_t(growth.triangles)); });
+    const double cells = double(leaves.pages.size());
+    growth.nodes_per_leaf = double(leaves.nodes) / cells;
+    growth.cut = (double(leaves.references) / growth.triangles - 1) * std::sqrt(most);
+    growth.fill = leaves.pages.size() < kMany ? kFill : double(leaves.references) / (cells * most);
+    f.smallest_budget_bytes =
+        smallest_budget(growth, leaves.largest_page, f.triangles, device, [&](const MemoryPlan& p) {
+            return limits_of(options, p, uint64_t(growth.triangles));
+        });
     f.fits = f.level1_bytes + f.largest_page_bytes <= plan->pool_bytes;
     if (f.fits)
         f.pool_bytes = std::min(plan->pool_bytes - f.level1_bytes,

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace ovc {
 
@@ -18,10 +19,18 @@ bool LeafLimits::pages_matter() const {
     return triangles > page_bytes / kMostBytesPerTriangle;
 }
 
+/// In so many bytes, a twentieth less than fits on average: most leaves that are worse than that
+/// fit as well.
+static uint64_t triangles_in(uint64_t bytes, double bytes_per_triangle) {
+    return uint64_t(0.95 * double(bytes - std::min(bytes, kPageStart)) / bytes_per_triangle);
+}
+
+bool LeafLimits::fits(uint64_t all, double bytes_per_triangle) const {
+    return all <= triangles_in(whole_bytes, bytes_per_triangle);
+}
+
 uint32_t LeafLimits::triangles_at(double bytes_per_triangle) const {
-    // A twentieth less than fits on average: most leaves that are worse than that fit as well.
-    const double fit = 0.95 * double(page_bytes - std::min(page_bytes, kPageStart));
-    const uint64_t most = uint64_t(fit / bytes_per_triangle);
+    const uint64_t most = triangles_in(page_bytes, bytes_per_triangle);
     return uint32_t(std::clamp<uint64_t>(std::min(most, triangles), 1, kNone - 1));
 }
 
@@ -41,9 +50,13 @@ public:
     Result<Levels> build(std::span<const TriangleId> triangles, const Box& bounds) {
         const Stopwatch watch;
         begin(progress_, "level 1", 0.35, 2 * triangles.size());
-        const uint32_t most = first_most(triangles, bounds);
+        triangles_ = triangles.size();
+        // Where small triangles are not lost in the scene.
+        const bool one_frame = one_frame_suits(soup_, triangles, bounds);
+        const uint32_t most = first_most(triangles, bounds, one_frame);
         levels_.level1 = partition(soup_, triangles, bounds, most, progress_);
-        share_frame_where_it_suits(triangles);
+        if (one_frame || levels_.level1.leaves.size() == 1)
+            share_frame(levels_.level1);
         levels_.seconds_level1 = watch.seconds();
         levels_.pages.resize(levels_.level1.leaves.size());
         begin(progress_, "level 2", 0.5, 2 * levels_.level1.reference_count());
@@ -59,36 +72,35 @@ public:
     }
 
 private:
-    uint32_t first_most(std::span<const TriangleId> triangles, const Box& bounds) const {
-        if (!limits_.pages_matter() || triangles.empty())
-            return uint32_t(std::min<uint64_t>(limits_.triangles, kNone - 1));
-        const uint32_t rate = sample_rate(triangles.size(), limits_.triangles);
-        const auto sample = sample_triangles(soup_, triangles, rate, progress_);
-        if (sample.empty())
-            return limits_.triangles_at(kMostBytesPerTriangle);
-        const PageRates rates(soup_, triangles, sample, rate, bounds, progress_);
-        return limits_.triangles_at(rates.mean() * rates.with_cuts(double(limits_.triangles)));
-    }
-
-    /// Where small triangles are not lost in the scene.
-    void share_frame_where_it_suits(std::span<const TriangleId> triangles) {
-        Level1& level1 = levels_.level1;
-        if (level1.leaves.size() == 1 || one_frame_suits(soup_, triangles, level1.bounds))
-            share_frame(level1);
+    uint32_t first_most(std::span<const TriangleId> triangles, const Box& bounds,
+                        bool one_frame) const {
+        std::optional<PageRates> rates;
+        return limits_.most_of(triangles.size(), one_frame, [&](uint64_t page, double copies) {
+            if (!rates) {
+                const uint32_t rate = sample_rate(triangles.size(), limits_.triangles);
+                const auto sample = sample_triangles(soup_, triangles, rate, progress_);
+                if (sample.empty())
+                    return double(kMostBytesPerTriangle);
+                rates.emplace(soup_, triangles, sample, rate, bounds, progress_);
+            }
+            return rates->mean_of(double(page), copies);
+        });
     }
 
     /// In a frame of its own a leaf may have triangles that reach far beyond it.
     LoosePairs loose_pairs() const {
-        return levels_.level1.shares_frame ? LoosePairs::Allowed : LoosePairs::Refused;
+        return {levels_.level1.shares_frame,
+                double(levels_.level1.reference_count()) / double(triangles_)};
     }
 
     void build_missing_pages() {
         const Stopwatch watch;
+        const LoosePairs loose = loose_pairs();
         parallel_for(levels_.pages.size(), 1, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
                 if (levels_.pages[i].texels.empty())
-                    levels_.pages[i] = build_page(soup_, numbers_, levels_.level1.leaves[i],
-                                                  progress_, loose_pairs());
+                    levels_.pages[i] =
+                        build_page(soup_, numbers_, levels_.level1.leaves[i], progress_, loose);
         });
         levels_.seconds_level2 += watch.seconds();
     }
@@ -98,15 +110,16 @@ private:
     Result<bool> cut_too_large() {
         const Stopwatch watch;
         std::vector<uint32_t> most(levels_.pages.size(), kNone);
+        const uint64_t most_bytes = limits_.page_bytes_of(most.size());
         bool any = false;
         for (size_t i = 0; i < most.size(); ++i) {
             const uint64_t bytes = levels_.pages[i].bytes();
             const size_t triangles = levels_.level1.leaves[i].triangles.size();
-            if (bytes <= limits_.page_bytes)
+            if (bytes <= most_bytes)
                 continue;
             if (triangles == 1)
-                return Error{fmt::format("a page of one triangle does not fit into {} bytes",
-                                         limits_.page_bytes)};
+                return Error{
+                    fmt::format("a page of one triangle does not fit into {} bytes", most_bytes)};
             most[i] = limits_.triangles_again(triangles, bytes);
             any = true;
         }
@@ -130,6 +143,7 @@ private:
     const Numbering& numbers_;
     const LeafLimits& limits_;
     BuildProgress* const progress_;
+    uint64_t triangles_ = 0;
     Levels levels_;
 };
 

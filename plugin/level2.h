@@ -7,6 +7,7 @@
 #include "gpu/page.h"
 #include "kdtree/partition.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -19,11 +20,34 @@ struct Levels {
     double seconds_level2 = 0;
 };
 
-/// What leaves may be: so many triangles at most (> 0), and so many bytes of a page.
+/// About how many copies of a triangle leaves have together (as in LoosePairs) where its pages are
+/// to fit into little: what is too large for that is cut again.
+inline constexpr double kCopiesOfLeaves = 1.4;
+
+/// What leaves may be: so many triangles at most (> 0), and so many bytes of a page. But where all
+/// triangles can be in one page of `whole_bytes`, and in one frame, there is one leaf.
 struct LeafLimits {
+    static constexpr uint64_t kAny = ~uint64_t(0);
+
     uint64_t triangles;
     uint64_t page_bytes;
+    uint64_t whole_bytes = 0; // 0: never one leaf for that; kAny: it fits, whatever it takes
 
+    /// How many triangles a leaf may have, of so many. rate(n, copies): about what a page of n
+    /// takes, in bytes a triangle (copies: as in LoosePairs); asked only where that matters.
+    template <class Rate>
+    uint32_t most_of(uint64_t all, bool one_frame, Rate&& rate) const {
+        if (one_frame && (whole_bytes == kAny || (whole_bytes > 0 && fits(all, rate(all, 1)))))
+            return kNone - 1;
+        return pages_matter() ? triangles_at(rate(triangles, kCopiesOfLeaves))
+                              : uint32_t(std::min<uint64_t>(triangles, kNone - 1));
+    }
+    /// The most bytes of a page where there are so many leaves.
+    uint64_t page_bytes_of(uint64_t leaves) const {
+        return leaves == 1 ? std::max(page_bytes, whole_bytes) : page_bytes;
+    }
+    /// The same without one leaf for all.
+    LeafLimits cut() const { return {triangles, page_bytes, 0}; }
     /// Whether a page could be too large at all: else triangles alone decide.
     bool pages_matter() const;
     /// How many triangles a leaf may have for its page to fit where one takes so many bytes. At
@@ -31,6 +55,9 @@ struct LeafLimits {
     uint32_t triangles_at(double bytes_per_triangle) const;
     /// The same for the parts of a leaf whose page was too large; less than it had.
     uint32_t triangles_again(uint64_t triangles_before, uint64_t bytes_before) const;
+
+private:
+    bool fits(uint64_t all, double bytes_per_triangle) const;
 };
 
 /// Leaves within the limits; one whose page turns out too large is cut further. Error: a page of a

@@ -13,9 +13,9 @@ namespace ovc {
 
 /// Bytes of a page that do not grow with it: the header and the root.
 inline constexpr uint64_t kPageStart = 128;
-/// No page takes more a triangle: no two in a pair, a node above every other triangle; and four
+/// No page takes more a triangle: no two in a pair, a node above every other triangle; and eight
 /// tenths of them cut by planes where pairs were to be loose and hardly any is.
-inline constexpr uint64_t kMostBytesPerTriangle = 180;
+inline constexpr uint64_t kMostBytesPerTriangle = 232;
 
 /// Pages of some cubes, each with all the triangles that touch it. Cubes lie around triangles of a
 /// sample, so where triangles are many there are many cubes.
@@ -27,16 +27,20 @@ public:
               std::span<const TriangleId> sample, uint32_t rate, const Box& bounds,
               BuildProgress* progress = nullptr);
 
-    /// Bytes a triangle, on average; cubes are too small to be cut.
+    /// Bytes a triangle, on average, in small cubes.
     double mean() const { return mean_; }
+    /// The same in pages of so many triangles.
+    double mean_of(double triangles, double copies) const {
+        return mean_ * with_cuts(triangles, copies);
+    }
     /// The same in `box`, by the cubes that lie in it, the average and nothing else where none do.
     double within(const Box& box) const;
     /// What the worst of many such boxes may take: where no cube lies, one may be worse than the
     /// average by as much as cubes differ.
     double worst_within(const Box& box) const;
     /// By how much pages of so many triangles take more than all these, where they hold loose
-    /// pairs: because planes cut many of those, but hardly any in small cubes.
-    double with_cuts(double triangles) const;
+    /// pairs: because planes cut many of those, but few in small cubes. copies: as in LoosePairs.
+    double with_cuts(double triangles, double copies) const;
 
 private:
     size_t cubes_in(const Box& box, double& sum) const;
@@ -47,7 +51,8 @@ private:
     };
     std::vector<Cluster> clusters_;
     double mean_ = 0;
-    double cut_ = 0;
+    double cut_in_small_ = 0; // triangles in units beyond one each, per triangle
+    double cut_in_large_ = 0;
     double spread_ = 0; // standard deviation
 };
 

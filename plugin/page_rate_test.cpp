@@ -13,7 +13,7 @@ namespace ovc {
 namespace {
 
 double rate_of_one_page(const Soup& soup, const std::vector<TriangleId>& ids, const Box& bounds) {
-    const Page page = build_page(soup, whole_leaf(soup, ids, bounds), nullptr, LoosePairs::Allowed);
+    const Page page = build_page(soup, whole_leaf(soup, ids, bounds), nullptr, LoosePairs{true});
     return double(page.bytes() - kPageStart) / double(ids.size());
 }
 
@@ -33,7 +33,7 @@ TEST(PageRates, AreThoseOfTheWholePage) {
         EXPECT_LT(whole, most) << name;
         for (const uint32_t rate : {1u, 4u}) {
             const PageRates rates(soup, ids, sample_triangles(soup, ids, rate), rate, bounds);
-            EXPECT_NEAR(rates.mean() * rates.with_cuts(40000) / whole, 1, 0.08)
+            EXPECT_NEAR(rates.mean() * rates.with_cuts(40000, 1) / whole, 1, 0.08)
                 << name << " by one in " << rate;
         }
     }

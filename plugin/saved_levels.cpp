@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view kKind = "ovc levels";
 /// To be raised when a build makes other leaves or pages of the same soup; a change of layout.h is
 /// noticed without.
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 
 /// Where all of it is the same, a build makes the same levels.
 struct Key {
@@ -26,6 +26,7 @@ struct Key {
     uint64_t soup = 0;           // checksum of origins and corners
     uint64_t leaf_triangles = 0; // limits
     uint64_t page_bytes = 0;     // 0 where no page could come near it
+    uint64_t whole_bytes = 0;
 
     bool operator==(const Key&) const = default;
 };
@@ -40,7 +41,7 @@ struct Summary {
     Box bounds;
     double padding = 0;
 };
-static_assert(sizeof(Summary) == 16 * 8);
+static_assert(sizeof(Summary) == 17 * 8);
 
 struct SavedLeaf {
     Box cell;
@@ -80,6 +81,7 @@ uint64_t checksum_of_soup(const Soup& soup) {
 void put_limits(Key& key, const LeafLimits& limits) {
     key.leaf_triangles = limits.triangles;
     key.page_bytes = limits.pages_matter() ? limits.page_bytes : 0;
+    key.whole_bytes = limits.whole_bytes;
 }
 
 bool is_sound(const Box& box) {

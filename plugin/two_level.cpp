@@ -7,6 +7,7 @@
 #include "gpu/linked.h"
 #include "plugin/level2.h"
 #include "plugin/one_pass.h"
+#include "plugin/page_rate.h"
 #include "plugin/wave.h"
 
 #include <fmt/format.h>
@@ -32,13 +33,21 @@ uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device) {
 LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles) {
     // Halving ends between half full and full: this much on average gives about so many leaves.
     constexpr double kFull = 0.7;
+    constexpr uint64_t kMostPageBytes = uint64_t(OVC_MAX_UNITS - 1) * OVC_UNIT_BYTES;
+    const uint64_t page_bytes = std::min(plan.pool_bytes / kPagesAtOnce, kMostPageBytes);
+    if (options.leaf_triangles)
+        return {options.leaf_triangles, page_bytes};
     double most = double(triangles) / double(kDefaultLeaves);
     if (options.leaves)
         most = double(triangles) / (options.leaves == 1 ? 1 : kFull * options.leaves);
-    return {options.leaf_triangles ? options.leaf_triangles
-                                   : std::max<uint64_t>(uint64_t(std::ceil(most)), 1),
-            std::min<uint64_t>(plan.pool_bytes / kPagesAtOnce,
-                               uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES)};
+    LeafLimits limits{std::max<uint64_t>(uint64_t(std::ceil(most)), 1), page_bytes};
+    if (!options.leaves) {
+        const uint64_t table = level1_texels(1, 1) * sizeof(uvec4) + sizeof(uint32_t);
+        const uint64_t room =
+            std::min(plan.pool_bytes - std::min(plan.pool_bytes, table), kMostPageBytes);
+        limits.whole_bytes = triangles <= room / kMostBytesPerTriangle ? LeafLimits::kAny : room;
+    }
+    return limits;
 }
 
 Result<Done> check_count(const Soup& soup) {
@@ -70,9 +79,17 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     if (const Result<Done> shared = self->share_out(); !shared)
         return shared.error();
 
-    if (const Result<Done> made = self->make_tracer(progress); !made)
+    const Result<Done> made = self->make_tracer(progress);
+    if (made)
+        return self;
+    if (made.error().kind != ErrorKind::OutOfGpuMemory || self->pages_.size() > 1 ||
+        options.leaf_triangles || options.leaves)
         return made.error();
-    return self;
+    say(log, LogLevel::Warning, "cutting the scene into leaves, of which the GPU holds some");
+    TwoLevelOptions cut = options;
+    cut.leaf_triangles = self->limits_.triangles;
+    self.reset();
+    return build(soup, gl, cut, log, progress);
 }
 
 /// Level 1 and level 2 from the soup.

@@ -34,6 +34,22 @@ TEST_F(TwoLevelGl, GoesOnWithASmallerPoolWhereTheDriverHasNoRoom) {
     EXPECT_EQ(refused.error().kind, ErrorKind::OutOfGpuMemory);
 }
 
+TEST_F(TwoLevelGl, CutsASceneThatIsOneLeafWhereTheDriverHasNoRoom) {
+    const Soup soup = test::random_soup(2, 3000, 0.05);
+    const auto rays = test::unpleasant_rays(soup, 5, 1000);
+    TwoLevelOptions options{.budget_bytes = 2u << 20};
+    const auto whole = build(soup, options);
+    ASSERT_EQ(whole->level1().leaves.size(), 1u);
+    options.driver_bytes = whole->plan().ray_bytes() + whole->statistics().level2_bytes / 2;
+    const auto cut = build(soup, options);
+    EXPECT_GT(cut->level1().leaves.size(), 5u);
+    std::vector<Hit> expected(rays.size()), hits(rays.size());
+    ASSERT_TRUE(ok(whole->intersect(rays, {}, expected)));
+    ASSERT_TRUE(ok(cut->intersect(rays, {}, hits)));
+    for (size_t i = 0; i < rays.size(); ++i)
+        ASSERT_TRUE(test::same(expected[i], hits[i])) << "ray " << i;
+}
+
 TEST_F(TwoLevelGl, ALostContextIsAnErrorOnceForEveryStructureAndThenAllWork) {
     const Soup soup = test::random_soup(2, 3000, 0.05);
     const auto rays = test::unpleasant_rays(soup, 5, 1000);
