@@ -74,6 +74,27 @@ void parallel_invoke(A&& a, B&& b) {
     });
 }
 
+/// Forks of one recursion (in_forks): fork(a, b) runs both, perhaps at the same time. Unlike in
+/// parallel_invoke(), a thread that waits for one of them may take on any other fork of it.
+class Fork {
+public:
+    explicit Fork(oneapi::tbb::task_group_context& context) : context_(context) {}
+
+    template <class A, class B>
+    void operator()(A&& a, B&& b) const {
+        oneapi::tbb::parallel_invoke(std::forward<A>(a), std::forward<B>(b), context_);
+    }
+
+private:
+    oneapi::tbb::task_group_context& context_;
+};
+
+/// body(Fork). What a fork throws ends them all, and is thrown here.
+template <class Body>
+void in_forks(Body&& body) {
+    isolated([&](auto& context) { body(Fork(context)); });
+}
+
 /// Sorts [first, last) by <. Equal elements come in any order.
 template <class Iterator>
 void parallel_sort(Iterator first, Iterator last) {

@@ -54,8 +54,10 @@ TEST_F(ParallelMode, ReduceRunsInTheModeOfWhoStartsIt) {
 }
 
 TEST_F(ParallelMode, InvokeRunsInTheModeOfWhoStartsIt) {
-    for (int i = 0; i < 50; ++i)
+    for (int i = 0; i < 50; ++i) {
         parallel_invoke([] { look(); }, [] { look(); });
+        in_forks([](const Fork& fork) { fork([] { look(); }, [] { look(); }); });
+    }
     EXPECT_EQ(strange, 0);
 }
 

@@ -102,6 +102,10 @@ TEST(Parallel, RunsWholeWhereTheGroupAroundItIsCancelled) {
         std::atomic<int> invoked{0};
         parallel_invoke([&] { ++invoked; }, [&] { ++invoked; });
         EXPECT_EQ(invoked, 2);
+        in_forks([&](const Fork& fork) {
+            fork([&] { fork([&] { ++invoked; }, [&] { ++invoked; }); }, [&] { ++invoked; });
+        });
+        EXPECT_EQ(invoked, 5);
 
         const size_t sum = parallel_reduce(
             100000, size_t(0),
@@ -139,6 +143,13 @@ TEST(Parallel, ALoopWithinALoopRunsWholeWhereThatOneThrows) {
         EXPECT_THROW(parallel_for(2, 1, part), std::runtime_error);
         EXPECT_EQ(cut, 0u);
     }
+}
+
+TEST(Forks, ThrowWhatOneOfThemThrows) {
+    EXPECT_THROW(in_forks([](const Fork& fork) {
+                     fork([&] { fork([] { throw std::runtime_error("one"); }, [] {}); }, [] {});
+                 }),
+                 std::runtime_error);
 }
 
 } // namespace

@@ -33,6 +33,19 @@ void parallel_invoke(A&& a, B&& b) {
         std::rethrow_exception(thrown);
 }
 
+class Fork {
+public:
+    template <class A, class B>
+    void operator()(A&& a, B&& b) const {
+        parallel_invoke(std::forward<A>(a), std::forward<B>(b));
+    }
+};
+
+template <class Body>
+void in_forks(Body&& body) {
+    body(Fork());
+}
+
 template <class Body>
 void parallel_for(size_t count, size_t grain, Body&& body) {
     const size_t half = count / 2;

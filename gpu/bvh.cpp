@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kBins = 16;
 constexpr size_t kParallelBuild = 4096;
+constexpr size_t kParallelSum = 32768;
 // A plane is looked for at nodes of so many items, where the best two sides share this much of the
 // node's area, and taken where it leaves less than this of the cost.
 constexpr size_t kFewestToCut = 64;
@@ -40,6 +41,55 @@ struct Binning {
     }
 };
 
+/// Around items, and around their centres, twice.
+struct Extent {
+    Bounds bounds = Bounds::empty();
+    Bounds centers = Bounds::empty();
+
+    void add(const Item& item) {
+        const Bounds& b = item.bounds;
+        bounds.add(b);
+        Bounds center;
+        for (size_t k = 0; k < 4; ++k)
+            center.lo[k] = center.hi[k] = b.lo[k] + b.hi[k];
+        centers.add(center);
+    }
+    void add(const Extent& other) {
+        bounds.add(other.bounds);
+        centers.add(other.centers);
+    }
+};
+
+struct Bin {
+    Bounds bounds;
+    uint32_t count;
+};
+
+struct Bins {
+    const Binning* binning;
+    std::array<std::array<Bin, kBins>, 3> bins; // [axis]; most nodes have few items, and few bins
+
+    explicit Bins(const Binning& b) : binning(&b) {
+        for (auto& along : bins)
+            std::fill_n(along.begin(), b.bins, Bin{Bounds::empty(), 0});
+    }
+
+    void add(const Item& item) {
+        for (int axis = 0; axis < 3; ++axis) {
+            Bin& bin = bins[axis][(*binning)(item, axis)];
+            bin.bounds.add(item.bounds);
+            ++bin.count;
+        }
+    }
+    void add(const Bins& other) {
+        for (int axis = 0; axis < 3; ++axis)
+            for (int i = 0; i < binning->bins; ++i) {
+                bins[axis][i].bounds.add(other.bins[axis][i].bounds);
+                bins[axis][i].count += other.bins[axis][i].count;
+            }
+    }
+};
+
 /// Items of a subtree: [first, last), and room for more up to `end`.
 struct Range {
     size_t first;
@@ -56,7 +106,7 @@ public:
             std::span<const TrianglePair> pairs, BuildProgress* progress)
         : items_(items), nodes_(nodes), pairs_(pairs), progress_(progress) {}
 
-    void build(uint32_t node, const Range& range, int depth) {
+    void build(uint32_t node, const Range& range, int depth, const Fork& fork) {
         if (range.count() <= kParallelBuild) {
             build_alone(node, range, depth);
             add(progress_, range.count());
@@ -65,8 +115,8 @@ public:
         add(progress_, 0);
         Range left, right;
         open(node, range, depth, left, right);
-        parallel_invoke([&] { build(node + 1, left, depth + 1); },
-                        [&] { build(nodes_[node].right, right, depth + 1); });
+        fork([&] { build(node + 1, left, depth + 1, fork); },
+             [&] { build(nodes_[node].right, right, depth + 1, fork); });
     }
 
 private:
@@ -80,28 +130,32 @@ private:
 
     /// Fills the node in; true where its items are divided in two.
     bool open(uint32_t node, const Range& range, int depth, Range& left, Range& right) {
-        Bounds bounds = Bounds::empty();
-        Bounds centers = Bounds::empty();
-        measure(range.first, range.last, bounds, centers);
-        nodes_[node].box = bounds.box();
+        const Extent extent = gathered<Extent>(range.first, range.last);
+        nodes_[node].box = extent.bounds.box();
         if (range.count() == 1) {
             nodes_[node].item = items_[range.first].index();
             return false;
         }
-        divide(range, bounds, centers, depth, left, right);
+        divide(range, extent.bounds, extent.centers, depth, left, right);
         nodes_[node].right = node + uint32_t(2 * (left.end - left.first));
         return true;
     }
 
-    void measure(size_t first, size_t last, Bounds& bounds, Bounds& centers) const {
-        for (size_t i = first; i < last; ++i) {
-            const Bounds& b = items_[i].bounds;
-            bounds.add(b);
-            Bounds center;
-            for (int k = 0; k < 4; ++k)
-                center.lo[k] = center.hi[k] = b.lo[k] + b.hi[k];
-            centers.add(center);
-        }
+    /// What items [first, last) come to together: Sum(args...) and all of them added to it.
+    template <class Sum, class... Args>
+    Sum gathered(size_t first, size_t last, const Args&... args) const {
+        const auto add_some = [&](size_t from, size_t to, Sum sum) {
+            for (size_t i = from; i < to; ++i)
+                sum.add(items_[first + i]);
+            return sum;
+        };
+        const size_t count = last - first;
+        if (count < kParallelSum)
+            return add_some(0, count, Sum(args...));
+        return parallel_reduce(count, Sum(args...), add_some, [](Sum a, const Sum& b) {
+            a.add(b);
+            return a;
+        });
     }
 
     void divide(const Range& range, const Bounds& bounds, const Bounds& centers, int depth,
@@ -174,19 +228,8 @@ private:
     }
 
     Split best_split(size_t first, size_t last, const Binning& binning) const {
-        struct Bin {
-            Bounds bounds;
-            uint32_t count;
-        };
-        std::array<std::array<Bin, kBins>, 3> bins; // most nodes have few items, and few bins
-        for (auto& along : bins)
-            std::fill_n(along.begin(), binning.bins, Bin{Bounds::empty(), 0});
-        for (size_t i = first; i < last; ++i)
-            for (int axis = 0; axis < 3; ++axis) {
-                Bin& bin = bins[axis][binning(items_[i], axis)];
-                bin.bounds.add(items_[i].bounds);
-                ++bin.count;
-            }
+        const Bins sums = gathered<Bins>(first, last, binning);
+        const auto& bins = sums.bins;
         Split best;
         for (int axis = 0; axis < 3; ++axis) {
             if (binning.scale[axis] == 0)
@@ -237,7 +280,8 @@ std::vector<BvhNode> build_split_bvh(std::span<const Boxf> boxes,
     for (size_t i = 0; i < boxes.size(); ++i)
         items[i] = Item::of(boxes[i], uint32_t(i));
     nodes.resize(2 * most - 1);
-    Builder(items, nodes, pairs, progress).build(0, {0, boxes.size(), most}, 0);
+    Builder builder(items, nodes, pairs, progress);
+    in_forks([&](const Fork& fork) { builder.build(0, {0, boxes.size(), most}, 0, fork); });
     return nodes;
 }
 

@@ -2,8 +2,6 @@
 // Costs from the leaves up, choices from the root down.
 #include "gpu/collapse.h"
 
-#include "core/parallel.h"
-
 #include <algorithm>
 
 namespace ovc {
@@ -12,7 +10,7 @@ static constexpr uint32_t kParallelWeigh = 16384; // nodes
 
 Collapse::Collapse(const std::vector<BvhNode>& nodes, BuildProgress* progress)
     : nodes_(nodes), costs_(nodes.size()), progress_(progress) {
-    weigh(root());
+    in_forks([&](const Fork& fork) { weigh(root(), fork); });
 }
 
 /// The cheapest way to put the boxes of an inner node under at most `most` nodes, 2 to 4, other
@@ -29,18 +27,18 @@ Collapse::Shares Collapse::shares(uint32_t node, int most) const {
     return best;
 }
 
-void Collapse::weigh(Subtree of) {
+void Collapse::weigh(Subtree of, const Fork& fork) {
     const BvhNode& node = nodes_[of.node];
     if (node.is_leaf()) {
         costs_[of.node] = {0, 0, 0}; // every leaf remains
         return;
     }
     if (of.end - of.node > kParallelWeigh) {
-        parallel_invoke([&] { weigh(left(of)); }, [&] { weigh(right(of)); });
+        fork([&] { weigh(left(of), fork); }, [&] { weigh(right(of), fork); });
         add(progress_, 0);
     } else {
-        weigh(left(of));
-        weigh(right(of));
+        weigh(left(of), fork);
+        weigh(right(of), fork);
     }
     Costs& costs = costs_[of.node];
     costs[0] = node.box.half_area() + shares(of.node, 4).cost;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/build_progress.h"
+#include "core/parallel.h"
 #include "gpu/bvh.h"
 
 #include <array>
@@ -51,7 +52,7 @@ private:
     Subtree left(Subtree of) const { return {of.node + 1, nodes_[of.node].right}; }
     Subtree right(Subtree of) const { return {nodes_[of.node].right, of.end}; }
     Shares shares(uint32_t node, int most) const;
-    void weigh(Subtree of);
+    void weigh(Subtree of, const Fork& fork);
     void collect(Subtree of, int most, Children& children) const;
 
     const std::vector<BvhNode>& nodes_;

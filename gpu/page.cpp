@@ -2,6 +2,7 @@
 // Level 2: triangles into the leaf's frame, pairs, BVH, four children a node, 16-bit boxes.
 #include "gpu/page.h"
 
+#include "core/parallel.h"
 #include "gpu/bvh.h"
 #include "gpu/loose_pairs.h"
 #include "gpu/packer.h"
@@ -18,13 +19,17 @@
 namespace ovc {
 namespace {
 
+constexpr size_t kGrain = 16384; // triangles, or pairs, a task
+
 std::vector<LocalTriangle> local_triangles(const Soup& soup, const Leaf& leaf) {
     std::vector<LocalTriangle> triangles(leaf.triangles.size());
-    for (size_t i = 0; i < triangles.size(); ++i) {
-        const Triangle world = soup.triangle(leaf.triangles[i]);
-        for (int k = 0; k < 3; ++k)
-            triangles[i][k] = vec3(leaf.frame.to_local(world[k]));
-    }
+    parallel_for(triangles.size(), kGrain, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const Triangle world = soup.triangle(leaf.triangles[i]);
+            for (int k = 0; k < 3; ++k)
+                triangles[i][k] = vec3(leaf.frame.to_local(world[k]));
+        }
+    });
     return triangles;
 }
 
@@ -122,12 +127,14 @@ private:
     /// Hits count inside the leaf's box only, so what reaches out of it need not be in the boxes.
     std::vector<Boxf> boxes(const Boxf& inside) const {
         std::vector<Boxf> boxes(pairs_.size());
-        for (size_t i = 0; i < pairs_.size(); ++i) {
-            for (const vec3& corner : pairs_[i].corners)
-                boxes[i].add(corner);
-            boxes[i] = {glm::clamp(boxes[i].lo, inside.lo, inside.hi),
-                        glm::clamp(boxes[i].hi, inside.lo, inside.hi)};
-        }
+        parallel_for(boxes.size(), kGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                for (const vec3& corner : pairs_[i].corners)
+                    boxes[i].add(corner);
+                boxes[i] = {glm::clamp(boxes[i].lo, inside.lo, inside.hi),
+                            glm::clamp(boxes[i].hi, inside.lo, inside.hi)};
+            }
+        });
         return boxes;
     }
 

@@ -61,7 +61,8 @@ public:
                          : std::min(kMaxDepth, int(8 + 1.3 * std::log2(double(triangles) + 1)))) {}
 
     /// Appends the subtree over `fragments` in `cell` to `tree`.
-    void build(std::vector<Fragment> fragments, const Box& cell, int depth, KdTree& tree) const {
+    void build(std::vector<Fragment> fragments, const Box& cell, int depth, KdTree& tree,
+               const Fork& fork) const {
         tree.depth = std::max(tree.depth, depth);
         if (fragments.size() >= kWorthIsolating)
             add(options_.progress, 0);
@@ -81,14 +82,14 @@ public:
         const uint32_t node = uint32_t(tree.nodes.size());
         tree.nodes.push_back(KdNode::inner(split.axis, split.position));
         if (fragments.size() + above.size() < kParallelBuild) {
-            build(std::move(fragments), below_cell, depth + 1, tree);
+            build(std::move(fragments), below_cell, depth + 1, tree, fork);
             tree.nodes[node].set_above(uint32_t(tree.nodes.size()));
-            build(std::move(above), above_cell, depth + 1, tree);
+            build(std::move(above), above_cell, depth + 1, tree, fork);
             return;
         }
         KdTree below_tree, above_tree;
-        parallel_invoke([&] { build(std::move(fragments), below_cell, depth + 1, below_tree); },
-                        [&] { build(std::move(above), above_cell, depth + 1, above_tree); });
+        fork([&] { build(std::move(fragments), below_cell, depth + 1, below_tree, fork); },
+             [&] { build(std::move(above), above_cell, depth + 1, above_tree, fork); });
         append(tree, below_tree);
         tree.nodes[node].set_above(uint32_t(tree.nodes.size()));
         append(tree, above_tree);
@@ -288,7 +289,7 @@ KdTree build_kd_tree(const Soup& soup, std::span<const TriangleId> triangles, co
         }
     });
     std::erase_if(fragments, [](const Fragment& f) { return f.box.empty(); });
-    builder.build(std::move(fragments), bounds, 0, tree);
+    in_forks([&](const Fork& fork) { builder.build(std::move(fragments), bounds, 0, tree, fork); });
     return tree;
 }
 
