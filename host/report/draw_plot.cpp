@@ -19,7 +19,7 @@ namespace {
 // The same script draws both. Sizes are those at which letters stay readable on a phone.
 constexpr const char* kScript = R"(datafile = '{0}.dat'
 set encoding utf8
-set key below samplen 1 width -2 font ',13'
+set key below samplen 1 width -2 height 0.8 font ',13'
 set grid lc rgb '#a0a0a0' lw 0.4
 set border 3
 set tics nomirror

@@ -34,12 +34,23 @@ double foot_of(const std::vector<Point>& points) {
     return std::pow(10, std::floor(std::log10(std::isfinite(least) ? least : 1)) - 0.5);
 }
 
-/// A logarithmic range that the points are well within, with a power of ten to label.
-std::string range_of(double least, double most) {
+/// From a little less to a little more.
+std::pair<double, double> range_of(double least, double most) {
     constexpr double margin = 1.4;
-    const double decade = std::pow(10, std::round(std::log10(std::sqrt(least * most))));
-    return fmt::format("[{:.6g}:{:.6g}]", std::min(least / margin, decade / 1.01),
-                       std::max(most * margin, decade * 1.01));
+    return {least / margin, most * margin};
+}
+
+/// 1, 2 and 5 times the powers of ten within the range; of a long one these alone.
+std::string ticks_in(std::pair<double, double> range) {
+    const bool is_long = range.second > 1e3 * range.first;
+    std::string ticks;
+    for (double decade = std::pow(10, std::floor(std::log10(range.first))); decade < range.second;
+         decade *= 10)
+        for (const double step : {1.0, 2.0, 5.0})
+            if (const double at = step * decade;
+                at >= range.first && at <= range.second && (step == 1 || !is_long))
+                ticks += fmt::format("{}{:.6g}", ticks.empty() ? "" : ", ", at);
+    return ticks;
 }
 
 /// The lower left staircase of two costs, point by point.
@@ -107,6 +118,9 @@ Plot frontier_plot(const std::string& name, const std::string& caption,
         point.error = std::max(point.error, foot);
     const auto [fastest, slowest] = std::ranges::minmax(points, {}, &Point::x);
     const auto [rightest, wrongest] = std::ranges::minmax(points, {}, &Point::error);
+    const auto xs = range_of(fastest.x, slowest.x);
+    // Up to the power of ten above the foot, also where nothing is wrong.
+    const auto ys = range_of(rightest.error, std::max(wrongest.error, std::sqrt(10) * foot));
     std::string data = "# x, error (0 at the foot), choice\n", with;
     int block = 0;
     for (size_t s = 0; s < series.size(); ++s) {
@@ -121,14 +135,18 @@ Plot frontier_plot(const std::string& name, const std::string& caption,
     }
     for (const Point& point : staircase(points))
         data += fmt::format("{:.6g} {:.6g}\n", point.x, point.error);
+    constexpr double short_range = 30; // powers of ten alone would leave a tick or two
+    std::string y_tics = ys.second < short_range * ys.first
+                             ? fmt::format("set ytics ({})\n", ticks_in(ys))
+                             : "set format y '10^{%L}'\n";
+    if (any_right)
+        y_tics += fmt::format("set ytics add ('none' {:.6g})\n", foot);
     return {name, caption, data,
-            fmt::format("set logscale xy\nset format y '10^{{%L}}'\nset xlabel '{}'\n"
-                        "set ylabel '{}'\n{}set xrange {}\nset yrange {}\n"
+            fmt::format("set logscale xy\nset xlabel '{}' offset 0,0.3\nset ylabel '{}'\n"
+                        "set xtics ({})\n{}set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n"
                         "plot {}datafile index {} using 1:2 with steps ls 9 title 'frontier'\n",
-                        x_label, y_label,
-                        any_right ? fmt::format("set ytics add ('none' {:.6g})\n", foot) : "",
-                        range_of(fastest.x, slowest.x), range_of(rightest.error, wrongest.error),
-                        with, block)};
+                        x_label, y_label, ticks_in(xs), y_tics, xs.first, xs.second, ys.first,
+                        ys.second, with, block)};
 }
 
 } // namespace ovc

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 
 namespace ovc {
 
@@ -86,18 +86,31 @@ PlotSeries::Point point_of(const Json& choice, const char* x, const Json& error)
     return {choice[x].get<double>(), error.get<double>(), choice["choice"].get<std::string>()};
 }
 
+/// A line a shape, from few triangles to many.
 Plot distance_plot(const Json& figures) {
-    std::vector<PlotSeries> series;
+    std::string data = "# triangles, largest distance in radii\n", lines;
+    int style = 0;
     for (const Json& shape : figures["shapes"]) {
-        series.push_back({shape.get<std::string>(), {}});
+        const std::string name = shape;
+        std::vector<std::pair<double, double>> points;
         for (const Json& c : figures["choices"])
-            series.back().points.push_back(
-                point_of(c, "triangles", c["largest_distance"][series.back().title]));
+            points.emplace_back(c["triangles"].get<double>(),
+                                c["largest_distance"][name].get<double>());
+        std::ranges::sort(points);
+        for (const auto& [triangles, off] : points)
+            data += fmt::format("{:.6g} {:.6g}\n", triangles, off);
+        data += "\n\n";
+        lines += fmt::format("{}datafile index {} using 1:2 with linespoints ls {} title '{}'",
+                             style ? ", " : "", style, style + 1, name);
+        ++style;
     }
-    return frontier_plot("tessellation-distance",
-                         "The largest distance of a hit point from the exact shape, in radii of "
-                         "its widest circle, against triangles of all shapes.",
-                         series, "triangles", "largest distance, radii");
+    return {"tessellation-distance",
+            "The largest distance of a hit point from the exact shape, in radii of its widest "
+            "circle, against triangles of all shapes.",
+            data,
+            "set logscale xy\nset format xy '10^{%L}'\nset xlabel 'triangles'\n"
+            "set ylabel 'largest distance, radii'\nplot " +
+                lines + "\n"};
 }
 
 /// The default has its own mark.
