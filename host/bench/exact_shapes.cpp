@@ -3,6 +3,8 @@
 // are. Based on: Hart, "Sphere Tracing", The Visual Computer 12 (1996).
 #include "host/bench/exact_shapes.h"
 
+#include "core/parallel.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -85,6 +87,16 @@ double first_hit(std::span<const ExactShape> shapes, const Ray& ray, double far)
         t += step / length;
     }
     return std::numeric_limits<double>::infinity();
+}
+
+std::vector<double> first_hits(std::span<const ExactShape> shapes, std::span<const Ray> rays,
+                               double far) {
+    std::vector<double> hits(rays.size());
+    parallel_for(rays.size(), 256, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            hits[i] = first_hit(shapes, rays[i], far);
+    });
+    return hits;
 }
 
 } // namespace ovc

@@ -36,5 +36,8 @@ std::string povray_scene(std::span<const ExactShape> shapes);
 /// t where the ray, from the outside, first meets one of them: to 1e-12 of the distance to the
 /// surface. Infinity where none is met within `far` lengths of its direction.
 double first_hit(std::span<const ExactShape> shapes, const Ray& ray, double far);
+/// Of each of the rays.
+std::vector<double> first_hits(std::span<const ExactShape> shapes, std::span<const Ray> rays,
+                               double far);
 
 } // namespace ovc

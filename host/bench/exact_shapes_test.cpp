@@ -57,12 +57,13 @@ TEST(ExactShapes, TellHowFarAnswersAreOff) {
     std::vector<Hit> hits(3);
     hits[0].t = 8, hits[0].id = {0, 0};
     hits[1].t = 9, hits[1].id = {0, 0};
-    const ShapeError none = shape_error(shapes, rays, hits, 100);
+    const std::vector<double> right = first_hits(shapes, rays, 100);
+    const ShapeError none = shape_error(shapes, rays, hits, right);
     EXPECT_NEAR(none.largest_t, 0, 1e-12);
     EXPECT_NEAR(none.rms_distance, 0, 1e-12);
     EXPECT_EQ(none.unlike, 0u);
     hits[0].t = 8.08;
-    const ShapeError some = shape_error(shapes, rays, hits, 100);
+    const ShapeError some = shape_error(shapes, rays, hits, right);
     EXPECT_NEAR(some.largest_t, 0.01, 1e-12);
     EXPECT_NEAR(some.rms_t, 0.01 / std::sqrt(2), 1e-12);
     EXPECT_NEAR(some.largest_distance[0], 0.08 / 2, 1e-12) << "in radii";
@@ -70,7 +71,7 @@ TEST(ExactShapes, TellHowFarAnswersAreOff) {
     EXPECT_NEAR(some.rms_distance, 0.04 / std::sqrt(2), 1e-12);
     hits[1] = {};
     hits[2].t = 3, hits[2].id = {0, 0};
-    EXPECT_EQ(shape_error(shapes, rays, hits, 100).unlike, 2u);
+    EXPECT_EQ(shape_error(shapes, rays, hits, right).unlike, 2u);
 }
 
 /// Both of one list: what the reader of scenes makes of the words lies on what the formulas say.

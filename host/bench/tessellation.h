@@ -26,9 +26,9 @@ struct ShapeError {
     uint64_t unlike = 0; // rays that hit the triangles and miss the shapes, or the other way
 };
 
-/// hits: as many as rays. `far`: lengths of a ray's direction within which all shapes lie.
+/// hits, and right, t where the exact shapes are hit (first_hits()): as many as rays.
 ShapeError shape_error(std::span<const ExactShape> shapes, std::span<const Ray> rays,
-                       std::span<const Hit> hits, double far);
+                       std::span<const Hit> hits, std::span<const double> right);
 
 struct TessellationRow {
     std::optional<double> tolerance; // nothing: what the reader does by itself

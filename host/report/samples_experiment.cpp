@@ -93,7 +93,7 @@ Plot plot_of(const Json& scene, size_t s) {
     }
     return frontier_plot(fmt::format("samples-{}", s + 1),
                          "Error of the picture against time of the whole program; of one program, "
-                         "more samples are to the right.",
+                         "more samples are lower.",
                          series, "s, from file to picture", "RMSE of the picture");
 }
 
@@ -127,8 +127,8 @@ Text missing_text(const Json& scene) {
 
 std::vector<Block> blocks(const Json& figures) {
     std::vector<Block> blocks = {Text{
-        "The same triangles, in one gray, under one light with shadows and in one file: "
-        "overcast and povray read the same one, tachyon its own with the same numbers in it. "
+        "The same triangles, in one gray, under one light with shadows: overcast and povray read "
+        "the same file, tachyon another with the same numbers in it. "
         "The error is the root mean square over pixels and colors of linear light, white "
         "being one, to what the CPU's KD-tree in double precision draws with four times the "
         "most samples. Time is of the whole program, from file to picture. A choice is "

@@ -20,7 +20,7 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
              {"bench", "--pictures", "tolerance", "--size", plan.quick ? "256x256" : "1024x1024",
               "--repeats", plan.quick ? "3" : "5", "--json", "{}/shapes.json"},
              "shapes.json",
-             plan.quick ? 10.0 : 60.0}};
+             plan.quick ? 8.0 : 90.0}};
 }
 
 Json megabytes(const Json& bytes) {
