@@ -11,10 +11,11 @@
 namespace ovc {
 namespace {
 
-nlohmann::json bench(const std::string& words) {
-    const test::CommandResult run =
-        test::run_shell(OVC_BINARY_DIR "/bin/overcast bench " + words +
-                        " --size 64x64 --repeats 1 --json - --log-level error");
+/// path: where other programs are looked for; empty: where they are.
+nlohmann::json bench(const std::string& words, const std::string& path = {}) {
+    const test::CommandResult run = test::run_shell(
+        (path.empty() ? "" : "PATH=" + path + " ") + OVC_BINARY_DIR "/bin/overcast bench " + words +
+        " --size 64x64 --repeats 1 --json - --log-level error");
     EXPECT_EQ(run.exit_code, 0) << run.output;
     return nlohmann::json::parse(run.output, nullptr, /* allow_exceptions= */ false);
 }
@@ -37,6 +38,21 @@ TEST(Pictures, OfAllProgramsComeNearerToOneWithMoreSamples) {
         EXPECT_LT(by_samples.at(16), 0.6 * by_samples.at(1)) << program;
     }
     EXPECT_EQ(errors["certified"], errors["cpu-kdtree"]);
+}
+
+TEST(Pictures, AreDrawnWithoutWhatIsNotInstalled) {
+    const nlohmann::json samples = bench("box --pictures samples --most 1", "/nowhere");
+    ASSERT_TRUE(samples.is_object());
+    EXPECT_EQ(samples["not_installed"], nlohmann::json({"povray", "tachyon"}));
+    EXPECT_EQ(samples["choices"][0]["program"], "certified");
+    for (const auto& choice : samples["choices"])
+        EXPECT_TRUE(choice["rmse"].is_number());
+    const nlohmann::json tolerance = bench("--pictures tolerance", "/nowhere");
+    ASSERT_TRUE(tolerance.is_object());
+    EXPECT_TRUE(tolerance["povray"].is_null());
+    EXPECT_GE(tolerance["rows"].size(), 5u);
+    for (const auto& row : tolerance["rows"])
+        EXPECT_TRUE(row["picture"].is_null());
 }
 
 TEST(Pictures, OfRoundShapesComeNearerToThemWithinTheTolerance) {
