@@ -34,7 +34,7 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
     for (const std::string& scene : scenes)
         runs.push_back(
             {fmt::format("scene-{}", runs.size() + 1),
-             {"bench", scene, "--pictures", "samples", "--size", plan.quick ? "128x128" : "384x384",
+             {"bench", scene, "--pictures", "samples", "--size", plan.quick ? "128x128" : "256x256",
               "--most", plan.quick ? "16" : "64", "--repeats", "3", "--json", "{}/pictures.json"},
              "pictures.json",
              plan.quick ? 20.0 : 300.0});
