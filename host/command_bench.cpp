@@ -4,8 +4,10 @@
 #include "host/bench/bench_arguments.h"
 #include "host/bench/bench_text.h"
 #include "host/bench/run_bars.h"
+#include "host/bench/sample_pictures.h"
 #include "host/bench/scene_bench.h"
 #include "host/bench/sweep.h"
+#include "host/bench/tessellation.h"
 #include "host/command.h"
 #include "host/interrupt.h"
 #include "host/log_arguments.h"
@@ -40,6 +42,10 @@ constexpr const char* kExamples = R"(Examples:
       overcast render beside povray and tachyon, where they are installed
   overcast bench plants --sweep budget
       what a budget of 5 % to 100 % of the pages costs; rays, triangles, leaves likewise
+  overcast bench sphere-5 --pictures samples --most 16
+      time against the error of a picture with 1, 4 and 16 samples a pixel, povray and tachyon too
+  overcast bench --pictures tolerance
+      triangles and time against the distance from exact spheres, cones and tori
   overcast bench dragon.ply --json - | jq '.scenes[].measurements[] | {contender, call_seconds}'
 
 All contenders answer the same rays with the same number of threads, and are in memory at once.
@@ -136,6 +142,24 @@ Result<Done> bench_sweep(const BenchJob& job, const BenchSurroundings& around) {
     return save(job, sweep_json(*sweep));
 }
 
+Result<Done> bench_samples(const BenchJob& job, const BenchSurroundings& around) {
+    const Result<SamplePictures> r = run_sample_pictures(
+        {job.scenes[0], job.size.width, uint32_t(job.most), job.repeats}, around);
+    if (!r)
+        return r.error();
+    show(job, sample_pictures_table(*r));
+    return save(job, sample_pictures_json(*r));
+}
+
+Result<Done> bench_tolerance(const BenchJob& job, const BenchSurroundings& around) {
+    const Result<Tessellation> r =
+        run_tessellation({job.size.width, job.repeats, job.device}, around);
+    if (!r)
+        return r.error();
+    show(job, tessellation_table(*r));
+    return save(job, tessellation_json(*r));
+}
+
 /// Contenders are in one process, and so have one width of vectors.
 bool any_fragment_kernel(const std::vector<Contender>& contenders) {
     return std::ranges::any_of(contenders, [](const Contender& c) {
@@ -152,6 +176,9 @@ Result<Done> bench_kind(const BenchJob& job, const BenchSurroundings& around) {
         return bench_programs(job, around);
     case BenchKind::Sweep:
         return bench_sweep(job, around);
+    case BenchKind::Pictures:
+        return job.pictures == PicturesBy::Samples ? bench_samples(job, around)
+                                                   : bench_tolerance(job, around);
     case BenchKind::Contenders:
         break;
     }

@@ -375,13 +375,21 @@ TEST_F(CommandTest, MoreTrianglesThanAllowedAreRefusedWithTheirCount) {
                     testing::HasSubstr("--max-triangles needs a whole number from 1 to "));
 }
 
+TEST_F(CommandTest, RoundShapesAreCutAsFinelyAsAskedFor) {
+    std::ofstream(path("ball.pbrt")) << "WorldBegin\nShape \"sphere\"\nWorldEnd\n";
+    const std::string scene = path("ball.pbrt");
+    EXPECT_EQ(error({"convert", scene, path("fine.ply"), "--tolerance", "0.001"}), "");
+    EXPECT_EQ(error({"convert", scene, path("coarse.ply"), "--tolerance", "0.1"}), "");
+    EXPECT_GT(fs::file_size(path("fine.ply")), 20 * fs::file_size(path("coarse.ply")));
+    for (const char* wrong : {"0", "-0.1", "0.00009", "0.6", "fine", "nan", "0.1x"})
+        EXPECT_EQ(error({"info", scene, "--tolerance", wrong}),
+                  fmt::format("--tolerance needs a number from 0.0001 to 0.5, not '{}'", wrong));
+}
+
 TEST_F(CommandTest, ReportSaysWhichReportsThereAre) {
     EXPECT_EQ(error({"report"}), "the report needs a folder: overcast report -o DIR");
     EXPECT_EQ(error({"report", "--only", "error"}),
               "the report needs a folder: overcast report -o DIR");
-    EXPECT_THAT(
-        error({"report", "--only", "tessellation"}),
-        testing::StartsWith("the experiment 'tessellation' is not there yet; there are error"));
     EXPECT_THAT(error({"report", "--only", "stabilty"}),
                 testing::AllOf(testing::StartsWith("no report is called 'stabilty'; there are "),
                                testing::EndsWith("did you mean 'stability'?")));

@@ -23,6 +23,7 @@ struct SceneArguments {
     std::string model; // empty: not given
     bool strict = false;
     std::string max_triangles; // empty: not given
+    std::string tolerance;     // empty: not given
 
     /// name: what the help calls the scene.
     void add_to(CLI::App& app, const char* name = "SCENE");

@@ -3,10 +3,10 @@
 #include "host/stats.h"
 
 #include "host/memory_size.h"
+#include "host/process_cost.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <sys/resource.h>
 
 namespace ovc {
 
@@ -14,9 +14,8 @@ namespace ovc {
 using Json = nlohmann::ordered_json;
 
 uint64_t host_peak_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return uint64_t(usage.ru_maxrss) * 1024; // Linux counts in KiB
+    // getrusage() would count what the program that started this one had.
+    return resident_bytes("VmHWM");
 }
 
 ovc_statistics counted_between(const ovc_statistics& before, const ovc_statistics& after) {

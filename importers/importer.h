@@ -16,6 +16,9 @@ namespace ovc {
 /// What a scene of instances may become where nothing else is said: 3.6 GB of soup.
 inline constexpr uint64_t kDefaultMostTriangles = 100'000'000;
 
+/// What ImportOptions::tolerance may be: from what a sphere of 1e5 triangles has to an octagon's.
+inline constexpr double kLeastTolerance = 1e-4, kMostTolerance = 0.5;
+
 struct ImportOptions {
     LogSink log; // warnings: what a file asks for and Overcast leaves out, one per kind
     /// Scene descriptions (.pbrt): what is unknown, missing or unusable is an error, not a warning.
@@ -23,6 +26,10 @@ struct ImportOptions {
     /// Scene descriptions: more triangles than this, instances expanded, are refused before they
     /// are made.
     uint64_t max_triangles = kDefaultMostTriangles;
+    /// Scene descriptions: how far a triangle may lie off the round shape it stands for, in the
+    /// shape's radii; from kLeastTolerance to kMostTolerance. Nothing: what the reader has found
+    /// good.
+    std::optional<double> tolerance = {};
     /// Of the picture to come, where that is known: scenes of POV-Ray may ask for it.
     std::optional<ImageSize> size = {};
     /// Receives every file that is read or looked for in vain; null: nobody asks.

@@ -209,7 +209,8 @@ TEST(BrokenKernel, ShowsUpAsWrongIds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Experiments, Report,
-                         testing::Values("error --scene sphere-4", "scale --scene sphere-6",
+                         testing::Values("error --scene sphere-4", "tessellation",
+                                         "samples --scene sphere-3", "scale --scene sphere-6",
                                          "hard-cases", "claims --scene sphere-5",
                                          "pictures --scene sphere-6", "left-out --scene sphere-3",
                                          "dragons --scene dragons-1", "dragonball",

@@ -23,6 +23,11 @@ static constexpr std::string_view kAuto = "auto";
 static constexpr std::array<std::string_view, 4> kSweeps = {"rays", "triangles", "leaves",
                                                             "budget"};
 
+/// In the order of PicturesBy.
+static constexpr std::array<std::string_view, 2> kPictures = {"samples", "tolerance"};
+/// Beyond it the reference, four times as many, would take more than a picture may.
+static constexpr uint64_t kMostSamples = 1024, kDefaultSamples = 64;
+
 static constexpr std::array<std::string_view, 5> kWorkloads = {"primary", "shadow", "diffuse",
                                                                "edges", "frame"};
 
@@ -39,8 +44,18 @@ void BenchWords::add_to(CLI::App& app) {
         ->type_name(choice_names(kSweeps))
         ->excludes(table)
         ->excludes(race);
+    app.add_option(
+           "--pictures", pictures,
+           "Instead: what whole pictures cost and how wrong they are, by samples a pixel of "
+           "SCENE's triangles, or by the tolerance of round shapes; beside povray and "
+           "tachyon")
+        ->type_name(choice_names(kPictures))
+        ->excludes(table)
+        ->excludes(race)
+        ->excludes(app.get_option("--sweep"));
     app.add_option("--most", most,
-                   "The last row of --sweep rays, triangles or leaves has at most so many")
+                   "The last row of --sweep rays, triangles or leaves has at most so many; of "
+                   "--pictures samples: 64")
         ->type_name("N");
     app.add_option("--workloads", workloads,
                    fmt::format("Which of {}; default: all but edges", fmt::join(kWorkloads, ", ")))
@@ -51,7 +66,8 @@ void BenchWords::add_to(CLI::App& app) {
                                fmt::join(contender_names(), ", ")))
         ->type_name("NAME,...");
     app.add_option("--size", size,
-                   "Pixels, and with them rays; default: 1024x1024; of --programs 512x512")
+                   "Pixels, and with them rays; default: 1024x1024; of --programs 512x512, of "
+                   "--pictures 256x256")
         ->type_name("WxH");
     app.add_option("--repeats", repeats, "Timed calls of each; default: 5")->type_name("N");
     app.add_option("--leaves", leaves,
@@ -195,15 +211,48 @@ static Result<Done> check_json(const BenchJob& job) {
     return Done{};
 }
 
-/// Which of the four is asked for, and that what goes with the others is not.
+static Result<Done> understand_sweep(const BenchWords& words, BenchJob& job) {
+    const Result<size_t> sweep = parse_choice("--sweep", words.sweep, kSweeps);
+    if (!sweep)
+        return sweep.error();
+    job.sweep = SweepOver(*sweep);
+    if (words.scenes.size() > 1)
+        return Error{"--sweep takes one scene"};
+    if (job.sweep == SweepOver::Triangles && !words.scenes.empty())
+        return Error{"--sweep triangles takes no scene: it has spheres of its own"};
+    return Done{};
+}
+
+static Result<Done> understand_pictures(const BenchWords& words, BenchJob& job) {
+    const Result<size_t> pictures = parse_choice("--pictures", words.pictures, kPictures);
+    if (!pictures)
+        return pictures.error();
+    job.pictures = PicturesBy(*pictures);
+    if (words.scenes.size() > 1)
+        return Error{"--pictures takes one scene"};
+    if (job.pictures == PicturesBy::Tolerance && !words.scenes.empty())
+        return Error{"--pictures tolerance takes no scene: it has round shapes of its own"};
+    return Done{};
+}
+
+static bool takes_most(const BenchWords& words, BenchKind kind) {
+    return (kind == BenchKind::Sweep && words.sweep != kSweeps[3]) ||
+           (kind == BenchKind::Pictures && words.pictures == kPictures[0]);
+}
+
+/// Which of them is asked for, and that what goes with the others is not.
 static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
-    const char* option = words.bars ? "--bars" : words.programs ? "--programs" : "--sweep";
-    job.kind = words.bars             ? BenchKind::Bars
-               : words.programs       ? BenchKind::Programs
-               : !words.sweep.empty() ? BenchKind::Sweep
-                                      : BenchKind::Contenders;
-    if (!words.most.empty() && (job.kind != BenchKind::Sweep || words.sweep == kSweeps[3]))
-        return Error{"--most goes with --sweep rays, triangles or leaves"};
+    const char* option = words.bars               ? "--bars"
+                         : words.programs         ? "--programs"
+                         : words.pictures.empty() ? "--sweep"
+                                                  : "--pictures";
+    job.kind = words.bars                ? BenchKind::Bars
+               : words.programs          ? BenchKind::Programs
+               : !words.sweep.empty()    ? BenchKind::Sweep
+               : !words.pictures.empty() ? BenchKind::Pictures
+                                         : BenchKind::Contenders;
+    if (!words.most.empty() && !takes_most(words, job.kind))
+        return Error{"--most goes with --sweep rays, triangles or leaves, and --pictures samples"};
     if (job.kind == BenchKind::Contenders)
         return Done{};
     for (const auto& [name, text] :
@@ -213,17 +262,10 @@ static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
         if (!text->empty())
             return Error{
                 fmt::format("{} chooses what is measured itself, without {}", option, name)};
-    if (job.kind == BenchKind::Sweep) {
-        const Result<size_t> sweep = parse_choice("--sweep", words.sweep, kSweeps);
-        if (!sweep)
-            return sweep.error();
-        job.sweep = SweepOver(*sweep);
-        if (words.scenes.size() > 1)
-            return Error{"--sweep takes one scene"};
-        if (job.sweep == SweepOver::Triangles && !words.scenes.empty())
-            return Error{"--sweep triangles takes no scene: it has spheres of its own"};
-        return Done{};
-    }
+    if (job.kind == BenchKind::Sweep)
+        return understand_sweep(words, job);
+    if (job.kind == BenchKind::Pictures)
+        return understand_pictures(words, job);
     if (words.scenes.size() != 1 || !std::filesystem::is_regular_file(words.scenes[0]))
         return Error{fmt::format("{} needs one mesh file, such as the Stanford dragon's", option)};
     return Done{};
@@ -238,17 +280,24 @@ Result<BenchJob> understand_bench(const BenchWords& words) {
     job.json = words.json;
     const std::string size_words = !words.size.empty()               ? words.size
                                    : job.kind == BenchKind::Programs ? "512x512"
+                                   : job.kind == BenchKind::Pictures ? "256x256"
                                                                      : "1024x1024";
     const Result<ImageSize> size = parse_size("--size", size_words);
     if (!size)
         return size.error();
     job.size = *size;
+    if (job.kind == BenchKind::Pictures && size->width != size->height)
+        return Error{fmt::format("--pictures draws squares, such as 256x256, not {}", size_words)};
+    if (job.kind == BenchKind::Pictures)
+        job.most = kDefaultSamples;
     const Result<uint64_t> repeats = parse_count("--repeats", words.repeats, 1, 1000);
     if (!repeats)
         return repeats.error();
     job.repeats = uint32_t(*repeats);
     if (!words.most.empty()) {
-        const Result<uint64_t> most = parse_count("--most", words.most, 1, 1'000'000'000);
+        const Result<uint64_t> most =
+            parse_count("--most", words.most, 1,
+                        job.kind == BenchKind::Pictures ? kMostSamples : 1'000'000'000);
         if (!most)
             return most.error();
         job.most = *most;

@@ -11,9 +11,11 @@
 
 namespace ovc {
 
-/// What is measured: contenders over scenes, the table of bars, whole programs, or how cost grows.
-enum class BenchKind { Contenders, Bars, Programs, Sweep };
+/// What is measured: contenders over scenes, the table of bars, whole programs, how cost grows, or
+/// what pictures cost and how wrong they are.
+enum class BenchKind { Contenders, Bars, Programs, Sweep, Pictures };
 enum class SweepOver { Rays, Triangles, Leaves, Budget };
+enum class PicturesBy { Samples, Tolerance };
 
 /// The words as given.
 struct BenchWords {
@@ -21,10 +23,11 @@ struct BenchWords {
     bool bars = false;
     bool programs = false;
     std::string sweep;
+    std::string pictures;
     std::string most;
     std::string only;
     std::string workloads;
-    std::string size; // empty: 1024x1024, of programs 512x512
+    std::string size; // empty: 1024x1024, of programs 512x512, of pictures 256x256
     std::string repeats = "5";
     std::string leaves;
     std::string gpu_memory;
@@ -38,7 +41,8 @@ struct BenchWords {
 struct BenchJob {
     BenchKind kind = BenchKind::Contenders;
     SweepOver sweep = SweepOver::Rays;
-    uint64_t most = UINT64_MAX;         // of rays, triangles or leaves of a sweep
+    PicturesBy pictures = PicturesBy::Samples;
+    uint64_t most = UINT64_MAX;         // of rays, triangles or leaves of a sweep; of samples
     std::vector<std::string> workloads; // empty: all but edges
     std::vector<std::string> scenes;
     ImageSize size;

@@ -111,6 +111,36 @@ TEST(BenchArguments, SayWhatIsWrong) {
         EXPECT_THAT(error(c.words), testing::HasSubstr(c.part));
 }
 
+TEST(BenchArguments, DrawPicturesBySamplesOrTolerance) {
+    const Result<BenchJob> samples =
+        understand_bench({.scenes = {"sphere-4"}, .pictures = "samples", .most = "16"});
+    ASSERT_TRUE(bool(samples)) << samples.error().message;
+    EXPECT_EQ(samples->kind, BenchKind::Pictures);
+    EXPECT_EQ(samples->pictures, PicturesBy::Samples);
+    EXPECT_EQ(samples->most, 16u);
+    EXPECT_EQ(samples->size.width, 256u);
+    EXPECT_EQ(understand_bench({.pictures = "samples"})->most, 64u);
+    EXPECT_EQ(understand_bench({.pictures = "tolerance"})->pictures, PicturesBy::Tolerance);
+    const auto error = [](const BenchWords& words) {
+        const Result<BenchJob> job = understand_bench(words);
+        return job ? "" : job.error().message;
+    };
+    EXPECT_EQ(error({.scenes = {"knot"}, .pictures = "tolerance"}),
+              "--pictures tolerance takes no scene: it has round shapes of its own");
+    EXPECT_EQ(error({.scenes = {"knot", "city"}, .pictures = "samples"}),
+              "--pictures takes one scene");
+    EXPECT_EQ(error({.pictures = "samples", .size = "64x32"}),
+              "--pictures draws squares, such as 256x256, not 64x32");
+    EXPECT_THAT(error({.pictures = "tolerance", .most = "5"}),
+                testing::HasSubstr("--most goes with --sweep rays, triangles or leaves, and "
+                                   "--pictures samples"));
+    EXPECT_THAT(error({.pictures = "samples", .most = "1025"}),
+                testing::HasSubstr("--most needs a whole number from 1 to 1024"));
+    EXPECT_THAT(error({.pictures = "sample"}), testing::HasSubstr("did you mean 'samples'?"));
+    EXPECT_THAT(error({.pictures = "samples", .only = "fast"}),
+                testing::HasSubstr("--pictures chooses what is measured itself, without --only"));
+}
+
 TEST(BenchArguments, ChooseOneKindOfBench) {
     EXPECT_EQ(understand_bench({})->kind, BenchKind::Contenders);
     const Result<BenchJob> leaves = understand_bench({.sweep = "leaves"});

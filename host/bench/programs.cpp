@@ -41,7 +41,7 @@ std::string povray_scene(const Soup& soup, const Shot& shot) {
     const auto out = std::back_inserter(text);
     // A negative `right` makes POV-Ray's coordinates right-handed, as ours are.
     fmt::format_to(out,
-                   "global_settings {{ assumed_gamma 1 }}\n"
+                   "#version 3.7;\nglobal_settings {{ assumed_gamma 1 }}\n"
                    "camera {{ location <{}> right -x*image_width/image_height look_at <{}> "
                    "angle {} }}\n"
                    "light_source {{ <{}> rgb 1 }}\nbackground {{ rgb 0.5 }}\n"
@@ -53,7 +53,7 @@ std::string povray_scene(const Soup& soup, const Shot& shot) {
     fmt::format_to(out, "\n}}\nface_indices {{\n{}", corners.size() / 3);
     for (size_t i = 0; i < corners.size(); i += 3)
         fmt::format_to(out, ",\n<{},{},{}>", corners[i], corners[i + 1], corners[i + 2]);
-    fmt::format_to(out, "\n}}\npigment {{ rgb 0.8 }}\n}}\n");
+    fmt::format_to(out, "\n}}\npigment {{ rgb 0.8 }}\nfinish {{ ambient 0 diffuse 1 }}\n}}\n");
     return text;
 }
 
@@ -61,20 +61,22 @@ std::string tachyon_scene(const Soup& soup, const Shot& shot) {
     const auto words = [](const dvec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
     // Tachyon's coordinates are left-handed: seen in a mirror along z, they are ours.
     const auto mirrored = [](dvec3 v) { return dvec3(v.x, v.y, -v.z); };
-    // At zoom 1 its picture is as wide as it is far.
-    const double zoom = 0.5 / std::tan(shot.fov_degrees * std::numbers::pi / 360);
+    // Its rays go through the upper right corners of pixels: half a pixel less is their middles.
+    const double half = std::tan(shot.fov_degrees * std::numbers::pi / 360);
+    const double half_pixel = half / shot.size;
     std::string text;
     const auto out = std::back_inserter(text);
     fmt::format_to(
         out,
         "BEGIN_SCENE\nRESOLUTION {0} {0}\n"
-        "CAMERA PROJECTION PERSPECTIVE ZOOM {1} ASPECTRATIO 1 ANTIALIASING 0 RAYDEPTH 2 "
-        "CENTER {2} VIEWDIR {3} UPDIR 0 1 0 END_CAMERA\n"
+        "CAMERA PROJECTION PERSPECTIVE ZOOM 1 ASPECTRATIO 1 ANTIALIASING 0 RAYDEPTH 2 "
+        "CENTER {1} VIEWDIR {2} UPDIR 0 1 0 FRUSTUM {3} {4} {3} {4} END_CAMERA\n"
         "BACKGROUND 0.5 0.5 0.5\n"
-        "LIGHT CENTER {4} RAD 0.001 COLOR 1 1 1\n"
+        "LIGHT CENTER {5} RAD 0.001 COLOR 1 1 1\n"
         "TEXDEF plain AMBIENT 0 DIFFUSE 0.8 SPECULAR 0 OPACITY 1 COLOR 1 1 1 TEXFUNC 0\n",
-        shot.size, zoom, words(mirrored(shot.eye)),
-        words(mirrored(glm::normalize(shot.target - shot.eye))), words(mirrored(shot.light)));
+        shot.size, words(mirrored(shot.eye)),
+        words(mirrored(glm::normalize(shot.target - shot.eye))), -half - half_pixel,
+        half - half_pixel, words(mirrored(shot.light)));
     for (const Chunk& chunk : soup.chunks)
         for (uint32_t prim = 0; prim < chunk.size(); ++prim) {
             fmt::format_to(out, "TRI");

@@ -9,6 +9,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -90,6 +91,10 @@ bool read_some(int pipe, std::string& text) {
     return size > 0 || (size < 0 && errno == EINTR);
 }
 
+double seconds_of(const timeval& time) {
+    return double(time.tv_sec) + 1e-6 * double(time.tv_usec);
+}
+
 } // namespace
 
 Result<ProgramEnd> watch_program(std::span<const std::string> words, double limit_seconds,
@@ -116,8 +121,10 @@ Result<ProgramEnd> watch_program(std::span<const std::string> words, double limi
     end.stopped = end.stopped || (stop && stop()); // Ctrl-C may have reached the program first
     close(child->errors);
     int status = 0;
-    while (waitpid(child->id, &status, 0) < 0 && errno == EINTR) {
+    rusage used{};
+    while (wait4(child->id, &status, 0, &used) < 0 && errno == EINTR) {
     }
+    end.cpu_seconds = seconds_of(used.ru_utime) + seconds_of(used.ru_stime);
     end.seconds = watch.seconds();
     end.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     end.said = last_line(said);

@@ -15,9 +15,10 @@ bool is_installed(const std::string& program);
 
 /// How a program came to its end.
 struct ProgramEnd {
-    double seconds = 0; // of wall clock
-    int exit_code = 0;  // -1: a signal ended it
-    std::string said;   // the last line it wrote to standard error
+    double seconds = 0;     // of wall clock
+    double cpu_seconds = 0; // of all its threads
+    int exit_code = 0;      // -1: a signal ended it
+    std::string said;       // the last line it wrote to standard error
     bool stopped = false;
     bool too_long = false;
 };

@@ -19,7 +19,7 @@ namespace {
 // The same script draws both. Sizes are those at which letters stay readable on a phone.
 constexpr const char* kScript = R"(datafile = '{0}.dat'
 set encoding utf8
-set key below samplen 1 width -2 font ',13'
+set key below samplen 1 width -2 height 0.8 font ',13'
 set grid lc rgb '#a0a0a0' lw 0.4
 set border 3
 set tics nomirror
@@ -28,6 +28,7 @@ set style line 2 lc rgb '#e0762a' pt 5 ps 0.9 lw 2
 set style line 3 lc rgb '#3c9f54' pt 9 ps 1.1 lw 2
 set style line 4 lc rgb '#b455c8' pt 13 ps 1.2 lw 2
 set style line 5 lc rgb '#808080' pt 3 ps 1.0 lw 2
+set style line 6 lc rgb '#b8860b' pt 11 ps 1.1 lw 2
 set style line 9 lc rgb '#808080' lw 1.5 dt 2
 set terminal svg size 640,440 dynamic font 'sans-serif,15' name '{2}'
 set output '{0}.svg'

@@ -12,13 +12,11 @@
 
 namespace ovc {
 
-/// Of the design, and not written yet.
-static constexpr std::string_view kMissing[] = {"tessellation"};
-
 static const Experiment kExperiments[] = {
-    error_experiment(),      hard_experiment(),    scale_experiment(),      left_out_experiment(),
-    pictures_experiment(),   dragons_experiment(), dragonball_experiment(), plants_experiment(),
-    powerplant_experiment(), claims_experiment()};
+    error_experiment(),    tessellation_experiment(), samples_experiment(),
+    hard_experiment(),     scale_experiment(),        left_out_experiment(),
+    pictures_experiment(), dragons_experiment(),      dragonball_experiment(),
+    plants_experiment(),   powerplant_experiment(),   claims_experiment()};
 
 std::span<const Experiment> experiments() {
     return kExperiments;
@@ -31,9 +29,6 @@ Result<const Experiment*> find_experiment(const std::string& name) {
             return &one;
         names.push_back(one.name);
     }
-    if (std::ranges::find(kMissing, name) != std::end(kMissing))
-        return Error{fmt::format("the experiment '{}' is not there yet; there are {}", name,
-                                 fmt::join(names, ", "))};
     names.insert(names.end(), {"stability", "leaks", "grid"}); // tables of their own
     return Error{fmt::format("no report is called '{}'; there are {}{}", name,
                              fmt::join(names, ", "), did_you_mean(name, names))};

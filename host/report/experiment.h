@@ -51,7 +51,7 @@ struct Experiment {
 /// In the order of the page.
 std::span<const Experiment> experiments();
 
-/// Error: none has this name; those of the plan that are not there yet are named as such.
+/// Error: none has this name.
 Result<const Experiment*> find_experiment(const std::string& name);
 
 } // namespace ovc

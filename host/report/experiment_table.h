@@ -8,6 +8,10 @@ namespace ovc {
 
 /// What each choice of precision, kernel, leaves, budget and program costs, and how wrong it is.
 Experiment error_experiment();
+/// Finer triangles against exact round shapes.
+Experiment tessellation_experiment();
+/// Errors of pictures by samples a pixel.
+Experiment samples_experiment();
 /// The stability suite, and a grid of scales, offsets and aspects.
 Experiment hard_experiment();
 /// Rays, triangles, leaves and budgets from few to many.

@@ -31,10 +31,10 @@ constexpr double kMostSteps = 16;
 
 /// Divided into n x n, a patch lies 1/n^2 of its bulge off its triangles. All are divided alike,
 /// or neighbours would not meet.
-uint32_t steps_for(const std::vector<Patch>& patches) {
+uint32_t steps_for(const std::vector<Patch>& patches, double tolerance) {
     double steps = 1;
     for (const Patch& patch : patches) {
-        const double allowed = kTolerance * patch.size();
+        const double allowed = tolerance * patch.size();
         if (allowed > 0 && allowed < 1e300 && patch.bulge() > 1e-9 * patch.size())
             steps = std::max(steps, std::ceil(std::sqrt(patch.bulge() / allowed)));
     }
@@ -73,7 +73,7 @@ std::optional<Mesh> make_bilinear_mesh(ShapeRequest& request) {
         const double* p = points.data() + size_t((*indices)[i]) * 3;
         patches[i / 4].p[i % 4] = {p[0], p[1], p[2]};
     }
-    const uint32_t steps = steps_for(patches);
+    const uint32_t steps = steps_for(patches, request.tolerance);
     if (patches.size() * 2 * steps * steps > request.most_triangles) {
         request.diagnostics.fail(
             request.place,

@@ -17,7 +17,13 @@ bool Interpreter::shape() {
     if (!read_typed(type, parameters))
         return false;
     const uint64_t left = options_.max_triangles - std::min(options_.max_triangles, triangles_);
-    ShapeRequest request{type, parameters, place_, tokens_, diagnostics_, left};
+    ShapeRequest request{type,
+                         parameters,
+                         place_,
+                         tokens_,
+                         diagnostics_,
+                         left,
+                         options_.tolerance.value_or(kTolerance)};
     std::optional<Mesh> mesh = make_shape(request);
     if (diagnostics_.failed())
         return false;

@@ -28,21 +28,25 @@ struct Profile {
     }
 };
 
-/// Steps round a full circle: a multiple of 4, so that the bounds are exact. A triangle between
-/// steps of angle a lies 1 - cos(a / 2) radii off a cylinder, about twice that off a sphere.
-double steps_round(bool is_curved) {
-    const double steps = kPi / std::sqrt(is_curved ? kTolerance : 2 * kTolerance);
-    return 4 * std::ceil(steps / 4);
-}
+/// How finely curves are divided.
+struct Steps {
+    double tolerance; // as kTolerance
 
-/// From 1 to kMostSteps; 1 for what is no number.
-size_t whole_steps(double steps) {
-    return steps > 1 ? size_t(std::ceil(std::min(steps, kMostSteps))) : 1;
-}
-
-size_t steps_for(double share_of_circle, bool is_curved) {
-    return whole_steps(share_of_circle * steps_round(is_curved) - 1e-9);
-}
+    /// Round a full circle: a multiple of 4, so that the bounds are exact. A triangle between steps
+    /// of angle a lies 1 - cos(a / 2) radii off a cylinder, about twice that off a sphere.
+    double round(bool is_curved) const {
+        const double steps = kPi / std::sqrt(is_curved ? tolerance : 2 * tolerance);
+        return 4 * std::ceil(steps / 4);
+    }
+    /// From 1 to as many as a circle has, or kMostSteps; 1 for what is no number.
+    size_t whole(double steps) const {
+        const double most = std::max(kMostSteps, round(true));
+        return steps > 1 ? size_t(std::ceil(std::min(steps, most))) : 1;
+    }
+    size_t of(double share_of_circle, bool is_curved) const {
+        return whole(share_of_circle * round(is_curved) - 1e-9);
+    }
+};
 
 /// About z; exact at quarter turns.
 dvec3 turned(const dvec3& p, double turns) {
@@ -62,9 +66,9 @@ bool on_axis(const dvec3& p) {
 
 /// Rows of vertices at each step of phi; a row on the axis is one point, yet has a normal for each
 /// step. Triangles without area at such points are left out.
-Mesh sweep(const Profile& profile, double phi_max_degrees) {
+Mesh sweep(const Profile& profile, double phi_max_degrees, const Steps& fine) {
     const double share = std::clamp(phi_max_degrees, 0.0, 360.0) / 360;
-    const size_t steps = steps_for(share, profile.is_curved);
+    const size_t steps = fine.of(share, profile.is_curved);
     const bool closed = share == 1;
     const size_t columns = closed ? steps : steps + 1;
     const size_t rows = profile.points.size();
@@ -91,7 +95,7 @@ double clamped(const Parameters& p, std::string_view name, double otherwise, dou
     return std::clamp(p.number(name, otherwise), -radius, radius);
 }
 
-Profile sphere(const Parameters& p) {
+Profile sphere(const Parameters& p, const Steps& fine) {
     const double radius = std::abs(p.number("radius", 1));
     const double z0 = clamped(p, "zmin", -radius, radius), z1 = clamped(p, "zmax", radius, radius);
     if (!(radius > 0) || !(z0 != z1))
@@ -100,7 +104,7 @@ Profile sphere(const Parameters& p) {
     const double high = std::asin(std::max(z0, z1) / radius);
     Profile profile;
     profile.is_curved = true;
-    const size_t steps = steps_for((high - low) / (2 * kPi), true);
+    const size_t steps = fine.of((high - low) / (2 * kPi), true);
     for (size_t i = 0; i <= steps; ++i) {
         const double latitude = low + (high - low) * double(i) / double(steps);
         const bool is_pole = std::abs(latitude) == kPi / 2;
@@ -114,7 +118,7 @@ Profile sphere(const Parameters& p) {
     return profile;
 }
 
-Profile cylinder(const Parameters& p) {
+Profile cylinder(const Parameters& p, const Steps&) {
     const double radius = std::abs(p.number("radius", 1));
     const double z0 = p.number("zmin", -1), z1 = p.number("zmax", 1);
     Profile profile;
@@ -123,7 +127,7 @@ Profile cylinder(const Parameters& p) {
     return profile;
 }
 
-Profile disk(const Parameters& p) {
+Profile disk(const Parameters& p, const Steps&) {
     const double height = p.number("height", 0);
     Profile profile;
     profile.add({p.number("radius", 1), 0, height}, {0, 0, 1});
@@ -131,7 +135,7 @@ Profile disk(const Parameters& p) {
     return profile;
 }
 
-Profile cone(const Parameters& p) {
+Profile cone(const Parameters& p, const Steps&) {
     const double radius = p.number("radius", 1), height = p.number("height", 1);
     const dvec3 normal(height, 0, radius);
     Profile profile;
@@ -141,7 +145,7 @@ Profile cone(const Parameters& p) {
 }
 
 /// z grows with the square of the distance from the axis.
-Profile paraboloid(const Parameters& p) {
+Profile paraboloid(const Parameters& p, const Steps& fine) {
     const double radius = std::abs(p.number("radius", 1));
     const double z0 = p.number("zmin", 0), z1 = p.number("zmax", 1);
     const double top = std::max(z0, z1), bottom = std::max(std::min(z0, z1), 0.0);
@@ -151,8 +155,8 @@ Profile paraboloid(const Parameters& p) {
     profile.is_curved = true;
     const double first = std::sqrt(bottom / top);
     // A chord over a step s of the share of the radius lies top s^2 / 4 off the parabola.
-    const double step = 2 * std::sqrt(kTolerance * radius / top);
-    const size_t steps = whole_steps((1 - first) / step);
+    const double step = 2 * std::sqrt(fine.tolerance * radius / top);
+    const size_t steps = fine.whole((1 - first) / step);
     for (size_t i = 0; i <= steps; ++i) {
         const double share = i == steps ? 1 : first + (1 - first) * double(i) / double(steps);
         profile.add({radius * share, 0, top * share * share}, {2 * top * share, 0, -radius});
@@ -161,14 +165,14 @@ Profile paraboloid(const Parameters& p) {
 }
 
 /// A line turned about the axis.
-Profile hyperboloid(const Parameters& p) {
+Profile hyperboloid(const Parameters& p, const Steps& fine) {
     const dvec3 p1 = p.point("p1", {0, 0, 0}), p2 = p.point("p2", {1, 1, 1});
     const auto azimuth = [](const dvec3& v) { return std::atan2(v.y, v.x); };
     double twist = on_axis(p1) || on_axis(p2) ? 0 : std::abs(azimuth(p2) - azimuth(p1));
     twist = std::min(twist, 2 * kPi - twist);
     Profile profile;
     profile.is_curved = twist > 0;
-    const size_t steps = steps_for(twist / (2 * kPi), true);
+    const size_t steps = fine.of(twist / (2 * kPi), true);
     for (size_t i = 0; i <= steps; ++i) {
         const dvec3 at = glm::mix(p1, p2, double(i) / double(steps));
         const dvec3 round =
@@ -180,7 +184,7 @@ Profile hyperboloid(const Parameters& p) {
 
 struct Quadric {
     std::string_view type;
-    Profile (*profile)(const Parameters&);
+    Profile (*profile)(const Parameters&, const Steps&);
 };
 
 constexpr Quadric kQuadrics[] = {{"sphere", sphere},         {"disk", disk},
@@ -200,11 +204,12 @@ std::optional<Mesh> make_quadric(ShapeRequest& request) {
     for (const Quadric& quadric : kQuadrics) {
         if (quadric.type != request.type)
             continue;
-        const Profile profile = quadric.profile(request.parameters);
+        const Steps fine{request.tolerance};
+        const Profile profile = quadric.profile(request.parameters, fine);
         const double phi = request.parameters.number("phimax", 360);
         if (!is_usable(profile) || !(phi > 0))
             return left_out(request, "its numbers make no surface");
-        return sweep(profile, phi);
+        return sweep(profile, phi, fine);
     }
     return std::nullopt;
 }

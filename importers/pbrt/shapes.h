@@ -16,13 +16,15 @@ struct ShapeRequest {
     const Tokens& tokens; // where files are found
     Diagnostics& diagnostics;
     uint64_t most_triangles; // what the scene still allows
+    double tolerance;        // as kTolerance
 };
 
 /// Nothing where the shape is left out: unknown, without its data, or with data that does not fit
 /// together. Why has been said, then.
 std::optional<Mesh> make_shape(ShapeRequest& request);
 
-/// How far a triangle may lie off the curved surface that it stands for, in radii.
+/// How far a triangle may lie off the curved surface that it stands for, in radii, where nothing
+/// else is asked for.
 inline constexpr double kTolerance = 1.0 / 160;
 
 // Each as make_shape().

@@ -12,9 +12,11 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-std::vector<Triangle> shape(const std::string& text) {
+std::vector<Triangle> shape(const std::string& text, std::optional<double> tolerance = {}) {
     const TestFolder folder;
-    return triangles_of(load(folder.write("a.pbrt", "Shape " + text)));
+    ImportOptions options;
+    options.tolerance = tolerance;
+    return triangles_of(load(folder.write("a.pbrt", "Shape " + text), options));
 }
 
 double area_of(const std::vector<Triangle>& triangles) {
@@ -92,6 +94,26 @@ TEST(PbrtShapes, QuadricsLieOnTheirEquationsAndFaceOutwards) {
             return std::hypot(p.x, p.y) - std::hypot(1 - 0.2 * v, v);
         },
         0.02, "hyperboloid");
+}
+
+TEST(PbrtShapes, QuadricsLieWithinTheToleranceThatIsAskedFor) {
+    const auto ball = [](const dvec3& p) { return glm::length(p) - 1; };
+    const auto tube = [](const dvec3& p) { return std::hypot(p.x, p.y) - 1; };
+    size_t fewer = 0;
+    for (const double tolerance : {kMostTolerance, 0.1, 0.01, 0.001, kLeastTolerance}) {
+        const auto sphere = shape("\"sphere\"", tolerance);
+        EXPECT_GT(sphere.size(), 2 * fewer) << tolerance;
+        fewer = sphere.size();
+        double most_round = 0, most_flat = 0;
+        for (const Triangle& t : sphere)
+            most_round = std::max(most_round, -ball((t[0] + t[1] + t[2]) / 3.0));
+        for (const Triangle& t : shape("\"cylinder\"", tolerance))
+            most_flat = std::max(most_flat, -tube((t[0] + t[1] + t[2]) / 3.0));
+        EXPECT_LE(most_round, tolerance);
+        EXPECT_GE(most_round, tolerance / 4);
+        EXPECT_LE(most_flat, tolerance);
+        EXPECT_GE(most_flat, tolerance / 4);
+    }
 }
 
 TEST(PbrtShapes, QuadricsHaveTheAreaAndTheBoundsTheyShould) {

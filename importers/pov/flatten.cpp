@@ -287,7 +287,14 @@ double triangles_at(const Gatherer& gatherer, int segments) {
     return sum;
 }
 
-int choose_segments(const Gatherer& gatherer) {
+/// Facets between steps of angle a both ways lie about 2 (1 - cos(a / 2)) radii off a sphere.
+int segments_within(double tolerance) {
+    return std::max(8, 4 * int(std::ceil(std::numbers::pi / std::sqrt(tolerance) / 4)));
+}
+
+int choose_segments(const Gatherer& gatherer, std::optional<double> tolerance) {
+    if (tolerance)
+        return segments_within(*tolerance);
     int segments = kMostSegments;
     while (segments > 8 &&
            triangles_at(gatherer, segments) - triangles_at(gatherer, 0) > kMostRoundTriangles)
@@ -462,7 +469,7 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
         gatherer.gather(*object, {});
     const std::vector<Placed>& placed = gatherer.placed;
 
-    const int segments = choose_segments(gatherer);
+    const int segments = choose_segments(gatherer, look.tolerance);
     require_at_most(look.most_triangles, gatherer, segments, {});
     const Box box = box_of(gatherer, 8);
     const dvec3 origin = chunk_origin(box, 16);
@@ -524,7 +531,7 @@ struct ObjectAlone {
 CutObject cut_object(const Object& object, uint64_t most_triangles) {
     const ObjectAlone alone(object, most_triangles);
     const Gatherer& gatherer = alone.gatherer;
-    const int segments = choose_segments(gatherer);
+    const int segments = choose_segments(gatherer, alone.look.tolerance);
     require_at_most(most_triangles, gatherer, segments, object.place);
     CutObject cut;
     Facets facets;

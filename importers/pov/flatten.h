@@ -12,6 +12,7 @@ struct Look {
     Texture defaults;
     vec3 ambient_light{1};
     uint64_t most_triangles = kDefaultMostTriangles;
+    std::optional<double> tolerance;       // as ImportOptions has it
     std::function<void(const Note&)> tell; // of what is to be seen; none: nobody asks
     std::optional<dvec3> eye;              // planes reach as far as it can see them
 };
@@ -20,8 +21,8 @@ struct Look {
 /// Throws ParseError for an object that cannot be cut.
 void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& scene);
 
-/// A circle has at most this many straight pieces, fewer where a scene would come to more than
-/// kMostRoundTriangles triangles; at least 8.
+/// Where no tolerance is asked for, a circle has at most this many straight pieces, fewer where a
+/// scene would come to more than kMostRoundTriangles triangles; at least 8.
 inline constexpr int kMostSegments = 96;
 inline constexpr double kMostRoundTriangles = 3e6;
 

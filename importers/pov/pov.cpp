@@ -72,6 +72,7 @@ public:
         look_.eye = camera_->location;
         look_.defaults = reader_.defaults;
         look_.most_triangles = options_.max_triangles;
+        look_.tolerance = options_.tolerance;
         look_.tell = [&](const Note& note) { reader_.warn(note.kind, note.place, note.sentence); };
         flatten(objects_, look_, scene);
         return scene;

@@ -167,6 +167,30 @@ TEST(PovShapes, VerticesLieOnTheSphere) {
             ASSERT_NEAR(glm::length(corner), 1, 1e-7);
 }
 
+/// How far the farthest point of a triangle is inside the unit sphere that its corners lie on.
+double most_off_the_ball(const std::vector<Triangle>& triangles) {
+    double most = 0;
+    for (const Triangle& t : triangles) {
+        most = std::max(most, 1 - glm::length(t[0] + t[1] + t[2]) / 3);
+        for (size_t i = 0; i < 3; ++i)
+            most = std::max(most, 1 - glm::length(t[i] + t[(i + 1) % 3]) / 2);
+    }
+    return most;
+}
+
+TEST(PovShapes, FacetsLieWithinTheTolerance) {
+    const auto cut = [](std::optional<double> tolerance) {
+        ImportOptions options;
+        options.tolerance = tolerance;
+        return triangles_of(parse_pov("sphere { 0, 1 }", "x.pov", options));
+    };
+    for (const double tolerance : {kMostTolerance, 0.1, 0.01, 0.001, kLeastTolerance}) {
+        EXPECT_LE(most_off_the_ball(cut(tolerance)), tolerance + 1e-7) << tolerance;
+        EXPECT_GE(most_off_the_ball(cut(tolerance)), tolerance / 4) << tolerance;
+    }
+    EXPECT_NEAR(most_off_the_ball(cut({})), 0.0011, 0.0001); // as docs/pov.md says
+}
+
 TEST(PovShapes, ManyRoundThingsAreCutMoreCoarsely) {
     const std::string loop = "#for (I, 1, 20000) sphere { I*x, 0.4 } #end";
     const size_t triangles = triangles_of(parse_pov(loop, "x.pov", {})).size();
