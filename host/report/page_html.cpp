@@ -191,6 +191,8 @@ std::string page_html(const Page& page, const std::map<std::string, std::string>
     html += "</nav>\n</header>\n";
     for (const std::string& trouble : page.troubles)
         html += "<p class=\"trouble\">" + escaped(trouble) + "</p>\n";
+    if (!page.missing.empty())
+        html += "<p class=\"soft\">" + escaped(page.missing_text()) + "</p>\n";
     for (const Section& section : page.sections)
         html += Writer(section, pictures).html();
     return html + kFoot;
