@@ -18,7 +18,8 @@ namespace ovc {
 namespace {
 
 std::string command_of(const ReportRun& run) {
-    return fmt::format("overcast {}", fmt::join(run.words, " "));
+    return fmt::format("{}{}overcast {}", fmt::join(run.variables, " "),
+                       run.variables.empty() ? "" : " ", fmt::join(run.words, " "));
 }
 
 } // namespace

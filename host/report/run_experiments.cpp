@@ -45,7 +45,12 @@ private:
 
 std::vector<std::string> words_of(const ReportRun& run, const std::string& program,
                                   const std::string& folder) {
-    std::vector<std::string> words = {program};
+    std::vector<std::string> words;
+    if (!run.variables.empty()) {
+        words.push_back("env");
+        words.insert(words.end(), run.variables.begin(), run.variables.end());
+    }
+    words.push_back(program);
     for (std::string word : run.words) {
         if (const size_t at = word.find("{}"); at != std::string::npos)
             word.replace(at, 2, folder);

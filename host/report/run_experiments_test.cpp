@@ -71,6 +71,17 @@ TEST_F(RunExperiments, KeepResultsAndDoNotRepeatThem) {
     EXPECT_EQ(std::distance(fs::directory_iterator(scratch.path() / "raw" / "scripts"), {}), 2);
 }
 
+TEST_F(RunExperiments, SetVariablesOfTheEnvironment) {
+    add("plain", "echo \"{\\\"n\\\": \\\"$OF_A_RUN\\\"}\" > $0/result.json");
+    scripts.push_back(scripts[0]);
+    scripts[1].variables = {"OF_A_RUN=set"};
+    const Outcome outcome = run();
+    ASSERT_EQ(outcome.results.size(), 2u);
+    EXPECT_EQ(outcome.results[0].result["n"], "");
+    EXPECT_EQ(outcome.results[1].result["n"], "set")
+        << "another command, so not the first's result";
+}
+
 TEST_F(RunExperiments, SayWhatFailedAndGoOn) {
     add("bad", "echo the reason >&2; exit 1");
     add("broken", "echo '{\"n\": ' > $0/result.json");
