@@ -28,6 +28,8 @@ set style line 2 lc rgb '#e0762a' pt 5 ps 0.9 lw 2
 set style line 3 lc rgb '#3c9f54' pt 9 ps 1.1 lw 2
 set style line 4 lc rgb '#b455c8' pt 13 ps 1.2 lw 2
 set style line 5 lc rgb '#808080' pt 3 ps 1.0 lw 2
+set style line 6 lc rgb '#c2452d' pt 11 ps 1.1 lw 2
+set style line 7 lc rgb '#1d9a96' pt 15 ps 1.0 lw 2
 set style line 9 lc rgb '#808080' lw 1.5 dt 2
 set terminal svg size 640,440 dynamic font 'sans-serif,15' name '{2}'
 set output '{0}.svg'
