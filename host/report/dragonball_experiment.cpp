@@ -145,7 +145,7 @@ Plot leaf_plot(const Json& figures) {
                                      (*one)[cost.mean].get<double>());
         data += fmt::format("# {}: leaves, {}\n{}\n\n", key, cost.label, lines);
         curves += fmt::format("{}datafile index {} using 1:2 with linespoints ls {} title '{}'",
-                              block ? ", " : "", block, block + 1, thesis_system(key).name);
+                              block ? ", " : "", block, style_of(key), thesis_system(key).name);
         ++block;
     }
     return {"dragonball-leaves", "Figure 4.7 (b) of the thesis, here: time a frame against leaves.",

@@ -172,7 +172,7 @@ Plot growth_plot(const Json& figures) {
             continue;
         data += fmt::format("# {}: dragons, {}\n{}\n\n", system.name, cost.label, lines);
         curves += fmt::format("{}datafile index {} using 1:2 with linespoints ls {} title '{}'",
-                              block ? ", " : "", block, block + 1, system.name);
+                              block ? ", " : "", block, style_of(system.key), system.name);
         ++block;
     }
     return {"dragons-time", "Figure 4.5 (a) of the thesis, here: time a frame against dragons.",
@@ -194,9 +194,9 @@ Plot size_plot(const Json& figures) {
             "Figure 4.5 (b) and table 4.2 of the thesis, here: MB on the GPU against dragons.",
             data,
             "set xlabel 'dragons'\nset ylabel 'MB'\nset yrange [0:*]\nset xtics 2\n"
-            "plot datafile using 1:2 with linespoints ls 5 title 'the thesis reports', "
+            "plot datafile using 1:2 with linespoints ls 7 title 'the thesis reports', "
             "datafile using 1:3 with linespoints ls 3 title 'its two-level, here', "
-            "datafile using 1:4 with linespoints ls 1 title 'the product'\n"};
+            "datafile using 1:4 with linespoints ls 5 title 'the product'\n"};
 }
 
 Table growth_table(const Json& figures) {

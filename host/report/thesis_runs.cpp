@@ -36,6 +36,11 @@ const ThesisSystem& thesis_system(std::string_view key) {
     return *found;
 }
 
+int style_of(std::string_view key) {
+    const auto found = std::ranges::find(thesis_systems(), key, &ThesisSystem::key);
+    return found == thesis_systems().end() ? 1 : int(found - thesis_systems().begin()) + 1;
+}
+
 ReportRun frames_run(const std::string& key, const ThesisSystem& system, const FramesAsked& asked,
                      double seconds) {
     ReportRun run{fmt::format("{}{}{}", key, kBetween, system.key),
@@ -220,7 +225,7 @@ Plot frames_plot(const std::string& name, const std::string& caption, const Json
         data += "\n\n";
         curves +=
             fmt::format("{}datafile index {} using 1:2 with linespoints ls {} title '{}'",
-                        block ? ", " : "", block, block + 1, (*one)["name"].get<std::string>());
+                        block ? ", " : "", block, style_of(key), (*one)["name"].get<std::string>());
         ++block;
     }
     return {name, caption, data,

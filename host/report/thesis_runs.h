@@ -21,6 +21,9 @@ std::span<const ThesisSystem> thesis_systems();
 /// Asserts that there is one.
 const ThesisSystem& thesis_system(std::string_view key);
 
+/// gnuplot's style of its curves, the same in every plot.
+int style_of(std::string_view key);
+
 struct FramesAsked {
     std::string scene;
     std::string frames; // as --frames takes them
