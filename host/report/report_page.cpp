@@ -2,6 +2,7 @@
 // The report as a whole.
 #include "host/report/report_page.h"
 
+#include "core/parallel.h"
 #include "host/interrupt.h"
 #include "host/output.h"
 #include "host/report/draw_plot.h"
@@ -31,6 +32,17 @@ std::string today() {
     std::string text(16, '\0');
     text.resize(std::strftime(text.data(), text.size(), "%Y-%m-%d", &parts));
     return text;
+}
+
+/// "AMD EPYC 9R14, 2 threads", as Linux names it; elsewhere the threads alone.
+std::string machine_text() {
+    std::ifstream info("/proc/cpuinfo");
+    std::string name;
+    for (std::string line; name.empty() && std::getline(info, line);)
+        if (const size_t colon = line.find(": ");
+            line.starts_with("model name") && colon != std::string::npos)
+            name = line.substr(colon + 2) + ", ";
+    return fmt::format("{}{} threads", name, thread_count());
 }
 
 /// A section where all was run; troubles where something went wrong.
@@ -130,8 +142,8 @@ Result<int> make_report_page(const ReportJob& job) {
     if (!outcomes)
         return outcomes.error();
     Page page;
-    page.subtitle = fmt::format("overcast {}, {} form, {}", version_text(),
-                                job.plan.quick ? "the quick" : "the full", today());
+    page.subtitle = fmt::format("overcast {}, {} form, {}, {}", version_text(),
+                                job.plan.quick ? "the quick" : "the full", today(), machine_text());
     for (const Outcome& outcome : *outcomes)
         add_section(outcome, page);
     if (interrupt.interrupted())
