@@ -188,7 +188,7 @@ Json findings_of(const std::vector<Finding>& findings) {
 
 Table findings_table(const Json& figures) {
     Table table;
-    table.caption = "What the thesis found, and what is measured here";
+    table.caption = "What the thesis says of its curves, and what is measured here";
     table.header = {"", "the thesis reports", "its system, here", "the product"};
     for (size_t i = 0; i < figures["findings"].size(); ++i) {
         const std::string at = fmt::format("/findings/{}", i);
