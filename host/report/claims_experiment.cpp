@@ -93,11 +93,11 @@ Json figures(std::span<const RawResult> results) {
             {"scenes", scenes}};
 }
 
-/// gnuplot takes labels of tics for formats: a percent sign is written twice.
+/// As gnuplot takes the label of a tic within single quotes: it is a format, too.
 std::string tic(const std::string& label) {
     std::string text;
     for (const char c : label)
-        text += c == '%' ? std::string("%%") : std::string(1, c);
+        text += std::string(c == '%' || c == '\'' ? 2 : 1, c);
     return text;
 }
 
