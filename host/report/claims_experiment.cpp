@@ -13,6 +13,8 @@ namespace ovc {
 
 namespace {
 
+constexpr const char* kBars = "bars";
+
 ReportRun stats_run(const char* key, std::vector<std::string> words, double seconds) {
     words.insert(words.begin(), "render");
     words.insert(words.end(), {"--quiet", "--stats", "{}/stats.json", "-o", "{}/picture.png"});
@@ -24,7 +26,7 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
                              : !plan.mesh.empty() ? plan.mesh
                              : plan.quick         ? "sphere-7"
                                                   : "knot";
-    ReportRun bars{"bars", {"bench", mesh, "--bars"}, "bars.json", plan.quick ? 75.0 : 240.0};
+    ReportRun bars{kBars, {"bench", mesh, "--bars"}, "bars.json", plan.quick ? 75.0 : 240.0};
     if (plan.quick)
         bars.words.insert(bars.words.end(), {"--size", "256x256", "--repeats", "3"});
     bars.words.insert(bars.words.end(), {"--json", "{}/bars.json"});
@@ -78,19 +80,20 @@ Json row_of(const Claim& claim, const ClaimResults& results) {
 
 Json figures(std::span<const RawResult> results) {
     const ClaimResults measured(results);
-    Json rows = Json::array(), scenes = Json::array();
+    Json rows = Json::array();
+    std::string mesh;
     for (const Claim& claim : claims())
         rows.push_back(row_of(claim, measured));
-    if (const Json& bars = measured.of("bars"); bars.is_object())
-        for (const Json& scene : bars["scenes"])
-            scenes.push_back(std::filesystem::path(scene["scene"].get<std::string>()).filename());
+    for (const RawResult& raw : results)
+        if (raw.run.key == kBars)
+            mesh = std::filesystem::path(raw.run.words[1]).filename();
     const auto count = [&](const char* verdict) {
         return std::ranges::count(rows, verdict, [](const Json& row) { return row["verdict"]; });
     };
     return {{"rows", rows},
             {"held", count("holds")},
             {"failed", count("misses the bar")},
-            {"scenes", scenes}};
+            {"mesh", mesh}};
 }
 
 /// As gnuplot takes the label of a tic within single quotes: it is a format, too.
@@ -118,12 +121,14 @@ Plot reached_plot(const Json& figures) {
     }
     return {"claims-reached",
             "Times the bar that is reached: from the dashed line on, a bar is met.", data,
-            fmt::format("unset key\nset ytics ({}) font ',10'\nset yrange [{}.7:-0.7]\n"
+            fmt::format("unset key\nset lmargin at screen 0.5\nset ytics ({}) font ',11'\nset "
+                        "yrange [{}.7:-0.7]\n"
                         "set logscale x\nset xtics (0.5, 1, 2, 4)\n"
                         "set xlabel 'times the bar'\n"
                         "set arrow from 1,graph 0 to 1,graph 1 nohead ls 9\n"
                         "plot datafile using 2:1 with points ls 1\n",
-                        tics, std::max(0, place - 1))};
+                        tics, std::max(0, place - 1)),
+            height_of_bars(place)};
 }
 
 std::vector<Block> blocks(const Json& figures) {
@@ -144,19 +149,17 @@ std::vector<Block> blocks(const Json& figures) {
                               words("verdict"),
                               words("held_by")});
     }
-    std::string scenes;
-    for (const Json& scene : figures["scenes"])
-        scenes += (scenes.empty() ? "" : ", ") + scene.get<std::string>();
-    return {Text{"Of the claims that are measured here ", number(figures, "/held"),
-                 " reach their bar and ", number(figures, "/failed"),
-                 " miss it; the others have none, or are held by the tests that are named. Scenes "
-                 "of the bars: ",
-                 scenes,
-                 ". The documents' figures are of the scenes and machines that they name: ratios "
-                 "move with both, with the size of pictures, and with other work on the machine. "
-                 "What a bar asks is what the design asks; where it is missed, the documents say "
-                 "so and why."},
-            reached_plot(figures), table};
+    return {
+        Text{"Of the claims that are measured here ", number(figures, "/held"),
+             " reach their bar and ", number(figures, "/failed"),
+             " miss it; the others have none, or are held by the tests that are named. The mesh "
+             "of the bars is ",
+             figures["mesh"].get<std::string>(),
+             ". The documents' figures are of the scenes and machines that they name: ratios "
+             "move with both, with the size of pictures, and with other work on the machine. "
+             "What a bar asks is what the design asks; where it is missed, the documents say "
+             "so and why."},
+        reached_plot(figures), table};
 }
 
 } // namespace

@@ -40,7 +40,7 @@ figure { margin: 1rem 0; }
 table { border-collapse: collapse; width: 100%; font-size: .85rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .3rem .6rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
 th:first-child, td:first-child { position: sticky; left: 0; text-align: left; background: var(--ground); max-width: 22rem; }
-th.words, td.words { text-align: left; }
+th.words, td.words { text-align: left; white-space: normal; }
 tr:last-child td { border-bottom: 0; }
 thead th { position: sticky; top: 0; z-index: 1; background: var(--panel); cursor: pointer; user-select: none; white-space: normal; vertical-align: bottom; }
 thead th:first-child { background: var(--panel); z-index: 2; }

@@ -24,9 +24,7 @@ std::span<const ThesisSystem> thesis_systems() {
          "the product, batched",
          {"--backend", "two-level", "--mode", "batched"}},
         {"product-mixed", "the product, mixed", {"--backend", "two-level", "--mode", "mixed"}},
-        {"product-budget",
-         "the product in a budget",
-         {"--backend", "two-level", "--mode", "batched"}}};
+        {"product-budget", "the product, budget", {"--backend", "two-level", "--mode", "batched"}}};
     return systems;
 }
 
