@@ -62,7 +62,7 @@ ReportRun run_of(const std::string& scene, const Switch& one, bool with, bool co
 
 /// Compiling varies little.
 int repeats_of(const ReportPlan& plan, bool cold) {
-    return plan.quick ? (cold ? 1 : 3) : cold ? 3 : 5;
+    return cold ? 1 : plan.quick ? 3 : 5;
 }
 
 std::vector<ReportRun> runs(const ReportPlan& plan) {
