@@ -41,6 +41,8 @@ table { border-collapse: collapse; width: 100%; font-size: .85rem; font-variant-
 th, td { padding: .3rem .6rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
 th:first-child, td:first-child { position: sticky; left: 0; text-align: left; background: var(--ground); max-width: 22rem; }
 th.words, td.words { text-align: left; white-space: normal; }
+td.words { min-width: 6rem; }
+td.words:first-child { min-width: 14rem; }
 tr:last-child td { border-bottom: 0; }
 thead th { position: sticky; top: 0; z-index: 1; background: var(--panel); cursor: pointer; user-select: none; white-space: normal; vertical-align: bottom; }
 thead th:first-child { background: var(--panel); z-index: 2; }
@@ -50,7 +52,7 @@ tr.marked td, tr.marked td:first-child { background: var(--mark); }
 .trouble { padding: .5rem 1rem; border-left: 4px solid #c2452d; background: var(--panel); }
 @media (max-width: 600px) {
   body { padding: .7rem; }
-  th:first-child, td:first-child { white-space: normal; min-width: 8.5rem; max-width: 9.5rem; }
+  th:first-child, td:first-child, td.words:first-child { white-space: normal; min-width: 8.5rem; max-width: 9.5rem; }
 }
 </style>
 </head>
