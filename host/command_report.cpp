@@ -302,24 +302,14 @@ Result<Done> check_page_words(const ReportArguments& given) {
     return Done{};
 }
 
-Result<std::vector<const Experiment*>> chosen_experiments(const std::string& only) {
-    std::vector<const Experiment*> chosen;
-    for (const Experiment& one : experiments())
-        chosen.push_back(&one);
-    if (only.empty())
-        return chosen;
-    const Result<const Experiment*> one = find_experiment(only);
-    return one ? Result<std::vector<const Experiment*>>(std::vector{*one}) : one.error();
-}
-
 Result<ReportJob> page_job(const ReportArguments& given) {
-    Result<std::vector<const Experiment*>> chosen = chosen_experiments(given.only);
-    if (!chosen)
-        return chosen.error();
+    if (!given.only.empty())
+        if (const Result<const Experiment*> one = find_experiment(given.only); !one)
+            return one.error();
     if (const Result<Done> fine = check_page_words(given); !fine)
         return fine.error();
     ReportJob job;
-    job.experiments = std::move(*chosen);
+    job.only = given.only;
     job.folder = given.folder;
     job.plan.quick = given.quick;
     job.plan.scenes = given.scenes;

@@ -40,17 +40,21 @@ static Result<const ovc_api*> load_from(const std::string& path) {
     return api;
 }
 
-Result<const ovc_api*> load_plugin(const std::string& library) {
+std::string find_plugin(const std::string& library) {
     if (const char* named = std::getenv("OVC_PLUGIN"); named && *named && library == kProduct)
-        return load_from(named);
+        return named;
     std::error_code error;
     const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
     const fs::path installed = (folder / OVC_LIBRARY_FROM_COMMAND).lexically_normal();
     for (const fs::path& path :
          {folder / library, installed / library, installed / "overcast" / library})
         if (!error && fs::exists(path))
-            return load_from(path);
-    return load_from(library);
+            return path;
+    return library;
+}
+
+Result<const ovc_api*> load_plugin(const std::string& library) {
+    return load_from(find_plugin(library));
 }
 
 static void forward_log(void* user, ovc_log_level level, const char* message) {

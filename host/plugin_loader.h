@@ -18,9 +18,12 @@ inline constexpr const char* kProduct = "libovercast.so.1"; // by its soname
 static_assert(OVC_ABI_VERSION == 1);
 inline constexpr const char* kThesis = "libovercast-thesis.so";
 
-/// Loads a library: beside this program, where it is installed as seen from there, or where the
-/// system's loader looks; the product from the file that the environment variable OVC_PLUGIN names,
-/// if there is one. It stays loaded until the program ends.
+/// Where a library is: beside this program, or where it is installed as seen from there, or its
+/// name alone for the system's loader; the product in the file that the environment variable
+/// OVC_PLUGIN names, if there is one.
+std::string find_plugin(const std::string& library = kProduct);
+
+/// Loads the library that find_plugin() finds. It stays loaded until the program ends.
 Result<const ovc_api*> load_plugin(const std::string& library = kProduct);
 
 struct DestroyDevice {

@@ -35,7 +35,8 @@ void BenchWords::add_to(CLI::App& app) {
     app.add_option("SCENE", scenes,
                    fmt::format("Files or test scenes' names; default: {}", kDefaultScene));
     CLI::Option* table = app.add_flag(
-        "--bars", bars, "Instead: the table of what is promised, measured over SCENE, a mesh file");
+        "--bars", bars,
+        "Instead: the table of what is promised, measured over SCENE, a mesh file or a test scene");
     CLI::Option* race = app.add_flag("--programs", programs,
                                      "Instead: overcast render, povray and tachyon on SCENE, a "
                                      "mesh file, from file to PNG")
@@ -266,8 +267,11 @@ static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
         return understand_sweep(words, job);
     if (job.kind == BenchKind::Pictures)
         return understand_pictures(words, job);
-    if (words.scenes.size() != 1 || !std::filesystem::is_regular_file(words.scenes[0]))
-        return Error{fmt::format("{} needs one mesh file, such as the Stanford dragon's", option)};
+    if (words.scenes.size() != 1 ||
+        (!std::filesystem::is_regular_file(words.scenes[0]) && !is_test_scene(words.scenes[0])))
+        return Error{fmt::format("{} needs one mesh file, such as the Stanford dragon's, or a test "
+                                 "scene",
+                                 option)};
     return Done{};
 }
 

@@ -7,6 +7,7 @@
 #include "host/bench/scratch_folder.h"
 #include "host/scene_source.h"
 #include "host/terminal_line.h"
+#include "testscenes/catalog.h"
 
 #include <fmt/format.h>
 
@@ -15,8 +16,6 @@ namespace ovc {
 namespace {
 
 constexpr uint32_t kImports = 9;
-constexpr ImageSize kLarge = {1024, 1024};
-constexpr ImageSize kSmall = {512, 512};
 constexpr const char* kSoup = "soup-500";
 constexpr const char* kArchitecture = "powerplant-400000";
 constexpr const char* kBeyondMemory = "dragons-10";
@@ -35,9 +34,28 @@ bool has_embree() {
     return bool(make_embree_backend(Soup{}, EmbreeMode::Medium));
 }
 
+Result<Done> convert(const std::string& from, const std::string& to) {
+    const Result<double> done =
+        run_program(std::vector<std::string>{"/proc/self/exe", "convert", from, to});
+    return done ? Result<Done>(Done{}) : done.error();
+}
+
+/// A test scene as a file in the folder; a file is one already.
+Result<std::string> as_file(const std::string& mesh, const ScratchFolder& folder) {
+    if (!is_test_scene(mesh))
+        return mesh;
+    const std::string path = folder.path() / "given.ply";
+    const Result<Done> made = convert(mesh, path);
+    return made ? Result<std::string>(path) : made.error();
+}
+
 class BarsRun {
 public:
-    BarsRun(const BarsJob& job, const BenchSurroundings& around) : job_(job), around_(around) {}
+    BarsRun(const BarsJob& job, const BenchSurroundings& around)
+        : job_(job),
+          around_(around),
+          large_{job.size, job.size},
+          small_{(job.size + 1) / 2, (job.size + 1) / 2} {}
 
     Result<BarsResult> run() {
         using Step = Result<Done> (BarsRun::*)();
@@ -69,9 +87,7 @@ private:
         for (const char* suffix : {"obj", "ply"}) {
             const std::string path = folder->path() / (std::string("mesh.") + suffix);
             around_.progress.show("converting to " + path);
-            const Result<double> done =
-                run_program(std::vector<std::string>{"/proc/self/exe", "convert", job_.mesh, path});
-            if (!done)
+            if (const Result<Done> done = convert(job_.mesh, path); !done)
                 return done.error();
             files.push_back({suffix[0] == 'o' ? "OBJ" : "binary PLY", path});
         }
@@ -115,7 +131,7 @@ private:
             {.name = "cpu-float-kdtree", .kind = ContenderKind::FloatKdTree}};
         if (has_embree())
             contenders.push_back(embree("embree-robust", EmbreeMode::Robust));
-        const Result<const BenchResult*> r = bench(job_.mesh, {.size = kLarge}, contenders);
+        const Result<const BenchResult*> r = bench(job_.mesh, {.size = large_}, contenders);
         if (!r)
             return r.error();
         add(kernel_bars(**r));
@@ -129,7 +145,7 @@ private:
             contenders.push_back(embree("embree-high", EmbreeMode::High));
         for (const char* scene : {kSoup, kArchitecture}) {
             const Result<const BenchResult*> r =
-                bench(scene, {.size = kSmall, .frame = false}, contenders);
+                bench(scene, {.size = small_, .frame = false}, contenders);
             if (!r)
                 return r.error();
             add(high_quality_bars(**r, scene));
@@ -146,7 +162,7 @@ private:
             contenders.back().leaves = {leaves, std::to_string(leaves)};
         }
         const Result<const BenchResult*> r =
-            bench(job_.mesh, {.size = kLarge, .frame = false}, contenders, true);
+            bench(job_.mesh, {.size = large_, .frame = false}, contenders, true);
         if (!r)
             return r.error();
         add(leaves_bars(**r));
@@ -159,7 +175,7 @@ private:
         contenders[1].budget.words = "30%";
         contenders[1].budget.pages_share = 0.3;
         const Result<const BenchResult*> r =
-            bench(kBeyondMemory, {.size = kLarge, .ray_sets = false}, contenders, true);
+            bench(kBeyondMemory, {.size = large_, .ray_sets = false}, contenders, true);
         if (!r)
             return r.error();
         add({budget_bar(**r)});
@@ -201,7 +217,7 @@ private:
     }
 
     Result<Done> programs() {
-        Result<ProgramsResult> r = run_programs(job_.mesh, kSmall.width, job_.repeats, around_);
+        Result<ProgramsResult> r = run_programs(job_.mesh, small_.width, job_.repeats, around_);
         if (!r)
             return r.error();
         add(program_bars(*r));
@@ -224,6 +240,7 @@ private:
 
     const BarsJob& job_;
     const BenchSurroundings& around_;
+    const ImageSize large_, small_;
     BarsResult result_;
     std::vector<Bar> import_bars_, bytes_bars_;
 };
@@ -231,7 +248,15 @@ private:
 } // namespace
 
 Result<BarsResult> run_bars(const BarsJob& job, const BenchSurroundings& around) {
-    return BarsRun(job, around).run();
+    const Result<ScratchFolder> folder = ScratchFolder::make();
+    if (!folder)
+        return folder.error();
+    Result<std::string> mesh = as_file(job.mesh, *folder);
+    if (!mesh)
+        return mesh.error();
+    BarsJob of_file = job;
+    of_file.mesh = std::move(*mesh);
+    return BarsRun(of_file, around).run();
 }
 
 Result<ProgramsResult> run_programs(const std::string& mesh, uint32_t size, uint32_t runs,
@@ -239,12 +264,15 @@ Result<ProgramsResult> run_programs(const std::string& mesh, uint32_t size, uint
     const Result<ScratchFolder> folder = ScratchFolder::make();
     if (!folder)
         return folder.error();
+    const Result<std::string> file = as_file(mesh, *folder);
+    if (!file)
+        return file.error();
     around.progress.show("whole programs");
-    const Result<Scene> scene = open_scene(mesh, around.log);
+    const Result<Scene> scene = open_scene(*file, around.log);
     if (!scene)
         return scene.error();
     Result<ProgramsResult> result =
-        race_programs(mesh, scene->soup, size, runs, folder->path(), around.stop);
+        race_programs(*file, scene->soup, size, runs, folder->path(), around.stop);
     around.progress.clear();
     return result;
 }

@@ -11,8 +11,9 @@
 namespace ovc {
 
 struct BarsJob {
-    std::string mesh; // a file: the Stanford dragon, to compare with docs/benchmarks.md
+    std::string mesh; // the file of the Stanford dragon, to compare with docs/benchmarks.md
     std::string device;
+    uint32_t size = 1024; // of pictures, pixels a side; slivers, architecture and programs: half
     uint32_t repeats = 5;
 };
 
@@ -23,11 +24,12 @@ struct BarsResult {
     bool complete = true; // false: it was stopped
 };
 
-/// A few minutes on two cores. The calling process has run no parallel loop yet. Error: the mesh
-/// cannot be read, a contender or a program fails.
+/// A few minutes on two cores. The calling process has run no parallel loop yet. mesh: a file, or a
+/// test scene, of which a file is made first. Error: the mesh cannot be read, a contender or a
+/// program fails.
 Result<BarsResult> run_bars(const BarsJob& job, const BenchSurroundings& around);
 
-/// Whole programs alone: `runs` timed runs of each over the mesh, of size x size pixels.
+/// Whole programs alone: `runs` timed runs of each over the mesh, as above, of size x size pixels.
 Result<ProgramsResult> run_programs(const std::string& mesh, uint32_t size, uint32_t runs,
                                     const BenchSurroundings& around);
 

@@ -70,28 +70,37 @@ Json rows_of(std::span<const RawResult> results) {
     return rows;
 }
 
-/// The leaves with which a system is fastest.
-Json fastest(const Json& rows, std::string_view system) {
-    Json leaves = nullptr, least = nullptr;
+/// Of one system along the rows: its best leaves, those within 5 % of that, and what a further GPU
+/// call costs between the fewest leaves and the most. A thing that is not there is null.
+Json best_of(const Json& rows, std::string_view system, const char* cost) {
+    constexpr double near = 1.05;
+    Json best = {{"key", system},      {"name", thesis_system(system).name},
+                 {"leaves", nullptr},  {"near_from", nullptr},
+                 {"near_to", nullptr}, {"call_ms", nullptr}};
+    std::vector<std::pair<double, const Json*>> points; // leaves, and the system's object there
     for (const Json& row : rows)
-        if (const Json* one = find_system(row["systems"], system);
-            one && (least.is_null() || (*one)["mean_seconds"] < least)) {
-            least = (*one)["mean_seconds"];
-            leaves = row["leaves"];
-        }
-    return leaves;
-}
-
-/// Milliseconds that a further GPU call costs, between the fewest leaves and the most.
-Json call_milliseconds(const Json& rows, std::string_view system) {
-    const Json *few = find_system(rows.front()["systems"], system),
-               *many = find_system(rows.back()["systems"], system);
-    if (!few || !many || (*few)["mean_calls"] == (*many)["mean_calls"])
-        return nullptr;
-    const auto more = [&](const char* mean) {
-        return (*many)[mean].get<double>() - (*few)[mean].get<double>();
+        if (const Json* one = find_system(row["systems"], system))
+            points.emplace_back(row["leaves"], one);
+    if (points.empty())
+        return best;
+    const auto of = [&](const auto& point, const char* mean) {
+        return (*point.second)[mean].template get<double>();
     };
-    return 1e3 * more("mean_seconds") / more("mean_calls");
+    const auto least =
+        std::ranges::min_element(points, {}, [&](const auto& point) { return of(point, cost); });
+    best["leaves"] = least->first;
+    for (const auto& point : points)
+        if (of(point, cost) <= near * of(*least, cost)) {
+            if (best["near_from"].is_null())
+                best["near_from"] = point.first;
+            best["near_to"] = point.first;
+        }
+    const auto more = [&](const char* mean) {
+        return of(points.back(), mean) - of(points.front(), mean);
+    };
+    if (more("mean_calls") != 0)
+        best["call_ms"] = 1e3 * more(cost) / more("mean_calls");
+    return best;
 }
 
 Json figures(std::span<const RawResult> results) {
@@ -100,27 +109,32 @@ Json figures(std::span<const RawResult> results) {
     for (const RawResult& raw : results)
         if (const auto [key, system] = split_run_key(raw.run.key); key == "few")
             few.push_back(frames_of(system, raw.result));
+    const std::string renderer = renderer_of(results);
+    const char* cost = cost_by(renderer).mean;
+    Json best = Json::array();
+    for (const std::string_view system : kLeafSystems)
+        best.push_back(best_of(rows, system, cost));
     const std::vector<Finding> findings = {
-        {"leaves with which batched is fastest", "2, the fewest", fastest(rows, "batched"),
-         fastest(rows, "product-batched")},
-        {"leaves with which mixed is fastest", "2, the fewest", fastest(rows, "mixed"), nullptr},
+        {"leaves with which batched is fastest", "2, the fewest", best[0]["leaves"],
+         best[2]["leaves"]},
+        {"leaves with which mixed is fastest", "2, the fewest", best[1]["leaves"], nullptr},
         {"two-level, batched: times as fast as the CPU KD-tree", "about 3",
-         ratio_of(few, "mean_seconds", "kdt", "batched"),
-         ratio_of(few, "mean_seconds", "kdt", "product-batched")},
+         ratio_of(few, cost, "kdt", "batched"), ratio_of(few, cost, "kdt", "product-batched")},
         {"GPU calls, mixed over batched", "about 0.5",
          ratio_of(few, "mean_calls", "mixed", "batched"), nullptr},
-        {"time, mixed over batched", "slightly below 1",
-         ratio_of(few, "mean_seconds", "mixed", "batched"), nullptr}};
+        {"time, mixed over batched", "slightly below 1", ratio_of(few, cost, "mixed", "batched"),
+         nullptr}};
     return {{"model", model_text(results[0].run)},
-            {"renderer", renderer_text(results)},
+            {"renderer", renderer},
             {"triangles", results[0].result["triangles"]},
             {"findings", findings_of(findings)},
-            {"call_ms", rows.empty() ? Json(nullptr) : call_milliseconds(rows, "batched")},
+            {"best", best},
             {"rows", rows},
             {"few", few}};
 }
 
 Plot leaf_plot(const Json& figures) {
+    const FrameCost cost = cost_by(figures["renderer"]);
     std::string data, curves;
     int block = 0;
     for (const std::string_view key : kLeafSystems) {
@@ -128,17 +142,17 @@ Plot leaf_plot(const Json& figures) {
         for (const Json& row : figures["rows"])
             if (const Json* one = find_system(row["systems"], key))
                 lines += fmt::format("{} {:.6g}\n", row["leaves"].get<double>(),
-                                     (*one)["mean_seconds"].get<double>());
-        data += fmt::format("# {}: leaves, s a frame\n{}\n\n", key, lines);
+                                     (*one)[cost.mean].get<double>());
+        data += fmt::format("# {}: leaves, {}\n{}\n\n", key, cost.label, lines);
         curves += fmt::format("{}datafile index {} using 1:2 with linespoints ls {} title '{}'",
-                              block ? ", " : "", block, block + 1, thesis_system(key).name);
+                              block ? ", " : "", block, style_of(key), thesis_system(key).name);
         ++block;
     }
-    return {"dragonball-leaves",
-            "Figure 4.7 (b) of the thesis, here: seconds a frame against leaves.", data,
-            fmt::format("set logscale x\nset xlabel 'leaves of level 1'\nset ylabel 's a frame'\n"
+    return {"dragonball-leaves", "Figure 4.7 (b) of the thesis, here: time a frame against leaves.",
+            data,
+            fmt::format("set logscale x\nset xlabel 'leaves of level 1'\nset ylabel '{}'\n"
                         "set yrange [0:*]\nplot {}\n",
-                        curves)};
+                        cost.label, curves)};
 }
 
 Plot size_plot(const Json& figures) {
@@ -153,11 +167,12 @@ Plot size_plot(const Json& figures) {
 }
 
 Table leaf_table(const Json& figures) {
+    const FrameCost cost = cost_by(figures["renderer"]);
     Table table;
-    table.caption = "Leaves, and what they cost; s and GPU calls a frame";
+    table.caption = "Leaves, and what they cost";
     table.header = {"leaves", "MB a page"};
     for (const std::string_view key : kLeafSystems)
-        for (const char* what : {"s", "calls"})
+        for (const char* what : {cost.label, "calls"})
             table.header.push_back(fmt::format("{}: {}", thesis_system(key).name, what));
     for (size_t r = 0; r < figures["rows"].size(); ++r) {
         const std::string at = fmt::format("/rows/{}", r);
@@ -167,7 +182,7 @@ Table leaf_table(const Json& figures) {
         for (const std::string_view key : kLeafSystems) {
             const auto found =
                 std::ranges::find_if(systems, [&](const Json& one) { return one["key"] == key; });
-            for (const char* mean : {"mean_seconds", "mean_calls"})
+            for (const char* mean : {cost.mean, "mean_calls"})
                 table.rows.back().push_back(
                     found == systems.end()
                         ? Text{"-"}
@@ -178,28 +193,54 @@ Table leaf_table(const Json& figures) {
     return table;
 }
 
+/// Which leaves win, and why, from measurements.
+Text leaves_text(const Json& figures) {
+    Text text = {"Within a twentieth of its best, by leaves:"};
+    for (size_t i = 0; i < figures["best"].size(); ++i) {
+        const std::string at = fmt::format("/best/{}", i);
+        text.emplace_back(fmt::format("{} {}, from ", i ? ";" : "",
+                                      figures["best"][i]["name"].get<std::string>()));
+        text.push_back(number(figures, at + "/near_from"));
+        text.emplace_back(" to ");
+        text.push_back(number(figures, at + "/near_to"));
+    }
+    for (Piece piece :
+         {Piece(". Between the fewest leaves and the most, a further GPU call of the thesis' "
+                "batched costs "),
+          number(figures, "/best/0/call_ms"), Piece(" ms and of its mixed "),
+          number(figures, "/best/1/call_ms"),
+          Piece(" ms, while what is moved stays the same: calls are what many leaves cost, as the "
+                "thesis found, and batched makes most of them. Pages are moved once, a copy within "
+                "one memory, so that few leaves gain nothing there. The product walks the upper "
+                "level within the kernel: its calls do not grow with the leaves.")})
+        text.push_back(std::move(piece));
+    return text;
+}
+
 std::vector<Block> blocks(const Json& figures) {
+    const FrameCost cost = cost_by(figures["renderer"]);
     return {
         Text{"A dragon of ", number(figures, "/triangles"),
-             " triangles with the rest of its scene, mirrors, glass and waves. The thesis "
+             " triangles with the rest of its scene, mirrors, glass and waves.",
+             figures["model"].get<std::string>(),
+             " Leaves are those that the thesis' system made. The thesis "
              "expected the best size of leaves somewhere in the middle, and found the fewest "
              "leaves fastest, since a call cost more than moving a large page."},
+        Text{renderer_text(figures)},
         findings_table(figures),
-        Text{"Here a further GPU call of the thesis' system costs ", number(figures, "/call_ms"),
-             " ms, between the fewest leaves and the most: calls and reading back cost what "
-             "they cost there, moving a page is a copy within one memory. The product walks the "
-             "upper level within the kernel, so that its calls do not grow with the leaves."},
+        leaves_text(figures),
+        kdtree_text(figures, "/few"),
+        mixed_text(figures, "/few"),
         leaf_plot(figures),
         size_plot(figures),
-        frames_plot("dragonball-time",
-                    "Figure 4.8 (a) of the thesis, here: 3 leaves, with the CPU KD-tree.",
-                    figures["few"], {"kdt", "batched", "mixed", "product-batched"}, "seconds",
-                    "s a frame"),
+        frames_plot(
+            "dragonball-time", "Figure 4.8 of the thesis, here: few leaves, with the CPU KD-tree.",
+            figures["few"], {"kdt", "batched", "mixed", "product-batched"}, cost.list, cost.label),
         frames_plot("dragonball-calls",
-                    "Figure 4.9 of the thesis, here: GPU calls a frame, 3 leaves.", figures["few"],
-                    {"batched", "mixed", "product-batched"}, "calls", "GPU calls"),
+                    "Figure 4.9 of the thesis, here: GPU calls a frame, few leaves.",
+                    figures["few"], {"batched", "mixed", "product-batched"}, "calls", "GPU calls"),
         leaf_table(figures),
-        systems_table(figures, "/few", "3 leaves: means of the frames")};
+        systems_table(figures, "/few", "Few leaves: means of the frames")};
 }
 
 } // namespace

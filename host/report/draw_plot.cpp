@@ -19,7 +19,7 @@ namespace {
 // The same script draws both. Sizes are those at which letters stay readable on a phone.
 constexpr const char* kScript = R"(datafile = '{0}.dat'
 set encoding utf8
-set key below samplen 1 width -2 height 0.8 font ',13'
+set key above left samplen 1 width -4 maxcols 2 font ',12'
 set grid lc rgb '#a0a0a0' lw 0.4
 set border 3
 set tics nomirror
@@ -27,13 +27,14 @@ set style line 1 lc rgb '#2f81d6' pt 7 ps 0.9 lw 2
 set style line 2 lc rgb '#e0762a' pt 5 ps 0.9 lw 2
 set style line 3 lc rgb '#3c9f54' pt 9 ps 1.1 lw 2
 set style line 4 lc rgb '#b455c8' pt 13 ps 1.2 lw 2
-set style line 5 lc rgb '#808080' pt 3 ps 1.0 lw 2
-set style line 6 lc rgb '#b8860b' pt 11 ps 1.1 lw 2
+set style line 5 lc rgb '#c2452d' pt 11 ps 1.1 lw 2
+set style line 6 lc rgb '#1d9a96' pt 15 ps 1.0 lw 2
+set style line 7 lc rgb '#808080' pt 3 ps 1.0 lw 2
 set style line 9 lc rgb '#808080' lw 1.5 dt 2
-set terminal svg size 640,440 dynamic font 'sans-serif,15' name '{2}'
+set terminal svg size 640,{3} dynamic font 'sans-serif,15' name '{2}'
 set output '{0}.svg'
 {1}
-set terminal pngcairo size 1280,880 font 'sans,22' background rgb 'white'
+set terminal pngcairo size 1280,{4} font 'sans,15' fontscale 1.45 background rgb 'white'
 set output '{0}.png'
 replot
 unset output
@@ -66,7 +67,8 @@ bool has_points(const std::string& data) {
 
 /// gnuplot takes letters, digits and underscores in the name of what is in an SVG.
 std::string script_of(const Plot& plot) {
-    return fmt::format(kScript, plot.name, plot.script, replaced(plot.name, "-", "_"));
+    return fmt::format(kScript, plot.name, plot.script, replaced(plot.name, "-", "_"), plot.height,
+                       2 * plot.height);
 }
 
 /// From <svg on; black becomes the page's colour of text.
@@ -78,7 +80,9 @@ std::string for_page(const std::string& svg, const std::string& name) {
     text = replaced(text, "<desc>Produced by GNUPLOT 5.4 patchlevel 4 </desc>", "");
     text = replaced(text, "rgb(0,0,0)", "currentColor");
     text = replaced(text, "rgb(  0,   0,   0)", "currentColor");
-    text = replaced(text, "\"black\"", "\"currentColor\"");
+    for (const char quote : {'"', '\''})
+        text = replaced(text, fmt::format("{0}black{0}", quote),
+                        fmt::format("{0}currentColor{0}", quote));
     return text;
 }
 

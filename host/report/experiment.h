@@ -28,6 +28,7 @@ struct ReportRun {
     bool may_refuse = false;        // its one sentence is a result as well: {"refused": "..."}
     /// A picture it leaves as well, which is kept: .png; or .exr, of which leaf_patches() is kept.
     std::string picture = {};
+    std::vector<std::string> variables = {}; // of its environment: "NAME=VALUE"
 };
 
 /// What a run left behind.

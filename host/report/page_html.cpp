@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace ovc {
 
 namespace {
@@ -30,7 +32,7 @@ p { max-width: 75ch; }
 nav a { margin-right: 1rem; }
 a { color: var(--link); }
 figure { margin: 1rem 0; }
-.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 440px), 1fr)); gap: 1rem; }
+.plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 440px), 1fr)); gap: 1rem; }
 .plots figure { margin: 0; padding: .6rem; background: var(--panel); border-radius: 8px; min-width: 0; }
 .plots svg, .plots img { display: block; width: 100%; height: auto; }
 /* A long table scrolls within itself, below its header. */
@@ -38,7 +40,9 @@ figure { margin: 1rem 0; }
 table { border-collapse: collapse; width: 100%; font-size: .85rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .3rem .6rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
 th:first-child, td:first-child { position: sticky; left: 0; text-align: left; background: var(--ground); max-width: 22rem; }
-td.words { text-align: left; }
+th.words, td.words { text-align: left; white-space: normal; }
+td.words { min-width: 6rem; }
+td.words:first-child { min-width: 14rem; }
 tr:last-child td { border-bottom: 0; }
 thead th { position: sticky; top: 0; z-index: 1; background: var(--panel); cursor: pointer; user-select: none; white-space: normal; vertical-align: bottom; }
 thead th:first-child { background: var(--panel); z-index: 2; }
@@ -48,7 +52,7 @@ tr.marked td, tr.marked td:first-child { background: var(--mark); }
 .trouble { padding: .5rem 1rem; border-left: 4px solid #c2452d; background: var(--panel); }
 @media (max-width: 600px) {
   body { padding: .7rem; }
-  th:first-child, td:first-child { white-space: normal; min-width: 8.5rem; max-width: 9.5rem; }
+  th:first-child, td:first-child, td.words:first-child { white-space: normal; min-width: 8.5rem; max-width: 9.5rem; }
 }
 </style>
 </head>
@@ -148,19 +152,29 @@ private:
         std::string html = fmt::format("<figure><figcaption>{}</figcaption>\n<div "
                                        "class=\"scroll\"><table>\n<thead><tr>",
                                        escaped(table.caption));
-        for (const std::string& name : table.header)
-            html += "<th>" + escaped(name) + "</th>";
+        for (size_t c = 0; c < table.header.size(); ++c)
+            html += (of_words(table, c) ? "<th class=\"words\">" : "<th>") +
+                    escaped(table.header[c]) + "</th>";
         html += "</tr></thead>\n<tbody>\n";
         for (size_t r = 0; r < table.rows.size(); ++r)
             html += row_of(table.rows[r], r == table.marked);
         return html + "</tbody></table></div></figure>\n";
     }
 
+    static bool is_words(const Text& cell) {
+        return !cell.empty() && std::holds_alternative<std::string>(cell[0]);
+    }
+
+    /// Whether the column has no number.
+    static bool of_words(const Table& table, size_t column) {
+        return std::ranges::all_of(table.rows,
+                                   [&](const auto& row) { return is_words(row[column]); });
+    }
+
     std::string row_of(const std::vector<Text>& row, bool marked) const {
         std::string html = marked ? "<tr class=\"marked\">" : "<tr>";
         for (const Text& cell : row) {
-            const bool words = !cell.empty() && std::holds_alternative<std::string>(cell[0]);
-            html += (words ? "<td class=\"words\">" : "<td>") + inline_of(cell) + "</td>";
+            html += (is_words(cell) ? "<td class=\"words\">" : "<td>") + inline_of(cell) + "</td>";
         }
         return html + "</tr>\n";
     }
@@ -191,6 +205,8 @@ std::string page_html(const Page& page, const std::map<std::string, std::string>
     html += "</nav>\n</header>\n";
     for (const std::string& trouble : page.troubles)
         html += "<p class=\"trouble\">" + escaped(trouble) + "</p>\n";
+    if (!page.missing.empty())
+        html += "<p class=\"soft\">" + escaped(page.missing_text()) + "</p>\n";
     for (const Section& section : page.sections)
         html += Writer(section, pictures).html();
     return html + kFoot;

@@ -13,7 +13,11 @@ namespace ovc {
 struct Page {
     std::string subtitle; // which program, and how it was asked
     std::vector<Section> sections;
-    std::vector<std::string> troubles; // runs that failed or are missing, a sentence each
+    std::vector<std::string> troubles; // what went wrong, a sentence each
+    std::vector<std::string> missing;  // experiments that were not run whole
+
+    /// A sentence on what is missing; or nothing.
+    std::string missing_text() const;
 };
 
 /// pictures: SVG by the names of the plots, "data:" addresses by the files of the pictures. A

@@ -4,6 +4,7 @@
 #include "host/text_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace ovc {
 
@@ -41,10 +42,17 @@ std::string markdown_of(const Picture& picture) {
 
 } // namespace
 
+std::string Page::missing_text() const {
+    return fmt::format("Not run, or not whole, in this form and by this build: {}.",
+                       fmt::join(missing, ", "));
+}
+
 std::string page_markdown(const Page& page) {
     std::string text = "# Overcast: the report\n\n" + page.subtitle + "\n\n";
     for (const std::string& trouble : page.troubles)
         text += "**" + trouble + "**\n\n";
+    if (!page.missing.empty())
+        text += page.missing_text() + "\n\n";
     for (const Section& section : page.sections) {
         text += "## " + section.title + "\n\n";
         for (const Block& block : section.blocks)

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -19,6 +20,11 @@ std::string shown_number(double value) {
     if (size >= 100 && size < 1e6)
         return fmt::format("{:.0f}", value);
     return fmt::format("{:.3g}", value);
+}
+
+int height_of_bars(size_t lines) {
+    constexpr int rest = 110, line = 17; // its axis and margins; letters of size 11
+    return std::max(Plot().height, rest + line * int(lines));
 }
 
 Piece number(const Json& figures, const std::string& pointer) {

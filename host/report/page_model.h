@@ -38,7 +38,11 @@ struct Plot {
     std::string caption;
     std::string data;
     std::string script;
+    int height = 440; // in 640ths of its width
 };
+
+/// Of a plot with so many lines of text at its left.
+int height_of_bars(size_t lines);
 
 /// A .png file that is there already.
 struct Picture {

@@ -28,7 +28,7 @@ Page example() {
                             {{{"first"}, {at("/list/0/t")}, {at("/list/0/none")}}},
                             0},
                       Plot{"a-plot", "A plot.", "1 2\n", "plot datafile"}};
-    return {"the subtitle", {section}, {"it broke"}};
+    return {"the subtitle", {section}, {"it broke"}, {"scale", "claims"}};
 }
 
 TEST(PageHtml, NumbersSayWhereTheyStand) {
@@ -42,6 +42,7 @@ TEST(PageHtml, NumbersSayWhereTheyStand) {
     EXPECT_THAT(html, testing::HasSubstr("<svg>drawn</svg>"));
     EXPECT_THAT(html, testing::HasSubstr("<tr class=\"marked\">"));
     EXPECT_THAT(html, testing::HasSubstr("class=\"trouble\">it broke"));
+    EXPECT_THAT(html, testing::HasSubstr("by this build: scale, claims."));
 }
 
 /// Works offline: nothing of it is loaded from anywhere.
@@ -59,6 +60,7 @@ TEST(PageMarkdown, HasTextTablesAndLinksToPlots) {
     EXPECT_THAT(markdown, testing::ContainsRegex("first +\\| +0.25 \\| +-"));
     EXPECT_THAT(markdown, testing::HasSubstr("![A plot.](plots/a-plot.png)"));
     EXPECT_THAT(markdown, testing::HasSubstr("**it broke**"));
+    EXPECT_THAT(markdown, testing::HasSubstr("by this build: scale, claims."));
 }
 
 } // namespace

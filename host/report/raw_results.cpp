@@ -3,7 +3,9 @@
 #include "host/report/raw_results.h"
 
 #include "core/checksum.h"
+#include "core/mapped_file.h"
 #include "host/output.h"
+#include "host/plugin_loader.h"
 #include "host/version.h"
 
 #include <fmt/format.h>
@@ -16,14 +18,24 @@ namespace ovc {
 namespace {
 
 std::string command_of(const ReportRun& run) {
-    return fmt::format("overcast {}", fmt::join(run.words, " "));
+    return fmt::format("{}{}overcast {}", fmt::join(run.variables, " "),
+                       run.variables.empty() ? "" : " ", fmt::join(run.words, " "));
 }
 
 } // namespace
 
+std::string build_text(const std::filesystem::path& program) {
+    Checksum sum;
+    for (const std::filesystem::path& path : {program, std::filesystem::path(find_plugin(kProduct)),
+                                              std::filesystem::path(find_plugin(kThesis))})
+        if (const Result<MappedFile> file = MappedFile::open(path); file)
+            sum.add_value(checksum_of(file->bytes()));
+    return fmt::format("{}, {:016x}", version_text(), sum.value());
+}
+
 std::filesystem::path raw_path(const std::filesystem::path& folder, const Experiment& experiment,
-                               const ReportRun& run) {
-    const std::string what = version_text() + " " + command_of(run);
+                               const ReportRun& run, const std::string& build) {
+    const std::string what = build + " " + command_of(run);
     return folder / "raw" / experiment.name /
            fmt::format("{}-{:016x}.json", run.key, checksum_of(std::as_bytes(std::span(what))));
 }
@@ -52,8 +64,9 @@ std::optional<RawResult> load_raw(const std::filesystem::path& path, const Repor
     return result;
 }
 
-Result<Done> save_raw(const std::filesystem::path& path, const RawResult& result, double seconds) {
-    const Json raw = {{"version", version_text()},
+Result<Done> save_raw(const std::filesystem::path& path, const RawResult& result,
+                      const std::string& build, double seconds) {
+    const Json raw = {{"build", build},
                       {"command", command_of(result.run)},
                       {"seconds", seconds},
                       {"result", result.result}};

@@ -2,10 +2,12 @@
 // The report as a whole.
 #include "host/report/report_page.h"
 
+#include "core/parallel.h"
 #include "host/interrupt.h"
 #include "host/output.h"
 #include "host/report/draw_plot.h"
 #include "host/report/page_html.h"
+#include "host/report/raw_results.h"
 #include "host/report/run_experiments.h"
 #include "host/terminal_line.h"
 #include "host/version.h"
@@ -32,19 +34,27 @@ std::string today() {
     return text;
 }
 
-/// A section where there is anything to show; troubles where something is missing.
+/// "AMD EPYC 9R14, 2 threads", as Linux names it; elsewhere the threads alone.
+std::string machine_text() {
+    std::ifstream info("/proc/cpuinfo");
+    std::string name;
+    for (std::string line; name.empty() && std::getline(info, line);)
+        if (const size_t colon = line.find(": ");
+            line.starts_with("model name") && colon != std::string::npos)
+            name = line.substr(colon + 2) + ", ";
+    return fmt::format("{}{} threads", name, thread_count());
+}
+
+/// A section where all was run; troubles where something went wrong.
 void add_section(const Outcome& outcome, Page& page) {
     const Experiment& experiment = *outcome.experiment;
     for (const std::string& failure : outcome.failures)
         page.troubles.push_back(fmt::format("{}: a run failed: {}", experiment.title, failure));
     for (const std::string& remark : outcome.remarks)
         page.troubles.push_back(fmt::format("{}: {}", experiment.title, remark));
-    if (!outcome.complete) {
-        page.troubles.push_back(
-            fmt::format("{}: interrupted; the same command goes on with it", experiment.title));
-        return;
-    }
-    if (outcome.results.empty())
+    if (!outcome.complete)
+        page.missing.emplace_back(experiment.name);
+    if (!outcome.complete || outcome.results.empty())
         return;
     Section section{std::string(experiment.name),
                     std::string(experiment.title),
@@ -106,8 +116,8 @@ Result<Done> write_page(Page& page, const fs::path& folder) {
 Result<Done> make_folders(const ReportJob& job) {
     std::error_code error;
     fs::create_directories(fs::path(job.folder) / "plots", error);
-    for (const Experiment* experiment : job.experiments)
-        fs::create_directories(fs::path(job.folder) / "raw" / experiment->name, error);
+    for (const Experiment& experiment : experiments())
+        fs::create_directories(fs::path(job.folder) / "raw" / experiment.name, error);
     if (error)
         return Error{fmt::format("cannot make the folder '{}': {}", job.folder, error.message())};
     return check_writable("report", fs::path(job.folder) / "index.html");
@@ -122,19 +132,22 @@ Result<int> make_report_page(const ReportJob& job) {
     const InterruptGuard interrupt("ending this run; those that are done are kept");
     TerminalLine progress;
     std::error_code error;
-    const RunSurroundings around{fs::read_symlink("/proc/self/exe", error).string(), job.folder,
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    const RunSurroundings around{program, build_text(program), job.folder,
                                  [&] { return interrupt.interrupted(); },
                                  [&](const std::string& what) { progress.show(what); }};
     const Result<std::vector<Outcome>> outcomes =
-        run_experiments(job.experiments, job.plan, around);
+        run_experiments(experiments(), job.only, job.plan, around);
     progress.clear();
     if (!outcomes)
         return outcomes.error();
     Page page;
-    page.subtitle = fmt::format("overcast {}, {} form, {}", version_text(),
-                                job.plan.quick ? "the quick" : "the full", today());
+    page.subtitle = fmt::format("overcast {}, {} form, {}, {}", version_text(),
+                                job.plan.quick ? "the quick" : "the full", today(), machine_text());
     for (const Outcome& outcome : *outcomes)
         add_section(outcome, page);
+    if (interrupt.interrupted())
+        page.troubles.emplace_back("Interrupted; the same command goes on from there.");
     if (const Result<Done> written = write_page(page, job.folder); !written)
         return written.error();
     fmt::print("{}\n", (fs::path(job.folder) / "index.html").string());

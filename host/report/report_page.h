@@ -8,15 +8,15 @@
 namespace ovc {
 
 struct ReportJob {
-    std::vector<const Experiment*> experiments;
+    std::string only; // the name of an experiment; empty: all
     ReportPlan plan;
     std::string folder;
 };
 
 /// Writes DIR/index.html, summary.md, NAME.json with the figures of each experiment, plots/, and
-/// raw/ with what the runs left. Returns an exit code; with Ctrl-C the page has the experiments
-/// that are done. Error: something cannot be written or drawn, or a run failed; the page, which
-/// says so, is there even then.
+/// raw/ with what the runs left. The page has every experiment whose runs are all there, also from
+/// before, and names the others. Returns an exit code. Error: something cannot be written or drawn,
+/// or a run failed; the page, which says so, is there even then.
 Result<int> make_report_page(const ReportJob& job);
 
 } // namespace ovc

@@ -45,7 +45,12 @@ private:
 
 std::vector<std::string> words_of(const ReportRun& run, const std::string& program,
                                   const std::string& folder) {
-    std::vector<std::string> words = {program};
+    std::vector<std::string> words;
+    if (!run.variables.empty()) {
+        words.push_back("env");
+        words.insert(words.end(), run.variables.begin(), run.variables.end());
+    }
+    words.push_back(program);
     for (std::string word : run.words) {
         if (const size_t at = word.find("{}"); at != std::string::npos)
             word.replace(at, 2, folder);
@@ -97,15 +102,15 @@ public:
                 clock_.expect(run.seconds);
     }
 
-    /// False: it was stopped.
-    Result<bool> go(const ReportRun& run, Outcome& outcome) {
+    /// Whether it is done: before, or now where it `may_run`; false as well where it was stopped.
+    Result<bool> go(const ReportRun& run, bool may_run, Outcome& outcome) {
         const Experiment& experiment = *outcome.experiment;
         const fs::path path = path_of(experiment, run);
         if (std::optional<RawResult> there = load_raw(path, run)) {
             outcome.results.push_back(std::move(*there));
             return true;
         }
-        if (around_.stop())
+        if (!may_run || around_.stop())
             return false;
         around_.show(fmt::format("{}: {}, {}", experiment.name, run.key, clock_.text()));
         const RunFolder own(fs::path(path).replace_extension(".part"));
@@ -125,7 +130,7 @@ public:
 
 private:
     fs::path path_of(const Experiment& experiment, const ReportRun& run) const {
-        return raw_path(around_.folder, experiment, run);
+        return raw_path(around_.folder, experiment, run, around_.build);
     }
 
     /// A command that found something wrong leaves its result and says so; one that was ended does
@@ -173,7 +178,7 @@ private:
 
     Result<bool> keep(RawResult raw, double seconds, Outcome& outcome) {
         if (const Result<Done> saved =
-                save_raw(path_of(*outcome.experiment, raw.run), raw, seconds);
+                save_raw(path_of(*outcome.experiment, raw.run), raw, around_.build, seconds);
             !saved)
             return saved.error();
         outcome.results.push_back(std::move(raw));
@@ -186,24 +191,27 @@ private:
 
 } // namespace
 
-Result<std::vector<Outcome>> run_experiments(std::span<const Experiment* const> chosen,
-                                             const ReportPlan& plan,
+Result<std::vector<Outcome>> run_experiments(std::span<const Experiment> experiments,
+                                             std::string_view chosen, const ReportPlan& plan,
                                              const RunSurroundings& around) {
+    const auto is_chosen = [&](const Experiment& one) {
+        return chosen.empty() || one.name == chosen;
+    };
     Runner runner(around);
-    for (const Experiment* experiment : chosen)
-        runner.expect(*experiment, experiment->runs(plan));
+    for (const Experiment& experiment : experiments)
+        if (is_chosen(experiment))
+            runner.expect(experiment, experiment.runs(plan));
     std::vector<Outcome> outcomes;
-    for (const Experiment* experiment : chosen) {
+    for (const Experiment& experiment : experiments) {
         Outcome& outcome = outcomes.emplace_back();
-        outcome.experiment = experiment;
-        for (const ReportRun& run : experiment->runs(plan)) {
-            const Result<bool> done = runner.go(run, outcome);
+        outcome.experiment = &experiment;
+        outcome.complete = true;
+        for (const ReportRun& run : experiment.runs(plan)) {
+            const Result<bool> done = runner.go(run, is_chosen(experiment), outcome);
             if (!done)
                 return done.error();
-            if (!*done)
-                return outcomes;
+            outcome.complete = outcome.complete && *done;
         }
-        outcome.complete = true;
     }
     return outcomes;
 }

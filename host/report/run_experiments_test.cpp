@@ -37,13 +37,15 @@ protected:
             ++lines;
         return lines;
     }
-    Outcome run(const std::function<bool()>& stop = [] { return false; }) const {
+    Outcome run(
+        const std::function<bool()>& stop = [] { return false; },
+        std::string_view chosen = "") const {
         const Experiment experiment{
             "scripts", "Scripts", "shell scripts", [](const ReportPlan&) { return scripts; },
             {},        {}};
-        const Experiment* chosen[] = {&experiment};
         Result<std::vector<Outcome>> outcomes =
-            run_experiments(chosen, {}, {"sh", scratch.path(), stop, [](const std::string&) {}});
+            run_experiments(std::span(&experiment, 1), chosen, {},
+                            {"sh", "a build", scratch.path(), stop, [](const std::string&) {}});
         EXPECT_TRUE(outcomes);
         return outcomes->at(0);
     }
@@ -67,6 +69,17 @@ TEST_F(RunExperiments, KeepResultsAndDoNotRepeatThem) {
     EXPECT_EQ(times("one"), 1u);
     EXPECT_EQ(times("two"), 1u);
     EXPECT_EQ(std::distance(fs::directory_iterator(scratch.path() / "raw" / "scripts"), {}), 2);
+}
+
+TEST_F(RunExperiments, SetVariablesOfTheEnvironment) {
+    add("plain", "echo \"{\\\"n\\\": \\\"$OF_A_RUN\\\"}\" > $0/result.json");
+    scripts.push_back(scripts[0]);
+    scripts[1].variables = {"OF_A_RUN=set"};
+    const Outcome outcome = run();
+    ASSERT_EQ(outcome.results.size(), 2u);
+    EXPECT_EQ(outcome.results[0].result["n"], "");
+    EXPECT_EQ(outcome.results[1].result["n"], "set")
+        << "another command, so not the first's result";
 }
 
 TEST_F(RunExperiments, SayWhatFailedAndGoOn) {
@@ -97,7 +110,7 @@ TEST_F(RunExperiments, ForgetWhatWasStopped) {
     add("second", "echo '{\"n\": 2}' > $0/result.json; exec sleep 50");
     int looks = 0;
     const fs::path first =
-        raw_path(scratch.path(), Experiment{"scripts", "", "", {}, {}, {}}, scripts[0]);
+        raw_path(scratch.path(), Experiment{"scripts", "", "", {}, {}, {}}, scripts[0], "a build");
     const Outcome outcome = run([&] { return fs::exists(first) && ++looks > 3; });
     EXPECT_FALSE(outcome.complete);
     EXPECT_EQ(outcome.results.size(), 1u);
@@ -105,17 +118,49 @@ TEST_F(RunExperiments, ForgetWhatWasStopped) {
         << "the folder of the second is gone";
 }
 
-TEST(RawResults, AreOfOneVersionAndOneCommand) {
+TEST_F(RunExperiments, TakeWhatIsThereOfThoseThatAreNotChosen) {
+    add("one", "echo '{\"n\": 1}' > $0/result.json");
+    add("two", counted("two", "echo '{\"n\": 2}' > $0/result.json"));
+    EXPECT_FALSE(run([] { return false; }, "another").complete);
+    EXPECT_EQ(times("two"), 0u);
+    EXPECT_TRUE(run([] { return false; }, "scripts").complete);
+    const Outcome outcome = run([] { return false; }, "another");
+    EXPECT_TRUE(outcome.complete);
+    EXPECT_EQ(outcome.results.size(), 2u);
+    EXPECT_EQ(times("two"), 1u);
+}
+
+/// A program that is built anew, or another library in its place, is another build.
+TEST(RawResults, AreOfOneBuild) {
+    const ScratchFolder scratch = std::move(*ScratchFolder::make());
+    const fs::path program = scratch.path() / "program";
+    const auto build_of = [&](const std::string& text) {
+        std::ofstream(program) << text;
+        return build_text(program);
+    };
+    const std::string first = build_of("first");
+    EXPECT_NE(build_of("other"), first);
+    EXPECT_EQ(build_of("first"), first);
+    const fs::path library = scratch.path() / "library.so";
+    std::ofstream(library) << "library";
+    ::setenv("OVC_PLUGIN", library.c_str(), /* overwrite= */ 1);
+    EXPECT_NE(build_text(program), first);
+    ::unsetenv("OVC_PLUGIN");
+    const Experiment experiment{"e", "", "", {}, {}, {}};
+    EXPECT_NE(raw_path("", experiment, {}, "one"), raw_path("", experiment, {}, "two"));
+}
+
+TEST(RawResults, AreOfOneCommand) {
     const ScratchFolder scratch = std::move(*ScratchFolder::make());
     const Experiment experiment{"e", "", "", {}, {}, {}};
     const ReportRun run{"key", {"bench", "--size", "8x8"}, "r.json", 1};
-    const fs::path path = raw_path(scratch.path(), experiment, run);
+    const fs::path path = raw_path(scratch.path(), experiment, run, "a build");
     ReportRun other = run;
     other.words[2] = "9x9";
-    EXPECT_NE(raw_path(scratch.path(), experiment, other), path);
+    EXPECT_NE(raw_path(scratch.path(), experiment, other, "a build"), path);
     EXPECT_FALSE(load_raw(path, run));
     fs::create_directories(path.parent_path());
-    ASSERT_TRUE(save_raw(path, {run, {{"x", 5}}}, 1.5));
+    ASSERT_TRUE(save_raw(path, {run, {{"x", 5}}}, "a build", 1.5));
     ASSERT_TRUE(load_raw(path, run));
     EXPECT_EQ(load_raw(path, run)->result["x"], 5);
     fs::resize_file(path, fs::file_size(path) - 5);

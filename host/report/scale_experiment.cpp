@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scale: what the plugin's work costs as rays, triangles, leaves and the budget grow.
+#include "host/bench/sweep.h"
 #include "host/report/experiment_table.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <thread>
 
 namespace ovc {
@@ -21,17 +23,23 @@ ReportRun sweep_run(const std::string& over, const std::vector<std::string>& mor
 
 constexpr const char* kThreads = "threads-";
 
-/// A rendering with 1, 2, 4, ... threads, and with as many as there are cores.
+ReportRun thread_run(const std::string& scene, uint32_t threads, int repeat, bool quick) {
+    return {fmt::format("{}{}-{}", kThreads, threads, repeat),
+            {"render", scene, "--size", quick ? "512x512" : "1024x1024", "--threads",
+             std::to_string(threads), "--quiet", "--stats", "{}/stats.json", "-o",
+             "{}/picture.png"},
+            "stats.json",
+            2};
+}
+
+/// A rendering with 1, 2, 4, ... threads, and with as many as there are cores; three times each.
 std::vector<ReportRun> thread_runs(const std::string& scene, bool quick) {
+    constexpr int repeats = 3;
     std::vector<ReportRun> runs;
     const uint32_t cores = std::max(1u, std::thread::hardware_concurrency());
     for (uint32_t threads = 1;; threads = std::min(2 * threads, cores)) {
-        runs.push_back({fmt::format("{}{}", kThreads, threads),
-                        {"render", scene, "--size", quick ? "512x512" : "1024x1024", "--threads",
-                         std::to_string(threads), "--quiet", "--stats", "{}/stats.json", "-o",
-                         "{}/picture.png"},
-                        "stats.json",
-                        quick ? 2.0 : 6.0});
+        for (int repeat = 0; repeat < repeats; ++repeat)
+            runs.push_back(thread_run(scene, threads, repeat, quick));
         if (threads == cores)
             return runs;
     }
@@ -67,12 +75,45 @@ Json sweep_of(const Json& result) {
     return sweep;
 }
 
-Json threads_of(const RawResult& raw) {
-    const Json& time = raw.result["time"];
-    return {{"threads", std::stoi(raw.run.key.substr(std::string_view(kThreads).size()))},
-            {"build_s", time["level1"].get<double>() + time["level2"].get<double>()},
-            {"render_s", time["render"]},
-            {"cpu_s", time["cpu"]}};
+/// "threads-2-0": 2.
+int threads_in(const ReportRun& run) {
+    return std::stoi(run.key.substr(std::string_view(kThreads).size()));
+}
+
+Json median_of(std::vector<double> values) {
+    std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(values.size() / 2));
+    return values[values.size() / 2];
+}
+
+/// A row for each number of threads, medians of its runs.
+Json threads_of(std::span<const RawResult> results) {
+    std::map<int, std::vector<const Json*>> times;
+    for (const RawResult& raw : results)
+        if (raw.run.key.starts_with(kThreads))
+            times[threads_in(raw.run)].push_back(&raw.result["time"]);
+    Json rows = Json::array();
+    for (const auto& [threads, of] : times) {
+        std::vector<double> build, render, cpu;
+        for (const Json* time : of) {
+            build.push_back((*time)["level1"].get<double>() + (*time)["level2"].get<double>());
+            render.push_back((*time)["render"]);
+            cpu.push_back((*time)["cpu"]);
+        }
+        rows.push_back({{"threads", threads},
+                        {"build_s", median_of(build)},
+                        {"render_s", median_of(render)},
+                        {"cpu_s", median_of(cpu)}});
+    }
+    return rows;
+}
+
+/// Of a column of threads_of(): -1 is perfectly parallel.
+Json threads_exponent(const Json& rows, const char* column) {
+    Sweep sweep;
+    for (const Json& row : rows)
+        sweep.rows.push_back({row["threads"], {row[column].get<double>()}});
+    const std::optional<double> exponent = fitted_exponent(sweep, 0);
+    return exponent ? Json(*exponent) : Json(nullptr);
 }
 
 struct Projected {
@@ -119,12 +160,12 @@ Json projection_of(const Json& sweep) {
 
 Json figures(std::span<const RawResult> results) {
     Json figures = {
-        {"sweeps", Json::array()}, {"threads", Json::array()}, {"projection", Json::array()}};
+        {"sweeps", Json::array()}, {"threads", threads_of(results)}, {"projection", Json::array()}};
+    for (const char* column : {"build_s", "render_s"})
+        figures["threads_exponents"][column] = threads_exponent(figures["threads"], column);
     for (const RawResult& raw : results) {
-        if (raw.run.key.starts_with(kThreads)) {
-            figures["threads"].push_back(threads_of(raw));
+        if (raw.run.key.starts_with(kThreads))
             continue;
-        }
         figures["sweeps"].push_back(sweep_of(raw.result));
         if (raw.run.key == "triangles")
             figures["projection"] = projection_of(raw.result);
@@ -219,6 +260,12 @@ std::vector<Block> blocks(const Json& figures) {
     for (size_t s = 0; s < figures["sweeps"].size(); ++s)
         blocks.push_back(table_of(figures, s));
     if (!figures["threads"].empty()) {
+        blocks.push_back(Text{"More threads: medians of renderings. The exponent of building is ",
+                              number(figures, "/threads_exponents/build_s"),
+                              ", that of tracing and shading ",
+                              number(figures, "/threads_exponents/render_s"),
+                              "; minus one is perfectly parallel. A software renderer is told to "
+                              "use as many as the host."});
         blocks.push_back(threads_plot(figures));
         blocks.push_back(list_table(figures, "threads", "As threads grow",
                                     {"threads", "build s", "trace and shade s", "CPU s"},

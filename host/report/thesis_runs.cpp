@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cassert>
 #include <filesystem>
+#include <optional>
+#include <tuple>
 
 namespace ovc {
 
@@ -21,7 +23,8 @@ std::span<const ThesisSystem> thesis_systems() {
         {"product-batched",
          "the product, batched",
          {"--backend", "two-level", "--mode", "batched"}},
-        {"product-mixed", "the product, mixed", {"--backend", "two-level", "--mode", "mixed"}}};
+        {"product-mixed", "the product, mixed", {"--backend", "two-level", "--mode", "mixed"}},
+        {"product-budget", "the product, budget", {"--backend", "two-level", "--mode", "batched"}}};
     return systems;
 }
 
@@ -29,6 +32,11 @@ const ThesisSystem& thesis_system(std::string_view key) {
     const auto found = std::ranges::find(thesis_systems(), key, &ThesisSystem::key);
     assert(found != thesis_systems().end());
     return *found;
+}
+
+int style_of(std::string_view key) {
+    const auto found = std::ranges::find(thesis_systems(), key, &ThesisSystem::key);
+    return found == thesis_systems().end() ? 1 : int(found - thesis_systems().begin()) + 1;
 }
 
 ReportRun frames_run(const std::string& key, const ThesisSystem& system, const FramesAsked& asked,
@@ -67,20 +75,33 @@ std::string model_text(const ReportRun& run) {
                              std::filesystem::path(*(found + 1)).filename().string());
 }
 
-std::string renderer_text(std::span<const RawResult> results) {
-    for (const RawResult& raw : results) {
-        if (split_run_key(raw.run.key).second == "kdt" || !raw.result.contains("renderer"))
-            continue;
-        const std::string renderer = raw.result["renderer"];
-        return "The GPU's part was done by " + renderer +
-               (renderer.starts_with("llvmpipe")
-                    ? ": a software renderer on the cores that the CPU KD-tree has as well, so "
-                      "that "
-                      "no GPU's lead over it can show here. Calls, rays and bytes are what they "
-                      "would be on a GPU."
-                    : ".");
-    }
+std::string renderer_of(std::span<const RawResult> results) {
+    for (const RawResult& raw : results)
+        if (split_run_key(raw.run.key).second != "kdt" && raw.result.contains("renderer"))
+            return raw.result["renderer"];
     return "";
+}
+
+static bool is_software(const std::string& renderer) {
+    return renderer.starts_with("llvmpipe");
+}
+
+std::string renderer_text(const Json& figures) {
+    const std::string renderer = figures["renderer"];
+    if (renderer.empty())
+        return "";
+    return "The GPU's part was done by " + renderer +
+           (is_software(renderer)
+                ? ": a software renderer on the cores that the CPU KD-tree has as well, so that no "
+                  "GPU's lead over it can show here. Calls, rays and bytes are what they would be "
+                  "on a GPU. Frames are compared by the CPU seconds of all threads while rays are "
+                  "traced and shaded: other programs on the machine do not change them."
+                : ".");
+}
+
+FrameCost cost_by(const std::string& renderer) {
+    return is_software(renderer) ? FrameCost{"cpu", "mean_cpu", "CPU s a frame"}
+                                 : FrameCost{"seconds", "mean_seconds", "s a frame"};
 }
 
 std::pair<std::string, std::string> split_run_key(const std::string& key) {
@@ -116,21 +137,25 @@ Json frames_of(const std::string& key, const Json& stats) {
     const auto known = std::ranges::find(thesis_systems(), key, &ThesisSystem::key);
     Json of = {{"key", key},
                {"name", known == thesis_systems().end() ? key : std::string(known->name)}};
-    for (const char* list : {"frame", "seconds", "calls", "rays", "active", "incremental"})
+    for (const char* list : {"frame", "seconds", "cpu", "calls", "rays", "active", "incremental"})
         of[list] = Json::array();
     for (const Json& frame : stats["frames"]) {
         of["frame"].push_back(frame["frame"]);
         of["seconds"].push_back(frame["time"]["render"]);
+        of["cpu"].push_back(frame["time"]["cpu"]);
         of["calls"].push_back(key == "kdt" ? Json(nullptr) : frame["passes"]);
         of["rays"].push_back(rays_of(frame["rays"]));
         of["active"].push_back(share_of(frame, "bytes", stats));
         of["incremental"].push_back(share_of(frame, "new_bytes", stats));
     }
-    for (const char* list : {"seconds", "calls", "rays"})
+    for (const char* list : {"seconds", "cpu", "calls", "rays"})
         of[std::string("mean_") + list] = mean_of(of[list]);
     const Json& time = stats["time"];
     of["build_seconds"] = time["level1"].get<double>() + time["level2"].get<double>();
-    of["shade_seconds"] = time["shade"].get<double>() / double(stats["frames"].size());
+    const double frames = double(stats["frames"].size());
+    of["pass_seconds"] = time["pass"].get<double>() / frames;
+    of["shade_seconds"] = time["shade"].get<double>() / frames;
+    of["moved_mb"] = 1e-6 * stats["bytes_in"].get<double>() / frames;
     return of;
 }
 
@@ -161,7 +186,7 @@ Json findings_of(const std::vector<Finding>& findings) {
 
 Table findings_table(const Json& figures) {
     Table table;
-    table.caption = "What the thesis found, and what is measured here";
+    table.caption = "What the thesis says of its curves, and what is measured here";
     table.header = {"", "the thesis reports", "its system, here", "the product"};
     for (size_t i = 0; i < figures["findings"].size(); ++i) {
         const std::string at = fmt::format("/findings/{}", i);
@@ -198,7 +223,7 @@ Plot frames_plot(const std::string& name, const std::string& caption, const Json
         data += "\n\n";
         curves +=
             fmt::format("{}datafile index {} using 1:2 with linespoints ls {} title '{}'",
-                        block ? ", " : "", block, block + 1, (*one)["name"].get<std::string>());
+                        block ? ", " : "", block, style_of(key), (*one)["name"].get<std::string>());
         ++block;
     }
     return {name, caption, data,
@@ -206,18 +231,74 @@ Plot frames_plot(const std::string& name, const std::string& caption, const Json
                         curves)};
 }
 
+/// Where the system's object is; nothing: it is not there.
+static std::optional<std::string> pointer_to(const Json& figures, const std::string& at,
+                                             std::string_view key) {
+    const Json& systems = figures.at(Json::json_pointer(at));
+    for (size_t i = 0; i < systems.size(); ++i)
+        if (systems[i]["key"] == key)
+            return fmt::format("{}/{}", at, i);
+    return {};
+}
+
+Text mixed_text(const Json& figures, const std::string& at) {
+    Text text;
+    for (const auto& [batched_key, mixed_key, whose] :
+         {std::tuple("batched", "mixed", "the thesis' system"),
+          std::tuple("product-batched", "product-mixed", "the product")}) {
+        const auto batched = pointer_to(figures, at, batched_key),
+                   mixed = pointer_to(figures, at, mixed_key);
+        if (!batched || !mixed)
+            continue;
+        const auto both = [&](const char* what, const char* of) {
+            for (Piece piece : {Piece(what), number(figures, *mixed + of), Piece(" instead of "),
+                                number(figures, *batched + of)})
+                text.push_back(std::move(piece));
+        };
+        text.push_back(
+            fmt::format("{}Mixed against batched, {}, a frame: ", text.empty() ? "" : " ", whose));
+        both("", "/mean_calls");
+        both(" GPU calls; ", "/pass_seconds");
+        both(" s in passes; ", "/shade_seconds");
+        both(" s in shading; ", "/mean_cpu");
+        text.emplace_back(" CPU s in all.");
+    }
+    if (!text.empty())
+        text.emplace_back(" Fewer calls are what mixed gains; what it pays is to shade rays as "
+                          "they come back, in smaller groups. On the thesis' GPU, where a call was "
+                          "a round trip to another processor, the first weighed more than here.");
+    return text;
+}
+
+Text kdtree_text(const Json& figures, const std::string& at) {
+    const auto kdt = pointer_to(figures, at, "kdt"), batched = pointer_to(figures, at, "batched");
+    if (!kdt || !batched)
+        return {};
+    return {"The CPU KD-tree takes ",
+            number(figures, *kdt + "/mean_cpu"),
+            " CPU s a frame, the thesis' two-level ",
+            number(figures, *batched + "/mean_cpu"),
+            ": the same cores do both, where the thesis had a GPU beside one core. Building them "
+            "takes ",
+            number(figures, *kdt + "/build_seconds"),
+            " and ",
+            number(figures, *batched + "/build_seconds"),
+            " s."};
+}
+
 Table systems_table(const Json& figures, const std::string& at, const std::string& caption) {
     Table table;
     table.caption = caption;
-    table.header = {"system",       "s a frame",         "GPU calls a frame",
-                    "rays a frame", "shading s a frame", "build s"};
+    table.header = {"system",       "s a frame",        "CPU s a frame",     "GPU calls a frame",
+                    "rays a frame", "passes s a frame", "shading s a frame", "MB moved a frame",
+                    "build s"};
     const Json& systems = figures.at(Json::json_pointer(at));
     for (size_t i = 0; i < systems.size(); ++i) {
         if (systems[i]["key"] == "active")
             continue;
         table.rows.push_back({{systems[i]["name"].get<std::string>()}});
-        for (const char* key :
-             {"mean_seconds", "mean_calls", "mean_rays", "shade_seconds", "build_seconds"})
+        for (const char* key : {"mean_seconds", "mean_cpu", "mean_calls", "mean_rays",
+                                "pass_seconds", "shade_seconds", "moved_mb", "build_seconds"})
             table.rows.back().push_back({number(figures, fmt::format("{}/{}/{}", at, i, key))});
     }
     return table;

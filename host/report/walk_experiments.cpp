@@ -69,18 +69,18 @@ Json figures(std::span<const RawResult> results, const Walk& walk) {
     Json systems = Json::array();
     for (const RawResult& raw : results)
         systems.push_back(frames_of(split_run_key(raw.run.key).second, raw.result));
+    const std::string renderer = renderer_of(results);
+    const char* cost = cost_by(renderer).mean;
     const std::vector<Finding> findings = {
         {"two-level, mixed: times as fast as the CPU KD-tree", walk.faster_than_kdt,
-         ratio_of(systems, "mean_seconds", "kdt", "mixed"),
-         ratio_of(systems, "mean_seconds", "kdt", "product-mixed")},
+         ratio_of(systems, cost, "kdt", "mixed"), ratio_of(systems, cost, "kdt", "product-mixed")},
         {"GPU calls, mixed over batched", walk.calls_ratio,
          ratio_of(systems, "mean_calls", "mixed", "batched"),
          ratio_of(systems, "mean_calls", "product-mixed", "product-batched")},
-        {"time, mixed over batched", walk.time_ratio,
-         ratio_of(systems, "mean_seconds", "mixed", "batched"),
-         ratio_of(systems, "mean_seconds", "product-mixed", "product-batched")}};
+        {"time, mixed over batched", walk.time_ratio, ratio_of(systems, cost, "mixed", "batched"),
+         ratio_of(systems, cost, "product-mixed", "product-batched")}};
     return {{"scene", results[0].result["scene"]},
-            {"renderer", renderer_text(results)},
+            {"renderer", renderer},
             {"triangles", results[0].result["triangles"]},
             {"frames", results[0].result["frames"].size()},
             {"findings", findings_of(findings)},
@@ -89,6 +89,7 @@ Json figures(std::span<const RawResult> results, const Walk& walk) {
 
 std::vector<Block> blocks(const Json& figures, const Walk& walk) {
     const Json& systems = figures["systems"];
+    const FrameCost cost = cost_by(figures["renderer"]);
     const auto plot = [&](const char* what, const char* caption,
                           const std::vector<std::string_view>& keys, const char* quantity,
                           const char* label) {
@@ -105,12 +106,14 @@ std::vector<Block> blocks(const Json& figures, const Walk& walk) {
              " triangles, ", number(figures, "/frames"),
              " frames spread along the path of the thesis. Times are of tracing and shading, "
              "without building and files. A GPU call is a pass of the kernel."},
-        Text{figures["renderer"].get<std::string>()},
+        Text{renderer_text(figures)},
         findings_table(figures),
-        plot("time", caption(walk.time_figure, "seconds a frame, with the CPU KD-tree.").c_str(),
-             all, "seconds", "s a frame"),
-        plot("gpu-time", caption(walk.time_figure, "without it.").c_str(), gpu, "seconds",
-             "s a frame"),
+        kdtree_text(figures, "/systems"),
+        mixed_text(figures, "/systems"),
+        plot("time", caption(walk.time_figure, "time a frame, with the CPU KD-tree.").c_str(), all,
+             cost.list, cost.label),
+        plot("gpu-time", caption(walk.time_figure, "without it.").c_str(), gpu, cost.list,
+             cost.label),
         plot("calls", caption(walk.calls_figure, "GPU calls a frame.").c_str(), gpu, "calls",
              "GPU calls"),
         plot("rays", caption(walk.rays_figure, "rays a frame, the same in each system.").c_str(),
