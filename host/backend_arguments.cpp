@@ -48,7 +48,7 @@ void BackendArguments::add_to(CLI::App& app) {
         ->type_name("SIZE");
     CLI::Option* per_leaf = app.add_option("--leaf-triangles", leaf_triangles,
                                            "The most triangles of a level-1 leaf; default: "
-                                           "all where they fit the budget, else a tenth")
+                                           "a tenth; all where they fit and rays gain")
                                 ->group(group)
                                 ->type_name("N");
     app.add_option("--leaves", leaves, "Instead: about so many level-1 leaves")

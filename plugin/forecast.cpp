@@ -9,6 +9,7 @@
 #include "gpu/linked.h"
 #include "kdtree/cells.h"
 #include "kdtree/sample.h"
+#include "plugin/one_leaf.h"
 #include "plugin/page_rate.h"
 
 #include <algorithm>
@@ -96,8 +97,12 @@ public:
     Sizes estimate(const LeafLimits& limits) {
         sizes_ = {};
         most_ = limits.most_of(
-            distinct(), one_frame_suits(soup_, triangles_, bounds_),
-            [&](uint64_t page, double copies) { return rates_->mean_of(double(page), copies); });
+            distinct(),
+            [&](uint64_t page, double copies) { return rates_->mean_of(double(page), copies); },
+            [&] {
+                return one_frame_suits(soup_, triangles_, bounds_) &&
+                       one_leaf_pays(soup_, sample_, rate_, bounds_, uint32_t(limits.triangles));
+            });
         if (const uint32_t rate = sample_rate(distinct(), most_); rate != rate_)
             draw(rate);
         const KdTree tree = cut_sample(soup_, sample_, rate_, bounds_,

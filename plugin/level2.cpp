@@ -6,6 +6,7 @@
 #include "core/stopwatch.h"
 #include "gpu/linked.h"
 #include "kdtree/sample.h"
+#include "plugin/one_leaf.h"
 #include "plugin/page_rate.h"
 
 #include <fmt/format.h>
@@ -74,16 +75,22 @@ public:
 private:
     uint32_t first_most(std::span<const TriangleId> triangles, const Box& bounds,
                         bool one_frame) const {
+        const bool maybe_one = limits_.whole_bytes > 0 && one_frame;
+        const uint32_t rate = sample_rate(triangles.size(), limits_.triangles);
+        std::vector<TriangleId> sample;
+        if (maybe_one || limits_.pages_matter())
+            sample = sample_triangles(soup_, triangles, rate, progress_);
         std::optional<PageRates> rates;
-        return limits_.most_of(triangles.size(), one_frame, [&](uint64_t page, double copies) {
-            if (!rates) {
-                const uint32_t rate = sample_rate(triangles.size(), limits_.triangles);
-                const auto sample = sample_triangles(soup_, triangles, rate, progress_);
-                if (sample.empty())
-                    return double(kMostBytesPerTriangle);
+        const auto rate_of = [&](uint64_t page, double copies) {
+            if (sample.empty())
+                return double(kMostBytesPerTriangle);
+            if (!rates)
                 rates.emplace(soup_, triangles, sample, rate, bounds, progress_);
-            }
             return rates->mean_of(double(page), copies);
+        };
+        return limits_.most_of(triangles.size(), rate_of, [&] {
+            return maybe_one &&
+                   one_leaf_pays(soup_, sample, rate, bounds, uint32_t(limits_.triangles));
         });
     }
 

@@ -25,7 +25,7 @@ struct Levels {
 inline constexpr double kCopiesOfLeaves = 1.4;
 
 /// What leaves may be: so many triangles at most (> 0), and so many bytes of a page. But where all
-/// triangles can be in one page of `whole_bytes`, and in one frame, there is one leaf.
+/// triangles fit into one page of `whole_bytes`, there is one leaf if rays gain by it.
 struct LeafLimits {
     static constexpr uint64_t kAny = ~uint64_t(0);
 
@@ -35,9 +35,10 @@ struct LeafLimits {
 
     /// How many triangles a leaf may have, of so many. rate(n, copies): about what a page of n
     /// takes, in bytes a triangle (copies: as in LoosePairs); asked only where that matters.
-    template <class Rate>
-    uint32_t most_of(uint64_t all, bool one_frame, Rate&& rate) const {
-        if (one_frame && (whole_bytes == kAny || (whole_bytes > 0 && fits(all, rate(all, 1)))))
+    /// one_leaf(): whether rays gain by one leaf (one_leaf.h), asked only where there may be one.
+    template <class Rate, class OneLeaf>
+    uint32_t most_of(uint64_t all, Rate&& rate, OneLeaf&& one_leaf) const {
+        if (whole_bytes > 0 && one_leaf() && (whole_bytes == kAny || fits(all, rate(all, 1))))
             return kNone - 1;
         return pages_matter() ? triangles_at(rate(triangles, kCopiesOfLeaves))
                               : uint32_t(std::min<uint64_t>(triangles, kNone - 1));

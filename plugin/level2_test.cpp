@@ -26,8 +26,8 @@ Built build(const Soup& soup, const LeafLimits& limits) {
                             [](uint64_t sum, const Page& page) { return sum + page.bytes(); })};
 }
 
-TEST(LevelsOf, ASceneThatFitsAreOneLeaf) {
-    const Soup soup = test::closed_grid(60);
+TEST(LevelsOf, ASceneThatFitsAreOneLeafWherePlanesWouldCutMuch) {
+    const Soup soup = test::random_soup(3, 8000, 0.2);
     const uint64_t tenth = soup.triangle_count() / 10;
     const Built one = build(soup, {tenth, 1 << 30, LeafLimits::kAny});
     EXPECT_EQ(one.leaves, 1u);
@@ -37,8 +37,13 @@ TEST(LevelsOf, ASceneThatFitsAreOneLeaf) {
     EXPECT_EQ(build(soup, {tenth, 1 << 30, one.bytes / 2}).leaves, leaves);
 }
 
+TEST(LevelsOf, AMeshThatFitsAreLeavesBuiltSideBySide) {
+    const Soup soup = test::closed_grid(250);
+    EXPECT_GT(build(soup, {soup.triangle_count() / 10, 1 << 30, LeafLimits::kAny}).leaves, 9u);
+}
+
 TEST(LevelsOf, ASceneThatSeemedToFitAreLeavesWithinTheirPages) {
-    const Soup soup = test::closed_grid(60);
+    const Soup soup = test::random_soup(3, 8000, 0.2);
     const uint64_t bytes = build(soup, {1 << 20, 1 << 30, LeafLimits::kAny}).bytes;
     // What cubes tell of the page may be too little by a few percent.
     for (const double share : {0.97, 0.99, 1.0, 1.03, 1.06}) {
@@ -49,9 +54,8 @@ TEST(LevelsOf, ASceneThatSeemedToFitAreLeavesWithinTheirPages) {
 }
 
 TEST(LevelsOf, ASceneWhoseTrianglesAreLostInItsFrameAreLeaves) {
-    Soup soup = test::closed_grid(60);
-    const std::vector<vec3> far_away(3, vec3(0));
-    auto corners = far_away;
+    Soup soup = test::random_soup(3, 8000, 0.2);
+    std::vector<vec3> corners(3, vec3(0));
     corners[1].x = corners[2].y = 1;
     soup.chunks.push_back(Chunk::owning(dvec3(1e6), std::move(corners)));
     EXPECT_GT(build(soup, {soup.triangle_count() / 10, 1 << 30, LeafLimits::kAny}).leaves, 9u);

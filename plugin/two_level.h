@@ -28,7 +28,7 @@ namespace ovc {
 
 struct TwoLevelOptions {
     uint64_t budget_bytes = 0;   // 0: the device's default
-    uint64_t leaf_triangles = 0; // 0: all, or a tenth of the scene where that does not fit
+    uint64_t leaf_triangles = 0; // 0: a tenth of the scene, or all where that is better
     uint64_t leaves = 0;         // instead: about this many
     bool certify = true;         // false: fast precision, the kernel's own answers
     bool compute = false;        // which kernel

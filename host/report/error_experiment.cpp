@@ -25,7 +25,7 @@ ReportRun run_of(const std::string& key, const std::string& scene, const std::st
     ReportRun run{key, {"bench", scene, "--only", contenders}, "bench.json", seconds};
     run.words.insert(run.words.end(), settings.begin(), settings.end());
     run.words.insert(run.words.end(), {"--workloads", "primary,diffuse,edges", "--size",
-                                       quick ? "320x320" : "1024x1024", "--repeats",
+                                       quick ? "320x320" : "512x512", "--repeats",
                                        quick ? "3" : "5", "--json", "{}/bench.json"});
     return run;
 }
@@ -42,7 +42,7 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
     for (const std::string& scene : scenes)
         runs.push_back(run_of(fmt::format("scene-{}", runs.size() + 1), scene,
                               "certified,fast" + peers,
-                              {"--leaves", "auto,1,100", "--resident", "all,30%"}, plan.quick,
+                              {"--leaves", "auto,16,100", "--resident", "all,30%"}, plan.quick,
                               plan.quick ? 75 : 240));
     // Two of the thesis' systems build a tree by a slow and careful rule: one scene, a small one
     // in the quick form.
