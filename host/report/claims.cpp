@@ -258,6 +258,9 @@ void add_benchmarks(std::vector<Claim>& claims) {
         .measured("tachyon", "1.54", seconds_of_program("tachyon"));
     Section(claims, kBenchmarks, "As work grows")
         .held("The last row is", "the exponent k of the power law", "the section scale");
+    Section(claims, kBenchmarks, "Time against the error of pictures")
+        .held("a sphere, a cone and a torus as triangles", "at tolerances of 0.1 to 0.0001 radii",
+              "ctest -R Pictures.OfRoundShapes");
     Section(claims, kBenchmarks, "Where the time goes, and what the budget costs")
         .measured("The pictures are", "identical under every budget", pixels_under_a_budget, kNone,
                   "ctest -R Invariance")
