@@ -62,10 +62,6 @@ Json nanoseconds(const Json& spread, double rays) {
                                          : Json(1e9 * spread["median"].get<double>() / rays);
 }
 
-Json megabytes(const Json& bytes) {
-    return bytes.is_null() ? bytes : Json(1e-6 * bytes.get<double>());
-}
-
 Json choice_of(const Json& m, const Json& contender) {
     const double rays = m["rays"].get<double>();
     return {{"choice", m["contender"]},

@@ -27,6 +27,10 @@ int height_of_bars(size_t lines) {
     return std::max(Plot().height, rest + line * int(lines));
 }
 
+Json megabytes(const Json& bytes) {
+    return bytes.is_null() ? bytes : Json(1e-6 * bytes.get<double>());
+}
+
 Piece number(const Json& figures, const std::string& pointer) {
     const Json& value = figures.at(Json::json_pointer(pointer));
     assert(value.is_number() || value.is_null());

@@ -62,6 +62,9 @@ struct Section {
 /// Three digits of a fraction, all of a whole number below 1e5: "0", "12,345", "3.1e-07", "0.125".
 std::string shown_number(double value);
 
+/// Bytes as millions of them; null stays null.
+Json megabytes(const Json& bytes);
+
 /// The one way for a number onto the page. Asserts that the figures have a number or null there.
 Piece number(const Json& figures, const std::string& pointer);
 

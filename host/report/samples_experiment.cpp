@@ -41,10 +41,6 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
     return runs;
 }
 
-Json megabytes(const Json& bytes) {
-    return bytes.is_null() ? bytes : Json(1e-6 * bytes.get<double>());
-}
-
 /// Other programs' pictures come in codes of 16 bits: what is less apart is the same.
 double in_codes(double rmse) {
     constexpr double codes = 65535;

@@ -23,10 +23,6 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
              plan.quick ? 8.0 : 90.0}};
 }
 
-Json megabytes(const Json& bytes) {
-    return bytes.is_null() ? bytes : Json(1e-6 * bytes.get<double>());
-}
-
 /// Its triangles, and how far its rays are from the exact shapes.
 Json shape_choice(const Json& row, double rays) {
     double largest = 0;
