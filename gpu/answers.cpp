@@ -67,16 +67,17 @@ void AnswerWords::dispatch(GLuint program, size_t rays, size_t invocation_rays) 
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-std::span<const uint32_t> AnswerWords::plane(int number, size_t rays) {
+std::span<const uint32_t> AnswerWords::plane(int number, size_t first, size_t rays) {
     std::vector<uint32_t>& words = planes_[size_t(number)];
     words.resize(rays);
-    glGetNamedBufferSubData(buffer_.id(), GLintptr(uint64_t(number) * rays_ * sizeof(uint32_t)),
+    glGetNamedBufferSubData(buffer_.id(),
+                            GLintptr((uint64_t(number) * rays_ + first) * sizeof(uint32_t)),
                             GLsizeiptr(rays * sizeof(uint32_t)), words.data());
     return words;
 }
 
-void AnswerWords::read(std::span<Answer> answers) {
-    const std::span<const uint32_t> names = plane(0, answers.size());
+void AnswerWords::read(std::span<Answer> answers, size_t first_ray) {
+    const std::span<const uint32_t> names = plane(0, first_ray, answers.size());
     std::atomic<uint32_t> seen = 0;
     parallel_for(answers.size(), kGrain, [&](size_t first, size_t last) {
         uint32_t all = 0;
@@ -89,8 +90,8 @@ void AnswerWords::read(std::span<Answer> answers) {
     });
     if ((seen & OVC_SAYS_MORE) == 0)
         return;
-    const std::array more{plane(1, answers.size()), plane(2, answers.size()),
-                          plane(3, answers.size())};
+    const std::array more{plane(1, first_ray, answers.size()), plane(2, first_ray, answers.size()),
+                          plane(3, first_ray, answers.size())};
     parallel_for(answers.size(), kGrain, [&](size_t first, size_t last) {
         for (size_t ray = first; ray < last; ++ray)
             if (names[ray] & OVC_SAYS_MORE)

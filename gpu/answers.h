@@ -59,10 +59,11 @@ class AnswerWords {
 public:
     AnswerWords(Ledger& ledger, uint32_t rays);
     void dispatch(GLuint program, size_t rays, size_t invocation_rays) const;
-    void read(std::span<Answer> answers);
+    /// Those of the rays from `first_ray` on.
+    void read(std::span<Answer> answers, size_t first_ray = 0);
 
 private:
-    std::span<const uint32_t> plane(int number, size_t rays);
+    std::span<const uint32_t> plane(int number, size_t first, size_t rays);
 
     uint32_t rays_;
     gl::Buffer buffer_;

@@ -2,6 +2,7 @@
 // Linked pages: a BVH over the roots of all pages, on the grid that they share.
 #include "gpu/linked.h"
 
+#include "gpu/node_boxes.h"
 #include "gpu/packer.h"
 #include "shaders/layout.h"
 
@@ -12,12 +13,11 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kNoLo = 0xffff; // of a missing child
-
 /// Boxes that are in grid coordinates already.
 struct Counted {
-    uint32_t lo(const Boxf& box, int axis) const { return uint32_t(box.lo[axis]); }
-    uint32_t hi(const Boxf& box, int axis) const { return uint32_t(box.hi[axis]); }
+    GridRange range(const Boxf& box, int axis) const {
+        return {uint32_t(box.lo[axis]), uint32_t(box.hi[axis])};
+    }
 };
 
 /// The box of all children of a page's root, in grid coordinates.
@@ -25,11 +25,13 @@ Boxf root_box(const Page& page) {
     Boxf box;
     for (int axis = 0; axis < 3; ++axis) {
         const uvec4& words = page.view()[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + size_t(axis)];
-        // A missing child has the greatest lo and the least hi.
-        box.lo[axis] =
-            float(std::min({words.x & 0xffff, words.x >> 16, words.y & 0xffff, words.y >> 16}));
-        box.hi[axis] =
-            float(std::max({words.z & 0xffff, words.z >> 16, words.w & 0xffff, words.w >> 16}));
+        GridRange all; // a missing child has the greatest lo and the least hi
+        for (size_t child = 0; child < 4; ++child) {
+            const GridRange range = range_of(words, child);
+            all = {std::min(all.lo, range.lo), std::max(all.hi, range.hi)};
+        }
+        box.lo[axis] = float(all.lo);
+        box.hi[axis] = float(all.hi);
     }
     return box;
 }
@@ -140,8 +142,9 @@ std::optional<LinkTree> make_link_tree(const Level1& level1, std::span<const Pag
     tree.top = tree_over(pages, [&](uint32_t leaf, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
         const Boxf box = root_box(pages[leaf]);
         for (int axis = 0; axis < 3; ++axis)
-            unit[size_t(axis)] = {uint32_t(box.lo[axis]) | kNoLo << 16, kNoLo | kNoLo << 16,
-                                  uint32_t(box.hi[axis]), 0};
+            for (size_t child = 0; child < 4; ++child)
+                put_range(unit[size_t(axis)], child,
+                          child == 0 ? Counted().range(box, axis) : GridRange());
         unit[3] = {OVC_LEADS_NOWHERE, leaf + 1, 0, 0};
     });
     tree.depth += tree.top.depth + 1;

@@ -3,6 +3,7 @@
 // hits; a frame in which triangles are too small for float32 is told.
 #include "gpu/linked.h"
 
+#include "gpu/node_boxes.h"
 #include "gpu/page_walk.h"
 #include "kdtree/test_soups.h"
 
@@ -110,10 +111,12 @@ TEST_P(Linked, TheTreeHasALinkForEachPage) {
         EXPECT_EQ(link[3], uvec4(OVC_LEADS_NOWHERE, leaf + 1, 0, 0));
         for (size_t axis = 0; axis < 3; ++axis) {
             const uvec4 root = built.pages[leaf].view()[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + axis];
-            const uint32_t lo = link[axis].x & 0xffff, hi = link[axis].z & 0xffff;
-            EXPECT_LE(lo, std::min(root.x & 0xffff, root.x >> 16));
-            EXPECT_GE(hi, std::max(root.z & 0xffff, root.z >> 16));
-            EXPECT_EQ(link[axis].x >> 16, 0xffffu) << "a second child";
+            const GridRange range = range_of(link[axis], 0);
+            for (size_t child = 0; child < 4; ++child) {
+                EXPECT_LE(range.lo, range_of(root, child).lo);
+                EXPECT_GE(range.hi, range_of(root, child).hi);
+            }
+            EXPECT_TRUE(range_of(link[axis], 1).empty()) << "a second child";
         }
     }
 }

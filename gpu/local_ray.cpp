@@ -27,26 +27,6 @@ Interval inside_box(const Box& box, const Ray& ray) {
     return inside;
 }
 
-bool near(const vec3& a, const vec3& b) {
-    constexpr float kNear = 1.0f / 16;
-    const vec3 apart = abs(a - b);
-    return std::max({apart.x, apart.y, apart.z}) < kNear;
-}
-
-template <class At>
-bool most_near(size_t count, At&& at) {
-    constexpr size_t kStep = 64;
-    size_t pairs = 0, together = 0;
-    for (size_t i = 0; i + 1 < count; i += kStep) {
-        const LocalRay &a = at(i), &b = at(i + 1);
-        if (a.t_end < 0 || b.t_end < 0)
-            continue;
-        pairs += 1;
-        together += near(a.dir, b.dir) && near(a.org, b.org);
-    }
-    return 2 * together >= pairs;
-}
-
 double largest(const dvec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
@@ -77,14 +57,6 @@ LocalRay local_ray(const Leaf& leaf, const Ray& ray, uint32_t skip, bool any_hit
     if (!(inside.enter <= inside.exit && ray.t_max >= ray.t_min))
         local.t_end = OVC_NO_RAY;
     return local;
-}
-
-bool coherent(std::span<const LocalRay> rays) {
-    return most_near(rays.size(), [&](size_t i) -> const LocalRay& { return rays[i]; });
-}
-
-bool coherent(std::span<const ResumedRay> rays) {
-    return most_near(rays.size(), [&](size_t i) -> const LocalRay& { return rays[i].ray; });
 }
 
 } // namespace ovc

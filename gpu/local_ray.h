@@ -8,7 +8,6 @@
 #include "shaders/layout.h"
 
 #include <cstdint>
-#include <span>
 
 namespace ovc {
 
@@ -38,10 +37,5 @@ struct LocalTime {
 
 /// leaf: its box and frame. skip, any_hit: what LocalRay::asks says.
 LocalRay local_ray(const Leaf& leaf, const Ray& ray, uint32_t skip, bool any_hit, LocalTime& time);
-
-/// Whether most neighbours in the sequence go nearly the same way: their directions differ by less
-/// than 1/16, and they begin nearer to each other than 1/16 of the frame. Looks at a sample.
-bool coherent(std::span<const LocalRay> rays);
-bool coherent(std::span<const ResumedRay> rays);
 
 } // namespace ovc

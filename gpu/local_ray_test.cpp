@@ -70,24 +70,5 @@ TEST(LocalRay, FromTooFarAwayIsForDoublesToDecide) {
     EXPECT_EQ(local_ray(leaf, ray, 0, false, time).t_end, OVC_UNDECIDABLE);
 }
 
-TEST(LocalRay, NeighboursThatGoTheSameWayAreCoherent) {
-    test::Random random(9);
-    std::vector<LocalRay> fan(1000), scattered(1000);
-    for (size_t i = 0; i < fan.size(); ++i) {
-        fan[i] = {vec3(0), 1, vec3(float(i) / 1000, 0, 1), OVC_SKIPS_NONE};
-        scattered[i] = fan[i];
-        scattered[i].dir = vec3(random.point(-1, 1));
-    }
-    EXPECT_TRUE(coherent(fan));
-    EXPECT_FALSE(coherent(scattered));
-    for (size_t i = 0; i < fan.size(); ++i)
-        fan[i].org = vec3(random.point(-1, 1));
-    EXPECT_FALSE(coherent(fan)) << "the same way, from anywhere";
-    for (LocalRay& ray : scattered)
-        ray.t_end = OVC_NO_RAY;
-    EXPECT_TRUE(coherent(scattered)) << "none at all";
-    EXPECT_TRUE(coherent(std::span<const LocalRay>()));
-}
-
 } // namespace
 } // namespace ovc

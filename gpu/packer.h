@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "gpu/bvh.h"
 #include "gpu/collapse.h"
+#include "gpu/node_boxes.h"
 #include "gpu/page.h"
 #include "shaders/layout.h"
 
@@ -22,13 +23,7 @@ inline uint32_t bits(float x) {
     return std::bit_cast<uint32_t>(x);
 }
 
-/// The grid that 16-bit boxes count on, as a page's header says it.
-struct GridHeader {
-    vec3 org;
-    vec3 cell;
-};
-
-/// Grid: lo(box, axis) and hi(box, axis), the 16-bit coordinates of a box of the BVH.
+/// Grid: range(box, axis), where a box of the BVH lies on it.
 /// PutItem: put(item, unit) writes the four texels of a leaf of the BVH; from several threads.
 template <class Grid, class PutItem>
 class Packer {
@@ -48,7 +43,7 @@ public:
         const Extent all = measure(collapse_.root());
         page_.texels.assign(size_t(kFirstFree + all.units) * OVC_UNIT_TEXELS, uvec4(0));
         page_.depth = all.depth;
-        unit(0)[0] = {bits(header_.org.x), bits(header_.org.y), bits(header_.org.z), 0};
+        unit(0)[0] = {bits(header_.middle.x), bits(header_.middle.y), bits(header_.middle.z), 0};
         unit(0)[1] = {bits(header_.cell.x), bits(header_.cell.y), bits(header_.cell.z), 0};
         unit(0)[2] = {OVC_ROOT_UNIT, 0xffffffffu, 0, 0};
         // Even a single item gets a node above it, so that its box is tested.
@@ -128,16 +123,12 @@ private:
     }
 
     void put_boxes(const Children& children, uint32_t at) {
-        for (int axis = 0; axis < 3; ++axis) {
-            std::array<uint32_t, 4> lo{0xffff, 0xffff, 0xffff, 0xffff};
-            std::array<uint32_t, 4> hi{0, 0, 0, 0};
-            for (size_t i = 0; i < size_t(children.count); ++i) {
-                lo[i] = grid_.lo(nodes_[children.subtree[i].node].box, axis);
-                hi[i] = grid_.hi(nodes_[children.subtree[i].node].box, axis);
-            }
-            unit(at)[size_t(axis)] = {lo[0] | lo[1] << 16, lo[2] | lo[3] << 16, hi[0] | hi[1] << 16,
-                                      hi[2] | hi[3] << 16};
-        }
+        for (int axis = 0; axis < 3; ++axis)
+            for (size_t i = 0; i < 4; ++i)
+                put_range(unit(at)[size_t(axis)], i,
+                          i < size_t(children.count)
+                              ? grid_.range(nodes_[children.subtree[i].node].box, axis)
+                              : GridRange());
     }
 
     const std::vector<BvhNode>& nodes_;

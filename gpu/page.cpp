@@ -41,32 +41,29 @@ public:
             // Two cells of margin on each side: there the padding below has room.
             const double cell = std::max(box.extent()[axis], 1e-30) / (kLast - 4);
             cell_[axis] = std::nextafter(float(cell), INFINITY);
-            org_[axis] = float(box.lo[axis] - 2 * double(cell_[axis]));
+            middle_[axis] = float((box.lo[axis] + box.hi[axis]) / 2);
         }
     }
 
-    const vec3& org() const { return org_; }
-    const vec3& cell() const { return cell_; }
+    GridHeader header() const { return {middle_, cell_}; }
 
-    /// lo and hi of `box` along an axis, rounded outwards by a tenth of a cell at least: 1/655,350
-    /// of the leaf, 50 float roundings, where the kernel makes 25 at most (docs/numerics.md).
-    uint32_t lo(const Boxf& box, int axis) const {
-        return uint32_t(
-            std::clamp(std::floor(position(box.lo[axis], axis) - kPadding), 0.0, kLast));
-    }
-    uint32_t hi(const Boxf& box, int axis) const {
-        return uint32_t(std::clamp(std::ceil(position(box.hi[axis], axis) + kPadding), 0.0, kLast));
+    /// Of `box` along an axis, rounded outwards by a tenth of a cell at least: 1/655,350
+    /// of the leaf, 50 float roundings, where the kernel makes 26 at most (docs/numerics.md).
+    GridRange range(const Boxf& box, int axis) const {
+        const double lo = std::floor(position(box.lo[axis], axis) - kPadding);
+        const double hi = std::ceil(position(box.hi[axis], axis) + kPadding);
+        return {uint32_t(std::clamp(lo, 1.0, kLast)), uint32_t(std::clamp(hi, 1.0, kLast))};
     }
 
 private:
-    static constexpr double kLast = 65535;
+    static constexpr double kLast = kGridLast;
     static constexpr double kPadding = 0.1;
 
     double position(float x, int axis) const {
-        return (double(x) - double(org_[axis])) / double(cell_[axis]);
+        return (double(x) - double(middle_[axis])) / double(cell_[axis]) + kGridMiddle;
     }
 
-    vec3 org_;
+    vec3 middle_;
     vec3 cell_;
 };
 
@@ -146,11 +143,10 @@ private:
 
 Page pack(const PageItems& items, const Leaf& leaf, BuildProgress* progress) {
     const Grid grid({leaf.frame.to_local(leaf.grid.lo), leaf.frame.to_local(leaf.grid.hi)});
-    const GridHeader header{grid.org(), grid.cell()};
     const auto put = [&](uint32_t item, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
         items.put(item, unit);
     };
-    Page page = Packer(items.nodes(), header, grid, put, progress).pack();
+    Page page = Packer(items.nodes(), grid.header(), grid, put, progress).pack();
     page.texels[OVC_LOOSE_TEXEL].x = items.is_loose() ? OVC_HAS_LOOSE_PAIRS : 0;
     assert(page.texels.size() / OVC_UNIT_TEXELS < OVC_MAX_UNITS);
     return page;

@@ -3,6 +3,7 @@
 #include "gpu/page_check.h"
 
 #include "gpu/bvh.h"
+#include "gpu/node_boxes.h"
 
 namespace ovc {
 namespace {
@@ -69,13 +70,9 @@ private:
     }
 
     bool is_missing(uint32_t unit, uint32_t child) const {
-        const uint32_t shift = (child & 1) * 16;
-        for (uint32_t axis = 0; axis < 3; ++axis) {
-            const uvec4& t = texel(unit, axis);
-            if (((t[int(child / 2)] >> shift) & 0xffffu) != 0xffff ||
-                ((t[int(2 + child / 2)] >> shift) & 0xffffu) != 0)
+        for (uint32_t axis = 0; axis < 3; ++axis)
+            if (range_of(texel(unit, axis), child) != GridRange())
                 return false;
-        }
         return true;
     }
 

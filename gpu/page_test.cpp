@@ -3,6 +3,7 @@
 #include "gpu/page.h"
 
 #include "core/parallel.h"
+#include "gpu/node_boxes.h"
 #include "gpu/page_check.h"
 #include "gpu/page_walk.h"
 #include "kdtree/test_soups.h"
@@ -156,10 +157,7 @@ uint32_t longest_way(const Page& page, uint32_t unit) {
         return 0;
     uint32_t longest = 0;
     for (uint32_t child = 0; child < 4; ++child) {
-        const uint32_t shift = (child & 1) * 16;
-        const bool present = (texel(0)[int(child / 2)] >> shift & 0xffffu) <=
-                             (texel(0)[2 + int(child / 2)] >> shift & 0xffffu);
-        if (present)
+        if (!range_of(texel(0), child).empty())
             longest = std::max(longest, longest_way(page, texel(3).x + child));
     }
     return 1 + longest;

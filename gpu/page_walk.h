@@ -5,6 +5,7 @@
 
 #include "core/triangle.h"
 #include "gpu/bvh.h"
+#include "gpu/node_boxes.h"
 #include "gpu/page.h"
 #include "shaders/layout.h"
 
@@ -28,8 +29,8 @@ bool walk_page(const Page& page, const Leaf& leaf, const PreparedRay& p, double 
         return dvec3(std::bit_cast<float>(t.x), std::bit_cast<float>(t.y),
                      std::bit_cast<float>(t.z));
     };
-    const dvec3 grid_org = vector(0);
     const dvec3 grid_cell = vector(1);
+    const dvec3 grid_org = vector(0) - double(kGridMiddle) * grid_cell;
     PreparedRay local = p; // the same t: origin and direction are mapped alike
     local.ray.org = leaf.frame.to_local(p.ray.org);
     local.ray.dir = p.ray.dir * leaf.frame.scale;
@@ -60,12 +61,9 @@ bool walk_page(const Page& page, const Leaf& leaf, const PreparedRay& p, double 
         for (uint32_t child = 0; child < 4; ++child) {
             Box box;
             for (int axis = 0; axis < 3; ++axis) {
-                const uvec4& t = texel(entry.unit, axis);
-                const uint32_t shift = (child & 1) * 16;
-                const double lo = (t[child / 2] >> shift) & 0xffffu;
-                const double hi = (t[2 + child / 2] >> shift) & 0xffffu;
-                box.lo[axis] = grid_org[axis] + lo * grid_cell[axis];
-                box.hi[axis] = grid_org[axis] + hi * grid_cell[axis];
+                const GridRange range = range_of(texel(entry.unit, axis), child);
+                box.lo[axis] = grid_org[axis] + range.lo * grid_cell[axis];
+                box.hi[axis] = grid_org[axis] + range.hi * grid_cell[axis];
             }
             if (box.empty())
                 continue;

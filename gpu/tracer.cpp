@@ -26,7 +26,6 @@ constexpr uint32_t kMostStackWordsInSoftware = 8;
 constexpr size_t kMostLostShare = 256; // of rays, one in so many; else the stack is made whole
 // Rays that a lane of the compute kernel takes: neighbours that go the same way together, others
 // one after the other. The fewest of these keep two threads busy with 2048 a group.
-constexpr uint32_t kPacketRays = 2;
 constexpr uint32_t kRefills = 32;
 constexpr uint32_t kFewestRaysToRefill = 32768;
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
@@ -73,6 +72,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
                    : links_ ? stack_depth(links_->depth)
                             : stack_depth(pages)),
       stack_words_(software_ ? std::min(stack_depth_, kMostStackWordsInSoftware) : stack_depth_),
+      most_slots_(plan.batch_rays),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
       level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
       pool_(*ledger_, plan.pool_bytes, pages.size(), links_ ? links_->top.bytes() : 0) {
@@ -208,6 +208,15 @@ void Tracer::upload_local(std::span<const Traveller> rays, std::vector<Sent>& se
                 times_[i] = time;
         }
     });
+    packets_ = takes_packets() && coherent(std::span<const Sent>(sent).first(rays.size()));
+    if (packets_) {
+        std::optional<std::vector<Parted>> parted = part_octants(sent, rays.size(), most_slots_);
+        packets_ = parted.has_value();
+        if (packets_)
+            parted_ = std::move(*parted);
+    }
+    if (!parted_.empty())
+        slots_sent_ = parted_.back().slot + 1;
     glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(std::span(sent).size_bytes()),
                          sent.data());
 }
@@ -240,20 +249,20 @@ ShaderConfig Tracer::shader_config() const {
     config.buffer_images = software_;
     if (software_)
         config.most_rounds = kMostRoundsInSoftware;
-    if (software_ && config.linked && options_.compute) {
-        if (links_ ? coherent(std::span(resumed_).first(rays_sent_))
-                   : coherent(std::span(local_).first(rays_sent_)))
-            config.packet = kPacketRays;
-        else if (rays_sent_ >= kFewestRaysToRefill)
-            config.refill = kRefills;
-    }
+    if (packets_)
+        config.packet = kPacketRays;
+    else if (takes_packets() && rays_sent_ >= kFewestRaysToRefill)
+        config.refill = kRefills;
     return config;
 }
 
 Result<Done> Tracer::submit(std::span<const Traveller> rays) {
     assert(!rays.empty());
-    upload(rays);
     rays_sent_ = rays.size();
+    slots_sent_ = rays.size();
+    packets_ = false;
+    parted_.clear();
+    upload(rays);
     kernel_seconds_ = 0;
     return launch();
 }
@@ -286,7 +295,7 @@ Result<Done> Tracer::launch() {
     else
         glBeginQuery(GL_TIME_ELAPSED, time_.id());
     if (words_)
-        words_->dispatch(*program, rays_sent_, config.packet * config.refill);
+        words_->dispatch(*program, slots_sent_, config.packet * config.refill);
     else
         pixels_->draw(rays_sent_);
     if (!software_)
@@ -320,6 +329,12 @@ void Tracer::read(std::span<Answer> answers) {
         words_->read(answers);
     else
         pixels_->read(answers);
+    if (!parted_.empty()) {
+        parted_answers_.resize(slots_sent_ - rays_sent_);
+        words_->read(parted_answers_, rays_sent_);
+        for (const auto& [ray, slot] : parted_)
+            answers[ray] = parted_answers_[slot - rays_sent_];
+    }
     if (!software_)
         kernel_seconds_ += time_.seconds();
 }

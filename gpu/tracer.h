@@ -10,7 +10,7 @@
 #include "gpu/kernel.h"
 #include "gpu/ledger.h"
 #include "gpu/linked.h"
-#include "gpu/local_ray.h"
+#include "gpu/packets.h"
 #include "gpu/pool.h"
 #include "shaders/layout.h"
 
@@ -114,6 +114,7 @@ private:
 
     bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
     Result<Done> set_up();
+    bool takes_packets() const { return software_ && options_.compute && (linked_ || links_); }
     void upload(std::span<const Traveller> rays);
     void come_back(std::span<Answer> answers) const;
     ShaderConfig shader_config() const;
@@ -139,7 +140,12 @@ private:
     std::vector<LocalTime> times_;      // of them, in fast precision
     uint32_t stack_depth_;              // with which no ray is lost
     uint32_t stack_words_;              // of the kernel
+    uint32_t most_slots_;               // of a pass
     size_t rays_sent_ = 0;              // of the pass
+    size_t slots_sent_ = 0;             // and with those that were parted
+    bool packets_ = false;              // they are taken two at a time
+    std::vector<Parted> parted_;
+    std::vector<Answer> parted_answers_;
     gl::Buffer ray_buffer_;
     gl::BufferTexture rays_;
     std::optional<AnswerPixels> pixels_; // of the fragment kernel

@@ -2,11 +2,10 @@
 // A ray against the four boxes of a node. Boxes are padded when packed, by more than anything here can round.
 // Based on: Ize 2013, "Robust BVH Ray Traversal"; Ylitie et al. 2017 (quantised boxes folded into the ray).
 
-// The ray in grid coordinates: a plane at grid coordinate g is met at t = g * scale + offset.
+// The ray in grid coordinates: a plane at g, in 65,536ths of a cell from the grid's middle, is met at t = g * scale + offset.
 struct GridRay {
     vec3 scale;
     vec3 offset;
-    bvec3 backward; // the direction is negative: hi is the near plane
 };
 
 // A component below 1e-18 moves the ray by less than any padding over the whole leaf; its reciprocal stays finite.
@@ -15,55 +14,49 @@ vec3 finite_reciprocal(vec3 dir) {
     return 1.0 / mix(dir, tiny, lessThan(abs(dir), vec3(1e-18)));
 }
 
-GridRay grid_ray(vec3 org, vec3 inv_dir, vec3 grid_org, vec3 grid_cell) {
-    return GridRay(grid_cell * inv_dir, (grid_org - org) * inv_dir, lessThan(inv_dir, vec3(0.0)));
+GridRay grid_ray(vec3 org, vec3 inv_dir, vec3 grid_middle, vec3 grid_cell) {
+    return GridRay(grid_cell * inv_dir * (1.0 / 65536.0), (grid_middle - org) * inv_dir);
 }
 
-// Four 16-bit coordinates of one side, two to a word.
-vec4 coordinates(uvec2 words) {
-    return vec4(ivec4(words.x & 0xffffu, words.x >> 16, words.y & 0xffffu, words.y >> 16));
-}
+// Four 16-bit coordinates of one side, two to a word. The upper one keeps the lower one as its fraction, which the packer allows for.
+vec4 coordinates(uvec2 words) { return vec4(ivec4(words.x << 16, words.x, words.y << 16, words.y)); }
 
-// A node's four boxes, per axis their planes in grid coordinates: lo and hi; for one ray alone the near and the far ones, which
-// are selected by the word, before they are decoded.
+// A node's four boxes, per axis their near and far planes in grid coordinates: selected by the word, before they are decoded.
+// backward: the direction is negative, hi is the near plane.
 struct Boxes {
-    vec4 lo[3];
-    vec4 hi[3];
+    vec4 near[3];
+    vec4 far[3];
 };
 
 Boxes boxes_of(uvec4 x, uvec4 y, uvec4 z, bvec3 backward) {
-#if OVC_PACKET == 1
     x = backward.x ? x.zwxy : x;
     y = backward.y ? y.zwxy : y;
     z = backward.z ? z.zwxy : z;
-#endif
     return Boxes(vec4[3](coordinates(x.xy), coordinates(y.xy), coordinates(z.xy)),
                  vec4[3](coordinates(x.zw), coordinates(y.zw), coordinates(z.zw)));
 }
 
 ivec4 when(vec4 planes, float scale, float offset) { return floatBitsToInt(planes * scale + offset); }
 
-const int OVC_NO_CHILD = 0x7fffffff;
+const int OVC_NO_CHILD = 0x7ffffffc;
+const int OVC_NO_END = 0x80000000; // the end of a ray that meets no box
 
-// Sort keys of the four children: the bits of the entry t with the child's number in the two lowest, OVC_NO_CHILD where
-// the ray misses. Non-negative floats order as their bits do, and signed integer min and max are one instruction where
-// float ones are three; a negative entry loses against 0, a negative exit fails the comparison as it should.
-ivec4 child_keys(Boxes boxes, GridRay ray, float t_end) {
-    ivec4 enter = ivec4(0);
-    ivec4 exit = ivec4(floatBitsToInt(t_end));
-    for (int i = 0; i < 3; ++i) {
-        ivec4 a = when(boxes.lo[i], ray.scale[i], ray.offset[i]);
-        ivec4 b = when(boxes.hi[i], ray.scale[i], ray.offset[i]);
-        enter = max(enter, OVC_PACKET == 1 ? a : min(a, b));
-        exit = min(exit, OVC_PACKET == 1 ? b : max(a, b));
+// The bits of the t where the ray enters each of the four children, OVC_NO_CHILD where it misses; end: the bits of its own end.
+// Floats that are not negative order as their bits do, and signed integer min and max are one instruction where float ones are three.
+// Negative ones order the other way round: the least entry and the greatest exit of those are taken, so that where a box lies all
+// behind the ray's beginning, its exit comes first.
+ivec4 entries(Boxes boxes, GridRay ray, int end) {
+    ivec4 enter = when(boxes.near[0], ray.scale[0], ray.offset[0]);
+    ivec4 exit = min(ivec4(end), when(boxes.far[0], ray.scale[0], ray.offset[0]));
+    for (int i = 1; i < 3; ++i) {
+        enter = max(enter, when(boxes.near[i], ray.scale[i], ray.offset[i]));
+        exit = min(exit, when(boxes.far[i], ray.scale[i], ray.offset[i]));
     }
-    return mix(ivec4(OVC_NO_CHILD), (enter & ~3) | ivec4(0, 1, 2, 3), lessThanEqual(enter, exit));
+    return mix(ivec4(OVC_NO_CHILD), enter, lessThan(enter, exit));
 }
 
-// A missing child is a box with hi below lo, which one ray's keys leave out by themselves.
-ivec4 keys_of_present(ivec4 keys, Boxes boxes) {
-    return OVC_PACKET == 1 ? keys : mix(ivec4(OVC_NO_CHILD), keys, lessThanEqual(boxes.lo[0], boxes.hi[0]));
-}
+// Sort keys: with each child's number in its two lowest bits.
+ivec4 numbered(ivec4 entries) { return (entries & ~3) | ivec4(0, 1, 2, 3); }
 
 void order(inout int a, inout int b) {
     int low = min(a, b);

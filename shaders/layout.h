@@ -6,12 +6,14 @@
 
 // A page is an array of units of 4 RGBA32UI texels (64 bytes): a header, then inner nodes and triangle pairs.
 //
-// header  texel 0: grid origin xyz (float bits), 0
+// header  texel 0: the grid's middle xyz (float bits), 0
 //         texel 1: grid cell xyz (float bits), 0
 //         texel 2: the traversal's first state: the root's unit, -1 (the stack's height, less one), 0 (no word), 0
 //         texel 3: OVC_HAS_LOOSE_PAIRS or 0, 0, 0, 0
-// node    texels 0..2: per axis, the 16-bit grid coordinates of four children's boxes: lo0|lo1<<16, lo2|lo3<<16,
-//                      hi0|hi1<<16, hi2|hi3<<16. A missing child has lo = 0xffff > hi = 0.
+// node    texels 0..2: per axis, the grid coordinates of four children's boxes: lo0|lo1<<16, lo2|lo3<<16,
+//                      hi0|hi1<<16, hi2|hi3<<16; signed 16-bit, in cells from the grid's middle. In the kernel an upper half has the
+//                      lower one as its fraction, so that lo1 and lo3 are one less than their boxes'. A missing child has the
+//                      greatest lo and the least hi.
 //         texel 3: unit of the first child (children are contiguous), 0 or for a root of linked pages 1 + its leaf, 0, 0
 // pair    texels 0..3: corners v0 v1 v2 v3 (float bits) of the triangles A = (v0, v1, v2) and B = (v0, v3, v2);
 //         w of texel 0: number of A; w of texel 1: that of B or OVC_NO_TRIANGLE; w of texel 3: OVC_PAIR;
@@ -60,11 +62,11 @@
 
 // Where pages are linked a ray is two texels, in the frame that they share: org xyz, t_end (float bits); dir xyz (float bits),
 // the number of the triangle it does not see or OVC_SKIPS_NONE, with OVC_RAY_ANY_HIT added where any hit will do. It begins at
-// t = 0. t_end: OVC_NO_RAY where there is none, OVC_UNDECIDABLE where only doubles can answer it.
+// t = 0. t_end: OVC_NO_RAY where there is none, OVC_UNDECIDABLE where only doubles can answer it; closer to 0 than any t of a box.
 #define OVC_LOCAL_RAY_TEXELS 2
 #define OVC_SKIPS_NONE 0x7fffffffu
-#define OVC_NO_RAY -1.0f
-#define OVC_UNDECIDABLE -2.0f
+#define OVC_NO_RAY -1.1754943508222875e-38f // -2^-126
+#define OVC_UNDECIDABLE -2.350988701644575e-38f
 // Where pages hang under links, a third texel says which one the ray waited for, 0 for none; 0, 0, 0. It is done with those that it
 // meets before, by t and then by unit.
 #define OVC_RESUMED_RAY_TEXELS 3

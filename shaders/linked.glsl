@@ -7,22 +7,28 @@ layout(location = OVC_LOCATION_ROOT) uniform int linked_root;
 // What the wrapper does with the words of an answer.
 void give(int ray, uvec4 answer);
 
-// The rays from `first` on. Returns whether any of them is a ray.
+// The rays from `first` on. A packet has one octant: that of its first ray; the host sees to it, and a ray into another one is for doubles to
+// decide. Returns whether any of them is a ray.
 bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACKET]) {
     const int texels = OVC_LINKS == 0 ? OVC_LOCAL_RAY_TEXELS : OVC_RESUMED_RAY_TEXELS;
     bool any = false;
     for (int k = 0; k < OVC_PACKET; ++k) {
         uvec4 from = ray_texel((first + k) * texels);
         uvec4 to = ray_texel((first + k) * texels + 1);
+        vec3 dir = uintBitsToFloat(to.xyz);
+        bvec3 backward = lessThan(dir, vec3(0.0));
+        if (!any)
+            packet.backward = backward;
         float t_end = uintBitsToFloat(from.w);
+        t_end = t_end >= 0.0 && backward != packet.backward ? OVC_UNDECIDABLE : t_end;
         found[k] = nothing_found(t_end);
-        set_ray(packet, k, tree, uintBitsToFloat(from.xyz), direction_of(uintBitsToFloat(to.xyz)), to.w & OVC_SKIPS_NONE,
+        set_ray(packet, k, tree, uintBitsToFloat(from.xyz), direction_of(dir), to.w & OVC_SKIPS_NONE,
                 (to.w & OVC_RAY_ANY_HIT) != 0u);
         packet.links[k] = no_links();
 #if OVC_LINKS
         int done = int(ray_texel((first + k) * texels + 2).x);
         packet.links[k].done_unit = done;
-        packet.links[k].done_key = done != 0 ? link_key(unit_at(done), packet.grid[k]) : -1;
+        packet.links[k].done_key = done != 0 ? link_key(unit_at(done), packet.grid[k], backward) : -1;
 #endif
         any = any || t_end >= 0.0;
     }

@@ -40,37 +40,43 @@ struct Descent {
 // Goes down to the nearest of the children that `keys` has; where it has none, and `leave`, to the next of the stack.
 void advance(inout Descent d, int first_child, ivec4 keys, bool leave) {
     sort_keys(keys);
-    bool descend = keys.x != OVC_NO_CHILD;
-    ivec3 met = mix(ivec3(1), ivec3(0), equal(keys.yzw, ivec3(OVC_NO_CHILD)));
-    int others = met.x + met.y + met.z;
-    int word = (first_child << 8) | (others << 6) | (keys.y & 3) | ((keys.z & 3) << 2) | ((keys.w & 3) << 4);
-    bool push = others != 0;
+    bool descend = keys.x < OVC_NO_CHILD;
+    bool push = keys.y < OVC_NO_CHILD;
     bool back = leave && !descend;
+    int second = (keys.y & 3) | 4;
+    int third = (keys.y & 3) | (keys.z & 3) << 2 | 16;
+    int fourth = (keys.y & 3) | (keys.z & 3) << 2 | (keys.w & 3) << 4 | 64;
+    int others = keys.w < OVC_NO_CHILD ? fourth : (keys.z < OVC_NO_CHILD ? third : second);
+    int word = first_child << 8 | others;
 
-    int left = (d.top >> 6) & 3;
-    int rest = (d.top & ~255) | ((left - 1) << 6) | ((d.top & 63) >> 2);
+    int rest = (d.top & ~255) | ((d.top >> 2) & 63);
     d.unit = descend ? first_child + (keys.x & 3) : (back ? (d.top >> 8) + (d.top & 3) : d.unit);
 
-    bool store = push && d.top != 0;
-    d.lost = d.lost || (store && d.height >= OVC_STACK_DEPTH - 1);
-    bool pop = back && left <= 1;
-    int below = 0;
+    bool empty = d.top == 0;
+    bool store = push && !empty;
+    bool pop = back && (d.top & 0xf0) == 0; // no more than one was to come
+    int below = d.stack[0];
 #if OVC_STACK_REGISTERS
-    // One comparison serves both ways: nobody reads the slot again that a word was popped from.
-    int slot = store ? d.height + 1 : (pop ? d.height : -1);
+    // All words move: two selections a word and no comparison.
+    d.lost = d.lost || (store && d.stack[OVC_STACK_DEPTH - 1] != 0);
+    int above = d.top;
     for (int i = 0; i < OVC_STACK_DEPTH; ++i) {
-        below = slot == i ? d.stack[i] : below;
-        d.stack[i] = slot == i ? d.top : d.stack[i];
+        int own = d.stack[i];
+        int next = i + 1 < OVC_STACK_DEPTH ? d.stack[i + 1] : 0;
+        d.stack[i] = store ? above : (pop ? next : own);
+        above = own;
     }
 #else
+    d.lost = d.lost || (store && d.height >= OVC_STACK_DEPTH - 1);
+    below = 0;
     if (store)
         d.stack[d.height + 1] = d.top;
     if (pop && d.height >= 0)
         below = d.stack[d.height];
-#endif
     d.height += store ? 1 : (pop && d.height >= 0 ? -1 : 0);
+#endif
     d.top = push ? word : (pop ? below : (back ? rest : d.top));
-    d.done = d.done || (back && left == 0) || d.lost;
+    d.done = d.done || (back && empty) || d.lost;
 }
 
 #if OVC_TELL_ACTIVE && OVC_LINKED && !OVC_LINKS
@@ -99,18 +105,18 @@ bool before(int key, int unit, int other_key, int other_unit) {
 }
 
 // Where the ray meets a link's box. Precise: it must have the same bits wherever it is asked.
-int link_key(Unit link, GridRay ray) {
-    ivec3 lo = ivec3(link.x.x, link.y.x, link.z.x) & 0xffff;
-    ivec3 hi = ivec3(link.x.z, link.y.z, link.z.z) & 0xffff;
-    vec3 near = vec3(mix(lo, hi, ray.backward));
+int link_key(Unit link, GridRay ray, bvec3 backward) {
+    uvec3 lo = uvec3(link.x.x, link.y.x, link.z.x);
+    uvec3 hi = uvec3(link.x.z, link.y.z, link.z.z);
+    vec3 near = vec3(ivec3(mix(lo, hi, backward) << 16));
     precise vec3 enter = near * ray.scale + ray.offset;
     return max(max(floatBitsToInt(enter.x), floatBitsToInt(enter.y)), max(floatBitsToInt(enter.z), 0));
 }
 
 // The children that a ray goes down to from `unit`: none where it is a link that it is done with, or to which it does not come.
-ivec4 follow(inout Links links, Unit unit, int at, bool here, GridRay grid, ivec4 keys) {
+ivec4 follow(inout Links links, Unit unit, int at, bool here, GridRay grid, bvec3 backward, ivec4 keys) {
     bool link = here && unit.w.y != 0u;
-    int key = link_key(unit, grid);
+    int key = link_key(unit, grid, backward);
     bool open = link && keys.x != OVC_NO_CHILD && !before(key, at, links.done_key, links.done_unit) &&
                 before(key, at, links.waits_key, links.waits_unit);
     bool nowhere = int(unit.w.x) == OVC_LEADS_NOWHERE;
@@ -123,11 +129,12 @@ ivec4 follow(inout Links links, Unit unit, int at, bool here, GridRay grid, ivec
     return link && (!open || nowhere) ? ivec4(OVC_NO_CHILD) : keys;
 }
 #else
-ivec4 follow(inout Links links, Unit unit, int at, bool here, GridRay grid, ivec4 keys) { return keys; }
+ivec4 follow(inout Links links, Unit unit, int at, bool here, GridRay grid, bvec3 backward, ivec4 keys) { return keys; }
 #endif
 
 // Rays that go through a tree together, so that a node is fetched, decoded and sorted once for all of them.
 struct Packet {
+    bvec3 backward; // all their directions have the same signs
     vec3 org[OVC_PACKET];
     Basis basis[OVC_PACKET];
     GridRay grid[OVC_PACKET];
@@ -138,7 +145,7 @@ struct Packet {
 
 // Of the page, or of all linked pages, whose header is the pool's unit `page`.
 struct Tree {
-    vec3 grid_org;
+    vec3 grid_middle;
     vec3 grid_cell;
     ivec4 start; // fetched, because a compiler that knows the first values splits a loop's variables into masked copies (llvmpipe)
     int first_unit; // units count from here
@@ -153,7 +160,7 @@ Tree tree_of(int page, int first_unit) {
 void set_ray(inout Packet packet, int k, Tree tree, vec3 org, Direction direction, uint skip, bool any_hit) {
     packet.org[k] = org;
     packet.basis[k] = direction.basis;
-    packet.grid[k] = grid_ray(org, direction.inv_dir, tree.grid_org, tree.grid_cell);
+    packet.grid[k] = grid_ray(org, direction.inv_dir, tree.grid_middle, tree.grid_cell);
     packet.skip[k] = skip;
     packet.any_hit[k] = any_hit;
 }
@@ -161,6 +168,10 @@ void set_ray(inout Packet packet, int k, Tree tree, vec3 org, Direction directio
 void start(inout Descent d, Tree tree) {
     d.unit = tree.start.x;
     d.height = tree.start.y;
+#if OVC_STACK_REGISTERS
+    for (int i = 0; i < OVC_STACK_DEPTH; ++i)
+        d.stack[i] = tree.start.z;
+#endif
     d.top = tree.start.z;
     d.done = tree.start.w != 0;
     d.lost = tree.start.w != 0;
@@ -168,22 +179,20 @@ void start(inout Descent d, Tree tree) {
 
 Descent descent(Tree tree) {
     Descent d;
-    for (int i = 0; i < OVC_STACK_DEPTH; ++i)
-        d.stack[i] = tree.start.z;
     start(d, tree);
     return d;
 }
 
 // The children of the node, the unit `at`, that any ray of the packet meets. Where not `here` the unit is a pair, whose bits mean nothing as
-// boxes: an end before the beginning lets none of them through.
+// boxes.
 ivec4 keys_of(Unit node, int at, inout Packet packet, Found found[OVC_PACKET], bool here) {
-    Boxes boxes = boxes_of(node.x, node.y, node.z, packet.grid[0].backward);
+    Boxes boxes = boxes_of(node.x, node.y, node.z, packet.backward);
     ivec4 keys = ivec4(OVC_NO_CHILD);
     for (int k = 0; k < OVC_PACKET; ++k) {
-        ivec4 own = child_keys(boxes, packet.grid[k], here ? found[k].best_hi : OVC_ENOUGH);
-        keys = min(keys, follow(packet.links[k], node, at, here, packet.grid[k], own));
+        ivec4 own = entries(boxes, packet.grid[k], here ? floatBitsToInt(found[k].best_hi) : OVC_NO_END);
+        keys = min(keys, follow(packet.links[k], node, at, here, packet.grid[k], packet.backward, own));
     }
-    return keys_of_present(keys, boxes);
+    return numbered(keys);
 }
 
 // Tests the pair with the rays that still look for something, where `here`.
@@ -250,6 +259,7 @@ bool traverse(inout Found found, int page, vec3 org, Direction direction, uint s
     Descent d = descent(tree);
     Packet packet;
     packet.links[0] = no_links();
+    packet.backward = lessThan(direction.inv_dir, vec3(0.0));
     set_ray(packet, 0, tree, org, direction, skip, any_hit);
     Found one[1] = Found[1](found);
     bool ended = run(d, one, packet, tree.first_unit, OVC_MOST_ROUNDS, rounds);

@@ -2,20 +2,27 @@
 // A ray against triangles in float32, with proof: each candidate is certainly hit, certainly missed, or in doubt.
 // Based on: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection"; the bound: docs/numerics.md.
 
-// Maps the ray onto the z axis. The direction's largest component is 1 or -1, so the shear is exact.
+// Maps the ray onto the z axis: the axis along which it goes farthest becomes z, and is sheared.
 struct Basis {
-    vec3 x;
-    vec3 y;
-    vec3 z;
+    bool along_x;
+    bool along_z; // along y where neither
+    vec3 shear;   // of the other two axes, by the distance along this one; z: the direction along it, 1 or -1
 };
 
+// One of three by the axis that the ray goes along. At most two are asked for that are the same, so that this is four
+// selections for three components; a dot product each with zeros and ones was nine products.
+vec3 by_axis(Basis basis, vec3 v) {
+    return vec3(basis.along_x ? v.y : v.x, basis.along_z ? v.y : v.z, basis.along_z ? v.z : (basis.along_x ? v.x : v.y));
+}
+
+// The direction's largest component is 1 or -1, so the shear is exact.
 Basis basis_of(vec3 dir) {
-    vec3 a = abs(dir);
-    if (a.z == 1.0)
-        return Basis(vec3(1.0, 0.0, -dir.x * dir.z), vec3(0.0, 1.0, -dir.y * dir.z), vec3(0.0, 0.0, dir.z));
-    if (a.y == 1.0)
-        return Basis(vec3(1.0, -dir.x * dir.y, 0.0), vec3(0.0, -dir.z * dir.y, 1.0), vec3(0.0, dir.y, 0.0));
-    return Basis(vec3(-dir.y * dir.x, 1.0, 0.0), vec3(-dir.z * dir.x, 0.0, 1.0), vec3(dir.x, 0.0, 0.0));
+    Basis basis;
+    basis.along_z = abs(dir.z) == 1.0;
+    basis.along_x = !basis.along_z && abs(dir.y) != 1.0;
+    vec3 d = by_axis(basis, dir);
+    basis.shear = vec3(d.xy * d.z, d.z);
+    return basis;
 }
 
 // A corner in the basis; `error` bounds what each coordinate is off by, and a share for the products of an edge function.
@@ -28,10 +35,10 @@ struct Corner {
 };
 
 Corner corner(vec3 position, vec3 org, Basis basis) {
-    precise vec3 p = position - org;
-    precise float x = dot(p, basis.x);
-    precise float y = dot(p, basis.y);
-    precise float z = dot(p, basis.z);
+    precise vec3 p = by_axis(basis, position - org);
+    precise float x = p.x - p.z * basis.shear.x;
+    precise float y = p.y - p.z * basis.shear.y;
+    precise float z = p.z * basis.shear.z;
     float size = abs(x) + abs(y);
     float error = float(OVC_BOUND_UNIT * OVC_BOUND_CONSTANT) +
                   float(OVC_BOUND_UNIT * OVC_BOUND_RELATIVE) * (size + abs(z));
