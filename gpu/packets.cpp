@@ -47,7 +47,8 @@ bool most_near(std::span<const Sent> rays) {
 
 /// As the kernel sees it (shaders/linked.glsl): -0 is not negative.
 bool share_octant(const LocalRay& a, const LocalRay& b) {
-    return lessThan(a.dir, vec3(0)) == lessThan(b.dir, vec3(0));
+    const auto differ = [&](int axis) { return (a.dir[axis] < 0) ^ (b.dir[axis] < 0); };
+    return (differ(0) | differ(1) | differ(2)) == 0; // without branches
 }
 
 /// The second rays of the packets whose two rays go into different octants.

@@ -26,10 +26,12 @@ Found nothing_found(float t_end) {
 void add_rival(inout Found found, float lo, uint prim) {
     bool first = lo < found.rival_lo[0];
     bool second = lo < found.rival_lo[1];
-    found.others_lo = second ? found.rival_lo[1] : lesser(found.others_lo, lo);
-    found.rival_lo[1] = first ? found.rival_lo[0] : (second ? lo : found.rival_lo[1]);
+    float no_first = greater(lo, found.rival_lo[0]);
+    float no_second = greater(no_first, found.rival_lo[1]);
+    found.rival_lo[0] = lesser(lo, found.rival_lo[0]);
+    found.rival_lo[1] = lesser(no_first, found.rival_lo[1]);
+    found.others_lo = lesser(no_second, found.others_lo);
     found.rival[1] = first ? found.rival[0] : (second ? prim : found.rival[1]);
-    found.rival_lo[0] = first ? lo : found.rival_lo[0];
     found.rival[0] = first ? prim : found.rival[0];
 }
 
