@@ -72,12 +72,12 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
                    : links_ ? stack_depth(links_->depth)
                             : stack_depth(pages)),
       stack_words_(software_ ? std::min(stack_depth_, kMostStackWordsInSoftware) : stack_depth_),
-      most_slots_(plan.batch_rays),
+      most_slots_(plan.batch_rays + plan.parted_rays()),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
       level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
       pool_(*ledger_, plan.pool_bytes, pages.size(), links_ ? links_->top.bytes() : 0) {
     if (options.compute)
-        words_.emplace(*ledger_, plan.batch_rays);
+        words_.emplace(*ledger_, most_slots_);
     else
         pixels_.emplace(*ledger_, plan.batch_rays);
     if (plan.active_bytes > 0)

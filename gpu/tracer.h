@@ -49,7 +49,11 @@ struct MemoryPlan {
     uint64_t bytes_per_ray = sizeof(Traveller) + sizeof(Answer);
     uint64_t driver_bytes = ~uint64_t(0); // for tests: what the driver has
 
-    uint64_t ray_bytes() const { return batch_rays * bytes_per_ray; }
+    /// For how many rays besides there are answers: those that packets part (gpu/packets.h).
+    uint32_t parted_rays() const { return batch_rays / 64 / kBlockRays * kBlockRays; }
+    uint64_t ray_bytes() const {
+        return batch_rays * bytes_per_ray + parted_rays() * sizeof(Answer);
+    }
 };
 
 /// The plan for a budget, clamped to the device, level 1 not yet taken off. Error: a budget below
