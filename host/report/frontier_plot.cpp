@@ -68,16 +68,27 @@ std::vector<Point> staircase(std::vector<Point> points) {
 } // namespace
 
 void judge_choices(Json& choices, const std::string& time,
-                   const std::function<std::vector<double>(const Json&)>& errors) {
-    std::vector<Choice> costs;
-    for (const Json& c : choices)
-        costs.push_back({c[time].get<double>(), errors(c)});
-    for (size_t i = 0; i < costs.size(); ++i) {
-        const std::optional<size_t> better = dominating(costs, i);
-        choices[i]["dominated_by"] = better ? choices[*better]["choice"] : Json(nullptr);
-        choices[i]["its_time_to_that"] =
-            better ? Json(costs[i].seconds / costs[*better].seconds) : Json(nullptr);
+                   const std::function<std::vector<double>(const Json&)>& errors,
+                   const std::function<bool(const Json&)>& is_peer) {
+    const auto judge = [&](const std::vector<size_t>& who, const char* by, const char* how_long) {
+        std::vector<Choice> costs;
+        for (const size_t i : who)
+            costs.push_back({choices[i][time].get<double>(), errors(choices[i])});
+        for (size_t i = 0; i < costs.size(); ++i) {
+            const std::optional<size_t> better = dominating(costs, i);
+            choices[who[i]][by] = better ? choices[who[*better]]["choice"] : Json(nullptr);
+            choices[who[i]][how_long] =
+                better ? Json(costs[i].seconds / costs[*better].seconds) : Json(nullptr);
+        }
+    };
+    std::vector<size_t> all, ours;
+    for (size_t i = 0; i < choices.size(); ++i) {
+        all.push_back(i);
+        if (!is_peer(choices[i]))
+            ours.push_back(i);
     }
+    judge(all, "dominated_by", "its_time_to_that");
+    judge(ours, "dominated_by_ours", "its_time_to_ours");
 }
 
 std::vector<Piece> frontier_cell(const Json& figures, const std::string& at) {
@@ -96,13 +107,21 @@ Text default_text(const Json& figures, const std::string& at, const std::string&
             continue;
         const std::string row = fmt::format("{}/{}", at, i);
         const std::string start = what + "the default, " + name + ", ";
-        if (choices[i]["dominated_by"].is_null())
-            return {start + "lies on the frontier, at ", number(figures, row + "/" + time),
-                    " " + unit + "."};
-        return {
-            start + "does not lie on the frontier: ", choices[i]["dominated_by"].get<std::string>(),
-            " is no more wrong, and the default takes ", number(figures, row + "/its_time_to_that"),
-            " times its time."};
+        const bool is_ours_best = choices[i]["dominated_by_ours"].is_null();
+        Text text = {start + (is_ours_best ? "lies" : "does not lie") + " on the frontier"};
+        if (choices[i]["dominated_by"].is_null()) {
+            text.insert(text.end(), {", at ", number(figures, row + "/" + time), " " + unit + "."});
+            return text;
+        }
+        const std::string by = is_ours_best ? "dominated_by" : "dominated_by_ours";
+        const std::string how_long = is_ours_best ? "/its_time_to_that" : "/its_time_to_ours";
+        const std::string better = choices[i][by].get<std::string>();
+        text.insert(
+            text.end(),
+            {is_ours_best ? " of Overcast's own choices; a peer, " + better + "," : ": " + better,
+             " is no more wrong, and the default takes ", number(figures, row + how_long),
+             " times its time."});
+        return text;
     }
     return {};
 }

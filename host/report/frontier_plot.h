@@ -12,16 +12,18 @@ namespace ovc {
 
 /// Adds to each choice of an array, which have "choice" by name, "dominated_by", the name of
 /// another, and "its_time_to_that"; null where it lies on the frontier (host/report/frontier.h).
-/// time: a key of theirs; errors: of one choice, as many as of the others.
+/// Those that are not peers get "dominated_by_ours" and "its_time_to_ours" as well, for which peers
+/// do not count. time: a key of theirs; errors: of one choice, as many as of the others.
 void judge_choices(Json& choices, const std::string& time,
-                   const std::function<std::vector<double>(const Json&)>& errors);
+                   const std::function<std::vector<double>(const Json&)>& errors,
+                   const std::function<bool(const Json&)>& is_peer);
 
 /// A cell: "on the frontier", or who is better and how many times slower this one is. at: the
 /// choice, in the figures.
 std::vector<Piece> frontier_cell(const Json& figures, const std::string& at);
 
-/// Whether the choice of this name lies on the frontier, as a sentence with its time; empty where
-/// there is no such choice. at: the array, in the figures.
+/// Whether the choice of this name, no peer, lies on the frontier, of all choices or of ours, as a
+/// sentence with its time; empty where there is no such choice. at: the array, in the figures.
 Text default_text(const Json& figures, const std::string& at, const std::string& what,
                   const std::string& name, const std::string& time, const std::string& unit);
 

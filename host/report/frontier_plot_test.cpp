@@ -10,9 +10,12 @@ namespace {
 Json example() {
     Json choices = Json::array({{{"choice", "fast"}, {"s", 1.0}, {"error", 0.2}},
                                 {{"choice", "slow"}, {"s", 2.0}, {"error", 0.3}},
-                                {{"choice", "right"}, {"s", 4.0}, {"error", 0.0}}});
-    judge_choices(choices, "s",
-                  [](const Json& c) { return std::vector<double>{c["error"].get<double>()}; });
+                                {{"choice", "right"}, {"s", 4.0}, {"error", 0.0}},
+                                {{"choice", "ours"}, {"s", 1.5}, {"error", 0.1}},
+                                {{"choice", "peer"}, {"s", 1.2}, {"error", 0.1}}});
+    judge_choices(
+        choices, "s", [](const Json& c) { return std::vector<double>{c["error"].get<double>()}; },
+        [](const Json& c) { return c["choice"] == "peer"; });
     return choices;
 }
 
@@ -22,6 +25,9 @@ TEST(FrontierPlot, NamesWhoDominatesWhom) {
     EXPECT_EQ(choices[1]["dominated_by"], "fast");
     EXPECT_EQ(choices[1]["its_time_to_that"], 2.0);
     EXPECT_TRUE(choices[2]["dominated_by"].is_null());
+    EXPECT_EQ(choices[3]["dominated_by"], "peer");
+    EXPECT_TRUE(choices[3]["dominated_by_ours"].is_null());
+    EXPECT_FALSE(choices[4].contains("dominated_by_ours"));
 }
 
 std::string said(const Text& text) {
@@ -39,6 +45,9 @@ TEST(FrontierPlot, SaysWhereTheDefaultLies) {
     EXPECT_EQ(said(default_text(figures, "/choices", "", "slow", "s", "s")),
               "the default, slow, does not lie on the frontier: fast is no more wrong, and the "
               "default takes 2 times its time.");
+    EXPECT_EQ(said(default_text(figures, "/choices", "", "ours", "s", "s")),
+              "the default, ours, lies on the frontier of Overcast's own choices; a peer, peer, is "
+              "no more wrong, and the default takes 1.25 times its time.");
     EXPECT_TRUE(default_text(figures, "/choices", "", "absent", "s", "s").empty());
     EXPECT_EQ(said(frontier_cell(figures, "/choices/0")), "on the frontier");
     EXPECT_EQ(said(frontier_cell(figures, "/choices/1")), "fast, 2 x");

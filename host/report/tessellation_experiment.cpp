@@ -65,14 +65,19 @@ Json figures(std::span<const RawResult> results) {
         if (!row["picture"].is_null())
             pictures.push_back(picture_choice(row["choice"], row["picture"]));
     }
-    judge_choices(choices, "all_ms", [](const Json& c) {
-        return std::vector<double>{c["largest_of_all"].get<double>(),
-                                   c["t_error_rms"].get<double>()};
-    });
+    const auto is_povray = [](const Json& c) { return c["choice"] == "povray"; };
+    judge_choices(
+        choices, "all_ms",
+        [](const Json& c) {
+            return std::vector<double>{c["largest_of_all"].get<double>(),
+                                       c["t_error_rms"].get<double>()};
+        },
+        is_povray);
     if (!bench["povray"].is_null())
         pictures.push_back(picture_choice("povray", bench["povray"]));
-    judge_choices(pictures, "seconds",
-                  [](const Json& c) { return std::vector<double>{c["rmse"].get<double>()}; });
+    judge_choices(
+        pictures, "seconds",
+        [](const Json& c) { return std::vector<double>{c["rmse"].get<double>()}; }, is_povray);
     return {{"shapes", bench["shapes"]}, {"size", bench["size"]},
             {"rays", bench["rays"]},     {"same_time_percent", 100 * kSameTime},
             {"choices", choices},        {"pictures", pictures}};
