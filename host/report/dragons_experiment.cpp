@@ -38,7 +38,7 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
     std::vector<ReportRun> runs;
     for (const int n : dragons_of(plan)) {
         FramesAsked asked{fmt::format("{}{}", kScene, n),
-                          plan.quick ? "0:99:25" : "0:99:10",
+                          plan.quick ? "0:99:50" : "0:99:10",
                           plan.quick ? "192x192" : "512x512",
                           {}};
         const std::vector<std::string> model = model_words(plan, "sphere-5");

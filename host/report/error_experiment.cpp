@@ -25,7 +25,7 @@ ReportRun run_of(const std::string& key, const std::string& scene, const std::st
     ReportRun run{key, {"bench", scene, "--only", contenders}, "bench.json", seconds};
     run.words.insert(run.words.end(), settings.begin(), settings.end());
     run.words.insert(run.words.end(), {"--workloads", "primary,diffuse,edges", "--size",
-                                       quick ? "320x320" : "512x512", "--repeats",
+                                       quick ? "256x256" : "512x512", "--repeats",
                                        quick ? "3" : "5", "--json", "{}/bench.json"});
     return run;
 }
