@@ -201,7 +201,7 @@ std::vector<Block> blocks(const Json& figures) {
         "default. Where the renderer is software, the kernel runs on the CPU that its peers run "
         "on, "
         "many rays in step: what they walk ray by ray is then faster where rays end after few "
-        "steps, and a KD-tree, which cuts triangles, where boxes of slivers overlap (soup-500)."}};
+        "steps, and a KD-tree, which cuts triangles, where boxes of slivers overlap."}};
     const Json& scenes = figures["scenes"];
     for (size_t s = 0; s < scenes.size(); ++s) {
         const std::string at = fmt::format("/scenes/{}", s);
