@@ -199,8 +199,7 @@ std::vector<Block> blocks(const Json& figures) {
         "saves it, and pays in time. Edges: rays at corners and edges of triangles, where "
         "neighbours may leave a gap. The last scene has the systems of the thesis beside the "
         "default. Where the renderer is software, the kernel runs on the CPU that its peers run "
-        "on, "
-        "many rays in step: what they walk ray by ray is then faster where rays end after few "
+        "on, many rays in step: what they walk ray by ray is then faster where rays end after few "
         "steps, and a KD-tree, which cuts triangles, where boxes of slivers overlap."}};
     const Json& scenes = figures["scenes"];
     for (size_t s = 0; s < scenes.size(); ++s) {
