@@ -208,13 +208,11 @@ void Tracer::upload_local(std::span<const Traveller> rays, std::vector<Sent>& se
                 times_[i] = time;
         }
     });
-    packets_ = takes_packets() && coherent(std::span<const Sent>(sent).first(rays.size()));
-    if (packets_) {
-        std::optional<std::vector<Parted>> parted = part_octants(sent, rays.size(), most_slots_);
-        packets_ = parted.has_value();
-        if (packets_)
+    if (takes_packets() && coherent(std::span<const Sent>(sent).first(rays.size())))
+        if (auto parted = part_octants(sent, rays.size(), most_slots_)) {
+            packets_ = true;
             parted_ = std::move(*parted);
-    }
+        }
     if (!parted_.empty())
         slots_sent_ = parted_.back().slot + 1;
     glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(std::span(sent).size_bytes()),
