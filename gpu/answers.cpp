@@ -62,6 +62,9 @@ void AnswerWords::dispatch(GLuint program, size_t rays, size_t invocation_rays) 
     glProgramUniform1i(program, OVC_LOCATION_PLANE, GLint(rays_));
     glBindImageTexture(OVC_BINDING_ANSWERS, texture_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
     const size_t all = whole_blocks(rays), group = OVC_GROUP_SIZE * invocation_rays;
+    const uint32_t miss = OVC_MISS;
+    glClearNamedBufferSubData(buffer_.id(), GL_R32UI, 0, GLsizeiptr(all * sizeof(miss)),
+                              GL_RED_INTEGER, GL_UNSIGNED_INT, &miss);
     glProgramUniform1i(program, OVC_LOCATION_RAYS, GLint(all));
     glDispatchCompute(GLuint((all + group - 1) / group), 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);

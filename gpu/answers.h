@@ -55,6 +55,7 @@ private:
     std::vector<Answer> pixels_;
 };
 
+/// The kernel writes what is not a miss: those stand there before.
 class AnswerWords {
 public:
     AnswerWords(Ledger& ledger, uint32_t rays);

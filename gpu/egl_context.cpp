@@ -101,6 +101,8 @@ DeviceInfo describe() {
     info.is_software = name.find("llvmpipe") != std::string::npos ||
                        name.find("softpipe") != std::string::npos ||
                        name.find("swrast") != std::string::npos;
+    info.has_ballots = epoxy_has_gl_extension("GL_ARB_shader_ballot") &&
+                       epoxy_has_gl_extension("GL_ARB_gpu_shader_int64");
     GLint value = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &value);
     info.max_texture_size = uint32_t(value);

@@ -17,6 +17,7 @@ struct DeviceInfo {
     std::string vendor;
     std::string version;
     bool is_software = false;
+    bool has_ballots = false; // lanes of a subgroup can tell each other: GL_ARB_shader_ballot
     uint32_t max_texture_size = 0;
     uint64_t max_buffer_texels = 0;
     uint64_t buffer_alignment = 16; // bytes, of windows into a buffer

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <utility>
 
 namespace ovc {
 namespace {
@@ -24,9 +25,9 @@ constexpr uint32_t kMostBlocksInSoftware = 512; // llvmpipe clears what it alloc
 // want more (docs/decisions/0012).
 constexpr uint32_t kMostStackWordsInSoftware = 8;
 constexpr size_t kMostLostShare = 256; // of rays, one in so many; else the stack is made whole
-// Rays that a lane of the compute kernel takes: neighbours that go the same way together, others
-// one after the other. The fewest of these keep two threads busy with 2048 a group.
-constexpr uint32_t kRefills = 32;
+// Rays that a lane of the compute kernel takes in turn, on average. The fewest keep two threads
+// busy with 4096 a group.
+constexpr uint32_t kLaneRays = 64;
 constexpr uint32_t kFewestRaysToRefill = 32768;
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
@@ -64,6 +65,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       level1_data_(level1),
       page_data_(pages),
       software_(device.is_software),
+      takes_turns_(device.is_software && device.has_ballots),
       linked_(link_pages(level1, pages, plan.pool_bytes)),
       links_(linked_ || !options.certify ? std::optional<LinkTree>()
                                          : make_link_tree(level1, pages, plan.pool_bytes)),
@@ -249,8 +251,8 @@ ShaderConfig Tracer::shader_config() const {
         config.most_rounds = kMostRoundsInSoftware;
     if (packets_)
         config.packet = kPacketRays;
-    else if (takes_packets() && rays_sent_ >= kFewestRaysToRefill)
-        config.refill = kRefills;
+    if (takes_turns_ && takes_packets() && rays_sent_ >= kFewestRaysToRefill)
+        config.refill = kLaneRays / config.packet;
     return config;
 }
 
@@ -337,25 +339,32 @@ void Tracer::read(std::span<Answer> answers) {
         kernel_seconds_ += time_.seconds();
 }
 
-/// Whether the stack was shortened too much: doubles decide a ray slower than a pass does.
-bool Tracer::lost_many(std::span<const Answer> answers) const {
-    if (stack_words_ == stack_depth_)
-        return false;
+/// Whether many were given up: doubles decide a ray slower than a pass does.
+bool Tracer::lost_many(std::span<const Answer> answers) {
     const auto lost = std::count_if(answers.begin(), answers.end(),
                                     [](const Answer& a) { return a.prim == OVC_CAPPED; });
     return size_t(lost) > answers.size() / kMostLostShare;
 }
 
+/// Has kernels from now on give up fewer: first by a stack for all words, then by all the rounds
+/// there are for each ray. False: they give up as few as can be.
+bool Tracer::go_on_longer() {
+    if (stack_words_ < stack_depth_) {
+        stack_words_ = stack_depth_;
+        return true;
+    }
+    return std::exchange(takes_turns_, false);
+}
+
 Result<Done> Tracer::collect(std::span<Answer> answers) {
     read(answers);
-    if (lost_many(answers)) {
-        stack_words_ = stack_depth_;
+    while (lost_many(answers) && go_on_longer()) {
         // Linked pages stay where they were. Others may have been pushed out by now.
-        if (linked_) {
-            if (Result<Done> ok = launch(); !ok)
-                return ok;
-            read(answers);
-        }
+        if (!linked_)
+            break;
+        if (Result<Done> ok = launch(); !ok)
+            return ok;
+        read(answers);
     }
     if (linked_ && !options_.certify)
         come_back(answers);

@@ -124,7 +124,8 @@ private:
     ShaderConfig shader_config() const;
     Result<Done> launch();
     void read(std::span<Answer> answers);
-    bool lost_many(std::span<const Answer> answers) const;
+    static bool lost_many(std::span<const Answer> answers);
+    bool go_on_longer();
     void say_where(uint32_t leaf);
     Moved bring_linked(std::span<const uint32_t> wanted);
     template <class Sent>
@@ -136,6 +137,7 @@ private:
     const Level1& level1_data_;
     std::span<const Page> page_data_;
     bool software_;
+    bool takes_turns_;                  // lanes go on to a next ray
     std::optional<LinkedPages> linked_; // where all pages are to be in the pool
     std::optional<LinkTree> links_;     // where they share a frame, and not all are
     Leaf scene_;                        // as one leaf: the frame of linked pages

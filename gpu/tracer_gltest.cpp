@@ -17,12 +17,14 @@ protected:
             gl->run([&](GlState&) { tracer.reset(); });
     }
 
-    void load(const Soup& soup, LoosePairs loose = LoosePairs{}) {
+    void load(const Soup& soup, LoosePairs loose = LoosePairs{}, PassOptions options = {}) {
         Box bounds;
         const auto ids = hittable_triangles(soup, nullptr, &bounds);
         gl->run([&](GlState&) { tracer.reset(); });
         level1 = partition(soup, ids, bounds, 1u << 30);
         ASSERT_EQ(level1.leaves.size(), 1u);
+        if (options.compute)
+            share_frame(level1); // linked: rays take turns
         numbers = Numbering(soup);
         pages = {build_page(soup, numbers, level1.leaves[0], nullptr, loose)};
         const Result<MemoryPlan> plan = plan_memory(64u << 20, gl->info());
@@ -30,7 +32,8 @@ protected:
         MemoryPlan shared = *plan;
         shared.pool_bytes -= 1u << 20; // for level 1
         gl->run([&](GlState& state) {
-            auto created = Tracer::create(shared, {}, gl->info(), state.kernels, level1, pages);
+            auto created =
+                Tracer::create(shared, options, gl->info(), state.kernels, level1, pages);
             ASSERT_TRUE(created) << created.error().message;
             tracer = std::move(*created);
             EXPECT_EQ(tracer->bring(std::vector<uint32_t>{0}).bytes, pages[0].bytes());
@@ -172,6 +175,25 @@ TEST_F(KernelGl, AnEndBeforeTheBeginningIsNoRay) {
     const std::vector<Ray> rays(3000, Ray{dvec3(0, 0, -4), 0, dvec3(0, 0, 1), -1});
     for (const Answer& answer : trace(rays))
         EXPECT_EQ(answer.prim, OVC_MISS);
+}
+
+/// Lanes that take rays in turn share the rounds that a software renderer allows: thousands for
+/// each ray are more, and the pass is made again without turns.
+TEST_F(KernelGl, RaysOfThousandsOfRoundsAreAnsweredByTheKernel) {
+    constexpr int kLayers = 4000;
+    std::vector<vec3> corners;
+    for (int i = 0; i < kLayers; ++i)
+        for (const vec3& corner : {vec3(0, 0, i), vec3(kLayers, 0, i), vec3(0, kLayers, i)})
+            corners.push_back(corner / float(kLayers));
+    load(test::one_chunk(std::move(corners)), {}, {.compute = true});
+    // Through all boxes and past all triangles, up and down in turn; the others past everything.
+    std::vector<Ray> rays(40000, Ray{dvec3(5, 5, 0), 0, dvec3(1, 0, 0)});
+    for (size_t i = 0; i < 8192; ++i)
+        rays[i] = {dvec3(0.9, 0.9, i % 2 ? 2 : -1), 0, dvec3(0, 0, i % 2 ? -1 : 1)};
+    const std::vector<Answer> answers = trace(rays);
+    EXPECT_TRUE(std::all_of(answers.begin(), answers.end(), [](const Answer& answer) {
+        return answer.prim == OVC_MISS && is_certain(answer);
+    }));
 }
 
 TEST_F(KernelGl, ARayWaitsForALeafThatIsNotInThePool) {

@@ -52,10 +52,8 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended)
     }
 }
 
-const int OVC_REFILL_ROUNDS = 6; // between two looks at which lanes have an answer
-
 #if OVC_REFILL == 1
-void trace_linked(int ray, int stride, int end) {
+void trace_linked(int ray) {
     Tree tree = tree_of(linked_root, 0);
     Descent d = descent(tree);
     Packet packet;
@@ -66,25 +64,36 @@ void trace_linked(int ray, int stride, int end) {
     give_answers(ray, packet, found, ended && !d.lost);
 }
 #else
-// The rays `ray`, `ray` + `stride` and so on, before `end`, one after the other: now and then lanes that have an answer go on to
-// their next rays, so that they do not wait for each other.
+// Between two looks at which lanes have an answer. The more a ray takes in, the longer it lasts.
+const int OVC_REFILL_ROUNDS = OVC_PACKET > 1 ? 5 : 3;
+
+// The rays from `begin` to before `end`, by the lanes of a subgroup: now and then those that have an answer go on to the next that
+// nobody has taken, so that they do not wait for each other.
 // Based on: Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs" (replacing terminated rays).
-void trace_linked(int ray, int stride, int end) {
+void trace_in_turn(int begin, int end) {
     Tree tree = tree_of(linked_root, 0);
     Descent d = descent(tree);
     Packet packet;
     Found found[OVC_PACKET];
-    int rounds = 0;
+    int ray = begin + int(gl_SubGroupInvocationARB) * OVC_PACKET;
+    int next = begin + int(gl_SubGroupSizeARB) * OVC_PACKET; // the same in all lanes
+    uint lanes_before = (1u << gl_SubGroupInvocationARB) - 1u;
+    int rounds = 0; // of the subgroup: no less than it has made
     d.done = !take_rays(ray, tree, packet, found);
     while (ray < end) {
-        bool ended = run(d, found, packet, 0, min(rounds + OVC_REFILL_ROUNDS, OVC_MOST_ROUNDS), rounds);
-        if (ended || rounds >= OVC_MOST_ROUNDS) {
+        bool enough = rounds >= OVC_MOST_ROUNDS;
+        int own = 0;
+        bool ended = run(d, found, packet, 0, enough ? 1 : OVC_REFILL_ROUNDS, own);
+        rounds += OVC_REFILL_ROUNDS + 1;
+        bool ready = ended || enough;
+        uint ready_lanes = uint(ballotARB(ready));
+        if (ready) {
             give_answers(ray, packet, found, ended && !d.lost);
-            ray += stride;
+            ray = next + bitCount(ready_lanes & lanes_before) * OVC_PACKET;
             start(d, tree);
             d.done = !take_rays(ray, tree, packet, found);
         }
-        ++rounds;
+        next += bitCount(ready_lanes) * OVC_PACKET;
     }
 }
 #endif

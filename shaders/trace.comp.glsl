@@ -3,6 +3,10 @@
 #version 450 core
 #include "layout.h"
 #include "config.glsl"
+#if OVC_REFILL > 1
+#extension GL_ARB_gpu_shader_int64 : require // a ballot is one of these
+#extension GL_ARB_shader_ballot : require
+#endif
 #include "page.glsl"
 #include "box.glsl"
 #include "triangle.glsl"
@@ -31,11 +35,14 @@ uint dealt_group() {
 #endif
 }
 
+// A miss stands there before.
 void give(int ray, uvec4 answer) {
     const bool tells_leaf = OVC_LINKED == 0 || OVC_LINKS != 0 || OVC_CERTIFY == 0;
     bool more = answer.x != OVC_NO_TRIANGLE || answer.w == OVC_WAITS ||
                 (OVC_LINKS == 0 ? tells_leaf && answer.w < OVC_MAX_TRIANGLES : answer.z != OVC_NO_LEAF);
-    imageStore(answers, ray, uvec4(answer.w | (more ? OVC_SAYS_MORE : 0u)));
+    uint word = answer.w | (more ? OVC_SAYS_MORE : 0u);
+    if (word != OVC_MISS)
+        imageStore(answers, ray, uvec4(word));
     if (more) {
         imageStore(answers, plane + ray, uvec4(answer.x));
         imageStore(answers, 2 * plane + ray, uvec4(answer.y));
@@ -45,12 +52,16 @@ void give(int ray, uvec4 answer) {
 }
 
 void main() {
-    const int group_rays = OVC_GROUP_SIZE * OVC_PACKET * OVC_REFILL;
-    int first = int(dealt_group()) * group_rays;
-    int ray = first + int(gl_LocalInvocationID.x) * OVC_PACKET;
-#if OVC_LINKED
-    trace_linked(ray, OVC_GROUP_SIZE * OVC_PACKET, min(first + group_rays, ray_count));
+    const int lane_rays = OVC_PACKET * OVC_REFILL;
+    int first = int(dealt_group()) * OVC_GROUP_SIZE * lane_rays;
+    int lane = int(gl_LocalInvocationID.x);
+#if OVC_REFILL > 1
+    int subgroup_rays = int(gl_SubGroupSizeARB) * lane_rays;
+    int begin = first + lane / int(gl_SubGroupSizeARB) * subgroup_rays;
+    trace_in_turn(begin, min(begin + subgroup_rays, ray_count));
+#elif OVC_LINKED
+    trace_linked(first + lane * OVC_PACKET);
 #else
-    give(ray, walk(traveller(ray)));
+    give(first + lane, walk(traveller(first + lane)));
 #endif
 }

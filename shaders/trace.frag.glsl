@@ -20,7 +20,7 @@ void give(int ray, uvec4 words) { answer = words; }
 void main() {
     int ray = ray_at(ivec2(gl_FragCoord.xy));
 #if OVC_LINKED
-    trace_linked(ray, 1, ray + 1);
+    trace_linked(ray);
 #else
     give(ray, walk(traveller(ray)));
 #endif

@@ -246,15 +246,17 @@ void go_round(inout Descent d, inout Found found[OVC_PACKET], inout Packet packe
     d.done = d.done || all_have_enough(found);
 }
 
-// Takes into `found` what the rays may hit, until the end or for some rounds; rounds: of all loops of this invocation so far.
+// Takes into `found` what the rays may hit, for a round at least, until the end or as long as `rounds` is less than most_rounds.
 // True: the end, for good or because something was lost.
 bool run(inout Descent d, inout Found found[OVC_PACKET], inout Packet packet, int first_unit, int most_rounds, inout int rounds) {
-    // Tested at the top, and fetched as well: llvmpipe (22.3) keeps, behind a loop, only what was known at its top for lanes
-    // that left early; what the rest of the body computed it computes again, for the lanes that go on.
-    while (!d.done && rounds < most_rounds) {
+    // Tested at the bottom: where it is at the top, llvmpipe (22.3) goes through the body once more when no lane is left. Of a
+    // ray that was done before, a round finds nothing.
+    bool on;
+    do {
         go_round(d, found, packet, first_unit);
         ++rounds;
-    }
+        on = !d.done && rounds < most_rounds;
+    } while (on);
     return d.done;
 }
 
