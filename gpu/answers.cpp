@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 
 namespace ovc {
 namespace {
@@ -57,11 +58,11 @@ AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays)
                               GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
 }
 
-void AnswerWords::dispatch(GLuint program, size_t rays, size_t invocation_rays) const {
-    static_assert(kBlockRays % OVC_GROUP_SIZE == 0);
+void AnswerWords::dispatch(GLuint program, size_t rays, size_t packet, size_t turns) const {
+    assert(kBlockRays % (OVC_GROUP_SIZE * packet) == 0);
     glProgramUniform1i(program, OVC_LOCATION_PLANE, GLint(rays_));
     glBindImageTexture(OVC_BINDING_ANSWERS, texture_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
-    const size_t all = whole_blocks(rays), group = OVC_GROUP_SIZE * invocation_rays;
+    const size_t all = whole_blocks(rays), group = OVC_GROUP_SIZE * packet * turns;
     const uint32_t miss = OVC_MISS;
     glClearNamedBufferSubData(buffer_.id(), GL_R32UI, 0, GLsizeiptr(all * sizeof(miss)),
                               GL_RED_INTEGER, GL_UNSIGNED_INT, &miss);

@@ -59,7 +59,8 @@ private:
 class AnswerWords {
 public:
     AnswerWords(Ledger& ledger, uint32_t rays);
-    void dispatch(GLuint program, size_t rays, size_t invocation_rays) const;
+    /// packet: rays that an invocation takes at a time; turns: how often, at most.
+    void dispatch(GLuint program, size_t rays, size_t packet, size_t turns) const;
     /// Those of the rays from `first_ray` on.
     void read(std::span<Answer> answers, size_t first_ray = 0);
 

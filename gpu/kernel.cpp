@@ -127,13 +127,13 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_STACK_DEPTH {}\n"
                        "#define OVC_STACK_REGISTERS {:d}\n"
                        "#define OVC_PACKET {}\n"
-                       "#define OVC_REFILL {}\n"
+                       "#define OVC_TURNS {:d}\n"
                        "#define OVC_BRANCHES {:d}\n"
                        "#define OVC_DEAL_GROUPS {:d}\n"
                        "#define OVC_BUFFER_IMAGES {:d}\n"
                        "#define OVC_MOST_ROUNDS {}\n",
                        any_hit, certify, linked, links, tell_active, loose_pairs, stack_depth,
-                       stack_registers, packet, refill, branches, deal_groups, buffer_images,
+                       stack_registers, packet, turns, branches, deal_groups, buffer_images,
                        most_rounds);
 }
 

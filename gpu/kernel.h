@@ -30,7 +30,7 @@ struct ShaderConfig {
     uint32_t stack_depth = 16;
     bool stack_registers = true;
     uint32_t packet = 1; // rays that an invocation traces together
-    uint32_t refill = 1; // packets that it traces one after the other
+    bool turns = false;  // lanes take packets one after the other
     bool branches = false;
     bool deal_groups = true;
     bool buffer_images = true;

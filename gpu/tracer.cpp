@@ -25,11 +25,16 @@ constexpr uint32_t kMostBlocksInSoftware = 512; // llvmpipe clears what it alloc
 // want more (docs/decisions/0012).
 constexpr uint32_t kMostStackWordsInSoftware = 8;
 constexpr size_t kMostLostShare = 256; // of rays, one in so many; else the stack is made whole
-// Rays that a lane of the compute kernel takes in turn, on average. The fewest keep two threads
-// busy with 4096 a group.
-constexpr uint32_t kLaneRays = 64;
-constexpr uint32_t kFewestRaysToRefill = 32768;
+// By turns: the most rays of a lane on average, as long as there are some groups for each thread.
+constexpr size_t kLaneRays = 64;
+constexpr size_t kGroupsForThreads = 16;
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
+
+/// How many packets each lane takes, on average.
+size_t turns(size_t rays, size_t packet) {
+    const size_t lanes = kGroupsForThreads * OVC_GROUP_SIZE;
+    return std::clamp<size_t>(rays / packet / lanes, 1, kLaneRays / packet);
+}
 
 } // namespace
 
@@ -251,8 +256,7 @@ ShaderConfig Tracer::shader_config() const {
         config.most_rounds = kMostRoundsInSoftware;
     if (packets_)
         config.packet = kPacketRays;
-    if (takes_turns_ && takes_packets() && rays_sent_ >= kFewestRaysToRefill)
-        config.refill = kLaneRays / config.packet;
+    config.turns = takes_turns_ && takes_packets();
     return config;
 }
 
@@ -295,7 +299,8 @@ Result<Done> Tracer::launch() {
     else
         glBeginQuery(GL_TIME_ELAPSED, time_.id());
     if (words_)
-        words_->dispatch(*program, slots_sent_, config.packet * config.refill);
+        words_->dispatch(*program, slots_sent_, config.packet,
+                         config.turns ? turns(slots_sent_, config.packet) : 1);
     else
         pixels_->draw(rays_sent_);
     if (!software_)

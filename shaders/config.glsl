@@ -29,9 +29,8 @@
 #ifndef OVC_PACKET
 #define OVC_PACKET 1 // rays that an invocation traces together
 #endif
-#ifndef OVC_REFILL
-#define OVC_REFILL 1 // rays, or packets, that an invocation traces one after the other, on average of those of a subgroup; more than 1:
-                     // needs GL_ARB_shader_ballot
+#ifndef OVC_TURNS
+#define OVC_TURNS 0 // 1: a subgroup has more rays, or packets, than lanes, which take them in turn (GL_ARB_shader_ballot)
 #endif
 #ifndef OVC_BRANCHES
 #define OVC_BRANCHES 0 // 1: a step runs what its unit is for; 0: for drivers that run both sides of a branch (llvmpipe)

@@ -52,7 +52,7 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended)
     }
 }
 
-#if OVC_REFILL == 1
+#if !OVC_TURNS
 void trace_linked(int ray) {
     Tree tree = tree_of(linked_root, 0);
     Descent d = descent(tree);
@@ -65,7 +65,7 @@ void trace_linked(int ray) {
 }
 #else
 // Between two looks at which lanes have an answer. The more a ray takes in, the longer it lasts.
-const int OVC_REFILL_ROUNDS = OVC_PACKET > 1 ? 5 : 3;
+const int OVC_TURN_ROUNDS = OVC_PACKET > 1 ? 5 : 3;
 
 // The rays from `begin` to before `end`, by the lanes of a subgroup: now and then those that have an answer go on to the next that
 // nobody has taken, so that they do not wait for each other.
@@ -83,8 +83,8 @@ void trace_in_turn(int begin, int end) {
     while (ray < end) {
         bool enough = rounds >= OVC_MOST_ROUNDS;
         int own = 0;
-        bool ended = run(d, found, packet, 0, enough ? 1 : OVC_REFILL_ROUNDS, own);
-        rounds += OVC_REFILL_ROUNDS + 1;
+        bool ended = run(d, found, packet, 0, enough ? 1 : OVC_TURN_ROUNDS, own);
+        rounds += OVC_TURN_ROUNDS + 1;
         bool ready = ended || enough;
         uint ready_lanes = uint(ballotARB(ready));
         if (ready) {

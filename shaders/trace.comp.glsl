@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compute kernel: an invocation takes rays of the pass, OVC_PACKET at a time, OVC_REFILL times.
+// The compute kernel: an invocation takes rays of the pass, OVC_PACKET at a time, once or in turns.
 #version 450 core
 #include "layout.h"
 #include "config.glsl"
-#if OVC_REFILL > 1
+#if OVC_TURNS
 #extension GL_ARB_gpu_shader_int64 : require // a ballot is one of these
 #extension GL_ARB_shader_ballot : require
 #endif
@@ -52,16 +52,18 @@ void give(int ray, uvec4 answer) {
 }
 
 void main() {
-    const int lane_rays = OVC_PACKET * OVC_REFILL;
-    int first = int(dealt_group()) * OVC_GROUP_SIZE * lane_rays;
+    int group = int(dealt_group());
     int lane = int(gl_LocalInvocationID.x);
-#if OVC_REFILL > 1
-    int subgroup_rays = int(gl_SubGroupSizeARB) * lane_rays;
-    int begin = first + lane / int(gl_SubGroupSizeARB) * subgroup_rays;
-    trace_in_turn(begin, min(begin + subgroup_rays, ray_count));
+    int ray = (group * OVC_GROUP_SIZE + lane) * OVC_PACKET;
+#if OVC_TURNS
+    int groups = int(gl_NumWorkGroups.x);
+    int turns = (ray_count / (OVC_GROUP_SIZE * OVC_PACKET) + groups - 1) / groups;
+    int lanes = int(gl_SubGroupSizeARB);
+    int begin = (group * OVC_GROUP_SIZE + lane / lanes * lanes) * OVC_PACKET * turns;
+    trace_in_turn(begin, min(begin + lanes * OVC_PACKET * turns, ray_count));
 #elif OVC_LINKED
-    trace_linked(first + lane * OVC_PACKET);
+    trace_linked(ray);
 #else
-    give(first + lane, walk(traveller(first + lane)));
+    give(ray, walk(traveller(ray)));
 #endif
 }
