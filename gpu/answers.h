@@ -55,7 +55,7 @@ private:
     std::vector<Answer> pixels_;
 };
 
-/// The kernel writes what is not a miss: those stand there before.
+/// The kernel writes no misses: dispatch() puts them there before.
 class AnswerWords {
 public:
     AnswerWords(Ledger& ledger, uint32_t rays);

@@ -24,7 +24,7 @@ constexpr uint32_t kMostBlocksInSoftware = 512; // llvmpipe clears what it alloc
 // Each word is a register, and 1 % of the time; of a million rays at the Stanford dragon thirty
 // want more (docs/decisions/0012).
 constexpr uint32_t kMostStackWordsInSoftware = 8;
-constexpr size_t kMostLostShare = 256; // of rays, one in so many; else the stack is made whole
+constexpr size_t kMostLostShare = 256; // of rays, one in so many; else kernels go on longer
 // By turns: the most rays of a lane on average, as long as there are some groups for each thread.
 constexpr size_t kLaneRays = 64;
 constexpr size_t kGroupsForThreads = 16;

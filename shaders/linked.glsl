@@ -64,7 +64,7 @@ void trace_linked(int ray) {
     give_answers(ray, packet, found, ended && !d.lost);
 }
 #else
-// Between two looks at which lanes have an answer. The more a ray takes in, the longer it lasts.
+// Between two looks at which lanes have an answer; more where taking up new rays costs more.
 const int OVC_TURN_ROUNDS = OVC_PACKET > 1 ? 5 : 3;
 
 // The rays from `begin` to before `end`, by the lanes of a subgroup: now and then those that have an answer go on to the next that
@@ -78,7 +78,7 @@ void trace_in_turn(int begin, int end) {
     int ray = begin + int(gl_SubGroupInvocationARB) * OVC_PACKET;
     int next = begin + int(gl_SubGroupSizeARB) * OVC_PACKET; // the same in all lanes
     uint lanes_before = (1u << gl_SubGroupInvocationARB) - 1u;
-    int rounds = 0; // of the subgroup: no less than it has made
+    int rounds = 0; // of the subgroup: never less than llvmpipe has counted of its loops
     d.done = !take_rays(ray, tree, packet, found);
     while (ray < end) {
         bool enough = rounds >= OVC_MOST_ROUNDS;

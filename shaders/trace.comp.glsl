@@ -35,7 +35,7 @@ uint dealt_group() {
 #endif
 }
 
-// A miss stands there before.
+// A miss is not written: it stands there before (gpu/answers.h).
 void give(int ray, uvec4 answer) {
     const bool tells_leaf = OVC_LINKED == 0 || OVC_LINKS != 0 || OVC_CERTIFY == 0;
     bool more = answer.x != OVC_NO_TRIANGLE || answer.w == OVC_WAITS ||
