@@ -47,12 +47,12 @@ std::vector<ReportRun> thread_runs(const std::string& scene, bool quick) {
 
 std::vector<ReportRun> sweep_runs(const ReportPlan& plan, const std::string& scene) {
     if (plan.quick)
-        return {sweep_run("rays", {scene, "--repeats", "3", "--most", "1000000"}, 15),
-                sweep_run("triangles", {"--repeats", "3", "--size", "256x256", "--most", "1500000"},
-                          15),
-                sweep_run("leaves", {scene, "--repeats", "3", "--size", "256x256", "--most", "300"},
-                          25),
-                sweep_run("budget", {scene, "--repeats", "3", "--size", "256x256"}, 25)};
+        return {
+            sweep_run("rays", {scene, "--repeats", "3", "--most", "1000000"}, 15),
+            sweep_run("triangles", {"--repeats", "3", "--size", "256x256", "--most", "400000"}, 15),
+            sweep_run("leaves", {scene, "--repeats", "3", "--size", "256x256", "--most", "300"},
+                      25),
+            sweep_run("budget", {scene, "--repeats", "3", "--size", "256x256"}, 25)};
     return {sweep_run("rays", {scene}, 120), sweep_run("triangles", {}, 300),
             sweep_run("leaves", {scene}, 180), sweep_run("budget", {scene}, 120)};
 }
