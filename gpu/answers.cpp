@@ -51,11 +51,14 @@ void AnswerPixels::read(std::span<Answer> answers) {
 AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays)
     : rays_(rays), buffer_(ledger, uint64_t(rays) * sizeof(Answer), "answers") {
     texture_.show(buffer_, GL_R32UI, 0, buffer_.bytes());
-    // The last plane stays like this where pages are linked: no answer names a leaf.
-    const uint32_t none = OVC_NO_LEAF;
-    const uint64_t plane = buffer_.bytes() / 4;
-    glClearNamedBufferSubData(buffer_.id(), GL_R32UI, GLintptr(3 * plane), GLsizeiptr(plane),
-                              GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+    // Stays like this where pages are linked: no answer names a leaf.
+    fill_plane(3, rays_, OVC_NO_LEAF);
+}
+
+void AnswerWords::fill_plane(int number, size_t rays, uint32_t word) const {
+    glClearNamedBufferSubData(
+        buffer_.id(), GL_R32UI, GLintptr(uint64_t(number) * rays_ * sizeof(word)),
+        GLsizeiptr(rays * sizeof(word)), GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
 }
 
 void AnswerWords::dispatch(GLuint program, size_t rays, size_t packet, size_t turns) const {
@@ -63,9 +66,7 @@ void AnswerWords::dispatch(GLuint program, size_t rays, size_t packet, size_t tu
     glProgramUniform1i(program, OVC_LOCATION_PLANE, GLint(rays_));
     glBindImageTexture(OVC_BINDING_ANSWERS, texture_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
     const size_t all = whole_blocks(rays), group = OVC_GROUP_SIZE * packet * turns;
-    const uint32_t miss = OVC_MISS;
-    glClearNamedBufferSubData(buffer_.id(), GL_R32UI, 0, GLsizeiptr(all * sizeof(miss)),
-                              GL_RED_INTEGER, GL_UNSIGNED_INT, &miss);
+    fill_plane(0, all, OVC_MISS);
     glProgramUniform1i(program, OVC_LOCATION_RAYS, GLint(all));
     glDispatchCompute(GLuint((all + group - 1) / group), 1, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -65,6 +65,7 @@ public:
     void read(std::span<Answer> answers, size_t first_ray = 0);
 
 private:
+    void fill_plane(int number, size_t rays, uint32_t word) const;
     std::span<const uint32_t> plane(int number, size_t first, size_t rays);
 
     uint32_t rays_;

@@ -32,6 +32,7 @@ constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
 /// How many packets each lane takes, on average.
 size_t turns(size_t rays, size_t packet) {
+    static_assert(kBlockRays % (OVC_GROUP_SIZE * kPacketRays) == 0); // no packet across groups
     const size_t lanes = kGroupsForThreads * OVC_GROUP_SIZE;
     return std::clamp<size_t>(rays / packet / lanes, 1, kLaneRays / packet);
 }
@@ -70,7 +71,6 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       level1_data_(level1),
       page_data_(pages),
       software_(device.is_software),
-      takes_turns_(device.is_software && device.has_ballots),
       linked_(link_pages(level1, pages, plan.pool_bytes)),
       links_(linked_ || !options.certify ? std::optional<LinkTree>()
                                          : make_link_tree(level1, pages, plan.pool_bytes)),
@@ -83,6 +83,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
       level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
       pool_(*ledger_, plan.pool_bytes, pages.size(), links_ ? links_->top.bytes() : 0) {
+    takes_turns_ = device.has_ballots && takes_packets();
     if (options.compute)
         words_.emplace(*ledger_, most_slots_);
     else
@@ -256,7 +257,7 @@ ShaderConfig Tracer::shader_config() const {
         config.most_rounds = kMostRoundsInSoftware;
     if (packets_)
         config.packet = kPacketRays;
-    config.turns = takes_turns_ && takes_packets();
+    config.turns = takes_turns_;
     return config;
 }
 

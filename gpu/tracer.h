@@ -137,7 +137,7 @@ private:
     const Level1& level1_data_;
     std::span<const Page> page_data_;
     bool software_;
-    bool takes_turns_;                  // lanes go on to a next ray
+    bool takes_turns_ = false;          // lanes go on to a next ray
     std::optional<LinkedPages> linked_; // where all pages are to be in the pool
     std::optional<LinkTree> links_;     // where they share a frame, and not all are
     Leaf scene_;                        // as one leaf: the frame of linked pages

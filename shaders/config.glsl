@@ -37,7 +37,7 @@
 #endif
 #ifndef OVC_DEAL_GROUPS
 #define OVC_DEAL_GROUPS 1 // 1: neighbouring work groups go to different threads of a driver that gives each a contiguous share
-                          // of the dispatch (llvmpipe: 8 % of camera rays)
+                          // of the dispatch (llvmpipe: 8 % of camera rays); by turns groups are too few for it
 #endif
 #ifndef OVC_BUFFER_IMAGES
 #define OVC_BUFFER_IMAGES 1 // pages, level 1, rays: 1: imageLoad (inlined on llvmpipe, 5 % faster); 0: texelFetch

@@ -56,6 +56,7 @@ void main() {
     int lane = int(gl_LocalInvocationID.x);
     int ray = (group * OVC_GROUP_SIZE + lane) * OVC_PACKET;
 #if OVC_TURNS
+    // Each group has its share of the pass, and of that each subgroup.
     int groups = int(gl_NumWorkGroups.x);
     int turns = (ray_count / (OVC_GROUP_SIZE * OVC_PACKET) + groups - 1) / groups;
     int lanes = int(gl_SubGroupSizeARB);
