@@ -16,17 +16,11 @@
 namespace ovc {
 namespace {
 
-/// With two lanes: so many rays a batch keep the device busy, and a picture is cut into at least so
-/// many batches, or a lane has nothing to do while the other traces.
-constexpr uint64_t kLaneRays = 1 << 18;
+/// So many rays a batch for each core: what they take stays in caches, and they go through so small
+/// a part of the picture that under a budget most find their pages in the pool (decision 19). A
+/// picture is cut into some batches at least, or a lane has nothing to do while the other traces.
+constexpr uint64_t kRaysACore = 1 << 14;
 constexpr uint64_t kLeastBatches = 8;
-
-/// Whether pages are moved while rays are traced. Then a batch takes all the rays it may and has
-/// the backend to itself: two smaller ones would move twice the bytes.
-bool moves_pages(const Backend& backend) {
-    const ovc_statistics statistics = backend.statistics();
-    return statistics.level2_bytes > statistics.gpu_peak_bytes;
-}
 
 /// What the lanes share: the camera's rays, and the backend, which answers one call at a time.
 class Work {
@@ -194,12 +188,11 @@ private:
 Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
                                     const CameraRays& camera, Backend& backend, size_t batch_rays,
                                     const RenderObserver& observe, Film& film) {
-    const bool alone = moves_pages(backend);
     const uint64_t wanted =
-        alone ? batch_rays : std::min(camera.size() / kLeastBatches + 1, kLaneRays);
+        std::min(camera.size() / kLeastBatches + 1, kRaysACore * thread_count());
     const size_t batch = size_t(std::min<uint64_t>(batch_rays, wanted));
     Work work(camera, backend, observe, film);
-    std::vector<std::future<void>> lanes(alone || thread_count() == 1 ? 1 : 2);
+    std::vector<std::future<void>> lanes(thread_count() == 1 ? 1 : 2);
     for (std::future<void>& lane : lanes)
         lane = std::async(std::launch::async,
                           [&] { Lane(work, integrator, lights, batch, film).run(); });

@@ -19,7 +19,7 @@ class TwoLevel::OnePass : Settling<Query> {
 
 public:
     OnePass(TwoLevel& structure, const Query& query)
-        : Base(structure, query), part_rays_(part_rays(structure, query)) {}
+        : Base(structure, query), part_rays_(structure.part_rays(query.rays.size())) {}
 
     /// The next rays of the query that the kernel is to be asked about; none where all have begun.
     void begin(Batch& batch) {
@@ -34,8 +34,7 @@ public:
     void settle(const Batch& batch) {
         parallel_for(batch.rays.size(), kGrain, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j) {
-                if (j + kAhead < to)
-                    fetch(batch.answers[j + kAhead]);
+                this->fetch_ahead(std::span(batch.answers).first(to), j);
                 this->take_in(batch.rays[j], batch.answers[j],
                               [](auto&&...) { return false; }); // there is no later leaf
             }
@@ -43,15 +42,6 @@ public:
     }
 
 private:
-    /// A pass of so many keeps a device busy, and leaves something to do beside it.
-    static constexpr size_t kMostRays = size_t(1) << 17, kLeastRays = size_t(1) << 15;
-    static constexpr size_t kAhead = 8; // answers, of which the triangles are fetched
-
-    static size_t part_rays(const TwoLevel& s, const Query& query) {
-        return std::min<size_t>(std::clamp(query.rays.size() / 4, kLeastRays, kMostRays),
-                                s.plan_.batch_rays);
-    }
-
     void begin_part(Batch& batch) {
         const size_t first = next_, count = std::min(part_rays_, query_.rays.size() - first);
         const size_t blocks = (count + kGrain - 1) / kGrain;
@@ -89,13 +79,6 @@ private:
                 batch.travellers[j] = this->traveller(i, ray.t_min, ray.t_max, OVC_NO_LEAF);
             }
         });
-    }
-
-    void fetch(const Answer& answer) const {
-        if (answer.prim >= OVC_MAX_TRIANGLES || !s_.options_.certify)
-            return; // nobody looks at its corners
-        const TriangleId id = s_.numbers_.id(answer.prim);
-        __builtin_prefetch(s_.soup_.chunks[id.mesh].address_of(id.prim));
     }
 
     const size_t part_rays_;

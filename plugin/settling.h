@@ -69,6 +69,18 @@ protected:
             decide_in_double(i, prepare(query_, i));
     }
 
+    /// Fetches the triangle of one of the answers behind the j-th, which is to be taken in soon.
+    void fetch_ahead(std::span<const Answer> answers, size_t j) const {
+        constexpr size_t kAhead = 8;
+        if (j + kAhead >= answers.size())
+            return;
+        const uint32_t prim = answers[j + kAhead].prim;
+        if (prim >= OVC_MAX_TRIANGLES || !s_.options_.certify)
+            return; // nobody looks at its corners
+        const TriangleId id = s_.numbers_.id(prim);
+        __builtin_prefetch(s_.soup_.chunks[id.mesh].address_of(id.prim));
+    }
+
     /// Answers ray i for good, whatever it has met.
     void answer_in_double(uint32_t i) { arbitrate_ray(i, prepare(query_, i)); }
 

@@ -20,9 +20,13 @@ namespace ovc {
 namespace {
 
 constexpr size_t kWaveRays = 4u << 20; // rays in flight: bounds the host memory of a call
-constexpr uint64_t kPagesAtOnce =
-    3; // a page takes at most this share of the pool, so that some stay resident
-constexpr uint64_t kDefaultLeaves = 10; // thesis, section 4
+// A page takes at most this share of the pool, so that some stay resident; and where leaves are
+// ours to choose, this one, so that rays bring in little that they do not go through: but it is
+// worth a move.
+constexpr uint64_t kPagesAtOnce = 3;
+constexpr uint64_t kPagesByDefault = 32;
+constexpr uint64_t kWorthMoving = 512 << 10; // bytes
+constexpr uint64_t kDefaultLeaves = 10;      // thesis, section 4
 
 } // namespace
 
@@ -42,6 +46,8 @@ LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uin
         most = double(triangles) / (options.leaves == 1 ? 1 : kFull * options.leaves);
     LeafLimits limits{std::max<uint64_t>(uint64_t(std::ceil(most)), 1), page_bytes};
     if (!options.leaves) {
+        limits.page_bytes = std::min(
+            page_bytes, std::max<uint64_t>(plan.pool_bytes / kPagesByDefault, kWorthMoving));
         const uint64_t table = level1_texels(1, 1) * sizeof(uvec4) + sizeof(uint32_t);
         const uint64_t room =
             std::min(plan.pool_bytes - std::min(plan.pool_bytes, table), kMostPageBytes);
@@ -287,15 +293,13 @@ uint32_t TwoLevel::number_to_skip(TriangleId id) const {
     return id.mesh == kNone || twins_.stands_for_others(id) ? OVC_NO_TRIANGLE : numbers_.of(id);
 }
 
-/// The first `count` travellers of the batch on their way; their answers into it.
-/// Beside them, pages of `wanted` are moved in; returns how many.
-Result<size_t> TwoLevel::pass(Batch& batch, size_t count, std::span<const uint32_t> wanted,
+/// The rays of the batch on their way; their answers into it. Beside them, pages of `wanted` are
+/// moved in; returns how many.
+Result<size_t> TwoLevel::pass(Batch& batch, std::span<const uint32_t> wanted,
                               const std::function<void()>& meanwhile) {
-    const size_t padded = whole_blocks(count);
+    const size_t count = batch.rays.size();
     const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
-    batch.travellers.resize(padded);
-    std::fill(batch.travellers.begin() + ptrdiff_t(count), batch.travellers.end(), none);
-    batch.answers.resize(padded);
+    std::fill_n(batch.travellers.begin() + ptrdiff_t(count), whole_blocks(count) - count, none);
     Result<Done> done = Done{};
     bool alive = false;
     Moved moved;
@@ -349,13 +353,16 @@ Result<Done> TwoLevel::trace_in_waves(const Query& query) {
         std::vector<uint32_t> all(count);
         std::iota(all.begin(), all.end(), 0u);
         wave.start(all);
-        while (const size_t left = wave.ready() + wave.waiting()) {
-            if (Result<Done> asked = go_on(first + count - left, query.rays.size()); !asked)
-                return asked;
-            if (Result<Done> done = round(
-                    plan_.batch_rays, [] {}, wave);
-                !done)
+        while (wave.left() > 0) {
+            Result<Done> asked = Done{};
+            const auto ask = [&] {
+                asked = go_on(first + count - wave.left(), query.rays.size());
+                return bool(asked);
+            };
+            if (Result<Done> done = round(~size_t(0), ask, wave); !done)
                 return done;
+            if (!asked)
+                return asked;
         }
     }
     return Done{};
@@ -374,7 +381,7 @@ Result<Done> TwoLevel::trace_in_one_pass(const Query& query) {
         if (Result<Done> asked = go_on(traced, query.rays.size()); !asked)
             return asked;
         const size_t begun = rays.begun();
-        const Result<size_t> moved = pass(*now, now->rays.size(), {}, [&] {
+        const Result<size_t> moved = pass(*now, {}, [&] {
             rays.settle(*other);
             rays.begin(*other);
         });

@@ -135,6 +135,12 @@ private:
     /// Fewer rays are not worth a pass while others wait.
     size_t few_rays() const { return std::min<size_t>(4096, plan_.batch_rays / 4); }
 
+    /// So many rays of `rays` a pass keep a device busy, and leave something to do beside it.
+    size_t part_rays(size_t rays) const {
+        constexpr size_t kLeast = size_t(1) << 15, kMost = size_t(1) << 17;
+        return std::min<size_t>(std::clamp(rays / 4, kLeast, kMost), plan_.batch_rays);
+    }
+
     template <class Query>
     class Settling;
     template <class Query>
@@ -147,23 +153,29 @@ private:
     /// The leaves worth moving in for rays of these waves where few are ready; else none.
     template <class... Queries>
     std::vector<uint32_t> wanted_by(const Wave<Queries>&... waves) const;
-    /// A pass, of at most `most` rays of all these waves; meanwhile() runs beside it. Pages that
-    /// others wait for are moved in before it where few rays are ready, and beside it where few are
-    /// left.
-    template <class Meanwhile, class... Queries>
-    Result<Done> round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&... waves);
     /// Rays of a pass, and what it answers.
     struct Batch {
-        std::vector<uint32_t> rays; // their numbers in the query, where it knows no waves
-        std::vector<Traveller> travellers;
+        std::vector<uint32_t> rays;        // their numbers in the query
+        std::array<size_t, 2> of_waves{};  // so many of each wave, one behind the other
+        std::vector<Traveller> travellers; // as the next, at least one per ray, to a whole block
         std::vector<Answer> answers;
 
         void make_room() {
-            travellers.resize(whole_blocks(rays.size()));
-            answers.resize(whole_blocks(rays.size()));
+            const size_t room = std::max(whole_blocks(rays.size()), travellers.size());
+            travellers.resize(room);
+            answers.resize(room);
         }
     };
-    Result<size_t> pass(Batch& batch, size_t count, std::span<const uint32_t> wanted,
+    template <class... Queries>
+    void load(Batch& batch, size_t most, Wave<Queries>&... waves);
+    template <class... Queries>
+    void settle(const Batch& batch, Wave<Queries>&... waves);
+    /// Passes of what is ready, of at most `most` rays of all these waves. Pages that others wait
+    /// for are moved in before them where few rays are ready, and beside them where few are left.
+    /// meanwhile() -> bool runs beside each pass; false: it is the last.
+    template <class Meanwhile, class... Queries>
+    Result<Done> round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&... waves);
+    Result<size_t> pass(Batch& batch, std::span<const uint32_t> wanted,
                         const std::function<void()>& meanwhile);
     template <bool kAnyHit>
     Hit on_cpu(const Ray& ray, TriangleId skip) const;

@@ -123,7 +123,11 @@ public:
                 continue;
             const Stopwatch watch;
             const ovc::Result<Done> done = s_.round(
-                beside ? kPassRays : ~size_t(0), [&] { goes_on = !beside || deliver(); },
+                beside ? kPassRays : ~size_t(0),
+                [&] {
+                    goes_on = !beside || deliver();
+                    return goes_on;
+                },
                 any_.wave(), nearest_.wave());
             s_.statistics_.seconds_trace += watch.seconds();
             if (!done)

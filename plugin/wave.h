@@ -41,6 +41,8 @@ public:
         send_on(rays);
     }
 
+    /// Rays that are not answered yet.
+    size_t left() const { return ready() + waiting() + loaded_; }
     size_t ready() const { return ready_.size(); }
     size_t waiting() const { return waiting_.count(); }
     const Waiting& queues() const { return waiting_; }
@@ -75,30 +77,39 @@ public:
     /// The rays that were answered since this was asked last.
     std::vector<uint32_t> take_finished() { return std::exchange(finished_, {}); }
 
-    /// Puts rays that are ready into `travellers`, as many as there is room for; returns how many.
-    size_t load(std::span<Traveller> travellers) {
-        const size_t count = std::min(ready_.size(), travellers.size());
-        batch_.assign(ready_.begin(), ready_.begin() + ptrdiff_t(count));
+    /// Puts rays that are ready into `travellers`, as many as there is room for, and their numbers
+    /// into `rays`; returns how many. Beside a pass.
+    size_t load(std::span<uint32_t> rays, std::span<Traveller> travellers) {
+        const size_t count = std::min(ready_.size(), rays.size());
+        std::copy_n(ready_.begin(), count, rays.begin());
         ready_.erase(ready_.begin(), ready_.begin() + ptrdiff_t(count));
+        loaded_ += count;
         parallel_for(count, kGrain, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j) {
-                const Position& at = positions_[batch_[j]];
-                travellers[j] = this->traveller(batch_[j], at.t_from, at.t_end, at.leaf);
+                const Position& at = positions_[rays[j]];
+                travellers[j] = this->traveller(rays[j], at.t_from, at.t_end, at.leaf);
             }
         });
         return count;
     }
 
-    /// Takes in the answers for what was loaded last, and sends the rays on.
-    void settle(std::span<const Answer> answers) {
-        parallel_for(answers.size(), kGrain, [&](size_t from, size_t to) {
-            for (size_t j = from; j < to; ++j)
-                settle_one(batch_[j], answers[j]);
+    /// Takes in the answers for rays that were loaded, and sends the rays on. Beside a pass.
+    void settle(std::span<const uint32_t> rays, std::span<const Answer> answers) {
+        parallel_for(rays.size(), kGrain, [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j) {
+                this->fetch_ahead(answers.first(to), j);
+                settle_one(rays[j], answers[j]);
+            }
         });
+        loaded_ -= rays.size();
+        send_on(rays);
+    }
+
+    /// Tells the pool in which leaves rays have ended.
+    void tell_used() {
         for (uint32_t leaf = 0; leaf < used_.size(); ++leaf)
             if (used_[leaf].exchange(0, std::memory_order_relaxed))
                 s_.tracer_->touch(leaf);
-        send_on(batch_);
     }
 
 private:
@@ -189,10 +200,10 @@ private:
 
     std::vector<Position> positions_; // per ray
     std::vector<uint32_t> ready_;     // rays for the next passes
-    std::vector<uint32_t> batch_;     // loaded last
+    size_t loaded_ = 0;               // rays in batches
     std::vector<uint32_t> finished_;
     Waiting waiting_;
-    std::vector<std::atomic<uint8_t>> used_; // per leaf: a ray of the last pass ended there
+    std::vector<std::atomic<uint8_t>> used_; // per leaf: rays have ended there
 };
 
 template <class... Queries>
@@ -206,6 +217,34 @@ std::vector<uint32_t> TwoLevel::wanted_by(const Wave<Queries>&... waves) const {
     return worth_moving(counts, pages_, options_.tell_active ? ~uint64_t(0) : kBytesARay);
 }
 
+/// Fills the batch with rays that are ready.
+template <class... Queries>
+void TwoLevel::load(Batch& batch, size_t most, Wave<Queries>&... waves) {
+    batch.rays.resize(std::min<size_t>((waves.ready() + ...), most));
+    batch.make_room();
+    size_t first = 0, k = 0;
+    const auto one = [&](auto& wave) {
+        const std::span rays = std::span(batch.rays).subspan(first);
+        batch.of_waves[k] = wave.load(rays, std::span(batch.travellers).subspan(first));
+        first += batch.of_waves[k++];
+    };
+    (one(waves), ...);
+}
+
+template <class... Queries>
+void TwoLevel::settle(const Batch& batch, Wave<Queries>&... waves) {
+    size_t first = 0, k = 0;
+    const auto one = [&](auto& wave) {
+        const size_t count = batch.of_waves[k++];
+        wave.settle(std::span(batch.rays).subspan(first, count),
+                    std::span(batch.answers).subspan(first, count));
+        first += count;
+    };
+    (one(waves), ...);
+}
+
+/// As in OnePass, the rays are parted: beside the pass of one part, the part before is settled and
+/// the next one made ready.
 template <class Meanwhile, class... Queries>
 Result<Done> TwoLevel::round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&... waves) {
     // What is ready goes with the next pass, whose greater part then comes from the pages moved
@@ -219,31 +258,36 @@ Result<Done> TwoLevel::round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&.
     }
     if ((waves.ready() + ...) == 0)
         return lost(); // nothing could be moved in
-    most = std::min<size_t>(most, plan_.batch_rays);
-    std::vector<Traveller>& travellers = batches_[0].travellers;
-    travellers.resize(whole_blocks(std::min<size_t>((waves.ready() + ...), most)));
-    size_t count = 0;
-    const auto load = [&](auto& wave) {
-        const size_t room = std::min(travellers.size(), most) - count;
-        const size_t loaded = wave.load(std::span(travellers).subspan(count, room));
-        count += loaded;
-        return loaded;
-    };
-    const size_t loaded[] = {load(waves)...};
-    const std::vector<uint32_t> beside = options_.beside.value_or(!gl_.info().is_software)
-                                             ? wanted_by(waves...)
-                                             : std::vector<uint32_t>();
-    const Result<size_t> moved_beside = pass(batches_[0], count, beside, meanwhile);
-    if (!moved_beside)
-        return moved_beside.error();
-    size_t first = 0;
-    size_t k = 0;
-    const auto settle = [&](auto& wave) {
-        wave.settle(std::span(batches_[0].answers).subspan(first, loaded[k]));
-        first += loaded[k++];
-    };
-    (settle(waves), ...);
-    (waves.call_up(std::span(beside).first(*moved_beside)), ...);
+    const size_t part = part_rays((waves.ready() + ...));
+    Batch* now = &batches_[0];
+    Batch* other = &batches_[1];
+    load(*other, 0, waves...);
+    load(*now, std::min(part, most), waves...);
+    std::vector<uint32_t> beside; // pages moved in beside the pass: its rays may wait for them
+    bool goes_on = true;
+    while (!now->rays.empty()) {
+        most -= now->rays.size();
+        std::vector<uint32_t> wanted;
+        if (options_.beside.value_or(!gl_.info().is_software))
+            wanted = wanted_by(waves...);
+        const Result<size_t> moved_beside = pass(*now, wanted, [&] {
+            settle(*other, waves...);
+            goes_on = meanwhile() && goes_on;
+            const bool enough = (waves.ready() + ...) >= few_rays();
+            load(*other, goes_on && enough ? std::min(part, most) : 0, waves...);
+        });
+        if (!moved_beside)
+            return moved_beside.error();
+        wanted.resize(*moved_beside);
+        (waves.tell_used(), ...);
+        (waves.call_up(beside), ...);
+        (waves.call_up(wanted), ...);
+        beside = std::move(wanted);
+        std::swap(now, other);
+    }
+    settle(*other, waves...);
+    (waves.tell_used(), ...);
+    (waves.call_up(beside), ...);
     return Done{};
 }
 
