@@ -21,6 +21,8 @@ struct Answer {
     uint32_t prim;
 
     uint32_t leaf() const { return words[2]; }
+    /// Where pages hang under links: of the one that the ray waits for, or OVC_NO_LEAF.
+    uint32_t key() const { return words[2]; }
     /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
     std::span<const uint32_t, 2> rivals() const { return std::span(words).first<2>(); }
     /// Fast precision: where the hit is. OVC_WAITS: the t of the cells done.
@@ -30,6 +32,11 @@ struct Answer {
     double v() const { return (words[2] >> 16) / 65535.0; }
 };
 static_assert(sizeof(Answer) == 16);
+
+/// The leaf that the key of a link names.
+inline uint32_t leaf_of(uint32_t key) {
+    return (key & OVC_KEY_LEAF) - 1;
+}
 
 /// Rays come in blocks: a row of tiles.
 inline constexpr uint32_t kBlockRays = OVC_ROW_RAYS * OVC_TILE;

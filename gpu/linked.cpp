@@ -130,7 +130,7 @@ std::optional<LinkedPages> link_pages(const Level1& level1, std::span<const Page
 
 std::optional<LinkTree> make_link_tree(const Level1& level1, std::span<const Page> pages,
                                        uint64_t pool_bytes) {
-    if (!level1.shares_frame || pages.empty() ||
+    if (!level1.shares_frame || pages.empty() || pages.size() >= OVC_KEY_LEAF ||
         pool_bytes / OVC_UNIT_BYTES >= uint64_t(OVC_MAX_UNITS))
         return {};
     LinkTree tree;

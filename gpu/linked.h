@@ -50,8 +50,9 @@ uint64_t most_linked_bytes(uint64_t level2_bytes, uint64_t leaves);
 std::optional<LinkedPages> link_pages(const Level1& level1, std::span<const Page> pages,
                                       uint64_t pool_bytes);
 
-/// The tree, all its links leading nowhere; none where leaves do not share a frame, the pool has no
-/// room for the largest page beside it, or its units cannot be counted in a stack word.
+/// The tree, all its links leading nowhere; none where leaves do not share a frame or are more than
+/// a key can name, the pool has no room for the largest page beside it, or its units cannot be
+/// counted in a stack word.
 std::optional<LinkTree> make_link_tree(const Level1& level1, std::span<const Page> pages,
                                        uint64_t pool_bytes);
 

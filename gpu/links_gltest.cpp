@@ -42,7 +42,7 @@ protected:
             gl->run([&](GlState&) { tracer.reset(); });
     }
 
-    /// A ray on its way: the leaves that it has waited for, and what it has met.
+    /// A ray on its way: the links that it has waited for, by their keys, and what it has met.
     struct UnderWay {
         Ray ray;
         Hit hit{};               // the nearest so far
@@ -86,14 +86,14 @@ protected:
         for (size_t j = 0; j < some.size(); ++j) {
             UnderWay& way = rays[some[j]];
             take_in(way, answers[j]);
-            const uint32_t leaf = answers[j].leaf();
-            if (leaf == OVC_NO_LEAF)
+            const uint32_t key = answers[j].key();
+            if (key == OVC_NO_LEAF)
                 continue;
-            ASSERT_LT(leaf, pages.size());
-            ASSERT_EQ(std::count(way.waited.begin(), way.waited.end(), leaf), 0)
-                << "ray " << some[j] << " waits again for leaf " << leaf;
-            way.waited.push_back(leaf);
-            queues[leaf].push_back(some[j]);
+            ASSERT_LT(leaf_of(key), pages.size());
+            ASSERT_TRUE(way.waited.empty() || key > way.waited.back())
+                << "ray " << some[j] << " waits for " << key << " after " << way.waited.back();
+            way.waited.push_back(key);
+            queues[leaf_of(key)].push_back(some[j]);
         }
     }
 

@@ -24,7 +24,7 @@ static_assert(sizeof(LocalRay) == OVC_LOCAL_RAY_TEXELS * 16);
 /// Where pages hang under links.
 struct ResumedRay {
     LocalRay ray;
-    uint32_t done_unit; // of the link that it waited for, or 0
+    uint32_t waited_for; // the key of a link, or 0
     uint32_t zeros[3];
 };
 static_assert(sizeof(ResumedRay) == OVC_RESUMED_RAY_TEXELS * 16);

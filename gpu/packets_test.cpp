@@ -97,7 +97,7 @@ TEST(Packets, OfRaysThatWaitedKeepTheirLinks) {
     const auto parted = part_octants(slots, 20, 512);
     ASSERT_TRUE(parted);
     ASSERT_EQ(parted->size(), 1u);
-    EXPECT_EQ(slots[parted->front().slot].done_unit, 11u);
+    EXPECT_EQ(slots[parted->front().slot].waited_for, 11u);
 }
 
 } // namespace

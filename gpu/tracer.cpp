@@ -209,8 +209,8 @@ void Tracer::upload_local(std::span<const Traveller> rays, std::vector<Sent>& se
             if constexpr (std::is_same_v<Sent, LocalRay>) {
                 sent[i] = ray;
             } else {
-                const uint32_t leaf = t.first_leaf & OVC_NO_LEAF;
-                sent[i] = {ray, leaf == OVC_NO_LEAF ? 0 : links_->link_unit[leaf], {}};
+                const uint32_t key = t.first_leaf & OVC_NO_LEAF;
+                sent[i] = {ray, key == OVC_NO_LEAF ? 0 : key, {}};
             }
             if (!options_.certify)
                 times_[i] = time;

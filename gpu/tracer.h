@@ -25,12 +25,11 @@ namespace ovc {
 /// A ray on its way through level 1, in the layout of shaders/layout.h. In the world's coordinates:
 /// finite, of a direction whose reciprocals are finite, as can_walk() of kdtree/restart.h asks.
 struct Traveller {
-    Ray ray;       // t_max < t_min: no ray
-    double t_from; // the walk begins in the cell after this t; ray.t_min at first
-    uint32_t skip; // number of a triangle it does not see, or OVC_NO_TRIANGLE
-    uint32_t
-        first_leaf; // of that cell, where the ray has been in it; else OVC_NO_LEAF; under links
-                    // the leaf it waited for; with OVC_RAY_ANY_HIT added: any hit will do
+    Ray ray;             // t_max < t_min: no ray
+    double t_from;       // the walk begins in the cell after this t; ray.t_min at first
+    uint32_t skip;       // number of a triangle it does not see, or OVC_NO_TRIANGLE
+    uint32_t first_leaf; // of that cell, where the ray has been in it; else OVC_NO_LEAF; under
+                         // links the key it waited for; with OVC_RAY_ANY_HIT added: any hit will do
 };
 static_assert(sizeof(Traveller) == 80);
 

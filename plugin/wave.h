@@ -133,7 +133,8 @@ private:
             if (positions_[i].state == Position::Ready)
                 ready_.push_back(i);
             else if (positions_[i].state == Position::Waits)
-                waiting_.push(positions_[i].leaf, i);
+                waiting_.push(
+                    s_.tracer_->has_links() ? leaf_of(positions_[i].leaf) : positions_[i].leaf, i);
             else
                 finished_.push_back(i);
         }
@@ -157,16 +158,16 @@ private:
                       });
     }
 
-    /// The same where the answer is that of all leaves before the one it names, if any.
+    /// The same where the answer is that of all leaves before the one whose key it has, if any.
     void settle_under_links(uint32_t i, const Answer& answer) {
         Position& at = positions_[i];
-        if (answer.leaf() != OVC_NO_LEAF)
-            at = {at.t_from, at.t_end, answer.leaf(), Position::Waits};
+        if (answer.key() != OVC_NO_LEAF)
+            at = {at.t_from, at.t_end, answer.key(), Position::Waits};
         if (answer.prim == OVC_MISS && answer.rivals()[0] == OVC_NO_TRIANGLE)
             return;
         at.state = Position::Done;
-        this->take_in(i, answer, [&](uint32_t, uint32_t leaf, const PreparedRay&, double end) {
-            at = {at.t_from, end, leaf, Position::Waits};
+        this->take_in(i, answer, [&](uint32_t, uint32_t key, const PreparedRay&, double end) {
+            at = {at.t_from, end, key, Position::Waits};
             return true;
         });
     }

@@ -36,7 +36,16 @@ Boxes boxes_of(uvec4 x, uvec4 y, uvec4 z, bvec3 backward) {
                  vec4[3](coordinates(x.zw), coordinates(y.zw), coordinates(z.zw)));
 }
 
-ivec4 when(vec4 planes, float scale, float offset) { return floatBitsToInt(planes * scale + offset); }
+#if OVC_LINKS
+#define OVC_EXACTLY precise // the key of a link has the same bits in whichever kernel
+#else
+#define OVC_EXACTLY
+#endif
+
+ivec4 when(vec4 planes, float scale, float offset) {
+    OVC_EXACTLY vec4 t = planes * scale + offset;
+    return floatBitsToInt(t);
+}
 
 const int OVC_NO_CHILD = 0x7ffffffc;
 const int OVC_NO_END = 0x80000000; // the end of a ray that meets no box

@@ -36,8 +36,10 @@
 
 // Where pages are linked (gpu/linked.h) units count from the pool's first; else from the page's own.
 // Where not all linked pages are in the pool, each hangs under a link: a node of one child, the page's root, in texel 3 its unit
-// or OVC_LEADS_NOWHERE, 1 + its leaf, 0, 0.
+// or OVC_LEADS_NOWHERE, 1 + its leaf, 0, 0. Of a ray that meets it a link has a key, by which links are in order: the upper half of
+// the bits of the t (float; 0 where it is less), and below it 1 + the leaf.
 #define OVC_LEADS_NOWHERE 0
+#define OVC_KEY_LEAF 0xffff
 
 // Level 1 is an array of RGBA32UI texels: a header, the leaves, the KD-tree's nodes. A double is two words, low one first.
 //
@@ -67,8 +69,8 @@
 #define OVC_SKIPS_NONE 0x7fffffffu
 #define OVC_NO_RAY -1.1754943508222875e-38f // -2^-126
 #define OVC_UNDECIDABLE -2.350988701644575e-38f
-// Where pages hang under links, a third texel says which one the ray waited for, 0 for none; 0, 0, 0. It is done with those that it
-// meets before, by t and then by unit.
+// Where pages hang under links, a third texel has the key of the one that the ray waited for, 0 for none; 0, 0, 0. It is done with
+// those that it meets before.
 #define OVC_RESUMED_RAY_TEXELS 3
 
 // The answers of the fragment kernel are a texture. Rays lie in it in tiles of 4 x 4, in rows of tiles: fragments that a driver shades together are rays
@@ -77,7 +79,7 @@
 #define OVC_TILE 4
 
 // An answer is RGBA32UI; triangles are named by their numbers in the soup. w: the certain nearest hit in leaf z, or where z is
-// OVC_NO_LEAF in the scene; where pages hang under links, in those that the ray met before leaf z, which it waits for; or
+// OVC_NO_LEAF in the scene; where pages hang under links, in those that the ray met before the one of the key z, which it waits for; or
 //   OVC_MISS      none in any leaf on the way
 //   OVC_WAITS     the walk stopped before leaf z, which is not in the pool; x, y: the t of the cells done (double)
 //   OVC_FLAGGED   the kernel cannot tell
@@ -90,9 +92,10 @@
 #define OVC_CAPPED 0x7ffffffdu
 #define OVC_WAITS 0x7ffffffcu
 #define OVC_MAX_TRIANGLES 0x7ffffff0u
-// The compute kernel writes its answers to a buffer in four planes, w x y z, a word a ray, as rays lie. x, y and z are written
-// only where they say something: w then has OVC_SAYS_MORE as well; else they stand for OVC_NO_TRIANGLE, OVC_NO_TRIANGLE,
-// OVC_NO_LEAF. (llvmpipe stores word by word and lane by lane: four words a ray took a tenth of the time.)
+// The compute kernel writes its answers to a buffer in four planes, w x y z, a word a ray, as rays lie. A miss of which there is no
+// more to say is not written: the host has put OVC_MISS there. x, y and z are written only where they say something: w then has
+// OVC_SAYS_MORE as well; else they stand for OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, OVC_NO_LEAF. (llvmpipe stores word by word and lane
+// by lane: four words a ray took a tenth of the time.)
 #define OVC_SAYS_MORE 0x80000000u
 #define OVC_LOCATION_PLANE 0 // of the uniform that says how many words a plane has
 #define OVC_LOCATION_RAYS 2  // of the one that says how many rays the pass has

@@ -26,9 +26,7 @@ bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACK
                 (to.w & OVC_RAY_ANY_HIT) != 0u);
         packet.links[k] = no_links();
 #if OVC_LINKS
-        int done = int(ray_texel((first + k) * texels + 2).x);
-        packet.links[k].done_unit = done;
-        packet.links[k].done_key = done != 0 ? link_key(unit_at(done), packet.grid[k], backward) : -1;
+        packet.links[k].done = int(ray_texel((first + k) * texels + 2).x);
 #endif
         any = any || t_end >= 0.0;
     }
@@ -40,9 +38,8 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended)
         uvec4 answer = answer_of(found[k], packet.any_hit[k], OVC_NO_LEAF);
 #if OVC_LINKS
         // What lies beyond the best hit is not waited for.
-        Links links = packet.links[k];
-        if (links.waits_key <= floatBitsToInt(found[k].best_hi))
-            answer.z = page_texel(links.waits_unit * OVC_UNIT_TEXELS + 3).y - 1u;
+        int waits = packet.links[k].waits;
+        answer.z = (waits & ~OVC_KEY_LEAF) <= floatBitsToInt(found[k].best_hi) ? uint(waits) : answer.z;
 #endif
 #if !OVC_CERTIFY
         answer.xyz = uvec3(floatBitsToUint(found[k].best_lo), 0u, packUnorm2x16(barycentric(found[k])));

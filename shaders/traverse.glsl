@@ -89,48 +89,33 @@ void tell_active(Unit unit, bool here) {
 void tell_active(Unit unit, bool here) {}
 #endif
 
-// Links on a ray's way, by the bits of the t where it meets them and then by their units: it is done with those before `done`, and
-// waits for the first of the others that leads nowhere.
+// Links on a ray's way, by their keys (layout.h): it is done with those below `done`, and waits for the least of the others that leads
+// nowhere.
 struct Links {
-    int done_key;
-    int done_unit;
-    int waits_key;
-    int waits_unit;
+    int done;
+    int waits;
 };
 
-Links no_links() { return Links(-1, 0, OVC_NO_CHILD, 0); }
+Links no_links() { return Links(0, OVC_NO_CHILD); }
 
 #if OVC_LINKS
-bool before(int key, int unit, int other_key, int other_unit) {
-    return key < other_key || (key == other_key && unit < other_unit);
-}
-
-// Where the ray meets a link's box. Precise: it must have the same bits wherever it is asked.
-int link_key(Unit link, GridRay ray, bvec3 backward) {
-    uvec3 lo = uvec3(link.x.x, link.y.x, link.z.x);
-    uvec3 hi = uvec3(link.x.z, link.y.z, link.z.z);
-    vec3 near = vec3(ivec3(mix(lo, hi, backward) << 16));
-    precise vec3 enter = near * ray.scale + ray.offset;
-    return max(max(floatBitsToInt(enter.x), floatBitsToInt(enter.y)), max(floatBitsToInt(enter.z), 0));
-}
-
-// The children that a ray goes down to from `unit`: none where it is a link that it is done with, or to which it does not come.
-ivec4 follow(inout Links links, Unit unit, int at, bool here, GridRay grid, bvec3 backward, ivec4 keys) {
-    bool link = here && unit.w.y != 0u;
-    int key = link_key(unit, grid, backward);
-    bool open = link && keys.x != OVC_NO_CHILD && !before(key, at, links.done_key, links.done_unit) &&
-                before(key, at, links.waits_key, links.waits_unit);
+// The children that a ray goes down to from `unit`, where it meets those that `keys` has: none where it is a link that the ray is done
+// with, or to which it does not come.
+ivec4 follow(inout Links links, Unit unit, ivec4 keys) {
+    bool link = unit.w.y != 0u;
+    int key = (max(keys.x, 0) & ~OVC_KEY_LEAF) | int(unit.w.y);
+    bool open = link && keys.x != OVC_NO_CHILD && key >= links.done && key < links.waits;
     bool nowhere = int(unit.w.x) == OVC_LEADS_NOWHERE;
-    links.waits_key = open && nowhere ? key : links.waits_key;
-    links.waits_unit = open && nowhere ? at : links.waits_unit;
+    links.waits = open && nowhere ? key : links.waits;
 #if OVC_TELL_ACTIVE
     if (open && !nowhere)
         mark_active(int(unit.w.y) - 1);
 #endif
-    return link && (!open || nowhere) ? ivec4(OVC_NO_CHILD) : keys;
+    keys.x = link && (!open || nowhere) ? OVC_NO_CHILD : keys.x; // a link has no other child
+    return keys;
 }
 #else
-ivec4 follow(inout Links links, Unit unit, int at, bool here, GridRay grid, bvec3 backward, ivec4 keys) { return keys; }
+ivec4 follow(inout Links links, Unit unit, ivec4 keys) { return keys; }
 #endif
 
 // Rays that go through a tree together, so that a node is fetched, decoded and sorted once for all of them.
@@ -184,14 +169,13 @@ Descent descent(Tree tree) {
     return d;
 }
 
-// The children of the node, the unit `at`, that any ray of the packet meets. Where not `here` the unit is a pair, whose bits mean nothing as
-// boxes.
-ivec4 keys_of(Unit node, int at, inout Packet packet, Found found[OVC_PACKET], bool here) {
+// The children of the node that any ray of the packet meets. Where not `here` the unit is a pair, whose bits mean nothing as boxes.
+ivec4 keys_of(Unit node, inout Packet packet, Found found[OVC_PACKET], bool here) {
     Boxes boxes = boxes_of(node.x, node.y, node.z, packet.backward);
     ivec4 keys = ivec4(OVC_NO_CHILD);
     for (int k = 0; k < OVC_PACKET; ++k) {
         ivec4 own = entries(boxes, packet.grid[k], here ? floatBitsToInt(found[k].best_hi) : OVC_NO_END);
-        keys = min(keys, follow(packet.links[k], node, at, here, packet.grid[k], packet.backward, own));
+        keys = min(keys, follow(packet.links[k], node, own));
     }
     return numbered(keys);
 }
@@ -220,20 +204,20 @@ void go_round(inout Descent d, inout Found found[OVC_PACKET], inout Packet packe
         take_pairs(found, unit, packet, true);
     } else {
         tell_active(unit, true);
-        keys = keys_of(unit, d.unit, packet, found, true);
+        keys = keys_of(unit, packet, found, true);
     }
     advance(d, int(unit.w.x), keys, true);
 #else
     Unit node = unit_at(first_unit + d.unit);
     bool here = !is_pair(node); // a pair waits for the second step
     tell_active(node, here);
-    advance(d, int(node.w.x), keys_of(node, d.unit, packet, found, here), here);
+    advance(d, int(node.w.x), keys_of(node, packet, found, here), here);
 
     // A ray that is done by now is at unit 0, a header, which has neither pairs nor links.
     Unit unit = unit_at(first_unit + d.unit);
     bool pair = is_pair(unit);
     tell_active(unit, !pair);
-    ivec4 keys = keys_of(unit, d.unit, packet, found, !pair);
+    ivec4 keys = keys_of(unit, packet, found, !pair);
 #if OVC_PACKET > 1
     take_pairs(found, unit, packet, pair);
     advance(d, int(unit.w.x), keys, true);
