@@ -25,15 +25,15 @@ constexpr uint32_t kMostBlocksInSoftware = 512; // llvmpipe clears what it alloc
 // want more (docs/decisions/0012).
 constexpr uint32_t kMostStackWordsInSoftware = 8;
 constexpr size_t kMostLostShare = 256; // of rays, one in so many; else kernels go on longer
-// By turns: the most rays of a lane on average, as long as there are some groups for each thread.
+// By turns: the most rays of a lane on average, as long as each thread has some groups.
 constexpr size_t kLaneRays = 64;
-constexpr size_t kGroupsForThreads = 16;
+constexpr size_t kGroupsAThread = 4;
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
 /// How many packets each lane takes, on average.
 size_t turns(size_t rays, size_t packet) {
     static_assert(kBlockRays % (OVC_GROUP_SIZE * kPacketRays) == 0); // no packet across groups
-    const size_t lanes = kGroupsForThreads * OVC_GROUP_SIZE;
+    const size_t lanes = kGroupsAThread * thread_count() * OVC_GROUP_SIZE;
     return std::clamp<size_t>(rays / packet / lanes, 1, kLaneRays / packet);
 }
 
