@@ -3,6 +3,7 @@
 // hits; a frame in which triangles are too small for float32 is told.
 #include "gpu/linked.h"
 
+#include "gpu/answers.h"
 #include "gpu/node_boxes.h"
 #include "gpu/page_walk.h"
 #include "kdtree/test_soups.h"
@@ -129,6 +130,17 @@ TEST(LinkedPages, NeedRoomForThePageBesideTheTree) {
     const uint64_t top = make_link_tree(built.level1, built.pages, kRoom)->top.bytes();
     EXPECT_TRUE(make_link_tree(built.level1, built.pages, top + largest));
     EXPECT_FALSE(make_link_tree(built.level1, built.pages, top + largest - 1));
+}
+
+TEST(LinkedPages, AreNoMoreThanAKeyCanName) {
+    const Built built = build(test::closed_grid(4), 9, /* shared= */ true);
+    std::vector<Page> pages(OVC_KEY_LEAF - 1, built.pages[0]);
+    const auto tree = make_link_tree(built.level1, pages, kRoom);
+    ASSERT_TRUE(tree);
+    const uint32_t last = tree->link_unit.back();
+    EXPECT_EQ(leaf_of(tree->top.view()[size_t(last) * OVC_UNIT_TEXELS + 3].y), pages.size() - 1);
+    pages.push_back(built.pages[0]);
+    EXPECT_FALSE(make_link_tree(built.level1, pages, kRoom));
 }
 
 TEST(LinkedPages, NeedAFrameThatAllLeavesShare) {
