@@ -19,8 +19,7 @@ namespace ovc {
 /// Whitted 1980: mirrors and glass, lights as points. Path: Kajiya 1986, all light there is.
 enum class IntegratorKind { Whitted, Path };
 
-/// Algorithm 5 or 6 of the thesis. Auto is batched, which shades faster where all is resident
-/// (docs/benchmarks.md).
+/// Algorithm 5 or 6 of the thesis. Auto is batched, which is faster (docs/benchmarks.md).
 enum class RenderMode { Auto, Batched, Mixed };
 
 struct RenderOptions {
