@@ -92,6 +92,8 @@ protected:
             ASSERT_LT(leaf_of(key), pages.size());
             ASSERT_TRUE(way.waited.empty() || key > way.waited.back())
                 << "ray " << some[j] << " waits for " << key << " after " << way.waited.back();
+            ASSERT_EQ(std::ranges::count(way.waited, leaf_of(key), leaf_of), 0)
+                << "ray " << some[j] << " waits again for leaf " << leaf_of(key);
             way.waited.push_back(key);
             queues[leaf_of(key)].push_back(some[j]);
         }

@@ -59,7 +59,8 @@ protected:
     }
 
     /// Enters what the kernel found of ray i, and what is certain of it. go_on(i, leaf, p, limit)
-    /// is asked where later leaves may hold a hit before `limit`; false: it cannot say where.
+    /// is asked where later leaves may hold a hit before `limit`; false: it cannot say where. leaf:
+    /// the answer's, its key where pages hang under links.
     template <class GoOn>
     void take_in(uint32_t i, const Answer& answer, GoOn&& go_on) {
         const bool decided = answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
