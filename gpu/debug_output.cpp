@@ -11,11 +11,14 @@
 namespace ovc {
 namespace {
 
-void APIENTRY forward(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length,
+void APIENTRY forward(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei length,
                       const GLchar* message, const void* user) {
     const bool error = type == GL_DEBUG_TYPE_ERROR;
     // Medium and low severity is the driver's advice on speed, notifications its diary.
     if (!error && severity != GL_DEBUG_SEVERITY_HIGH)
+        return;
+    // Mesa's warns of functions of its own; a kernel that does not compile is reported as a result.
+    if (!error && source == GL_DEBUG_SOURCE_SHADER_COMPILER)
         return;
     say(*static_cast<const LogSink*>(user), error ? LogLevel::Error : LogLevel::Warning,
         "OpenGL: " + std::string(message, size_t(length)));

@@ -18,7 +18,7 @@ constexpr const char* kFew = "3";
 
 std::vector<const char*> leaf_choices(bool quick) {
     if (quick)
-        return {"2", "3", "8", "30", "120", "400"};
+        return {"2", "3", "8", "30", "120"};
     return {"2", "3", "4", "6", "9", "13", "20", "30", "50", "80", "130", "220", "400"};
 }
 

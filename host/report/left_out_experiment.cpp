@@ -68,7 +68,7 @@ int repeats_of(const ReportPlan& plan, bool cold) {
 std::vector<ReportRun> runs(const ReportPlan& plan) {
     std::vector<std::string> scenes = plan.scenes;
     if (scenes.empty()) {
-        scenes = {"knot", "mirrors"};
+        scenes = {plan.quick ? "sphere-7" : "knot", "mirrors"};
         if (!plan.quick)
             scenes.insert(scenes.end(), {"glass", "city", "plants-10", "powerplant-400000"});
         if (!plan.mesh.empty())
