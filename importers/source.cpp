@@ -123,20 +123,17 @@ size_t Source::read() {
     return got;
 }
 
-Source::Block Source::unpack(gzFile_s* file, const std::string& name) {
-    Block block;
-    block.bytes.resize(kUnpackedBytes);
-    block.bytes.resize(read_some(file, block.bytes.data(), kUnpackedBytes, name, block.damage));
-    return block;
-}
-
-/// Takes the block that was unpacked meanwhile, and has the next one unpacked.
+/// Takes a block that was unpacked meanwhile.
 size_t Source::read_ahead() {
-    const Block block = ahead_.valid() ? ahead_.get() : unpack(file_.get(), name_);
+    if (!unpacked_)
+        unpacked_ = std::make_unique<ReadAhead>([file = file_.get(), name = name_](auto& block) {
+            block.bytes.resize(kUnpackedBytes);
+            block.bytes.resize(
+                read_some(file, block.bytes.data(), kUnpackedBytes, name, block.damage));
+        });
+    const ReadAhead::Block& block = unpacked_->next();
     if (!block.damage.empty())
         damage_ = block.damage;
-    if (!block.bytes.empty() && block.damage.empty())
-        ahead_ = std::async(std::launch::async, unpack, file_.get(), name_);
     buffer_.resize(std::max(buffer_.size(), end_ + block.bytes.size()));
     std::copy(block.bytes.begin(), block.bytes.end(), buffer_.begin() + ptrdiff_t(end_));
     end_ += block.bytes.size();

@@ -4,10 +4,10 @@
 
 #include "core/result.h"
 #include "importers/files_read.h"
+#include "importers/read_ahead.h"
 
 #include <cstdint>
 #include <filesystem>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,8 +18,8 @@ struct gzFile_s;
 
 namespace ovc {
 
-/// Memory: one block, more only while a single line or read is longer; never more than twice what
-/// the file holds. Of a compressed file another thread unpacks the next block meanwhile.
+/// Memory: one block, and of a compressed file a MiB that another thread unpacks meanwhile; more
+/// only while a single line or read is longer, never more than twice what the file holds.
 /// Compression is told by the file's first bytes, not by its name.
 class Source {
 public:
@@ -72,15 +72,8 @@ private:
         void operator()(gzFile_s* file) const;
     };
 
-    /// What was read at once. damage: empty, or why it ends early.
-    struct Block {
-        std::vector<unsigned char> bytes;
-        std::string damage;
-    };
-
     Source() = default;
 
-    static Block unpack(gzFile_s* file, const std::string& name);
     size_t read();
     size_t read_ahead();
     /// Makes at least `count` bytes available; false at the end of the file.
@@ -89,7 +82,7 @@ private:
 
     std::string name_;
     std::unique_ptr<gzFile_s, CloseFile> file_;
-    std::future<Block> ahead_; // uses file_
+    std::unique_ptr<ReadAhead> unpacked_; // uses file_; null of a plain file
     std::vector<unsigned char> buffer_;
     size_t begin_ = 0; // of what is not given out yet
     size_t end_ = 0;
