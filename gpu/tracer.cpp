@@ -243,6 +243,7 @@ void Tracer::come_back(std::span<Answer> answers) const {
 ShaderConfig Tracer::shader_config() const {
     ShaderConfig config;
     config.compute = options_.compute;
+    config.any_hit = any_hit_;
     config.certify = options_.certify;
     config.linked = linked_ || links_;
     config.links = links_.has_value();
@@ -265,6 +266,8 @@ Result<Done> Tracer::submit(std::span<const Traveller> rays) {
     assert(!rays.empty());
     rays_sent_ = rays.size();
     slots_sent_ = rays.size();
+    any_hit_ = std::ranges::all_of(
+        rays, [](const Traveller& t) { return (t.first_leaf & OVC_RAY_ANY_HIT) != 0; });
     packets_ = false;
     parted_.clear();
     upload(rays);

@@ -146,6 +146,7 @@ private:
     uint32_t stack_depth_;              // with which no ray is lost
     uint32_t stack_words_;              // of the kernel
     uint32_t most_slots_;               // of a pass
+    bool any_hit_ = false;              // all rays of the pass ask whether anything is hit
     size_t rays_sent_ = 0;              // of the pass
     size_t slots_sent_ = 0;             // and with those that were parted
     bool packets_ = false;              // they are taken two at a time

@@ -142,6 +142,33 @@ TEST_F(KernelGl, WhatItCallsCertainIsTrueAtSidesOfLoosePairs) {
     expect_truth(soup, rays);
 }
 
+/// Rays that begin or end some roundings before or behind a triangle. From a few hundred on the
+/// kernel tells by itself.
+TEST_F(KernelGl, WhatItCallsCertainIsTrueAtTheEndsOfRays) {
+    const Soup soup = test::random_soup(13, 1500, 0.3);
+    test::Random random(14);
+    for (const LoosePairs loose : {LoosePairs{}, LoosePairs{true}}) {
+        load(soup, loose);
+        const double rounding = 0x1p-24 / leaf_of(level1).frame.scale;
+        for (const double roundings : {3.0, 30.0, 3000.0}) {
+            std::vector<Ray> rays;
+            for (const TriangleId id : leaf_of(level1).triangles) {
+                const Triangle t = soup.triangle(id);
+                const dvec3 inside = (t[0] + t[1] + t[2]) / 3.0;
+                const dvec3 dir = glm::normalize(random.point(-1, 1));
+                const double off = roundings * rounding * random.point(-1, 1).x;
+                rays.push_back({inside + off * dir, 0, dir});
+                rays.push_back({inside - 0.2 * dir, 0, dir, 0.2 + off});
+            }
+            expect_truth(soup, rays);
+            const auto answers = trace(rays, /* any_hit= */ true);
+            const auto certain = std::count_if(answers.begin(), answers.end(), is_certain);
+            EXPECT_GT(certain, ptrdiff_t(rays.size() * (roundings < 1000 ? 1 : 9) / 10))
+                << roundings;
+        }
+    }
+}
+
 TEST_F(KernelGl, FlagsRaysAtSharedEdgesAndVertices) {
     const Soup soup = test::closed_grid(16);
     load(soup);

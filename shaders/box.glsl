@@ -50,34 +50,25 @@ ivec4 when(vec4 planes, float scale, float offset) {
 const int OVC_NO_CHILD = 0x7ffffffc;
 const int OVC_NO_END = 0x80000000; // the end of a ray that meets no box
 
-// The bits of the t where the ray enters each of the four children, OVC_NO_CHILD where it misses; end: the bits of its own end.
-// Floats that are not negative order as their bits do, and signed integer min and max are one instruction where float ones are three.
-// Negative ones order the other way round: the least entry and the greatest exit of those are taken, so that where a box lies all
-// behind the ray's beginning, its exit comes first.
-ivec4 entries(Boxes boxes, GridRay ray, int end) {
+// Between which t's the ray is in each of the four boxes, and before `end`, as the bits of floats: it meets a box where `enter` is less
+// than `exit`. Floats that are not negative order as their bits do, and signed integer min and max are one instruction where float ones
+// are three. Negative ones order the other way round: the least entry and the greatest exit of those are taken, so that where a box lies
+// all behind the ray's beginning, its exit comes first.
+struct Stretches {
+    ivec4 enter;
+    ivec4 exit;
+};
+
+// end: the bits of the ray's end.
+Stretches stretches(Boxes boxes, GridRay ray, int end) {
     ivec4 enter = when(boxes.near[0], ray.scale[0], ray.offset[0]);
     ivec4 exit = min(ivec4(end), when(boxes.far[0], ray.scale[0], ray.offset[0]));
     for (int i = 1; i < 3; ++i) {
         enter = max(enter, when(boxes.near[i], ray.scale[i], ray.offset[i]));
         exit = min(exit, when(boxes.far[i], ray.scale[i], ray.offset[i]));
     }
-    return mix(ivec4(OVC_NO_CHILD), enter, lessThan(enter, exit));
+    return Stretches(enter, exit);
 }
 
-// Sort keys: with each child's number in its two lowest bits.
-ivec4 numbered(ivec4 entries) { return (entries & ~3) | ivec4(0, 1, 2, 3); }
-
-void order(inout int a, inout int b) {
-    int low = min(a, b);
-    b = max(a, b);
-    a = low;
-}
-
-// Nearest first: a sorting network of five comparisons.
-void sort_keys(inout ivec4 k) {
-    order(k.x, k.y);
-    order(k.z, k.w);
-    order(k.x, k.z);
-    order(k.y, k.w);
-    order(k.y, k.z);
-}
+// Where the ray enters each of the four children, OVC_NO_CHILD where it misses.
+ivec4 entries(Stretches s) { return mix(ivec4(OVC_NO_CHILD), s.enter, lessThan(s.enter, s.exit)); }

@@ -2,7 +2,7 @@
 // Every switch of the kernel, with its default. ShaderConfig (gpu/kernel.h) always defines all of them.
 
 #ifndef OVC_ANY_HIT
-#define OVC_ANY_HIT 0 // 1: occlusion, where rays do not say themselves what they ask: the systems of the thesis
+#define OVC_ANY_HIT 0 // 1: all rays ask whether anything is hit; 0: each says what it asks, those of the thesis the nearest hit
 #endif
 #ifndef OVC_CERTIFY
 #define OVC_CERTIFY 1 // 0: fast precision, float32's own answer, nothing flagged but what did not end

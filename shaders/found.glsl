@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a traversal knows so far: the best certain hit, and what else might still be nearer (docs/numerics.md).
+// What a traversal knows so far of the nearest hit: the best certain one, and what else might still be nearer (docs/numerics.md).
 
 const float OVC_NEVER = 3.0e38;
 const float OVC_ENOUGH = OVC_NO_RAY; // instead of best_hi: nothing is looked for any more
@@ -51,56 +51,13 @@ bool take(inout Found found, Candidate c, bool valid, uint prim, uint order) {
     return better;
 }
 
-#if OVC_LOOSE_PAIRS
-// The coordinate in the upper 24 bits of a word, and the one in the low bytes of three.
-float upper(uint word) { return float(int(word) >> 8) * float(OVC_LOOSE_STEP); }
-float low(uvec4 words) {
-    return upper((words.z << 24) | ((words.y & 0xffu) << 16) | ((words.x & 0xffu) << 8));
+// Takes the triangle (a, b, c) in. Returns true when it is now the best.
+bool take(inout Found found, Corner a, Corner b, Corner c, Edges e, Depths depths, bool valid, uint prim, uint order) {
+    return take(found, candidate(a, b, c, e, depths), valid, prim, order);
 }
-vec3 upper(uvec4 words) { return vec3(ivec3(words.xyz) >> 8) * float(OVC_LOOSE_STEP); }
 
-// A pair of either kind: where it is not a loose one, two of B's corners are A's.
-bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pair, vec3 org, Basis basis,
-               uint skip) {
-    bool loose = (W.w & OVC_LOOSE_PAIR) != 0u;
-    vec3 p0 = loose ? upper(X) : uintBitsToFloat(X.xyz);
-    vec3 p1 = loose ? upper(Y) : uintBitsToFloat(Y.xyz);
-    vec3 p2 = loose ? upper(Z) : uintBitsToFloat(Z.xyz);
-    vec3 p3 = loose ? upper(W) : uintBitsToFloat(W.xyz);
-    vec3 b1 = vec3(low(X), low(Y), low(Z));
-    vec3 b2 = vec3(low(W), upper(Z.w), upper((Z.w << 24) | ((W.w & 0xffffu) << 8)));
-    uint order = loose ? OVC_OWN_ORDER : Z.w;
-    Corner a[3] = Corner[3](corner(p0, org, basis), corner(p1, org, basis), corner(p2, org, basis));
-    Corner b[3] = Corner[3](corner(loose ? p3 : p0, org, basis), corner(loose ? b1 : p3, org, basis),
-                            corner(loose ? b2 : p2, org, basis));
-    bool fresh_a = X.w != found.prim;
-    bool fresh_b = Y.w != found.prim;
-    bool took_a = take(found, candidate(a), is_pair && X.w != skip && fresh_a, X.w, order);
-    bool took_b = take(found, candidate(b), is_pair && Y.w != skip && Y.w != OVC_NO_TRIANGLE && fresh_b, Y.w, order >> 4);
-    return took_a || took_b;
-}
-#else
-bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pair, vec3 org, Basis basis,
-               uint skip) {
-    Corner v0 = corner(uintBitsToFloat(X.xyz), org, basis);
-    Corner v1 = corner(uintBitsToFloat(Y.xyz), org, basis);
-    Corner v2 = corner(uintBitsToFloat(Z.xyz), org, basis);
-    Corner v3 = corner(uintBitsToFloat(W.xyz), org, basis);
-    float e20 = edge(v2, v0);
-    float e20_error = edge_error(v2, v0);
-    Depths depths = depths_of(v0, v2);
-    Candidate a = candidate(v0, v1, v2, edge(v0, v1), edge(v1, v2), e20, edge_error(v0, v1),
-                            edge_error(v1, v2), e20_error, with_corner(depths, v1));
-    Candidate b = candidate(v0, v3, v2, edge(v0, v3), edge(v3, v2), e20, edge_error(v0, v3),
-                            edge_error(v3, v2), e20_error, with_corner(depths, v3));
-    // What planes cut comes once for each part, within a page and in linked ones: it is no rival of itself.
-    bool fresh_a = X.w != found.prim;
-    bool fresh_b = Y.w != found.prim;
-    bool took_a = take(found, a, is_pair && X.w != skip && fresh_a, X.w, Z.w);
-    bool took_b = take(found, b, is_pair && Y.w != skip && Y.w != OVC_NO_TRIANGLE && fresh_b, Y.w, Z.w >> 4);
-    return took_a || took_b;
-}
-#endif
+// What planes cut comes once for each part, within a page and in linked ones: it is no rival of itself.
+bool is_known(Found found, uint prim) { return prim == found.prim; }
 
 // The weights of the pair's corners as u and v of the triangle's own: order says which of its corners v0 and v2 are.
 vec2 barycentric(Found found) {

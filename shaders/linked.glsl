@@ -23,7 +23,7 @@ bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACK
         t_end = t_end >= 0.0 && backward != packet.backward ? OVC_UNDECIDABLE : t_end;
         found[k] = nothing_found(t_end);
         set_ray(packet, k, tree, uintBitsToFloat(from.xyz), direction_of(dir), to.w & OVC_SKIPS_NONE,
-                (to.w & OVC_RAY_ANY_HIT) != 0u);
+                OVC_ANY_HIT != 0 || (to.w & OVC_RAY_ANY_HIT) != 0u);
         packet.links[k] = no_links();
 #if OVC_LINKS
         packet.links[k].done = int(ray_texel((first + k) * texels + 2).x);

@@ -45,5 +45,5 @@ Traveller traveller(int ray) {
     dvec3 dir = dvec3(c, d.x);
     dvec3 inv_dir = 1.0 / mix(dir, dvec3(1.0), equal(dir, dvec3(0.0))); // a still coordinate has none
     return Traveller(WorldRay(dvec3(a, b.x), dir, inv_dir, b.y, d.y), double_of(e.xy), int(e.w & OVC_NO_LEAF), e.z,
-                     (e.w & OVC_RAY_ANY_HIT) != 0u);
+                     OVC_ANY_HIT != 0 || (e.w & OVC_RAY_ANY_HIT) != 0u);
 }

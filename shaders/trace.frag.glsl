@@ -5,8 +5,14 @@
 #include "config.glsl"
 #include "page.glsl"
 #include "box.glsl"
+#include "children.glsl"
 #include "triangle.glsl"
+#if OVC_ANY_HIT && OVC_CERTIFY
+#include "occluder.glsl"
+#else
 #include "found.glsl"
+#endif
+#include "pair.glsl"
 #include "traverse.glsl"
 #include "level1.glsl"
 #include "ray.glsl"

@@ -37,23 +37,17 @@ struct Descent {
     bool lost; // the stack was too short: what has been found is not all
 };
 
-// Goes down to the nearest of the children that `keys` has; where it has none, and `leave`, to the next of the stack.
-void advance(inout Descent d, int first_child, ivec4 keys, bool leave) {
-    sort_keys(keys);
-    bool descend = keys.x < OVC_NO_CHILD;
-    bool push = keys.y < OVC_NO_CHILD;
-    bool back = leave && !descend;
-    int second = (keys.y & 3) | 4;
-    int third = (keys.y & 3) | (keys.z & 3) << 2 | 16;
-    int fourth = (keys.y & 3) | (keys.z & 3) << 2 | (keys.w & 3) << 4 | 64;
-    int others = keys.w < OVC_NO_CHILD ? fourth : (keys.z < OVC_NO_CHILD ? third : second);
-    int word = first_child << 8 | others;
+// Goes down to the first of the children; where there is none, and `leave`, to the next of the stack.
+void advance(inout Descent d, int first_child, Children children, bool leave) {
+    Way way = way_to(children);
+    bool back = leave && !way.down;
+    int word = first_child << 8 | way.others;
 
     int rest = (d.top & ~255) | ((d.top >> 2) & 63);
-    d.unit = descend ? first_child + (keys.x & 3) : (back ? (d.top >> 8) + (d.top & 3) : d.unit);
+    d.unit = way.down ? first_child + way.first : (back ? (d.top >> 8) + (d.top & 3) : d.unit);
 
     bool empty = d.top == 0;
-    bool store = push && !empty;
+    bool store = way.more && !empty;
     bool pop = back && (d.top & 0xf0) == 0; // no more than one was to come
     int below;
 #if OVC_STACK_REGISTERS
@@ -76,7 +70,7 @@ void advance(inout Descent d, int first_child, ivec4 keys, bool leave) {
         below = d.stack[d.height];
     d.height += store ? 1 : (pop && d.height >= 0 ? -1 : 0);
 #endif
-    d.top = push ? word : (pop ? below : (back ? rest : d.top));
+    d.top = way.more ? word : (pop ? below : (back ? rest : d.top));
     d.done = d.done || (back && empty) || d.lost;
 }
 
@@ -99,9 +93,9 @@ struct Links {
 Links no_links() { return Links(0, OVC_NO_CHILD); }
 
 #if OVC_LINKS
-// The children that a ray goes down to from `unit`, where it meets those that `keys` has: none where it is a link that the ray is done
-// with, or to which it does not come.
-ivec4 follow(inout Links links, Unit unit, ivec4 keys) {
+// The children that a ray goes down to from `unit`: none where it is a link that the ray is done with, or to which it does not come.
+Children follow(inout Links links, Unit unit, Stretches s) {
+    ivec4 keys = entries(s);
     bool link = unit.w.y != 0u;
     int key = (max(keys.x, 0) & ~OVC_KEY_LEAF) | int(unit.w.y);
     bool open = link && keys.x != OVC_NO_CHILD && key >= links.done && key < links.waits;
@@ -112,10 +106,10 @@ ivec4 follow(inout Links links, Unit unit, ivec4 keys) {
         mark_active(int(unit.w.y) - 1);
 #endif
     keys.x = link && (!open || nowhere) ? OVC_NO_CHILD : keys.x; // a link has no other child
-    return keys;
+    return children_met(keys);
 }
 #else
-ivec4 follow(inout Links links, Unit unit, ivec4 keys) { return keys; }
+Children follow(inout Links links, Unit unit, Stretches s) { return children_met(s); }
 #endif
 
 // Rays that go through a tree together, so that a node is fetched, decoded and sorted once for all of them.
@@ -170,14 +164,14 @@ Descent descent(Tree tree) {
 }
 
 // The children of the node that any ray of the packet meets. Where not `here` the unit is a pair, whose bits mean nothing as boxes.
-ivec4 keys_of(Unit node, inout Packet packet, Found found[OVC_PACKET], bool here) {
+Children children_of(Unit node, inout Packet packet, Found found[OVC_PACKET], bool here) {
     Boxes boxes = boxes_of(node.x, node.y, node.z, packet.backward);
-    ivec4 keys = ivec4(OVC_NO_CHILD);
+    Children children = no_children();
     for (int k = 0; k < OVC_PACKET; ++k) {
-        ivec4 own = entries(boxes, packet.grid[k], here ? floatBitsToInt(found[k].best_hi) : OVC_NO_END);
-        keys = min(keys, follow(packet.links[k], node, own));
+        int end = here ? floatBitsToInt(found[k].best_hi) : OVC_NO_END;
+        add(children, follow(packet.links[k], node, stretches(boxes, packet.grid[k], end)));
     }
-    return numbered(keys);
+    return children;
 }
 
 // Tests the pair with the rays that still look for something, where `here`.
@@ -199,31 +193,31 @@ bool all_have_enough(Found found[OVC_PACKET]) {
 void go_round(inout Descent d, inout Found found[OVC_PACKET], inout Packet packet, int first_unit) {
 #if OVC_BRANCHES
     Unit unit = unit_at(first_unit + d.unit);
-    ivec4 keys = ivec4(OVC_NO_CHILD);
+    Children children = no_children();
     if (is_pair(unit)) {
         take_pairs(found, unit, packet, true);
     } else {
         tell_active(unit, true);
-        keys = keys_of(unit, packet, found, true);
+        children = children_of(unit, packet, found, true);
     }
-    advance(d, int(unit.w.x), keys, true);
+    advance(d, int(unit.w.x), children, true);
 #else
     Unit node = unit_at(first_unit + d.unit);
     bool here = !is_pair(node); // a pair waits for the second step
     tell_active(node, here);
-    advance(d, int(node.w.x), keys_of(node, packet, found, here), here);
+    advance(d, int(node.w.x), children_of(node, packet, found, here), here);
 
     // A ray that is done by now is at unit 0, a header, which has neither pairs nor links.
     Unit unit = unit_at(first_unit + d.unit);
     bool pair = is_pair(unit);
     tell_active(unit, !pair);
-    ivec4 keys = keys_of(unit, packet, found, !pair);
+    Children children = children_of(unit, packet, found, !pair);
 #if OVC_PACKET > 1
     take_pairs(found, unit, packet, pair);
-    advance(d, int(unit.w.x), keys, true);
+    advance(d, int(unit.w.x), children, true);
 #else
     // Earlier by so much that its way goes on while pairs are tested: 5 % of the time, which two rays do not gain.
-    advance(d, int(unit.w.x), keys, true);
+    advance(d, int(unit.w.x), children, true);
     take_pairs(found, unit, packet, pair);
 #endif
 #endif

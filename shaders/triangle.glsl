@@ -52,6 +52,34 @@ float edge(Corner a, Corner b) {
 }
 float edge_error(Corner a, Corner b) { return a.error * b.reach + b.error * a.reach; }
 
+// The edge functions of a triangle (a, b, c), and what they are off by at most.
+struct Edges {
+    float ab;
+    float bc;
+    float ca;
+    float ab_error;
+    float bc_error;
+    float ca_error;
+};
+
+Edges edges_of(Corner a, Corner b, Corner c) {
+    return Edges(edge(a, b), edge(b, c), edge(c, a), edge_error(a, b), edge_error(b, c), edge_error(c, a));
+}
+
+// Where the ray passes: `outside` certainly, `inside` certainly, or neither.
+struct Passing {
+    bool outside;
+    bool inside;
+};
+
+Passing passing(Edges e) {
+    bool all_positive = e.ab > e.ab_error && e.bc > e.bc_error && e.ca > e.ca_error;
+    bool all_negative = e.ab < -e.ab_error && e.bc < -e.bc_error && e.ca < -e.ca_error;
+    bool any_positive = e.ab > e.ab_error || e.bc > e.bc_error || e.ca > e.ca_error;
+    bool any_negative = e.ab < -e.ab_error || e.bc < -e.bc_error || e.ca < -e.ca_error;
+    return Passing(any_positive && any_negative, all_positive || all_negative);
+}
+
 // What is known of a ray and a triangle: nothing it can be hit by (possible false), or that any hit lies in [lo, hi], and
 // whether there certainly is one.
 struct Candidate {
@@ -86,39 +114,29 @@ Depths with_corner(Depths d, Corner c) {
     return Depths(lesser(d.lo, c.z), greater(d.hi, c.z), greater(d.error, 2.0 * c.error));
 }
 
-// The triangle (a, b, c) with edge functions ab, bc, ca and their errors.
-Candidate candidate(Corner a, Corner b, Corner c, float ab, float bc, float ca, float ab_error,
-                    float bc_error, float ca_error, Depths depths) {
+Candidate candidate(Corner a, Corner b, Corner c, Edges e, Depths depths) {
     Candidate result;
-    float area = ab + bc + ca;
+    float area = e.ab + e.bc + e.ca;
     float inv_area = 1.0 / area;
-    float t = (bc * a.z + ca * b.z + ab * c.z) * inv_area;
-    result.weights = vec2(ca, ab) * inv_area;
+    float t = (e.bc * a.z + e.ca * b.z + e.ab * c.z) * inv_area;
+    result.weights = vec2(e.ca, e.ab) * inv_area;
     if (OVC_CERTIFY == 0) {
         // Closed: a shared edge belongs to both triangles.
-        result.certain = (ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab <= 0.0 && bc <= 0.0 && ca <= 0.0);
+        result.certain = (e.ab >= 0.0 && e.bc >= 0.0 && e.ca >= 0.0) || (e.ab <= 0.0 && e.bc <= 0.0 && e.ca <= 0.0);
         result.certain = result.certain && area != 0.0;
         result.possible = result.certain;
         result.lo = t;
         result.hi = t;
         return result;
     }
-    bool all_positive = ab > ab_error && bc > bc_error && ca > ca_error;
-    bool all_negative = ab < -ab_error && bc < -bc_error && ca < -ca_error;
-    bool any_positive = ab > ab_error || bc > bc_error || ca > ca_error;
-    bool any_negative = ab < -ab_error || bc < -bc_error || ca < -ca_error;
-    result.possible = !(any_positive && any_negative);
-    result.certain = all_positive || all_negative;
+    Passing passing = passing(e);
+    result.possible = !passing.outside;
+    result.certain = passing.inside;
 
     // t is an average of the corners' z. The weights' errors move it by at most their share of the spread of z.
-    float share = float(OVC_BOUND_SHARE) * (ab_error + bc_error + ca_error) * abs(inv_area);
+    float share = float(OVC_BOUND_SHARE) * (e.ab_error + e.bc_error + e.ca_error) * abs(inv_area);
     float t_error = share * (depths.hi - depths.lo) + depths.error;
     result.lo = result.certain ? t - t_error : depths.lo - depths.error;
     result.hi = result.certain ? t + t_error : depths.hi + depths.error;
     return result;
-}
-
-Candidate candidate(Corner v[3]) {
-    return candidate(v[0], v[1], v[2], edge(v[0], v[1]), edge(v[1], v[2]), edge(v[2], v[0]), edge_error(v[0], v[1]),
-                     edge_error(v[1], v[2]), edge_error(v[2], v[0]), with_corner(depths_of(v[0], v[2]), v[1]));
 }

@@ -6,8 +6,7 @@ bool take_triangle(inout Found found, uvec4 A, uvec4 B, uvec4 C, bool valid, vec
     Corner a = corner(uintBitsToFloat(A.xyz), org, basis);
     Corner b = corner(uintBitsToFloat(B.xyz), org, basis);
     Corner c = corner(uintBitsToFloat(C.xyz), org, basis);
-    Candidate hit = candidate(a, b, c, edge(a, b), edge(b, c), edge(c, a), edge_error(a, b), edge_error(b, c),
-                              edge_error(c, a), with_corner(depths_of(a, b), c));
+    Candidate hit = candidate(a, b, c, edges_of(a, b, c), with_corner(depths_of(a, b), c));
     uint prim = A.w & 0x7fffffffu;
     // A triangle listed in several cells is offered several times: it is no rival of itself.
     bool known = prim == found.prim || prim == found.rival[0] || prim == found.rival[1];

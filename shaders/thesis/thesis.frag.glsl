@@ -15,6 +15,8 @@
 #elif OVC_STRUCTURE == 4
 #include "kd_restart.glsl"
 #else
+#include "children.glsl"
+#include "pair.glsl"
 #include "traverse.glsl"
 #include "one_page.glsl"
 #endif

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a traversal knows so far of a ray that asks whether anything is hit: whether something certainly is, else what else might be
+// (docs/numerics.md). In the place of found.glsl, with the same names. No distance is computed, so nothing is divided.
+
+const float OVC_ENOUGH = -9.4039548065783e-38f; // -2^-123: the end of a ray that is occluded, as near to 0 as layout.h wants
+
+struct Found {
+    float best_hi; // the ray's end; OVC_ENOUGH: it certainly hits something
+    uint rival[3]; // the last triangles that it may hit, but not certainly; two can be named
+};
+
+Found nothing_found(float t_end) {
+    return Found(t_end, uint[3](OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, OVC_NO_TRIANGLE));
+}
+
+// Takes the triangle (a, b, c) in. Returns true when the ray certainly hits it.
+bool take(inout Found found, Corner a, Corner b, Corner c, Edges e, Depths depths, bool valid, uint prim, uint order) {
+    Passing passing = passing(e);
+    // The hit's t, the bound of what it is off by, and the ray's end, each times the area, which has a sign.
+    float area = e.ab + e.bc + e.ca;
+    float volume = e.bc * a.z + e.ca * b.z + e.ab * c.z;
+    float t = uintBitsToFloat(floatBitsToUint(volume) ^ (floatBitsToUint(area) & 0x80000000u));
+    float error = float(OVC_BOUND_SHARE) * (e.ab_error + e.bc_error + e.ca_error) * (depths.hi - depths.lo) + abs(area) * depths.error;
+    // Not of a ray that has its answer: a product of 2^-123 is no normal number, and takes the CPU a hundred cycles.
+    float end = abs(area) * intBitsToFloat(max(floatBitsToInt(found.best_hi), 0));
+    bool between = t > error && t + error < end;
+    bool beyond = t < -error || t - error > end;
+    bool took = valid && passing.inside && between;
+    bool rival = valid && !passing.outside && !(passing.inside && (between || beyond));
+    found.rival[2] = rival ? found.rival[1] : found.rival[2];
+    found.rival[1] = rival ? found.rival[0] : found.rival[1];
+    found.rival[0] = rival ? prim : found.rival[0];
+    return took;
+}
+
+// A part of what planes cut may be a rival of the others: it is named again, and settled once more.
+bool is_known(Found found, uint prim) { return false; }
+
+// The words of an answer from `leaf`. Which triangle is hit is not told.
+uvec4 answer_of(Found found, bool any_hit, uint leaf) {
+    if (found.best_hi == OVC_ENOUGH)
+        return uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, leaf, 0u);
+    return uvec4(found.rival[0], found.rival[1], leaf, found.rival[2] != OVC_NO_TRIANGLE ? OVC_FLAGGED : OVC_MISS);
+}
