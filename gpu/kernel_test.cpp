@@ -24,8 +24,9 @@ TEST(ShaderSource, IncludesAreReplacedAndDefinesFollowTheVersion) {
     EXPECT_LT(source->find("#define OVC_ANY_HIT 1"), source->find("#ifndef OVC_ANY_HIT"));
     EXPECT_THAT(files,
                 testing::ElementsAre("trace.frag.glsl", "layout.h", "config.glsl", "page.glsl",
-                                     "box.glsl", "triangle.glsl", "found.glsl", "traverse.glsl",
-                                     "level1.glsl", "ray.glsl", "linked.glsl", "walk.glsl"));
+                                     "box.glsl", "children.glsl", "triangle.glsl", "occluder.glsl",
+                                     "found.glsl", "pair.glsl", "traverse.glsl", "level1.glsl",
+                                     "ray.glsl", "linked.glsl", "walk.glsl"));
 }
 
 TEST(ShaderSource, AMissingFileIsNamed) {
