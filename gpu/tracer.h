@@ -94,6 +94,7 @@ public:
 
     /// Sends the rays (at most plan.batch_rays) on their walk through the leaves that are resident
     /// now. Pages moved in from here on serve the next pass, and may go over while this one runs.
+    /// Where all rays ask whether anything is hit, an answer does not tell which triangle is.
     Result<Done> submit(std::span<const Traveller> rays);
 
     /// Waits for the answers of the pass that was submitted, as many as its rays. The storage of
