@@ -123,8 +123,8 @@ private:
         });
     }
 
-    /// As occlusion rays go through them, which look for any hit: 4 to 6 % faster than from left to
-    /// right.
+    /// As occlusion rays go through them, which look for any hit
+    /// (docs/decisions/0020-occlusion-has-its-own-kernel.md).
     Children largest_first(Children children) const {
         const auto area = [&](int i) {
             return nodes_[children.subtree[size_t(i)].node].box.half_area();

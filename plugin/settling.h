@@ -76,7 +76,7 @@ protected:
         if (j + kAhead >= answers.size())
             return;
         const uint32_t prim = answers[j + kAhead].prim;
-        if (prim >= OVC_MAX_TRIANGLES || !s_.options_.certify)
+        if (prim >= OVC_MAX_TRIANGLES || Query::kAnyHit || !s_.options_.certify)
             return; // nobody looks at its corners
         const TriangleId id = s_.numbers_.id(prim);
         __builtin_prefetch(s_.soup_.chunks[id.mesh].address_of(id.prim));

@@ -49,6 +49,7 @@ ivec4 when(vec4 planes, float scale, float offset) {
 
 const int OVC_NO_CHILD = 0x7ffffffc;
 const int OVC_NO_END = 0x80000000; // the end of a ray that meets no box
+const float OVC_ENOUGH = -9.4039548065783e-38f; // -2^-123: that of one that looks for nothing any more; near to 0, as layout.h wants
 
 // Between which t's the ray is in each of the four boxes, and before `end`, as the bits of floats: it meets a box where `enter` is less
 // than `exit`. Floats that are not negative order as their bits do, and signed integer min and max are one instruction where float ones

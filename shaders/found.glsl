@@ -2,7 +2,6 @@
 // What a traversal knows so far of the nearest hit: the best certain one, and what else might still be nearer (docs/numerics.md).
 
 const float OVC_NEVER = 3.0e38;
-const float OVC_ENOUGH = OVC_NO_RAY; // instead of best_hi: nothing is looked for any more
 
 // A certain hit in [best_lo, best_hi]. Rivals: candidates that may be hit, but not certainly farther than the best; the
 // two that may be hit first, by name, and the least t of all others.

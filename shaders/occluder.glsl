@@ -2,8 +2,6 @@
 // What a traversal knows so far of a ray that asks whether anything is hit: whether something certainly is, else what else might be
 // (docs/numerics.md). In the place of found.glsl, with the same names. No distance is computed, so nothing is divided.
 
-const float OVC_ENOUGH = -9.4039548065783e-38f; // -2^-123: the end of a ray that is occluded, as near to 0 as layout.h wants
-
 struct Found {
     float best_hi; // the ray's end; OVC_ENOUGH: it certainly hits something
     uint rival[3]; // the last triangles that it may hit, but not certainly; two can be named
@@ -15,7 +13,7 @@ Found nothing_found(float t_end) {
 
 // Takes the triangle (a, b, c) in. Returns true when the ray certainly hits it.
 bool take(inout Found found, Corner a, Corner b, Corner c, Edges e, Depths depths, bool valid, uint prim, uint order) {
-    Passing passing = passing(e);
+    Passing passing = passing_of(e);
     // The hit's t, the bound of what it is off by, and the ray's end, each times the area, which has a sign.
     float area = e.ab + e.bc + e.ca;
     float volume = e.bc * a.z + e.ca * b.z + e.ab * c.z;

@@ -9,6 +9,11 @@ float low(uvec4 words) {
 }
 vec3 upper(uvec4 words) { return vec3(ivec3(words.xyz) >> 8) * float(OVC_LOOSE_STEP); }
 
+bool take_alone(inout Found found, Corner v[3], bool valid, uint prim, uint order) {
+    return take(found, v[0], v[1], v[2], edges_of(v[0], v[1], v[2]), with_corner(depths_of(v[0], v[2]), v[1]), valid, prim,
+                order);
+}
+
 // A pair of either kind: where it is not a loose one, two of B's corners are A's.
 bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pair, vec3 org, Basis basis,
                uint skip) {
@@ -25,10 +30,8 @@ bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pa
                             corner(loose ? b2 : p2, org, basis));
     bool seen_a = is_pair && X.w != skip && !is_known(found, X.w);
     bool seen_b = is_pair && Y.w != skip && Y.w != OVC_NO_TRIANGLE && !is_known(found, Y.w);
-    bool took_a = take(found, a[0], a[1], a[2], edges_of(a[0], a[1], a[2]), with_corner(depths_of(a[0], a[2]), a[1]),
-                       seen_a, X.w, order);
-    bool took_b = take(found, b[0], b[1], b[2], edges_of(b[0], b[1], b[2]), with_corner(depths_of(b[0], b[2]), b[1]),
-                       seen_b, Y.w, order >> 4);
+    bool took_a = take_alone(found, a, seen_a, X.w, order);
+    bool took_b = take_alone(found, b, seen_b, Y.w, order >> 4);
     return took_a || took_b;
 }
 #else

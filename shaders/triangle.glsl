@@ -72,7 +72,7 @@ struct Passing {
     bool inside;
 };
 
-Passing passing(Edges e) {
+Passing passing_of(Edges e) {
     bool all_positive = e.ab > e.ab_error && e.bc > e.bc_error && e.ca > e.ca_error;
     bool all_negative = e.ab < -e.ab_error && e.bc < -e.bc_error && e.ca < -e.ca_error;
     bool any_positive = e.ab > e.ab_error || e.bc > e.bc_error || e.ca > e.ca_error;
@@ -129,7 +129,7 @@ Candidate candidate(Corner a, Corner b, Corner c, Edges e, Depths depths) {
         result.hi = t;
         return result;
     }
-    Passing passing = passing(e);
+    Passing passing = passing_of(e);
     result.possible = !passing.outside;
     result.certain = passing.inside;
 
