@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace ovc {
 namespace {
@@ -45,13 +46,19 @@ bool most_near(std::span<const Sent> rays) {
     return 2 * together >= pairs;
 }
 
-/// As the kernel sees it (shaders/linked.glsl): -0 is not negative.
-bool share_octant(const LocalRay& a, const LocalRay& b) {
-    const auto differ = [&](int axis) { return (a.dir[axis] < 0) ^ (b.dir[axis] < 0); };
-    return (differ(0) | differ(1) | differ(2)) == 0; // without branches
+/// Whether both go into the same octant, and farthest along the same axis, as the kernel sees them
+/// (shaders/triangle.glsl): -0 is not negative, and the largest component is 1 or -1.
+bool go_alike(const LocalRay& a, const LocalRay& b) {
+    const auto other_sign = [&](int axis) { return (a.dir[axis] < 0) ^ (b.dir[axis] < 0); };
+    const auto other_axis = [&](int axis) {
+        return (std::abs(a.dir[axis]) == 1) ^ (std::abs(b.dir[axis]) == 1);
+    };
+    const int differ =
+        other_sign(0) | other_sign(1) | other_sign(2) | other_axis(1) | other_axis(2);
+    return differ == 0; // without branches
 }
 
-/// The second rays of the packets whose two rays go into different octants.
+/// The second rays of the packets whose two rays do not go alike.
 template <class Sent>
 std::vector<uint32_t> apart(std::span<const Sent> rays) {
     using Numbers = std::vector<uint32_t>;
@@ -60,7 +67,7 @@ std::vector<uint32_t> apart(std::span<const Sent> rays) {
         [&](size_t first, size_t last, Numbers found) {
             for (size_t pair = first; pair < last; ++pair) {
                 const LocalRay &a = local(rays[2 * pair]), &b = local(rays[2 * pair + 1]);
-                if (!share_octant(a, b) && a.t_end >= 0 && b.t_end >= 0)
+                if (!go_alike(a, b) && a.t_end >= 0 && b.t_end >= 0)
                     found.push_back(uint32_t(2 * pair + 1));
             }
             return found;
@@ -81,9 +88,9 @@ std::optional<std::vector<Parted>> part(std::vector<Sent>& slots, size_t rays, s
     std::vector<Parted> parted;
     size_t end = rays + rays % 2;
     for (const uint32_t number : numbers) {
-        // Beside the one before, where both go into the same octant.
+        // Beside the one before, where the two go alike.
         const bool second =
-            end % 2 == 1 && share_octant(local(slots[parted.back().ray]), local(slots[number]));
+            end % 2 == 1 && go_alike(local(slots[parted.back().ray]), local(slots[number]));
         const size_t slot = second ? end : end + end % 2;
         if (slot >= most)
             break;
@@ -111,11 +118,11 @@ bool coherent(std::span<const ResumedRay> rays) {
     return most_near(rays);
 }
 
-std::optional<std::vector<Parted>> part_octants(std::vector<LocalRay>& slots, size_t rays,
+std::optional<std::vector<Parted>> part_packets(std::vector<LocalRay>& slots, size_t rays,
                                                 size_t most) {
     return part(slots, rays, most);
 }
-std::optional<std::vector<Parted>> part_octants(std::vector<ResumedRay>& slots, size_t rays,
+std::optional<std::vector<Parted>> part_packets(std::vector<ResumedRay>& slots, size_t rays,
                                                 size_t most) {
     return part(slots, rays, most);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays that a software renderer's kernel takes through the tree two at a time
-// (docs/decisions/0012): which rays suit, and what happens to two that go into different octants.
+// (docs/decisions/0012): which rays suit, and what happens to two that do not go alike.
 #pragma once
 
 #include "gpu/local_ray.h"
@@ -25,13 +25,13 @@ struct Parted {
     uint32_t slot;
 };
 
-/// Moves the second ray of a packet whose rays go into different octants behind the first `rays` of
-/// `slots`, to at most `most` slots, and makes `slots` as many whole blocks as that takes; in its
-/// place is no ray. A few rays that find no room may stay, undecidable. None, and nothing moved,
-/// where they would be more.
-std::optional<std::vector<Parted>> part_octants(std::vector<LocalRay>& slots, size_t rays,
+/// Moves the second ray of a packet whose rays go into different octants, or farthest along
+/// different axes, behind the first `rays` of `slots`, to at most `most` slots, and makes `slots`
+/// as many whole blocks as that takes; in its place is no ray. A few rays that find no room may
+/// stay, undecidable. None, and nothing moved, where they would be more.
+std::optional<std::vector<Parted>> part_packets(std::vector<LocalRay>& slots, size_t rays,
                                                 size_t most);
-std::optional<std::vector<Parted>> part_octants(std::vector<ResumedRay>& slots, size_t rays,
+std::optional<std::vector<Parted>> part_packets(std::vector<ResumedRay>& slots, size_t rays,
                                                 size_t most);
 
 } // namespace ovc

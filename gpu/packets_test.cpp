@@ -33,28 +33,31 @@ TEST(Packets, NeighboursThatGoTheSameWayAreCoherent) {
     EXPECT_TRUE(coherent(std::span<const LocalRay>()));
 }
 
-/// Rays of which every third goes to the other side, and some are none.
+/// Rays of which every third goes to the other side, every fifth farthest along another axis, and
+/// some are none.
 std::vector<LocalRay> two_sided(size_t rays) {
     std::vector<LocalRay> slots(whole_blocks(rays), {vec3(0), OVC_NO_RAY, vec3(1), 0});
     for (size_t i = 0; i < rays; ++i) {
-        slots[i] = toward({i % 3 == 0 ? -0.1 : 0.1, -0.2, 1});
+        const double side = i % 3 == 0 ? -0.1 : 0.1;
+        slots[i] = toward(i % 5 == 0 ? dvec3(side, -1, 0.9) : dvec3(side, -0.9, 1));
         slots[i].asks = uint32_t(i);
         slots[i].t_end = i % 7 == 0 ? OVC_NO_RAY : 1;
     }
     return slots;
 }
 
-TEST(Packets, HaveOneOctantAndLoseNoRay) {
+TEST(Packets, GoAlikeAndLoseNoRay) {
     for (const size_t rays : {1, 2, 999, 1000, 4096, 100001}) {
         const std::vector<LocalRay> before = two_sided(rays);
         std::vector<LocalRay> slots = before;
-        const auto parted = part_octants(slots, rays, 4 * before.size());
+        const auto parted = part_packets(slots, rays, 4 * before.size());
         ASSERT_TRUE(parted);
         EXPECT_EQ(parted->empty(), rays < 5);
         EXPECT_EQ(slots.size(), whole_blocks(slots.size()));
         for (size_t i = 0; i < slots.size(); i += 2)
             if (slots[i].t_end >= 0 && slots[i + 1].t_end >= 0) {
                 ASSERT_EQ(slots[i].dir.x < 0, slots[i + 1].dir.x < 0) << i;
+                ASSERT_EQ(slots[i].dir.z == 1, slots[i + 1].dir.z == 1) << i;
             }
         std::map<uint32_t, uint32_t> slot_of;
         for (const auto& [ray, slot] : *parted) {
@@ -75,8 +78,8 @@ TEST(Packets, HaveOneOctantAndLoseNoRay) {
 TEST(Packets, StayAsTheyAreWhereTheRestFindsNoRoom) {
     const std::vector<LocalRay> before = two_sided(8192);
     std::vector<LocalRay> slots = before;
-    EXPECT_FALSE(part_octants(slots, 8192, 8192));
-    EXPECT_FALSE(part_octants(slots, 8192, 8192 + 256));
+    EXPECT_FALSE(part_packets(slots, 8192, 8192));
+    EXPECT_FALSE(part_packets(slots, 8192, 8192 + 256));
     ASSERT_EQ(slots.size(), before.size());
     for (size_t i = 0; i < slots.size(); ++i)
         ASSERT_EQ(slots[i].t_end, before[i].t_end);
@@ -84,7 +87,7 @@ TEST(Packets, StayAsTheyAreWhereTheRestFindsNoRoom) {
     std::vector<LocalRay> few(8192, toward({0.1, 0.1, 1}));
     for (const size_t i : {1, 101, 201})
         few[i].dir.x = -0.1f;
-    const auto parted = part_octants(few, 8192, 8192);
+    const auto parted = part_packets(few, 8192, 8192);
     ASSERT_TRUE(parted) << "doubles decide a few";
     EXPECT_TRUE(parted->empty());
     EXPECT_EQ(few[101].t_end, 1);
@@ -94,7 +97,7 @@ TEST(Packets, OfRaysThatWaitedKeepTheirLinks) {
     std::vector<ResumedRay> slots(256);
     for (size_t i = 0; i < slots.size(); ++i)
         slots[i] = {toward({i == 11 ? -1.0 : 1.0, 0, 0}), uint32_t(i), {}};
-    const auto parted = part_octants(slots, 20, 512);
+    const auto parted = part_packets(slots, 20, 512);
     ASSERT_TRUE(parted);
     ASSERT_EQ(parted->size(), 1u);
     EXPECT_EQ(slots[parted->front().slot].waited_for, 11u);

@@ -26,7 +26,7 @@ constexpr uint32_t kMostBlocksInSoftware = 512; // llvmpipe clears what it alloc
 constexpr uint32_t kMostStackWordsInSoftware = 8;
 constexpr size_t kMostLostShare = 256; // of rays, one in so many; else kernels go on longer
 // By turns: the most rays of a lane on average, as long as each thread has some groups.
-constexpr size_t kLaneRays = 64;
+constexpr size_t kLaneRays = 128;
 constexpr size_t kGroupsAThread = 4;
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
@@ -217,7 +217,7 @@ void Tracer::upload_local(std::span<const Traveller> rays, std::vector<Sent>& se
         }
     });
     if (takes_packets() && coherent(std::span<const Sent>(sent).first(rays.size())))
-        if (auto parted = part_octants(sent, rays.size(), most_slots_)) {
+        if (auto parted = part_packets(sent, rays.size(), most_slots_)) {
             packets_ = true;
             parted_ = std::move(*parted);
         }

@@ -7,8 +7,8 @@ layout(location = OVC_LOCATION_ROOT) uniform int linked_root;
 // What the wrapper does with the words of an answer.
 void give(int ray, uvec4 answer);
 
-// The rays from `first` on. A packet has one octant: that of its first ray; the host sees to it, and a ray into another one is for doubles to
-// decide. Returns whether any of them is a ray.
+// The rays from `first` on. A packet has the octant and the axis of its first ray; the host sees to it, and a ray with others is for doubles
+// to decide. Returns whether any of them is a ray.
 bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACKET]) {
     const int texels = OVC_LINKS == 0 ? OVC_LOCAL_RAY_TEXELS : OVC_RESUMED_RAY_TEXELS;
     bool any = false;
@@ -17,12 +17,16 @@ bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACK
         uvec4 to = ray_texel((first + k) * texels + 1);
         vec3 dir = uintBitsToFloat(to.xyz);
         bvec3 backward = lessThan(dir, vec3(0.0));
-        if (!any)
+        Axes axes = axes_of(dir);
+        if (!any) {
             packet.backward = backward;
+            packet.axes = axes;
+        }
         float t_end = uintBitsToFloat(from.w);
-        t_end = t_end >= 0.0 && backward != packet.backward ? OVC_UNDECIDABLE : t_end;
+        bool alike = backward == packet.backward && axes == packet.axes;
+        t_end = t_end >= 0.0 && !alike ? OVC_UNDECIDABLE : t_end;
         found[k] = nothing_found(t_end);
-        set_ray(packet, k, tree, uintBitsToFloat(from.xyz), direction_of(dir), to.w & OVC_SKIPS_NONE,
+        set_ray(packet, k, tree, uintBitsToFloat(from.xyz), direction_of(dir, packet.axes), to.w & OVC_SKIPS_NONE,
                 OVC_ANY_HIT != 0 || (to.w & OVC_RAY_ANY_HIT) != 0u);
         packet.links[k] = no_links();
 #if OVC_LINKS

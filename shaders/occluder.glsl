@@ -21,10 +21,11 @@ bool take(inout Found found, Corner a, Corner b, Corner c, Edges e, Depths depth
     float error = float(OVC_BOUND_SHARE) * (e.ab_error + e.bc_error + e.ca_error) * (depths.hi - depths.lo) + abs(area) * depths.error;
     // Not of a ray that has its answer: a product of 2^-123 is no normal number, and takes the CPU a hundred cycles.
     float end = abs(area) * intBitsToFloat(max(floatBitsToInt(found.best_hi), 0));
-    bool between = t > error && t + error < end;
-    bool beyond = t < -error || t - error > end;
-    bool took = valid && passing.inside && between;
-    bool rival = valid && !passing.outside && !(passing.inside && (between || beyond));
+    float lo = t - error, hi = t + error;
+    int between = ~(floatBitsToInt(lo) | less(end, hi));
+    int beyond = floatBitsToInt(hi) | less(end, lo);
+    bool took = valid && (passing.inside & between) < 0;
+    bool rival = valid && ~(passing.outside | (passing.inside & (between | beyond))) < 0;
     found.rival[2] = rival ? found.rival[1] : found.rival[2];
     found.rival[1] = rival ? found.rival[0] : found.rival[1];
     found.rival[0] = rival ? prim : found.rival[0];

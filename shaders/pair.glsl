@@ -10,12 +10,13 @@ float low(uvec4 words) {
 vec3 upper(uvec4 words) { return vec3(ivec3(words.xyz) >> 8) * float(OVC_LOOSE_STEP); }
 
 bool take_alone(inout Found found, Corner v[3], bool valid, uint prim, uint order) {
-    return take(found, v[0], v[1], v[2], edges_of(v[0], v[1], v[2]), with_corner(depths_of(v[0], v[2]), v[1]), valid, prim,
-                order);
+    float error = error_of(v[0], v[1], v[2]);
+    return take(found, v[0], v[1], v[2], edges_of(v[0], v[1], v[2], error),
+                with_corner(depths_of(v[0], v[2], error), v[1]), valid, prim, order);
 }
 
 // A pair of either kind: where it is not a loose one, two of B's corners are A's.
-bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pair, vec3 org, Basis basis,
+bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pair, Line line,
                uint skip) {
     bool loose = (W.w & OVC_LOOSE_PAIR) != 0u;
     vec3 p0 = loose ? upper(X) : uintBitsToFloat(X.xyz);
@@ -25,9 +26,8 @@ bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pa
     vec3 b1 = vec3(low(X), low(Y), low(Z));
     vec3 b2 = vec3(low(W), upper(Z.w), upper((Z.w << 24) | ((W.w & 0xffffu) << 8)));
     uint order = loose ? OVC_OWN_ORDER : Z.w;
-    Corner a[3] = Corner[3](corner(p0, org, basis), corner(p1, org, basis), corner(p2, org, basis));
-    Corner b[3] = Corner[3](corner(loose ? p3 : p0, org, basis), corner(loose ? b1 : p3, org, basis),
-                            corner(loose ? b2 : p2, org, basis));
+    Corner a[3] = Corner[3](corner(p0, line), corner(p1, line), corner(p2, line));
+    Corner b[3] = Corner[3](corner(loose ? p3 : p0, line), corner(loose ? b1 : p3, line), corner(loose ? b2 : p2, line));
     bool seen_a = is_pair && X.w != skip && !is_known(found, X.w);
     bool seen_b = is_pair && Y.w != skip && Y.w != OVC_NO_TRIANGLE && !is_known(found, Y.w);
     bool took_a = take_alone(found, a, seen_a, X.w, order);
@@ -35,17 +35,18 @@ bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pa
     return took_a || took_b;
 }
 #else
-bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pair, vec3 org, Basis basis,
+bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pair, Line line,
                uint skip) {
-    Corner v0 = corner(uintBitsToFloat(X.xyz), org, basis);
-    Corner v1 = corner(uintBitsToFloat(Y.xyz), org, basis);
-    Corner v2 = corner(uintBitsToFloat(Z.xyz), org, basis);
-    Corner v3 = corner(uintBitsToFloat(W.xyz), org, basis);
+    Corner v0 = corner(uintBitsToFloat(X.xyz), line);
+    Corner v1 = corner(uintBitsToFloat(Y.xyz), line);
+    Corner v2 = corner(uintBitsToFloat(Z.xyz), line);
+    Corner v3 = corner(uintBitsToFloat(W.xyz), line);
+    float error = error_of(v0, v1, v2, v3);
     float e20 = edge(v2, v0);
-    float e20_error = edge_error(v2, v0);
-    Depths depths = depths_of(v0, v2);
-    Edges a = Edges(edge(v0, v1), edge(v1, v2), e20, edge_error(v0, v1), edge_error(v1, v2), e20_error);
-    Edges b = Edges(edge(v0, v3), edge(v3, v2), e20, edge_error(v0, v3), edge_error(v3, v2), e20_error);
+    float e20_error = edge_error(v2, v0, error);
+    Depths depths = depths_of(v0, v2, error);
+    Edges a = Edges(edge(v0, v1), edge(v1, v2), e20, edge_error(v0, v1, error), edge_error(v1, v2, error), e20_error);
+    Edges b = Edges(edge(v0, v3), edge(v3, v2), e20, edge_error(v0, v3, error), edge_error(v3, v2, error), e20_error);
     bool seen_a = is_pair && X.w != skip && !is_known(found, X.w);
     bool seen_b = is_pair && Y.w != skip && Y.w != OVC_NO_TRIANGLE && !is_known(found, Y.w);
     bool took_a = take(found, v0, v1, v2, a, with_corner(depths, v1), seen_a, X.w, Z.w);

@@ -6,10 +6,12 @@
 // Of a ray, what is the same in every leaf's frame. dir: the largest component 1 or -1.
 struct Direction {
     vec3 inv_dir;
-    Basis basis;
+    Axes axes;
+    vec2 shear;
 };
 
-Direction direction_of(vec3 dir) { return Direction(finite_reciprocal(dir), basis_of(dir)); }
+Direction direction_of(vec3 dir, Axes axes) { return Direction(finite_reciprocal(dir), axes, by_axis(axes, dir).xy); }
+Direction direction_of(vec3 dir) { return direction_of(dir, axes_of(dir)); }
 
 // The four texels of a unit (layout.h).
 struct Unit {
@@ -115,8 +117,9 @@ Children follow(inout Links links, Unit unit, Stretches s) { return children_met
 // Rays that go through a tree together, so that a node is fetched, decoded and sorted once for all of them.
 struct Packet {
     bvec3 backward; // all their directions have the same signs
-    vec3 org[OVC_PACKET];
-    Basis basis[OVC_PACKET];
+    Axes axes;      // all go farthest along the same axis
+    vec3 org[OVC_PACKET]; // by axis
+    vec2 shear[OVC_PACKET];
     GridRay grid[OVC_PACKET];
     uint skip[OVC_PACKET];
     bool any_hit[OVC_PACKET];
@@ -138,8 +141,8 @@ Tree tree_of(int page, int first_unit) {
 }
 
 void set_ray(inout Packet packet, int k, Tree tree, vec3 org, Direction direction, uint skip, bool any_hit) {
-    packet.org[k] = org;
-    packet.basis[k] = direction.basis;
+    packet.org[k] = by_axis(packet.axes, org);
+    packet.shear[k] = direction.shear;
     packet.grid[k] = grid_ray(org, direction.inv_dir, tree.grid_middle, tree.grid_cell);
     packet.skip[k] = skip;
     packet.any_hit[k] = any_hit;
@@ -178,7 +181,7 @@ Children children_of(Unit node, inout Packet packet, Found found[OVC_PACKET], bo
 void take_pairs(inout Found found[OVC_PACKET], Unit pair, Packet packet, bool here) {
     for (int k = 0; k < OVC_PACKET; ++k) {
         bool took = take_pair(found[k], pair.x, pair.y, pair.z, pair.w, here && found[k].best_hi >= 0.0,
-                              packet.org[k], packet.basis[k], packet.skip[k]);
+                              Line(packet.axes, packet.org[k], packet.shear[k]), packet.skip[k]);
         found[k].best_hi = packet.any_hit[k] && took ? OVC_ENOUGH : found[k].best_hi;
     }
 }
@@ -247,6 +250,7 @@ bool traverse(inout Found found, int page, vec3 org, Direction direction, uint s
     Packet packet;
     packet.links[0] = no_links();
     packet.backward = lessThan(direction.inv_dir, vec3(0.0));
+    packet.axes = direction.axes;
     set_ray(packet, 0, tree, org, direction, skip, any_hit);
     Found one[1] = Found[1](found);
     bool ended = run(d, one, packet, tree.first_unit, OVC_MOST_ROUNDS, rounds);

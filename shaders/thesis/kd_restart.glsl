@@ -6,7 +6,7 @@
 // The words of an answer (layout.h).
 uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
     Found found = nothing_found(t_end);
-    Basis basis = basis_of(dir);
+    Line line = line_of(org, dir);
     ivec4 first = ivec4(scene_texel(0)); // texels of nodes, of references, of triangles
     vec3 inv_dir = finite_reciprocal(dir);
 
@@ -46,7 +46,7 @@ uvec4 trace(vec3 org, float t_end, vec3 dir, uint skip) {
         bool valid = reference < end;
         int at = first.z + 3 * int(scene_texel(first.y + (reference >> 2))[reference & 3]);
         at = valid ? at : first.z;
-        bool took = take_triangle(found, scene_texel(at), scene_texel(at + 1), scene_texel(at + 2), valid, org, basis, skip);
+        bool took = take_triangle(found, scene_texel(at), scene_texel(at + 1), scene_texel(at + 2), valid, line, skip);
         ++reference;
         done = done || (reference >= end && t > found.best_hi) || (OVC_ANY_HIT != 0 && took);
     }

@@ -2,11 +2,12 @@
 // A triangle by itself, as three texels: its corners, and its id in w of the first (its highest bit may mark it).
 
 // Takes the triangle in. Returns true when it is now the best.
-bool take_triangle(inout Found found, uvec4 A, uvec4 B, uvec4 C, bool valid, vec3 org, Basis basis, uint skip) {
-    Corner a = corner(uintBitsToFloat(A.xyz), org, basis);
-    Corner b = corner(uintBitsToFloat(B.xyz), org, basis);
-    Corner c = corner(uintBitsToFloat(C.xyz), org, basis);
-    Candidate hit = candidate(a, b, c, edges_of(a, b, c), with_corner(depths_of(a, b), c));
+bool take_triangle(inout Found found, uvec4 A, uvec4 B, uvec4 C, bool valid, Line line, uint skip) {
+    Corner a = corner(uintBitsToFloat(A.xyz), line);
+    Corner b = corner(uintBitsToFloat(B.xyz), line);
+    Corner c = corner(uintBitsToFloat(C.xyz), line);
+    float error = error_of(a, b, c);
+    Candidate hit = candidate(a, b, c, edges_of(a, b, c, error), with_corner(depths_of(a, b, error), c));
     uint prim = A.w & 0x7fffffffu;
     // A triangle listed in several cells is offered several times: it is no rival of itself.
     bool known = prim == found.prim || prim == found.rival[0] || prim == found.rival[1];

@@ -20,7 +20,7 @@ bool meets(vec3 lo, vec3 hi, vec3 org, vec3 inv_dir, float t_end) {
 
 // At most `steps` nodes and triangles further, or to `end`.
 void go_on(inout Walk walk, int end, int steps, vec3 org, vec3 dir, uint skip) {
-    Basis basis = basis_of(dir);
+    Line line = line_of(org, dir);
     vec3 inv_dir = finite_reciprocal(dir);
     for (int step = 0; step < steps && walk.at < end; ++step) {
         uvec4 A = scene_texel(walk.at);
@@ -28,7 +28,7 @@ void go_on(inout Walk walk, int end, int steps, vec3 org, vec3 dir, uint skip) {
         uvec4 C = scene_texel(walk.at + 2);
         bool is_triangle = int(A.w) < 0;
         bool inside = meets(uintBitsToFloat(A.xyz), uintBitsToFloat(B.xyz), org, inv_dir, walk.found.best_hi);
-        bool took = take_triangle(walk.found, A, B, C, is_triangle, org, basis, skip);
+        bool took = take_triangle(walk.found, A, B, C, is_triangle, line, skip);
         walk.at = is_triangle ? walk.at + 3 : (inside ? walk.at + 2 : int(A.w));
         walk.at = OVC_ANY_HIT != 0 && took ? end : walk.at;
     }
