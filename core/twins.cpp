@@ -1,57 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 // Twins are found by a hash of their corners: a table of bits tells the few triangles whose hash
-// may come twice, and only those are sorted and compared.
+// may come twice, and only those are sorted and compared. Each thread has its part of the hashes,
+// and a table of its own: shared, its lines would go from core to core for every other triangle.
 #include "core/twins.h"
 
+#include "core/corner_hash.h"
 #include "core/parallel.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cassert>
+#include <utility>
 
 namespace ovc {
 namespace {
 
 constexpr size_t kGrain = 4096; // triangles a task
 
-uint64_t mix(uint64_t x) {
-    x ^= x >> 32;
-    x *= 0xd6e8feb86659fd93u;
-    x ^= x >> 32;
-    return x;
-}
-
-uint64_t hash(const dvec3& p) {
-    uint64_t h = 0;
-    for (int axis = 0; axis < 3; ++axis)
-        h = mix(h ^ mix(std::bit_cast<uint64_t>(p[axis] + 0.0))); // + 0 turns -0 into 0
-    return h;
-}
-
-/// The same for each order of the corners.
-uint64_t hash(const Triangle& t) {
-    return mix(hash(t[0]) + hash(t[1]) + hash(t[2]));
-}
-
-/// A bit a hash, shared between threads.
+/// A bit a hash, by those of the hash's bits that lie above `shift`.
 class BitTable {
 public:
-    explicit BitTable(size_t bits)
-        : words_(std::bit_ceil(bits) / 64 + 1), mask_(std::bit_ceil(bits) - 1) {}
+    BitTable(size_t bits, int shift)
+        : words_(std::bit_ceil(bits) / 64), mask_(std::bit_ceil(bits) - 1), shift_(shift) {}
 
-    /// Sets the bit, and tells whether it was set before.
-    bool set(uint64_t hash) {
-        const uint64_t bit = uint64_t(1) << (hash & 63);
-        return words_[(hash & mask_) / 64].fetch_or(bit, std::memory_order_relaxed) & bit;
+    /// Sets the bit where `really`, and tells whether it was set before.
+    bool set(uint64_t hash, bool really = true) {
+        const uint64_t at = hash >> shift_ & mask_;
+        const uint64_t before = words_[at / 64];
+        words_[at / 64] = before | uint64_t(really) << (at & 63);
+        return before >> (at & 63) & 1;
     }
     bool test(uint64_t hash) const {
-        return words_[(hash & mask_) / 64].load(std::memory_order_relaxed) >> (hash & 63) & 1;
+        const uint64_t at = hash >> shift_ & mask_;
+        return words_[at / 64] >> (at & 63) & 1;
     }
 
 private:
-    std::vector<std::atomic<uint64_t>> words_;
+    std::vector<uint64_t> words_;
     uint64_t mask_;
+    int shift_;
 };
 
 struct Suspect {
@@ -61,29 +48,77 @@ struct Suspect {
     auto operator<=>(const Suspect&) const = default;
 };
 
-/// The triangles that share a bit with another, by hash and then id. All twins are among them, and
-/// of triangles without a twin about one in sixteen.
-std::vector<Suspect> suspects(const Soup& soup, const std::vector<TriangleId>& triangles,
-                              BuildProgress* progress) {
-    const size_t bits = std::max<size_t>(triangles.size() * 16, 64);
-    BitTable once(bits), twice(bits);
+/// One of `count` parts of all hashes.
+struct Part {
+    size_t number;
+    size_t count;
+
+    bool has(uint64_t hash) const { return (hash >> 32) * count >> 32 == number; }
+};
+
+/// Of this part, the triangles that may be one of a set, by hash and then id: all twins, and of
+/// other triangles about one in sixteen. hashes: of `triangles`.
+std::vector<Suspect> suspects(const Part& part, std::span<const TriangleId> triangles,
+                              std::span<const uint64_t> hashes) {
+    const size_t some = std::max<size_t>(triangles.size() / part.count, 64);
+    // By other bits of the hash: what comes twice in one table hardly ever does in the other.
+    BitTable came(16 * some, 0), came_again(some, 24);
+    // No branch on what is in the part: no CPU can tell beforehand.
+    for (const uint64_t h : hashes) {
+        const bool mine = part.has(h);
+        if (mine & came.set(h, mine))
+            came_again.set(h);
+    }
+    std::vector<Suspect> found;
+    for (size_t i = 0; i < hashes.size(); ++i)
+        if (part.has(hashes[i]) & came_again.test(hashes[i]))
+            found.push_back({hashes[i], triangles[i]});
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+/// What is known of some twins.
+struct Found {
+    std::vector<Twins::Pair> pairs;
+    std::vector<TriangleId> out; // all but the smallest of each set
+};
+
+Found compared(const Soup& soup, std::vector<Suspect> all) {
+    Found found;
+    for (auto first = all.begin(); first != all.end();) {
+        // The first of what is left stands for its twins, which come next, in the order of ids;
+        // others of the same hash, hardly ever any, follow.
+        const auto end =
+            std::find_if(first, all.end(), [&](const Suspect& s) { return s.hash != first->hash; });
+        if (end == first + 1) {
+            first = end;
+            continue;
+        }
+        const Triangle triangle = soup.triangle(first->id);
+        const auto is_twin = [&](const Suspect& s) {
+            return same_corners(triangle, soup.triangle(s.id));
+        };
+        const auto rest =
+            std::stable_partition(std::find_if_not(first + 1, end, is_twin), end, is_twin);
+        if (rest != first + 1)
+            found.pairs.push_back({first->id, (first + 1)->id});
+        for (auto twin = first + 1; twin != rest; ++twin)
+            found.out.push_back(twin->id);
+        first = rest;
+    }
+    return found;
+}
+
+std::vector<uint64_t> hashes_of(const Soup& soup, std::span<const TriangleId> triangles,
+                                BuildProgress* progress) {
     std::vector<uint64_t> hashes(triangles.size());
     parallel_for(triangles.size(), kGrain, [&](size_t first, size_t last) {
         LoopProgress loop(progress);
-        for (size_t i = first; i < last; ++i) {
-            hashes[i] = hash(soup.triangle(triangles[i]));
-            if (once.set(hashes[i]))
-                twice.set(hashes[i]);
-            loop.step();
-        }
+        for (size_t i = first; i < last; ++i, loop.step())
+            hashes[i] = triangle_hash(soup.triangle(triangles[i]));
         loop.finish();
     });
-    std::vector<Suspect> found;
-    for (size_t i = 0; i < triangles.size(); ++i)
-        if (twice.test(hashes[i]))
-            found.push_back({hashes[i], triangles[i]});
-    parallel_sort(found.begin(), found.end());
-    return found;
+    return hashes;
 }
 
 } // namespace
@@ -103,27 +138,21 @@ bool same_corners(const Triangle& a, const Triangle& b) {
 Twins Twins::take_out(const Soup& soup, std::vector<TriangleId>& triangles,
                       BuildProgress* progress) {
     assert(std::is_sorted(triangles.begin(), triangles.end()));
+    const std::vector<uint64_t> hashes = hashes_of(soup, triangles, progress);
+    std::vector<Found> found(thread_count());
+    parallel_for(found.size(), 1, [&](size_t first, size_t last) {
+        for (size_t p = first; p < last; ++p)
+            found[p] = compared(soup, suspects({p, found.size()}, triangles, hashes));
+    });
     Twins twins;
     std::vector<TriangleId> out;
-    std::vector<Suspect> all = suspects(soup, triangles, progress);
-    for (auto first = all.begin(); first != all.end();) {
-        // The first of what is left stands for its twins, which come next, in the order of ids;
-        // others of the same hash, hardly ever any, follow.
-        const auto end =
-            std::find_if(first, all.end(), [&](const Suspect& s) { return s.hash != first->hash; });
-        const Triangle triangle = soup.triangle(first->id);
-        const auto is_twin = [&](const Suspect& s) {
-            return same_corners(triangle, soup.triangle(s.id));
-        };
-        const auto rest =
-            std::stable_partition(std::find_if_not(first + 1, end, is_twin), end, is_twin);
-        if (rest != first + 1)
-            twins.pairs_.push_back({first->id, (first + 1)->id});
-        for (auto twin = first + 1; twin != rest; ++twin)
-            out.push_back(twin->id);
-        first = rest;
+    for (const Found& part : found) {
+        twins.pairs_.insert(twins.pairs_.end(), part.pairs.begin(), part.pairs.end());
+        out.insert(out.end(), part.out.begin(), part.out.end());
     }
     twins.count_ = out.size();
+    if (out.empty())
+        return twins;
     std::sort(twins.pairs_.begin(), twins.pairs_.end(),
               [](const Pair& a, const Pair& b) { return a.smallest < b.smallest; });
     parallel_sort(out.begin(), out.end());

@@ -22,6 +22,9 @@ constexpr size_t kParallelSum = 32768;
 constexpr size_t kFewestToCut = 64;
 constexpr float kLeastOverlap = 0.1f;
 constexpr float kWorthCutting = 0.95f;
+// Where that many nodes, one below the other, had no such plane, none is looked for further down:
+// the parts of a mesh are as smooth as the whole (docs/decisions/0022).
+constexpr int kMostInVain = 4;
 
 struct Split {
     float cost = std::numeric_limits<float>::infinity();
@@ -95,6 +98,7 @@ struct Range {
     size_t first;
     size_t last;
     size_t end;
+    int in_vain = 0; // nodes above, since a plane was taken, where one was looked for
 
     size_t count() const { return last - first; }
     size_t spare() const { return end - last; }
@@ -144,30 +148,37 @@ private:
     /// What items [first, last) come to together: Sum(args...) and all of them added to it.
     template <class Sum, class... Args>
     Sum gathered(size_t first, size_t last, const Args&... args) const {
-        const auto add_some = [&](size_t from, size_t to, Sum sum) {
+        const auto add_some = [&](size_t from, size_t to, Sum& sum) {
             for (size_t i = from; i < to; ++i)
-                sum.add(items_[first + i]);
-            return sum;
+                sum.add(items_[i]);
         };
-        const size_t count = last - first;
-        if (count < kParallelSum)
-            return add_some(0, count, Sum(args...));
-        return parallel_reduce(count, Sum(args...), add_some, [](Sum a, const Sum& b) {
-            a.add(b);
-            return a;
-        });
+        Sum all(args...);
+        if (last - first < kParallelSum) {
+            add_some(first, last, all);
+            return all;
+        }
+        return parallel_reduce(
+            last - first, std::move(all),
+            [&](size_t from, size_t to, Sum sum) {
+                add_some(first + from, first + to, sum);
+                return sum;
+            },
+            [](Sum a, const Sum& b) {
+                a.add(b);
+                return a;
+            });
     }
 
     void divide(const Range& range, const Bounds& bounds, const Bounds& centers, int depth,
                 Range& left, Range& right) {
-        const auto [first, last, end] = range;
+        const size_t first = range.first, last = range.last;
         const int halvings = int(std::bit_width(range.count() - 1));
         // Two are halved; and where no depth is left, all are, by count.
         const bool free = range.count() > 2 && depth + halvings < kMaxBvhDepth;
         const Binning binning = binning_of(centers, range.count());
         const Split split = free ? best_split(first, last, binning) : Split{};
-        if (split.axis >= 0 && range.spare() > 0 &&
-            divide_in_space(range, bounds, split, left, right))
+        const bool may_cut = can_cut(range, bounds, split);
+        if (may_cut && divide_in_space(range, bounds, split, left, right))
             return;
         size_t middle = first + range.count() / 2; // all centres in one place
         if (split.axis >= 0)
@@ -177,20 +188,25 @@ private:
                                                return binning(item, split.axis) < split.bin;
                                            }) -
                             items_.begin());
-        // The room is shared out by count.
-        const size_t room = range.spare() * (middle - first) / range.count();
+        // The room is shared out by count, while there is hope.
+        const int in_vain = range.in_vain + may_cut;
+        const size_t spare = in_vain < kMostInVain ? range.spare() : 0;
+        const size_t room = spare * (middle - first) / range.count();
         if (room > 0)
             std::move_backward(items_.begin() + ptrdiff_t(middle), items_.begin() + ptrdiff_t(last),
                                items_.begin() + ptrdiff_t(last + room));
-        left = {first, middle, middle + room};
-        right = {middle + room, last + room, end};
+        left = {first, middle, middle + room, in_vain};
+        right = {middle + room, last + room, last + spare, in_vain};
+    }
+
+    static bool can_cut(const Range& range, const Bounds& bounds, const Split& split) {
+        return split.axis >= 0 && range.spare() > 0 && range.count() >= kFewestToCut &&
+               split.overlap >= kLeastOverlap * bounds.half_area();
     }
 
     /// Cuts the items by a plane where that gains enough.
     bool divide_in_space(const Range& range, const Bounds& bounds, const Split& split, Range& left,
                          Range& right) {
-        if (range.count() < kFewestToCut || split.overlap < kLeastOverlap * bounds.half_area())
-            return false;
         const std::span<const Item> items(items_.data() + range.first, range.count());
         const SpatialSplit plane = best_spatial_split(items, bounds, range.spare());
         if (!(plane.cost < kWorthCutting * split.cost))

@@ -103,6 +103,7 @@ DeviceInfo describe() {
                        name.find("swrast") != std::string::npos;
     info.has_ballots = epoxy_has_gl_extension("GL_ARB_shader_ballot") &&
                        epoxy_has_gl_extension("GL_ARB_gpu_shader_int64");
+    info.takes_host_pages = info.is_software && epoxy_has_gl_extension("GL_AMD_pinned_memory");
     GLint value = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &value);
     info.max_texture_size = uint32_t(value);

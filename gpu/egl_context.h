@@ -18,6 +18,9 @@ struct DeviceInfo {
     std::string version;
     bool is_software = false;
     bool has_ballots = false; // lanes of a subgroup can tell each other: GL_ARB_shader_ballot
+    /// A software renderer that uses buffers of the process's own pages where they are:
+    /// GL_AMD_pinned_memory.
+    bool takes_host_pages = false;
     uint32_t max_texture_size = 0;
     uint64_t max_buffer_texels = 0;
     uint64_t buffer_alignment = 16; // bytes, of windows into a buffer

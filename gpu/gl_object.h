@@ -3,6 +3,7 @@
 // 0. All need the context current.
 #pragma once
 
+#include "core/system_pages.h"
 #include "gpu/gl.h"
 #include "gpu/ledger.h"
 
@@ -85,14 +86,15 @@ inline void delete_program(GLuint id) {
 using Shader = Handle<delete_shader>;
 using Program = Handle<delete_program>;
 
-/// Immutable storage, filled by sub-buffer updates or through a map.
+/// Storage of a fixed size, filled by sub-buffer updates or through a map. Where the ledger says so
+/// it is the process's own pages, which the driver reads and writes where they are: none is touched
+/// before it is used. They go with the buffer, so that no pass may be under way then.
 class Buffer {
 public:
     Buffer(Ledger& ledger, uint64_t bytes, std::string_view label)
         : handle_(create()), entry_(ledger, bytes) {
         if (ledger.driver_has_room())
-            glNamedBufferStorage(id(), GLsizeiptr(bytes), nullptr,
-                                 GL_DYNAMIC_STORAGE_BIT | GL_MAP_WRITE_BIT);
+            ledger.takes_host_pages ? show_host_pages() : allocate();
         glObjectLabel(GL_BUFFER, id(), GLsizei(label.size()), label.data());
     }
     GLuint id() const { return handle_.id(); }
@@ -104,6 +106,19 @@ private:
         glCreateBuffers(1, &id);
         return id;
     }
+    void allocate() {
+        glNamedBufferStorage(id(), GLsizeiptr(bytes()), nullptr,
+                             GL_DYNAMIC_STORAGE_BIT | GL_MAP_WRITE_BIT);
+    }
+    void show_host_pages() {
+        host_pages_ = map_pages(bytes());
+        glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, id());
+        glBufferData(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, GLsizeiptr(bytes()), host_pages_.get(),
+                     GL_DYNAMIC_DRAW);
+        glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, 0);
+    }
+
+    SystemPages host_pages_; // outlive the name
     Handle<delete_buffer> handle_;
     Entry entry_;
 };

@@ -16,6 +16,8 @@ struct Ledger {
     /// For tests: a driver that has no more memory than this.
     uint64_t driver_bytes = ~uint64_t(0);
     bool refused = false; // by that driver
+    /// Buffers are of the process's own pages: the driver is a part of it.
+    bool takes_host_pages = false;
 
     /// Whether that driver has room for what is entered.
     bool driver_has_room() {

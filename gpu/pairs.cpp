@@ -4,6 +4,7 @@
 // Sipser 1981, "Maximum matchings in sparse random graphs".
 #include "gpu/pairs.h"
 
+#include "core/corner_hash.h"
 #include "core/parallel.h"
 #include "core/ray.h"
 
@@ -14,13 +15,6 @@
 
 namespace ovc {
 namespace {
-
-uint64_t mix(uint64_t x) {
-    x ^= x >> 32;
-    x *= 0xd6e8feb86659fd93u;
-    x ^= x >> 32;
-    return x;
-}
 
 uint64_t hash(const vec3& p) {
     // + 0 turns -0 into 0: they are the same corner.

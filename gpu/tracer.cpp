@@ -121,6 +121,7 @@ Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const Pas
     auto ledger = std::make_unique<Ledger>();
     ledger->budget = plan.budget_bytes;
     ledger->driver_bytes = plan.driver_bytes;
+    ledger->takes_host_pages = device.takes_host_pages;
     std::unique_ptr<Tracer> tracer(
         new Tracer(std::move(ledger), plan, options, device, kernels, level1, pages));
     if (Result<Done> ok = tracer->set_up(); !ok)

@@ -2,26 +2,15 @@
 // Blocks: an array that grows without ever holding its contents twice.
 #pragma once
 
+#include "core/system_pages.h"
+
 #include <cstddef>
 #include <cstring>
-#include <memory>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace ovc {
-
-/// Pages straight from the system: given back, they leave the process at once. What malloc gets
-/// back it may keep.
-struct UnmapPages {
-    size_t bytes = 0;
-
-    void operator()(void* pages) const;
-};
-using Pages = std::unique_ptr<void, UnmapPages>;
-
-/// Throws std::bad_alloc.
-Pages map_pages(size_t bytes);
 
 /// Append, then take() it as one vector of exactly that capacity. Nothing is copied where reserve()
 /// was told the size; else no more than kBlock items exist twice.
@@ -73,8 +62,8 @@ private:
     }
 
     std::vector<T> first_;
-    std::vector<Pages> later_; // of kBlock items each
-    size_t used_ = 0;          // items in the last of them
+    std::vector<SystemPages> later_; // of kBlock items each
+    size_t used_ = 0;                // items in the last of them
 };
 
 } // namespace ovc

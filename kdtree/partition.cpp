@@ -97,9 +97,13 @@ public:
 
     /// Appends the tree over `box`, which holds `triangles`, by a sample of them. Cells that hold
     /// more than the sample made believe are cut again by all they hold.
-    void cut(std::span<const TriangleId> triangles, const Box& box, uint32_t most) {
+    void cut(std::span<const TriangleId> triangles, const Box& box, uint32_t most,
+             const Sample& drawn = {}) {
         const uint32_t rate = sample_rate(triangles.size(), most);
-        cut(triangles, sample_triangles(soup_, triangles, rate, progress_), rate, box, most);
+        if (drawn.rate == rate)
+            cut(triangles, drawn.triangles, rate, box, most);
+        else
+            cut(triangles, sample_triangles(soup_, triangles, rate, progress_), rate, box, most);
     }
 
     /// A node for a cell of so many leaves; none where it is empty.
@@ -254,7 +258,7 @@ Leaf whole_leaf(const Soup& soup, std::span<const TriangleId> triangles, const B
 }
 
 Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
-                 uint32_t max_leaf_triangles, BuildProgress* progress) {
+                 uint32_t max_leaf_triangles, BuildProgress* progress, const Sample& drawn) {
     assert(max_leaf_triangles > 0);
     if (triangles.empty())
         return {{}, {}, bounds, 0, false};
@@ -264,7 +268,7 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
         return level1;
     }
     Partitioner partitioner(soup, bounds, progress);
-    partitioner.cut(triangles, bounds, max_leaf_triangles);
+    partitioner.cut(triangles, bounds, max_leaf_triangles, drawn);
     return partitioner.finish();
 }
 

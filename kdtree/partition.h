@@ -5,6 +5,7 @@
 
 #include "core/build_progress.h"
 #include "core/soup.h"
+#include "kdtree/sample.h"
 #include "kdtree/tree.h"
 
 #include <cstdint>
@@ -73,9 +74,11 @@ KdTree cut_sample(const Soup& soup, std::span<const TriangleId> sample, uint32_t
                   const Box& box, uint32_t max_leaf_triangles, BuildProgress* progress = nullptr);
 
 /// Cuts `triangles` of the soup, which lie in `bounds`, into leaves of at most max_leaf_triangles
-/// (> 0). A triangle is about two units of progress.
+/// (> 0). A triangle is about two units of progress. drawn: a sample of `triangles`, which is not
+/// drawn again where it is the one to cut by.
 Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
-                 uint32_t max_leaf_triangles, BuildProgress* progress = nullptr);
+                 uint32_t max_leaf_triangles, BuildProgress* progress = nullptr,
+                 const Sample& drawn = {});
 
 /// Level 1 in the cells of a tree over `bounds`, whatever its leaf nodes name: each lists the
 /// triangles that touch it, in leaves of at most max_leaf_triangles (> 0).

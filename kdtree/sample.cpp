@@ -2,6 +2,7 @@
 // The rate, and the hash.
 #include "kdtree/sample.h"
 
+#include "core/corner_hash.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -16,23 +17,6 @@ namespace {
 constexpr uint64_t kFewestInAll = 8192;
 constexpr uint64_t kFewestInALeaf = 128;
 constexpr uint64_t kHighestRate = 64; // beyond, a sample costs less than looking for it
-
-uint64_t word(double x) {
-    return std::bit_cast<uint64_t>(x + 0.0); // + 0 turns -0 into 0: they are the same place
-}
-
-uint64_t mixed(uint64_t x) {
-    x ^= x >> 32;
-    x *= 0xd6e8feb86659fd93u;
-    x ^= x >> 32;
-    return x;
-}
-
-/// Of a corner; triangles add theirs up, so that their order does not count.
-uint64_t hash(const dvec3& p) {
-    return mixed(word(p.x) * 0x9e3779b97f4a7c15u + word(p.y) * 0xc2b2ae3d27d4eb4fu +
-                 word(p.z) * 0x165667b19e3779f9u);
-}
 
 } // namespace
 
@@ -56,7 +40,7 @@ std::vector<TriangleId> sample_triangles(const Soup& soup, std::span<const Trian
             const size_t end = std::min(triangles.size(), (b + 1) * kBlock);
             for (size_t i = b * kBlock; i < end; ++i, loop.step()) {
                 const Triangle t = soup.triangle(triangles[i]);
-                if ((mixed(hash(t[0]) + hash(t[1]) + hash(t[2])) & (rate - 1)) == 0)
+                if ((triangle_hash(t) & (rate - 1)) == 0)
                     parts[b].push_back(triangles[i]);
             }
         }

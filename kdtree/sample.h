@@ -21,4 +21,10 @@ uint32_t sample_rate(uint64_t triangles, uint64_t leaf_triangles);
 std::vector<TriangleId> sample_triangles(const Soup& soup, std::span<const TriangleId> triangles,
                                          uint32_t rate, BuildProgress* progress = nullptr);
 
+/// What sample_triangles() has drawn of some triangles at a rate. rate 0: nothing.
+struct Sample {
+    std::span<const TriangleId> triangles;
+    uint32_t rate = 0;
+};
+
 } // namespace ovc

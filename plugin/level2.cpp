@@ -54,8 +54,9 @@ public:
         triangles_ = triangles.size();
         // Where small triangles are not lost in the scene.
         const bool one_frame = one_frame_suits(soup_, triangles, bounds);
-        const uint32_t most = first_most(triangles, bounds, one_frame);
-        levels_.level1 = partition(soup_, triangles, bounds, most, progress_);
+        const Sample sample = drawn(triangles, one_frame);
+        const uint32_t most = first_most(triangles, bounds, one_frame, sample);
+        levels_.level1 = partition(soup_, triangles, bounds, most, progress_, sample);
         if (one_frame || levels_.level1.leaves.size() == 1)
             share_frame(levels_.level1);
         levels_.seconds_level1 = watch.seconds();
@@ -73,24 +74,31 @@ public:
     }
 
 private:
-    uint32_t first_most(std::span<const TriangleId> triangles, const Box& bounds,
-                        bool one_frame) const {
-        const bool maybe_one = limits_.whole_bytes > 0 && one_frame;
+    bool maybe_one_leaf(bool one_frame) const { return limits_.whole_bytes > 0 && one_frame; }
+
+    /// The sample that leaves are cut by where pages do not matter; none where nobody asks it
+    /// first.
+    Sample drawn(std::span<const TriangleId> triangles, bool one_frame) {
+        if (!maybe_one_leaf(one_frame) && !limits_.pages_matter())
+            return {};
         const uint32_t rate = sample_rate(triangles.size(), limits_.triangles);
-        std::vector<TriangleId> sample;
-        if (maybe_one || limits_.pages_matter())
-            sample = sample_triangles(soup_, triangles, rate, progress_);
+        sample_ = sample_triangles(soup_, triangles, rate, progress_);
+        return {sample_, rate};
+    }
+
+    uint32_t first_most(std::span<const TriangleId> triangles, const Box& bounds, bool one_frame,
+                        const Sample& sample) const {
         std::optional<PageRates> rates;
         const auto rate_of = [&](uint64_t page, double copies) {
-            if (sample.empty())
+            if (sample.triangles.empty())
                 return double(kMostBytesPerTriangle);
             if (!rates)
-                rates.emplace(soup_, triangles, sample, rate, bounds, progress_);
+                rates.emplace(soup_, triangles, sample.triangles, sample.rate, bounds, progress_);
             return rates->mean_of(double(page), copies);
         };
         return limits_.most_of(triangles.size(), rate_of, [&] {
-            return maybe_one &&
-                   one_leaf_pays(soup_, sample, rate, bounds, uint32_t(limits_.triangles));
+            return maybe_one_leaf(one_frame) && one_leaf_pays(soup_, sample.triangles, sample.rate,
+                                                              bounds, uint32_t(limits_.triangles));
         });
     }
 
@@ -151,6 +159,7 @@ private:
     const LeafLimits& limits_;
     BuildProgress* const progress_;
     uint64_t triangles_ = 0;
+    std::vector<TriangleId> sample_;
     Levels levels_;
 };
 

@@ -2,6 +2,7 @@
 // The sample in one tree, and in a tree for each cell under another one.
 #include "plugin/one_leaf.h"
 
+#include "core/parallel.h"
 #include "gpu/bvh.h"
 #include "kdtree/cells.h"
 #include "kdtree/clip.h"
@@ -39,29 +40,35 @@ bool one_leaf_pays(const Soup& soup, std::span<const TriangleId> sample, uint32_
     const double padding = padding_of(bounds);
     const std::vector<Cell> cells = cells_of(tree.nodes, bounds, padding);
     const CellFinder finder(tree.nodes, cells, padding);
-    std::vector<Boxf> whole;
-    std::vector<std::vector<Boxf>> parts(cells.size());
     size_t copies = 0;
-    for (const TriangleId id : sample) {
-        const Triangle triangle = soup.triangle(id);
-        whole.push_back(local(bounds_of(triangle)));
-        finder.find(triangle, [&](uint32_t c) {
-            const Box clipped = clipped_bounds(triangle, cells[c].padded);
-            if (!clipped.empty())
-                parts[c].push_back(local(clipped));
-            copies += !clipped.empty();
-        });
-    }
-    std::vector<Boxf> roots;
-    double cut = 0;
-    for (const std::vector<Boxf>& part : parts)
-        if (const std::vector<BvhNode> nodes = build_bvh(part); !nodes.empty()) {
-            cut += cost_of(nodes);
-            roots.push_back(nodes[0].box);
+    double cut = 0, whole = 0;
+    const auto cost_in_parts = [&] {
+        std::vector<std::vector<Boxf>> parts(cells.size());
+        for (const TriangleId id : sample) {
+            const Triangle triangle = soup.triangle(id);
+            finder.find(triangle, [&](uint32_t c) {
+                const Box clipped = clipped_bounds(triangle, cells[c].padded);
+                if (!clipped.empty())
+                    parts[c].push_back(local(clipped));
+                copies += !clipped.empty();
+            });
         }
-    cut += cost_of(build_bvh(roots));
-    return double(copies) > kMostCopies * double(sample.size()) ||
-           cut > kMostCost * cost_of(build_bvh(whole));
+        std::vector<Boxf> roots;
+        for (const std::vector<Boxf>& part : parts)
+            if (const std::vector<BvhNode> nodes = build_bvh(part); !nodes.empty()) {
+                cut += cost_of(nodes);
+                roots.push_back(nodes[0].box);
+            }
+        cut += cost_of(build_bvh(roots));
+    };
+    const auto cost_in_one = [&] {
+        std::vector<Boxf> boxes;
+        for (const TriangleId id : sample)
+            boxes.push_back(local(bounds_of(soup.triangle(id))));
+        whole = cost_of(build_bvh(boxes));
+    };
+    parallel_invoke(cost_in_parts, cost_in_one);
+    return double(copies) > kMostCopies * double(sample.size()) || cut > kMostCost * whole;
 }
 
 } // namespace ovc

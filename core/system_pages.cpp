@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pages from the system.
-#include "importers/blocks.h"
+#include "core/system_pages.h"
 
 #include <sys/mman.h>
 
@@ -12,7 +12,7 @@ void UnmapPages::operator()(void* pages) const {
     munmap(pages, bytes);
 }
 
-Pages map_pages(size_t bytes) {
+SystemPages map_pages(size_t bytes) {
     void* pages = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (pages == MAP_FAILED)
         throw std::bad_alloc();
