@@ -31,9 +31,10 @@ protected:
         ASSERT_TRUE(plan);
         MemoryPlan shared = *plan;
         shared.pool_bytes -= 1u << 20; // for level 1
+        DeviceInfo device = gl->info();
+        device.takes_host_pages = device.takes_host_pages && with_host_pages;
         gl->run([&](GlState& state) {
-            auto created =
-                Tracer::create(shared, options, gl->info(), state.kernels, level1, pages);
+            auto created = Tracer::create(shared, options, device, state.kernels, level1, pages);
             ASSERT_TRUE(created) << created.error().message;
             tracer = std::move(*created);
             EXPECT_EQ(tracer->bring(std::vector<uint32_t>{0}).bytes, pages[0].bytes());
@@ -61,6 +62,7 @@ protected:
     void expect_truth(const Soup& soup, std::span<const Ray> rays);
 
     static constexpr Ray kNoRay{dvec3(0), 0, dvec3(0, 0, 1), -1};
+    bool with_host_pages = true; // where the device takes them
     std::unique_ptr<Tracer> tracer;
     Level1 level1;
     Numbering numbers;
@@ -102,6 +104,26 @@ void KernelGl::expect_truth(const Soup& soup, std::span<const Ray> rays) {
         if (is_certain(any[i])) {
             ASSERT_EQ(any[i].prim != OVC_MISS, expected.is_hit()) << "ray " << i;
         }
+    }
+}
+
+// What a GPU has beside what a software renderer has.
+TEST_F(KernelGl, BuffersOfTheDriverAndOfTheProcessAnswerAlike) {
+    const Soup soup = test::random_soup(6, 3000, 0.1);
+    for (const bool compute : {false, true}) {
+        std::array<std::vector<uint32_t>, 2> prims;
+        for (const bool host_pages : {false, true}) {
+            with_host_pages = host_pages;
+            load(soup, {}, {.compute = compute});
+            test::Random random(8);
+            std::vector<Ray> rays;
+            for (int i = 0; i < 2000; ++i)
+                rays.push_back(random_ray(random, leaf_of(level1)));
+            for (const Answer& answer : trace(rays))
+                prims[host_pages].push_back(answer.prim);
+        }
+        EXPECT_EQ(prims[0], prims[1]) << "compute " << compute;
+        EXPECT_GT(std::ranges::count_if(prims[0], [](uint32_t p) { return p != OVC_MISS; }), 500);
     }
 }
 
