@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pinhole rays, Morton order and automatic framing.
+// Pinhole rays, the order of pixels and automatic framing.
 #include "host/camera.h"
 
 #include "host/bent_window.h"
@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <numbers>
 
 namespace ovc {
-
-static constexpr uint32_t kTile = 8;
 
 /// The basis of a view: forward and up are perpendicular, all three of unit length.
 struct ViewAxes {
@@ -90,44 +90,72 @@ Ray Pinhole::ray(uint32_t x, uint32_t y, const dvec2& place) const {
     return ray;
 }
 
-/// The bits of x on even places, those of y on odd ones.
-static uint32_t morton_code(uint32_t x, uint32_t y) {
-    const auto spread = [](uint32_t v) {
-        v = (v | (v << 8)) & 0x00ff00ffu;
-        v = (v | (v << 4)) & 0x0f0f0f0fu;
-        v = (v | (v << 2)) & 0x33333333u;
-        return (v | (v << 1)) & 0x55555555u;
-    };
-    return spread(x) | (spread(y) << 1);
+namespace {
+
+struct Cell {
+    uint32_t x, y;
+};
+
+/// How Hilbert's curve goes through a square: it comes in at one corner, goes through the quarters
+/// and leaves at a corner beside that one.
+struct Way {
+    bool turned = false;  // x and y change places
+    bool flipped = false; // both count from the other end
+
+    /// Of the i-th quarter, where it is.
+    Cell quarter(size_t i) const {
+        const bool x = i == 2 || i == 3, y = i == 1 || i == 2;
+        return {uint32_t((turned ? y : x) != flipped), uint32_t((turned ? x : y) != flipped)};
+    }
+    /// And how the curve goes through that one.
+    Way through_quarter(size_t i) const {
+        return {turned != (i == 0 || i == 3), flipped != (i == 3)};
+    }
+    Cell in_tile(const Cell& cell, uint32_t side) const {
+        const uint32_t mask = flipped ? side - 1 : 0;
+        return {(turned ? cell.y : cell.x) ^ mask, (turned ? cell.x : cell.y) ^ mask};
+    }
+};
+
+/// Calls put(cell, way) along the curve for the cells of a grid in the square at (x, y), whose side
+/// is a power of two.
+template <class Put>
+void along_curve(const Cell& grid, uint32_t x, uint32_t y, uint32_t side, const Way& way,
+                 const Put& put) {
+    if (x >= grid.x || y >= grid.y)
+        return;
+    if (side == 1)
+        return put(Cell{x, y}, way);
+    const uint32_t half = side / 2;
+    for (size_t i = 0; i < 4; ++i) {
+        const Cell at = way.quarter(i);
+        along_curve(grid, x + at.x * half, y + at.y * half, half, way.through_quarter(i), put);
+    }
 }
+
+template <class Put>
+void along_curve(const Cell& grid, const Put& put) {
+    along_curve(grid, 0, 0, std::bit_ceil(std::max(grid.x, grid.y)), {}, put);
+}
+
+} // namespace
 
 std::vector<uint32_t> pixel_order(uint32_t width, uint32_t height) {
     assert(width <= 65535 && height <= 65535);
-    struct Cell {
-        uint32_t x, y;
-    };
-    const auto cells_in_order = [](uint32_t across, uint32_t down) {
-        std::vector<Cell> cells;
-        cells.reserve(size_t(across) * down);
-        for (uint32_t y = 0; y < down; ++y)
-            for (uint32_t x = 0; x < across; ++x)
-                cells.push_back({x, y});
-        std::sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) {
-            return morton_code(a.x, a.y) < morton_code(b.x, b.y);
-        });
-        return cells;
-    };
-    const std::vector<Cell> inside = cells_in_order(kTile, kTile);
+    constexpr uint32_t kTile = 8; // tiles are all alike: the curve need not be followed in each
+    std::vector<Cell> tile;
+    along_curve({kTile, kTile}, [&](const Cell& cell, const Way&) { tile.push_back(cell); });
     std::vector<uint32_t> pixels;
     pixels.reserve(size_t(width) * height);
-    for (const Cell& tile :
-         cells_in_order((width + kTile - 1) / kTile, (height + kTile - 1) / kTile))
-        for (const Cell& cell : inside) {
-            const uint32_t x = tile.x * kTile + cell.x;
-            const uint32_t y = tile.y * kTile + cell.y;
+    const Cell tiles{(width + kTile - 1) / kTile, (height + kTile - 1) / kTile};
+    along_curve(tiles, [&](const Cell& at, const Way& way) {
+        for (const Cell& in_base : tile) {
+            const Cell cell = way.in_tile(in_base, kTile);
+            const uint32_t x = at.x * kTile + cell.x, y = at.y * kTile + cell.y;
             if (x < width && y < height)
                 pixels.push_back(y * width + x);
         }
+    });
     return pixels;
 }
 

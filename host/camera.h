@@ -60,8 +60,8 @@ private:
     std::optional<ImageWindow> bent_;
 };
 
-/// The pixels y * width + x of an image, each once: tiles of 8 x 8 in Morton order, Morton order
-/// within each. Neighbours in the list are neighbours in the image, so a batch of rays touches few
+/// The pixels y * width + x of an image, each once, along Hilbert's curve: neighbours in the list
+/// are neighbours in the image but where the curve leaves it, so a batch of rays touches few
 /// leaves. width, height <= 65535.
 std::vector<uint32_t> pixel_order(uint32_t width, uint32_t height);
 

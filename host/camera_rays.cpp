@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera rays: tiles of pixels in Morton order, the rays of a pixel one after the other.
+// Camera rays: pixels along a curve, the rays of a pixel one after the other.
 #include "host/camera_rays.h"
 
 #include "core/parallel.h"

@@ -83,13 +83,24 @@ TEST(PixelOrder, VisitsEveryPixelOnce) {
     }
 }
 
-TEST(PixelOrder, KeepsATileTogether) {
+TEST(PixelOrder, GoesFromNeighbourToNeighbour) {
     const std::vector<uint32_t> pixels = pixel_order(64, 64);
-    for (size_t i = 0; i < pixels.size(); ++i) {
-        const uint32_t x = pixels[i] % 64, y = pixels[i] / 64;
-        const uint32_t x0 = pixels[i / 64 * 64] % 64, y0 = pixels[i / 64 * 64] / 64;
-        EXPECT_EQ(x / 8, x0 / 8);
-        EXPECT_EQ(y / 8, y0 / 8);
+    for (size_t i = 1; i < pixels.size(); ++i) {
+        const auto apart = [](uint32_t a, uint32_t b) { return a > b ? a - b : b - a; };
+        EXPECT_EQ(apart(pixels[i] % 64, pixels[i - 1] % 64) +
+                      apart(pixels[i] / 64, pixels[i - 1] / 64),
+                  1u);
+    }
+}
+
+TEST(PixelOrder, KeepsATileTogether) {
+    for (const auto& [width, height] : {std::pair{64u, 64u}, {48u, 24u}}) {
+        const std::vector<uint32_t> pixels = pixel_order(width, height);
+        for (size_t i = 0; i < pixels.size(); ++i) {
+            const uint32_t first = pixels[i / 64 * 64];
+            EXPECT_EQ(pixels[i] % width / 8, first % width / 8);
+            EXPECT_EQ(pixels[i] / width / 8, first / width / 8);
+        }
     }
 }
 
