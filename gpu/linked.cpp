@@ -45,14 +45,6 @@ GridHeader header_of(const Page& page) {
     return {vector(0), vector(1)};
 }
 
-Page shifted(const Page& page, uint32_t units) {
-    Page moved;
-    moved.texels.resize(page.view().size());
-    moved.depth = page.depth;
-    copy_relocated(page, units, moved.texels);
-    return moved;
-}
-
 /// A tree over the boxes of all pages; put(leaf, unit) writes its lowest units.
 template <class Put>
 Page tree_over(std::span<const Page> pages, const Put& put) {
@@ -157,7 +149,7 @@ std::optional<LinkTree> make_link_tree(const Level1& level1, std::span<const Pag
     return tree;
 }
 
-void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to) {
+void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to, uint32_t owner) {
     constexpr size_t kGrain = 4096; // units a task
     const std::span<const uvec4> from = page.view();
     assert(to.size() == from.size());
@@ -175,16 +167,8 @@ void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to) 
     });
     if (!from.empty())
         to[2].x = from[2].x + first_unit;
-}
-
-Page relocated(const Page& page, uint32_t first_unit, uint32_t leaf) {
-    Page moved = shifted(page, first_unit);
-    moved.texels[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + 3].y = leaf + 1;
-    return moved;
-}
-
-Page relocated_top(const LinkedPages& linked) {
-    return shifted(linked.top, linked.top_unit);
+    if (owner != 0)
+        to[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + 3].y = owner;
 }
 
 } // namespace ovc

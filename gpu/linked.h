@@ -57,12 +57,8 @@ std::optional<LinkTree> make_link_tree(const Level1& level1, std::span<const Pag
                                        uint64_t pool_bytes);
 
 /// Writes a page as it must be where it begins at `first_unit` and units count from the pool's
-/// first; on all cores. to: as large as the page.
-void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to);
-
-/// The page of a leaf, or the top, as it must be where it begins at `first_unit`: its units count
-/// from the pool's first, and its root says whose it is.
-Page relocated(const Page& page, uint32_t first_unit, uint32_t leaf);
-Page relocated_top(const LinkedPages& linked);
+/// first; on all cores. to: as large as the page. owner: of a linked page, which its root then says
+/// (leaf + 1).
+void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to, uint32_t owner = 0);
 
 } // namespace ovc

@@ -36,14 +36,16 @@ Built build(const Soup& soup, size_t leaves, bool shared) {
 /// What the pool holds, as one page: its root is that of the top.
 Page pool_of(const Built& built, const LinkedPages& linked) {
     Page pool;
-    const auto put = [&](const Page& moved) {
-        pool.texels.insert(pool.texels.end(), moved.texels.begin(), moved.texels.end());
+    const auto put = [&](const Page& page, uint32_t first_unit, uint32_t owner) {
+        EXPECT_EQ(pool.units(), first_unit);
+        const size_t begin = pool.texels.size();
+        pool.texels.resize(begin + page.texels.size());
+        copy_relocated(page, first_unit, std::span(pool.texels).subspan(begin), owner);
     };
-    for (uint32_t i = 0; i < built.pages.size(); ++i) {
-        EXPECT_EQ(pool.units(), linked.first_unit[i]);
-        put(relocated(built.pages[i], linked.first_unit[i], i));
-    }
-    put(relocated_top(linked));
+    for (uint32_t i = 0; i < built.pages.size(); ++i)
+        put(built.pages[i], linked.first_unit[i], i + 1);
+    if (built.pages.size() > 1)
+        put(linked.top, linked.top_unit, 0);
     const uint32_t root = pool.texels[size_t(linked.top_unit) * OVC_UNIT_TEXELS + 2].x;
     for (size_t i = 0; i < OVC_UNIT_TEXELS; ++i)
         pool.texels[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + i] =

@@ -146,18 +146,17 @@ void Tracer::say_where(uint32_t leaf) {
 
 Moved Tracer::bring_linked(std::span<const uint32_t> wanted) {
     Moved moved;
-    const auto put = [&](const Page& page, uint32_t unit) {
-        pool_.upload(uint64_t(unit) * OVC_UNIT_BYTES, page);
+    const auto put = [&](const Page& page, uint32_t unit, uint32_t owner) {
+        pool_.upload(uint64_t(unit) * OVC_UNIT_BYTES, page, unit, owner);
         moved.bytes += page.bytes();
     };
     for (const uint32_t leaf : wanted) {
-        const uint32_t unit = linked_->first_unit[leaf];
-        put(relocated(page_data_[leaf], unit, leaf), unit);
+        put(page_data_[leaf], linked_->first_unit[leaf], leaf + 1);
         linked_->moved += 1;
     }
     moved.pages = wanted.size();
     if (linked_->moved == page_data_.size())
-        put(relocated_top(*linked_), linked_->top_unit);
+        put(linked_->top, linked_->top_unit, 0);
     return moved;
 }
 
