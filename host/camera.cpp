@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace ovc {
 
@@ -92,71 +92,47 @@ Ray Pinhole::ray(uint32_t x, uint32_t y, const dvec2& place) const {
 
 namespace {
 
-struct Cell {
-    uint32_t x, y;
+/// The pixels of an image along Hilbert's curve, which comes into a square at one corner, goes
+/// through its quarters, and leaves at a corner beside that one.
+class HilbertCurve {
+public:
+    HilbertCurve(uint32_t width, uint32_t height) : width_(width), height_(height) {
+        pixels_.reserve(size_t(width) * height);
+    }
+
+    /// The pixels in the square at (x, y) with a power of two as its side. turned: x and y change
+    /// places in it. flipped: both count from the other end.
+    void go_through(uint32_t x, uint32_t y, uint32_t side, bool turned, bool flipped) {
+        if (x >= width_ || y >= height_)
+            return;
+        if (side == 1) {
+            pixels_.push_back(y * width_ + x);
+            return;
+        }
+        static constexpr bool kQuarters[4][2] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
+        const uint32_t half = side / 2;
+        for (int i = 0; i < 4; ++i) {
+            const bool right = kQuarters[i][turned] != flipped;
+            const bool below = kQuarters[i][!turned] != flipped;
+            go_through(right ? x + half : x, below ? y + half : y, half,
+                       turned != (i == 0 || i == 3), flipped != (i == 3));
+        }
+    }
+
+    std::vector<uint32_t> take() { return std::move(pixels_); }
+
+private:
+    const uint32_t width_, height_;
+    std::vector<uint32_t> pixels_;
 };
-
-/// How Hilbert's curve goes through a square: it comes in at one corner, goes through the quarters
-/// and leaves at a corner beside that one.
-struct Way {
-    bool turned = false;  // x and y change places
-    bool flipped = false; // both count from the other end
-
-    /// Of the i-th quarter, where it is.
-    Cell quarter(size_t i) const {
-        const bool x = i == 2 || i == 3, y = i == 1 || i == 2;
-        return {uint32_t((turned ? y : x) != flipped), uint32_t((turned ? x : y) != flipped)};
-    }
-    /// And how the curve goes through that one.
-    Way through_quarter(size_t i) const {
-        return {turned != (i == 0 || i == 3), flipped != (i == 3)};
-    }
-    Cell in_tile(const Cell& cell, uint32_t side) const {
-        const uint32_t mask = flipped ? side - 1 : 0;
-        return {(turned ? cell.y : cell.x) ^ mask, (turned ? cell.x : cell.y) ^ mask};
-    }
-};
-
-/// Calls put(cell, way) along the curve for the cells of a grid in the square at (x, y), whose side
-/// is a power of two.
-template <class Put>
-void along_curve(const Cell& grid, uint32_t x, uint32_t y, uint32_t side, const Way& way,
-                 const Put& put) {
-    if (x >= grid.x || y >= grid.y)
-        return;
-    if (side == 1)
-        return put(Cell{x, y}, way);
-    const uint32_t half = side / 2;
-    for (size_t i = 0; i < 4; ++i) {
-        const Cell at = way.quarter(i);
-        along_curve(grid, x + at.x * half, y + at.y * half, half, way.through_quarter(i), put);
-    }
-}
-
-template <class Put>
-void along_curve(const Cell& grid, const Put& put) {
-    along_curve(grid, 0, 0, std::bit_ceil(std::max(grid.x, grid.y)), {}, put);
-}
 
 } // namespace
 
 std::vector<uint32_t> pixel_order(uint32_t width, uint32_t height) {
     assert(width <= 65535 && height <= 65535);
-    constexpr uint32_t kTile = 8; // tiles are all alike: the curve need not be followed in each
-    std::vector<Cell> tile;
-    along_curve({kTile, kTile}, [&](const Cell& cell, const Way&) { tile.push_back(cell); });
-    std::vector<uint32_t> pixels;
-    pixels.reserve(size_t(width) * height);
-    const Cell tiles{(width + kTile - 1) / kTile, (height + kTile - 1) / kTile};
-    along_curve(tiles, [&](const Cell& at, const Way& way) {
-        for (const Cell& in_base : tile) {
-            const Cell cell = way.in_tile(in_base, kTile);
-            const uint32_t x = at.x * kTile + cell.x, y = at.y * kTile + cell.y;
-            if (x < width && y < height)
-                pixels.push_back(y * width + x);
-        }
-    });
-    return pixels;
+    HilbertCurve curve(width, height);
+    curve.go_through(0, 0, std::bit_ceil(std::max(width, height)), false, false);
+    return curve.take();
 }
 
 Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height) {
