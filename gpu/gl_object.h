@@ -8,6 +8,7 @@
 #include "gpu/ledger.h"
 
 #include <cstdint>
+#include <new>
 #include <string_view>
 #include <utility>
 
@@ -93,8 +94,12 @@ class Buffer {
 public:
     Buffer(Ledger& ledger, uint64_t bytes, std::string_view label)
         : handle_(create()), entry_(ledger, bytes) {
-        if (ledger.driver_has_room())
-            ledger.takes_host_pages ? show_host_pages() : allocate();
+        if (!ledger.driver_has_room())
+            return;
+        if (!ledger.takes_host_pages)
+            allocate();
+        else if (!show_host_pages())
+            ledger.refused = true;
         glObjectLabel(GL_BUFFER, id(), GLsizei(label.size()), label.data());
     }
     GLuint id() const { return handle_.id(); }
@@ -110,12 +115,18 @@ private:
         glNamedBufferStorage(id(), GLsizeiptr(bytes()), nullptr,
                              GL_DYNAMIC_STORAGE_BIT | GL_MAP_WRITE_BIT);
     }
-    void show_host_pages() {
-        host_pages_ = map_pages(bytes());
+    /// False: the system has none.
+    bool show_host_pages() {
+        try {
+            host_pages_ = map_pages(bytes());
+        } catch (const std::bad_alloc&) {
+            return false;
+        }
         glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, id());
         glBufferData(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, GLsizeiptr(bytes()), host_pages_.get(),
                      GL_DYNAMIC_DRAW);
         glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, 0);
+        return true;
     }
 
     SystemPages host_pages_; // outlive the name

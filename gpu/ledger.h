@@ -15,7 +15,7 @@ struct Ledger {
     uint64_t peak = 0;
     /// For tests: a driver that has no more memory than this.
     uint64_t driver_bytes = ~uint64_t(0);
-    bool refused = false; // by that driver
+    bool refused = false; // by that driver, or by the system
     /// Buffers are of the process's own pages: the driver is a part of it.
     bool takes_host_pages = false;
 

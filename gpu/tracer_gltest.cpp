@@ -127,6 +127,21 @@ TEST_F(KernelGl, BuffersOfTheDriverAndOfTheProcessAnswerAlike) {
     }
 }
 
+TEST_F(KernelGl, ABufferThatTheSystemHasNoPagesForIsRefused) {
+    if (!gl->info().takes_host_pages)
+        GTEST_SKIP() << "buffers are the driver's";
+    gl->run([&](GlState&) {
+        Ledger ledger;
+        ledger.budget = ~uint64_t(0);
+        ledger.takes_host_pages = true;
+        const gl::Buffer some(ledger, 4096, "some");
+        EXPECT_FALSE(ledger.refused);
+        const gl::Buffer much(ledger, uint64_t(1) << 60, "much");
+        EXPECT_TRUE(ledger.refused);
+        EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+    });
+}
+
 TEST_F(KernelGl, WhatItCallsCertainIsTrue) {
     for (const auto& [name, soup] : test::unpleasant_soups()) {
         if (soup.triangle_count() == 0)
