@@ -81,6 +81,27 @@ TEST(Sample, LeavesKeepToTheCountAndHoldEveryTriangleThatTouchesThem) {
     }
 }
 
+TEST(Sample, IsNotDrawnAgainWhereItIsTheOneToCutBy) {
+    const Soup soup = large_soup();
+    Box bounds;
+    const auto ids = hittable_triangles(soup, nullptr, &bounds);
+    constexpr uint32_t kMost = 20'000;
+    const uint32_t rate = sample_rate(ids.size(), kMost);
+    ASSERT_GT(rate, 1u);
+    const auto leaves_by = [&](std::span<const TriangleId> drawn, uint32_t at) {
+        std::vector<std::vector<TriangleId>> leaves;
+        for (Leaf& leaf : partition(soup, ids, bounds, kMost, nullptr, {drawn, at}).leaves)
+            leaves.push_back(std::move(leaf.triangles));
+        return leaves;
+    };
+    const auto sample = sample_triangles(soup, ids, rate);
+    const auto half = std::span(sample).first(sample.size() / 2);
+    const auto expected = leaves_by({}, 0);
+    EXPECT_EQ(leaves_by(sample, rate), expected);
+    EXPECT_NE(leaves_by(half, rate), expected) << "it is taken as it is";
+    EXPECT_EQ(leaves_by(half, 2 * rate), expected) << "another one is to be drawn";
+}
+
 TEST(Sample, CutsAgainOnlyTheLeavesItIsTold) {
     const Soup soup = large_soup();
     Box bounds;
