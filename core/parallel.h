@@ -104,6 +104,11 @@ void parallel_sort(Iterator first, Iterator last) {
 
 #endif
 
+/// Starts the threads that loops run on, once in a process; else they start within the first loops,
+/// and where the system refuses one there, oneTBB throws in the midst of a loop or ends the
+/// process. Throws std::system_error.
+void start_threads();
+
 /// While it lives, loops of the whole process run on at most so many threads.
 class ThreadLimit {
 public:

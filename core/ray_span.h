@@ -31,12 +31,15 @@ public:
 
     size_t size() const { return size_; }
 
+    /// A t_min or t_max of -0 is told as 0: the kernel has its signs for other things.
     Ray operator[](size_t i) const {
         assert(i < size_);
-        if (!floats_)
-            return doubles_[i];
+        if (!floats_) {
+            const Ray& ray = doubles_[i];
+            return {ray.org, ray.t_min + 0.0, ray.dir, ray.t_max + 0.0};
+        }
         const FloatRay& ray = floats_[i];
-        return {dvec3(ray.org), ray.t_min, dvec3(ray.dir), ray.t_max};
+        return {dvec3(ray.org), ray.t_min + 0.0, dvec3(ray.dir), ray.t_max + 0.0};
     }
 
     /// The rays themselves where they are in double; else a copy of them in `room`.

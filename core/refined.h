@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between doubles and exact sums: a ray and a triangle in doubled precision, where only a weight
-// that it cannot tell from zero is computed exactly.
+// Rays against triangles in doubled precision: what doubles leave in doubt, and t, u and v of a
+// hit, rounded once.
 #pragma once
 
 #include "core/triangle.h"
 
 namespace ovc {
 
-/// Share of t that the t of a refined or exact candidate is off by at most: four roundings, and
-/// half of one in each of two sums.
-inline constexpr double kRefinedError = 0x1p-50;
-
 /// Whether the triangle is hit, and where; or (known = false) that it takes exact arithmetic to
-/// say: t is too near to 0, t_min or t_max, or a number is out of range.
+/// say. A candidate's t is off by at most 2^-50 of itself.
 struct RefinedAnswer {
     bool known = false;
     std::optional<Candidate> candidate;
@@ -21,8 +17,7 @@ struct RefinedAnswer {
 /// The answer of exact_candidate() for finite corners, where it is known.
 RefinedAnswer refined_candidate(const PreparedRay& p, const Triangle& triangle, TriangleId id);
 
-/// The direction scaled by a power of two so that its largest component is about 1: weights and
-/// depth scale alike, and stay away from underflow.
-dvec3 scaled_direction(const PreparedRay& p);
+/// A hit of the triangle with t, u and v rounded once. support: as in Candidate.
+Hit rounded_hit(const PreparedRay& p, const Triangle& triangle, TriangleId id, uint32_t support);
 
 } // namespace ovc

@@ -10,13 +10,25 @@
 namespace ovc {
 
 /// What a caller may want to tell apart; most errors are for people alone.
-enum class ErrorKind { Other, OutOfGpuMemory, DeviceLost, Cancelled };
+enum class ErrorKind {
+    Other,
+    InvalidArgument,
+    OutOfMemory,
+    OutOfGpuMemory, // the driver's or the system's, not the budget
+    OverBudget,
+    DeviceLost,
+    Cancelled
+};
 
 /// One sentence: which file, line or argument, what was found, what was expected.
 struct Error {
     std::string message;
     ErrorKind kind = ErrorKind::Other;
 };
+
+inline Error over_budget(std::string message) {
+    return {std::move(message), ErrorKind::OverBudget};
+}
 
 template <class T>
 class [[nodiscard]] Result {

@@ -2,6 +2,7 @@
 // Soup: ownership of chunks, and which triangles can be hit.
 #include "core/soup.h"
 
+#include "core/exact.h"
 #include "core/parallel.h"
 
 #include <cassert>
@@ -22,7 +23,18 @@ double in_range(double x) {
     return size > 0x1p256 ? std::numeric_limits<double>::infinity() : x;
 }
 
+/// Whether the sum with any finite float is in range: a multiple of 2^-201, and less than 2^256.
+bool keeps_floats_in_range(double origin) {
+    const double size = std::abs(origin);
+    return size == 0 || (size >= 0x1p-149 && size <= 0x1p255);
+}
+
 } // namespace
+
+Chunk::Chunk(dvec3 origin)
+    : origin_(origin),
+      plain_(keeps_floats_in_range(origin.x) && keeps_floats_in_range(origin.y) &&
+             keeps_floats_in_range(origin.z)) {}
 
 Chunk Chunk::owning(dvec3 origin, std::vector<vec3> corners) {
     Chunk chunk(origin);
@@ -91,16 +103,26 @@ uint64_t Soup::triangle_count() const {
     return count;
 }
 
+static bool on_a_line(const Triangle& t) {
+    constexpr double v = 0x1p-53;
+    const dvec3 ab = t[1] - t[0], ac = t[2] - t[0];
+    for (int axis = 0; axis < 3; ++axis) {
+        const int j = (axis + 1) % 3, k = (axis + 2) % 3;
+        const double left = ab[j] * ac[k], right = ab[k] * ac[j];
+        // Two differences and a product each: three roundings, and one more of their difference.
+        const double error = 5 * v * (std::abs(left) + std::abs(right)) + 0x1p-1060;
+        if (std::abs(left - right) > error)
+            return false;
+    }
+    const Vec3Of<Exact> a = exact(t[0]);
+    const Vec3Of<Exact> normal = cross(exact(t[1]) - a, exact(t[2]) - a);
+    return normal.x.sign() == 0 && normal.y.sign() == 0 && normal.z.sign() == 0;
+}
+
 TriangleFault triangle_fault(const Triangle& t) {
     if (!is_finite(t[0]) || !is_finite(t[1]) || !is_finite(t[2]))
         return TriangleFault::NotFinite;
-    const dvec3 ab = t[1] - t[0];
-    const dvec3 ac = t[2] - t[0];
-    // Two products compared instead of their difference with zero: nothing underflows away in
-    // between.
-    const bool on_a_line =
-        ab.y * ac.z == ab.z * ac.y && ab.z * ac.x == ab.x * ac.z && ab.x * ac.y == ab.y * ac.x;
-    return on_a_line ? TriangleFault::Degenerate : TriangleFault::None;
+    return on_a_line(t) ? TriangleFault::Degenerate : TriangleFault::None;
 }
 
 namespace {

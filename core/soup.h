@@ -66,7 +66,7 @@ public:
     }
 
 private:
-    explicit Chunk(dvec3 origin) : origin_(origin) {}
+    explicit Chunk(dvec3 origin);
     bool has_whole_triangles() const;
     Triangle placed_triangle(uint32_t prim) const;
 
@@ -76,7 +76,7 @@ private:
     std::span<const vec3> corners_; // these or the next
     std::span<const dvec3> double_corners_;
     std::unique_ptr<const Placement> placement_;
-    bool plain_ = true; // floats, not placed
+    bool plain_; // floats, not placed, and no origin brings them out of range
 };
 
 /// Chunk m holds the triangles (m, 0) … (m, size - 1).
@@ -90,8 +90,8 @@ struct Soup {
 /// Why a triangle can never be hit.
 enum class TriangleFault { None, NotFinite, Degenerate };
 
-/// NotFinite: a NaN or infinite corner. Degenerate: no area, the corners on one line (tested in
-/// double, without tolerance).
+/// NotFinite: a NaN or infinite corner. Degenerate: no area, the corners on one line, decided
+/// exactly.
 TriangleFault triangle_fault(const Triangle& triangle);
 
 /// Triangles left out of a structure, by reason.

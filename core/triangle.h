@@ -7,13 +7,13 @@
 #pragma once
 
 #include "core/box.h"
-#include "core/expansion.h"
 #include "core/ray.h"
 #include "core/soup.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace ovc {
@@ -26,8 +26,11 @@ struct PreparedRay {
     double sx, sy, sz; // shear and scale of Woop et al. 2013, section 3.1
     dvec3 inv_dir;     // may be infinite
     TriangleId skip;   // a triangle this ray does not see: the one it starts on
+    double org_error = 0; // how far in each coordinate its line may be from the one that is meant
 
     explicit PreparedRay(const Ray& r, TriangleId skipped = {}) : ray(r), skip(skipped) {
+        // Beyond the largest double no hit can be told.
+        ray.t_max = std::min(r.t_max, std::numeric_limits<double>::max());
         kz = major_axis(r.dir);
         kx = (kz + 1) % 3;
         ky = (kz + 2) % 3;
@@ -41,7 +44,8 @@ struct PreparedRay {
     /// `bounds`.
     double margin(const Box& bounds) const {
         return 0x1p-46 * max_component(glm::max(glm::abs(bounds.lo - ray.org),
-                                                glm::abs(bounds.hi - ray.org)));
+                                                glm::abs(bounds.hi - ray.org))) +
+               org_error;
     }
 };
 
@@ -49,27 +53,21 @@ struct PreparedRay {
 struct Candidate {
     static constexpr uint32_t kAllCorners = 7;
 
-    Hit hit;
-    double t_error; // what t is off by at most
+    Hit hit;          // t, u and v approximately
+    double t_low = 0; // t is within t_error of hit.t + t_low
+    double t_error = 0;
     uint32_t support =
         kAllCorners; // bit i: corner i has a part in the hit. One bit: the hit is that
                      // corner, two: it lies on that side. All where nobody looked
+
+    /// The sign of this t minus the other's, on the same ray; 0 where the errors leave it open.
+    int compare_t(const Candidate& other) const {
+        const double low = t_low - other.t_low;
+        const double gap = (hit.t - other.hit.t) + low;
+        const double error = t_error + other.t_error + 0x1p-52 * std::abs(low);
+        return gap > error ? 1 : gap < -error ? -1 : 0;
+    }
 };
-
-/// The triangle's edge functions without a rounding: weights of its corners, their sum, and the
-/// corners' depths so weighted. Closed: inside where no two weights have opposite signs and not all
-/// are zero.
-struct ExactTriangle {
-    std::array<Expansion, 3> weights;
-    Expansion area;  // this and the next only where inside
-    Expansion depth; // t = depth / (area dir[kz])
-
-    ExactTriangle(const PreparedRay& p, const Triangle& triangle);
-    bool inside() const;
-};
-
-/// The sign of t - `t` for a triangle that is inside.
-int compare_t(const PreparedRay& p, const ExactTriangle& triangle, double t);
 
 /// What candidate() answers where doubles cannot tell: in doubled precision (core/refined.h), and
 /// exactly where that leaves a doubt.
@@ -79,8 +77,7 @@ std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& t
 /// Where the ray meets the closed triangle, t_min <= t <= t_max; nothing where it does not. Decided
 /// as by exact arithmetic: in double with an error bound, and by exact_candidate() where that
 /// leaves a doubt. So a ray never slips between two triangles that share corners bit for bit. A
-/// triangle seen exactly edge-on is not hit. t, u and v are rounded; equal ray and triangle give
-/// equal bits.
+/// triangle seen exactly edge-on is not hit.
 inline std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangle,
                                           TriangleId id) {
     if (id == p.skip)
@@ -121,12 +118,13 @@ inline std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& 
     const double z_max = std::max({z[0], z[1], z[2]});
     const double t_error =
         (share * (z_max - z_min) + 12 * u * std::max(std::abs(z_min), std::abs(z_max))) *
-        std::abs(p.sz);
+            std::abs(p.sz) +
+        0x1p-1060;
     if (t + t_error < p.ray.t_min || t - t_error > p.ray.t_max)
         return std::nullopt;
     if (!(t - t_error >= p.ray.t_min && t + t_error <= p.ray.t_max))
         return exact_candidate(p, triangle, id);
-    return Candidate{{t, b / area, c / area, id}, t_error};
+    return Candidate{{t, b / area, c / area, id}, 0, t_error};
 }
 
 /// The nearest of the triangles offered, as exact arithmetic would choose: smaller t, equal t to
@@ -138,39 +136,41 @@ public:
     /// Tests the triangle. Returns true when it is hit, though perhaps not the nearest.
     bool offer(const Triangle& triangle, TriangleId id) {
         const std::optional<Candidate> found = candidate(p_, triangle, id);
-        if (found && (!best_.hit.is_hit() || wins(*found, triangle))) {
+        if (found && (!is_hit() || wins(*found, triangle))) {
             best_ = *found;
             triangle_ = triangle;
         }
         return found.has_value();
     }
 
-    const Hit& hit() const { return best_.hit; }
+    bool is_hit() const { return best_.hit.is_hit(); }
+
+    /// The hit, its t, u and v rounded once: the doubles nearest to the exact values.
+    Hit hit() const;
+    /// The same with t, u and v as they were found: for who asks only whether something is hit.
+    const Hit& unrounded_hit() const { return best_.hit; }
 
     /// Nothing beyond this t can win any more.
     double limit() const {
-        return best_.hit.is_hit() ? std::min(best_.hit.t + best_.t_error, p_.ray.t_max)
-                                  : p_.ray.t_max;
+        return is_hit()
+                   ? std::min(best_.hit.t + (std::abs(best_.t_low) + best_.t_error), p_.ray.t_max)
+                   : p_.ray.t_max;
     }
 
 private:
-    bool wins(const Candidate& other, const Triangle& triangle) const {
-        const double gap = other.hit.t - best_.hit.t;
-        const double error = other.t_error + best_.t_error;
-        return std::abs(gap) > error ? gap < 0 : wins_exactly(other, triangle);
+    bool wins(const Candidate& other, const Triangle& triangle) {
+        const int order = other.compare_t(best_);
+        return order != 0 ? order < 0 : wins_closely(other, triangle);
     }
-    bool wins_exactly(const Candidate& other, const Triangle& triangle) const;
+    bool wins_closely(Candidate other, const Triangle& triangle);
 
     const PreparedRay& p_;
     Candidate best_{};
     Triangle triangle_{};
 };
 
-/// The hit of a single triangle.
-inline std::optional<Hit> intersect(const PreparedRay& p, const Triangle& triangle, TriangleId id) {
-    const std::optional<Candidate> found = candidate(p, triangle, id);
-    return found ? std::optional(found->hit) : std::nullopt;
-}
+/// The hit of a single triangle, rounded once.
+std::optional<Hit> intersect(const PreparedRay& p, const Triangle& triangle, TriangleId id);
 
 /// The part of a ray inside something: empty when enter > exit.
 struct Interval {

@@ -160,21 +160,24 @@ TEST(Reference, EqualsExactArithmetic) {
                     continue;
                 const TriangleId id{0, i};
                 nearest.offer(triangles[i], id);
-                const auto t = test::exact_hit(ray, triangles[i]);
-                ASSERT_EQ(t.has_value(), intersect(p, triangles[i], id).has_value())
+                const auto hit = test::exact_hit(ray, triangles[i], id);
+                ASSERT_EQ(hit.has_value(), intersect(p, triangles[i], id).has_value())
                     << c.name << " seed " << seed;
-                if (t && (!truth || *t < truth->t))
-                    truth = {*t, id};
+                if (hit && (!truth || hit->t < truth->t))
+                    truth = hit;
             }
-            ASSERT_EQ(nearest.hit().id, truth ? truth->id : TriangleId{})
-                << c.name << " seed " << seed;
+            const Hit expected = truth ? truth->rounded() : Hit{}, got = nearest.hit();
+            ASSERT_EQ(got.id, expected.id) << c.name << " seed " << seed;
+            ASSERT_EQ(got.t, expected.t) << c.name << " seed " << seed;
+            ASSERT_EQ(got.u, expected.u) << c.name << " seed " << seed;
+            ASSERT_EQ(got.v, expected.v) << c.name << " seed " << seed;
             hits += truth.has_value();
         }
         EXPECT_GT(hits, 20u) << c.name;
     }
 }
 
-TEST(Reference, RoundsWhatItDecidesWithCare) {
+TEST(Reference, CandidatesAreOffByTheirErrorAtMost) {
     for (const Case& c : kCases) {
         size_t hits = 0;
         for (uint64_t seed = 0; seed < 800; ++seed) {
@@ -187,27 +190,28 @@ TEST(Reference, RoundsWhatItDecidesWithCare) {
             for (const Triangle& triangle : triangles) {
                 if (triangle_fault(triangle) != TriangleFault::None)
                     continue;
-                const auto found = exact_candidate(PreparedRay(ray), triangle, {0, 0});
-                const auto t = test::exact_hit(ray, triangle);
-                ASSERT_EQ(t.has_value(), found.has_value()) << c.name << " seed " << seed;
-                if (!t)
-                    continue;
-                ++hits;
-                ASSERT_LE(abs(test::Rational(found->hit.t) - *t), test::Rational(found->t_error))
-                    << c.name << " seed " << seed;
-                ASSERT_LE(found->t_error, 0x1p-50 * std::abs(found->hit.t));
-                for (int i = 0; i < 3; ++i)
-                    if (!(found->support >> i & 1)) {
-                        const Hit& h = found->hit;
-                        ASSERT_NEAR(i == 0   ? 1 - h.u - h.v
-                                    : i == 1 ? h.u
-                                             : h.v,
-                                    0, 1e-15)
+                const PreparedRay p(ray);
+                const auto truth = test::exact_hit(ray, triangle);
+                for (const auto& found :
+                     {candidate(p, triangle, {0, 0}), exact_candidate(p, triangle, {0, 0})}) {
+                    ASSERT_EQ(truth.has_value(), found.has_value()) << c.name << " seed " << seed;
+                    if (!truth)
+                        continue;
+                    ++hits;
+                    const test::Rational t =
+                        test::Rational(found->hit.t) + test::Rational(found->t_low);
+                    ASSERT_LE(abs(t - truth->t), test::Rational(found->t_error))
+                        << c.name << " seed " << seed;
+                    if (found->support != Candidate::kAllCorners) {
+                        const test::Rational w = 1 - truth->u - truth->v;
+                        ASSERT_EQ(found->support, uint32_t(w != 0) | uint32_t(truth->u != 0) << 1 |
+                                                      uint32_t(truth->v != 0) << 2)
                             << c.name << " seed " << seed;
                     }
+                }
             }
         }
-        EXPECT_GT(hits, 20u) << c.name;
+        EXPECT_GT(hits, 40u) << c.name;
     }
 }
 

@@ -272,6 +272,42 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
     return partitioner.finish();
 }
 
+/// Hands `triangles`, the first of which is number `first`, to leaves of exactly `most` each but
+/// for the last: halves by the median of centres along the axis on which they are most apart.
+static void halve(const Soup& soup, std::span<TriangleId> triangles, uint32_t most,
+                  std::vector<std::vector<TriangleId>>& lists) {
+    if (triangles.size() <= most) {
+        lists.emplace_back(triangles.begin(), triangles.end());
+        std::ranges::sort(lists.back());
+        return;
+    }
+    const auto center = [&](TriangleId id) {
+        const Triangle t = soup.triangle(id);
+        return t[0] + t[1] + t[2];
+    };
+    Box centers;
+    for (const TriangleId id : triangles)
+        centers.add(center(id));
+    const int axis = major_axis(centers.extent());
+    const size_t leaves = (triangles.size() + most - 1) / most;
+    const size_t below = leaves / 2 * most;
+    std::ranges::nth_element(triangles, triangles.begin() + ptrdiff_t(below), {},
+                             [&](TriangleId id) { return std::pair(center(id)[axis], id); });
+    halve(soup, triangles.first(below), most, lists);
+    halve(soup, triangles.subspan(below), most, lists);
+}
+
+Level1 partition_by_count(const Soup& soup, std::vector<TriangleId> triangles, const Box& bounds,
+                          uint32_t max_leaf_triangles, BuildProgress* progress) {
+    if (triangles.empty())
+        return {{}, {}, bounds, 0, false};
+    std::vector<std::vector<TriangleId>> lists;
+    halve(soup, triangles, max_leaf_triangles, lists);
+    Partitioner partitioner(soup, bounds, progress);
+    partitioner.add_leaves(bounds.padded(padding_of(bounds)), std::move(lists));
+    return partitioner.finish();
+}
+
 Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                   std::span<const KdNode> nodes, uint32_t max_leaf_triangles) {
     if (nodes.empty())

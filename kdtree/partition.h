@@ -80,6 +80,11 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
                  uint32_t max_leaf_triangles, BuildProgress* progress = nullptr,
                  const Sample& drawn = {});
 
+/// Cuts `triangles`, as above, into as few leaves of at most max_leaf_triangles (> 0) as there can
+/// be, no triangle in two: by medians of their centres, all in one cell.
+Level1 partition_by_count(const Soup& soup, std::vector<TriangleId> triangles, const Box& bounds,
+                          uint32_t max_leaf_triangles, BuildProgress* progress = nullptr);
+
 /// Level 1 in the cells of a tree over `bounds`, whatever its leaf nodes name: each lists the
 /// triangles that touch it, in leaves of at most max_leaf_triangles (> 0).
 Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,

@@ -3,6 +3,7 @@
 #include "kdtree/traverse.h"
 
 #include "core/parallel.h"
+#include "kdtree/approach.h"
 #include "kdtree/walk.h"
 
 #include <cassert>
@@ -17,16 +18,22 @@ Hit trace(const KdTree& tree, const Soup& soup, const Ray& ray, TriangleId skip)
         return {};
     const PreparedRay p(ray, skip);
     Nearest nearest(p);
+    Approach approach(p, tree.bounds);
     walk(
-        tree.nodes, tree.bounds, p,
+        tree.nodes, tree.bounds, approach.ray(),
         [&](const KdNode& leaf, double, double) {
-            for (const TriangleId id : tree.triangles(leaf))
-                if (nearest.offer(soup.triangle(id), id) && kAnyHit)
+            for (const TriangleId id : tree.triangles(leaf)) {
+                const Triangle triangle = soup.triangle(id);
+                if (!nearest.offer(triangle, id))
+                    continue;
+                if (kAnyHit)
                     return true;
+                approach.note_hit(triangle);
+            }
             return false;
         },
-        [&] { return nearest.limit(); });
-    return nearest.hit();
+        [&] { return approach.limit(nearest); });
+    return kAnyHit ? nearest.unrounded_hit() : nearest.hit();
 }
 
 constexpr size_t kGrain = 64; // rays a task

@@ -7,6 +7,7 @@
 #include "kdtree/tree.h"
 
 #include <array>
+#include <limits>
 
 namespace ovc {
 
@@ -42,7 +43,7 @@ void walk(std::span<const KdNode> nodes, const Box& bounds, const PreparedRay& p
             if (p.ray.dir[axis] == 0) {
                 below_first = distance >= 0;
                 if (std::abs(distance) > margin)
-                    far_enter = exit + 1; // the far side is never reached
+                    far_enter = std::numeric_limits<double>::infinity(); // never reached
             } else {
                 const double a = (distance - margin) * p.inv_dir[axis];
                 const double b = (distance + margin) * p.inv_dir[axis];

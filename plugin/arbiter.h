@@ -9,6 +9,7 @@
 #include "core/twins.h"
 #include "gpu/page.h"
 #include "gpu/page_walk.h"
+#include "kdtree/approach.h"
 #include "kdtree/partition.h"
 #include "kdtree/walk.h"
 
@@ -22,23 +23,28 @@ template <bool kAnyHit>
 Hit arbitrate(const Soup& soup, const Numbering& numbers, const Twins& twins, const Level1& level1,
               std::span<const Page> pages, const PreparedRay& p) {
     Nearest nearest(p);
-    const auto limit = [&] { return nearest.limit(); };
+    Approach approach(p, level1.bounds);
+    const auto limit = [&] { return approach.limit(nearest); };
     walk(
-        level1.nodes, level1.bounds, p,
+        level1.nodes, level1.bounds, approach.ray(),
         [&](const KdNode& cell, double, double) {
             for (uint32_t l = cell.first(); l < cell.first() + cell.count(); ++l) {
-                const Leaf& leaf = level1.leaves[l];
                 const auto test = [&](uint32_t number) {
                     const TriangleId id = twins.seen(numbers.id(number), p.skip);
-                    return nearest.offer(soup.triangle(id), id) && kAnyHit;
+                    const Triangle triangle = soup.triangle(id);
+                    const bool hit = nearest.offer(triangle, id);
+                    if (hit)
+                        approach.note_hit(triangle);
+                    return hit && kAnyHit;
                 };
-                if (walk_page(pages[l], leaf, p, p.ray.t_min, test, limit))
+                if (walk_page(pages[l], level1.leaves[l], approach.ray(), approach.ray().ray.t_min,
+                              test, limit))
                     return true;
             }
             return false;
         },
         limit);
-    return nearest.hit();
+    return kAnyHit ? nearest.unrounded_hit() : nearest.hit();
 }
 
 } // namespace ovc

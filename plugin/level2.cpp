@@ -62,15 +62,29 @@ public:
         levels_.seconds_level1 = watch.seconds();
         levels_.pages.resize(levels_.level1.leaves.size());
         begin(progress_, "level 2", 0.5, 2 * levels_.level1.reference_count());
-        build_missing_pages();
+        build_missing_pages(loose_pairs());
         while (true) {
             const Result<bool> again = cut_too_large();
             if (!again)
                 return again.error();
             if (!*again)
                 return std::move(levels_);
-            build_missing_pages();
+            build_missing_pages(loose_pairs());
         }
+    }
+
+    Levels build_smallest(std::vector<TriangleId> triangles, const Box& bounds,
+                          uint32_t leaf_triangles) {
+        const Stopwatch watch;
+        const bool one_frame = one_frame_suits(soup_, triangles, bounds);
+        levels_.level1 =
+            partition_by_count(soup_, std::move(triangles), bounds, leaf_triangles, progress_);
+        if (one_frame)
+            share_frame(levels_.level1);
+        levels_.seconds_level1 = watch.seconds();
+        levels_.pages.resize(levels_.level1.leaves.size());
+        build_missing_pages({});
+        return std::move(levels_);
     }
 
 private:
@@ -108,9 +122,8 @@ private:
                 double(levels_.level1.reference_count()) / double(triangles_)};
     }
 
-    void build_missing_pages() {
+    void build_missing_pages(const LoosePairs& loose) {
         const Stopwatch watch;
-        const LoosePairs loose = loose_pairs();
         parallel_for(levels_.pages.size(), 1, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
                 if (levels_.pages[i].texels.empty())
@@ -133,8 +146,8 @@ private:
             if (bytes <= most_bytes)
                 continue;
             if (triangles == 1)
-                return Error{
-                    fmt::format("a page of one triangle does not fit into {} bytes", most_bytes)};
+                return over_budget(
+                    fmt::format("a page of one triangle does not fit into {} bytes", most_bytes));
             most[i] = limits_.triangles_again(triangles, bytes);
             any = true;
         }
@@ -164,6 +177,14 @@ private:
 };
 
 } // namespace
+
+Levels build_smallest_levels(const Soup& soup, const Numbering& numbers,
+                             std::vector<TriangleId> triangles, const Box& bounds,
+                             uint32_t leaf_triangles, BuildProgress* progress) {
+    const LeafLimits none{leaf_triangles, LeafLimits::kAny};
+    return LevelsBuilder(soup, numbers, none, progress)
+        .build_smallest(std::move(triangles), bounds, leaf_triangles);
+}
 
 Result<Levels> build_levels(const Soup& soup, const Numbering& numbers,
                             std::span<const TriangleId> triangles, const Box& bounds,

@@ -47,8 +47,6 @@ struct LeafLimits {
     uint64_t page_bytes_of(uint64_t leaves) const {
         return leaves == 1 ? std::max(page_bytes, whole_bytes) : page_bytes;
     }
-    /// The same without one leaf for all.
-    LeafLimits cut() const { return {triangles, page_bytes, 0}; }
     /// Whether a page could be too large at all: else triangles alone decide.
     bool pages_matter() const;
     /// How many triangles a leaf may have for its page to fit where one takes so many bytes. At
@@ -60,6 +58,12 @@ struct LeafLimits {
 private:
     bool fits(uint64_t all, double bytes_per_triangle) const;
 };
+
+/// Leaves of at most leaf_triangles, cut by count (kdtree/partition.h), and pages in which planes
+/// cut nothing: what takes least where a budget has hardly room for anything.
+Levels build_smallest_levels(const Soup& soup, const Numbering& numbers,
+                             std::vector<TriangleId> triangles, const Box& bounds,
+                             uint32_t leaf_triangles, BuildProgress* progress = nullptr);
 
 /// Leaves within the limits; one whose page turns out too large is cut further. Error: a page of a
 /// single triangle does not fit.

@@ -3,7 +3,6 @@
 #include "plugin/page_rate.h"
 
 #include "core/parallel.h"
-#include "core/twins.h"
 #include "gpu/linked.h"
 #include "gpu/page.h"
 #include "kdtree/clip.h"
@@ -169,7 +168,6 @@ public:
                 // Where triangles are far larger than what lies between them, very many touch a
                 // cube.
                 members[c].resize(std::min(members[c].size(), kMostOverfull * triangles_each));
-                Twins::take_out(soup_, members[c]);
                 if (!members[c].empty())
                     made[c] = {chosen[c].center(), members[c].size(),
                                page_of(members[c], chosen[c])};

@@ -36,6 +36,7 @@ struct NearestQuery {
     }
     void set_miss(size_t i) const { results[i] = Hit{}; }
     void set(size_t i, const Hit& hit) const { results[i] = hit; }
+    void set(size_t i, const Nearest& nearest) const { results[i] = nearest.hit(); }
     bool was_hit(size_t i) const { return results[i].is_hit(); }
     const Hit& hit(size_t i) const { return results[i]; }
 };
@@ -55,6 +56,7 @@ struct OcclusionQuery {
     void flag(size_t) const {}
     void set_miss(size_t i) const { results[i] = 0; }
     void set(size_t i, const Hit& hit) const { results[i] = hit.is_hit(); }
+    void set(size_t i, const Nearest& nearest) const { results[i] = nearest.is_hit(); }
     bool was_hit(size_t i) const { return results[i] != 0; }
     Hit hit(size_t) const { return {}; } // which one is not kept
 };

@@ -6,6 +6,7 @@
 #include "plugin/faster_way.h"
 #include "plugin/gathering.h"
 #include "plugin/structure.h"
+#include "plugin/turn.h"
 
 #include <array>
 #include <atomic>
@@ -22,7 +23,7 @@ class SingleRays {
 
 public:
     /// turn: of the scene; streaming: the thread that has it and may call from within, if any.
-    SingleRays(std::mutex& turn, const std::atomic<std::thread::id>& streaming)
+    SingleRays(Turn& turn, const std::atomic<std::thread::id>& streaming)
         : turn_(turn), streaming_(streaming) {}
 
     /// The structure that calls are answered by, from now on; calls that were made before this
@@ -144,7 +145,7 @@ private:
         return true;
     }
 
-    std::mutex& turn_;
+    Turn& turn_;
     const std::atomic<std::thread::id>& streaming_;
     std::atomic<Structure*> structure_{nullptr};
     FasterWay way_;

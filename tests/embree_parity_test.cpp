@@ -128,7 +128,7 @@ std::string explanation(const Soup& soup, const std::vector<TriangleId>& ids, co
     if (ours == nearest) {
         const auto theirs =
             embree.mesh == kNone ? std::nullopt : test::exact_hit(ray, soup.triangle(embree));
-        if (theirs && *theirs == truth->t)
+        if (theirs && theirs->t == truth->t)
             return "a tie: the ray meets both at the same point, the smaller id wins";
         if (embree.mesh == kNone)
             return "ours is exact; Embree misses a hit at an edge or a grazed triangle";
@@ -136,7 +136,7 @@ std::string explanation(const Soup& soup, const std::vector<TriangleId>& ids, co
                       : "ours is exact; Embree's triangle is not met";
     }
     if (truth && ours.mesh != kNone)
-        if (const auto t = test::exact_hit(ray, soup.triangle(ours)); t && *t == truth->t)
+        if (const auto hit = test::exact_hit(ray, soup.triangle(ours)); hit && hit->t == truth->t)
             return "a tie: the ray meets several at the same point";
     return {};
 }

@@ -7,6 +7,8 @@
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include <array>
+#include <bit>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -29,10 +31,35 @@ inline Rational dot(const RationalVec& a, const RationalVec& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// The exact t at which the ray meets the closed triangle within [t_min, t_max]; nothing where it
-/// does not or where it runs within the triangle's plane. Based on: Moeller and Trumbore 1997,
-/// without a single rounding.
-inline std::optional<Rational> exact_hit(const Ray& ray, const Triangle& triangle) {
+/// The double nearest to x, of two the even one; the largest where x lies beyond it.
+inline double rounded(const Rational& x) {
+    constexpr double largest = std::numeric_limits<double>::max();
+    const Rational size = abs(x);
+    double nearest = std::min(size.convert_to<double>(), largest); // off by a little, perhaps
+    const auto nearer_to = [&](double other) {
+        const Rational gain = abs(size - Rational(nearest)) - abs(size - Rational(other));
+        return gain > 0 || (gain == 0 && std::bit_cast<uint64_t>(nearest) % 2 == 1);
+    };
+    while (nearest < largest && nearer_to(std::nextafter(nearest, largest)))
+        nearest = std::nextafter(nearest, largest);
+    while (nearest > 0 && nearer_to(std::nextafter(nearest, 0.0)))
+        nearest = std::nextafter(nearest, 0.0);
+    return x < 0 ? -nearest : nearest;
+}
+
+/// Where a ray meets a triangle.
+struct ExactHit {
+    Rational t, u, v;
+    TriangleId id;
+
+    Hit rounded() const { return {test::rounded(t), test::rounded(u), test::rounded(v), id}; }
+};
+
+/// Where the ray meets the closed triangle within [t_min, t_max]; nothing where it does not or
+/// where it runs within the triangle's plane. Based on: Moeller and Trumbore 1997, without a single
+/// rounding.
+inline std::optional<ExactHit> exact_hit(const Ray& ray, const Triangle& triangle,
+                                         TriangleId id = {0, 0}) {
     const RationalVec a = exact(triangle[0]);
     const RationalVec ab = minus(exact(triangle[1]), a);
     const RationalVec ac = minus(exact(triangle[2]), a);
@@ -52,13 +79,8 @@ inline std::optional<Rational> exact_hit(const Ray& ray, const Triangle& triangl
     const Rational t = dot(ac, q) / det;
     if (t < Rational(ray.t_min) || (std::isfinite(ray.t_max) && t > Rational(ray.t_max)))
         return std::nullopt;
-    return t;
+    return ExactHit{t, u, v, id};
 }
-
-struct ExactHit {
-    Rational t;
-    TriangleId id;
-};
 
 /// The nearest of all triangles, exactly; equal t goes to the smaller id. Only triangles whose box
 /// the ray comes near, by a margin that no rounding reaches, are computed exactly.
@@ -73,9 +95,9 @@ inline std::optional<ExactHit> exact_nearest(const Soup& soup, const std::vector
                                     4 * box.rounding());
         if (clip(p, wide, ray.t_min, ray.t_max).empty())
             continue;
-        if (const auto t = exact_hit(ray, triangle))
-            if (!best || *t < best->t || (*t == best->t && id < best->id))
-                best = {*t, id};
+        if (const auto hit = exact_hit(ray, triangle, id))
+            if (!best || hit->t < best->t || (hit->t == best->t && id < best->id))
+                best = hit;
     }
     return best;
 }

@@ -191,10 +191,11 @@ void expect_brute_force(const World& world, const std::vector<Ray>& rays, size_t
         Nearest nearest(p);
         for (const TriangleId id : ids)
             nearest.offer(world.expected.triangle(id), id);
-        ASSERT_EQ(std::memcmp(&hits[i], &nearest.hit(), sizeof(Hit)), 0)
+        const Hit expected = nearest.hit();
+        ASSERT_EQ(std::memcmp(&hits[i], &expected, sizeof(Hit)), 0)
             << "ray " << i << ": (" << hits[i].id.mesh << ", " << hits[i].id.prim << ") at "
-            << hits[i].t << ", expected (" << nearest.hit().id.mesh << ", " << nearest.hit().id.prim
-            << ") at " << nearest.hit().t;
+            << hits[i].t << ", expected (" << expected.id.mesh << ", " << expected.id.prim
+            << ") at " << expected.t;
         hit_count += hits[i].is_hit();
     }
     EXPECT_GT(hit_count, rays.size() / 2);

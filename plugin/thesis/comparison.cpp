@@ -172,7 +172,7 @@ private:
         for (const uint32_t rival : answer.rivals())
             if (rival != OVC_NO_TRIANGLE)
                 offer(nearest, rival, p.skip);
-        query_.set(first_ + i, nearest.hit());
+        query_.set(first_ + i, nearest);
         flagged_ += has_rivals; // retrace() counts the others
         return true;
     }
@@ -208,7 +208,7 @@ private:
             return offer(nearest, index, p.skip) && Query::kAnyHit;
         };
         walk_page(c_.arbiter_, c_.whole_, p, p.ray.t_min, test, [&] { return nearest.limit(); });
-        query_.set(first_ + i, nearest.hit());
+        query_.set(first_ + i, nearest);
     }
 
     Comparison& c_;

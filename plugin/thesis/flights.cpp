@@ -178,7 +178,7 @@ bool Flights::take_in(Flight& flight, const FrameAnswer& answer) {
         if (rival != OVC_NO_TRIANGLE)
             offer(nearest, rival, p.skip);
     flagged_ += has_rivals; // decide_in_double() counts the others
-    flight.hit = nearest.hit();
+    flight.hit = flight.any_hit ? nearest.unrounded_hit() : nearest.hit();
     if (flight.hit.is_hit())
         end_at(flight, p, nearest.limit(), -p.margin(s_.level1.leaves[flight.leaf].cell));
     return true;

@@ -88,7 +88,7 @@ Result<System> build_kd_texels(const Soup& soup, const Leaf& whole, BuildProgres
         triangles.size(), local.size(), progress,
         [&](uint32_t i, std::vector<Reference>& out) { local.find_leaves(triangles[i], i, out); });
     if (local.size() >= kMostCounted || references.triangles.size() >= kMostCounted)
-        return Error{"the KD-tree has more nodes or references than 30 bits count"};
+        return over_budget("the KD-tree has more nodes or references than 30 bits count");
 
     System system;
     Texels& texels = system.texels;

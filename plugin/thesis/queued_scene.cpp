@@ -59,8 +59,8 @@ Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint
         if (bytes <= page_bytes)
             return Done{};
         if (most == 1)
-            return Error{
-                fmt::format("a page of one triangle does not fit into {} bytes", page_bytes)};
+            return over_budget(
+                fmt::format("a page of one triangle does not fit into {} bytes", page_bytes));
         // What this page took a triangle, and a little more, tells how many fit.
         const double triangles = double(scene.level1.leaves[largest].triangles.size());
         const uint64_t fit = uint64_t(0.95 * double(page_bytes) / double(bytes) * triangles);
@@ -104,7 +104,8 @@ Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThre
                                                         BuildProgress* progress) {
     if (soup.triangle_count() > OVC_MAX_TRIANGLES)
         return Error{fmt::format("{} triangles are too many: a scene takes {}",
-                                 soup.triangle_count(), OVC_MAX_TRIANGLES)};
+                                 soup.triangle_count(), OVC_MAX_TRIANGLES),
+                     ErrorKind::InvalidArgument};
     auto scene = std::make_unique<QueuedScene>(soup, gl, options.certify);
     const Result<ovc::MemoryPlan> plan = ovc::plan_memory(
         options.budget_bytes ? options.budget_bytes : gl.info().default_budget_bytes(), gl.info(),

@@ -34,17 +34,17 @@ Result<MemoryPlan> plan_memory(const RunnerOptions& options, uint64_t texels,
     plan.tiles = plan_tiles(texels, options.textures);
     const uint32_t allowed = options.structure == OVC_STRUCTURE_MULTI_TEXTURE ? kMostTextures : 1;
     if (plan.tiles.count() > allowed)
-        return Error{fmt::format("{}: the scene takes {}{} bytes; a texture of 4096 x 4096 texels "
-                                 "holds {}, and it uses {}",
-                                 name_of(options.structure), at_least, texels * sizeof(uvec4),
-                                 kTextureBytes, allowed)};
+        return over_budget(fmt::format(
+            "{}: the scene takes {}{} bytes; a texture of 4096 x 4096 texels "
+            "holds {}, and it uses {}",
+            name_of(options.structure), at_least, texels * sizeof(uvec4), kTextureBytes, allowed));
     const uint64_t row = row_bytes(options.structure);
     const uint64_t scene = plan.tiles.bytes();
     if (options.budget_bytes < scene + row)
-        return Error{fmt::format(
+        return over_budget(fmt::format(
             "{}: a GPU budget of {} bytes is too small: the smallest that works is {}{} bytes ({} "
             "for the scene, which it holds whole, {} for rays and answers)",
-            name_of(options.structure), options.budget_bytes, at_least, scene + row, scene, row)};
+            name_of(options.structure), options.budget_bytes, at_least, scene + row, scene, row));
     plan.rows = uint32_t(std::min((options.budget_bytes - scene) / row, kMostRows));
     return plan;
 }

@@ -62,7 +62,7 @@ Result<System> build_skip_bvh(const Soup& soup, const Leaf& whole, BuildProgress
             boxes[i].add(corner);
     const InsertionTree tree = best_insertion_tree(boxes, kShuffles, progress);
     if (3 * triangles.size() + 2 * tree.nodes.size() >= kTriangle)
-        return Error{"the BVH has more texels than 31 bits count"};
+        return over_budget("the BVH has more texels than 31 bits count");
     return System{Packer(tree, triangles).pack(), triangles.size()};
 }
 

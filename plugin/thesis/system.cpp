@@ -24,8 +24,9 @@ static Result<System> build_page_system(const Soup& soup, const Leaf& whole,
                                         BuildProgress* progress) {
     Page page = build_page(soup, whole, progress);
     if (page.units() >= OVC_MAX_UNITS)
-        return Error{fmt::format("a BVH of {} bytes is more than its nodes can name: {} bytes",
-                                 page.bytes(), uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES)};
+        return over_budget(
+            fmt::format("a BVH of {} bytes is more than its nodes can name: {} bytes", page.bytes(),
+                        uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES));
     const uint32_t depth = stack_depth({&page, 1});
     const uint64_t units = page.units();
     return System{std::move(page.texels), whole.triangles.size(), depth, units};

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// round_hits() for any processor, and the choice among them.
+#include "core/hit_lanes.h"
+
+#include "core/hit_lanes_kernel.h"
+
+namespace ovc {
+
+void round_hits_avx2(HitLanes& lanes);   // hit_lanes_avx2.cpp
+void round_hits_avx512(HitLanes& lanes); // hit_lanes_avx512.cpp
+
+namespace {
+
+using Two = double __attribute__((vector_size(16)));
+using TwoWords = long long __attribute__((vector_size(16)));
+
+} // namespace
+
+/// Without a fused operation: based on Dekker 1971, with Veltkamp's splitting.
+template <>
+struct Lanes<Two> {
+    OVC_INLINE static Two product_error(Two a, Two b, Two product) {
+        const Two a_high = high(a), b_high = high(b);
+        const Two a_low = a - a_high, b_low = b - b_high;
+        return ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+    }
+    OVC_INLINE static Two magnitude(Two x) {
+        const TwoWords all_but_sign = TwoWords{} + 0x7fffffffffffffffLL;
+        return reinterpret_cast<Two>(reinterpret_cast<TwoWords>(x) & all_but_sign);
+    }
+
+private:
+    /// The upper 26 bits.
+    OVC_INLINE static Two high(Two x) {
+        const Two scaled = 134217729.0 * x; // 2^27 + 1
+        return scaled - (scaled - x);
+    }
+};
+
+static void round_hits_anywhere(HitLanes& lanes) {
+    round_hits_by<Two>(lanes);
+}
+
+using RoundHits = void (*)(HitLanes&);
+
+static RoundHits best_of_processor() {
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx512f"))
+        return round_hits_avx512;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        return round_hits_avx2;
+#endif
+    return round_hits_anywhere;
+}
+
+void round_hits(HitLanes& lanes) {
+    static const RoundHits best = best_of_processor();
+    best(lanes);
+}
+
+} // namespace ovc

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// HitLanes: t, u and v of several hits at once, rounded once, by the widest vectors that the
+// processor has.
+#pragma once
+
+namespace ovc {
+
+/// Eight rays and the triangle that each of them hits. Arrays are [axis][lane].
+struct HitLanes {
+    static constexpr int kCount = 8;
+    using Vec = double[3][kCount];
+
+    alignas(64) Vec a, b, c, org, dir;
+    alignas(64) double t[kCount], u[kCount], v[kCount];
+    /// Not 0: t, u and v are the exact values, rounded to nearest. Else doubled precision does not
+    /// tell how they round, and they are anything.
+    alignas(64) long long known[kCount];
+};
+
+/// Fills in t, u, v and known of all lanes, whatever those hold that are not used. The same bits on
+/// every processor.
+void round_hits(HitLanes& lanes);
+
+} // namespace ovc

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kdtree/approach.h"
+
+#include "core/exact.h"
+#include "kdtree/partition.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ovc {
+namespace {
+
+constexpr double kLargest = std::numeric_limits<double>::max();
+
+double rounded(const Exact& x) {
+    return Exact::quotient(x, Exact(1));
+}
+double down(double x) {
+    return std::nextafter(x, -kLargest);
+}
+double up(double x) {
+    return std::nextafter(x, kLargest);
+}
+
+/// A t at which coordinate `axis` of the ray is within `error` of `goal`, as a sum of doubles: one
+/// has too few bits where the ray comes from afar. Nothing where it lies beyond all doubles.
+std::optional<Exact> t_at(const Ray& ray, int axis, double goal, double error) {
+    constexpr int kMaxSteps = 64; // each adds 52 bits, of 2,100 that doubles span
+    const Exact dir(ray.dir[axis]);
+    Exact t, rest = Exact(goal) - Exact(ray.org[axis]);
+    for (int i = 0; i < kMaxSteps; ++i) {
+        const double left = rounded(rest);
+        if (std::abs(left) <= error)
+            return t;
+        const Exact step(std::clamp(left / ray.dir[axis], -kLargest, kLargest));
+        t = t + step;
+        rest = rest - step * dir;
+    }
+    return std::nullopt;
+}
+
+/// The direction without components that do not move the ray within a scene.
+dvec3 main_direction(const dvec3& dir) {
+    dvec3 kept = dir;
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(dir[axis]) < 0x1p-200 * max_component(glm::abs(dir)))
+            kept[axis] = 0;
+    return kept;
+}
+
+bool is_near(const PreparedRay& p, const Box& bounds) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (p.ray.dir[axis] != 0 && !std::isfinite(p.inv_dir[axis]))
+            return false;
+    return p.margin(bounds) <= padding_of(bounds);
+}
+
+} // namespace
+
+Approach::Approach(const PreparedRay& p, const Box& bounds) : p_(p) {
+    if (bounds.empty() || is_near(p, bounds))
+        return;
+    const double error = 0x1p-60 * max_component(bounds.extent());
+    const std::optional<Exact> t = t_at(p.ray, p.kz, bounds.center()[p.kz], error);
+    Ray ray = p.ray;
+    for (int axis = 0; t && axis < 3; ++axis)
+        ray.org[axis] = rounded(Exact(p.ray.org[axis]) + *t * Exact(p.ray.dir[axis]));
+    ray.dir = main_direction(p.ray.dir);
+    ray.t_min = t ? down(rounded(Exact(p.ray.t_min) - *t)) : 0;
+    ray.t_max = t ? up(rounded(Exact(p.ray.t_max) - *t)) : 0;
+    moved_.emplace(ray, p.skip);
+    moved_->org_error = 0x1p-52 * max_component(glm::abs(ray.org)) + 0x1p-1022;
+    limit_ = t ? ray.t_max : -kLargest;
+}
+
+void Approach::note_hit(const Triangle& triangle) {
+    if (!moved_)
+        return;
+    const Ray& ray = moved_->ray;
+    double latest = -kLargest; // of the corners, so of any point of the triangle
+    for (const dvec3& corner : triangle)
+        latest = std::max(latest, (corner[p_.kz] - ray.org[p_.kz]) / ray.dir[p_.kz]);
+    const double margin = moved_->margin(bounds_of(triangle)) / std::abs(ray.dir[p_.kz]);
+    limit_ = std::min(limit_, latest + margin + 0x1p-50 * std::abs(latest));
+}
+
+} // namespace ovc
