@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The nearest hit by testing every triangle in whole numbers, which Boost multiplies. Shares no
+// code with the library: what the C ABI answers is held against it.
+#pragma once
+
+#include "plugin/overcast.h"
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace ovc::oracle {
+
+using Integer = boost::multiprecision::cpp_int;
+using Corner = std::array<double, 3>;
+
+struct Triangle {
+    std::array<Corner, 3> corners;
+    ovc_triangle id;
+};
+
+class Oracle {
+public:
+    /// Corners are finite. Triangles without area are left out.
+    explicit Oracle(std::vector<Triangle> triangles);
+
+    /// The answer that overcast.h promises: t, u and v are the exact values, each rounded to the
+    /// nearest double. skip: a triangle that the ray does not see.
+    ovc_hit nearest(const ovc_ray& ray, ovc_triangle skip = {OVC_NONE, OVC_NONE}) const;
+
+    size_t triangle_count() const { return triangles_.size(); }
+    uint64_t exact_tests() const { return exact_tests_; }
+
+private:
+    std::vector<Triangle> triangles_;
+    int lowest_bit_ = 0; // all corners are multiples of 2^lowest_bit_
+    mutable uint64_t exact_tests_ = 0;
+};
+
+} // namespace ovc::oracle
