@@ -42,9 +42,9 @@ or on Mesa's software renderer.
 This package has the library libovercast.so with its header, the command
 overcast, which renders .ply, .obj, .pbrt and .pov scenes, the Python module
 overcast, and overcast-tachyon, which runs tachyon with the library in it.")
-# dpkg-shlibdeps finds the libraries that are linked. EGL is loaded while the library runs, and takes a driver.
+# dpkg-shlibdeps finds the libraries that are linked. EGL and OpenGL are loaded while the library runs, and take a driver.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libopengl0 | libgl1")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl-mesa0, libgl1-mesa-dri, python3, python3-numpy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "pkg-config, cmake, tachyon")
 # What programs that link the library depend on, and the linker's cache.

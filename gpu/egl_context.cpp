@@ -3,10 +3,13 @@
 // EGL_MESA_platform_surfaceless where there is none.
 #include "gpu/egl_context.h"
 
+#include "gpu/driver_faults.h"
 #include "gpu/fork_mark.h"
 #include "gpu/gl.h"
+#include "gpu/gl_libraries.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -28,6 +31,16 @@ namespace {
 constexpr uint64_t kSoftwareMemory = uint64_t(1) << 30;
 // llvmpipe (Mesa 22.3) crashes on larger buffers bound as images.
 constexpr uint64_t kMaxBufferTexels = uint64_t(1) << 27;
+
+/// What most often is behind a display that does not start.
+std::string likely_cause() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        return fmt::format("; this process may have too little address space for its driver: "
+                           "ulimit -v is {} KiB",
+                           limit.rlim_cur / 1024);
+    return "; its driver may be missing: install libgl1-mesa-dri for Mesa's, or your GPU's";
+}
 
 std::string egl_error() {
     switch (eglGetError()) {
@@ -101,6 +114,7 @@ DeviceInfo describe() {
     info.is_software = name.find("llvmpipe") != std::string::npos ||
                        name.find("softpipe") != std::string::npos ||
                        name.find("swrast") != std::string::npos;
+    info.is_tested = name.starts_with("llvmpipe");
     info.has_ballots = epoxy_has_gl_extension("GL_ARB_shader_ballot") &&
                        epoxy_has_gl_extension("GL_ARB_gpu_shader_int64");
     info.takes_host_pages = info.is_software && epoxy_has_gl_extension("GL_AMD_pinned_memory");
@@ -141,6 +155,11 @@ Result<std::vector<EglContext::Platform>> EglContext::platforms() {
                      "work on both sides; fork before a device is opened or listed"};
     if (Result<Done> checked = check_egl_environment(); !checked)
         return checked.error();
+    if (Result<Done> there = open_gl_libraries(); !there)
+        return there.error();
+    if (const auto cache = mesa_shader_cache())
+        if (Result<Done> reserved = reserve_shader_cache_index(*cache); !reserved)
+            return reserved.error();
     std::vector<Platform> found;
     const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     const bool devices = lists(extensions, "EGL_EXT_platform_device") &&
@@ -175,7 +194,8 @@ Result<EglContext> EglContext::open(const Platform& platform) {
             fmt::format("{}: eglGetPlatformDisplay failed: {}", platform.name, egl_error())};
     EGLint major = 0, minor = 0;
     if (!eglInitialize(display, &major, &minor))
-        return Error{fmt::format("{}: eglInitialize failed: {}", platform.name, egl_error())};
+        return Error{fmt::format("{}: eglInitialize failed: {}{}", platform.name, egl_error(),
+                                 likely_cause())};
     context.display_ = display;
     const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
     for (const char* needed : {"EGL_KHR_surfaceless_context", "EGL_KHR_no_config_context"})
@@ -211,6 +231,9 @@ Result<EglContext> EglContext::open(const Platform& platform) {
     if (!context.make_current())
         return Error{fmt::format("{}: eglMakeCurrent failed: {}", platform.name, egl_error())};
     context.info_ = describe();
+    if (const char* symptom = known_fault(context.info_.renderer, context.info_.version))
+        return Error{fmt::format("{}: '{}' is passed over: {}", platform.name,
+                                 context.info_.renderer, symptom)};
     return context;
 }
 

@@ -17,6 +17,7 @@ struct DeviceInfo {
     std::string vendor;
     std::string version;
     bool is_software = false;
+    bool is_tested = false;   // all our tests have run on a driver of this kind
     bool has_ballots = false; // lanes of a subgroup can tell each other: GL_ARB_shader_ballot
     /// A software renderer that uses buffers of the process's own pages where they are:
     /// GL_AMD_pinned_memory.

@@ -2,6 +2,8 @@
 // Devices are found by number and by name; each way to fail has its sentence.
 #include "gpu/egl_context.h"
 
+#include "gpu/driver_faults.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,6 +49,13 @@ TEST(EglContextGl, ANonsensePlatformSaysWhatWasTried) {
               "EGL cannot start: EGL_PLATFORM is set to 'nonsense', which is no EGL platform; "
               "Overcast tried 'device' "
               "and 'surfaceless'; unset EGL_PLATFORM or set it to one of these");
+}
+
+TEST(EglContextGl, DriversThatEndTheProcessArePassedOver) {
+    EXPECT_TRUE(
+        known_fault("zink (llvmpipe (LLVM 15.0.6, 256 bits))", "4.5 (Core Profile) Mesa 22.3.6"));
+    EXPECT_FALSE(known_fault("llvmpipe (LLVM 15.0.6, 256 bits)", "4.5 (Core Profile) Mesa 22.3.6"));
+    EXPECT_FALSE(known_fault("zink (NVIDIA H200)", "4.6 (Core Profile) Mesa 25.0.1"));
 }
 
 TEST(EglContextGl, FallingBackToSoftwareIsSaid) {

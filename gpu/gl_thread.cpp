@@ -4,9 +4,20 @@
 
 #include "gpu/driver_threads.h"
 
+#include <chrono>
 #include <utility>
 
 namespace ovc {
+
+/// What it throws, for want of memory, would end the process on a thread of its own.
+static Result<EglContext> create_context(const std::string& device, const LogSink& log) {
+    try {
+        return EglContext::create(device, log);
+    } catch (const std::exception& e) {
+        return Error{std::string("out of memory while opening a device: ") + e.what(),
+                     ErrorKind::OutOfMemory};
+    }
+}
 
 Result<std::unique_ptr<GlThread>> GlThread::start(const std::string& device, LogSink log) {
     std::unique_ptr<GlThread> self(new GlThread(device, std::move(log)));
@@ -26,29 +37,42 @@ GlThread::~GlThread() {
         stop_ = true;
     }
     changed_.notify_all();
-    thread_.join();
+    if (thread_.joinable()) // the system may have refused it
+        thread_.join();
 }
 
 void GlThread::execute(const std::function<void(GlState&)>& work) {
     Job job{&work};
-    post(job);
-    finish(job);
+    post(job, [] {});
+    wait_for(job, [] {});
+    rethrow(job);
 }
 
-void GlThread::post(Job& job) {
+/// Until ready(), calling idle() without the lock now and then.
+template <class Ready>
+void GlThread::wait_until(std::unique_lock<std::mutex>& lock, const std::function<void()>& idle,
+                          Ready&& ready) {
+    constexpr std::chrono::milliseconds kBetweenCalls(10);
+    while (!changed_.wait_for(lock, kBetweenCalls, ready)) {
+        lock.unlock();
+        idle();
+        lock.lock();
+    }
+}
+
+void GlThread::post(Job& job, const std::function<void()>& idle) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return !job_; });
+    wait_until(lock, idle, [&] { return !job_; });
     job_ = &job;
     changed_.notify_all();
 }
 
-void GlThread::wait_for(const Job& job) {
+void GlThread::wait_for(const Job& job, const std::function<void()>& idle) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return job.done; });
+    wait_until(lock, idle, [&] { return job.done; });
 }
 
-void GlThread::finish(const Job& job) {
-    wait_for(job);
+void GlThread::rethrow(const Job& job) {
     if (job.thrown)
         std::rethrow_exception(job.thrown);
 }
@@ -88,7 +112,7 @@ void GlThread::forget_if_dead(GlState& state) {
 
 void GlThread::serve() {
     name_device_thread();
-    Result<EglContext> context = EglContext::create(device_, log_);
+    Result<EglContext> context = create_context(device_, log_);
     std::unique_lock lock(mutex_);
     if (!context) {
         started_ = context.error();

@@ -48,19 +48,21 @@ public:
         }
     }
 
-    /// Runs work(GlState&) there and meanwhile() here, which may call run() too; waits for both.
+    /// Runs work(GlState&) there and meanwhile() here, which may call run() too; waits for both,
+    /// and calls idle() here again and again as it waits.
     template <class Work, class Meanwhile>
-    void run_beside(Work&& work, Meanwhile&& meanwhile) {
+    void run_beside(Work&& work, Meanwhile&& meanwhile, const std::function<void()>& idle) {
         const std::function<void(GlState&)> function = [&](GlState& state) { work(state); };
         Job job{&function};
-        post(job);
+        post(job, idle);
         try {
             meanwhile();
+            wait_for(job, idle);
         } catch (...) {
-            wait_for(job); // it refers to what is here
+            wait_for(job, [] {}); // it refers to what is here
             throw;
         }
-        finish(job);
+        rethrow(job);
     }
 
     const DeviceInfo& info() const { return info_; }
@@ -81,9 +83,12 @@ private:
     };
 
     void execute(const std::function<void(GlState&)>& work);
-    void post(Job& job);
-    void wait_for(const Job& job);
-    void finish(const Job& job);
+    void post(Job& job, const std::function<void()>& idle);
+    void wait_for(const Job& job, const std::function<void()>& idle);
+    template <class Ready>
+    void wait_until(std::unique_lock<std::mutex>& lock, const std::function<void()>& idle,
+                    Ready&& ready);
+    static void rethrow(const Job& job);
     void serve();
     static void forget_if_dead(GlState& state);
 

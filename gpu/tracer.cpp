@@ -47,17 +47,22 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
     plan.batch_rays = kBlockRays;
     const uint64_t smallest = plan.ray_bytes() + kSmallestPool;
     if (budget_bytes < smallest)
-        return Error{fmt::format("a GPU budget of {} bytes is too small: the smallest that works "
-                                 "is {} bytes ({} for rays and answers, {} for a page)",
-                                 budget_bytes, smallest, plan.ray_bytes(), kSmallestPool)};
+        return over_budget(
+            fmt::format("a GPU budget of {} bytes is too small: the smallest that works "
+                        "is {} bytes ({} for rays and answers, {} for a page)",
+                        budget_bytes, smallest, plan.ray_bytes(), kSmallestPool));
     // An eighth for rays: batches of ten thousand and more already run at full speed, and pages
-    // want the rest.
-    const uint64_t blocks = budget_bytes / 8 / plan.ray_bytes();
-    const uint64_t most = device.is_software ? kMostBlocksInSoftware : kMostBlocks;
-    plan.batch_rays *= uint32_t(std::clamp<uint64_t>(
-        blocks, 1, std::min<uint64_t>(most, device.max_texture_size / OVC_TILE)));
+    // want the rest. The share is cut off whether whole blocks fill it or not, so that a larger
+    // budget never has a smaller pool.
+    MemoryPlan most = plan;
+    most.batch_rays *= std::min(device.is_software ? kMostBlocksInSoftware : kMostBlocks,
+                                device.max_texture_size / OVC_TILE);
+    const uint64_t ray_share = std::clamp(budget_bytes / 8, plan.ray_bytes(), most.ray_bytes());
+    plan.batch_rays *= uint32_t(ray_share / plan.ray_bytes());
+    while (plan.ray_bytes() > ray_share)
+        plan.batch_rays -= kBlockRays;
     plan.pool_bytes =
-        (budget_bytes - plan.ray_bytes()) / device.buffer_alignment * device.buffer_alignment;
+        (budget_bytes - ray_share) / device.buffer_alignment * device.buffer_alignment;
     plan.pool_bytes = std::min(plan.pool_bytes, device.max_buffer_texels * sizeof(uvec4));
     return plan;
 }
@@ -94,10 +99,11 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
 
 /// What needs the memory to be there.
 Result<Done> Tracer::set_up() {
-    if (Result<Done> ok = check_gl("allocating the page pool and the buffers of rays"); !ok)
-        return ok;
-    if (ledger_->refused)
+    const Result<Done> allocated = check_gl("allocating the page pool and the buffers of rays");
+    if (ledger_->refused) // then GL's error only follows from it
         return Error{"the GPU is out of memory", ErrorKind::OutOfGpuMemory};
+    if (!allocated)
+        return allocated;
     const std::vector<uvec4> table = pack_level1(level1_data_);
     glNamedBufferSubData(level1_buffer_.id(), 0, GLsizeiptr(table.size() * sizeof(uvec4)),
                          table.data());

@@ -20,13 +20,14 @@ static constexpr const char* kExamples = R"(Examples:
 The environment variable OVC_PLUGIN names another libovercast.so than the one beside this program.)";
 
 static std::string describe(size_t number, const ovc_device_info& info) {
-    return fmt::format("{}  {}{}\n"
+    return fmt::format("{}  {}{}{}\n"
                        "   vendor   {}\n"
                        "   version  {}\n"
                        "   memory   {}, of which {} by default\n"
                        "   limits   textures of {} texels a side, buffer textures of {} texels\n",
-                       number, info.renderer, info.is_software ? " (software)" : "", info.vendor,
-                       info.version, human_bytes(info.memory_bytes),
+                       number, info.renderer, info.is_software ? " (software)" : "",
+                       info.is_tested ? "" : " (untested: please tell us how it fares)",
+                       info.vendor, info.version, human_bytes(info.memory_bytes),
                        human_bytes(info.default_budget_bytes), human_count(info.max_texture_size),
                        human_count(info.max_buffer_texels));
 }

@@ -2,6 +2,7 @@
 // Devices: listing, opening, describing.
 #include "plugin/device.h"
 
+#include "core/parallel.h"
 #include "plugin/device_call.h"
 #include "plugin/struct_size.h"
 
@@ -37,22 +38,46 @@ void copy(char (&to)[N], const std::string& from) {
     to[length] = '\0';
 }
 
+/// All that an info of this header or of an earlier one has room for.
 void fill(ovc_device_info& to, const DeviceInfo& from) {
-    check_size<ovc_device_info>("ovc_device_info", to.struct_size);
-    copy(to.renderer, from.renderer);
-    copy(to.vendor, from.vendor);
-    copy(to.version, from.version);
-    to.is_software = from.is_software;
-    to.max_texture_size = from.max_texture_size;
-    to.max_buffer_texels = from.max_buffer_texels;
-    to.memory_bytes = from.memory_bytes;
-    to.default_budget_bytes = from.default_budget_bytes();
+    const size_t size = to.struct_size;
+    check_size<ovc_device_info>("ovc_device_info", size, offsetof(ovc_device_info, is_tested));
+    ovc_device_info all{size};
+    copy(all.renderer, from.renderer);
+    copy(all.vendor, from.vendor);
+    copy(all.version, from.version);
+    all.is_software = from.is_software;
+    all.max_texture_size = from.max_texture_size;
+    all.max_buffer_texels = from.max_buffer_texels;
+    all.memory_bytes = from.memory_bytes;
+    all.default_budget_bytes = from.default_budget_bytes();
+    all.is_tested = from.is_tested;
+    std::memcpy(&to, &all, size);
+}
+
+void check_environment() {
+    if (const Result<Done> environment = check_egl_environment(); !environment)
+        throw Failure{OVC_ERROR_INVALID_ARGUMENT, environment.error().message};
+}
+
+Failure no_device_for(const Error& error) {
+    return {error.kind == ErrorKind::OutOfMemory ? OVC_ERROR_OUT_OF_MEMORY : OVC_ERROR_NO_DEVICE,
+            error.message};
 }
 
 /// EGL's idea of a current context is per thread: a thread of our own leaves the host's alone.
 Result<std::vector<DeviceInfo>> list_on_own_thread() {
     Result<std::vector<DeviceInfo>> found = Error{};
-    std::thread([&] { found = EglContext::list(); }).join();
+    std::exception_ptr thrown;
+    std::thread([&] {
+        try {
+            found = EglContext::list();
+        } catch (...) {
+            thrown = std::current_exception();
+        }
+    }).join();
+    if (thrown)
+        std::rethrow_exception(thrown);
     return found;
 }
 
@@ -88,11 +113,17 @@ ovc_result list_devices(ovc_device_info* infos, uint32_t capacity, uint32_t* cou
     return guard(no_device, [&] {
         if (!count || (capacity && !infos))
             throw Failure{OVC_ERROR_INVALID_ARGUMENT, "list_devices: infos or count is NULL"};
+        check_environment();
         const Result<std::vector<DeviceInfo>> found = list_on_own_thread();
         if (!found)
-            throw Failure{OVC_ERROR_NO_DEVICE, found.error().message};
-        for (uint32_t i = 0; i < std::min<size_t>(capacity, found->size()); ++i)
-            fill(infos[i], (*found)[i]);
+            throw no_device_for(found.error());
+        // Infos of an earlier header are smaller, and lie as near to each other.
+        auto* info = reinterpret_cast<std::byte*>(infos);
+        for (uint32_t i = 0; i < std::min<size_t>(capacity, found->size()); ++i) {
+            auto& to = *reinterpret_cast<ovc_device_info*>(info);
+            fill(to, (*found)[i]);
+            info += to.struct_size;
+        }
         *count = uint32_t(found->size());
     });
 }
@@ -115,12 +146,12 @@ ovc_result create_device(const ovc_device_config* given, ovc_device* device) {
                 const HostFunction mark;
                 log(user, ovc_log_level(level), text.c_str());
             };
-        if (const Result<Done> environment = check_egl_environment(); !environment)
-            throw Failure{OVC_ERROR_INVALID_ARGUMENT, environment.error().message};
+        check_environment();
+        start_threads();
         Result<std::unique_ptr<GlThread>> gl =
             GlThread::start(config.name ? config.name : "", created->log);
         if (!gl)
-            throw Failure{OVC_ERROR_NO_DEVICE, gl.error().message};
+            throw no_device_for(gl.error());
         created->gl = std::move(*gl);
         *device = created.release();
     });

@@ -14,6 +14,7 @@
 #include "plugin/single_rays.h"
 #include "plugin/structure.h"
 #include "plugin/submissions.h"
+#include "plugin/turn.h"
 
 #include <atomic>
 #include <deque>
@@ -23,6 +24,7 @@
 #include <mutex>
 #include <new>
 #include <string>
+#include <system_error>
 #include <thread>
 
 namespace ovc {
@@ -87,7 +89,7 @@ struct ovc_scene_t {
     std::atomic<uint32_t> magic{ovc::kSceneMagic};
     ovc::CallsInside calls;
     ovc_device device = nullptr;
-    std::mutex turn; // calls on one scene wait here
+    ovc::Turn turn; // calls on one scene wait here
     ovc_scene_config config{sizeof(ovc_scene_config)};
     ovc::Soup soup;
     std::map<uint32_t, ovc::Chunk> templates;  // by number; each an empty chunk of the soup
@@ -157,6 +159,15 @@ ovc_result guard(Keeper& messages, Body&& body) {
         return fail(failure.code, failure.message);
     } catch (const std::bad_alloc&) {
         return fail(OVC_ERROR_OUT_OF_MEMORY, "out of host memory");
+    } catch (const std::system_error& e) {
+        // What the system refuses us is a thread, for want of memory or by a limit.
+        if (e.code() == std::errc::resource_unavailable_try_again ||
+            e.code() == std::errc::not_enough_memory)
+            return fail(OVC_ERROR_OUT_OF_MEMORY,
+                        std::string("the system refuses a thread: out of memory, or a limit "
+                                    "(ulimit -u, a container's pids) is reached: ") +
+                            e.what());
+        return fail(OVC_ERROR_INTERNAL, std::string("internal error: ") + e.what());
     } catch (const std::exception& e) {
         return fail(OVC_ERROR_INTERNAL, std::string("internal error: ") + e.what());
     } catch (...) {

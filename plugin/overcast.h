@@ -7,7 +7,7 @@
  * pointer of the caller's after it returns, except the positions of a mesh added with OVC_MESH_SHARED. The caller owns every
  * buffer. Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero. Structs
  * and the table only ever grow at their end: the struct_size of an earlier header is fine. The manual is docs/abi.md.
- * Calls may come from any thread; calls on one scene wait their turn. The caller's GL context, floating-point state and
+ * Calls may come from any thread, of 256 KiB of stack at least; calls on one scene wait their turn, first come, first served. The caller's GL context, floating-point state and
  * environment are left alone: each device has a thread of its own. The functions that a caller hands in for errors, logs, progress
  * and what is saved may call last_error and nothing else. In a process that is forked, the parent's handles are errors. */
 #ifndef OVERCAST_H
@@ -43,8 +43,9 @@ typedef enum ovc_result {
 #define OVC_NONE 0xffffffffu
 
 /* The points org + t dir, t_min <= t <= t_max. dir need not be of unit length: t counts in its lengths. A ray with NaN or
- * infinity in it (but t_max may be infinite), a direction that is zero or shorter than 1e-300, or t_min > t_max misses, and
- * is counted. 64 bytes. */
+ * infinity in it (but t_max may be infinite), a direction whose components are all below 1e-300 in magnitude, or t_min > t_max
+ * misses, and is counted. All other rays are answered exactly, from any distance and with denormal parts; t_min or t_max of -0 is 0,
+ * and nothing is hit beyond the largest double. 64 bytes. */
 typedef struct ovc_ray {
     double org[3];
     double t_min;
@@ -67,7 +68,7 @@ typedef enum ovc_ray_format {
 } ovc_ray_format;
 
 /* The nearest hit, at org + t dir = (1-u-v) a + u b + v c of the triangle's corners a, b, c; equal t goes to the smaller
- * (mesh, prim). A miss: mesh = prim = OVC_NONE, t = infinity. 32 bytes. */
+ * (mesh, prim). In certified precision t, u and v are the exact values, each rounded once to the nearest double. A miss: mesh = prim = OVC_NONE, t = infinity. 32 bytes. */
 typedef struct ovc_hit {
     double t;
     double u;
@@ -101,6 +102,7 @@ typedef struct ovc_device_config {
     void* error_user;
 } ovc_device_config;
 
+/* The struct_size of an earlier header is fine: what it lacks is not filled in. */
 typedef struct ovc_device_info {
     size_t struct_size;
     char renderer[128]; /* GL_RENDERER, as the driver says it */
@@ -111,6 +113,8 @@ typedef struct ovc_device_info {
     uint64_t max_buffer_texels;      /* of a buffer texture, after the clamp to what works */
     uint64_t memory_bytes;           /* free GPU memory as the driver reports it; on a software renderer 1 GiB */
     uint64_t default_budget_bytes;   /* what gpu_memory_bytes = 0 means */
+    uint32_t is_tested; /* 1: all of Overcast's tests have run on a driver of this kind; 0: none that we know of */
+    uint32_t reserved;  /* 0 */
 } ovc_device_info;
 
 typedef enum ovc_precision {
@@ -181,8 +185,8 @@ typedef enum ovc_mesh_flags {
     OVC_MESH_TEMPLATE = 2 /* no ray hits the mesh itself: it is there for its instances. It counts for no triangles */
 } ovc_mesh_flags;
 
-/* Corners are kept as they are given: floats as floats, doubles as doubles (twice the host memory). Where there are doubles or a
- * transform, a coordinate beyond 2^256 counts as infinite and one within 2^-256 as 0. */
+/* Corners are kept as they are given: floats as floats, doubles as doubles (twice the host memory). A coordinate of a corner, with
+ * its origin and its transform, beyond 2^256 counts as infinite, and one within 2^-256 as 0. */
 typedef struct ovc_mesh {
     size_t struct_size;
     const float* positions;   /* vertex_count x 3 offsets from origin, stride bytes apart, aligned to 4 */

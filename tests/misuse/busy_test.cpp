@@ -4,8 +4,12 @@
 #include "tests/misuse/field.h"
 
 #include <gmock/gmock.h>
+#include <pthread.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <thread>
 
@@ -38,6 +42,58 @@ TEST_F(Busy, SixtyFourThreadsOnTwoDevicesAndFourScenesGetTheirAnswers) {
             wrong += !test::field_answers(scenes[size_t(i + round) % 4].get());
     });
     EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(Busy, ThreadsWithBatchesAreServedFirstComeFirstServed) {
+    const test::AbiScene scene(test::make_field(device.get()));
+    ASSERT_TRUE(scene);
+    constexpr int kThreads = 8;
+    std::array<std::atomic<int>, kThreads> calls{};
+    std::atomic<bool> stop{false};
+    std::vector<std::thread> threads;
+    for (int i = 0; i < kThreads; ++i)
+        threads.emplace_back([&, i] {
+            while (!stop) {
+                test::field_answers(scene.get());
+                ++calls[size_t(i)];
+            }
+        });
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    stop = true;
+    for (std::thread& thread : threads)
+        thread.join();
+    const auto [least, most] = std::minmax_element(calls.begin(), calls.end());
+    EXPECT_GE(*least, *most / 2 - 1) << "of " << *most << " calls of the busiest thread";
+    EXPECT_GT(*least, 0);
+}
+
+/// What overcast.h says of the stack.
+TEST_F(Busy, AThreadOf256KibOfStackMayCall) {
+    struct Call {
+        ovc_device device;
+        bool right = false;
+    } call{device.get()};
+    const auto body = [](void* given) -> void* {
+        auto& asked = *static_cast<Call*>(given);
+        const test::AbiScene scene(test::make_field(asked.device));
+        ovc_ray far = test::into_cell(5, 3); // which takes whole numbers
+        far.org[2] = 1e200;
+        ovc_hit hits[2]{};
+        const bool traced = scene && test::field_answers(scene.get()) &&
+                            api().intersect(scene.get(), &far, 1, &hits[0], nullptr) == OVC_OK &&
+                            api().intersect1(scene.get(), &far, &hits[1], nullptr) == OVC_OK;
+        asked.right =
+            traced && test::is_in_cell(hits[0], 5, 1e200) && test::is_in_cell(hits[1], 5, 1e200);
+        return nullptr;
+    };
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    ASSERT_EQ(pthread_attr_setstacksize(&attributes, 256 << 10), 0);
+    pthread_t thread;
+    ASSERT_EQ(pthread_create(&thread, &attributes, body, &call), 0);
+    pthread_join(thread, nullptr);
+    pthread_attr_destroy(&attributes);
+    EXPECT_TRUE(call.right);
 }
 
 TEST_F(Busy, SixtyFourThreadsMakeAndDestroyScenesOfOneDevice) {

@@ -26,6 +26,9 @@ Misuses misuse_list_devices(Subject& s) {
     wrong.without_device("count NULL", api().list_devices(nullptr, 0, nullptr));
     wrong.without_device("infos NULL", api().list_devices(nullptr, 1, &count));
     wrong.without_device("struct_size 0", api().list_devices(&unsized, 1, &count));
+    setenv("EGL_PLATFORM", "nonsense", 1);
+    wrong.without_device("EGL_PLATFORM", api().list_devices(nullptr, 0, &count));
+    unsetenv("EGL_PLATFORM");
     return wrong.found();
 }
 

@@ -18,6 +18,20 @@ Misuses misuse_intersect(Subject& s) {
     wrong.argument("hits NULL", api().intersect(s.field, &ray, 1, nullptr, nullptr));
     wrong.argument("struct_size 0", api().intersect(s.field, &ray, 1, &hit, &unsized));
     wrong.state("before commit", api().intersect(s.empty, &ray, 1, &hit, nullptr));
+    ovc_ray rays[4] = {ray, ray, ray, ray};
+    auto* const within = reinterpret_cast<ovc_hit*>(&rays[1]);
+    wrong.argument("hits over rays", api().intersect(s.field, rays, 4, within, nullptr));
+    ovc_hit hits[4];
+    auto noted = sized<ovc_query>();
+    noted.leaf = reinterpret_cast<uint32_t*>(&hits[3]);
+    wrong.argument("notes over hits", api().intersect(s.field, rays, 4, hits, &noted));
+    uint32_t notes[5];
+    noted.leaf = notes;
+    noted.passes = notes + 1;
+    wrong.argument("notes over notes", api().intersect(s.field, rays, 4, hits, &noted));
+    noted = sized<ovc_query>();
+    noted.skip = reinterpret_cast<ovc_triangle*>(&hits[2]);
+    wrong.argument("hits over skip", api().intersect(s.field, rays, 4, hits, &noted));
     return wrong.found();
 }
 Misuses misuse_occluded(Subject& s) {
@@ -34,6 +48,9 @@ Misuses misuse_occluded(Subject& s) {
     wrong.argument("struct_size 0", api().occluded(s.field, &ray, 1, &answer, &unsized));
     wrong.argument("notes", api().occluded(s.field, &ray, 1, &answer, &noted));
     wrong.state("before commit", api().occluded(s.empty, &ray, 1, &answer, nullptr));
+    ovc_ray rays[2] = {ray, ray};
+    auto* const within = reinterpret_cast<uint8_t*>(rays) + 127;
+    wrong.argument("answers over rays", api().occluded(s.field, rays, 2, within, nullptr));
     return wrong.found();
 }
 

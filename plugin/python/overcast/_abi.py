@@ -28,7 +28,8 @@ class ovc_device_config(Sized):
 class ovc_device_info(Sized):
     _fields_ = [("struct_size", c.c_size_t), ("renderer", c.c_char * 128), ("vendor", c.c_char * 64),
                 ("version", c.c_char * 128), ("is_software", c.c_uint32), ("max_texture_size", c.c_uint32),
-                ("max_buffer_texels", c.c_uint64), ("memory_bytes", c.c_uint64), ("default_budget_bytes", c.c_uint64)]
+                ("max_buffer_texels", c.c_uint64), ("memory_bytes", c.c_uint64), ("default_budget_bytes", c.c_uint64),
+                ("is_tested", c.c_uint32), ("reserved", c.c_uint32)]
 
 
 class ovc_scene_config(Sized):

@@ -31,12 +31,14 @@ class DeviceInfo:
     """Free GPU memory as the driver reports it; 1 GiB on a software renderer."""
     default_budget_bytes: int
     """What gpu_memory=0 means."""
+    is_tested: bool
+    """Whether all of Overcast's tests have run on a driver of this kind."""
 
     @classmethod
     def _of(cls, info: _abi.ovc_device_info) -> DeviceInfo:
         renderer, vendor, version = (text.decode(errors="replace") for text in (info.renderer, info.vendor, info.version))
         return cls(renderer, vendor, version, bool(info.is_software), info.max_texture_size, info.max_buffer_texels, info.memory_bytes,
-                   info.default_budget_bytes)
+                   info.default_budget_bytes, bool(info.is_tested))
 
 
 def devices() -> list[DeviceInfo]:
