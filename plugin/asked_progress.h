@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ovc_query.progress as a structure asks it: between passes, but fifty times a second at most.
+// ovc_query.progress as a structure asks it: as rays go on, but fifty times a second at most.
 #pragma once
 
 #include "plugin/float_mode.h"

@@ -11,6 +11,7 @@
 #include "kdtree/sample.h"
 #include "plugin/one_leaf.h"
 #include "plugin/page_rate.h"
+#include "plugin/smallest_budget.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,6 @@ namespace {
 constexpr size_t kBuiltAtOnce = 8192;
 /// How full leaves are, of many: measured 0.57 to 0.62 on meshes, up to 0.7 on soups.
 constexpr double kFill = 0.58;
-constexpr uint64_t kMany = 40;
 
 /// What the pages of a level 1 come to.
 struct Sizes {
@@ -85,28 +85,21 @@ public:
               BuildProgress* progress)
         : soup_(soup), triangles_(triangles), bounds_(bounds), progress_(progress) {}
 
-    /// Takes the sample. limits_for(n): the limits where n triangles can be hit and are no twins.
-    template <class LimitsFor>
-    LeafLimits begin(LimitsFor&& limits_for) {
-        draw(sample_rate(triangles_.size(), limits_for(triangles_.size()).triangles));
-        rates_.emplace(soup_, triangles_, sample_, rate_, bounds_, progress_);
-        return limits_for(distinct());
-    }
-
     /// Of leaves that keep to the limits.
     Sizes estimate(const LeafLimits& limits) {
-        sizes_ = {};
+        draw(sample_rate(triangles_.size(), limits.triangles));
+        rates_.emplace(soup_, triangles_, sample_, rate_, bounds_, progress_);
         most_ = limits.most_of(
-            distinct(),
+            triangles_.size(),
             [&](uint64_t page, double copies) { return rates_->mean_of(double(page), copies); },
             [&] {
                 return one_frame_suits(soup_, triangles_, bounds_) &&
                        one_leaf_pays(soup_, sample_, rate_, bounds_, uint32_t(limits.triangles));
             });
-        if (const uint32_t rate = sample_rate(distinct(), most_); rate != rate_)
+        if (const uint32_t rate = sample_rate(triangles_.size(), most_); rate != rate_)
             draw(rate);
         const KdTree tree = cut_sample(soup_, sample_, rate_, bounds_,
-                                       distinct() <= most_ ? kNone - 1 : most_, progress_);
+                                       triangles_.size() <= most_ ? kNone - 1 : most_, progress_);
         const double padding = padding_of(bounds_);
         const std::vector<Cell> cells = cells_of(tree.nodes, bounds_, padding);
         const std::vector<uint64_t> counts = counted(soup_, CellFinder(tree.nodes, cells, padding),
@@ -115,24 +108,19 @@ public:
         const uint64_t references = std::accumulate(counts.begin(), counts.end(), uint64_t(0));
         copies_ = std::max(double(references) / double(triangles_.size()), 1.0);
         for (size_t c = 0; c < cells.size(); ++c)
-            add_cell(cells[c].padded, uint64_t(std::llround(double(counts[c]) * distinct_share_)),
-                     limits.page_bytes_of(cells.size()), limits);
+            add_cell(cells[c].padded, counts[c], limits.page_bytes_of(cells.size()), limits);
         return std::move(sizes_);
     }
 
-    const PageRates& rates() const { return *rates_; }
-    uint32_t most() const { return most_; }
-    uint64_t distinct() const {
-        return uint64_t(std::llround(double(triangles_.size()) * distinct_share_));
-    }
-
 private:
+    /// The corners' hashes decide who is in the sample, and where triangles are few that may be
+    /// nobody: then one stands for fewer.
     void draw(uint32_t rate) {
-        rate_ = rate;
-        sample_ = sample_triangles(soup_, triangles_, rate, progress_);
-        const double all = double(std::max<size_t>(sample_.size(), 1));
-        const Twins twins = Twins::take_out(soup_, sample_, progress_);
-        distinct_share_ = 1 - double(twins.count()) / all;
+        do {
+            rate_ = rate;
+            sample_ = sample_triangles(soup_, triangles_, rate, progress_);
+            rate /= 2;
+        } while (sample_.empty());
     }
 
     void add_cell(const Box& cell, uint64_t count, uint64_t page_bytes, const LeafLimits& limits) {
@@ -161,55 +149,12 @@ private:
     const Box bounds_;
     BuildProgress* const progress_;
     uint32_t rate_ = 1;
-    std::vector<TriangleId> sample_; // without twins
-    double distinct_share_ = 1;      // of triangles that are no twins
+    std::vector<TriangleId> sample_;
     std::optional<PageRates> rates_;
     uint32_t most_ = 1;
     double copies_ = 1; // of a triangle in all leaves
     Sizes sizes_;
 };
-
-/// How level 2 grows as leaves shrink to `most` triangles: the triangles that planes cut grow as
-/// the surface of leaves does, by the root of their number (measured on meshes and soups).
-struct Growth {
-    double triangles;
-    double cut; // references beyond one a triangle, of leaves of one triangle
-    std::function<double(double most, double copies)> rate; // as PageRates::mean_of()
-    double nodes_per_leaf;
-    double fill; // of leaves
-
-    double copies(double most) const { return 1 + cut / std::sqrt(most); }
-    double leaves(double most) const { return triangles * copies(most) / (fill * most); }
-    double page(double most) const { return double(kPageStart) + most * rate(most, copies(most)); }
-    double level1_bytes(double most) const {
-        return 16 * (1 + OVC_LEAF_TEXELS + leaves(most) * (OVC_LEAF_TEXELS + nodes_per_leaf));
-    }
-};
-
-/// The smallest budget whose pool holds level 1 and the largest page.
-uint64_t smallest_budget(const Growth& growth, uint64_t largest_page, uint64_t triangles,
-                         const DeviceInfo& device,
-                         const std::function<LeafLimits(const MemoryPlan&)>& limits_for) {
-    const auto works = [&](uint64_t budget) {
-        const Result<MemoryPlan> plan = plan_memory(budget, device);
-        if (!plan)
-            return false;
-        const LeafLimits limits = limits_for(*plan);
-        const double most = std::min<double>(limits.triangles_at(growth.rate(1, kCopiesOfLeaves)),
-                                             double(triangles));
-        const double page =
-            std::min({double(limits.page_bytes), double(largest_page), growth.page(most)});
-        return growth.level1_bytes(most) + page <= double(plan->pool_bytes);
-    };
-    uint64_t low = 0, high = 1 << 16;
-    while (!works(high) && high < uint64_t(1) << 50)
-        low = std::exchange(high, 2 * high);
-    while (high - low > 64) {
-        const uint64_t middle = low + (high - low) / 2;
-        (works(middle) ? high : low) = middle;
-    }
-    return high;
-}
 
 uint64_t fitting(std::span<const uint64_t> pages, uint64_t bytes) {
     uint64_t count = 0;
@@ -232,58 +177,30 @@ Result<Forecast> forecast(const Soup& soup, const TwoLevelOptions& options,
     std::vector<TriangleId> triangles = hittable_triangles(soup, nullptr, &bounds, progress);
     Forecast f;
     f.triangles = triangles.size();
+    const SmallestCut cut =
+        smallest_cut(soup.triangle_count(), options.leaf_triangles, options.tell_active);
+    f.smallest_budget_bytes = smallest_budget(cut.pool_bytes, device);
+    f.fits = plan->pool_bytes >= cut.pool_bytes;
     if (triangles.empty())
         return f;
-    Sizes sizes, leaves; // leaves: how it would be cut if it had to be
-    Growth growth{};
-    double most = 1;
-    if (triangles.size() <= kBuiltAtOnce) {
-        Twins::take_out(soup, triangles, progress);
-        const LeafLimits limits = limits_of(options, *plan, triangles.size());
-        const Result<Sizes> built = sizes_built(soup, triangles, bounds, limits, progress);
-        if (!built)
-            return built.error();
-        const Result<Sizes> cut = sizes_built(soup, triangles, bounds, limits.cut(), progress);
-        if (!cut)
-            return cut.error();
-        sizes = *built;
-        leaves = *cut;
-        growth.triangles = double(triangles.size());
-        most = double(std::min<uint64_t>(limits.triangles, triangles.size()));
-        const double rate = double(leaves.level2_bytes()) / double(leaves.references);
-        growth.rate = [rate](double, double) { return rate; };
-    } else {
-        Estimator estimator(soup, triangles, bounds, progress);
-        const LeafLimits limits =
-            estimator.begin([&](uint64_t n) { return limits_of(options, *plan, n); });
-        sizes = estimator.estimate(limits);
-        leaves = limits.whole_bytes ? estimator.estimate(limits.cut()) : sizes;
-        growth.triangles = double(estimator.distinct());
-        most = estimator.most();
-        growth.rate = [rates = estimator.rates()](double n, double copies) {
-            return rates.mean_of(n, copies);
-        };
-    }
-    f.leaves = sizes.pages.size();
-    f.references = sizes.references;
-    f.level2_bytes = sizes.level2_bytes();
-    f.largest_page_bytes = sizes.largest_page;
-    f.level1_bytes = level1_texels(f.leaves, sizes.nodes) * sizeof(uvec4);
-    const double cells = double(leaves.pages.size());
-    growth.nodes_per_leaf = double(leaves.nodes) / cells;
-    growth.cut = (double(leaves.references) / growth.triangles - 1) * std::sqrt(most);
-    growth.fill = leaves.pages.size() < kMany ? kFill : double(leaves.references) / (cells * most);
-    f.smallest_budget_bytes =
-        smallest_budget(growth, leaves.largest_page, f.triangles, device, [&](const MemoryPlan& p) {
-            return limits_of(options, p, uint64_t(growth.triangles));
-        });
-    f.fits = f.level1_bytes + f.largest_page_bytes <= plan->pool_bytes;
+    Twins::take_out(soup, triangles, progress);
+    const LeafLimits limits = limits_of(options, *plan, triangles.size());
+    const Result<Sizes> sizes = triangles.size() <= kBuiltAtOnce
+                                    ? sizes_built(soup, triangles, bounds, limits, progress)
+                                    : Estimator(soup, triangles, bounds, progress).estimate(limits);
+    if (!sizes)
+        return sizes.error();
+    f.leaves = sizes->pages.size();
+    f.references = sizes->references;
+    f.level2_bytes = sizes->level2_bytes();
+    f.largest_page_bytes = sizes->largest_page;
+    f.level1_bytes = level1_texels(f.leaves, sizes->nodes) * sizeof(uvec4);
     if (f.fits)
-        f.pool_bytes = std::min(plan->pool_bytes - f.level1_bytes,
+        f.pool_bytes = std::min(plan->pool_bytes - std::min(plan->pool_bytes, f.level1_bytes),
                                 most_linked_bytes(f.level2_bytes, f.leaves));
-    f.resident_pages = fitting(sizes.pages, f.pool_bytes);
+    f.resident_pages = fitting(sizes->pages, f.pool_bytes);
     f.host_bytes = f.level2_bytes + f.references * sizeof(TriangleId) + f.leaves * sizeof(Leaf) +
-                   sizes.nodes * sizeof(KdNode);
+                   sizes->nodes * sizeof(KdNode);
     return f;
 }
 

@@ -18,7 +18,7 @@ struct Forecast {
     uint64_t references = 0; // triangles counted once in each leaf they touch
     uint64_t level2_bytes = 0;
     uint64_t largest_page_bytes = 0;
-    uint64_t smallest_budget_bytes = 0; // that works with leaves as large as the options allow
+    uint64_t smallest_budget_bytes = 0; // that works
     uint64_t resident_pages = 0;        // in the pool at once, in the order of leaves
     uint64_t level1_bytes = 0;          // of the budget
     uint64_t pool_bytes = 0;

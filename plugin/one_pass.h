@@ -18,8 +18,7 @@ class TwoLevel::OnePass : Settling<Query> {
     using Base::s_;
 
 public:
-    OnePass(TwoLevel& structure, const Query& query)
-        : Base(structure, query), part_rays_(structure.part_rays(query.rays.size())) {}
+    OnePass(TwoLevel& structure, const Query& query) : Base(structure, query) {}
 
     /// The next rays of the query that the kernel is to be asked about; none where all have begun.
     void begin(Batch& batch) {
@@ -33,17 +32,17 @@ public:
 
     void settle(const Batch& batch) {
         parallel_for(batch.rays.size(), kGrain, [&](size_t from, size_t to) {
-            for (size_t j = from; j < to; ++j) {
-                this->fetch_ahead(std::span(batch.answers).first(to), j);
-                this->take_in(batch.rays[j], batch.answers[j],
-                              [](auto&&...) { return false; }); // there is no later leaf
-            }
+            this->take_in(
+                std::span(batch.rays).subspan(from, to - from),
+                std::span(batch.answers).subspan(from, to - from), [](auto&&...) { return true; },
+                [](auto&&...) { return false; }); // there is no later leaf
         });
     }
 
 private:
     void begin_part(Batch& batch) {
-        const size_t first = next_, count = std::min(part_rays_, query_.rays.size() - first);
+        const size_t part = s_.part_rays(query_.rays.size());
+        const size_t first = next_, count = std::min(part, query_.rays.size() - first);
         const size_t blocks = (count + kGrain - 1) / kGrain;
         // A block writes its rays where it begins, then all move together: in order, and without
         // holes, whichever thread takes which block.
@@ -81,7 +80,6 @@ private:
         });
     }
 
-    const size_t part_rays_;
     size_t next_ = 0; // of the rays of the query
     std::vector<uint32_t> block_rays_;
 };

@@ -91,7 +91,7 @@ ovc_result commit(ovc_scene scene) {
             Result<std::unique_ptr<Structure>> built = make_structure(
                 scene->soup, *scene->device->gl, scene->config, scene->device->log, progress);
             if (!built)
-                throw Failure{code_of(built.error().kind, OVC_ERROR_OUT_OF_BUDGET),
+                throw Failure{code_of(built.error().kind, OVC_ERROR_INTERNAL),
                               built.error().message};
             if (progress)
                 progress->finish(); // the last chance to be cancelled
@@ -125,7 +125,7 @@ ovc_result plan(ovc_scene scene, ovc_plan* plan) {
             const Result<ovc_plan> told =
                 plan_structure(scene->soup, scene->device->gl->info(), scene->config, progress);
             if (!told)
-                throw Failure{OVC_ERROR_OUT_OF_BUDGET, told.error().message};
+                throw Failure{code_of(told.error().kind, OVC_ERROR_INTERNAL), told.error().message};
             *plan = *told;
         });
         plan->seconds = watch.seconds();

@@ -55,20 +55,34 @@ ovc_result beside_scene(ovc_scene scene, const char* call, Body&& body) {
     return beside_calls(scene, call, is_scene, std::forward<Body>(body));
 }
 
+[[noreturn]] inline void cancelled(const char* call) {
+    throw Failure{OVC_ERROR_CANCELLED, fmt::format("{}: cancelled", call)};
+}
+
+/// body() with the scene's turn taken, within beside_scene(). goes_on() is asked while other calls
+/// have it; false: this one is cancelled.
+template <class GoesOn, class Body>
+void in_turn(ovc_scene scene, const char* call, GoesOn&& goes_on, Body&& body) {
+    if (scene->streaming == std::this_thread::get_id())
+        throw Failure{OVC_ERROR_INVALID_STATE,
+                      fmt::format("{}: called from within the scene's own stream, where push "
+                                  "is the only call on it",
+                                  call)};
+    if (!scene->turn.lock_while(goes_on))
+        cancelled(call);
+    const std::lock_guard turn(scene->turn, std::adopt_lock);
+    if (scene->magic != kSceneMagic)
+        throw Failure{OVC_ERROR_INVALID_STATE,
+                      fmt::format("{}: the scene was destroyed before its turn came", call)};
+    body();
+}
+
 /// body() with the scene's turn taken.
 template <class Body>
 ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
     return beside_scene(scene, call, [&] {
-        if (scene->streaming == std::this_thread::get_id())
-            throw Failure{OVC_ERROR_INVALID_STATE,
-                          fmt::format("{}: called from within the scene's own stream, where push "
-                                      "is the only call on it",
-                                      call)};
-        const std::lock_guard turn(scene->turn);
-        if (scene->magic != kSceneMagic)
-            throw Failure{OVC_ERROR_INVALID_STATE,
-                          fmt::format("{}: the scene was destroyed before its turn came", call)};
-        body();
+        in_turn(
+            scene, call, [] { return true; }, body);
     });
 }
 
@@ -84,8 +98,13 @@ inline Structure& committed(ovc_scene scene, const char* call) {
 
 inline ovc_result code_of(ErrorKind kind, ovc_result otherwise) {
     switch (kind) {
+    case ErrorKind::InvalidArgument:
+        return OVC_ERROR_INVALID_ARGUMENT;
     case ErrorKind::OutOfGpuMemory:
+    case ErrorKind::OutOfMemory:
         return OVC_ERROR_OUT_OF_MEMORY;
+    case ErrorKind::OverBudget:
+        return OVC_ERROR_OUT_OF_BUDGET;
     case ErrorKind::DeviceLost:
         return OVC_ERROR_DEVICE_LOST;
     case ErrorKind::Cancelled:

@@ -2,6 +2,7 @@
 // Settling: which rays the kernel is asked about, and what double precision makes of its answers.
 #pragma once
 
+#include "core/hit_batch.h"
 #include "core/parallel.h"
 #include "kdtree/restart.h"
 #include "plugin/arbiter.h"
@@ -10,6 +11,8 @@
 #include "shaders/layout.h"
 
 #include <atomic>
+#include <cmath>
+#include <limits>
 
 namespace ovc {
 
@@ -58,16 +61,35 @@ protected:
                 leaf | (Query::kAnyHit ? OVC_RAY_ANY_HIT : 0)};
     }
 
-    /// Enters what the kernel found of ray i, and what is certain of it. go_on(i, leaf, p, limit)
-    /// is asked where later leaves may hold a hit before `limit`; false: it cannot say where. leaf:
-    /// the answer's, its key where pages hang under links.
-    template <class GoOn>
-    void take_in(uint32_t i, const Answer& answer, GoOn&& go_on) {
-        const bool decided = answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
-        capped_ += answer.prim == OVC_CAPPED;
-        if (!decided ||
-            !(s_.options_.certify ? take_in_certified(i, answer, go_on) : take_in_fast(i, answer)))
-            decide_in_double(i, prepare(query_, i));
+    /// Enters what the kernel found of the rays, and what is certain of it. begins(i, answer) is
+    /// asked before: false: the answer is to be left alone. go_on(i, leaf, p, limit) is asked where
+    /// later leaves may hold a hit before `limit`; false: it cannot say where. leaf: the answer's,
+    /// its key where pages hang under links.
+    template <class Begins, class GoOn>
+    void take_in(std::span<const uint32_t> rays, std::span<const Answer> answers, Begins&& begins,
+                 GoOn&& go_on) {
+        if (!s_.keeps_on())
+            return;
+        HitBatch<size_t> certain; // of `answers`
+        const auto enter = [&](const Hit& hit, size_t j) {
+            if (!enter_certain(rays[j], answers[j], hit, go_on))
+                decide_in_double(rays[j], prepare(query_, rays[j]));
+        };
+        const auto look = [&](size_t j) { take_in_one(rays[j], answers[j], go_on); };
+        for (size_t j = 0; j < rays.size(); ++j) {
+            fetch_ahead(answers, j);
+            if (!begins(rays[j], answers[j]))
+                continue;
+            if (!is_certain_hit(rays[j], answers[j])) {
+                look(j);
+                continue;
+            }
+            const TriangleId id = seen(answers[j].prim, query_.skipped(rays[j]));
+            certain.add(query_.rays[rays[j]], s_.soup_.triangle(id), id, j);
+            if (certain.full())
+                certain.finish(enter, look);
+        }
+        certain.finish(enter, look);
     }
 
     /// Fetches the triangle of one of the answers behind the j-th, which is to be taken in soon.
@@ -89,6 +111,30 @@ protected:
     Query query_;
 
 private:
+    /// Whether the answer names the nearest hit, and nothing is left to decide but t, u and v.
+    bool is_certain_hit(uint32_t i, const Answer& answer) const {
+        return !Query::kAnyHit && s_.options_.certify && answer.prim < OVC_MAX_TRIANGLES &&
+               answer.rivals()[0] == OVC_NO_TRIANGLE && !query_.was_hit(i);
+    }
+
+    template <class GoOn>
+    bool enter_certain(uint32_t i, const Answer& answer, const Hit& hit, GoOn&& go_on) {
+        query_.set(i, hit);
+        if (answer.leaf() == OVC_NO_LEAF)
+            return true;
+        const double beyond = std::nextafter(hit.t, std::numeric_limits<double>::max());
+        return go_on(i, answer.leaf(), prepare(query_, i), beyond);
+    }
+
+    template <class GoOn>
+    void take_in_one(uint32_t i, const Answer& answer, GoOn&& go_on) {
+        const bool decided = answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
+        capped_ += answer.prim == OVC_CAPPED;
+        if (!decided ||
+            !(s_.options_.certify ? take_in_certified(i, answer, go_on) : take_in_fast(i, answer)))
+            decide_in_double(i, prepare(query_, i));
+    }
+
     /// False where double does not find what the kernel was certain of, or go_on() says so.
     template <class GoOn>
     bool take_in_certified(uint32_t i, const Answer& answer, GoOn&& go_on) {
@@ -108,10 +154,10 @@ private:
         for (const uint32_t rival : answer.rivals())
             if (rival != OVC_NO_TRIANGLE)
                 offer(nearest, rival, p.skip);
-        if (nearest.hit().is_hit())
-            query_.set(i, nearest.hit());
+        if (nearest.is_hit())
+            query_.set(i, nearest);
         const bool in_scene = answer.leaf() == OVC_NO_LEAF; // linked pages: no other leaf is left
-        const bool settled = in_scene || (Query::kAnyHit && nearest.hit().is_hit()) ||
+        const bool settled = in_scene || (Query::kAnyHit && nearest.is_hit()) ||
                              go_on(i, answer.leaf(), p, nearest.limit());
         if (settled && has_rivals) // decide_in_double() counts the others
             count_flagged(i);
@@ -127,13 +173,20 @@ private:
         return true;
     }
 
-    /// Offers what stands in the page as `number`.
-    bool offer(Nearest& nearest, uint32_t number, TriangleId skip) const {
-        const TriangleId seen = s_.twins_.seen(s_.numbers_.id(number), skip);
-        return nearest.offer(s_.soup_.triangle(seen), seen);
+    /// The triangle that a ray sees where the page has `number`.
+    TriangleId seen(uint32_t number, TriangleId skip) const {
+        return s_.twins_.seen(s_.numbers_.id(number), skip);
     }
 
+    bool offer(Nearest& nearest, uint32_t number, TriangleId skip) const {
+        const TriangleId id = seen(number, skip);
+        return nearest.offer(s_.soup_.triangle(id), id);
+    }
+
+    /// Some rays take a hundred times as long as most: asked before each whether it is in vain.
     void arbitrate_ray(uint32_t i, const PreparedRay& p) {
+        if (!s_.keeps_on())
+            return;
         query_.set(i, arbitrate<Query::kAnyHit>(s_.soup_, s_.numbers_, s_.twins_, s_.level1_,
                                                 s_.pages_, p));
     }

@@ -14,9 +14,11 @@
 #include "gpu/gl_thread.h"
 #include "plugin/overcast.h"
 
+#include <atomic>
 #include <cassert>
 #include <memory>
 #include <span>
+#include <thread>
 
 namespace ovc {
 
@@ -35,12 +37,16 @@ class Structure {
 public:
     virtual ~Structure() = default;
 
-    /// While it lives, calls of intersect and occluded ask `watch` between passes, if it is not
-    /// nullptr and the structure knows passes; Error of the kind Cancelled where it says so.
+    /// While it lives, intersect and occluded, called on this thread, ask `watch` here as they go
+    /// on, if it is not nullptr and the structure can; Error of the kind Cancelled where it says
+    /// so.
     class Watched {
     public:
         Watched(Structure& structure, TraceWatch* watch) : structure_(structure) {
             structure_.watch_ = watch;
+            structure_.watching_ = std::this_thread::get_id();
+            structure_.share_ = 0;
+            structure_.cancelled_ = false;
         }
         ~Watched() { structure_.watch_ = nullptr; }
         Watched(const Watched&) = delete;
@@ -89,14 +95,28 @@ public:
 
 protected:
     /// What a call of so many rays asks between passes.
-    Result<Done> go_on(size_t answered, size_t rays) const {
-        if (watch_ && !watch_->goes_on(double(answered) / double(rays)))
+    Result<Done> go_on(size_t answered, size_t rays) {
+        share_ = double(answered) / double(rays);
+        if (!keeps_on())
             return Error{"cancelled", ErrorKind::Cancelled};
         return Done{};
     }
+    /// The same within a pass, from any thread, as often as something may take long. false: what is
+    /// under way is in vain.
+    bool keeps_on() const {
+        if (!watch_)
+            return true;
+        if (watching_ == std::this_thread::get_id() && !watch_->goes_on(share_))
+            cancelled_ = true;
+        return !cancelled_;
+    }
+    bool is_watched() const { return watch_ != nullptr; }
 
 private:
     TraceWatch* watch_ = nullptr;
+    std::thread::id watching_;
+    double share_ = 0; // of the call's rays that is answered
+    mutable std::atomic<bool> cancelled_{false};
 };
 
 /// Throws a Failure for what this library cannot do on the device, as far as that can be told

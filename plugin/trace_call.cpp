@@ -8,9 +8,18 @@
 namespace ovc {
 namespace {
 
-void trace_asked(ovc_scene scene, const RayCall& call, HostFloatMode& mode) {
-    AskedProgress progress(call.query, mode);
-    trace(call, committed(scene, call.name), call.query.progress ? &progress : nullptr);
+/// make_call() checks the arguments, which needs no turn.
+template <class MakeCall>
+ovc_result batch_of_rays(ovc_scene scene, const char* name, MakeCall&& make_call) {
+    HostFloatMode mode;
+    return beside_scene(scene, name, [&] {
+        const RayCall call = make_call();
+        AskedProgress progress(call.query, mode);
+        TraceWatch* const watch = call.query.progress ? &progress : nullptr;
+        in_turn(
+            scene, name, [&] { return progress.goes_on(0); },
+            [&] { trace(call, committed(scene, name), watch); });
+    });
 }
 
 /// Answers one ray beside other calls; batch() does where the structure has no tree on the CPU.
@@ -41,17 +50,14 @@ ovc_result single(ovc_scene scene, const char* name, const ovc_ray* ray, const v
 
 ovc_result intersect(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits,
                      const ovc_query* query) {
-    HostFloatMode mode;
-    return on_scene(scene, "intersect", [&] {
-        trace_asked(scene, nearest_call("intersect", rays, ray_count, hits, query), mode);
-    });
+    return batch_of_rays(scene, "intersect",
+                         [&] { return nearest_call("intersect", rays, ray_count, hits, query); });
 }
 
 ovc_result occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded,
                     const ovc_query* query) {
-    HostFloatMode mode;
-    return on_scene(scene, "occluded", [&] {
-        trace_asked(scene, occlusion_call("occluded", rays, ray_count, occluded, query), mode);
+    return batch_of_rays(scene, "occluded", [&] {
+        return occlusion_call("occluded", rays, ray_count, occluded, query);
     });
 }
 

@@ -8,11 +8,13 @@
 #include "plugin/level2.h"
 #include "plugin/one_pass.h"
 #include "plugin/page_rate.h"
+#include "plugin/smallest_budget.h"
 #include "plugin/wave.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -34,11 +36,35 @@ uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device) {
     return options.budget_bytes ? options.budget_bytes : device.default_budget_bytes();
 }
 
+Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
+                          const DeviceInfo& device) {
+    const SmallestCut cut =
+        smallest_cut(soup.triangle_count(), options.leaf_triangles, options.tell_active);
+    if (plan.pool_bytes >= cut.pool_bytes)
+        return Done{};
+    return over_budget(fmt::format(
+        "a GPU budget of {} bytes is too small for this scene: the smallest that works is {} "
+        "bytes ({} triangles in leaves of {}, whose table and largest page take {}; an eighth is "
+        "for rays)",
+        plan.budget_bytes, smallest_budget(cut.pool_bytes, device), soup.triangle_count(),
+        cut.leaf_triangles, cut.pool_bytes));
+}
+
+/// The most that a page may take of the pool: a third, so that some stay resident; half of it where
+/// the table of as many leaves might not find room beside that.
+static uint64_t share_of_page(const MemoryPlan& plan, uint64_t triangles) {
+    constexpr uint64_t kTexelsPerLeaf = OVC_LEAF_TEXELS + 2; // two nodes of level 1
+    const uint64_t page_bytes = std::max<uint64_t>(plan.pool_bytes / kPagesAtOnce, 1);
+    const uint64_t leaves = triangles * kMostBytesPerTriangle / page_bytes;
+    const uint64_t table = leaves * kTexelsPerLeaf * sizeof(uvec4);
+    return table + page_bytes <= plan.pool_bytes ? page_bytes : plan.pool_bytes / 2;
+}
+
 LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles) {
     // Halving ends between half full and full: this much on average gives about so many leaves.
     constexpr double kFull = 0.7;
     constexpr uint64_t kMostPageBytes = uint64_t(OVC_MAX_UNITS - 1) * OVC_UNIT_BYTES;
-    const uint64_t page_bytes = std::min(plan.pool_bytes / kPagesAtOnce, kMostPageBytes);
+    const uint64_t page_bytes = std::min(share_of_page(plan, triangles), kMostPageBytes);
     if (options.leaf_triangles)
         return {options.leaf_triangles, page_bytes};
     double most = double(triangles) / double(kDefaultLeaves);
@@ -59,7 +85,8 @@ LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uin
 Result<Done> check_count(const Soup& soup) {
     if (soup.triangle_count() > OVC_MAX_TRIANGLES)
         return Error{fmt::format("{} triangles are too many: a scene takes {}",
-                                 soup.triangle_count(), OVC_MAX_TRIANGLES)};
+                                 soup.triangle_count(), OVC_MAX_TRIANGLES),
+                     ErrorKind::InvalidArgument};
     return Done{};
 }
 
@@ -74,6 +101,8 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
 
     if (const Result<Done> fine = check_count(soup); !fine)
         return fine.error();
+    if (const Result<Done> enough = check_budget(soup, options, *plan, gl.info()); !enough)
+        return enough.error();
     self->numbers_ = Numbering(soup);
     if (!self->restore(options.saved))
         if (const Result<Done> made = self->make_levels(progress); !made)
@@ -82,8 +111,7 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     self->count_levels();
     if (self->pages_.empty())
         return self; // every ray misses, no GPU needed
-    if (const Result<Done> shared = self->share_out(); !shared)
-        return shared.error();
+    self->share_out();
 
     const Result<Done> made = self->make_tracer(progress);
     if (made)
@@ -112,14 +140,39 @@ Result<Done> TwoLevel::make_levels(BuildProgress* progress) {
     Result<Levels> levels = build_levels(soup_, numbers_, triangles, bounds, limits_, progress);
     if (!levels)
         return levels.error();
-    level1_ = std::move(levels->level1);
-    pages_ = std::move(levels->pages);
-    statistics_.seconds_level1 += levels->seconds_level1;
-    statistics_.seconds_level2 += levels->seconds_level2;
+    take(std::move(*levels));
+    if (has_room())
+        return Done{};
+    const SmallestCut cut =
+        smallest_cut(soup_.triangle_count(), options_.leaf_triangles, options_.tell_active);
+    take(build_smallest_levels(soup_, numbers_, std::move(triangles), bounds, cut.leaf_triangles,
+                               progress));
+    assert(has_room()); // see check_budget()
     return Done{};
 }
 
-/// The same from what was saved; false where that will not do, and nothing has changed.
+void TwoLevel::take(Levels levels) {
+    level1_ = std::move(levels.level1);
+    pages_ = std::move(levels.pages);
+    statistics_.seconds_level1 += levels.seconds_level1;
+    statistics_.seconds_level2 += levels.seconds_level2;
+}
+
+/// Of the pool, for level 1.
+uint64_t TwoLevel::table_bytes() const {
+    const uint64_t active_bytes = options_.tell_active ? pages_.size() * sizeof(uint32_t) : 0;
+    return level1_texels(level1_) * sizeof(uvec4) + active_bytes;
+}
+
+/// Whether the pool holds level 1 and each of the pages.
+bool TwoLevel::has_room() const {
+    uint64_t largest = 0;
+    for (const Page& page : pages_)
+        largest = std::max(largest, page.bytes());
+    return pages_.empty() || table_bytes() + largest <= plan_.pool_bytes;
+}
+
+/// The same from what was saved; false where that will not do, and level 1 is to be made.
 bool TwoLevel::restore(Bytes saved) {
     if (saved.empty())
         return false;
@@ -137,7 +190,6 @@ bool TwoLevel::restore(Bytes saved) {
         return false;
     }
     BuiltLevels& levels = **found;
-    statistics_.from_saved = true;
     statistics_.dropped = levels.dropped;
     twins_ = std::move(levels.twins);
     triangles_ = levels.triangles;
@@ -145,7 +197,8 @@ bool TwoLevel::restore(Bytes saved) {
     level1_ = std::move(levels.level1);
     pages_ = std::move(levels.pages);
     statistics_.seconds_level1 = watch.seconds();
-    return true;
+    statistics_.from_saved = has_room();
+    return statistics_.from_saved;
 }
 
 Result<Done> TwoLevel::save(const ByteSink& sink) const {
@@ -260,19 +313,10 @@ TwoLevel::~TwoLevel() {
 }
 
 /// Takes level 1 off the pool, and what no page needs.
-Result<Done> TwoLevel::share_out() {
+void TwoLevel::share_out() {
     plan_.active_bytes = options_.tell_active ? pages_.size() * sizeof(uint32_t) : 0;
-    const uint64_t table = level1_texels(level1_) * sizeof(uvec4) + plan_.active_bytes;
-    const uint64_t needed = table + statistics_.largest_page_bytes;
-    if (plan_.pool_bytes < needed)
-        return Error{fmt::format(
-            "a GPU budget of {} bytes is too small for this scene: the smallest that works is {} "
-            "bytes ({} for level 1 with {} leaves, {} for the largest page, an eighth for rays)",
-            plan_.budget_bytes, (needed + plan_.ray_bytes()) / 7 * 8 + 8, table,
-            level1_.leaves.size(), statistics_.largest_page_bytes)};
-    plan_.pool_bytes = std::min(plan_.pool_bytes - table,
+    plan_.pool_bytes = std::min(plan_.pool_bytes - table_bytes(),
                                 most_linked_bytes(statistics_.level2_bytes, pages_.size()));
-    return Done{};
 }
 
 /// Moves the first pages of `wanted` in, as many as fit; returns how many.
@@ -317,7 +361,7 @@ Result<size_t> TwoLevel::pass(Batch& batch, std::span<const uint32_t> wanted,
         alive = state.context.alive(); // else what was read is anything
         seconds = watch.seconds();
     };
-    gl_.run_beside(work, meanwhile);
+    gl_.run_beside(work, meanwhile, [this] { keeps_on(); });
     if (!alive)
         return lost();
     if (!done)
@@ -325,6 +369,7 @@ Result<size_t> TwoLevel::pass(Batch& batch, std::span<const uint32_t> wanted,
     statistics_.passes += 1;
     statistics_.ray_visits += count;
     statistics_.seconds_pass += seconds;
+    seconds_a_ray_ = seconds / double(count);
     statistics_.seconds_kernel += tracer_->kernel_seconds();
     statistics_.pages_in += moved.pages;
     statistics_.bytes_in += moved.bytes;

@@ -43,6 +43,10 @@ struct TwoLevelOptions {
 /// The budget in bytes that the options ask for.
 uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device);
 
+/// Error: a budget too small for the scene, with the smallest that works.
+Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
+                          const DeviceInfo& device);
+
 /// What leaves may be under a plan of which level 1 is not yet taken off, where so many triangles
 /// can be hit.
 LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles);
@@ -120,7 +124,10 @@ private:
     bool restore(Bytes saved);
     void warn_of_dropped() const;
     void count_levels();
-    Result<Done> share_out();
+    void take(Levels levels);
+    bool has_room() const;
+    uint64_t table_bytes() const;
+    void share_out();
     void bring_first(BuildProgress* progress);
     Result<Done> make_tracer(BuildProgress* progress);
     Result<Done> ready_device();
@@ -135,10 +142,17 @@ private:
     /// Fewer rays are not worth a pass while others wait.
     size_t few_rays() const { return std::min<size_t>(4096, plan_.batch_rays / 4); }
 
-    /// So many rays of `rays` a pass keep a device busy, and leave something to do beside it.
+    /// So many rays of `rays` a pass keep a device busy, and leave something to do beside it. Where
+    /// somebody may cancel the call, a pass takes some hundredths of a second, as far as the pass
+    /// before tells.
     size_t part_rays(size_t rays) const {
-        constexpr size_t kLeast = size_t(1) << 15, kMost = size_t(1) << 17;
-        return std::min<size_t>(std::clamp(rays / 4, kLeast, kMost), plan_.batch_rays);
+        constexpr size_t kMin = size_t(1) << 15, kMax = size_t(1) << 17, kMinWatched = 1024;
+        constexpr double kSeconds = 0.03;
+        const size_t part = std::min<size_t>(std::clamp(rays / 4, kMin, kMax), plan_.batch_rays);
+        if (!is_watched())
+            return part;
+        const double fitting = kSeconds / std::max(seconds_a_ray_, 1e-9);
+        return std::min(part, std::max(kMinWatched, size_t(fitting)));
     }
 
     template <class Query>
@@ -201,6 +215,7 @@ private:
     std::unique_ptr<Tracer> tracer_;  // made and destroyed on the thread of gl_; none after purge()
     uint32_t tracer_generation_ = 0;  // of the context that it was made in
     std::array<Batch, 2> batches_;    // kept between calls
+    double seconds_a_ray_ = 1e-5;     // of the pass before
     TwoLevelStatistics statistics_;
 };
 

@@ -96,10 +96,12 @@ public:
     /// Takes in the answers for rays that were loaded, and sends the rays on. Beside a pass.
     void settle(std::span<const uint32_t> rays, std::span<const Answer> answers) {
         parallel_for(rays.size(), kGrain, [&](size_t from, size_t to) {
-            for (size_t j = from; j < to; ++j) {
-                this->fetch_ahead(answers.first(to), j);
-                settle_one(rays[j], answers[j]);
-            }
+            this->take_in(
+                rays.subspan(from, to - from), answers.subspan(from, to - from),
+                [&](uint32_t i, const Answer& answer) { return begins_to_settle(i, answer); },
+                [&](uint32_t i, uint32_t leaf, const PreparedRay& p, double end) {
+                    return goes_on(i, leaf, p, end);
+                });
         });
         loaded_ -= rays.size();
         send_on(rays);
@@ -140,36 +142,35 @@ private:
         }
     }
 
-    /// Takes in the kernel's answer for ray i, and says in positions_[i] where the ray goes from
-    /// here.
-    void settle_one(uint32_t i, const Answer& answer) {
+    /// Says in positions_[i] where the ray goes from here, as far as the answer alone tells. False:
+    /// there is nothing in it to take in.
+    bool begins_to_settle(uint32_t i, const Answer& answer) {
         Position& at = positions_[i];
         at.state = Position::Done;
-        if (s_.tracer_->has_links())
-            return settle_under_links(i, answer);
+        if (s_.tracer_->has_links()) {
+            // The answer is that of all leaves before the one whose key it has, if any.
+            if (answer.key() != OVC_NO_LEAF)
+                at = {at.t_from, at.t_end, answer.key(), Position::Waits};
+            if (answer.prim == OVC_MISS && answer.rivals()[0] == OVC_NO_TRIANGLE)
+                return false;
+            at.state = Position::Done;
+            return true;
+        }
         if (answer.prim == OVC_WAITS) {
             at = {answer.t(), at.t_end, answer.leaf(), Position::Waits};
-            return;
+            return false;
         }
         note_use(answer);
-        this->take_in(i, answer,
-                      [&](uint32_t ray, uint32_t leaf, const PreparedRay& p, double end) {
-                          return go_on_behind(ray, leaf, p, end);
-                      });
+        return true;
     }
 
-    /// The same where the answer is that of all leaves before the one whose key it has, if any.
-    void settle_under_links(uint32_t i, const Answer& answer) {
-        Position& at = positions_[i];
-        if (answer.key() != OVC_NO_LEAF)
-            at = {at.t_from, at.t_end, answer.key(), Position::Waits};
-        if (answer.prim == OVC_MISS && answer.rivals()[0] == OVC_NO_TRIANGLE)
-            return;
-        at.state = Position::Done;
-        this->take_in(i, answer, [&](uint32_t, uint32_t key, const PreparedRay&, double end) {
-            at = {at.t_from, end, key, Position::Waits};
-            return true;
-        });
+    /// The ray's best hit lies not beyond `end`, and later leaves may hold a nearer one. leaf: the
+    /// one that it was found in, or under links the key of the next.
+    bool goes_on(uint32_t i, uint32_t leaf, const PreparedRay& p, double end) {
+        if (!s_.tracer_->has_links())
+            return go_on_behind(i, leaf, p, end);
+        positions_[i] = {positions_[i].t_from, end, leaf, Position::Waits};
+        return true;
     }
 
     /// In certified precision an answer that names a triangle names the leaf it ended in.
@@ -259,11 +260,11 @@ Result<Done> TwoLevel::round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&.
     }
     if ((waves.ready() + ...) == 0)
         return lost(); // nothing could be moved in
-    const size_t part = part_rays((waves.ready() + ...));
+    const size_t ready = (waves.ready() + ...);
     Batch* now = &batches_[0];
     Batch* other = &batches_[1];
     load(*other, 0, waves...);
-    load(*now, std::min(part, most), waves...);
+    load(*now, std::min(part_rays(ready), most), waves...);
     std::vector<uint32_t> beside; // pages moved in beside the pass: its rays may wait for them
     bool goes_on = true;
     while (!now->rays.empty()) {
@@ -275,7 +276,7 @@ Result<Done> TwoLevel::round(size_t most, Meanwhile&& meanwhile, Wave<Queries>&.
             settle(*other, waves...);
             goes_on = meanwhile() && goes_on;
             const bool enough = (waves.ready() + ...) >= few_rays();
-            load(*other, goes_on && enough ? std::min(part, most) : 0, waves...);
+            load(*other, goes_on && enough ? std::min(part_rays(ready), most) : 0, waves...);
         });
         if (!moved_beside)
             return moved_beside.error();

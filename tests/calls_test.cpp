@@ -309,5 +309,72 @@ TEST_F(Calls, ACallStopsWhenItsProgressSaysSo) {
     EXPECT_TRUE(same_bits(nearest(scene, rays), expected)) << "the scene is as before";
 }
 
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
+}
+
+/// Rays that whole numbers decide, some microseconds each: a call of many seconds, most of it on
+/// the CPU.
+std::vector<Ray> slow_rays(const Soup& soup, size_t count) {
+    std::vector<Ray> rays = test::unpleasant_rays(soup, 12, count);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        rays[i].org = dvec3(i % 3 == 0, i % 3 == 1, i % 3 == 2) * 1e100;
+        rays[i].dir = -rays[i].org * 1e-100;
+        rays[i].org += soup.triangle({0, uint32_t(i % soup.triangle_count())})[0];
+    }
+    return rays;
+}
+
+/// Asked in time, and obeyed in time. Limits are wide, for machines that do other things as well;
+/// docs/abi.md says a twentieth and a tenth of a second.
+TEST_F(Calls, ASlowCallIsAskedOftenAndEndsSoon) {
+    const Soup soup = test::closed_grid(60);
+    const auto scene = committed(soup);
+    const auto rays = slow_rays(soup, 3'000'000);
+    struct Told {
+        Clock::time_point begun = Clock::now(), asked = begun, stopped{};
+        double longest = 0;
+    } told;
+    auto query = sized<ovc_query>();
+    query.progress_user = &told;
+    query.progress = [](void* user, double, const char*) {
+        Told& t = *static_cast<Told*>(user);
+        t.longest = std::max(t.longest, seconds_since(t.asked));
+        t.asked = Clock::now();
+        if (seconds_since(t.begun) < 1)
+            return 0;
+        t.stopped = t.asked;
+        return 1;
+    };
+    std::vector<ovc_hit> hits(rays.size());
+    EXPECT_EQ(api().intersect(scene.get(), as_abi(rays), rays.size(), hits.data(), &query),
+              OVC_ERROR_CANCELLED);
+    const double ended = seconds_since(told.stopped);
+    std::printf("asked every %.3f s at least, ended within %.3f s\n", told.longest, ended);
+    EXPECT_LT(told.longest, 0.5);
+    EXPECT_LT(ended, 0.5);
+}
+
+TEST_F(Calls, ACallThatWaitsForItsTurnIsAskedAsWell) {
+    const Soup soup = test::closed_grid(60);
+    const auto scene = committed(soup);
+    const auto rays = slow_rays(soup, 400'000);
+    std::atomic<bool> slow_call_done{false};
+    std::thread other([&] {
+        nearest(scene, rays);
+        slow_call_done = true;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    auto query = sized<ovc_query>();
+    query.progress = [](void*, double, const char*) { return 1; };
+    ovc_hit hit;
+    EXPECT_EQ(api().intersect(scene.get(), as_abi(rays), 1, &hit, &query), OVC_ERROR_CANCELLED);
+    EXPECT_FALSE(slow_call_done) << "cancelled before its turn";
+    other.join();
+    EXPECT_EQ(api().intersect(scene.get(), as_abi(rays), 1, &hit, nullptr), OVC_OK);
+}
+
 } // namespace
 } // namespace ovc

@@ -140,23 +140,55 @@ TEST_F(Plan, OfTheRealDragonAndKitchen) {
     compare_all("kitchen", kitchen);
 }
 
-TEST_F(Plan, TellsTheSmallestBudgetThatWorksToATenth) {
-    for (const char* name : {"soup-100", "knot", "plants-5"}) {
-        SCOPED_TRACE(name);
+/// The number that the sentence of a refused commit names.
+uint64_t named_by(const std::string& message) {
+    const std::string before = "the smallest that works is ";
+    const size_t at = message.find(before);
+    return at == std::string::npos ? 0 : std::stoull(message.substr(at + before.size()));
+}
+
+TEST_F(Plan, TellsTheSmallestBudgetThatWorksAndAllLargerOnesWork) {
+    for (const char* name : {"soup-5", "sphere-6", "soup-100"}) {
         const Result<Scene> scene = make_test_scene(name);
         ASSERT_TRUE(scene) << scene.error().message;
-        auto config = sized<ovc_scene_config>();
-        const uint64_t smallest =
-            plan_of(test::add_soup(device, scene->soup, config).get()).smallest_budget_bytes;
-        config.gpu_memory_bytes = smallest + smallest / 10;
-        const auto enough = test::add_soup(device, scene->soup, config);
-        EXPECT_TRUE(plan_of(enough.get()).fits);
-        EXPECT_EQ(api().commit(enough.get()), OVC_OK) << error();
-        config.gpu_memory_bytes = smallest - smallest / 10;
-        const auto short_of = test::add_soup(device, scene->soup, config);
-        EXPECT_FALSE(plan_of(short_of.get()).fits);
-        EXPECT_EQ(api().commit(short_of.get()), OVC_ERROR_OUT_OF_BUDGET);
+        for (const uint64_t leaf_triangles : {0, 50}) {
+            SCOPED_TRACE(name + (" in leaves of " + std::to_string(leaf_triangles)));
+            auto config = sized<ovc_scene_config>();
+            config.leaf_triangles = leaf_triangles;
+            const auto with = [&](uint64_t budget) {
+                config.gpu_memory_bytes = budget;
+                return test::add_soup(device, scene->soup, config);
+            };
+            const uint64_t smallest = plan_of(with(0).get()).smallest_budget_bytes;
+            for (const uint64_t missing : {uint64_t(1), smallest / 20, smallest / 4}) {
+                const auto short_of = with(smallest - missing);
+                if (!short_of)
+                    continue; // refused before anything is added
+                const ovc_plan plan = plan_of(short_of.get());
+                EXPECT_FALSE(plan.fits);
+                EXPECT_EQ(plan.smallest_budget_bytes, smallest);
+                EXPECT_EQ(api().commit(short_of.get()), OVC_ERROR_OUT_OF_BUDGET);
+                EXPECT_EQ(named_by(error()), smallest) << error();
+            }
+            for (const double times : {1.0, 1.001, 1.04, 1.2, 1.7, 3.0}) {
+                const auto enough = with(uint64_t(double(smallest) * times));
+                EXPECT_TRUE(plan_of(enough.get()).fits) << times;
+                EXPECT_EQ(api().commit(enough.get()), OVC_OK) << times << ": " << error();
+                const ovc_statistics made = test::statistics(enough);
+                EXPECT_LE(made.gpu_peak_bytes, made.gpu_budget_bytes) << times;
+            }
+        }
     }
+}
+
+TEST_F(Plan, OfManyCopiesOfFewTriangles) {
+    std::vector<vec3> corners;
+    for (int i = 0; i < 300'000; ++i)
+        for (int k = 0; k < 3; ++k)
+            corners.push_back(vec3(float(i % 7 + k), float(i % 7 * k), float(k == 2)));
+    Soup soup;
+    soup.chunks.push_back(Chunk::owning(dvec3(0), std::move(corners)));
+    compare(soup, sized<ovc_scene_config>());
 }
 
 TEST_F(Plan, IsTheSameBeforeAndAfterCommit) {

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Turn: a mutex whose waiters are served first come, first served, and may give up. std::mutex lets
+// a thread that comes back at once overtake those that sleep, as long as it likes.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <set>
+
+namespace ovc {
+
+class Turn {
+public:
+    void lock() {
+        lock_while([] { return true; });
+    }
+
+    /// Waits while goes_on() says so, which is asked some fifty times a second. false: it is not
+    /// this thread's turn.
+    template <class GoesOn>
+    bool lock_while(GoesOn&& goes_on) {
+        std::unique_lock lock(mutex_);
+        const uint64_t mine = next_++;
+        const auto is_mine = [&] { return served_ == mine; };
+        while (!changed_.wait_for(lock, std::chrono::milliseconds(20), is_mine)) {
+            lock.unlock();
+            const bool waits = goes_on();
+            lock.lock();
+            if (!waits && !is_mine()) {
+                given_up_.insert(mine);
+                return false;
+            }
+        }
+        return true;
+    }
+
+    bool try_lock() {
+        const std::lock_guard lock(mutex_);
+        if (served_ != next_)
+            return false;
+        ++next_;
+        return true;
+    }
+
+    void unlock() {
+        {
+            const std::lock_guard lock(mutex_);
+            do
+                ++served_;
+            while (given_up_.erase(served_) > 0);
+        }
+        changed_.notify_all();
+    }
+
+private:
+    std::mutex mutex_; // of what is below
+    std::condition_variable changed_;
+    uint64_t next_ = 0;           // the number that the next to come gets
+    uint64_t served_ = 0;         // whose turn it is
+    std::set<uint64_t> given_up_; // of those that are still to be served
+};
+
+} // namespace ovc
