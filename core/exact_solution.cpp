@@ -3,10 +3,9 @@
 
 namespace ovc {
 
-ExactSolution::ExactSolution(const PreparedRay& p, const Triangle& triangle) {
+ExactSolution::ExactSolution(const Ray& ray, const Triangle& triangle) {
     const Vec3Of<Exact> a = exact(triangle[0]);
-    s_ = solve(exact(triangle[1]) - a, exact(triangle[2]) - a, exact(p.ray.org) - a,
-               exact(p.ray.dir));
+    s_ = solve(exact(triangle[1]) - a, exact(triangle[2]) - a, exact(ray.org) - a, exact(ray.dir));
     w_ = s_.w();
 }
 

@@ -3,20 +3,21 @@
 #pragma once
 
 #include "core/exact.h"
+#include "core/ray.h"
 #include "core/solution.h"
-#include "core/triangle.h"
+#include "core/soup.h"
 
 namespace ovc {
 
 class ExactSolution {
 public:
     /// The corners are finite, and the ray is valid.
-    ExactSolution(const PreparedRay& p, const Triangle& triangle);
+    ExactSolution(const Ray& ray, const Triangle& triangle);
 
     /// Whether the line meets the closed triangle: no two weights have opposite signs, and not all
     /// are zero.
     bool inside() const;
-    /// As in Candidate. Needs inside(), as all below.
+    /// As in Candidate (core/triangle.h). Needs inside(), as all below.
     uint32_t support() const;
     /// The sign of t - `t`, which is finite.
     int compare_t(double t) const;

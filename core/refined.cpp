@@ -57,7 +57,7 @@ RefinedAnswer refined_candidate(const PreparedRay& p, const Triangle& triangle, 
         return {};
     const double inverse = 1 / s.value.det.hi;
     const Hit about{hi, s.value.u.hi * inverse, s.value.v.hi * inverse, id};
-    return {true, Candidate{about, t.value.lo, t.error}};
+    return {true, Candidate{about, t.value.lo, t.error, Candidate::kAllCorners, true}};
 }
 
 Hit rounded_hit(const PreparedRay& p, const Triangle& triangle, TriangleId id, uint32_t support) {
@@ -68,7 +68,7 @@ Hit rounded_hit(const PreparedRay& p, const Triangle& triangle, TriangleId id, u
     const bool at_a = support == 1, no_u = at_a || !(support & 2), no_v = at_a || !(support & 4);
     if (t.is_rounded() && (no_u || u.is_rounded()) && (no_v || v.is_rounded()))
         return {t.value.hi, no_u ? 0 : u.value.hi, no_v ? 0 : v.value.hi, id};
-    const ExactSolution exact(p, triangle);
+    const ExactSolution exact(p.ray, triangle);
     return {exact.t(), exact.u(), exact.v(), id};
 }
 

@@ -2,7 +2,7 @@
 // The reference where doubles leave a doubt: the same determinants, exactly.
 #include "core/triangle.h"
 
-#include "core/exact_solution.h"
+#include "core/coplanar.h"
 #include "core/refined.h"
 
 #include <algorithm>
@@ -12,30 +12,32 @@
 namespace ovc {
 namespace {
 
-/// Do the corners of `b` that `b_support` names lie where those of `a` do? Then the ray meets both
-/// in one point: a shared corner, a shared side, or a triangle with the same three corners.
-bool same_support(const Triangle& a, uint32_t a_support, const Triangle& b, uint32_t b_support) {
-    if (std::popcount(a_support) != std::popcount(b_support))
-        return false;
+/// Which corners of `b` lie where those of `a` do that `support` names; 0 where not all have one.
+/// Then a ray that meets `a` there meets `b` in the same point, unless it runs along its plane.
+uint32_t shared_support(const Triangle& a, uint32_t support, const Triangle& b) {
+    uint32_t shared = 0;
     for (int i = 0; i < 3; ++i) {
-        bool found = !(a_support >> i & 1);
-        for (int k = 0; k < 3; ++k)
-            found |= (b_support >> k & 1) && a[i] == b[k];
-        if (!found)
-            return false;
+        if (!(support >> i & 1))
+            continue;
+        const int k = a[i] == b[0] ? 0 : a[i] == b[1] ? 1 : a[i] == b[2] ? 2 : 3;
+        if (k == 3)
+            return 0;
+        shared |= 1u << k;
     }
-    return true;
+    return shared;
 }
 
-/// Do both lie in one plane across an axis? Walls and floors do.
-bool share_axis_plane(const Triangle& a, const Triangle& b) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const double at = a[0][axis];
-        if (a[1][axis] == at && a[2][axis] == at && b[0][axis] == at && b[1][axis] == at &&
-            b[2][axis] == at)
-            return true;
-    }
-    return false;
+/// Does the line cross the triangle's plane, for sure?
+bool surely_crosses(const PreparedRay& p, const Triangle& triangle) {
+    const dvec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
+    const dvec3 d = p.ray.dir;
+    const dvec3 left = dvec3(ab.y * ac.z, ab.z * ac.x, ab.x * ac.y);
+    const dvec3 right = dvec3(ab.z * ac.y, ab.x * ac.z, ab.y * ac.x);
+    const double det = glm::dot(left - right, d);
+    const double magnitude = glm::dot(glm::abs(left) + glm::abs(right), glm::abs(d));
+    // Eight roundings in a row, and what underflows.
+    const double error = 0x1p-49 * magnitude + 1e-300 * (1 + max_component(glm::abs(d)));
+    return std::abs(det) > error && std::isfinite(magnitude);
 }
 
 } // namespace
@@ -46,7 +48,7 @@ std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& t
         return std::nullopt;
     if (const RefinedAnswer refined = refined_candidate(p, triangle, id); refined.known)
         return refined.candidate;
-    const ExactSolution exact(p, triangle);
+    const ExactSolution exact(p.ray, triangle);
     if (!exact.inside() || exact.compare_t(p.ray.t_min) < 0 || exact.compare_t(p.ray.t_max) > 0)
         return std::nullopt;
     const double t = exact.t();
@@ -54,13 +56,29 @@ std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& t
         {t, exact.u(), exact.v(), id}, 0, 0x1p-53 * std::abs(t) + 0x1p-1074, exact.support()};
 }
 
+bool Nearest::offer_neighbour(const Triangle& triangle, TriangleId id) {
+    const uint32_t shared = shared_support(triangle_, best_.support, triangle);
+    if (shared == 0)
+        return false;
+    if (best_.hit.id < id)
+        return true; // the same point or, seen edge-on, none: it does not win
+    if (!surely_crosses(p_, triangle))
+        return false;
+    best_.hit.id = id;
+    best_.support = shared;
+    take(best_, triangle);
+    return true;
+}
+
 /// The order of two hits that doubles leave open.
-bool Nearest::wins_closely(Candidate other, const Triangle& triangle) {
+bool Nearest::wins_closely(Candidate& other, const Triangle& triangle) {
     const TriangleId id = other.hit.id;
-    if (same_support(triangle, other.support, triangle_, best_.support) ||
-        share_axis_plane(triangle, triangle_))
+    if (shared_support(triangle_, best_.support, triangle) != 0 ||
+        surely_coplanar(triangle_, triangle))
         return id < best_.hit.id;
     const auto refine = [&](Candidate& candidate, const Triangle& of) {
+        if (candidate.refined)
+            return;
         if (const RefinedAnswer better = refined_candidate(p_, of, candidate.hit.id);
             better.candidate)
             candidate = *better.candidate;
@@ -68,8 +86,11 @@ bool Nearest::wins_closely(Candidate other, const Triangle& triangle) {
     refine(best_, triangle_);
     refine(other, triangle);
     int order = other.compare_t(best_);
-    if (order == 0)
-        order = ExactSolution(p_, triangle).compare_t(ExactSolution(p_, triangle_));
+    if (order == 0) {
+        if (!best_exactly_)
+            best_exactly_.emplace(p_.ray, triangle_);
+        order = ExactSolution(p_.ray, triangle).compare_t(*best_exactly_);
+    }
     return order != 0 ? order < 0 : id < best_.hit.id;
 }
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "core/box.h"
+#include "core/exact_solution.h"
 #include "core/ray.h"
 #include "core/soup.h"
 
@@ -22,10 +23,10 @@ namespace ovc {
 /// conservative.
 struct PreparedRay {
     Ray ray;
-    int kx, ky, kz;    // kz: the major axis of dir
-    double sx, sy, sz; // shear and scale of Woop et al. 2013, section 3.1
-    dvec3 inv_dir;     // may be infinite
-    TriangleId skip;   // a triangle this ray does not see: the one it starts on
+    int kx, ky, kz;       // kz: the major axis of dir
+    double sx, sy, sz;    // shear and scale of Woop et al. 2013, section 3.1
+    dvec3 inv_dir;        // may be infinite
+    TriangleId skip;      // a triangle this ray does not see: the one it starts on
     double org_error = 0; // how far in each coordinate its line may be from the one that is meant
 
     explicit PreparedRay(const Ray& r, TriangleId skipped = {}) : ray(r), skip(skipped) {
@@ -57,8 +58,9 @@ struct Candidate {
     double t_low = 0; // t is within t_error of hit.t + t_low
     double t_error = 0;
     uint32_t support =
-        kAllCorners; // bit i: corner i has a part in the hit. One bit: the hit is that
-                     // corner, two: it lies on that side. All where nobody looked
+        kAllCorners;      // bit i: corner i has a part in the hit. One bit: the hit is that
+                          // corner, two: it lies on that side. All where nobody looked
+    bool refined = false; // t is as doubled precision has it: no use to ask that again
 
     /// The sign of this t minus the other's, on the same ray; 0 where the errors leave it open.
     int compare_t(const Candidate& other) const {
@@ -133,13 +135,15 @@ class Nearest {
 public:
     explicit Nearest(const PreparedRay& p) : p_(p) {}
 
-    /// Tests the triangle. Returns true when it is hit, though perhaps not the nearest.
+    /// Tests the triangle. Returns true when it is hit, though perhaps not the nearest; or when it
+    /// is seen edge-on through the nearest hit.
     bool offer(const Triangle& triangle, TriangleId id) {
-        const std::optional<Candidate> found = candidate(p_, triangle, id);
-        if (found && (!is_hit() || wins(*found, triangle))) {
-            best_ = *found;
-            triangle_ = triangle;
-        }
+        if (best_.support != Candidate::kAllCorners && id != p_.skip &&
+            offer_neighbour(triangle, id))
+            return true;
+        std::optional<Candidate> found = candidate(p_, triangle, id);
+        if (found && (!is_hit() || wins(*found, triangle)))
+            take(*found, triangle);
         return found.has_value();
     }
 
@@ -158,15 +162,24 @@ public:
     }
 
 private:
-    bool wins(const Candidate& other, const Triangle& triangle) {
+    /// Where the best hit is a corner or on a side that the triangle has as well: thousands may
+    /// have it, and are decided without another exact number. False: nothing is decided.
+    bool offer_neighbour(const Triangle& triangle, TriangleId id);
+    bool wins(Candidate& other, const Triangle& triangle) {
         const int order = other.compare_t(best_);
         return order != 0 ? order < 0 : wins_closely(other, triangle);
     }
-    bool wins_closely(Candidate other, const Triangle& triangle);
+    bool wins_closely(Candidate& other, const Triangle& triangle);
+    void take(const Candidate& found, const Triangle& triangle) {
+        best_ = found;
+        triangle_ = triangle;
+        best_exactly_.reset();
+    }
 
     const PreparedRay& p_;
     Candidate best_{};
     Triangle triangle_{};
+    std::optional<ExactSolution> best_exactly_; // where a tie has asked for it
 };
 
 /// The hit of a single triangle, rounded once.

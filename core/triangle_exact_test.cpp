@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 namespace ovc {
@@ -56,6 +57,47 @@ const Case kCases[] = {
          t = {{far + r.point(), far + r.point(), far + r.point()}};
          ray = {r.point() * 3.0, 0, dvec3(0)};
          ray.dir = t[0][2] - ray.org;
+     }},
+    {"fan, some of it edge-on",
+     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+         const dvec3 hub = r.lattice();
+         ray = {r.lattice() * 3.0, 0, dvec3(0)};
+         ray.dir = hub - ray.org;
+         for (int i = 0; i < 12; ++i) {
+             const dvec3 a = r.lattice(), b = r.below(3) == 0 ? a + ray.dir : r.lattice();
+             t.push_back(r.below(2) == 0 ? Triangle{hub, a, b} : Triangle{a, b, hub});
+         }
+     }},
+    {"book",
+     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+         const dvec3 a = r.lattice(), b = r.lattice();
+         ray = {r.lattice() * 3.0, 0, dvec3(0)};
+         ray.dir = 0.25 * a + 0.75 * b - ray.org;
+         for (int i = 0; i < 12; ++i) {
+             const dvec3 page = r.below(3) == 0 ? a + ray.dir : r.lattice();
+             t.push_back(r.below(2) == 0 ? Triangle{a, page, b} : Triangle{page, b, a});
+         }
+     }},
+    {"one plane",
+     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+         for (int i = 0; i < 12; ++i) {
+             t.push_back({r.lattice(), r.lattice(), r.lattice()});
+             for (dvec3& corner : t.back())
+                 corner.z = corner.x + corner.y;
+         }
+         t[r.below(12)][0].z += 0x1p-50;
+         ray = {r.point() * 3.0, 0, r.lattice() / 3.0};
+     }},
+    {"copies within ulps",
+     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+         const Triangle base{r.point(), r.point(), r.point()};
+         for (int i = 0; i < 12; ++i) {
+             t.push_back(base);
+             for (dvec3& corner : t.back())
+                 corner.x = std::nextafter(corner.x, r(-2, 2));
+         }
+         ray = {r.point() * 3.0, 0, dvec3(0)};
+         ray.dir = 0.3 * base[0] + 0.3 * base[1] + 0.4 * base[2] - ray.org;
      }},
     {"sliver",
      [](Random& r, std::vector<Triangle>& t, Ray& ray) {
