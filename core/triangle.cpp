@@ -70,6 +70,15 @@ bool Nearest::offer_neighbour(const Triangle& triangle, TriangleId id) {
     return true;
 }
 
+std::optional<Candidate> Nearest::in_doubt(const Triangle& triangle, TriangleId id) {
+    if (!decided_)
+        decided_.emplace();
+    if (decided_->has(id))
+        return std::nullopt;
+    decided_->add(id);
+    return exact_candidate(p_, triangle, id);
+}
+
 /// The order of two hits that doubles leave open.
 bool Nearest::wins_closely(Candidate& other, const Triangle& triangle) {
     const TriangleId id = other.hit.id;

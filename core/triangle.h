@@ -79,9 +79,11 @@ std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& t
 /// Where the ray meets the closed triangle, t_min <= t <= t_max; nothing where it does not. Decided
 /// as by exact arithmetic: in double with an error bound, and by exact_candidate() where that
 /// leaves a doubt. So a ray never slips between two triangles that share corners bit for bit. A
-/// triangle seen exactly edge-on is not hit.
-inline std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangle,
-                                          TriangleId id) {
+/// triangle seen exactly edge-on is not hit. in_doubt(p, triangle, id): instead of
+/// exact_candidate().
+template <class InDoubt>
+std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangle, TriangleId id,
+                                   InDoubt&& in_doubt) {
     if (id == p.skip)
         return std::nullopt;
     constexpr double u = 0x1p-53;
@@ -112,7 +114,7 @@ inline std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& 
         return std::nullopt;
     const bool inside = std::abs(a) > a_error && std::abs(b) > b_error && std::abs(c) > c_error;
     if (!inside)
-        return exact_candidate(p, triangle, id);
+        return in_doubt(p, triangle, id);
     const double area = a + b + c;
     const double t = (a * z[0] + b * z[1] + c * z[2]) / area * p.sz;
     const double share = std::min(2 * (a_error + b_error + c_error) / std::abs(area), 1.0);
@@ -125,8 +127,13 @@ inline std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& 
     if (t + t_error < p.ray.t_min || t - t_error > p.ray.t_max)
         return std::nullopt;
     if (!(t - t_error >= p.ray.t_min && t + t_error <= p.ray.t_max))
-        return exact_candidate(p, triangle, id);
+        return in_doubt(p, triangle, id);
     return Candidate{{t, b / area, c / area, id}, 0, t_error};
+}
+
+inline std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangle,
+                                          TriangleId id) {
+    return candidate(p, triangle, id, exact_candidate);
 }
 
 /// The nearest of the triangles offered, as exact arithmetic would choose: smaller t, equal t to
@@ -135,13 +142,16 @@ class Nearest {
 public:
     explicit Nearest(const PreparedRay& p) : p_(p) {}
 
-    /// Tests the triangle. Returns true when it is hit, though perhaps not the nearest; or when it
-    /// is seen edge-on through the nearest hit.
+    /// Tests the triangle. True: it is hit, though perhaps not the nearest, or seen edge-on through
+    /// the nearest hit. False: it is missed, or has lost before.
     bool offer(const Triangle& triangle, TriangleId id) {
+        if (id == best_.hit.id)
+            return is_hit();
         if (best_.support != Candidate::kAllCorners && id != p_.skip &&
             offer_neighbour(triangle, id))
             return true;
-        std::optional<Candidate> found = candidate(p_, triangle, id);
+        std::optional<Candidate> found =
+            candidate(p_, triangle, id, [&](auto&&...) { return in_doubt(triangle, id); });
         if (found && (!is_hit() || wins(*found, triangle)))
             take(*found, triangle);
         return found.has_value();
@@ -162,9 +172,25 @@ public:
     }
 
 private:
+    /// Triangles of late: a table in which they push each other out.
+    class Recent {
+    public:
+        void add(TriangleId id) { ids_[slot(id)] = id; }
+        bool has(TriangleId id) const { return ids_[slot(id)] == id; }
+
+    private:
+        static constexpr size_t kSlots = 256;
+        static size_t slot(TriangleId id) { return (id.prim + 31 * size_t(id.mesh)) % kSlots; }
+
+        std::array<TriangleId, kSlots> ids_{};
+    };
+
     /// Where the best hit is a corner or on a side that the triangle has as well: thousands may
     /// have it, and are decided without another exact number. False: nothing is decided.
     bool offer_neighbour(const Triangle& triangle, TriangleId id);
+    /// exact_candidate(); but nothing where that was asked before: leaves that overlap offer a
+    /// triangle again.
+    std::optional<Candidate> in_doubt(const Triangle& triangle, TriangleId id);
     bool wins(Candidate& other, const Triangle& triangle) {
         const int order = other.compare_t(best_);
         return order != 0 ? order < 0 : wins_closely(other, triangle);
@@ -180,6 +206,7 @@ private:
     Candidate best_{};
     Triangle triangle_{};
     std::optional<ExactSolution> best_exactly_; // where a tie has asked for it
+    std::optional<Recent> decided_; // triangles that were in doubt, and are the best or none
 };
 
 /// The hit of a single triangle, rounded once.

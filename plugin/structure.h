@@ -97,7 +97,12 @@ protected:
     /// What a call of so many rays asks between passes.
     Result<Done> go_on(size_t answered, size_t rays) {
         share_ = double(answered) / double(rays);
-        if (!keeps_on())
+        keeps_on();
+        return unless_cancelled();
+    }
+    /// The end of a call: what was in vain is no answer.
+    Result<Done> unless_cancelled() const {
+        if (watch_ && cancelled_)
             return Error{"cancelled", ErrorKind::Cancelled};
         return Done{};
     }

@@ -387,7 +387,7 @@ Result<Done> TwoLevel::trace(const Query& query) {
         return done;
     (Query::kAnyHit ? statistics_.occlusion_rays : statistics_.nearest_rays) += query.rays.size();
     statistics_.seconds_trace += watch.seconds();
-    return Done{};
+    return unless_cancelled();
 }
 
 template <class Query>
