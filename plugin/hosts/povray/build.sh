@@ -19,21 +19,17 @@ cannot() {
     exit 77
 }
 
-# Debian's source package, by lists of our own: the system's may lack deb-src, and are left alone.
+# Debian's source package, from where apt is told to take source packages.
 fetch_source() {
-    local list=$PWD/apt
-    command -v apt-get >/dev/null && command -v dpkg-source >/dev/null || cannot "apt-get and dpkg-source (package dpkg-dev) are needed"
-    mkdir -p "$list/lists/partial"
-    local mirror
-    mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | grep -m1 '/debian/*$') || mirror=http://deb.debian.org/debian
-    echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror bookworm main" > "$list/sources.list"
-    local apt=(apt-get -qq -o Dir::Etc::SourceList="$list/sources.list" -o Dir::Etc::SourceParts=/dev/null -o Dir::State::Lists="$list/lists")
-    if [[ $(id -u) -eq 0 ]]; then
-        apt+=(-o APT::Sandbox::User=root)
+    local apt=(apt-get -qq)
+    command -v apt-get >/dev/null && command -v dpkg-source >/dev/null || cannot "apt-get and dpkg-source are needed; as root, run: apt-get install dpkg-dev"
+    [[ $(id -u) -ne 0 ]] || apt+=(-o APT::Sandbox::User=root) # whose user may not write here
+    "${apt[@]}" source --download-only --only-source "povray=1:$version-2" && touch fetched && return
+    local sources=/etc/apt/sources.list.d/debian.sources
+    if [[ -f $sources ]]; then
+        cannot "apt has no source package of povray 1:$version-2 (deb-src); as root, run: sed -i 's/^Types: deb\$/Types: deb deb-src/' $sources && apt-get update"
     fi
-    "${apt[@]}" update || cannot "the list of Debian's source packages is not to be had from $mirror"
-    "${apt[@]}" source --download-only --only-source "povray=1:$version-2" || cannot "Debian's source package of povray $version is not to be had from $mirror"
-    touch fetched
+    cannot "apt has no source package of povray 1:$version-2 (deb-src); as root, run: sed -n 's/^deb /deb-src /p' /etc/apt/sources.list > /etc/apt/sources.list.d/deb-src.list && apt-get update"
 }
 
 # As debian/rules does, but for documents and packaging.
@@ -79,7 +75,7 @@ if [[ ! -f patched || $(cat patched) != "$stamp" ]]; then
     [[ -f fetched ]] || fetch_source
     dpkg-source -x "povray_$version-2.dsc" >/dev/null
     missing=$(dpkg-checkbuilddeps "povray-$version/debian/control" 2>&1) ||
-        cannot "${missing#*error: }; as root: apt-get install what is listed"
+        cannot "${missing#*error: }; as root, run: apt-get build-dep $(printf %q "$PWD/povray-$version")"
     patch -d "povray-$version" -p1 --fuzz=0 < "$here/povray.patch"
     (cd "povray-$version" && configure) > configure.log 2>&1 || {
         tail -n 5 configure.log >&2
