@@ -13,9 +13,9 @@
 
 namespace ovc {
 
-/// Whether `path` can be written: its folder exists and lets us write, and what is there already is
-/// a file, or a device or FIFO that is written to as it is. `what` names the file in the error:
-/// "output", "statistics".
+/// Whether `path` can be written: its folder takes a new file, which is removed again, and what is
+/// there already is a file, or a device or FIFO that is written to as it is. `what` names the file
+/// in the error: "output", "statistics".
 Result<Done> check_writable(std::string_view what, const std::filesystem::path& path);
 
 /// check_writable, and the extension is one of an image format of ours.

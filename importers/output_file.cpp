@@ -76,6 +76,23 @@ bool is_written_through(const struct stat& info) {
     return S_ISCHR(info.st_mode) || S_ISFIFO(info.st_mode) || standard_descriptor(info) >= 0;
 }
 
+struct Temporary {
+    fs::path path;
+    std::FILE* file = nullptr; // null: errno says why
+};
+
+/// A new file in the target's folder, for a rename across file systems is none; its name is short,
+/// so that it fits wherever the target's does.
+Temporary create_beside(const fs::path& final_path) {
+    for (int i = 0; i < kNamesTried; ++i) {
+        fs::path path = folder_of(final_path) / fmt::format(".ovc{}-{}", getpid(), i);
+        std::FILE* file = std::fopen(path.c_str(), "wbx");
+        if (file || errno != EEXIST)
+            return {std::move(path), file};
+    }
+    return {};
+}
+
 const char* unfit_kind(const struct stat& info) {
     if (S_ISDIR(info.st_mode))
         return "a directory";
@@ -87,6 +104,21 @@ const char* unfit_kind(const struct stat& info) {
 } // namespace
 
 Result<Done> OutputFile::check(const fs::path& target) {
+    if (const Result<Done> fine = check_place(target); !fine)
+        return fine;
+    struct stat info;
+    if (stat(target.c_str(), &info) == 0 && is_written_through(info))
+        return Done{};
+    // Permissions do not tell it all: root may write to /proc, which takes no files.
+    const Temporary probe = create_beside(followed(target));
+    if (!probe.file)
+        return folder_refused(target, errno);
+    std::fclose(probe.file);
+    unlink(probe.path.c_str());
+    return Done{};
+}
+
+Result<Done> OutputFile::check_place(const fs::path& target) {
     struct stat info;
     if (stat(target.c_str(), &info) == 0) {
         if (const char* kind = unfit_kind(info))
@@ -105,31 +137,23 @@ Result<Done> OutputFile::check(const fs::path& target) {
     if (!S_ISDIR(info.st_mode))
         return Error{fmt::format("{}: {} is no folder", target.string(), folder.string())};
     if (access(folder.c_str(), W_OK | X_OK) != 0)
-        return Error{fmt::format("{}: the folder cannot be written to: {}", target.string(),
-                                 std::strerror(errno))};
+        return folder_refused(target, errno);
     return Done{};
 }
 
 Result<OutputFile> OutputFile::create(const fs::path& target) {
-    if (const Result<Done> fine = check(target); !fine)
+    if (const Result<Done> fine = check_place(target); !fine)
         return fine.error();
     struct stat info;
     if (stat(target.c_str(), &info) == 0 && is_written_through(info))
         return write_through(target);
     const fs::path final_path = followed(target);
-    for (int i = 0; i < kNamesTried; ++i) {
-        // In the same folder, for a rename across file systems is none; short, so that it fits
-        // wherever the final name does.
-        fs::path temporary = folder_of(final_path) / fmt::format(".ovc{}-{}", getpid(), i);
-        if (std::FILE* file = std::fopen(temporary.c_str(), "wbx")) {
-            remember_unfinished(temporary);
-            std::setvbuf(file, nullptr, _IOFBF, kBufferBytes);
-            return OutputFile(target, final_path, std::move(temporary), file);
-        }
-        if (errno != EEXIST)
-            break;
-    }
-    return failed(target, errno);
+    Temporary temporary = create_beside(final_path);
+    if (!temporary.file)
+        return folder_refused(target, errno);
+    remember_unfinished(temporary.path);
+    std::setvbuf(temporary.file, nullptr, _IOFBF, kBufferBytes);
+    return OutputFile(target, final_path, std::move(temporary.path), temporary.file);
 }
 
 /// Standard output and error keep their place: opened anew, the file would be emptied.
@@ -184,6 +208,11 @@ Result<Done> OutputFile::commit() {
 
 Error OutputFile::failed(const fs::path& target, int error_number) {
     return {fmt::format("{}: cannot be written: {}", target.string(), std::strerror(error_number))};
+}
+
+Error OutputFile::folder_refused(const fs::path& target, int error_number) {
+    return {fmt::format("{}: the folder cannot be written to: {}", target.string(),
+                        std::strerror(error_number))};
 }
 
 bool is_same_output(const fs::path& a, const fs::path& b) {

@@ -18,9 +18,9 @@ namespace ovc {
 /// they are.
 class OutputFile {
 public:
-    /// Whether create() would succeed; touches nothing. Refused: a directory, a block device, a
-    /// socket, a folder that does not exist or cannot be written to, a name the file system cannot
-    /// hold.
+    /// Whether create() would succeed. Makes a file beside the target and removes it again; what is
+    /// at the target is not touched. Refused: a directory, a block device, a socket, a folder that
+    /// does not exist or takes no files, a name the file system cannot hold.
     static Result<Done> check(const std::filesystem::path& target);
 
     static Result<OutputFile> create(const std::filesystem::path& target);
@@ -55,8 +55,11 @@ private:
           temporary_(std::move(temporary)),
           file_(file) {}
 
+    /// As far as it can be told without writing.
+    static Result<Done> check_place(const std::filesystem::path& target);
     static Result<OutputFile> write_through(const std::filesystem::path& target);
     static Error failed(const std::filesystem::path& target, int error_number);
+    static Error folder_refused(const std::filesystem::path& target, int error_number);
 
     std::filesystem::path target_;     // as given, for messages
     std::filesystem::path final_path_; // what it leads to

@@ -3,6 +3,8 @@
 #include "importers/output_file.h"
 #include "importers/test_files.h"
 
+#include <gmock/gmock.h>
+
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -81,6 +83,20 @@ TEST_F(OutputFileTest, RefusesWhatIsNoFile) {
     EXPECT_EQ(save(folder / "none" / "file", ""), "none/file: the folder does not exist");
     EXPECT_TRUE(fs::is_socket(folder / "socket"));
     close(socket_end);
+}
+
+TEST_F(OutputFileTest, IsTriedBeforehandWithoutATrace) {
+    folder.write("old", "text");
+    fs::create_symlink("new", folder / "dangling");
+    for (const char* name : {"old", "dangling", "none"})
+        EXPECT_TRUE(OutputFile::check(folder / name)) << name;
+    EXPECT_EQ(folder.read("old"), "text");
+    EXPECT_EQ(file_count(), 2u) << "nothing is left behind";
+    // Root has permission, and still no file can be made.
+    const Result<Done> refused = OutputFile::check("/proc/a.png");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message,
+                testing::StartsWith("/proc/a.png: the folder cannot be written to: "));
 }
 
 TEST_F(OutputFileTest, TakesEveryNameThatFits) {
