@@ -11,7 +11,9 @@ namespace ovc {
 
 static constexpr const char* kExamples = R"(Examples:
   source <(overcast completion bash)
-      in this shell, or from ~/.bashrc in every one
+      in this shell, or from ~/.bashrc in every one; zsh likewise
+  overcast completion fish | source
+      fish, in this shell
   overcast completion bash > ~/.local/share/bash-completion/completions/overcast
   overcast completion zsh > ~/.zfunc/_overcast
       with ~/.zfunc in $fpath before compinit

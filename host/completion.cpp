@@ -178,7 +178,16 @@ _overcast_scenes() {
 )";
     for (const CommandManual& command : manual)
         text += zsh_of(command);
-    return text + "    esac\n}\n_overcast \"$@\"\n";
+    // Autoloaded from $fpath, the file is the function's body; sourced, it is a command like any.
+    return text + R"(    esac
+}
+if [[ $zsh_eval_context[-1] == loadautofunc ]]; then
+    _overcast "$@"
+else
+    (( $+functions[compdef] )) || { autoload -Uz compinit && compinit -D -i }
+    compdef _overcast overcast
+fi
+)";
 }
 
 // ---- fish

@@ -5,6 +5,10 @@
 
 #include <gmock/gmock.h>
 
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
 #include <sstream>
 
 namespace ovc {
@@ -90,6 +94,40 @@ TEST(ZshCompletion, IsAScript) {
                                                  "exit $code");
     EXPECT_EQ(checked.exit_code, 0) << checked.output;
     EXPECT_EQ(checked.output, "");
+}
+
+/// What runs where somebody types "overcast rend", a tab and return after these commands.
+std::string zsh_runs(const std::string& setup) {
+    const std::string script = "zmodload zsh/zpty; zpty shell \"TERM=dumb zsh -f -i\"; "
+                               "zpty -w shell '" +
+                               setup +
+                               "; overcast() { print \"ran $*.\" }; print rea\"\"dy'; "
+                               "while zpty -r shell line && [[ $line != *ready* ]]; do :; done; "
+                               "zpty -w -n shell $'overcast rend\\t\\n'; "
+                               "while zpty -r shell line; do "
+                               "case $line in (*ran*|*found*) print -r -- $line; break; esac; done";
+    const std::string file = testing::TempDir() + "ovc_zsh_" + std::to_string(getpid());
+    std::ofstream(file) << script;
+    const auto run = test::run_shell("HOME=/nonexistent timeout 60 zsh -f " + file);
+    std::remove(file.c_str());
+    return run.output;
+}
+
+TEST(ZshCompletion, WorksSourcedAndAutoloaded) {
+    if (!is_installed("zsh"))
+        GTEST_SKIP() << "zsh is not installed";
+    const std::string source = "source <(" + std::string(kOvercast) + " completion zsh)";
+    const std::string compinit = "autoload -Uz compinit; compinit -D -u";
+    EXPECT_THAT(zsh_runs(source), testing::HasSubstr("ran render."));
+    EXPECT_THAT(zsh_runs(compinit + "; " + source), testing::HasSubstr("ran render."));
+    const std::string folder = testing::TempDir() + "ovc_zfunc_" + std::to_string(getpid());
+    ASSERT_EQ(test::run_shell("mkdir -p " + folder + " && " + kOvercast + " completion zsh > " +
+                              folder + "/_overcast")
+                  .exit_code,
+              0);
+    EXPECT_THAT(zsh_runs("fpath=(" + folder + " $fpath); " + compinit),
+                testing::HasSubstr("ran render."));
+    test::run_shell("rm -r " + folder);
 }
 
 TEST(FishCompletion, OffersCommandsOptionsAndChoices) {
