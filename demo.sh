@@ -12,7 +12,7 @@ fi
 install_packages
 echo "== configure and build (Release) into build/"
 cmake --preset release -DOVC_TESTS=OFF >/dev/null
-cmake --build build --target overcast overcast_plugin
+cmake --build build
 echo "== render: 'plants', 344 MiB of level 2, in 86 MiB of GPU memory"
 mkdir -p out
 build/bin/overcast render plants --size 1280x720 --gpu-memory 86M \
