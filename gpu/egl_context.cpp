@@ -284,7 +284,7 @@ Result<EglContext> EglContext::create(const std::string& name, const LogSink& lo
     if (working.empty())
         return Error{"no EGL device works: " + failures};
     if (name.empty()) {
-        say(log, LogLevel::Warning,
+        say(log, LogLevel::Info, // answers are the same
             fmt::format("no GPU found{}; using the software renderer {}",
                         failures.empty() ? "" : " (" + failures + ")", working[0].info().renderer));
         if (!working[0].make_current())

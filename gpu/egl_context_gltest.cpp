@@ -61,7 +61,10 @@ TEST(EglContextGl, DriversThatEndTheProcessArePassedOver) {
 TEST(EglContextGl, FallingBackToSoftwareIsSaid) {
     std::string said;
     const Result<EglContext> context =
-        EglContext::create("", [&](LogLevel, const std::string& message) { said = message; });
+        EglContext::create("", [&](LogLevel level, const std::string& message) {
+            EXPECT_EQ(level, LogLevel::Info) << "the answers are those of a GPU";
+            said = message;
+        });
     if (!context)
         GTEST_SKIP() << context.error().message;
     if (context->info().is_software) {

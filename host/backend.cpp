@@ -23,7 +23,7 @@ Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOpt
     ovc_result code = OVC_OK;
     Result<PluginDevice> device = opening.finish(log, code);
     if (device)
-        return make_plugin_backend(std::move(*device), soup, options);
+        return make_plugin_backend(std::move(*device), soup, options, log);
     if (code == OVC_OK)
         return Error{device.error().message + " (--backend cpu-kdtree works without it)"};
     // Whoever named a device or a backend meant it, and a wrong setting is for its owner to mend;
@@ -45,7 +45,7 @@ Result<ovc_plan> make_plan(const Soup& soup, const BackendOptions& options, cons
     const Result<PluginDevice> device = PluginDevice::open(*api, options.device, log);
     if (!device)
         return device.error();
-    return make_plugin_plan(*device, soup, options);
+    return make_plugin_plan(*device, soup, options, log);
 }
 
 } // namespace ovc

@@ -113,12 +113,14 @@ Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOpt
 /// no plugin or no device; a backend that cannot tell.
 Result<ovc_plan> make_plan(const Soup& soup, const BackendOptions& options, const LogSink& log);
 
-/// The options' device is not looked at again. Through plugin/overcast.h and nothing else.
+/// The options' device is not looked at again. Through plugin/overcast.h and nothing else. The log
+/// is told of a budget beyond what the device has.
 Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
-                                                     const BackendOptions& options);
+                                                     const BackendOptions& options,
+                                                     const LogSink& log);
 
 Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
-                                  const BackendOptions& options);
+                                  const BackendOptions& options, const LogSink& log);
 
 std::unique_ptr<Backend> make_cpu_backend(const Soup& soup);
 /// Over a tree that is there already, and took so long to build.

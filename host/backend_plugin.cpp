@@ -5,6 +5,7 @@
 #include "host/plugin_loader.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cassert>
 #include <optional>
@@ -166,14 +167,28 @@ static Result<Done> add_meshes(const PluginDevice& device, ovc_scene scene, cons
     return Done{};
 }
 
+/// Memory that is promised and not there is a warning: a scene may take less than its budget.
+static void check_budget(uint64_t budget_bytes, const ovc_device_info& info, const LogSink& log) {
+    // A software renderer reports a number of its own; what it takes is the machine's.
+    const uint64_t there = info.is_software
+                               ? uint64_t(sysconf(_SC_PHYS_PAGES)) * uint64_t(sysconf(_SC_PAGESIZE))
+                               : info.memory_bytes;
+    if (budget_bytes > there)
+        say(log, LogLevel::Warning,
+            fmt::format("--gpu-memory: {} is more than the {} that {} has{}",
+                        human_bytes(budget_bytes), human_bytes(there), info.renderer,
+                        info.is_software ? "" : " free, as far as its driver tells"));
+}
+
 static Result<ovc_scene_config> config_of(const BackendOptions& options,
-                                          const ovc_device_info& info) {
+                                          const ovc_device_info& info, const LogSink& log) {
     ovc_scene_config config{};
     config.struct_size = sizeof(config);
     config.gpu_memory_bytes = options.gpu_memory.of(info.memory_bytes);
     if (options.gpu_memory.share > 0 && config.gpu_memory_bytes == 0)
         return Error{fmt::format("--gpu-memory: {}% of the device's {} is less than one byte",
                                  100 * options.gpu_memory.share, human_bytes(info.memory_bytes))};
+    check_budget(config.gpu_memory_bytes, info, log);
     config.leaf_triangles = options.leaf_triangles;
     config.leaves = options.leaves;
     config.precision = options.precision;
@@ -190,11 +205,12 @@ static Result<ovc_scene_config> config_of(const BackendOptions& options,
 }
 
 Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
-                                                     const BackendOptions& options) {
+                                                     const BackendOptions& options,
+                                                     const LogSink& log) {
     const Result<ovc_device_info> info = device.describe();
     if (!info)
         return info.error();
-    Result<ovc_scene_config> config = config_of(options, *info);
+    Result<ovc_scene_config> config = config_of(options, *info, log);
     if (!config)
         return config.error();
     std::optional<BuildWatch> watch;
@@ -213,11 +229,11 @@ Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const 
 }
 
 Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
-                                  const BackendOptions& options) {
+                                  const BackendOptions& options, const LogSink& log) {
     const Result<ovc_device_info> info = device.describe();
     if (!info)
         return info.error();
-    const Result<ovc_scene_config> config = config_of(options, *info);
+    const Result<ovc_scene_config> config = config_of(options, *info, log);
     if (!config)
         return config.error();
     const Result<PluginScene> scene = device.create_scene(*config);

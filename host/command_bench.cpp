@@ -222,7 +222,7 @@ public:
 
 private:
     BenchWords words_;
-    LogArguments log_;
+    LogArguments log_{LogLevel::Info};
 };
 
 } // namespace

@@ -45,7 +45,8 @@ static constexpr const char* kExamples = R"(Examples:
   overcast render dragon.ply +W640 +H480 +Od.png
       POV-Ray's words are understood
 
-Interrupted with Ctrl-C, it keeps what it has, the picture so far as NAME.unfinished.png, and exits with 2;\nthe same command with --continue goes on from there.)";
+Interrupted with Ctrl-C, it keeps what it has, the picture so far as NAME.unfinished.png, and exits with 2;
+the same command with --continue goes on from there.)";
 
 /// In the order of RenderMode.
 static constexpr std::string_view kModes[] = {"auto", "batched", "mixed"};

@@ -68,6 +68,12 @@ public:
             make_backend(scene->soup, *backend_options, log, opening);
         if (!backend)
             return backend.error();
+        if (isatty(STDIN_FILENO))
+            say(log, LogLevel::Info,
+                options_.binary
+                    ? "reading rays from the terminal, 64 bytes each; Ctrl-D ends them"
+                    : "reading rays from the terminal, one a line: ox oy oz dx dy dz [tmin tmax]; "
+                      "Ctrl-D ends them");
         const Result<Done> done = trace_stream(**backend, STDIN_FILENO, STDOUT_FILENO, options_);
         if (!done)
             return done.error();
@@ -78,7 +84,7 @@ private:
     SceneArguments source_;
     TraceOptions options_;
     BackendArguments backend_;
-    LogArguments log_;
+    LogArguments log_{LogLevel::Info};
 };
 
 } // namespace

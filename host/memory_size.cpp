@@ -11,7 +11,7 @@
 namespace ovc {
 
 /// More than any device has.
-static constexpr uint64_t kMostBytes = uint64_t(1) << 62;
+static constexpr uint64_t kMostBytes = uint64_t(1) << 50;
 
 /// The factor that a unit stands for; 0 for what is no unit.
 static double unit_factor(std::string unit) {

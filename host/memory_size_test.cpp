@@ -48,7 +48,8 @@ TEST(MemorySize, RefusesTheRest) {
               "the memory size '0K' is zero; it must be more");
     EXPECT_EQ(parse_memory_size("101%").error().message,
               "'101%' is more memory than the device has; 100% is the most");
-    EXPECT_FALSE(parse_memory_size("9999999T"));
+    EXPECT_EQ(parse_memory_size("9999T").error().message,
+              "'9999T' is more memory than any device has");
     for (const char* text : {"0.1", "0.0001K", "1e-30%", "1e-307%"})
         EXPECT_EQ(parse_memory_size(text).error().message,
                   "the memory size '" + std::string(text) + "' is less than one byte");

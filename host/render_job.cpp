@@ -17,6 +17,7 @@
 #include "host/unfinished.h"
 #include "host/vector_width.h"
 #include "host/version.h"
+#include "host/whitted.h"
 #include "importers/scene_bytes.h"
 #include "importers/scene_fields.h"
 #include "importers/scene_file.h"
@@ -309,12 +310,34 @@ static Result<PicturePart> part_of(const ImageSize& picture, const std::optional
     return PicturePart{picture, crop->left, crop->top, crop->size};
 }
 
+/// Of a single picture, frame 0.
+static std::vector<uint32_t> frames_of(const RenderJob& job) {
+    std::vector<uint32_t> frames;
+    for (const Shot& shot : job.shots)
+        frames.push_back(shot.frame);
+    return frames.empty() ? std::vector<uint32_t>{0} : frames;
+}
+
 /// Before anything is read: whether nothing is left to do.
 static bool all_there(const RenderJob& job) {
-    return job.shots.empty()
-               ? is_there(job, 0)
-               : std::all_of(job.shots.begin(), job.shots.end(),
-                             [&](const Shot& shot) { return is_there(job, shot.frame); });
+    return std::ranges::all_of(frames_of(job),
+                               [&](uint32_t frame) { return is_there(job, frame); });
+}
+
+/// Says so where --continue finds neither pixels nor frames of an earlier run.
+static void tell_of_nothing_to_go_on_with(const RenderJob& job, const LogSink& log) {
+    const auto is_begun = [&](uint32_t frame) {
+        return is_there(job, frame) || fs::exists(unfinished_film(outputs_of(job, frame)[0]));
+    };
+    if (!job.go_on || std::ranges::any_of(frames_of(job), is_begun))
+        return;
+    const std::string& output = job.outputs[0];
+    say(log, LogLevel::Info,
+        job.shots.empty()
+            ? fmt::format("--continue: there is no {} to go on with; the picture is begun",
+                          unfinished_film(output))
+            : fmt::format("--continue: there is no frame {} to go on with; all are rendered",
+                          output));
 }
 
 Result<int> render(const RenderJob& job) {
@@ -327,6 +350,7 @@ Result<int> render(const RenderJob& job) {
     const Stopwatch total;
     const std::optional<ThreadLimit> threads = limit_threads(job.threads);
     const LogSink log = standard_error_log(job.log_level);
+    tell_of_nothing_to_go_on_with(job, log);
     RenderStats stats;
     use_wide_vectors(job.backend);
     DeviceOpening opening(job.backend);
@@ -334,6 +358,9 @@ Result<int> render(const RenderJob& job) {
     Result<Scene> scene = cache.open(log);
     if (!scene)
         return scene.error();
+    if (job.render.integrator == IntegratorKind::Whitted)
+        tell_simplifications(*scene, job.lights.empty() ? scene->lights : job.lights,
+                             job.scene.scene, log);
     stats.scene = job.scene.scene;
     const ImageSize size = job.size.value_or(scene->size.value_or(ImageSize{}));
     const Result<PicturePart> part = part_of(size, job.crop);

@@ -2,6 +2,8 @@
 // What becomes of a path at a surface.
 #include "host/whitted.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -31,6 +33,22 @@ static bool lets_light_through(const Scene& scene) {
                        [](const Material& m) { return m.transmission > 0; }) ||
            std::any_of(scene.meshes.begin(), scene.meshes.end(),
                        [](const MeshInfo& m) { return m.no_shadow; });
+}
+
+void tell_simplifications(const Scene& scene, std::span<const Light> lights,
+                          std::string_view source, const LogSink& log) {
+    // The sky's stand-in is parallel light.
+    const auto is_on_emitter = [](const Light& light) { return light.stand_in && !light.parallel; };
+    if (std::any_of(lights.begin(), lights.end(), is_on_emitter))
+        say(log, LogLevel::Warning,
+            fmt::format("{}: area lights shine from a few points on them, and shadows are hard; "
+                        "--integrator path has them as they are",
+                        source));
+    if (scene.exposure != 1)
+        say(log, LogLevel::Info,
+            fmt::format("{}: light times {:.3g}, to fit a picture that ends at white; "
+                        "--integrator path has the light of the file",
+                        source, scene.exposure));
 }
 
 Whitted::Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows)

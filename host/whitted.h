@@ -3,11 +3,14 @@
 // Based on: Whitted 1980, "An Improved Illumination Model for Shaded Display".
 #pragma once
 
+#include "core/log.h"
 #include "core/scene.h"
 #include "host/integrator.h"
 #include "host/shade.h"
 
 #include <cstdint>
+#include <span>
+#include <string_view>
 
 namespace ovc {
 
@@ -15,6 +18,11 @@ namespace ovc {
 /// would hardly show it, and POV-Ray does not follow it either (adc_bailout). The shares of a
 /// camera ray's paths add up to at most 1, so it never has more than 255 of them at a time.
 inline constexpr float kLeastWeight = 1 / 255.0f;
+
+/// Says what this integrator simplifies of the scene's light where path tracing does not. lights:
+/// those of the picture. source: what the scene is called on the command line.
+void tell_simplifications(const Scene& scene, std::span<const Light> lights,
+                          std::string_view source, const LogSink& log);
 
 class Whitted final : public Integrator {
 public:

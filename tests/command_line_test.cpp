@@ -193,10 +193,7 @@ TEST_F(CommandLine, BadInputIsOneSentenceExitOneAndNothingWritten) {
         const test::CommandResult run =
             overcast(std::string("render ") + c.arguments, c.environment);
         EXPECT_EQ(run.exit_code, 1);
-        std::string sentence = run.output;
-        // What else is said (the fallback to software, say) is marked as a warning.
-        for (size_t at; (at = sentence.find("overcast: warning:")) != std::string::npos;)
-            sentence.erase(at, sentence.find('\n', at) + 1 - at);
+        const std::string sentence = test::without_remarks(run.output);
         EXPECT_EQ(std::count(sentence.begin(), sentence.end(), '\n'), 1) << sentence;
         EXPECT_THAT(sentence, testing::StartsWith("overcast: "));
         for (const char* part : c.parts)
@@ -297,6 +294,25 @@ AttributeEnd
     const auto unknown = overcast("render lamp.pbrt --integrator pth");
     EXPECT_EQ(unknown.exit_code, 1);
     EXPECT_THAT(unknown.output, HasSubstr("did you mean 'path'?"));
+}
+
+/// Also of a scene file, whose reader knows nothing of lamps.
+TEST_F(CommandLine, OnlyWhoeverSimplifiesLampsWarnsOfIt) {
+    write("lamp.pbrt", R"(WorldBegin
+AreaLightSource "diffuse" "rgb L" [9 9 9]
+Shape "trianglemesh" "integer indices" [0 1 2] "point P" [-1 3 -1 1 3 -1 1 3 1]
+)");
+    EXPECT_EQ(overcast("convert lamp.pbrt lamp.ovc").output, "") << "no light is asked for";
+    for (const std::string scene : {"lamp.pbrt", "lamp.ovc"}) {
+        const auto said = [&](const std::string& options) {
+            return overcast("render " + scene + " --quiet --size 8x8 " + options).output;
+        };
+        EXPECT_EQ(said(""), "overcast: warning: " + scene +
+                                ": area lights shine from a few points on them, and shadows are "
+                                "hard; --integrator path has them as they are\n");
+        EXPECT_EQ(said("--light 0,9,0"), "") << "the lamps are not asked";
+        EXPECT_EQ(said("--integrator path"), "");
+    }
 }
 
 TEST_F(CommandLine, CtrlCDuringABuildEndsItSoon) {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 namespace ovc {
 namespace {
@@ -37,16 +38,9 @@ protected:
     fs::path folder_;
 };
 
-/// The sentence that is left when warnings are taken away (that there is no GPU, say).
-std::string without_warnings(std::string text) {
-    for (size_t at; (at = text.find("overcast: warning:")) != std::string::npos;)
-        text.erase(at, text.find('\n', at) + 1 - at);
-    return text;
-}
-
 void expect_one_sentence(const test::CommandResult& run, const std::string& part) {
     EXPECT_EQ(run.exit_code, 1) << run.output;
-    const std::string sentence = without_warnings(run.output);
+    const std::string sentence = test::without_remarks(run.output);
     EXPECT_EQ(std::count(sentence.begin(), sentence.end(), '\n'), 1) << sentence;
     EXPECT_THAT(sentence, testing::StartsWith("overcast: "));
     EXPECT_THAT(sentence, HasSubstr(part));
@@ -60,6 +54,35 @@ TEST_F(FirstTimeUser, FindsHelpEverywhere) {
         EXPECT_THAT(help.output, HasSubstr("Examples:")) << words;
     }
     expect_one_sentence(bash("$o"), "see overcast --help");
+}
+
+TEST_F(FirstTimeUser, ReadsHelpWithoutStrayEscapes) {
+    for (const char* command : {"render", "info", "trace", "convert", "devices", "scenes", "report",
+                                "bench", "diff", "completion", "man"}) {
+        const auto help = bash("$o " + std::string(command) + " --help");
+        EXPECT_EQ(help.exit_code, 0) << help.output;
+        EXPECT_THAT(help.output, testing::Not(HasSubstr("\\"))) << command;
+    }
+}
+
+/// Said once, by the commands that trace on it, and by none that was asked to be quiet.
+TEST_F(FirstTimeUser, HearsOnceThatThereIsNoGpuWhereRaysAreTraced) {
+    const std::string devices = bash("$o devices").output;
+    if (devices.find("\n1 ") != devices.npos || devices.find("(software)") == devices.npos)
+        GTEST_SKIP() << "there is a GPU, or no device at all:\n" << devices;
+    for (const char* traces :
+         {"render box --size 8x8", "trace box < /dev/null",
+          "bench box --only certified --workloads primary --size 8x8 --repeats 1"}) {
+        const std::string said = bash("$o " + std::string(traces)).output;
+        const size_t first = said.find("overcast: no GPU found; using the software renderer ");
+        EXPECT_NE(first, said.npos) << traces << ":\n" << said;
+        EXPECT_EQ(said.find("no GPU", first + 20), said.npos) << traces << ":\n" << said;
+    }
+    for (const char* silent :
+         {"render box --size 8x8 -q", "render box --size 8x8 --quiet --stats s.json",
+          "convert box b.ovc", "convert box b.ply -q", "trace box --log-level warning < /dev/null"})
+        EXPECT_EQ(bash("$o " + std::string(silent)).output, "") << silent;
+    EXPECT_THAT(bash("$o info box").output, testing::Not(HasSubstr("no GPU")));
 }
 
 TEST_F(FirstTimeUser, MistypesAndIsToldTheRightWord) {
@@ -108,6 +131,52 @@ TEST_F(FirstTimeUser, MayNotWriteThere) {
     expect_one_sentence(bash(as_user + "$o render box -o closed/a.png"),
                         "the folder cannot be written to: Permission denied");
     EXPECT_TRUE(fs::is_empty(folder_ / "closed"));
+}
+
+/// Known before anything is read: none of the inputs is there.
+TEST_F(FirstTimeUser, NamesAFolderThatTakesNoFiles) {
+    for (const char* words :
+         {"render no.ply -o /proc/a.png", "render no.ply --stats /proc/s.json",
+          "convert no.ply /proc/a.ply", "convert no.ply /proc/a.ovc",
+          "diff no.png no.png -o /proc/a.png; exit $(($? == 4))",
+          "bench no.ply --json /proc/a.json", "report --only grid -o /proc/report"})
+        expect_one_sentence(bash("$o " + std::string(words)), "/proc/");
+    EXPECT_TRUE(is_folder_empty());
+}
+
+TEST_F(FirstTimeUser, IsToldWhereThereIsNothingToContinue) {
+    const std::string render = "$o render box --size 8x8 --continue ";
+    EXPECT_THAT(bash(render).output,
+                HasSubstr("--continue: there is no out.unfinished.film to go on with"));
+    EXPECT_THAT(bash(render).output, HasSubstr("all is there in out.png"));
+    fs::remove(folder_ / "out.png");
+    EXPECT_EQ(bash(render + "-q").output, "");
+    std::ofstream(folder_ / "path.csv") << "0,0,9,0,0,0,40\n0,0,8,0,0,0,40\n";
+    const std::string frames = render + "--camera-path path.csv -o f-#.png ";
+    EXPECT_THAT(bash(frames + "--frames 0:0").output,
+                HasSubstr("--continue: there is no frame f-#.png to go on with"));
+    EXPECT_THAT(bash(frames).output, testing::Not(HasSubstr("to go on with")))
+        << "frame 0 is there";
+}
+
+TEST_F(FirstTimeUser, AsksForMoreMemoryThanThereIs) {
+    expect_one_sentence(bash("$o render box --gpu-memory 9999T"),
+                        "--gpu-memory: '9999T' is more memory than any device has");
+    EXPECT_TRUE(is_folder_empty());
+    const std::string warned = "warning: --gpu-memory: 900.0 TiB is more than the ";
+    for (const char* words : {"render box --size 8x8 -q", "info box", "trace box < /dev/null"})
+        EXPECT_THAT(bash("$o " + std::string(words) + " --gpu-memory 900T").output,
+                    HasSubstr(warned))
+            << words;
+    EXPECT_EQ(bash("$o render box --size 8x8 -q --gpu-memory 100M").output, "");
+}
+
+TEST_F(FirstTimeUser, IsToldWhatATerminalIsReadFor) {
+    if (bash("command -v script").exit_code != 0)
+        GTEST_SKIP() << "script, which makes a terminal, is not installed";
+    const std::string told = "reading rays from the terminal, one a line: ox oy oz dx dy dz";
+    EXPECT_THAT(bash("script -qec \"$o trace box\" /dev/null < /dev/null").output, HasSubstr(told));
+    EXPECT_THAT(bash("$o trace box < /dev/null").output, testing::Not(HasSubstr("reading rays")));
 }
 
 TEST_F(FirstTimeUser, ClosesAPipeEarly) {

@@ -29,4 +29,13 @@ inline CommandResult run_shell(const std::string& command) {
     return result;
 }
 
+/// What is left of a command's output without its warnings, and without the remark that it takes
+/// the software renderer.
+inline std::string without_remarks(std::string text) {
+    for (const char* remark : {"overcast: warning:", "overcast: no GPU found"})
+        for (size_t at; (at = text.find(remark)) != std::string::npos;)
+            text.erase(at, text.find('\n', at) + 1 - at);
+    return text;
+}
+
 } // namespace ovc::test

@@ -107,7 +107,7 @@ bool Interpreter::area_light_source() {
     if (type == "none")
         state_.now.emission.reset();
     else if (type == "diffuse" || type == "area")
-        state_.now.emission = lights_.emission(parameters, place_);
+        state_.now.emission = lights_.emission(parameters);
     else
         diagnostics_.missing("area light " + type, place_,
                              fmt::format("area lights {} left out", ovc::quoted(type)));

@@ -121,20 +121,15 @@ void Lights::add_infinite(const Parameters& p, const Place& place) {
     sky_->zenith += radiance * (has_map ? colors.zenith : vec3(1));
 }
 
-std::optional<Emission> Lights::emission(const Parameters& p, const Place& place) const {
+std::optional<Emission> Lights::emission(const Parameters& p) const {
     Emission emission;
     emission.radiance = scaled(p, "L", vec3(1));
     emission.two_sided = p.flag("twosided", false);
-    emission.place = place;
     return emission;
 }
 
 void Lights::add_area(const Shape& shape, const Emission& emission) {
     any_ = true;
-    diagnostics_.approximate(
-        "area light", emission.place,
-        "area lights shine from a few points on them, and shadows are hard, but "
-        "for --integrator path");
     for (Light light : lights_on(shape, emission.radiance, emission.two_sided)) {
         light.stand_in = true;
         area_lights_.push_back(light);

@@ -12,7 +12,6 @@ namespace ovc::pbrt {
 struct Emission {
     vec3 radiance{1};
     bool two_sided = false;
-    Place place;
 };
 
 class Lights {
@@ -22,7 +21,7 @@ public:
 
     void add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
              const Place& place);
-    std::optional<Emission> emission(const Parameters& parameters, const Place& place) const;
+    std::optional<Emission> emission(const Parameters& parameters) const;
     /// A shape that emits, in world coordinates.
     void add_area(const Shape& shape, const Emission& emission);
 

@@ -32,10 +32,6 @@ Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& 
         mesh.no_shadow = pbrt::is_emitter(material) || pbrt::is_invisible(material);
     }
     if (const float exposure = pbrt::fitting_exposure(scene); exposure != 1) {
-        say(options.log, LogLevel::Info,
-            fmt::format("{}: light times {:.3g}, to fit a picture that ends at white, but for "
-                        "--integrator path",
-                        path.string(), exposure));
         pbrt::expose(scene, exposure);
         scene.exposure = exposure;
     }
