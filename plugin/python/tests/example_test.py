@@ -2,6 +2,7 @@
 """The examples of README and of help(overcast) run, and say what they promise."""
 
 import contextlib
+import io
 import os
 import pathlib
 import pydoc
@@ -23,9 +24,10 @@ class Examples(unittest.TestCase):
         readme = pathlib.Path(os.environ["OVC_SOURCE_DIR"], "README.md").read_text()
         example = re.search(r"```python\n(.*?)```", readme, re.DOTALL).group(1)
         self.assertLessEqual(len(example.splitlines()), 12)
-        names = {}
-        exec(example, names)
-        self.assertTrue(names["hits"].hit.any())
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(example, {})
+        self.assertEqual(f"# {printed.getvalue()}", example.splitlines()[-1] + "\n")
 
     def test_picture(self):
         """Lit and shadowed floor, lit and dark knot, and sky around it."""
