@@ -211,7 +211,8 @@ struct Scene {
     Soup soup;
     std::vector<MeshInfo> meshes;
     std::vector<Material> materials;
-    std::vector<Light> lights;         // empty: the host adds one beside the camera
+    std::vector<Light> lights;
+    bool may_add_light = true; // where there are none, the host adds one beside the camera
     std::optional<Camera> camera;      // none: the host frames the bounds
     std::optional<ImageSize> size;     // of the picture that the file asks for
     std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's

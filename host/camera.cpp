@@ -166,12 +166,13 @@ Light shoulder_light(const Camera& camera) {
     return {camera.eye + distance * (1.1 * axes.up - 0.9 * axes.right), kDefaultLightColor};
 }
 
-std::vector<Light> placed_lights(const std::vector<Light>& lights, const Camera& camera) {
+std::vector<Light> placed_lights(const Scene& scene, const std::vector<Light>& lights,
+                                 const Camera& camera) {
     std::vector<Light> placed = lights;
     for (Light& light : placed)
         if (light.on_camera)
             light.position += camera.eye;
-    if (placed.empty())
+    if (placed.empty() && scene.may_add_light)
         placed.push_back(shoulder_light(camera));
     return placed;
 }

@@ -72,9 +72,10 @@ Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height);
 /// A light above the camera's left shoulder, as far away as the eye is from the target.
 Light shoulder_light(const Camera& camera);
 
-/// The lights as they stand for a picture from `camera`: those on it are where it is; none: the
-/// shoulder light.
-std::vector<Light> placed_lights(const std::vector<Light>& lights, const Camera& camera);
+/// `lights` as they stand for a picture of `scene` from `camera`: those on the camera are where it
+/// is. Where there are none, the shoulder light, unless the scene means to have none.
+std::vector<Light> placed_lights(const Scene& scene, const std::vector<Light>& lights,
+                                 const Camera& camera);
 
 /// What a light has that was only given a position, a little warm: a white surface that faces it
 /// comes out at about 0.8.

@@ -149,6 +149,11 @@ TEST(FramingCamera, CopesWithNothingAndWithOnePoint) {
 TEST(ShoulderLight, StandsAboveTheCamera) {
     const Camera camera = framing_camera(Box{dvec3(-1), dvec3(1)}, 10, 10);
     EXPECT_GT(shoulder_light(camera).position.y, camera.eye.y);
+    Scene scene;
+    EXPECT_EQ(placed_lights(scene, {}, camera).size(), 1u);
+    scene.may_add_light = false;
+    EXPECT_EQ(placed_lights(scene, {}, camera).size(), 0u) << "as POV-Ray has it";
+    EXPECT_EQ(placed_lights(scene, {Light{}}, camera).size(), 1u);
 }
 
 TEST(CheckCamera, RefusesWhatMakesNoRays) {

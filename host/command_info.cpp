@@ -140,6 +140,12 @@ static std::string needs_text(const Needs& needs) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
+static std::string lights_text(const Scene& scene) {
+    if (!scene.lights.empty())
+        return fmt::format("{}", scene.lights.size());
+    return scene.may_add_light ? "none; render adds one" : "none";
+}
+
 static std::string info_text(const std::string& source, const Scene& scene, const SceneSummary& s,
                              const Result<ovc_plan>& plan) {
     std::string text =
@@ -159,10 +165,9 @@ static std::string info_text(const std::string& source, const Scene& scene, cons
         text += fmt::format("  bounds     {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}\n",
                             s.bounds.lo.x, s.bounds.lo.y, s.bounds.lo.z, s.bounds.hi.x,
                             s.bounds.hi.y, s.bounds.hi.z);
-    text += fmt::format(
-        "  materials  {}\n  lights     {}\n  camera     {}\n", scene.materials.size(),
-        scene.lights.empty() ? "none; render adds one" : fmt::format("{}", scene.lights.size()),
-        scene.camera ? "given" : "none; render frames the scene");
+    text +=
+        fmt::format("  materials  {}\n  lights     {}\n  camera     {}\n", scene.materials.size(),
+                    lights_text(scene), scene.camera ? "given" : "none; render frames the scene");
     text += fmt::format("  needs      {}\n  left out   {}\n", needs_text(s.needs),
                         left_out_text(s.left_out));
     return text + plan_text(plan);

@@ -21,7 +21,7 @@ public:
     explicit Shown(const char* name) : scene(std::move(*make_test_scene(name))) {
         camera = scene.camera ? *scene.camera
                               : framing_camera(hittable_bounds(scene.soup), kSide, kSide);
-        scene.lights = placed_lights(scene.lights, camera);
+        scene.lights = placed_lights(scene, scene.lights, camera);
     }
     Scene scene;
     Camera camera;

@@ -121,7 +121,7 @@ private:
         const ovc_statistics before = backend_.statistics();
         FrameStats frame;
         frame.frame = shot.frame;
-        scene_.lights = placed_lights(lights_, shot.camera);
+        scene_.lights = placed_lights(scene_, lights_, shot.camera);
         Film film(options_.part->size.width, options_.part->size.height, job_.samples);
         if (const Result<Done> done = go_on_with(shot, film); !done)
             return done.error();

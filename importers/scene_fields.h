@@ -68,8 +68,8 @@ void each_field(auto& io, Some<MeshInfo> auto& m) {
 
 /// All but meshes and soup.
 void each_field(auto& io, Some<Scene> auto& s) {
-    io(s.name, s.materials, s.lights, s.camera, s.size, s.max_depth, s.background, s.exposure,
-       s.gamma, s.instancing);
+    io(s.name, s.materials, s.lights, s.may_add_light, s.camera, s.size, s.max_depth, s.background,
+       s.exposure, s.gamma, s.instancing);
 }
 
 void each_field(auto& io, Some<FileStamp> auto& f) {

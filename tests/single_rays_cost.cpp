@@ -184,7 +184,7 @@ Result<Done> run(const Job& job) {
     if (!scene)
         return scene.error();
     const Camera camera = framing_camera(hittable_bounds(scene->soup), job.size, job.size);
-    scene->lights = placed_lights(scene->lights, camera);
+    scene->lights = placed_lights(*scene, scene->lights, camera);
     const auto tree = std::make_shared<const KdTree>(build_kd_tree(scene->soup));
     const std::unique_ptr<Backend> reference = make_cpu_backend(scene->soup, tree, 0);
     const Result<std::vector<RaySet>> sets =

@@ -31,7 +31,7 @@ Result<Camera> dress(Scene& scene, const ImageSize& size) {
     const Camera camera =
         scene.camera ? *scene.camera
                      : framing_camera(hittable_bounds(scene.soup), size.width, size.height);
-    scene.lights = placed_lights(scene.lights, camera);
+    scene.lights = placed_lights(scene, scene.lights, camera);
     const Result<Done> fine = check_camera(camera);
     return fine ? Result<Camera>(camera) : fine.error();
 }

@@ -97,6 +97,7 @@ Scene scene_with_everything() {
     light.fade_power = 2;
     light.stand_in = true;
     scene.lights = {light, {}};
+    scene.may_add_light = false;
     Camera camera;
     camera.window = ImageWindow{};
     camera.window->bend = ImageWindow::Bend::Omnimax;
