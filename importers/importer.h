@@ -32,6 +32,8 @@ struct ImportOptions {
     std::optional<double> tolerance = {};
     /// Of the picture to come, where that is known: scenes of POV-Ray may ask for it.
     std::optional<ImageSize> size = {};
+    /// Of scenes of POV-Ray, until they name one themselves: the version of the language.
+    std::optional<double> pov_version = {};
     /// Receives every file that is read or looked for in vain; null: nobody asks.
     FilesRead* files = nullptr;
 };

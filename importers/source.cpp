@@ -48,7 +48,7 @@ void Source::CloseFile::operator()(gzFile_s* file) const {
     gzclose(file);
 }
 
-Result<Source> Source::open(const std::filesystem::path& path, FilesRead* files) {
+Result<Source> Source::open(const std::filesystem::path& path, FilesRead* files, Empty empty) {
     note(files, path);
     Source source;
     source.name_ = path.string();
@@ -64,7 +64,7 @@ Result<Source> Source::open(const std::filesystem::path& path, FilesRead* files)
         return source.error(fmt::format("cannot be opened: {}", std::strerror(errno)));
     gzbuffer(source.file_.get(), kBlockBytes);
     source.buffer_.resize(kBlockBytes);
-    if (!source.fill(1))
+    if (!source.fill(1) && (empty == Empty::Refused || source.is_damaged()))
         return source.error("the file is empty, expected a model");
     source.is_compressed_ = gzdirect(source.file_.get()) == 0;
     const auto size = std::filesystem::file_size(path, ec);

@@ -23,9 +23,12 @@ namespace ovc {
 /// Compression is told by the file's first bytes, not by its name.
 class Source {
 public:
-    /// Fails on no such file, no regular file (links are followed), no permission, an empty file.
-    /// files: receives which file that is.
-    static Result<Source> open(const std::filesystem::path& path, FilesRead* files = nullptr);
+    enum class Empty { Refused, Fine };
+
+    /// Fails on no such file, no regular file (links are followed), no permission, and an empty
+    /// file unless that is fine. files: receives which file that is.
+    static Result<Source> open(const std::filesystem::path& path, FilesRead* files = nullptr,
+                               Empty empty = Empty::Refused);
 
     /// The next line without its end (LF, CR LF, or CR alone where the first line ends so); nothing
     /// at the end of the file. Valid until the next call.

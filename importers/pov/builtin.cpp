@@ -123,6 +123,7 @@ Number seed(Reader& reader, const Token& token) {
     reader.expect(')', token.name->text);
     if (reader.random_streams.size() >= 10'000'000)
         reader.fail(token.place, "found more than 10,000,000 streams of random numbers");
+    reader.changed();
     reader.random_streams.push_back(uint32_t(int64_t(std::clamp(value, -9e15, 9e15))));
     return Number::of(double(reader.random_streams.size() - 1));
 }
@@ -134,6 +135,7 @@ Number rand(Reader& reader, const Token& token) {
     reader.expect(')', token.name->text);
     if (!(stream >= 0 && stream < double(reader.random_streams.size())))
         reader.fail(token.place, fmt::format("found rand of {}, which no seed() gave", stream));
+    reader.changed();
     uint32_t& state = reader.random_streams[size_t(stream)];
     state = state * 1812433253u + 12345u;
     return Number::of(state * (1 / 4294967295.0));

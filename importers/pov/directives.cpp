@@ -56,7 +56,10 @@ void Reader::obey(const Token& at) {
     if (action == kActions.end())
         fail(at.place,
              fmt::format("found #{}, expected a directive that Overcast knows", at.name->text));
+    const std::optional<Depth> outer =
+        std::exchange(obeys_, Depth{frames_.size(), frame().open.size(), brackets_});
     action->second(*this, at);
+    obeys_ = outer;
 }
 
 Name* Reader::raw_name(std::string_view after) {
@@ -105,6 +108,7 @@ void Reader::do_declare(bool local) {
         Value value = hooks_.value(*this);
         count_depth(*kept, value);
         *item = std::move(value);
+        changed();
         return take_semicolon();
     }
     raw_expect('=', name->text);
@@ -192,8 +196,10 @@ bool Reader::is_defined() {
 }
 
 std::string_view Reader::skip(bool stop_at_else, bool stop_at_case) {
+    const int64_t brackets = brackets_; // those passed over do not count
     size_t depth = 0;
     for (;;) {
+        brackets_ = brackets;
         if (frame().at >= frame().end)
             fail(frame().open.back().place, "found no #end to this");
         const Token token = raw();
@@ -263,11 +269,34 @@ void Reader::do_while(const Token& at) {
     Condition loop{Condition::Kind::While};
     loop.start = frame().at;
     loop.place = at.place;
+    loop.progress = {grown_, run_over_, 0};
     frame().open.push_back(loop);
     test_while(frame().open.back());
 }
 
+void Reader::count_round(Condition& loop) const {
+    ++loop.rounds;
+    if (loop.progress.grown != grown_)
+        loop.progress = {grown_, run_over_, loop.rounds};
+    if (loop.reads != reads_) {
+        loop.reads = reads_;
+        loop.rounds_at_read = loop.rounds;
+    }
+    if (loop.kind == Condition::Kind::While && loop.rounds - loop.rounds_at_read > limits.rounds)
+        fail(loop.place,
+             fmt::format("stopped after {} rounds: the loop does not end", loop.rounds));
+    const uint64_t idle = loop.rounds - loop.progress.rounds;
+    if (idle > limits.idle_rounds && run_over_ - loop.progress.tokens > limits.idle_tokens)
+        fail(loop.place, fmt::format("stopped after {} rounds that made nothing: the loop does not "
+                                     "end",
+                                     idle));
+}
+
 void Reader::test_while(Condition& loop) {
+    if (loop.rounds > 0 && loop.changes == changes_)
+        fail(loop.place, "stopped after a round that changed nothing: the loop does not end");
+    count_round(loop);
+    loop.changes = changes_;
     frame().at = loop.start;
     if (condition())
         return;
@@ -292,14 +321,16 @@ void Reader::do_for(const Token& at) {
     loop.counter = &counter;
     loop.start = frame().at;
     loop.place = at.place;
+    loop.progress = {grown_, run_over_, 0};
     frame().open.push_back(loop);
-    if (test_for(loop))
+    if (test_for(frame().open.back()))
         return;
     skip(false, false);
     frame().open.pop_back();
 }
 
-bool Reader::test_for(const Condition& loop) const {
+bool Reader::test_for(Condition& loop) const {
+    count_round(loop);
     // As POV-Ray 3.7: a step that does not divide the range evenly may be off by a rounding.
     const double at = std::get<Number>(loop.counter->value).v[0];
     const double slack = std::abs(loop.step) * 1e-10;

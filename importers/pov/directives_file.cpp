@@ -65,6 +65,8 @@ void Reader::do_fclose() {
 /// #read (FILE, VARIABLE, VARIABLE …)
 void Reader::do_read() {
     raw_expect('(', "#read");
+    changed();
+    ++reads_;
     Name* name = peek_raw().name;
     const std::shared_ptr<DataFile> file = raw_file("#read", /* writes= */ false);
     while (peek_raw().is(',')) {

@@ -73,6 +73,7 @@ Number parse_member(Reader& reader, const Number& whole) {
 }
 
 Number parse_literal_vector(Reader& reader) {
+    const InVector in_vector(reader);
     Number vector;
     vector.size = 0;
     do {

@@ -72,7 +72,7 @@ fs::path find_file(std::string name, std::string_view extension,
 }
 
 Result<std::string> read_text(const fs::path& path, FilesRead* files) {
-    Result<Source> source = Source::open(path, files);
+    Result<Source> source = Source::open(path, files, Source::Empty::Fine);
     if (!source)
         return source.error();
     std::string text;

@@ -19,7 +19,7 @@ std::filesystem::path find_file(std::string name, std::string_view extension,
                                 const std::vector<std::string>& folders,
                                 FilesRead* files = nullptr);
 
-/// The whole of a file, unpacked; lines end with LF.
+/// The whole of a file, unpacked, and empty where it is; lines end with LF.
 Result<std::string> read_text(const std::filesystem::path& path, FilesRead* files = nullptr);
 
 } // namespace ovc::pov

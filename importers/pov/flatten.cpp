@@ -83,11 +83,13 @@ private:
         material.color = color.rgb;
         material.mirror =
             std::max(max_component(finish.reflection), max_component(finish.grazing_reflection));
-        const vec3 through = color.filter * color.rgb + vec3(color.transmit);
+        const vec3 through =
+            texture.surface.refraction * (color.filter * color.rgb + vec3(color.transmit));
         material.transmission = std::clamp(max_component(through), 0.0f, 1.0f);
         if (material.transmission > 0)
             material.filter = glm::clamp(through / material.transmission, 0.0f, 1.0f);
-        material.ior = interior && is_usable_ior(interior->ior) ? interior->ior : 1;
+        const double ior = texture.surface.ior.value_or(interior ? interior->ior : 1);
+        material.ior = is_usable_ior(ior) ? ior : 1;
         material.finish = finish;
         if (texture.pigment.other) {
             const dmat4 whole = placed * texture.pigment.placed;

@@ -52,12 +52,15 @@ public:
         reader_.limits.tokens = most_words;
         reader_.limits.triangles = options.max_triangles;
         reader_.defaults = factory_default();
+        reader_.version = options.pov_version.value_or(reader_.version);
+        reader_.version_given = options.pov_version.has_value();
         reader_.picture = options.size.value_or(reader_.picture);
     }
 
     Scene parse(std::unique_ptr<SourceFile> file) {
         Scene scene;
         scene.background = {vec3(0), vec3(0)}; // POV-Ray's
+        scene.may_add_light = false;           // without lights there is ambient light and emission
         reader_.open(std::move(file));
         while (reader_.peek().kind != TokenKind::End)
             parse_statement(scene);
@@ -133,7 +136,8 @@ private:
                 trace_level_ = uint32_t(parse_int(reader_, 1, 256, "max_trace_level"));
             else if (reader_.take("ambient_light"))
                 look_.ambient_light = parse_color(reader_).rgb;
-            else if (const Token token = reader_.next(); token.kind == TokenKind::Name) {
+            else if (const Token token = reader_.next();
+                     token.kind == TokenKind::Name && token.name->is_keyword) {
                 if (token.is("radiosity") || token.is("photons") || token.is("hf_gray_16"))
                     reader_.warn(token.name->text, token.place, token.name->text + " is left out");
                 skip_arguments(reader_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // POV-Ray's scene language: values, directives, errors. importers/pov/compare.py and
 // tests/povray_test.cpp ask POV-Ray itself.
+#include "core/stopwatch.h"
 #include "importers/readers.h"
 #include "importers/test_files.h"
 
@@ -126,6 +127,16 @@ TEST(PovDirectives, MacrosTakeValuesAndVariables) {
                  "#macro Factorial(N) #if (N <= 1) 1 #else (N * Factorial(N - 1)) #end #end");
 }
 
+/// As povray 3.7.0.10 prints them.
+TEST(PovDirectives, MacrosGiveTheirOwnVariablesAsArguments) {
+    const std::string macros = "#macro Own(X) #local Q = X; Q #end #macro Of() G #end\n"
+                               "#macro Tell(A, B) #declare T = A * B; #end\n"
+                               "#macro Set(A) #declare A = 7; #end #declare G = 1;\n";
+    EXPECT_VALUE(15, "T", macros + "Tell(Own(3), Own(5))");
+    EXPECT_VALUE(20, "T", macros + "Tell(Own(3) + 1, Own(Own(5)))");
+    EXPECT_VALUE(7, "G", macros + "Set(Of())");
+}
+
 TEST(PovDirectives, LoopsAndConditionsNest) {
     EXPECT_VALUE(10, "Sum", "#declare Sum = 0; #for (I, 1, 4) #declare Sum = Sum + I; #end");
     EXPECT_VALUE(3, "N",
@@ -160,6 +171,50 @@ TEST(PovDirectives, DeclarationsNeedNoSemicolon) {
     EXPECT_VALUE(5, "B", "#declare A = 5\n#declare B = A\n");
     EXPECT_VALUE(5, "B", "#\n#declare A = 5 #; #\n # declare B = A # \n");
     EXPECT_VALUE(1, "1", "declare Old = 3 /* a /* nested */ comment */");
+}
+
+/// As povray 3.7.0.10 has them with `#version 3.1`.
+TEST(PovDirectives, EndDeclarationsWithoutSemicolon) {
+    EXPECT_VALUE(5, "X", "#declare X = 0 #while (X < 5) #declare X = X + 1 #end");
+    EXPECT_VALUE(3, "X",
+                 "#declare X = 1\n#declare X = 1 + X #while (X = 2) #declare X = X + 1 #end");
+    EXPECT_VALUE(7, "Y", "#declare X = 5 #if (X = 5) #declare Y = 7 #else #declare Y = 8 #end");
+    EXPECT_VALUE(7, "Y", "#declare X = 5 #switch (X) #case (5) #declare Y = 7 #break #end");
+    EXPECT_VALUE(6, "Y", "#declare Y = 0; #declare X = 3 #for (I, 1, X) #declare Y = Y + I #end");
+    EXPECT_VALUE(4, "Y", "#declare Y = (1 #if (1) + 3 #else + 4 #end);");
+    EXPECT_VALUE(5, "V.y", "#declare V = <1, 2 #if (1) + 3 #else + 4 #end, 3>;");
+    EXPECT_VALUE(3, "Y", "#declare Y = (1 #local Z = 2; + Z);");
+    EXPECT_VALUE(8, "max_extent(O).y",
+                 "#declare O = sphere { 0, 1 translate 3*y #if (1) + 4*y #end scale 1 }");
+    EXPECT_VALUE(3, "Y", "#declare Y = #if (1) 3 #else 4 #end;");
+    EXPECT_VALUE(4, "Y", "#macro M() #if (1) 3 #else 4 #end #end #declare Y = M() + 1;");
+}
+
+TEST(PovDirectives, IncludesMayBeEmpty) {
+    const TestFolder folder;
+    folder.write("nothing.inc", "");
+    const auto scene = load(folder.write("main.pov", "#include \"nothing.inc\"\nsphere { 0, 1 }"));
+    EXPECT_GT(triangles_of(scene).size(), 100u);
+}
+
+TEST(PovDirectives, LoopsWithoutAnEndAreRefusedAtOnce) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"#while (1) #end", "x.pov:2:1: stopped after a round that changed nothing"},
+        {"#while (X < 3) sphere { X*x, 1 } #end", "x.pov:2:1: stopped after a round that changed"},
+        {"#while (X < 3) #declare Y = X; #end", "x.pov:2:1: stopped after "},
+        {"#for (I, 0, 1e15) #end", "x.pov:2:1: stopped after "},
+        {"#while (X < 3) #declare X = X - 1; #end", "x.pov:2:1: stopped after "},
+        {"#while (X > -1) sphere { X*x, 1 } #declare X = X + 1; #end", "x.pov:2:"}};
+    for (const auto& [loop, message] : cases) {
+        const Stopwatch watch;
+        const Result<Scene> scene = parse("#declare X = 0;\n" + std::string(loop));
+        ASSERT_FALSE(scene) << loop;
+        EXPECT_TRUE(scene.error().message.starts_with(message)) << scene.error().message;
+        std::printf("%-60s %.2f s\n", loop, watch.seconds());
+    }
+    EXPECT_VALUE(1, "X",
+                 "#declare X = 0; #declare R = seed(3);\n"
+                 "#while (X = 0) #if (rand(R) < .001) #declare X = 1; #end #end");
 }
 
 TEST(PovDirectives, IncludesAreFoundWhateverTheirLettersAndSlashes) {
@@ -299,6 +354,84 @@ TEST(PovScene, ReadsLightsCameraAndSettings) {
     EXPECT_NEAR(material.transmission, 0.5, 1e-6);
     EXPECT_EQ(material.ior, 1.4);
     EXPECT_TRUE(scene->meshes[0].no_shadow);
+}
+
+TEST(PovScene, GetsNoLightThatItDoesNotHave) {
+    const Result<Scene> scene = parse("sphere { 0, 1 finish { ambient 0.2 } }");
+    ASSERT_TRUE(scene);
+    EXPECT_TRUE(scene->lights.empty());
+    EXPECT_FALSE(scene->may_add_light);
+}
+
+/// The color and finish of a box in the scene, as povray 3.7.0.10 accepts them.
+Material material_of(const std::string& look) {
+    const Result<Scene> scene =
+        parse("#declare P = pigment { rgb <1, 0.5, 0> }; #declare F = finish { ambient 0.3 };"
+              "#declare N = normal { bumps 1 }; #declare T = texture { pigment { rgb z } finish { "
+              "ambient 0.7 } }\nbox { -1, 1 " +
+              look + " }");
+    if (!scene || scene->materials.size() != 1) {
+        ADD_FAILURE() << look << ": " << (scene ? "no single material" : scene.error().message);
+        return {};
+    }
+    return scene->materials[0];
+}
+
+TEST(PovScene, TexturesTakePigmentsAndFinishesByName) {
+    const vec3 orange(1, 0.5f, 0);
+    EXPECT_EQ(material_of("texture { P }").color, orange);
+    EXPECT_EQ(material_of("texture { P F }").finish->ambient, vec3(0.3f));
+    EXPECT_EQ(material_of("texture { F P }").color, orange);
+    EXPECT_EQ(material_of("texture { P N F }").finish->ambient, vec3(0.3f));
+    EXPECT_EQ(material_of("texture { P finish { ambient 0.2 } }").finish->ambient, vec3(0.2f));
+    const Material changed = material_of("texture { T P }");
+    EXPECT_EQ(changed.color, orange);
+    EXPECT_EQ(changed.finish->ambient, vec3(0.7f));
+}
+
+TEST(PovErrors, NamesOfNothingAreNotPassedOver) {
+    for (const char* look : {"texture { Banana }", "pigment { Banana }", "finish { Banana }",
+                             "interior { Banana }", "texture { pigment { rgb 1 } O }"}) {
+        const Result<Scene> scene =
+            parse("#declare O = sphere { 0, 1 }\nbox { 0, 1 " + std::string(look) + " }");
+        ASSERT_FALSE(scene) << look;
+        EXPECT_TRUE(scene.error().message.starts_with("x.pov:2:")) << scene.error().message;
+    }
+}
+
+/// povray 3.7.0.10 draws `finish { ior 1.2 }` and `interior { ior 1.2 }` alike, with any version.
+TEST(PovScene, OldFinishesRefract) {
+    EXPECT_EQ(material_of("pigment { rgbf 1 } finish { ior 1.5 refraction 1 }").ior, 1.5);
+    EXPECT_EQ(material_of("pigment { rgbf 1 } interior { ior 1.2 } finish { ior 1.5 }").ior, 1.5);
+    EXPECT_EQ(material_of("pigment { rgbf 1 } finish { refraction 0.5 }").transmission, 0.5f);
+    EXPECT_EQ(material_of("texture { pigment { rgbf 1 } finish { ior 1.2 } } "
+                          "texture { pigment { rgbf 1 } finish { ior 1.5 } }")
+                  .ior,
+              1.5)
+        << "the uppermost layer's";
+}
+
+TEST(PovScene, FontsThatAreNotThereHaveAStandIn) {
+    std::vector<std::string> messages;
+    const auto scene =
+        parse_pov("text { ttf \"no such font.ttf\" \"A\", 1, 0 }", "x.pov", gather(messages));
+    if (!scene)
+        GTEST_SKIP() << "no font is installed: " << scene.error().message;
+    EXPECT_GT(triangles_of(scene).size(), 10u);
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_TRUE(messages[0].starts_with("x.pov:1:8: found no font 'no such font.ttf'; "))
+        << messages[0];
+}
+
+TEST(PovScene, VersionsMayComeFromOutside) {
+    ImportOptions options;
+    options.pov_version = 3.1;
+    const std::string ball = "sphere { version*x, 0.1 }";
+    EXPECT_NEAR(triangles_of(parse_pov(ball, "x.pov", options))[0][0].x, 3.1, 0.11);
+    EXPECT_EQ(parse_pov(ball, "x.pov", {})->gamma, kSrgbGamma);
+    options.pov_version = 3.7;
+    EXPECT_EQ(parse_pov(ball, "x.pov", options)->gamma, 1) << "colors are light from 3.7 on";
+    EXPECT_EQ(parse_pov("#version 3.5;" + ball, "x.pov", options)->gamma, kSrgbGamma);
 }
 
 /// As povray 3.7.0.10 shows a plane at z = 0.

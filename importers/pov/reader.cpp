@@ -22,6 +22,14 @@ Deeper::~Deeper() {
     --reader_.depth_;
 }
 
+InVector::InVector(Reader& reader) : reader_(reader) {
+    ++reader_.brackets_;
+}
+
+InVector::~InVector() {
+    --reader_.brackets_;
+}
+
 Reader::Reader(Hooks hooks, LogSink log, std::string main_folder, FilesRead* files_read)
     : limits{},
       hooks_(std::move(hooks)),
@@ -42,7 +50,7 @@ void Reader::open(std::unique_ptr<SourceFile> file) {
 
 Token Reader::next() {
     if (back_.empty())
-        return step(/* hold_declarations= */ false);
+        return step(/* hold_directives= */ false);
     const Token token = back_.back();
     back_.pop_back();
     return token;
@@ -50,14 +58,14 @@ Token Reader::next() {
 
 const Token& Reader::peek() {
     if (back_.empty())
-        back_.push_back(step(/* hold_declarations= */ false));
+        back_.push_back(step(/* hold_directives= */ false));
     return back_.back();
 }
 
 Token Reader::peek_operator() {
     if (!back_.empty())
         return back_.back();
-    const Token token = step(/* hold_declarations= */ true);
+    const Token token = step(/* hold_directives= */ true);
     if (token.kind != TokenKind::Directive)
         back_.push_back(token);
     return token;
@@ -67,19 +75,18 @@ void Reader::put_back(const Token& token) {
     back_.push_back(token);
 }
 
-static bool is_flow(std::string_view directive) {
-    static constexpr std::string_view kFlow[] = {"if",     "ifdef", "ifndef", "else",
-                                                 "elseif", "end",   "case",   "range",
-                                                 "switch", "break", "while",  "for"};
-    return std::find(std::begin(kFlow), std::end(kFlow), directive) != std::end(kFlow);
+bool Reader::ends_value() const {
+    if (!obeys_ || brackets_ > obeys_->brackets || frames_.size() > obeys_->frames)
+        return false;
+    return frames_.size() < obeys_->frames || frames_.back().open.size() <= obeys_->blocks;
 }
 
-Token Reader::step(bool hold_declarations) {
+Token Reader::step(bool hold_directives) {
     for (;;) {
         Token token = raw();
         last_ = token.place;
         if (token.kind == TokenKind::Directive) {
-            if (hold_declarations && !is_flow(token.name->text)) {
+            if (hold_directives && ends_value()) {
                 --frame().at;
                 return token;
             }
@@ -107,6 +114,7 @@ void Reader::spend(uint64_t words) {
 
 void Reader::grow(uint64_t bytes) {
     constexpr uint64_t kBetweenChecks = uint64_t(64) << 20; // asking the system takes a while
+    grown_ += bytes;
     unchecked_ += bytes;
     if (unchecked_ < kBetweenChecks)
         return;
@@ -135,7 +143,12 @@ Token Reader::raw() {
             return frame().file->tokens.back();
         pop_frame();
     }
-    return frame().file->tokens[frame().at++];
+    const Token& token = frame().file->tokens[frame().at++];
+    if (token.is('(') || token.is('[') || token.is('{'))
+        ++brackets_;
+    else if (token.is(')') || token.is(']') || token.is('}'))
+        --brackets_;
+    return token;
 }
 
 const Token& Reader::peek_raw() const {
@@ -187,6 +200,7 @@ Slot& Reader::declare(Name* name, bool local) {
 }
 
 Slot& Reader::declare_in(uint32_t scope, Name* name) {
+    changed();
     for (const Name::Bound& bound : name->bound)
         if (bound.scope == scope)
             return *bound.slot;
@@ -197,6 +211,7 @@ Slot& Reader::declare_in(uint32_t scope, Name* name) {
 }
 
 void Reader::undefine(Name* name) {
+    changed();
     if (!name->bound.empty())
         name->bound.pop_back();
 }
@@ -250,6 +265,7 @@ void Reader::call(const Token& at, const std::shared_ptr<const Macro>& macro) {
                                    "{} does not end",
                                    limits.nesting, macro->name->text));
     const std::shared_ptr<const Macro> kept = macro; // an argument may declare it anew
+    const size_t scopes = scopes_.size();
     std::vector<std::pair<Slot*, Value>> arguments;
     expect('(', macro->name->text);
     for (size_t i = 0; i < kept->parameters.size(); ++i) {
@@ -258,7 +274,7 @@ void Reader::call(const Token& at, const std::shared_ptr<const Macro>& macro) {
         if (peek().is(')'))
             fail(at.place, fmt::format("found {} arguments to {}, expected {}", i, kept->name->text,
                                        kept->parameters.size()));
-        arguments.push_back(argument());
+        arguments.push_back(argument(scopes));
     }
     expect(')', "the arguments of " + kept->name->text);
     const uint32_t scope = push_scope();
@@ -274,9 +290,12 @@ void Reader::call(const Token& at, const std::shared_ptr<const Macro>& macro) {
     frames_.push_back({kept->file, kept->first, kept->last, true, scope, {}, at.place});
 }
 
-std::pair<Slot*, Value> Reader::argument() {
+std::pair<Slot*, Value> Reader::argument(size_t scopes) {
     const Token first = next();
-    if (first.kind == TokenKind::Name && !first.name->is_keyword) {
+    // Where a macro gives the argument, its own variables are gone behind it: their value counts.
+    const bool is_passing =
+        !first.name || (!first.name->bound.empty() && first.name->bound.back().scope >= scopes);
+    if (first.kind == TokenKind::Name && !first.name->is_keyword && !is_passing) {
         const Token after = next();
         put_back(after);
         if (after.is(',') || after.is(')')) {

@@ -18,6 +18,10 @@ namespace ovc::pov {
 struct Limits {
     uint64_t tokens = 0;   // run over in all
     size_t nesting = 1000; // includes and macros inside each other
+    /// A loop is taken for one that does not end beyond both of these without making anything, and
+    /// a #while beyond `rounds` without reading from a file.
+    uint64_t idle_rounds = 100'000, idle_tokens = 15'000'000;
+    uint64_t rounds = 1'000'000;
     uint64_t objects = 20'000'000;
     uint64_t triangles = 0; // of an object that the scene asks about
     uint64_t array_items = 2'000'000;
@@ -37,6 +41,19 @@ public:
     ~Deeper();
     Deeper(const Deeper&) = delete;
     Deeper& operator=(const Deeper&) = delete;
+
+private:
+    Reader& reader_;
+};
+
+/// A vector is being read: as in parentheses, directives are obeyed wherever they stand. Of '<' the
+/// reader cannot tell by itself that it is a bracket.
+class InVector {
+public:
+    explicit InVector(Reader& reader);
+    ~InVector();
+    InVector(const InVector&) = delete;
+    InVector& operator=(const InVector&) = delete;
 
 private:
     Reader& reader_;
@@ -63,8 +80,9 @@ public:
     Token next();
     const Token& peek();
     void put_back(const Token& token);
-    /// The next token where it may be an operator: a directive that declares or includes something
-    /// ends an expression and is not obeyed yet. Taken by next(), unless it is such a directive.
+    /// The next token where it may be an operator. A directive ends the value of another one, such
+    /// as #declare, and is not obeyed yet; in brackets, in a macro that gives the value and outside
+    /// of directives it is. Taken by next(), unless it is such a directive.
     Token peek_operator();
 
     /// The sign `c`, or ParseError.
@@ -78,6 +96,9 @@ public:
     [[noreturn]] void fail_here(const std::string& expected);
     /// Work other than running over words, counted in words: what takes about as long.
     void spend(uint64_t words);
+    /// Something is not as it was: a variable, a random number. A round of a #while without any
+    /// such thing is followed by the same one, for ever.
+    void changed() { ++changes_; }
     /// Before so many bytes are taken for what the scene makes. Fails once reading has taken more
     /// than half of the memory there was: the rest is for the triangles.
     void grow(uint64_t bytes);
@@ -114,6 +135,10 @@ public:
 
 private:
     friend class Deeper;
+    friend class InVector;
+    struct Progress {
+        uint64_t grown = 0, tokens = 0, rounds = 0;
+    };
     struct Condition {
         enum class Kind { If, While, For, Switch };
         Kind kind;
@@ -123,6 +148,14 @@ private:
         double value = 0; // Switch
         bool matched = false;
         Place place;
+        Progress progress{};  // While, For: when it made something last
+        uint64_t changes = 0; // While: when the round began
+        uint64_t rounds = 0, reads = 0, rounds_at_read = 0;
+    };
+    /// Where a directive began: how deep in frames, blocks and brackets.
+    struct Depth {
+        size_t frames, blocks;
+        int64_t brackets;
     };
     struct Frame {
         const SourceFile* file;
@@ -139,7 +172,9 @@ private:
 
     Token raw();
     const Token& peek_raw() const;
-    Token step(bool hold_declarations);
+    Token step(bool hold_directives);
+    /// Whether a directive that comes now ends the value of the one that is being obeyed.
+    bool ends_value() const;
     Name* raw_name(std::string_view after);
     void raw_expect(char c, std::string_view after);
     void take_semicolon();
@@ -153,8 +188,10 @@ private:
     void do_end(const Token& at);
     void do_while(const Token& at);
     void test_while(Condition& loop);
+    /// A further round of a loop begins. ParseError: nothing suggests that it will ever end.
+    void count_round(Condition& loop) const;
     void do_for(const Token& at);
-    bool test_for(const Condition& loop) const;
+    bool test_for(Condition& loop) const;
     void do_switch(const Token& at);
     void next_case();
     bool case_matches(std::string_view directive, double value);
@@ -178,8 +215,8 @@ private:
     uint32_t scope_of(const Name* name, bool local) const;
     Slot& declare_in(uint32_t scope, Name* name);
     void bind(Name* name, uint32_t scope, Slot* slot);
-    /// The value where it is given, or the caller's variable.
-    std::pair<Slot*, Value> argument();
+    /// The value where it is given, or the caller's variable. scopes: where the call stands.
+    std::pair<Slot*, Value> argument(size_t scopes);
     Frame& frame() { return frames_.back(); }
     uint32_t push_scope();
     void pop_scope();
@@ -199,8 +236,13 @@ private:
     uint64_t written_bytes_ = 0;
     uint64_t available_; // memory, when reading began
     uint64_t unchecked_ = 0;
+    uint64_t grown_ = 0;   // bytes, in all
+    uint64_t changes_ = 0; // that changed() was told of
+    uint64_t reads_ = 0;   // #read
     Place last_;
     uint64_t run_over_ = 0;
+    int64_t brackets_ = 0;       // open around what is read: ( [ { and vectors
+    std::optional<Depth> obeys_; // the innermost directive that is being obeyed
     size_t depth_ = 0;
 };
 

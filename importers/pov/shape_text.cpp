@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // text: letters of a font, swept along z from 0 to their thickness.
 #include "importers/pov/font.h"
+#include "importers/pov/installed_font.h"
 #include "importers/pov/shape.h"
 #include "importers/pov/sweep.h"
 #include "importers/text.h"
@@ -37,9 +38,17 @@ std::shared_ptr<Font> parse_font(Reader& reader) {
     std::shared_ptr<Font>& font = reader.fonts[name];
     if (font)
         return font;
-    const std::filesystem::path path = reader.find_file(name, ".ttf");
-    if (path.empty())
-        reader.fail(at, fmt::format("found no file {}, expected a font", ovc::quoted(name)));
+    std::filesystem::path path = reader.find_file(name, ".ttf");
+    if (path.empty()) {
+        path = installed_font(name);
+        if (path.empty())
+            reader.fail(at, fmt::format("found no file {}, expected a font, and there is none on "
+                                        "this machine that could stand in for it",
+                                        ovc::quoted(name)));
+        reader.warn(
+            "font " + name, at,
+            fmt::format("found no font {}; {} stands in for it", ovc::quoted(name), path.string()));
+    }
     Result<std::shared_ptr<Font>> opened = Font::open(path);
     if (!opened)
         reader.fail(at, opened.error().message);

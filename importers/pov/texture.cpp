@@ -43,6 +43,11 @@ bool is_map_pattern(const Token& token) {
     return is_one_of(token, kWords);
 }
 
+/// A word of the language; else the name of something that has no business here, or of nothing.
+bool is_word(const Token& token) {
+    return token.kind == TokenKind::Name && token.name->is_keyword;
+}
+
 bool is_color_map(const Token& token) {
     static constexpr std::string_view kWords[] = {"color_map", "colour_map", "pigment_map",
                                                   "texture_map"};
@@ -193,7 +198,7 @@ Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
                 parse_function(reader);
             else
                 skip_arguments(reader);
-        } else if (token.kind == TokenKind::Name) {
+        } else if (is_word(token)) {
             reader.next(); // turbulence, octaves, warp and the like
             if (pigment.other)
                 pigment.notes = {left_out("a checker", token)};
@@ -292,6 +297,10 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
         parse_reflection(reader, surface);
     else if (reader.take("conserve_energy"))
         finish.conserve_energy = parse_flag(reader);
+    else if (reader.take("ior"))
+        surface.ior = parse_float(reader);
+    else if (reader.take("refraction"))
+        surface.refraction = std::max(0.0f, float(parse_float(reader)));
     else
         return false;
     return true;
@@ -379,7 +388,7 @@ Surface parse_finish(Reader& reader, const Surface& base) {
             surface = *named_surface;
         else if (!parse_finish_part(reader, surface)) {
             const Token token = reader.next(); // crand, irid and the like
-            if (token.kind != TokenKind::Name)
+            if (!is_word(token))
                 reader.fail(token.place,
                             fmt::format("found {}, expected a part of a finish", found(token)));
             surface.notes.push_back(left_out("a finish", token));
@@ -400,7 +409,7 @@ Interior parse_interior(Reader& reader, const Interior& base) {
             interior.ior = parse_float(reader);
         else {
             const Token token = reader.next();
-            if (token.kind != TokenKind::Name)
+            if (!is_word(token))
                 reader.fail(token.place,
                             fmt::format("found {}, expected a part of an interior", found(token)));
             interior.notes.push_back(left_out("an interior", token));
@@ -464,6 +473,12 @@ Texture parse_texture(Reader& reader) {
         const Token token = reader.peek();
         if (const auto named_texture = take_named_if<Texture>(reader))
             texture = *named_texture;
+        else if (const auto named_pigment = take_named_if<Pigment>(reader))
+            texture.pigment = *named_pigment;
+        else if (const auto named_finish = take_named_if<Surface>(reader))
+            texture.surface = *named_finish;
+        else if (take_named_if<Opaque>(reader))
+            texture.notes.push_back(normal_note(token));
         else if (const auto m = take_transform(reader))
             texture.pigment.placed = *m * texture.pigment.placed;
         else if (reader.take("pigment"))
@@ -485,7 +500,7 @@ Texture parse_texture(Reader& reader) {
                 texture.pigment.notes = average_note(token);
                 skip_arguments(reader);
             }
-        } else if (token.kind == TokenKind::Name) {
+        } else if (is_word(token)) {
             reader.next();
             skip_arguments(reader);
         } else if (!reader.take(','))
@@ -513,6 +528,8 @@ Texture layered(const Texture& upper, const Texture& lower, const Place& at) {
     if (upper.pigment.other)
         both.pigment.other = seen(*upper.pigment.other);
     both.surface = lower.surface;
+    both.surface.ior = upper.surface.ior; // as in POV-Ray
+    both.surface.refraction = upper.surface.refraction;
     both.notes.insert(both.notes.end(), lower.notes.begin(), lower.notes.end());
     both.notes.push_back(make_note("layers", at, "layers of a texture are drawn as one"));
     return both;

@@ -69,6 +69,10 @@ struct Surface {
     Finish finish;
     vec3 ambient{0.1f};
     vec3 emission{0};
+    /// As scenes before interiors came have them: a finish's own, which counts more than that of
+    /// an interior, and what the light that is let through is multiplied by.
+    std::optional<double> ior;
+    float refraction = 1;
     Notes notes;
 };
 
