@@ -11,6 +11,7 @@
 
 #include <bit>
 #include <csignal>
+#include <numbers>
 #include <random>
 
 namespace ovc {
@@ -281,6 +282,67 @@ TEST(Assimp, GlassLetsLightThrough) {
     EXPECT_EQ(veil.transmission, 0.75f);
     EXPECT_EQ(veil.filter, vec3(1));
     EXPECT_EQ(veil.ior, 1);
+}
+
+TEST(Assimp, TheFirstCameraIsTheScenes) {
+    const TestFolder folder;
+    std::string file = gltf_with("{}");
+    const auto replace = [&](const std::string& what, const std::string& with) {
+        file.replace(file.find(what), what.size(), with);
+    };
+    // Turned by a quarter about y, the camera looks along -x; its parent moves it.
+    replace(R"("nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}])",
+            R"("cameras": [{"type": "orthographic",
+                            "orthographic": {"xmag": 1, "ymag": 1, "znear": 0.1, "zfar": 9}},
+                           {"type": "perspective",
+                            "perspective": {"yfov": 0.5, "aspectRatio": 2, "znear": 0.1}}],
+               "nodes": [{"mesh": 0}, {"camera": 0},
+                         {"children": [3], "translation": [1, 2, 3], "scale": [2, 2, 2]},
+                         {"camera": 1, "translation": [0, 0, 1],
+                          "rotation": [0, 0.70710678, 0, 0.70710678]}],
+               "scenes": [{"nodes": [0, 1, 2]}])");
+    std::vector<std::string> warnings;
+    const auto scene = load(folder.write("a.gltf", file), gather(warnings));
+    ASSERT_TRUE(scene && scene->camera);
+    const Camera& camera = *scene->camera;
+    EXPECT_EQ(camera.eye, dvec3(1, 2, 5));
+    const dvec3 view = glm::normalize(camera.target - camera.eye);
+    EXPECT_LT(glm::distance(view, dvec3(-1, 0, 0)), 1e-6);
+    EXPECT_LT(glm::distance(glm::normalize(camera.up), dvec3(0, 1, 0)), 1e-6);
+    EXPECT_NEAR(camera.fov_degrees, 0.5 * 180 / std::numbers::pi, 1e-5);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(folder.plain(warnings[0]), "a.gltf: 1 more camera left out");
+}
+
+TEST(Assimp, WhatIsLeftOutIsSaid) {
+    const TestFolder folder;
+    std::string file = gltf_with(R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+                                     "normalTexture": {"index": 1}},
+                                    {"emissiveTexture": {"index": 0}})");
+    const std::string nodes = R"("nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}])";
+    file.replace(file.find(nodes), nodes.size(), R"(
+        "images": [{"uri": "wood.png"}, {"uri": "bumps.png"}],
+        "textures": [{"source": 0}, {"source": 1}],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point"}]}},
+        "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                        "samplers": [{"input": 1, "output": 0}]}],
+        "nodes": [{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+        "scenes": [{"nodes": [0, 1]}])");
+    const std::string materials = R"(}],
+        "materials")";
+    file.replace(file.find(materials), 1, R"(}, {"bufferView": 0, "componentType": 5126, "count": 3,
+                                               "type": "SCALAR"})");
+    const std::string used = R"("extensionsUsed": [)";
+    file.insert(file.find(used) + used.size(), R"("KHR_lights_punctual", )");
+    std::vector<std::string> warnings;
+    const auto scene = load(folder.write("a.gltf", file), gather(warnings));
+    EXPECT_EQ(triangles_of(scene), kOne);
+    for (std::string& warning : warnings)
+        warning = folder.plain(warning);
+    EXPECT_EQ(warnings, (std::vector<std::string>{
+                            "a.gltf: 2 textures left out: 'wood.png', 'bumps.png'",
+                            "a.gltf: 1 light left out",
+                            "a.gltf: 1 animation left out: what moves is shown at rest"}));
 }
 
 TEST(Assimp, AgreesOnPlyAndObj) {

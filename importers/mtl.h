@@ -2,6 +2,7 @@
 // MTL: the material library of an OBJ file.
 #pragma once
 
+#include "core/log.h"
 #include "core/result.h"
 #include "core/scene.h"
 #include "importers/files_read.h"
@@ -15,8 +16,9 @@ namespace ovc {
 /// mirror where illum (3 to 8) asks for reflection. Where it asks for glass (4, 6, 7, 9), what is
 /// not mirrored goes through: 1 - d of it, else Tr, or all where neither dims it; Tf becomes the
 /// filter, and Ni the index of refraction where illum is 6 or 7. Fresnel's equations (5, 7) are
-/// left out. All else, textures too, and what is no number, is passed over.
-Result<std::vector<Material>> read_mtl(const std::filesystem::path& path,
+/// left out. All else, and what is no number, is passed over; of textures and of the light that
+/// surfaces send out (Ke) the log gets a warning, each once for the file.
+Result<std::vector<Material>> read_mtl(const std::filesystem::path& path, const LogSink& log,
                                        FilesRead* files = nullptr);
 
 } // namespace ovc

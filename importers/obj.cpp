@@ -106,6 +106,7 @@ private:
 
     std::vector<Material> materials_{Material{}}; // the first is for faces before any usemtl
     std::unordered_map<std::string, uint32_t> material_ids_;
+    std::unordered_set<std::string> libraries_; // that were read
     uint32_t material_ = 0;
     std::string object_;
     std::string group_;
@@ -274,9 +275,13 @@ void ObjReader::read_libraries(std::string_view rest) {
 }
 
 bool ObjReader::read_library(std::string_view name) {
-    auto materials = read_mtl(path_.parent_path() / std::string(name), files_read_);
+    const std::filesystem::path path = path_.parent_path() / std::string(name);
+    if (libraries_.contains(path.string()))
+        return true;
+    auto materials = read_mtl(path, log_, files_read_);
     if (!materials)
         return false;
+    libraries_.insert(path.string());
     for (Material& material : *materials) {
         const auto [at, is_new] =
             material_ids_.try_emplace(material.name, uint32_t(materials_.size()));

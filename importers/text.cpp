@@ -3,7 +3,9 @@
 #include "importers/text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -80,6 +82,14 @@ std::string found(std::string_view word, std::string_view what) {
 
 std::string counted(uint64_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string listed(std::span<const std::string> items) {
+    constexpr size_t kShown = 3;
+    const auto shown = items.first(std::min(items.size(), kShown));
+    if (items.size() > kShown)
+        return fmt::format("{} and {} more", fmt::join(shown, ", "), items.size() - kShown);
+    return fmt::format("{}", fmt::join(shown, ", "));
 }
 
 } // namespace ovc

@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -81,5 +82,8 @@ std::string found(std::string_view word, std::string_view what = {});
 
 /// "1 row", "2 rows".
 std::string counted(uint64_t count, std::string_view noun);
+
+/// "a, b, c and 5 more": no more than three in full.
+std::string listed(std::span<const std::string> items);
 
 } // namespace ovc
