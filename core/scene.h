@@ -107,6 +107,10 @@ struct MeshInfo {
     /// Instances share normals: this mesh has those of that one, in the same order, turned.
     uint32_t normals_from = kNone;
     dmat3 turn{1}; // what `normals` are multiplied by; their length does not matter then
+    /// Corners that have them in the file, and not here: normals that cannot be used or say nothing
+    /// new, and texture coordinates, for no material of ours has textures.
+    uint64_t normals_left_out = 0;
+    uint64_t texture_coordinates_left_out = 0;
 };
 
 /// The cone of a spotlight: full light within radius_cosine of the axis, none beyond

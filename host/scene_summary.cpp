@@ -95,10 +95,13 @@ std::vector<LeftOut> left_out_of(const Scene& scene, const Needs& needs) {
         if (!needed)
             left_out.push_back({what, bytes});
     };
-    const uint64_t flat = triangles_without_normals(scene);
-    unless(flat == 0, "vertex normals", flat * 3 * sizeof(vec3));
-    unless(needs.texture_coordinates, "texture coordinates",
-           scene.soup.triangle_count() * 3 * sizeof(vec2));
+    uint64_t normals = 0, texture_coordinates = 0;
+    for (const MeshInfo& mesh : scene.meshes) {
+        normals += mesh.normals_left_out;
+        texture_coordinates += mesh.texture_coordinates_left_out;
+    }
+    unless(normals == 0, "vertex normals", normals * sizeof(vec3));
+    unless(texture_coordinates == 0, "texture coordinates", texture_coordinates * sizeof(vec2));
     unless(needs.reflection, "reflection rays", 0);
     unless(needs.refraction, "refraction rays", 0);
     unless(needs.shadows, "shadow rays", 0);

@@ -29,7 +29,7 @@ struct Query {
     uint64_t leaves = 2; // of level 1, as far as known
 };
 
-/// Something a renderer commonly keeps and this scene goes without.
+/// Something that a scene's file has and the scene goes without, or that rendering does not do.
 struct LeftOut {
     std::string what;
     uint64_t bytes; // what it would take in host memory; 0: time, and code of the kernel

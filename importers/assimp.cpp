@@ -95,8 +95,12 @@ void add_mesh(Scene& scene, const aiMesh& mesh) {
         return;
     const uint32_t material =
         mesh.mMaterialIndex < scene.materials.size() ? mesh.mMaterialIndex : 0;
+    const uint64_t count = corners.size();
     scene.add_mesh(mesh.mName.length > 0 ? mesh.mName.C_Str() : scene.name, material,
                    Chunk::owning(dvec3(0), std::move(corners)), normals_from(mesh));
+    MeshInfo& info = scene.meshes.back();
+    info.normals_left_out = mesh.HasNormals() && info.normals.empty() ? count : 0;
+    info.texture_coordinates_left_out = mesh.HasTextureCoords(0) ? count : 0;
 }
 
 dvec3 through(const aiMatrix4x4& place, const aiVector3D& point) {

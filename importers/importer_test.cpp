@@ -97,6 +97,54 @@ TEST(Importer, OnlyRegularFilesAreOpened) {
               "folder.ply: found a directory, which is no regular file");
 }
 
+TEST(Importer, NormalsAndTextureCoordinatesThatAreNotKeptAreCounted) {
+    const TestFolder folder;
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    const auto ply = [](const std::string& properties, const std::string& rest,
+                        const std::string& in_face, const std::string& face_rest) {
+        return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+               "property float z\n" +
+               properties + "element face 1\nproperty list uchar int vertex_indices\n" + in_face +
+               "end_header\n0 0 0" + rest + "\n1 0 0" + rest + "\n0 1 0" + rest + "\n3 0 1 2" +
+               face_rest + "\n";
+    };
+    const std::string pbrt = "WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] ";
+    const struct {
+        const char* name;
+        std::string contents;
+        uint64_t normals, texture_coordinates; // corners
+    } cases[] = {
+        {"plain.obj", corners + "f 1 2 3\n", 0, 0},
+        {"none given.obj", corners + "vt 0 0\nf 1 2 3\n", 0, 0},
+        {"none there.obj", corners + "f 1/1 2/1 3/1\n", 0, 0},
+        {"textured.obj", corners + "vt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3//1\n", 0, 2},
+        {"textured corners.obj", corners + "vt 0 0\nf 1/1 2/1/ 3\n", 0, 2},
+        {"useless normals.obj", corners + "vn 0 0 0\nf 1//1 2//1 3\n", 2, 0},
+        {"plain.ply", ply("", "", "", ""), 0, 0},
+        {"textured.ply", ply("property float s\nproperty float t\n", " 0 1", "", ""), 0, 3},
+        {"faces.ply", ply("", "", "property list uchar float texcoord\n", " 6 0 0 0 1 1 1"), 0, 3},
+        {"half.ply", ply("property float u\n", " 0", "", ""), 0, 0},
+        {"useless.ply",
+         ply("property float nx\nproperty float ny\nproperty float nz\n", " 0 0 0", "", ""), 3, 0},
+        {"plain.pbrt", pbrt, 0, 0},
+        {"textured.pbrt", pbrt + "\"point2 uv\" [0 0 1 0 1 1]", 0, 3},
+        {"useless.pbrt", pbrt + "\"normal N\" [0 0 1]", 3, 0},
+        {"plain.off", kOff, 0, 0},
+        {"flat.stl", kStl, 3, 0},
+    };
+    for (const auto& test : cases) {
+        const auto scene = load(folder.write(test.name, test.contents));
+        EXPECT_EQ(triangles_of(scene), kOne) << test.name;
+        uint64_t normals = 0, texture_coordinates = 0;
+        for (const MeshInfo& mesh : scene->meshes) {
+            normals += mesh.normals_left_out;
+            texture_coordinates += mesh.texture_coordinates_left_out;
+        }
+        EXPECT_EQ(normals, test.normals) << test.name;
+        EXPECT_EQ(texture_coordinates, test.texture_coordinates) << test.name;
+    }
+}
+
 TEST(Importer, DamagedCompressionIsSaid) {
     const TestFolder folder;
     std::string text = kObj;

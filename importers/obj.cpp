@@ -24,7 +24,9 @@ constexpr double kFar = 16;
 
 struct Corner {
     uint32_t vertex = 0;
-    int64_t normal = -1; // index, or -1
+    int64_t normal = -1;     // index, or -1
+    bool has_normal = false; // or states one that is not there
+    bool has_texture = false;
 };
 
 struct Mesh {
@@ -33,6 +35,7 @@ struct Mesh {
     Blocks<vec3> corners;
     Blocks<vec3> normals; // as many as corners, while has_normals
     bool has_normals = true;
+    uint64_t normals_stated = 0, texture_coordinates = 0; // corners with them
 };
 
 class ObjReader {
@@ -98,6 +101,7 @@ private:
 
     std::vector<dvec3> vertices_;
     std::vector<vec3> normals_;
+    bool has_texture_coordinates_ = false;
     Box bounds_;
     std::optional<dvec3> origin_; // from the vertices that precede the first face
     std::vector<Corner> polygon_;
@@ -141,9 +145,11 @@ bool ObjReader::read_line(std::string_view line) {
         return read_face(line);
     if (keyword == "vn")
         return read_normal(line);
-    if (keyword.empty() || keyword[0] == '#' || keyword == "vt" || keyword == "s")
-        return true;
-    return read_other(keyword, line);
+    if (keyword == "vt")
+        has_texture_coordinates_ = true;
+    else if (!keyword.empty() && keyword[0] != '#' && keyword != "s")
+        return read_other(keyword, line);
+    return true;
 }
 
 bool ObjReader::read_other(std::string_view keyword, std::string_view rest) {
@@ -227,7 +233,10 @@ bool ObjReader::read_corner(std::string_view word) {
             return fail(
                 fmt::format("found corner {}, expected v, v/vt, v//vn or v/vt/vn", quoted(word)));
         corner.normal = *normal > 0 ? *normal - 1 : int64_t(normals_.size()) + *normal;
+        corner.has_normal = true;
     }
+    corner.has_texture =
+        has_texture_coordinates_ && slash != word.npos && slash + 1 < std::min(second, word.size());
     polygon_.push_back(corner);
     return true;
 }
@@ -346,6 +355,8 @@ void ObjReader::add_polygon() {
 
 void ObjReader::add_corner(Mesh& to, const Corner& corner) {
     to.corners.push_back(vec3(vertices_[corner.vertex] - *origin_));
+    to.normals_stated += corner.has_normal;
+    to.texture_coordinates += corner.has_texture;
     if (!to.has_normals)
         return;
     const bool usable = corner.normal >= 0 && corner.normal < int64_t(normals_.size()) &&
@@ -372,6 +383,9 @@ Result<Scene> ObjReader::take() {
         scene.add_mesh(m.name.empty() ? scene.name : std::move(m.name), m.material,
                        Chunk::owning(origin_.value_or(dvec3(0)), m.corners.take()),
                        m.normals.take());
+        MeshInfo& mesh = scene.meshes.back();
+        mesh.normals_left_out = mesh.normals.empty() ? m.normals_stated : 0;
+        mesh.texture_coordinates_left_out = m.texture_coordinates;
     }
     scene.materials = std::move(materials_);
     if (scene.soup.triangle_count() == 0)

@@ -45,6 +45,19 @@ Layout vertex_layout(const PlyElement& element) {
     return layout;
 }
 
+/// At vertices, under the names that programs give them, or at the corners of faces, as VCGLIB
+/// writes them.
+bool has_texture_coordinates(const PlyHeader& header) {
+    constexpr std::array<std::string_view, 2> kNames[] = {
+        {"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
+    const PlyElement* vertices = header.find("vertex");
+    for (const auto& [u, v] : kNames)
+        if (vertices && vertices->find(u) >= 0 && vertices->find(v) >= 0)
+            return true;
+    const PlyElement* faces = header.find("face");
+    return faces && faces->find("texcoord") >= 0;
+}
+
 /// The property that holds a polygon's vertices; -1 where there is none.
 int index_list(const PlyElement& element) {
     const int list = element.find("vertex_indices");
@@ -88,8 +101,12 @@ public:
         scene.name = name;
         scene.materials.emplace_back();
         std::vector<V>().swap(vertices_);
+        const uint64_t corners = corners_.size();
         scene.add_mesh(std::move(name), 0, Chunk::owning(origin_, corners_.take()),
                        normals_.empty() ? std::vector<vec3>() : corner_normals_.take());
+        scene.meshes[0].normals_left_out = lost_normals_ ? corners : 0;
+        scene.meshes[0].texture_coordinates_left_out =
+            has_texture_coordinates(header_) ? corners : 0;
         return scene;
     }
 

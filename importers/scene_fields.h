@@ -63,7 +63,8 @@ void each_field(auto& io, Some<Instancing> auto& i) {
 
 /// All but the normals.
 void each_field(auto& io, Some<MeshInfo> auto& m) {
-    io(m.name, m.material, m.no_shadow, m.normals_from, m.turn);
+    io(m.name, m.material, m.no_shadow, m.normals_from, m.turn, m.normals_left_out,
+       m.texture_coordinates_left_out);
 }
 
 /// All but meshes and soup.

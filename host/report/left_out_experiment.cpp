@@ -227,7 +227,8 @@ Table rows_table(const Json& figures) {
 Table told_table(const Json& figures) {
     Table table;
     table.caption =
-        "Bytes that are not stored, beside the bytes of all pages, as the program tells";
+        "Bytes that scenes' files have and that are not stored, beside the bytes of all pages, as "
+        "the program tells";
     table.header = {"scene", "left out", "kB", "pages kB"};
     for (size_t i = 0; i < figures["told"].size(); ++i) {
         const std::string at = fmt::format("/told/{}", i);
@@ -240,14 +241,17 @@ Table told_table(const Json& figures) {
 }
 
 std::vector<Block> blocks(const Json& figures) {
-    return {
+    std::vector<Block> blocks = {
         Text{"A scene, and what is asked of it, decide what is stored, moved, compiled and "
              "traced. Each of these is switched on and off on the same scene, in turn; the "
              "time is of all threads while rays are traced and shaded. Where a scene has no "
              "mirrors, reflection and refraction cost nothing even when they are allowed: "
              "the difference is noise. Compiling is the CPU time of a picture of few rays with "
              "nothing kept that was compiled before; other pictures find their kernels on disk."},
-        saved_plot(figures), rows_table(figures), told_table(figures)};
+        saved_plot(figures), rows_table(figures)};
+    if (!figures["told"].empty())
+        blocks.push_back(told_table(figures));
+    return blocks;
 }
 
 } // namespace

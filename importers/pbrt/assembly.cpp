@@ -22,6 +22,12 @@ struct Run {
     bool has_normals = false;
     uint64_t last_size = 0;        // triangles of the last shape
     uint32_t normals_from = kNone; // the first mesh made of it, where the normals are
+    uint64_t normals_left_out = 0, texture_coordinates_left_out = 0; // as in MeshInfo
+
+    void tell_left_out(MeshInfo& mesh) const {
+        mesh.normals_left_out = normals_left_out;
+        mesh.texture_coordinates_left_out = texture_coordinates_left_out;
+    }
 };
 
 bool belongs(const Run& run, const Shape& shape) {
@@ -41,6 +47,8 @@ std::vector<Run> runs_of(const Object& object) {
         runs.back().last = i + 1;
         runs.back().last_size = shape.mesh.size();
         runs.back().triangles += uint32_t(shape.mesh.size());
+        runs.back().normals_left_out += shape.mesh.normals_left_out;
+        runs.back().texture_coordinates_left_out += shape.mesh.texture_coordinates_left_out;
     }
     return runs;
 }
@@ -217,6 +225,7 @@ void add_top(Object& top, const Frame& frame, Scene& scene) {
             top.shapes[i].mesh = {};
         scene.add_mesh(std::move(name), run.material,
                        Chunk::owning(frame.origin, std::move(corners)), std::move(normals));
+        run.tell_left_out(scene.meshes.back());
     }
 }
 
@@ -234,6 +243,7 @@ void add_instance(const Object& object, std::vector<Run>& runs, const Placement&
             name_of(object, run), run.material,
             Chunk::owning(frame.origin, corners_of(object, run, placement.place, frame)),
             shares ? std::vector<vec3>() : normals_of(object, run, mirrored));
+        run.tell_left_out(scene.meshes[mesh]);
         if (!run.has_normals)
             continue;
         scene.meshes[mesh].turn = turn;

@@ -21,6 +21,7 @@ struct Mesh {
     dvec3 origin{0};
     std::vector<vec3> corners;
     std::vector<vec3> normals;
+    uint64_t normals_left_out = 0, texture_coordinates_left_out = 0; // as in MeshInfo
 
     uint64_t size() const { return (indices.size() + corners.size()) / 3; }
     bool is_indexed() const { return corners.empty(); }

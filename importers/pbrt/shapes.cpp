@@ -46,6 +46,15 @@ std::vector<vec3> take_normals(ShapeRequest& request, size_t vertices) {
     return normals;
 }
 
+/// With what the file states for its vertices and the mesh has no use for.
+std::optional<Mesh> told(std::optional<Mesh> mesh, const Parameters& parameters) {
+    if (mesh && mesh->normals.empty() && parameters.find("N"))
+        mesh->normals_left_out = 3 * mesh->size();
+    if (mesh && (parameters.find("uv") || parameters.find("st")))
+        mesh->texture_coordinates_left_out = 3 * mesh->size();
+    return mesh;
+}
+
 } // namespace
 
 std::nullopt_t left_out(ShapeRequest& request, std::string_view why) {
@@ -57,7 +66,7 @@ std::nullopt_t left_out(ShapeRequest& request, std::string_view why) {
 std::optional<Mesh> make_shape(ShapeRequest& request) {
     for (const Maker& maker : kMakers)
         if (maker.type == request.type)
-            return maker.make(request);
+            return told(maker.make(request), request.parameters);
     const std::string type(request.type);
     request.diagnostics.missing("shape " + type, request.place,
                                 fmt::format("shapes {} left out", ovc::quoted(type)));
@@ -129,7 +138,10 @@ std::optional<Mesh> make_ply_mesh(ShapeRequest& request) {
     Chunk& chunk = scene->soup.chunks[0];
     mesh.origin = chunk.origin();
     mesh.corners = chunk.take_corners();
-    mesh.normals = std::move(scene->meshes[0].normals);
+    MeshInfo& info = scene->meshes[0];
+    mesh.normals = std::move(info.normals);
+    mesh.normals_left_out = info.normals_left_out;
+    mesh.texture_coordinates_left_out = info.texture_coordinates_left_out;
     return mesh;
 }
 
