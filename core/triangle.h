@@ -179,7 +179,7 @@ private:
         bool has(TriangleId id) const { return ids_[slot(id)] == id; }
 
     private:
-        static constexpr size_t kSlots = 256;
+        static constexpr size_t kSlots = 512;
         static size_t slot(TriangleId id) { return (id.prim + 31 * size_t(id.mesh)) % kSlots; }
 
         std::array<TriangleId, kSlots> ids_{};

@@ -16,9 +16,10 @@ namespace {
 
 constexpr int kBins = 32;
 constexpr int kMaxDepth = 96;
-constexpr size_t kWorthIsolating = 64;  // triangles
-constexpr size_t kFewestToIsolate = 16; // of a sample: fewer say nothing of where the others are
-constexpr size_t kParallelBuild = 8192; // fragments; below, a task costs more than it saves
+constexpr size_t kWorthIsolating = 64;   // triangles
+constexpr size_t kFewestToIsolate = 16;  // of a sample: fewer say nothing of where the others are
+constexpr uint64_t kMostReferences = 24; // a triangle, over the whole tree
+constexpr size_t kParallelBuild = 8192;  // fragments; below, a task costs more than it saves
 
 /// A triangle within a cell: the box of the part inside. In double, because a float cannot tell the
 /// millimetres of a scene of many kilometres apart.
@@ -31,6 +32,7 @@ struct Split {
     double cost = std::numeric_limits<double>::infinity();
     int axis = -1;
     double position = 0;
+    size_t below = 0, above = 0; // fragments, at most
 
     bool found() const { return axis >= 0; }
 };
@@ -60,14 +62,16 @@ public:
                          ? kMaxDepth
                          : std::min(kMaxDepth, int(8 + 1.3 * std::log2(double(triangles) + 1)))) {}
 
-    /// Appends the subtree over `fragments` in `cell` to `tree`.
-    void build(std::vector<Fragment> fragments, const Box& cell, int depth, KdTree& tree,
-               const Fork& fork) const {
+    /// Appends the subtree over `fragments` in `cell` to `tree`, of at most so many references:
+    /// where all triangles overlap in a plane, each cut would pay by the heuristic and double them.
+    void build(std::vector<Fragment> fragments, const Box& cell, int depth, uint64_t references,
+               KdTree& tree, const Fork& fork) const {
         tree.depth = std::max(tree.depth, depth);
         if (fragments.size() >= kWorthIsolating)
             add(options_.progress, 0);
         const Split split = depth < max_depth_ ? choose_split(fragments, cell) : Split{};
-        if (!split.found()) {
+        const uint64_t parts = split.below + split.above;
+        if (!split.found() || parts > references) {
             tree.nodes.push_back(
                 KdNode::leaf(uint32_t(tree.references.size()), uint32_t(fragments.size())));
             for (const Fragment& fragment : fragments)
@@ -79,17 +83,22 @@ public:
         below_cell.hi[split.axis] = above_cell.lo[split.axis] = split.position;
         std::vector<Fragment> above = divide(fragments, split, below_cell, above_cell);
 
+        const uint64_t for_below = references * split.below / parts,
+                       for_above = references - for_below;
         const uint32_t node = uint32_t(tree.nodes.size());
         tree.nodes.push_back(KdNode::inner(split.axis, split.position));
         if (fragments.size() + above.size() < kParallelBuild) {
-            build(std::move(fragments), below_cell, depth + 1, tree, fork);
+            build(std::move(fragments), below_cell, depth + 1, for_below, tree, fork);
             tree.nodes[node].set_above(uint32_t(tree.nodes.size()));
-            build(std::move(above), above_cell, depth + 1, tree, fork);
+            build(std::move(above), above_cell, depth + 1, for_above, tree, fork);
             return;
         }
         KdTree below_tree, above_tree;
-        fork([&] { build(std::move(fragments), below_cell, depth + 1, below_tree, fork); },
-             [&] { build(std::move(above), above_cell, depth + 1, above_tree, fork); });
+        fork(
+            [&] {
+                build(std::move(fragments), below_cell, depth + 1, for_below, below_tree, fork);
+            },
+            [&] { build(std::move(above), above_cell, depth + 1, for_above, above_tree, fork); });
         append(tree, below_tree);
         tree.nodes[node].set_above(uint32_t(tree.nodes.size()));
         append(tree, above_tree);
@@ -152,7 +161,7 @@ private:
         if (below == 0 || above == 0)
             cost *= options_.empty_bonus;
         if (cost < best.cost)
-            best = {cost, axis, position};
+            best = {cost, axis, position, below, above};
     }
 
     Split best_binned(const std::vector<Fragment>& fragments, const Box& cell) const {
@@ -289,7 +298,10 @@ KdTree build_kd_tree(const Soup& soup, std::span<const TriangleId> triangles, co
         }
     });
     std::erase_if(fragments, [](const Fragment& f) { return f.box.empty(); });
-    in_forks([&](const Fork& fork) { builder.build(std::move(fragments), bounds, 0, tree, fork); });
+    const uint64_t references = kMostReferences * fragments.size();
+    in_forks([&](const Fork& fork) {
+        builder.build(std::move(fragments), bounds, 0, references, tree, fork);
+    });
     return tree;
 }
 

@@ -5,9 +5,11 @@
 
 #include "kdtree/clip.h"
 #include "kdtree/test_soups.h"
+#include "kdtree/traverse.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 namespace ovc {
@@ -69,6 +71,21 @@ TEST(KdTreeBuild, ReferencesStayBoundedWhereNothingCanBeCut) {
         EXPECT_LE(build_kd_tree(soup, options).references.size(), 100 * soup.triangle_count())
             << name;
     }
+}
+
+/// Large triangles in one flat box: every cut across it pays, and cuts nearly all of them.
+TEST(KdTreeBuild, ReferencesStayBoundedWhereAllOverlapInAPlane) {
+    test::Random random(5);
+    std::vector<vec3> corners;
+    for (int i = 0; i < 3 * 4000; ++i) {
+        const double a = 2.0944 * (i % 3);
+        corners.push_back(
+            vec3(9 * std::cos(a) + random(-1, 1), 9 * std::sin(a) + random(-1, 1), 0.3));
+    }
+    const Soup soup = test::one_chunk(std::move(corners));
+    const KdTree tree = build_kd_tree(soup);
+    EXPECT_LE(tree.references.size(), 24u * 4000);
+    EXPECT_TRUE(intersect(tree, soup, Ray{dvec3(0.1, 0.2, 5), 0, dvec3(0, 0, -1)}).is_hit());
 }
 
 TEST(KdTreeBuild, IsTheSameOnEveryRun) {

@@ -229,15 +229,16 @@ typedef struct ovc_query {
     uint32_t* flagged; /* ray_count, or NULL: 1 where the kernel was not certain and doubles decided; else 0 */
     uint32_t ray_format; /* ovc_ray_format */
     uint32_t reserved;   /* 0 */
-    /* NULL, or asked between the passes of intersect and occluded; not for single rays and push. done: the share of rays that is
-     * answered; stage: "rays". It runs on the thread that called, of a submitted call on one of the library's. Not 0: the call ends with OVC_ERROR_CANCELLED after the pass under
-     * way, and its answers are undefined. Structures but two-level ask before the first ray only. */
+    /* NULL, or asked each twentieth of a second or so of intersect and occluded, also while they wait for their turn on the scene; not
+     * for single rays and push. done: the share of rays that is answered; stage: "rays". It runs on the thread that called, of a
+     * submitted call on one of the library's. Not 0: the call ends within a tenth of a second or so with OVC_ERROR_CANCELLED, and its
+     * answers are undefined. Structures but two-level ask before the first ray only. */
     ovc_progress_function progress;
     void* progress_user;
 } ovc_query;
 
 /* What commit would make of the meshes added so far, told without making it. Numbers of leaves, bytes and pages are estimates:
- * within 10 % of what commit then makes, or one whole leaf or page. */
+ * within 10 % of what commit then makes, or one whole leaf or page. The smallest budget is exact. */
 typedef struct ovc_plan {
     size_t struct_size;
     uint64_t triangles;            /* added */
@@ -247,7 +248,7 @@ typedef struct ovc_plan {
     uint64_t level2_bytes;         /* all pages together: to move every page once */
     uint64_t largest_page_bytes;   /* what it may come to: up to three tenths more than it does */
     uint64_t gpu_budget_bytes;
-    uint64_t smallest_budget_bytes; /* that works; exact to a tenth */
+    uint64_t smallest_budget_bytes; /* works, as all larger ones do; commit names the same */
     uint64_t ray_bytes;            /* of the budget, for rays and answers */
     uint64_t level1_bytes;         /* of the budget, for level 1 */
     uint64_t pool_bytes;           /* of the budget, for pages: what rays and level 1 leave, and no more than pages take */

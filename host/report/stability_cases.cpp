@@ -8,6 +8,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 namespace ovc {
 
 namespace {
@@ -197,6 +200,7 @@ Result<std::vector<StabilityCase>> stability_cases(const std::string& data) {
     add_bad_directions(cases);
     add_surface_starts(cases);
     add_bad_numbers(cases);
+    std::ranges::move(cliff_cases(), std::back_inserter(cases));
     return cases;
 }
 

@@ -20,9 +20,14 @@ struct StabilityCase {
     std::function<Soup()> soup;
     /// The same soup, random state and count give the same rays.
     std::function<RaySet(const Soup&, Random&, size_t)> aim;
-    /// The case whose time per ray this one must stay within 2.5 times of; empty: none.
+    /// The case whose time per ray this one must stay within so many times of; empty: none.
     std::string time_as;
+    double within = 2.5;
 };
+
+/// Rays that meet thousands of triangles in one point, or are asked where doubles do not reach:
+/// what one of them costs, next to what a ray costs that is decided exactly.
+std::vector<StabilityCase> cliff_cases();
 
 /// In the order of the report. data: the folder with meshes/stanford-dragon, or empty. Error: there
 /// is no dragon in it.

@@ -33,6 +33,7 @@ class DebianPackage(Tree, unittest.TestCase):
         depends = self.field("Depends")
         for package in ("libc6", "libstdc++6", "libtbb12", "libepoxy0", "libegl1", "libopenexr-3-1-30", "libassimp5"):
             self.assertIn(package, depends)
+        self.assertIn("libopengl0 | libgl1", run("dpkg-deb", "--field", self.package, "Depends"), "what libepoxy loads by itself")
         self.assertEqual([package for package in depends if package.endswith("-dev")], [])
         self.assertLessEqual({"python3", "python3-numpy", "libgl1-mesa-dri"}, set(self.field("Recommends")))
 
