@@ -16,7 +16,8 @@
     shadow = scene.occluded(points, light - points, t_max=1, skip=hits)
 
 A ray is the points origin + t direction, t_min <= t <= t_max. Directions need not be of unit length: t counts in their lengths.
-Answers are those of double precision, bit for bit, on any GPU and on Mesa's software renderer, which serves where there is none.
+Answers are those of exact arithmetic on the doubles given, with t, u and v rounded once to the nearest double: the same bits on any
+GPU and on Mesa's software renderer, which serves where there is none.
 
 Arrays go in as they lie where they can: float32 vertices and uint32 indices, and rays in records (see `rays`). Answers come as
 NumPy arrays that the library has written in place. A call releases Python's lock while it computes; calls on one scene wait
