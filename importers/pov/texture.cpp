@@ -299,9 +299,13 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
         finish.conserve_energy = parse_flag(reader);
     else if (reader.take("ior"))
         surface.ior = parse_float(reader);
-    else if (reader.take("refraction"))
+    else if (const Token token = reader.peek(); reader.take("refraction")) {
         surface.refraction = std::max(0.0f, float(parse_float(reader)));
-    else
+        if (surface.refraction != 1) // in POV-Ray it leaves shadows as they are
+            surface.notes.push_back(
+                make_note("refraction", token.place,
+                          "refraction of a finish dims light that casts shadows as well"));
+    } else
         return false;
     return true;
 }
