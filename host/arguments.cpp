@@ -135,6 +135,17 @@ Result<uint64_t> parse_count(std::string_view option, std::string_view text, uin
     return value;
 }
 
+Result<double> parse_real(std::string_view option, std::string_view text, double least,
+                          double most) {
+    double value = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, failure] = std::from_chars(text.data(), end, value);
+    if (failure != std::errc{} || stop != end || !(value >= least && value <= most))
+        return Error{
+            fmt::format("{} needs a number from {} to {}, not '{}'", option, least, most, text)};
+    return value;
+}
+
 Result<size_t> parse_choice(std::string_view option, std::string_view text,
                             std::span<const std::string_view> names) {
     const auto known = text.empty() ? names.begin() : std::find(names.begin(), names.end(), text);

@@ -26,6 +26,10 @@ Result<Parsed> parse_arguments(CLI::App& app, std::vector<std::string> arguments
 Result<uint64_t> parse_count(std::string_view option, std::string_view text, uint64_t least,
                              uint64_t most);
 
+/// A number from least to most, likewise.
+Result<double> parse_real(std::string_view option, std::string_view text, double least,
+                          double most);
+
 /// The place of `text` among `names`; 0 where it is empty.
 Result<size_t> parse_choice(std::string_view option, std::string_view text,
                             std::span<const std::string_view> names);

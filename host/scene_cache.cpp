@@ -20,14 +20,14 @@ static std::string request_of(const SceneArguments& arguments, const BackendOpti
     const bool generated = is_test_scene(arguments.scene);
     // POV-Ray's scenes may ask for the picture's size.
     const bool sized = size && arguments.scene.find(".pov") != std::string::npos;
-    return fmt::format("scene {} model {} strict {} most {} tolerance {} size {}x{} leaf {} leaves "
-                       "{} memory {} {}",
-                       generated ? arguments.scene
-                                 : fs::absolute(arguments.scene, ec).lexically_normal().string(),
-                       arguments.model.empty() ? "" : fs::absolute(arguments.model, ec).string(),
-                       arguments.strict, arguments.max_triangles, arguments.tolerance,
-                       sized ? size->width : 0, sized ? size->height : 0, backend.leaf_triangles,
-                       backend.leaves, backend.gpu_memory.bytes, backend.gpu_memory.share);
+    return fmt::format(
+        "scene {} model {} strict {} most {} tolerance {} version {} size {}x{} leaf {} leaves "
+        "{} memory {} {}",
+        generated ? arguments.scene : fs::absolute(arguments.scene, ec).lexically_normal().string(),
+        arguments.model.empty() ? "" : fs::absolute(arguments.model, ec).string(), arguments.strict,
+        arguments.max_triangles, arguments.tolerance, arguments.pov_version,
+        sized ? size->width : 0, sized ? size->height : 0, backend.leaf_triangles, backend.leaves,
+        backend.gpu_memory.bytes, backend.gpu_memory.share);
 }
 
 /// The scene's name and a checksum: "plants-0123456789abcdef.ovc".

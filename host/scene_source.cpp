@@ -36,6 +36,11 @@ void SceneArguments::add_to(CLI::App& app, const char* name) {
                    "for, in radii, 0.0001 to 0.5; default: of .pbrt 0.00625, of .pov 0.0011, more "
                    "where that comes to millions of triangles")
         ->type_name("X");
+    app.add_option(
+           "--pov-version", pov_version,
+           "For .pov: the version of the language, until the scene says #version; POV-Ray's "
+           "+MV")
+        ->type_name("X");
 }
 
 static Result<uint64_t> triangle_limit(const std::string& text) {
@@ -47,20 +52,28 @@ static Result<uint64_t> triangle_limit(const std::string& text) {
 static Result<std::optional<double>> tolerance_of(const std::string& text) {
     if (text.empty())
         return std::optional<double>();
-    double value = 0;
-    const char* end = text.data() + text.size();
-    const auto [stop, failure] = std::from_chars(text.data(), end, value);
-    if (failure != std::errc{} || stop != end ||
-        !(value >= kLeastTolerance && value <= kMostTolerance))
-        return Error{fmt::format("--tolerance needs a number from {} to {}, not '{}'",
-                                 kLeastTolerance, kMostTolerance, text)};
-    return std::optional(value);
+    const Result<double> value = parse_real("--tolerance", text, kLeastTolerance, kMostTolerance);
+    if (!value)
+        return value.error();
+    return std::optional(*value);
+}
+
+/// Of POV-Ray's language: from its first to whatever may come.
+static Result<std::optional<double>> pov_version_of(const std::string& text) {
+    if (text.empty())
+        return std::optional<double>();
+    const Result<double> value = parse_real("--pov-version", text, 1, 9);
+    if (!value)
+        return value.error();
+    return std::optional(*value);
 }
 
 Result<Done> SceneArguments::check() const {
     if (const Result<uint64_t> limit = triangle_limit(max_triangles); !limit)
         return limit.error();
     if (const Result<std::optional<double>> fine = tolerance_of(tolerance); !fine)
+        return fine.error();
+    if (const Result<std::optional<double>> fine = pov_version_of(pov_version); !fine)
         return fine.error();
     if (model.empty() || (is_test_scene(scene) && test_scene_entry(scene).takes_model))
         return Done{};
@@ -95,6 +108,7 @@ Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
     options.files = files;
     options.max_triangles = *triangle_limit(arguments.max_triangles);
     options.tolerance = *tolerance_of(arguments.tolerance);
+    options.pov_version = *pov_version_of(arguments.pov_version);
     return open_scene(arguments.scene, options, arguments.model);
 }
 

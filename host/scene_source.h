@@ -24,6 +24,7 @@ struct SceneArguments {
     bool strict = false;
     std::string max_triangles; // empty: not given
     std::string tolerance;     // empty: not given
+    std::string pov_version;   // empty: not given
 
     /// name: what the help calls the scene.
     void add_to(CLI::App& app, const char* name = "SCENE");
