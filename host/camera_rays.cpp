@@ -39,17 +39,30 @@ CameraRays::CameraRays(const Pinhole& pinhole, const Film& film)
     std::erase_if(order_, [&](uint32_t pixel) { return film.done(pixel); });
 }
 
+CameraRays::CameraRays(const Pinhole& pinhole, std::span<const dvec2> points)
+    : pinhole_(pinhole), samples_(1), points_(points) {}
+
+CameraRays::Place CameraRays::place(uint64_t i) const {
+    if (points_.empty()) {
+        const uint32_t pixel = order_[i / samples_], sample = uint32_t(i % samples_);
+        return {pixel, sample, pixel % pinhole_.width(), pixel / pinhole_.width(),
+                sample_place(sample, samples_)};
+    }
+    const dvec2& at = points_[i];
+    const uint32_t x = std::min(uint32_t(at.x), pinhole_.width() - 1);
+    const uint32_t y = std::min(uint32_t(at.y), pinhole_.height() - 1);
+    return {uint32_t(i), 0, x, y, at - dvec2(x, y)};
+}
+
 void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const {
     const size_t before = paths.size();
     paths.resize(before + count);
     parallel_for(count, kGrain, [&](size_t from, size_t to) {
         for (size_t i = from; i < to; ++i) {
-            const uint32_t pixel = order_[(first + i) / samples_];
-            const uint32_t sample = uint32_t((first + i) % samples_);
-            paths.rays[before + i] = pinhole_.ray(
-                pixel % pinhole_.width(), pixel / pinhole_.width(), sample_place(sample, samples_));
+            const Place at = place(first + i);
+            paths.rays[before + i] = pinhole_.ray(at.x, at.y, at.within);
             paths.skip[before + i] = TriangleId();
-            paths.purposes[before + i] = {pixel, sample, 0, RayKind::Camera, vec3(1), 0};
+            paths.purposes[before + i] = {at.pixel, at.sample, 0, RayKind::Camera, vec3(1), 0};
         }
     });
 }

@@ -52,6 +52,8 @@ the same command with --continue goes on from there.)";
 static constexpr std::string_view kModes[] = {"auto", "batched", "mixed"};
 /// In the order of IntegratorKind.
 static constexpr std::string_view kIntegrators[] = {"whitted", "path"};
+/// In the order of Antialias::Method.
+static constexpr std::string_view kAntialiasMethods[] = {"1", "2"};
 static constexpr std::string_view kPngBits[] = {"8", "16"};
 
 /// The words as given.
@@ -65,6 +67,7 @@ struct RenderWords {
     std::string camera_path;
     std::vector<std::string> lights;
     std::string samples;
+    std::string antialias, antialias_method, antialias_depth, jitter;
     std::string seed;
     std::string threads;
     bool go_on = false;
@@ -123,6 +126,25 @@ void RenderWords::add_to(CLI::App& app) {
            "Rays a pixel, up to 65536: more of them smooth edges; the same ones every time; "
            "default: 1, through its middle")
         ->type_name("N");
+    app.add_option(
+           "--antialias", antialias,
+           "One ray a pixel, and more only where colors differ by this, red, green and blue "
+           "together: 0 to 3, POV-Ray's default is 0.3; instead of --samples")
+        ->type_name("X");
+    app.add_option(
+           "--antialias-method", antialias_method,
+           "1: pixels that differ from a neighbour get rays on a grid; 2: pixels that differ "
+           "at their corners are quartered again and again; default: 1")
+        ->type_name(choice_names(kAntialiasMethods));
+    app.add_option(
+           "--antialias-depth", antialias_depth,
+           "Of method 1: N x N rays more; of method 2: 2^(N-1) parts a side at most; 1 to 9, "
+           "default: 3")
+        ->type_name("N");
+    app.add_option("--jitter", jitter,
+                   "How far rays of --antialias may lie off their grid, by chance that is the same "
+                   "every time: 0 to 1; default: 1")
+        ->type_name("X");
     app.add_option("--seed", seed,
                    "Of path tracing: other numbers make other noise, the same the same picture; "
                    "default: 0")
@@ -324,7 +346,43 @@ static Result<Done> understand_counts(const RenderWords& words, RenderJob& job) 
     return Done{};
 }
 
+static Result<Done> understand_antialias(const RenderWords& words, RenderJob& job) {
+    if (words.antialias.empty())
+        return Done{};
+    if (!words.samples.empty())
+        return Error{"--samples and --antialias cannot be given together"};
+    Antialias how;
+    const Result<double> threshold = parse_real("--antialias", words.antialias, 0, 3);
+    if (!threshold)
+        return threshold.error();
+    how.threshold = float(*threshold);
+    if (!words.antialias_method.empty()) {
+        const Result<size_t> method =
+            parse_choice("--antialias-method", words.antialias_method, kAntialiasMethods);
+        if (!method)
+            return method.error();
+        how.method = Antialias::Method(*method + 1);
+    }
+    if (!words.antialias_depth.empty()) {
+        const Result<uint64_t> depth =
+            parse_count("--antialias-depth", words.antialias_depth, 1, kMostAntialiasDepth);
+        if (!depth)
+            return depth.error();
+        how.depth = uint32_t(*depth);
+    }
+    if (!words.jitter.empty()) {
+        const Result<double> jitter = parse_real("--jitter", words.jitter, 0, 1);
+        if (!jitter)
+            return jitter.error();
+        how.jitter = float(*jitter);
+    }
+    job.render.antialias = how;
+    return Done{};
+}
+
 static Result<Done> understand_shading(const RenderWords& words, RenderJob& job) {
+    if (const Result<Done> fine = understand_antialias(words, job); !fine)
+        return fine;
     if (const Result<Done> fine = understand_counts(words, job); !fine)
         return fine;
     const Result<size_t> mode = parse_choice("--mode", words.mode, kModes);

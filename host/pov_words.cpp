@@ -4,6 +4,7 @@
 #include "host/pov_words.h"
 
 #include "host/arguments.h"
+#include "host/pov_ini.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +15,8 @@ namespace ovc {
 namespace {
 
 /// Switches about what we do not have: a window, other texts, other ways to the same picture.
-constexpr std::string_view kPassedOver[] = {"D",  "P",  "V",  "X",  "G",  "UV", "UO", "MB",
-                                            "BP", "BS", "UR", "UL", "UD", "J",  "AM", "AG"};
+constexpr std::string_view kPassedOver[] = {"D",  "P",  "V",  "X",  "G",  "UV", "UO", "MB", "BP",
+                                            "BS", "UR", "UL", "UD", "AG", "BM", "MI", "SU", "TH"};
 
 /// Words with a meaning that ours have under another name, or not at all.
 struct Refused {
@@ -36,9 +37,67 @@ constexpr Refused kRefused[] = {
     {"EP", "there are no previews; a small --size is one"},
     {"L", "include files are found beside the scene and where POV-Ray has its own"},
     {"HI", "the scene itself has to include it"},
-    {"MV", "the scene says its version itself: #version"},
     {"F", "the ending of -o's name says the format, .png or .exr; +FN16 is --png-bits 16"},
 };
+
+/// What .ini files call it, and the word of the command line.
+struct Setting {
+    std::string_view key;
+    std::string_view word;
+    bool is_switch = false; // on or off, plus or minus; else its value follows a plus
+};
+constexpr Setting kSettings[] = {
+    {"antialias", "A", true},
+    {"antialias_depth", "R"},
+    {"antialias_gamma", "AG"},
+    {"bounding", "MB", true},
+    {"bounding_method", "BM"},
+    {"bounding_threshold", "MB"},
+    {"clock", "K"},
+    {"continue_trace", "C", true},
+    {"cyclic_animation", "KC", true},
+    {"display", "D", true},
+    {"dither", "TH", true},
+    {"end_column", "EC"},
+    {"end_row", "ER"},
+    {"final_clock", "KF"},
+    {"final_frame", "KFF"},
+    {"height", "H"},
+    {"include_header", "HI"},
+    {"initial_clock", "KI"},
+    {"initial_frame", "KFI"},
+    {"input_file_name", "I"},
+    {"jitter", "J", true},
+    {"library_path", "L"},
+    {"light_buffer", "UL", true},
+    {"max_image_buffer_memory", "MI"},
+    {"output_file_name", "O"},
+    {"output_file_type", "F"},
+    {"pause_when_done", "P", true},
+    {"preview_end_size", "EP"},
+    {"preview_start_size", "SP"},
+    {"quality", "Q"},
+    {"remove_bounds", "UR", true},
+    {"render_block_size", "BS"},
+    {"sampling_method", "AM"},
+    {"split_unions", "SU", true},
+    {"start_column", "SC"},
+    {"start_row", "SR"},
+    {"subset_end_frame", "EF"},
+    {"subset_start_frame", "SF"},
+    {"test_abort", "X", true},
+    {"verbose", "V", true},
+    {"version", "MV"},
+    {"vista_buffer", "UV", true},
+    {"width", "W"},
+    {"work_threads", "WT"},
+};
+
+const Setting* setting_of(std::string_view key) {
+    const auto at = std::find_if(std::begin(kSettings), std::end(kSettings),
+                                 [&](const Setting& setting) { return setting.key == key; });
+    return at == std::end(kSettings) ? nullptr : at;
+}
 
 class Translation {
 public:
@@ -48,7 +107,14 @@ public:
         for (size_t i = 0; i < arguments.size(); ++i) {
             const std::string& word = arguments[i];
             const std::string next = i + 1 < arguments.size() ? arguments[i + 1] : "";
-            if (is_pov(word)) {
+            const std::optional<IniItem> setting = as_setting(word);
+            if (names_ini(word)) {
+                if (const Result<Done> fine = take_ini(word); !fine)
+                    return fine;
+            } else if (setting && is_known(setting->key)) {
+                if (const Result<Done> fine = take_setting(*setting); !fine)
+                    return fine;
+            } else if (is_pov(word)) {
                 const bool alone = word.size() == 2 && std::toupper(word[1]) == 'O';
                 i += alone && !next.empty(); // +O file
                 if (const Result<Done> fine = take_word(alone ? word + next : word); !fine)
@@ -70,11 +136,69 @@ public:
         if (!width_.empty())
             ours_.push_back("--size=" + width_ + "x" + height_);
         if (antialiasing_)
-            ours_.push_back(fmt::format("--samples={}", rays_a_side_ * rays_a_side_));
+            add_antialias();
         return std::move(ours_);
     }
 
 private:
+    Result<Done> take_ini(const std::string& word) {
+        constexpr int kMostDeep = 10; // an .ini file may name others
+        if (ini_depth_ == kMostDeep)
+            return Error{fmt::format("{}: .ini files name each other without an end", word)};
+        const Result<std::vector<IniItem>> items = read_ini(word);
+        if (!items)
+            return items.error();
+        ++ini_depth_;
+        for (const IniItem& item : *items) {
+            Result<Done> fine = item.key.empty() ? take({item.value}) : take_setting(item);
+            if (!fine)
+                return Error{item.place + fine.error().message};
+        }
+        --ini_depth_;
+        return Done{};
+    }
+
+    /// Two of them say how, and do not switch on.
+    static bool is_known(std::string_view key) {
+        return setting_of(key) || key == "antialias_threshold" || key == "jitter_amount" ||
+               key == "bits_per_color" || key == "output_to_file";
+    }
+
+    Result<Done> take_setting(const IniItem& item) {
+        if (item.key == "antialias_threshold")
+            threshold_ = item.value;
+        else if (item.key == "jitter_amount")
+            jitter_ = item.value;
+        else if (item.key == "bits_per_color")
+            return item.value == "16" ? take_word("+FN16") : Done{};
+        else if (item.key == "output_to_file")
+            return is_off(item.value) ? take_word("-F") : Done{};
+        else if (const Setting* setting = setting_of(item.key); !setting)
+            return Error{
+                fmt::format("'{}' is no setting of POV-Ray's that is understood here", item.key)};
+        else if (setting->is_switch)
+            return take_word((is_off(item.value) ? "-" : "+") + std::string(setting->word));
+        else
+            return take_word("+" + std::string(setting->word) + item.value);
+        return Done{};
+    }
+
+    static bool is_off(std::string value) {
+        std::transform(value.begin(), value.end(), value.begin(),
+                       [](unsigned char c) { return char(std::tolower(c)); });
+        return value == "off" || value == "no" || value == "false" || value == "0";
+    }
+
+    void add_antialias() {
+        ours_.push_back("--antialias=" + threshold_);
+        if (!method_.empty())
+            ours_.push_back("--antialias-method=" + method_);
+        if (!depth_.empty())
+            ours_.push_back("--antialias-depth=" + depth_);
+        if (!jitters_ || !jitter_.empty())
+            ours_.push_back("--jitter=" + (jitters_ ? jitter_ : "0"));
+    }
+
     /// Ours with a minus are small letters or begin with two.
     static bool is_pov(const std::string& word) {
         return word.size() > 1 &&
@@ -105,9 +229,15 @@ private:
         else if (on && letters[0] == 'Q')
             return take_quality(value);
         else if (letters[0] == 'A' && !two)
-            antialiasing_ = on; // its threshold is for another method than ours
+            take_antialias(on, value);
+        else if (letters == "AM")
+            method_ = word.substr(3);
         else if (on && letters[0] == 'R' && !two)
-            return take_depth(value);
+            depth_ = value;
+        else if (letters[0] == 'J' && !two)
+            take_jitter(on, value);
+        else if (letters == "MV")
+            ours_.push_back("--pov-version=" + word.substr(3));
         else if (letters == "C")
             take_continue(on);
         else if (on && (word == "+FN16" || word == "+fn16"))
@@ -130,13 +260,16 @@ private:
         return Done{};
     }
 
-    /// n x n rays a pixel.
-    Result<Done> take_depth(const std::string& value) {
-        const Result<uint64_t> side = parse_count("+R", value, 1, 9);
-        if (!side)
-            return side.error();
-        rays_a_side_ = *side;
-        return Done{};
+    void take_antialias(bool on, const std::string& threshold) {
+        antialiasing_ = on;
+        if (!threshold.empty())
+            threshold_ = threshold;
+    }
+
+    void take_jitter(bool on, const std::string& amount) {
+        jitters_ = on;
+        if (!amount.empty())
+            jitter_ = amount;
     }
 
     void take_continue(bool on) {
@@ -154,15 +287,17 @@ private:
             if (letters.starts_with(refused.word))
                 return Error{fmt::format("{} is not there: {}", word, refused.instead)};
         return Error{fmt::format("'{}' is no word of POV-Ray's that is understood here; there are "
-                                 "+I +O +W +H +A +R +Q +C +WT +FN",
+                                 "+I +O +W +H +A +AM +R +J +Q +C +MV +WT +FN",
                                  word)};
     }
 
     const LogSink& log_;
     std::vector<std::string> ours_;
     std::string width_, height_;
-    bool antialiasing_ = false;
-    uint64_t rays_a_side_ = 3; // POV-Ray's default
+    bool antialiasing_ = false, jitters_ = true;
+    std::string threshold_ = "0.3"; // POV-Ray's
+    std::string method_, depth_, jitter_;
+    int ini_depth_ = 0;
 };
 
 } // namespace

@@ -27,13 +27,18 @@ TEST(PovWords, BecomeOurs) {
                 ElementsAre("Error: +W and +H belong together; +H is missing"));
 }
 
-TEST(PovWords, OfAntialiasingAreSamples) {
-    EXPECT_THAT(translated({"+A"}), ElementsAre("--samples=9"));
-    EXPECT_THAT(translated({"+A0.3", "+R4"}), ElementsAre("--samples=16"));
+TEST(PovWords, OfAntialiasingAskForIt) {
+    EXPECT_THAT(translated({"+A"}), ElementsAre("--antialias=0.3"));
+    EXPECT_THAT(translated({"+A0.1", "+R4", "+AM2", "-J"}),
+                ElementsAre("--antialias=0.1", "--antialias-method=2", "--antialias-depth=4",
+                            "--jitter=0"));
+    EXPECT_THAT(translated({"+A", "+J0.5"}), ElementsAre("--antialias=0.3", "--jitter=0.5"));
     EXPECT_THAT(translated({"+A", "-A"}), ElementsAre());
     EXPECT_THAT(translated({"+R4"}), ElementsAre());
-    EXPECT_THAT(translated({"+R0"}),
-                ElementsAre("Error: +R needs a whole number from 1 to 9, not '0'"));
+}
+
+TEST(PovWords, OfVersionsAreTheReaders) {
+    EXPECT_THAT(translated({"+MV3.1", "a.pov"}), ElementsAre("--pov-version=3.1", "a.pov"));
 }
 
 TEST(PovWords, OfQualityLeaveOutShadowsThenMirrors) {
@@ -46,10 +51,10 @@ TEST(PovWords, OfQualityLeaveOutShadowsThenMirrors) {
 TEST(PovWords, ThatMeanNothingHereAreSaidToAndPassedOver) {
     std::string said;
     const LogSink log = [&](LogLevel, const std::string& message) { said += message + "\n"; };
-    EXPECT_THAT(*translate_pov_words({"-D", "+P", "-GA", "+AM2", "+J0.5", "a.pov"}, log),
+    EXPECT_THAT(*translate_pov_words({"-D", "+P", "-GA", "+UV", "a.pov"}, log),
                 ElementsAre("a.pov"));
     EXPECT_EQ(said, "-D means nothing here\n+P means nothing here\n-GA means nothing here\n"
-                    "+AM2 means nothing here\n+J0.5 means nothing here\n");
+                    "+UV means nothing here\n");
 }
 
 TEST(PovWords, ThatCannotBeObeyedNameOurs) {

@@ -4,6 +4,7 @@
 
 #include "core/result.h"
 #include "core/scene.h"
+#include "host/antialias.h"
 #include "host/backend.h"
 #include "host/camera.h"
 #include "host/film.h"
@@ -27,8 +28,9 @@ struct RenderOptions {
     RenderMode mode = RenderMode::Auto;
     uint32_t max_depth = 5; // surfaces that a path leaves at most
     bool shadows = true;
-    uint64_t seed = 0;               // of path tracing
-    std::optional<PicturePart> part; // that the film is; none: it is the whole picture
+    uint64_t seed = 0;                  // of path tracing
+    std::optional<Antialias> antialias; // none: the film's samples, evenly
+    std::optional<PicturePart> part;    // that the film is; none: it is the whole picture
     /// Batched: the most rays a backend gets at once. Bounds host memory: at most about three times
     /// as many rays wait.
     size_t batch_rays = size_t(1) << 20;

@@ -165,6 +165,8 @@ private:
         ByteWriter view;
         view(shot.camera, *options_.part, options_.integrator, options_.max_depth, options_.shadows,
              options_.seed, job_.backend.precision);
+        if (const std::optional<Antialias>& how = options_.antialias)
+            view(how->method, how->threshold, how->depth, how->jitter);
         Checksum sum;
         sum.add(view.bytes());
         sum.add_value(checksum_of(scene_));

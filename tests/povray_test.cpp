@@ -46,12 +46,13 @@ std::optional<Image> read_ppm(const std::filesystem::path& path) {
 
 /// What POV-Ray makes of a scene, linear; nothing, and the test fails or is skipped, where it does
 /// not.
-std::optional<Image> drawn_by_povray(const std::string& scene) {
+std::optional<Image> drawn_by_povray(const std::string& scene,
+                                     const std::string& antialias = "-A") {
     const std::filesystem::path ppm =
         std::filesystem::temp_directory_path() / fmt::format("ovc-povray-{}.ppm", getpid());
     const test::CommandResult drawn =
-        test::run_shell(fmt::format("povray +I{} +O{} +W{} +H{} +FP16 File_Gamma=1.0 -A -D -GA",
-                                    scene, ppm.string(), kSize, kSize));
+        test::run_shell(fmt::format("povray +I{} +O{} +W{} +H{} +FP16 File_Gamma=1.0 {} -D -GA",
+                                    scene, ppm.string(), kSize, kSize, antialias));
     EXPECT_EQ(drawn.exit_code, 0) << drawn.output;
     std::optional<Image> image = read_ppm(ppm);
     std::filesystem::remove(ppm);
@@ -61,9 +62,10 @@ std::optional<Image> drawn_by_povray(const std::string& scene) {
 
 /// mean: of the difference over colors and pixels; unlike: the share of pixels more than 0.02 off.
 void expect_alike(const Scene& scene, uint32_t max_depth, const Image& theirs, double mean,
-                  double unlike_share) {
+                  double unlike_share, std::optional<Antialias> antialias = {}) {
     Film film(kSize, kSize);
     RenderOptions options;
+    options.antialias = antialias;
     options.max_depth = max_depth;
     const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
     ASSERT_TRUE(render_picture(scene, *scene.camera, *backend, options, {}, film));
@@ -109,6 +111,54 @@ void expect_file_alike(const std::string& name, double mean, double unlike_share
     const Result<Scene> scene = load(file, options);
     ASSERT_TRUE(scene) << scene.error().message;
     expect_alike(*scene, scene->max_depth.value_or(5), *theirs, mean, unlike_share);
+}
+
+/// A scene of a few lines, read by both.
+void expect_text_alike(const std::string& text, double mean, double unlike_share,
+                       std::optional<Antialias> antialias = {},
+                       const std::string& in_povray = "-A") {
+    if (!has_povray())
+        GTEST_SKIP() << "povray is not installed";
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / fmt::format("ovc-povray-{}.pov", getpid());
+    std::ofstream(file) << text;
+    const std::optional<Image> theirs = drawn_by_povray(file.string(), in_povray);
+    ImportOptions options;
+    options.size = ImageSize{kSize, kSize};
+    const Result<Scene> scene = load(file, options);
+    std::filesystem::remove(file);
+    ASSERT_TRUE(theirs);
+    ASSERT_TRUE(scene) << scene.error().message;
+    expect_alike(*scene, scene->max_depth.value_or(5), *theirs, mean, unlike_share, antialias);
+}
+
+const std::string kPlaneAndBall =
+    "#version 3.7; global_settings { assumed_gamma 1 }\n"
+    "camera { location <0, 2, -6> right x up y look_at <0, 1, 0> }\n"
+    "light_source { <5, 8, -5> rgb 1 }\n"
+    "plane { y, 0 pigment { rgb <0.3, 0.5, 0.3> } }\n"
+    "sphere { <0, 1, 0>, 1 pigment { rgb <1, 0.2, 0.1> } finish { phong 0.7 } }\n";
+
+TEST(Povray, SmoothsEdgesAsWeDo) {
+    expect_text_alike(kPlaneAndBall, 0.0006, 1 / 100.0, Antialias{.jitter = 0}, "+A -J");
+    expect_text_alike(kPlaneAndBall, 0.0006, 1 / 100.0,
+                      Antialias{.method = Antialias::Method::Subdivide, .jitter = 0}, "+A +AM2 -J");
+    expect_text_alike(kPlaneAndBall, 0.0006, 1 / 100.0, Antialias{}, "+A");
+}
+
+TEST(Povray, DrawsOldScenesAndDarkOnesAsWeDo) {
+    const std::string view = "camera { location <0, 0, -5> right x up y look_at 0 }\n";
+    expect_text_alike("#version 3.7; global_settings { assumed_gamma 1 }\n" + view +
+                          "#declare P = pigment { rgb <1, 0.5, 0> }; sphere { 0, 1 texture { P } "
+                          "finish { ambient 0.4 emission 0.2 } }",
+                      0.002, 1 / 100.0);
+    expect_text_alike("#version 3.1\n" + view +
+                          "light_source { <5, 5, -5> rgb 1 }\n#declare X = -1\n#while (X < 2)\n"
+                          "sphere { <X, 0, 0>, 0.6 pigment { rgbf <1, 0.9, 0.9, 0.9> } finish { "
+                          "ior 1.3 refraction 1 } }\n#declare X = X + 1\n#end\n"
+                          "plane { -z, -2 pigment { checker rgb 1 rgb 0.2 scale 0.7 } finish { "
+                          "ambient 0.6 } }",
+                      0.004, 1 / 40.0);
 }
 
 TEST(Povray, DrawsLightsAndFinishesAsWeDoFromTheSameFile) {
