@@ -2,6 +2,8 @@
 // MappedFile: by mmap.
 #include "core/mapped_file.h"
 
+#include "core/suggestion.h"
+
 #include <cerrno>
 #include <cstring>
 
@@ -18,7 +20,7 @@ Result<MappedFile> MappedFile::open(const std::filesystem::path& path) {
     };
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0)
-        return failed(errno == ENOENT ? "no such file"
+        return failed(errno == ENOENT ? "no such file" + did_you_mean_file(path)
                                       : std::string("cannot be opened: ") + std::strerror(errno));
     struct stat info {};
     const bool regular = fstat(file, &info) == 0 && S_ISREG(info.st_mode);

@@ -191,6 +191,8 @@ struct ImageSize {
 struct Background {
     vec3 horizon{0.8f};
     vec3 zenith{0.35f, 0.5f, 0.8f};
+
+    bool operator==(const Background&) const = default;
 };
 
 /// Scene::gamma: sRGB's curve instead of a power.
@@ -225,8 +227,8 @@ struct Scene {
     /// What is rendered ^ gamma is linear light: POV-Ray's assumed_gamma; or kSrgbGamma.
     double gamma = 1;
     std::optional<Instancing> instancing; // none: every triangle is its own
-    MappedFile file; // where chunks and `saved` lie, if they do not own what they show
-    Bytes saved;     // what the plugin saved of this soup (ovc_scene_config.saved); empty: nothing
+    std::vector<MappedFile> files; // where chunks and `saved` lie that do not own what they show
+    Bytes saved; // what the plugin saved of this soup (ovc_scene_config.saved); empty: nothing
 
     /// 3 per triangle, to be turned by MeshInfo::turn; empty: the mesh has none.
     const std::vector<vec3>& normals_of(const MeshInfo& mesh) const {

@@ -5,7 +5,7 @@
 #include "core/parallel.h"
 #include "host/camera.h"
 #include "host/shade.h"
-#include "host/suggestion.h"
+#include "core/suggestion.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

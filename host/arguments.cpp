@@ -3,7 +3,7 @@
 #include "host/arguments.h"
 
 #include "host/camera.h"
-#include "host/suggestion.h"
+#include "core/suggestion.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

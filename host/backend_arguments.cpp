@@ -3,7 +3,7 @@
 // --level1-build.
 #include "host/backend_arguments.h"
 #include "host/arguments.h"
-#include "host/suggestion.h"
+#include "core/suggestion.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -4,7 +4,7 @@
 
 #include "host/arguments.h"
 #include "host/diff/verdict.h"
-#include "host/suggestion.h"
+#include "core/suggestion.h"
 #include "host/version.h"
 
 #include <fmt/format.h>

@@ -2,14 +2,13 @@
 // Which reader, which writer: by the extension.
 #include "importers/importer.h"
 
+#include "core/suggestion.h"
 #include "importers/readers.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <new>
-#include <numeric>
 
 namespace ovc {
 
@@ -53,33 +52,14 @@ std::string without_gz(std::string name) {
     return name;
 }
 
-/// Letters to insert, remove or change to come from a to b.
-size_t distance(std::string_view a, std::string_view b) {
-    std::vector<size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), size_t(0));
-    for (size_t i = 0; i < a.size(); ++i) {
-        size_t diagonal = std::exchange(row[0], i + 1);
-        for (size_t j = 0; j < b.size(); ++j) {
-            const size_t change = diagonal + (a[i] != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({change, row[j] + 1, row[j + 1] + 1});
-        }
-    }
-    return row.back();
-}
-
 Error unknown_extension(const std::filesystem::path& path, const std::string& extension,
                         bool to_write) {
-    std::string guess;
     std::vector<std::string_view> known;
-    for (const Format& format : kFormats) {
-        if (to_write && !format.write)
-            continue;
-        known.push_back(format.extension);
-        if (!extension.empty() && extension.size() <= 8 &&
-            distance(extension, format.extension) == 1)
-            guess = fmt::format("; did you mean .{}?", format.extension);
-    }
+    for (const Format& format : kFormats)
+        if (!to_write || format.write)
+            known.push_back(format.extension);
+    const std::string_view meant = extension.empty() ? "" : nearest(extension, known);
+    const std::string guess = meant.empty() ? "" : fmt::format("; did you mean .{}?", meant);
     return {
         fmt::format("{}: found {}, expected .{}{}{}", path.string(),
                     extension.empty() ? "no extension" : fmt::format("extension .{}", extension),
@@ -95,7 +75,7 @@ Result<Scene> load(const std::filesystem::path& path, const ImportOptions& optio
         return format->read(path, options);
     std::error_code ec;
     if (!std::filesystem::exists(path, ec))
-        return Error{fmt::format("{}: no such file", path.string())};
+        return Error{fmt::format("{}: no such file{}", path.string(), did_you_mean_file(path))};
     if (!extension.empty() && assimp_reads(extension))
         return read_assimp(path, options);
     return unknown_extension(path, extension, /* to_write= */ false);

@@ -30,6 +30,8 @@ struct ImportOptions {
     /// shape's radii; from kLeastTolerance to kMostTolerance. Nothing: what the reader has found
     /// good.
     std::optional<double> tolerance = {};
+    /// Of a .pbrt file with several worlds: which, from 1.
+    uint64_t world = 1;
     /// Of the picture to come, where that is known: scenes of POV-Ray may ask for it.
     std::optional<ImageSize> size = {};
     /// Of scenes of POV-Ray, until they name one themselves: the version of the language.

@@ -57,7 +57,9 @@ TEST(Importer, ErrorsNameTheFileAndWhatWasExpected) {
                               "such as .stl, .off, .glb";
     EXPECT_EQ(folder.failure("gone.ply"), "gone.ply: no such file");
     EXPECT_EQ(folder.failure("gone.plyx"), "gone.plyx: no such file");
-    EXPECT_EQ(folder.failure("gone"), "gone: no such file");
+    EXPECT_EQ(folder.failure("gone.abc"), "gone.abc: no such file");
+    EXPECT_EQ(folder.failure("nonne"), "nonne: no such file; did you mean 'none'?");
+    EXPECT_EQ(folder.failure("Empty.slt"), "Empty.slt: no such file; did you mean 'empty.stl'?");
     EXPECT_EQ(folder.failure("no folder/gone.ply"), "no folder/gone.ply: no such file");
     EXPECT_EQ(folder.failure("a.obj/b.ply"), "a.obj/b.ply: no such file");
     EXPECT_EQ(folder.failure("a.plyx"),
@@ -142,6 +144,38 @@ TEST(Importer, NormalsAndTextureCoordinatesThatAreNotKeptAreCounted) {
         }
         EXPECT_EQ(normals, test.normals) << test.name;
         EXPECT_EQ(texture_coordinates, test.texture_coordinates) << test.name;
+    }
+}
+
+TEST(Importer, LongLinesAreReadWholeOrRefused) {
+    const TestFolder folder;
+    const std::string mebibyte = gzip(std::string(size_t(1) << 20, ' '));
+    const auto padded = [&](const std::string& before, int mebibytes, const std::string& after) {
+        std::string packed = gzip(before);
+        for (int i = 0; i < mebibytes; ++i)
+            packed += mebibyte;
+        return packed + gzip(after);
+    };
+    const struct {
+        const char* name;
+        const char* before; // blanks in a line
+        const char* after;
+    } cases[] = {
+        {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 ", "3\n"},
+        {"a.ply",
+         "ply\nformat ascii 1.0\nelement vertex 3\nproperty char x\nproperty char y\n"
+         "property char z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+         "0 0 0\n1 0 0\n0 1 0\n3 0 1 ",
+         "2\n"},
+        {"a.pbrt", "WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 ", "0]"}};
+    for (const auto& test : cases) {
+        EXPECT_EQ(triangles_of(load(folder.write(test.name, padded(test.before, 65, test.after)))),
+                  kOne)
+            << test.name;
+        folder.write(test.name, padded(test.before, 257, test.after));
+        EXPECT_NE(folder.failure(test.name).find("found a line of more than 256 MiB"),
+                  std::string::npos)
+            << folder.failure(test.name);
     }
 }
 

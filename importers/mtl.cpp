@@ -154,7 +154,7 @@ Result<std::vector<Material>> read_mtl(const std::filesystem::path& path, const 
     std::vector<Entry> entries;
     LeftOut left_out;
     while (const auto line = source->line()) {
-        std::string_view rest = *line;
+        std::string_view rest = without_comment(*line);
         const std::string_view keyword = next_word(rest);
         if (keyword == "newmtl") {
             entries.push_back({Material{std::string(trimmed(rest))}});

@@ -154,9 +154,10 @@ bool ObjReader::read_line(std::string_view line) {
 
 bool ObjReader::read_other(std::string_view keyword, std::string_view rest) {
     if (keyword == "o" || keyword == "g") {
+        const std::string_view name = trimmed(without_comment(rest));
         if (keyword == "o")
-            object_ = trimmed(rest);
-        group_ = keyword == "g" ? trimmed(rest) : "";
+            object_ = name;
+        group_ = keyword == "g" ? name : "";
         mesh_known_ = false;
     } else if (keyword == "usemtl") {
         use_material(trimmed(rest));
@@ -264,8 +265,10 @@ bool ObjReader::read_index(std::string_view word, std::string_view text, size_t 
 
 /// One name with blanks in it, or several names; a blank may be written '\ '.
 void ObjReader::read_libraries(std::string_view rest) {
-    if (rest.find('\\') == rest.npos && read_library(rest))
-        return;
+    for (const std::string_view name : {rest, trimmed(without_comment(rest))})
+        if (name.find('\\') == name.npos && read_library(name))
+            return;
+    rest = trimmed(without_comment(rest));
     std::string name;
     bool any = false;
     for (size_t i = 0; i <= rest.size(); ++i) {
@@ -303,6 +306,8 @@ bool ObjReader::read_library(std::string_view name) {
 }
 
 void ObjReader::use_material(std::string_view name) {
+    if (!material_ids_.contains(std::string(name)))
+        name = trimmed(without_comment(name));
     const auto [at, is_new] =
         material_ids_.try_emplace(std::string(name), uint32_t(materials_.size()));
     if (is_new) {

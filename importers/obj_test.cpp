@@ -36,6 +36,10 @@ TEST(Obj, CornersAreReadInEveryForm) {
         {"continued at the end", corners + "f 1 2 3 4\\"},
         {"weights and colors", "v 0 0 0 1\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0.5 2\nf 1 2 3 4\n"},
         {"byte order mark", "\xef\xbb\xbf" + corners + "f 1 2 3 4\n"},
+        {"a NUL at the end", corners + "f 1 2 3 4\n" + std::string(1, '\0')},
+        {"NULs at the end of the last line", corners + "f 1 2 3 4" + std::string(5000, '\0')},
+        {"Ctrl-Z", corners + "f 1 2 3 4\n\x1a"},
+        {"Ctrl-Z in a line", corners + "f 1 2 3 4\r\n\x1a\r\n" + std::string(2, '\0')},
         {"comments and smoothing", "# x\n\n" + corners + "s off\ns 1\nf 1 2 3 4\n#"},
     };
     for (const auto& test : cases) {
@@ -82,6 +86,39 @@ TEST(Obj, OneMeshForEachObjectGroupAndMaterial) {
         EXPECT_EQ(scene->soup.chunks[m].size(), expected[m].triangles);
     }
     EXPECT_EQ(scene->soup.triangle({2, 1})[0], b) << "in file order";
+}
+
+TEST(Obj, CommentsStandBehindAnyStatement) {
+    const TestFolder folder;
+    folder.write("c.mtl", "newmtl red # paint\nKd 1 0 0 # all red\nKa 1 # \nnewmtl grey#1 #x\n"
+                          "Kd 0.25 # one number\nnewmtl Material #25\nKd 0 0 1\n"
+                          "newmtl a # b\nKd 0 1 0\n");
+    std::vector<std::string> warnings;
+    const auto scene =
+        load(folder.write("c.obj", "# c\nmtllib c.mtl # paints\nv 0 0 0 # a\nv 1 0 0 #b\n"
+                                   "v 1 1 0\t# c\nv 0 1 0.5\n"
+                                   "o box # a box\nusemtl red # paint\nf 1 2 3 # f\n"
+                                   "g lid\t#x\nusemtl grey#1 # again\nf 1 2 3\n"
+                                   "o part #3\nusemtl Material #25\nf 1 2 3\n"
+                                   "g part #4 # four\nusemtl a #\ns 1 # smooth\nf 1 2 3\n"),
+             gather(warnings));
+    ASSERT_TRUE(scene) << scene.error().message;
+    EXPECT_TRUE(warnings.empty()) << folder.plain(warnings[0]);
+    const struct {
+        const char* mesh;
+        const char* material;
+        vec3 color;
+    } expected[] = {{"box", "red", {1, 0, 0}},
+                    {"box/lid", "grey#1", vec3(0.25f)},
+                    {"part #3", "Material #25", {0, 0, 1}},
+                    {"part #3/part #4", "a", {0, 1, 0}}};
+    ASSERT_EQ(scene->meshes.size(), std::size(expected));
+    for (size_t m = 0; m < std::size(expected); ++m) {
+        const Material& material = scene->materials[scene->meshes[m].material];
+        EXPECT_EQ(scene->meshes[m].name, expected[m].mesh);
+        EXPECT_EQ(material.name, expected[m].material);
+        EXPECT_EQ(material.color, expected[m].color);
+    }
 }
 
 TEST(Obj, MaterialsTakeColorAndMirror) {
@@ -309,7 +346,8 @@ TEST(Obj, ErrorsNameThePlaceAndWhatWasExpected) {
                      4),
          "bad.obj, line 1: found UTF-16 text, expected ASCII or UTF-8"},
         {"binary", std::string("\x89PNG\r\n\x1a\n"),
-         "bad.obj, line 1: found '?PNG', expected v, vn, vt, f, o, g, usemtl, mtllib or another "
+         "bad.obj, line 1: found '\\x89PNG', expected v, vn, vt, f, o, g, usemtl, mtllib or "
+         "another "
          "statement of the OBJ format"},
     };
     const TestFolder folder;

@@ -90,7 +90,8 @@ public:
     }
 
     const Error& error() const { return rows_.error(); }
-    /// A warning. Once only, after read().
+    /// Warnings, after read(); the second once only.
+    std::optional<Error> surplus() const { return rows_.surplus(); }
     std::optional<Error> left_over() { return rows_.left_over(); }
     uint64_t triangle_count() const { return corners_.size() / 3; }
     uint64_t too_short() const { return too_short_; }
@@ -340,8 +341,9 @@ Result<Scene> read_body(Source& source, const PlyHeader& header, const std::file
     const auto warn = [&](const std::string& sentence) {
         say(log, LogLevel::Warning, source.error(sentence).message);
     };
-    if (left_over)
-        say(log, LogLevel::Warning, left_over->message);
+    for (const auto& warning : {reader.surplus(), left_over})
+        if (warning)
+            say(log, LogLevel::Warning, warning->message);
     if (reader.too_short() > 0)
         warn(fmt::format("{} with fewer than three corners left out",
                          counted(reader.too_short(), "polygon")));

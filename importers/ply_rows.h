@@ -32,8 +32,8 @@ struct RowCount {
     }
 };
 
-/// Every call but error() and left_over() returns false at an error, which error() then holds.
-/// An element's row is one line; blank lines between rows do not count.
+/// Every call but error(), surplus() and left_over() returns false at an error, which error() then
+/// holds. An element's row is one line; blank lines between rows do not count.
 class AsciiRows {
 public:
     explicit AsciiRows(Source& source) : source_(source) {}
@@ -52,10 +52,11 @@ public:
         return true;
     }
 
+    /// Numbers that the header does not tell of (VCGLIB writes some) are passed over.
     bool end_row() {
         skip_blanks(rest_);
         ++rows_.done;
-        return rest_.empty() || fail(quoted(next_word(rest_)), "the end of the line");
+        return rest_.empty() || pass_over_numbers();
     }
 
     /// T: float or double. Integer types may be written with a point, too.
@@ -109,6 +110,15 @@ public:
 
     const Error& error() const { return error_; }
 
+    /// What rows have more than the header says, as a warning; nothing where none has.
+    std::optional<Error> surplus() const {
+        if (surplus_rows_ == 0)
+            return std::nullopt;
+        return source_.error_at_line(
+            first_surplus_, fmt::format("numbers that the header does not tell of left out, in {}",
+                                        counted(surplus_rows_, "row")));
+    }
+
     /// What follows the last row, as a warning; nothing where only blank lines do.
     std::optional<Error> left_over() {
         uint64_t first = 0, count = 0;
@@ -122,6 +132,15 @@ public:
     }
 
 private:
+    bool pass_over_numbers() {
+        for (std::string_view word = next_word(rest_); !word.empty(); word = next_word(rest_))
+            if (!parse_double(word))
+                return fail(quoted(word), "the end of the line");
+        if (surplus_rows_++ == 0)
+            first_surplus_ = source_.line_number();
+        return true;
+    }
+
     template <class T>
     bool integer(std::string_view what, const PlyProperty& property, T& value) {
         if (uint32_t digits = 0; take_digits(rest_, digits)) {
@@ -143,6 +162,7 @@ private:
     Source& source_;
     RowCount rows_;
     std::string_view rest_; // of the row
+    uint64_t surplus_rows_ = 0, first_surplus_ = 0;
     Error error_;
 };
 
@@ -197,6 +217,9 @@ public:
     }
 
     const Error& error() const { return error_; }
+
+    /// Bytes are counted, so that no row can have too many.
+    std::optional<Error> surplus() const { return std::nullopt; }
 
     /// What follows the last row, as a warning.
     std::optional<Error> left_over() {

@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cstring>
+#include <sstream>
 
 namespace ovc {
 namespace {
@@ -248,6 +249,24 @@ TEST(Ply, PolygonsWithTooFewCornersAreCounted) {
     }
 }
 
+TEST(Ply, NumbersThatTheHeaderDoesNotTellOfAreLeftOut) {
+    const TestFolder folder;
+    std::string rows;
+    std::istringstream lines(kSquareRows);
+    int row = 0;
+    for (std::string line; std::getline(lines, line); ++row)
+        rows += line + (row % 2 ? " 255 -1e3 0" : "") + "\n";
+    std::vector<std::string> warnings;
+    const auto scene = load(
+        folder.write("more.ply", ascii(std::string(kSquareHeader) + rows) + std::string(3, '\0')),
+        gather(warnings));
+    EXPECT_EQ(triangles_of(scene), kSquare);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(folder.plain(warnings[0]),
+              "more.ply, line 11: numbers that the header does not tell of left out, in " +
+                  std::to_string(row / 2) + " rows");
+}
+
 TEST(Ply, DataAfterTheLastRowIsSaid) {
     const TestFolder folder;
     const std::string text = ascii(std::string(kSquareHeader) + kSquareRows);
@@ -294,7 +313,7 @@ const struct {
      std::string("\x7f"
                  "ELF\0\1",
                  6),
-     "bad.ply, line 1: found '?ELF?\?', expected ply"},
+     "bad.ply, line 1: found '\\x7fELF\\x00\\x01', expected ply"},
     {"no end", "ply\nformat ascii 1.0\n",
      "bad.ply, line 2: found the end of the file, expected end_header"},
     {"no format", "ply\nend_header\n",
@@ -349,8 +368,8 @@ const struct {
      "bad.ply, line 11: found 'x', expected a number for y"},
     {"short row", ascii(std::string(kSquareHeader) + "0 0 0\n1 0\n"),
      "bad.ply, line 11: found the end of the line, expected a number for z"},
-    {"long row", ascii(std::string(kSquareHeader) + "0 0 0 7\n"),
-     "bad.ply, line 10: found '7', expected the end of the line"},
+    {"long row", ascii(std::string(kSquareHeader) + "0 0 0 7 x\n"),
+     "bad.ply, line 10: found 'x', expected the end of the line"},
     {"end of rows", ascii(std::string(kSquareHeader) + "0 0 0\n1 0 0\n"),
      "bad.ply, line 11: the file ends early: found 2 of 4 rows of vertex"},
     {"index too large", ascii(std::string(kSquareHeader) + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 4\n"),

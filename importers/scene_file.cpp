@@ -166,7 +166,7 @@ Result<SceneFile> read_scene_file(const std::filesystem::path& path) {
     Result<SceneFile> file = read(*archive);
     if (!file)
         return failed(file.error());
-    file->scene.file = std::move(*mapped);
+    file->scene.files.push_back(std::move(*mapped));
     return file;
 }
 

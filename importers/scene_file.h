@@ -25,7 +25,7 @@ struct Provenance {
 };
 
 struct SceneFile {
-    Scene scene; // its chunks and Scene::saved lie in Scene::file
+    Scene scene; // its chunks and Scene::saved lie in Scene::files
     Provenance from;
 };
 

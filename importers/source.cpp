@@ -2,6 +2,8 @@
 // Source: zlib reads both plain and compressed files; the only file that sees it.
 #include "importers/source.h"
 
+#include "core/suggestion.h"
+
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -15,7 +17,8 @@ namespace {
 
 constexpr size_t kBlockBytes = size_t(1) << 16;    // larger was no faster
 constexpr size_t kUnpackedBytes = size_t(1) << 18; // some 1 ms of work
-constexpr size_t kLongestLine = size_t(1) << 26;
+/// Far more than any line of a model, and little enough to have in memory whole.
+constexpr size_t kLongestLine = size_t(1) << 28;
 constexpr uint64_t kLikelyCompression = 12; // models as text reach 3 to 6
 
 /// What is there instead of a regular file: reading it might block, or never end. Null where
@@ -34,6 +37,12 @@ const char* other_than_a_file(std::filesystem::file_type type) {
     default:
         return nullptr;
     }
+}
+
+/// Of a line: what remains of its end, and the marks that some programs put behind the last one,
+/// NUL (ZBrush) and Ctrl-Z (DOS).
+bool ends_text(char c) {
+    return c == '\r' || c == '\0' || c == '\x1a';
 }
 
 /// zlib begins what it says with the file's name; the errors do so themselves.
@@ -55,7 +64,7 @@ Result<Source> Source::open(const std::filesystem::path& path, FilesRead* files,
     std::error_code ec;
     const auto status = std::filesystem::status(path, ec);
     if (status.type() == std::filesystem::file_type::not_found)
-        return source.error("no such file");
+        return source.error("no such file" + did_you_mean_file(path));
     if (const char* other = other_than_a_file(status.type()))
         return source.error(fmt::format("found {}, which is no regular file", other));
     errno = 0;
@@ -148,8 +157,13 @@ std::optional<std::string_view> Source::line() {
         const size_t available = end_ - begin_;
         end = static_cast<const unsigned char*>(
             std::memchr(from + searched, line_end_, available - searched));
-        if (end || available > kLongestLine)
+        if (end)
             break;
+        if (available > kLongestLine) {
+            damage_ = fmt::format("found a line of more than {} MiB, expected a shorter one",
+                                  kLongestLine >> 20);
+            return std::nullopt;
+        }
         searched = available;
         if (!fill(available + 1)) {
             if (available == 0)
@@ -161,7 +175,7 @@ std::optional<std::string_view> Source::line() {
     size_t length = end ? size_t(end - (buffer_.data() + begin_)) : end_ - begin_;
     begin_ += length + (end ? 1 : 0);
     ++line_number_;
-    if (length > 0 && text[length - 1] == '\r')
+    while (length > 0 && ends_text(text[length - 1]))
         --length;
     return std::string_view(text, length);
 }

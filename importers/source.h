@@ -30,8 +30,10 @@ public:
     static Result<Source> open(const std::filesystem::path& path, FilesRead* files = nullptr,
                                Empty empty = Empty::Refused);
 
-    /// The next line without its end (LF, CR LF, or CR alone where the first line ends so); nothing
-    /// at the end of the file. Valid until the next call.
+    /// The next line without its end (LF, CR LF, or CR alone where the first line ends so) and
+    /// without the NULs and Ctrl-Zs that some programs end a text with; nothing at the end of the
+    /// file, and where a line is so long that the file is taken for damaged. Valid until the next
+    /// call.
     std::optional<std::string_view> line();
 
     /// The next `count` bytes in one piece, valid until the next call; null where fewer are left.

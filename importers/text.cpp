@@ -2,6 +2,8 @@
 // Numbers by std::from_chars: exact, and blind to the locale.
 #include "importers/text.h"
 
+#include "core/printable.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -68,10 +70,7 @@ std::optional<double> parse_double(std::string_view word) {
 
 std::string quoted(std::string_view word) {
     constexpr size_t kShown = 40;
-    std::string text = "'";
-    for (const char c : word.substr(0, kShown))
-        text += c >= ' ' && c <= '~' ? c : '?';
-    return text + (word.size() > kShown ? "…'" : "'");
+    return fmt::format("'{}'", printable(word, kShown));
 }
 
 std::string found(std::string_view word, std::string_view what) {

@@ -34,6 +34,18 @@ inline std::string_view next_word(std::string_view& text) {
     return word;
 }
 
+/// Without the comment behind a statement: a # that follows a blank. A number right behind the #
+/// makes it part of a name ("Material #25", as 3ds Max writes).
+inline std::string_view without_comment(std::string_view text) {
+    for (size_t i = 0; i < text.size(); ++i) {
+        const bool begins = text[i] == '#' && (i == 0 || is_blank(text[i - 1]));
+        const bool numbers = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+        if (begins && !numbers)
+            return text.substr(0, i);
+    }
+    return text;
+}
+
 inline std::string_view trimmed(std::string_view text) {
     skip_blanks(text);
     while (!text.empty() && is_blank(text.back()))
@@ -74,7 +86,7 @@ inline bool take_digits(std::string_view& text, uint32_t& value) {
 std::optional<float> parse_float(std::string_view word);
 std::optional<double> parse_double(std::string_view word);
 
-/// The word as a message shows it: in quotes, cut short, unprintable bytes as '?'.
+/// The word as a message shows it: in quotes, cut short, printable.
 std::string quoted(std::string_view word);
 
 /// The word in quotes, behind `what` it is where that is given; or that the line ends there.

@@ -3,7 +3,7 @@
 #include "host/bench/bench_arguments.h"
 
 #include "host/output.h"
-#include "host/suggestion.h"
+#include "core/suggestion.h"
 #include "testscenes/catalog.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "host/bench/contender.h"
 
 #include "host/bench/float_kd_tree.h"
-#include "host/suggestion.h"
+#include "core/suggestion.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,7 +3,7 @@
 #include "host/report/experiment.h"
 
 #include "host/report/experiment_table.h"
-#include "host/suggestion.h"
+#include "core/suggestion.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

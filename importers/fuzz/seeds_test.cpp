@@ -36,11 +36,11 @@ void survive(const std::string& kind, void (*fuzz)(const uint8_t*, size_t), size
 }
 
 TEST(FuzzSeeds, DamagedPlyFilesAreScenesOrErrors) {
-    survive("ply", fuzz_ply, 5);
+    survive("ply", fuzz_ply, 6);
 }
 
 TEST(FuzzSeeds, DamagedObjFilesAreScenesOrErrors) {
-    survive("obj", fuzz_obj, 2);
+    survive("obj", fuzz_obj, 3);
 }
 
 } // namespace

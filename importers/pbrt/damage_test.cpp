@@ -17,7 +17,7 @@ void survives(const std::string& text) {
 }
 
 TEST(PbrtDamage, SeedsAreScenes) {
-    ASSERT_GE(seeds().size(), 3u);
+    ASSERT_GE(seeds().size(), 4u);
     const TestFolder folder;
     for (const std::string& text : seeds())
         EXPECT_GT(triangles_of(load(folder.write("seed.pbrt", text))).size(), 20u);

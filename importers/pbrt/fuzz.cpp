@@ -31,9 +31,14 @@ void fuzz_pbrt(const uint8_t* data, size_t size) {
     require(file >= 0 && ftruncate(file, 0) == 0);
     require(pwrite(file, data, size, 0) == ssize_t(size));
     const std::string path = "/proc/self/fd/" + std::to_string(file);
-    for (const bool strict : {false, true}) {
+    const struct {
+        bool strict;
+        uint64_t world;
+    } ways[] = {{false, 1}, {true, 1}, {false, 2}};
+    for (const auto& way : ways) {
         ImportOptions options;
-        options.strict = strict;
+        options.strict = way.strict;
+        options.world = way.world;
         options.max_triangles = kMostFuzzed;
         const Result<Scene> scene = read_pbrt(path, options);
         if (scene)

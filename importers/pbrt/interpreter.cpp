@@ -67,6 +67,10 @@ bool Interpreter::run() {
     while (!at_end_)
         if (!directive() || diagnostics_.failed())
             return false;
+    if (options_.world > 1 && worlds_ < options_.world)
+        return diagnostics_.fail(tokens_.place(),
+                                 fmt::format("found {}, expected {}, for --world asks for it",
+                                             counted(worlds_, "world"), options_.world));
     if (state_.depth() > 0)
         diagnostics_.missing(
             "unclosed", tokens_.place(),
@@ -92,12 +96,28 @@ bool Interpreter::directive() {
     if (token.kind != TokenKind::Word)
         return diagnostics_.fail(
             place_, fmt::format("found {}, expected a directive such as Shape", described(token)));
+    if (passing_over_)
+        return pass_over(std::string(token.text));
     const auto at = std::find_if(std::begin(kDirectives), std::end(kDirectives),
                                  [&](const Directive& d) { return d.name == token.text; });
     if (at == std::end(kDirectives))
         return unknown(std::string(token.text));
     known_one_ = true;
     return (this->*at->action)();
+}
+
+/// Files are gone into, for they may hold the next world.
+bool Interpreter::pass_over(std::string_view name) {
+    if (name == "WorldBegin")
+        return world_begin();
+    if (name == "WorldEnd")
+        return world_end();
+    if (name == "Include")
+        return include();
+    if (worlds_ >= options_.world &&
+        (name == "Shape" || name == "LightSource" || name == "ObjectInstance"))
+        diagnostics_.missing("after world", place_, "what follows WorldEnd left out");
+    return pass_over();
 }
 
 bool Interpreter::unknown(const std::string& name) {
@@ -264,17 +284,22 @@ bool Interpreter::import() {
 }
 
 bool Interpreter::world_begin() {
-    if (in_world_) {
-        diagnostics_.missing("second world", place_, "all but the first WorldBegin left out");
+    ++worlds_;
+    if (worlds_ > options_.world) {
+        diagnostics_.missing("second world", place_,
+                             fmt::format("all but world {} of the file left out; --world N reads "
+                                         "another",
+                                         options_.world));
         at_end_ = true;
         return true;
     }
-    in_world_ = true;
+    passing_over_ = worlds_ < options_.world;
     state_.now.transforms = {};
     systems_["world"] = {};
     return true;
 }
 
+/// What was defined in the world ends with it; camera and film stay, as in pbrt-v2.
 bool Interpreter::world_end() {
     if (state_.depth() > 0)
         diagnostics_.missing(
@@ -282,6 +307,7 @@ bool Interpreter::world_end() {
             fmt::format("the world ends inside {} AttributeBegin or its like", state_.depth()));
     state_.clear();
     state_.now = {};
+    passing_over_ = worlds_ >= options_.world;
     return true;
 }
 

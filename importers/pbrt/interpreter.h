@@ -35,6 +35,8 @@ private:
     static const Directive kDirectives[];
 
     bool directive();
+    /// A directive of what is passed over; false as above.
+    bool pass_over(std::string_view name);
     bool unknown(const std::string& name);
     /// What stands between the directive at hand and the next.
     bool pass_over();
@@ -98,7 +100,8 @@ private:
     Place place_; // of the directive at hand
     bool known_one_ = false;
     bool at_end_ = false;
-    bool in_world_ = false;
+    uint64_t worlds_ = 0;       // that have begun
+    bool passing_over_ = false; // worlds that are not asked for, and what follows the one that is
 
     StateStack state_;
     std::unordered_map<std::string, Transforms> systems_;

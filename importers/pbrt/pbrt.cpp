@@ -9,9 +9,14 @@
 
 namespace ovc {
 
+/// Two includes of the next file in each of forty are 2^40; an include that is worth following as
+/// often as that brings some triangles.
+static constexpr uint64_t kTrianglesOfAnInclude = 100;
+
 Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& options) {
     pbrt::Diagnostics diagnostics(options.log, options.strict);
-    pbrt::Tokens tokens(path.parent_path(), diagnostics, options.files);
+    pbrt::Tokens tokens(path.parent_path(), diagnostics, options.files,
+                        options.max_triangles / kTrianglesOfAnInclude);
     pbrt::Interpreter interpreter(tokens, diagnostics, options);
     if (!tokens.open(path) || !interpreter.run())
         return diagnostics.error();

@@ -238,6 +238,81 @@ TEST(Pbrt, WarningsComeOncePerKindWithTheirPlace) {
                   "a.pbrt:10: there is no object 'gone'"}));
 }
 
+TEST(Pbrt, AnyNumberOfIncludesFollowEachOther) {
+    const TestFolder folder;
+    folder.write("leaf.pbrt", kTriangle);
+    std::string text = "WorldBegin\n";
+    for (int i = 0; i < 12000; ++i)
+        text += "Include \"leaf.pbrt\"\n";
+    const Reading reading = read(folder, text);
+    ASSERT_TRUE(reading.scene) << reading.scene.error().message;
+    EXPECT_EQ(reading.scene->soup.triangle_count(), 12000u);
+    EXPECT_TRUE(reading.warnings.empty()) << reading.warnings[0];
+}
+
+TEST(Pbrt, FilesThatAreNotThereMayBeMisspelt) {
+    const TestFolder folder;
+    folder.write("leaf.pbrt", kTriangle);
+    const Reading reading = read(folder, "WorldBegin\nInclude \"laef.pbrt\"");
+    ASSERT_EQ(reading.warnings.size(), 2u);
+    EXPECT_EQ(reading.warnings[0],
+              "a.pbrt:2: there is no file 'laef.pbrt'; did you mean 'leaf.pbrt'?");
+}
+
+TEST(Pbrt, OneOfSeveralWorldsIsRead) {
+    const TestFolder folder;
+    folder.write("inner.pbrt", "Scale 1 1 1\nWorldBegin Scale 3 1 1 Include \"leaf.pbrt\"\n");
+    folder.write("leaf.pbrt", kTriangle);
+    const std::string text =
+        std::string("Translate 0 0 -1 Camera \"perspective\" WorldBegin Scale 1 1 1\n") +
+        "Material \"velvet\"\n" + kTriangle +
+        "\nWorldEnd\nTranslate 0 0 -2 Camera \"perspective\"\nWorldBegin Scale 2 1 1\n" +
+        kTriangle + "\nWorldEnd\nInclude \"inner.pbrt\" WorldEnd";
+    const char* others = "of the file left out; --world N reads another";
+    const struct {
+        uint64_t world;
+        double width, eye;
+        std::vector<std::string> warnings;
+    } cases[] = {{1,
+                  1,
+                  1,
+                  {"a.pbrt:2: materials 'velvet' become matte",
+                   std::string("a.pbrt:7: all but world 1 ") + others}},
+                 {2, 2, 2, {std::string("inner.pbrt:2: all but world 2 ") + others}},
+                 {3, 3, 2, {}}};
+    for (const auto& test : cases) {
+        std::vector<std::string> warnings;
+        ImportOptions options = gather(warnings);
+        options.world = test.world;
+        const auto scene = load(folder.write("a.pbrt", text), options);
+        ASSERT_EQ(triangles_of(scene).size(), 1u) << test.world;
+        double width = 0;
+        for (const dvec3& corner : triangles_of(scene)[0])
+            width = std::max(width, corner.x);
+        EXPECT_EQ(width, test.width);
+        ASSERT_TRUE(scene->camera);
+        EXPECT_EQ(scene->camera->eye.z, test.eye) << test.world;
+        for (std::string& warning : warnings)
+            warning = folder.plain(warning);
+        EXPECT_EQ(warnings, test.warnings);
+    }
+    ImportOptions options;
+    options.world = 4;
+    const auto none = load(folder / "a.pbrt", options);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(folder.plain(none.error().message),
+              "a.pbrt:11: found 3 worlds, expected 4, for --world asks for it");
+}
+
+TEST(Pbrt, WhatFollowsTheWorldIsSaid) {
+    const TestFolder folder;
+    const Reading reading =
+        read(folder, std::string("WorldBegin ") + kTriangle + "\nWorldEnd\n" + kTriangle);
+    EXPECT_EQ(triangles_of(reading.scene).size(), 1u);
+    ASSERT_EQ(reading.warnings.size(), 1u);
+    EXPECT_EQ(reading.warnings[0], "a.pbrt:4: what follows WorldEnd left out");
+}
+
 TEST(Pbrt, StrictMakesWhatIsMissingAnError) {
     const TestFolder folder;
     const char* missing[] = {"Foo 1",
@@ -328,9 +403,12 @@ TEST(Pbrt, FilesThatMultiplyEndWithAnError) {
         folder.write(numbered("n", i, ".pbrt"), next + next);
     }
     folder.write("n40.pbrt", "");
-    EXPECT_EQ(folder.plain(load(folder / "n0.pbrt").error().message).find("found more than") !=
-                  std::string::npos,
-              true);
+    ImportOptions options;
+    options.max_triangles = 200'000;
+    const std::string message = load(folder / "n0.pbrt", options).error().message;
+    EXPECT_NE(message.find("found more than 2000 includes in files that are included again"),
+              message.npos)
+        << message;
     // In each other, under ever new names.
     for (int i = 0; i < 70; ++i)
         folder.write(numbered("d", i, ".pbrt"), numbered("Include \"d", i + 1, ".pbrt\""));

@@ -120,8 +120,7 @@ std::optional<Mesh> make_ply_mesh(ShapeRequest& request) {
     const std::string name = request.parameters.text("filename");
     const auto path = request.tokens.find(name);
     if (!path) {
-        request.diagnostics.missing("file " + name, request.place,
-                                    fmt::format("there is no file {}", ovc::quoted(name)));
+        request.diagnostics.missing("file " + name, request.place, request.tokens.no_file(name));
         return std::nullopt;
     }
     ImportOptions options;

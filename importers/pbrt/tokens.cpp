@@ -4,6 +4,7 @@
 // tokenizer of pbrt-v4 (parser.cpp) for escapes in strings.
 #include "importers/pbrt/tokens.h"
 
+#include "core/suggestion.h"
 #include "importers/text.h"
 
 #include <fmt/format.h>
@@ -12,14 +13,9 @@
 
 namespace ovc::pbrt {
 
-/// Files in each other, and files in all. Scenes have a few of the one and up to thousands of the
-/// other; beyond that a file includes itself under ever new names, or two of the next again and
-/// again.
+/// Files in each other: scenes have a few; beyond that a file includes itself under ever new names.
+/// One after the other there may be any number: some scenes have an include for every leaf.
 static constexpr size_t kDeepest = 64;
-static constexpr uint64_t kMostFiles = 10000;
-
-/// Source cuts lines that are longer.
-static constexpr size_t kLongestLine = size_t(1) << 26;
 
 std::string described(const Token& token) {
     switch (token.kind) {
@@ -92,8 +88,6 @@ bool Tokens::next_line() {
         files_.pop_back();
         return true;
     }
-    if (line->size() >= kLongestLine)
-        return diagnostics_.fail(place(), "found a line of more than 64 MiB");
     file.rest = *line;
     if (file.source.line_number() == 1 && file.rest.starts_with("\xef\xbb\xbf"))
         file.rest.remove_prefix(3); // the mark some editors put before UTF-8
@@ -159,13 +153,14 @@ void Tokens::push(Source source, const std::filesystem::path& path, std::filesys
     const auto [at, is_new] = known_names_.try_emplace(path.string(), nullptr);
     if (is_new)
         at->second = &names_.emplace_back(path.string());
+    const bool is_first = read_.insert(identity.string()).second;
     files_.push_back({std::move(source),
                       path.parent_path(),
                       std::move(identity),
                       at->second,
                       {},
-                      marks_its_end});
-    ++opened_;
+                      marks_its_end,
+                      !is_first || (!files_.empty() && files_.back().again)});
 }
 
 bool Tokens::include_next(bool marks_its_end) {
@@ -186,7 +181,7 @@ bool Tokens::include(const std::string& name, const Place& place, bool marks_its
     };
     const auto path = find(name);
     if (!path)
-        return missing(fmt::format("there is no file {}", ovc::quoted(name)));
+        return missing(no_file(name));
     std::error_code ignored;
     std::filesystem::path identity = std::filesystem::canonical(*path, ignored);
     for (const File& file : files_)
@@ -195,13 +190,23 @@ bool Tokens::include(const std::string& name, const Place& place, bool marks_its
     if (files_.size() >= kDeepest)
         return diagnostics_.fail(place,
                                  fmt::format("found more than {} files in each other", kDeepest));
-    if (opened_ >= kMostFiles)
-        return diagnostics_.fail(place, fmt::format("found more than {} includes", kMostFiles));
+    if (files_.back().again && ++again_count_ > most_again_)
+        return diagnostics_.fail(
+            place, fmt::format("found more than {} includes in files that are included again and "
+                               "again; a larger --max-triangles allows more",
+                               most_again_));
     Result<Source> source = Source::open(*path, files_read_);
     if (!source)
         return missing(source.error().message);
     push(std::move(*source), *path, std::move(identity), marks_its_end);
     return true;
+}
+
+std::string Tokens::no_file(const std::string& name) const {
+    std::string plain = name;
+    std::replace(plain.begin(), plain.end(), '\\', '/');
+    return fmt::format("there is no file {}{}", ovc::quoted(name),
+                       did_you_mean_file(root_ / plain));
 }
 
 std::optional<std::filesystem::path> Tokens::find(const std::string& name) const {

@@ -8,6 +8,7 @@
 #include <deque>
 #include <filesystem>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace ovc::pbrt {
@@ -37,9 +38,14 @@ std::string described(const Token& token);
 class Tokens {
 public:
     /// Nothing is read yet. root: the folder that names are relative to. files_read: receives what
-    /// is looked for and read; or null.
-    Tokens(std::filesystem::path root, Diagnostics& diagnostics, FilesRead* files_read)
-        : root_(std::move(root)), diagnostics_(diagnostics), files_read_(files_read) {}
+    /// is looked for and read; or null. most_again: how many includes of files that are read again
+    /// are followed; those of files that are read once only are followed in any number.
+    Tokens(std::filesystem::path root, Diagnostics& diagnostics, FilesRead* files_read,
+           uint64_t most_again)
+        : root_(std::move(root)),
+          diagnostics_(diagnostics),
+          files_read_(files_read),
+          most_again_(most_again) {}
 
     FilesRead* files_read() const { return files_read_; }
 
@@ -61,6 +67,9 @@ public:
     /// behind it or without. Nothing where there is none.
     std::optional<std::filesystem::path> find(const std::string& name) const;
 
+    /// What to say where there is none.
+    std::string no_file(const std::string& name) const;
+
     /// Where the next token is looked for.
     Place place() const;
 
@@ -72,6 +81,7 @@ private:
         const std::string* name;
         std::string_view rest; // of the line
         bool marks_its_end;
+        bool again; // it was read before, or a file that it is included in was
     };
 
     bool include(const std::string& name, const Place& place, bool marks_its_end);
@@ -84,10 +94,12 @@ private:
     std::filesystem::path root_;
     Diagnostics& diagnostics_;
     FilesRead* const files_read_;
-    std::vector<File> files_; // the innermost last
+    const uint64_t most_again_;
+    uint64_t again_count_ = 0;
+    std::unordered_set<std::string> read_; // identities
+    std::vector<File> files_;              // the innermost last
     std::deque<std::string> names_;
     std::unordered_map<std::string, const std::string*> known_names_;
-    uint64_t opened_ = 0;
     Token token_;
     bool again_ = false;
 };

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edit distance with swaps of neighbours, over short words.
-#include "host/suggestion.h"
-
-#include <fmt/format.h>
+#include "core/suggestion.h"
 
 #include <algorithm>
 #include <vector>
@@ -41,7 +39,41 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
 
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates) {
     const std::string_view meant = nearest(word, candidates);
-    return meant.empty() ? "" : fmt::format("; did you mean '{}'?", meant);
+    return meant.empty() ? "" : "; did you mean '" + std::string(meant) + "'?";
+}
+
+/// So that a slow disk with a million files is not read for a hint.
+static constexpr size_t kMostFiles = 10000;
+
+static std::string in_small_letters(std::string word) {
+    for (char& c : word)
+        c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+    return word;
+}
+
+std::string did_you_mean_file(const std::filesystem::path& missing) {
+    namespace fs = std::filesystem;
+    const std::string word = in_small_letters(missing.filename().string());
+    const fs::path folder = missing.has_parent_path() ? missing.parent_path() : fs::path(".");
+    std::vector<std::pair<std::string, std::string>> names; // in small letters, and as it is
+    std::error_code ec;
+    for (fs::directory_iterator at(folder, ec), end; !ec && at != end && names.size() < kMostFiles;
+         at.increment(ec)) {
+        std::error_code unknown;
+        if (!at->is_directory(unknown)) {
+            std::string name = at->path().filename().string();
+            names.emplace_back(in_small_letters(name), name);
+        }
+    }
+    std::sort(names.begin(), names.end()); // folders have no order
+    std::vector<std::string_view> candidates;
+    for (const auto& [small, name] : names)
+        candidates.push_back(small);
+    const std::string_view meant = word.empty() ? "" : nearest(word, candidates);
+    for (const auto& [small, name] : names)
+        if (!meant.empty() && small == meant && name != missing.filename())
+            return "; did you mean '" + name + "'?";
+    return "";
 }
 
 } // namespace ovc
