@@ -135,12 +135,25 @@ std::vector<uint32_t> pixel_order(uint32_t width, uint32_t height) {
     return curve.take();
 }
 
-Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height) {
+dvec3 axis_vector(int axis) {
+    dvec3 vector(0);
+    vector[axis] = 1;
+    return vector;
+}
+
+/// By a quarter, so that y comes to be `up`.
+static dvec3 turned(const dvec3& v, int up) {
+    return up == 0 ? dvec3(v.y, -v.x, v.z) : up == 1 ? v : dvec3(v.x, -v.z, v.y);
+}
+
+Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height, int up) {
     Camera camera;
+    camera.up = axis_vector(up);
+    camera.eye = turned(camera.eye, up);
     if (bounds.empty())
         return camera;
     camera.target = bounds.center();
-    const dvec3 towards_eye = glm::normalize(dvec3(0.45, 0.35, 1));
+    const dvec3 towards_eye = turned(glm::normalize(dvec3(0.45, 0.35, 1)), up);
     camera.eye = camera.target + towards_eye;
     const ViewAxes axes = view_axes(camera);
 

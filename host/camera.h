@@ -65,9 +65,14 @@ private:
 /// leaves. width, height <= 65535.
 std::vector<uint32_t> pixel_order(uint32_t width, uint32_t height);
 
+/// The unit vector along axis 0, 1 or 2.
+dvec3 axis_vector(int axis);
+
 /// Looks at `bounds` from in front, a little from the right and above, so that the whole box just
-/// fits into an image of width x height. Empty bounds: the default Camera.
-Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height);
+/// fits into an image of width x height. up: the axis that is up; the one in front of what a model
+/// shows is +z where that is y, else the one that turning y there brings it to: -y of z, +z of x.
+/// Empty bounds: the default Camera, with that axis up.
+Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height, int up = 1);
 
 /// A light above the camera's left shoulder, as far away as the eye is from the target.
 Light shoulder_light(const Camera& camera);

@@ -132,11 +132,25 @@ TEST(FramingCamera, ShowsTheWholeBoxAndFillsTheImage) {
                          {{0, 0, 0}, {3, 0, 3}}};
     for (const Box& box : boxes)
         for (const auto& [width, height] : {std::pair{512u, 512u}, {800u, 200u}, {200u, 800u}}) {
-            const dvec2 seen = seen_extent(box, framing_camera(box, width, height), width, height);
-            const double fullest = std::max(seen.x, seen.y);
-            EXPECT_LT(fullest, 1);
-            EXPECT_GT(fullest, 0.8);
+            for (const int up : {0, 1, 2}) {
+                const dvec2 seen =
+                    seen_extent(box, framing_camera(box, width, height, up), width, height);
+                const double fullest = std::max(seen.x, seen.y);
+                EXPECT_LT(fullest, 1);
+                EXPECT_GT(fullest, 0.8);
+            }
         }
+}
+
+TEST(FramingCamera, LooksFromAboveWhateverIsUp) {
+    const Box box{dvec3(-1), dvec3(1)};
+    for (const int up : {0, 1, 2}) {
+        const Camera camera = framing_camera(box, 10, 10, up);
+        EXPECT_EQ(camera.up, axis_vector(up));
+        const dvec3 towards = glm::normalize(camera.eye);
+        EXPECT_NEAR(towards[up], 0.304, 1e-3);
+    }
+    EXPECT_LT(framing_camera(box, 10, 10, 2).eye.y, -1) << "in front of a z-up model is -y";
 }
 
 TEST(FramingCamera, CopesWithNothingAndWithOnePoint) {

@@ -2,9 +2,10 @@
 // The table of subcommands, and the program's own help and version.
 #include "host/command.h"
 
+#include "core/suggestion.h"
 #include "host/arguments.h"
 #include "host/diff/verdict.h"
-#include "core/suggestion.h"
+#include "host/message.h"
 #include "host/version.h"
 
 #include <fmt/format.h>
@@ -83,7 +84,7 @@ static Result<int> run_named(const std::string& name, const Arguments& arguments
             const Result<int> code = run(command, arguments);
             if (code || command.exit_on_error == kExitError)
                 return code;
-            fmt::print(stderr, "overcast: {}\n", code.error().message);
+            print_message(code.error().message);
             return command.exit_on_error;
         }
     return unknown_command(name);

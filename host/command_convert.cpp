@@ -5,6 +5,7 @@
 #include "host/command.h"
 #include "host/interrupt.h"
 #include "host/log_arguments.h"
+#include "host/message.h"
 #include "host/output.h"
 #include "host/scene_cache.h"
 #include "host/scene_source.h"
@@ -101,8 +102,7 @@ static Result<Done> convert_to_mesh(const SceneArguments& source, const LogSink&
     if (Result<Done> saved = save(*scene, output); !saved)
         return saved;
     if (const std::string items = left_out(*scene); !items.empty() && !quiet)
-        fmt::print(stderr, "overcast: only triangles are kept; left out of {}: {}\n", output,
-                   items);
+        print_message(fmt::format("only triangles are kept; left out of {}: {}", output, items));
     return Done{};
 }
 

@@ -3,6 +3,7 @@
 #include "host/arguments.h"
 #include "host/command.h"
 #include "host/diff/verdict.h"
+#include "host/message.h"
 #include "host/output.h"
 #include "host/srgb.h"
 
@@ -184,7 +185,7 @@ private:
     }
 
     static int cannot_be_compared(const std::string& why) {
-        fmt::print(stderr, "overcast: {}\n", why);
+        print_message(why);
         return int(Verdict::NotComparable);
     }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // overcast info: what a scene consists of, for a person or as JSON.
+#include "core/printable.h"
 #include "host/arguments.h"
 #include "host/backend_arguments.h"
 #include "host/command.h"
@@ -149,7 +150,7 @@ static std::string lights_text(const Scene& scene) {
 static std::string info_text(const std::string& source, const Scene& scene, const SceneSummary& s,
                              const Result<ovc_plan>& plan) {
     std::string text =
-        fmt::format("  scene      {}\n  triangles  {} in {} mesh{}\n", source,
+        fmt::format("  scene      {}\n  triangles  {} in {} mesh{}\n", printable(source),
                     human_count(s.triangles), human_count(s.meshes), s.meshes == 1 ? "" : "es");
     if (scene.instancing && scene.instancing->instances > 0)
         text += fmt::format("  instances  {} of {} unique triangles\n",
@@ -207,7 +208,7 @@ public:
                               plan ? plan->leaves : 2});
         summary.left_out = left_out_of(*scene, summary.needs);
         fmt::print("{}", json_ ? info_json(*scene, summary, plan)
-                               : info_text(source_.scene, *scene, summary, plan));
+                               : info_text(source_.name(), *scene, summary, plan));
         return kExitOk;
     }
 

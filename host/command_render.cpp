@@ -26,6 +26,8 @@ namespace fs = std::filesystem;
 static constexpr const char* kExamples = R"(Examples:
   overcast render dragon.ply
       writes out.png, 512x512; camera and light are placed by themselves
+  overcast render scan.ply floor.obj --up z
+      two files as one scene, whose z axis is up
   overcast render dragon.ply -o d.png -o d.exr --size 1920x1080 --gpu-memory 12M
       two files, and no more than 12 MiB of GPU memory
   overcast render kitchen.obj --camera 3,1.6,4,0,1,0,60 --light 0,2.4,0 --light 2,2.4,2
@@ -54,6 +56,7 @@ static constexpr std::string_view kModes[] = {"auto", "batched", "mixed"};
 static constexpr std::string_view kIntegrators[] = {"whitted", "path"};
 /// In the order of Antialias::Method.
 static constexpr std::string_view kAntialiasMethods[] = {"1", "2"};
+static constexpr std::string_view kAxes[] = {"x", "y", "z"};
 static constexpr std::string_view kPngBits[] = {"8", "16"};
 
 /// The words as given.
@@ -63,6 +66,7 @@ struct RenderWords {
     std::string size;
     std::string crop;
     std::string camera;
+    std::string up;
     std::string frames;
     std::string camera_path;
     std::vector<std::string> lights;
@@ -111,6 +115,10 @@ void RenderWords::add_to(CLI::App& app) {
            "Eye, target and angle of view in degrees along the shorter side (40); not with "
            "--frames or --camera-path; default: the scene's, else the whole scene is framed")
         ->type_name("EX,EY,EZ,TX,TY,TZ[,FOV]");
+    app.add_option("--up", up,
+                   "The axis that is up, of --camera and of a scene without a camera; default: y; "
+                   "many scans and CAD models have z")
+        ->type_name(choice_names(kAxes));
     app.add_option("--frames", frames,
                    "Frames of the camera path, the first and the last included; default: one "
                    "picture, with --camera-path all frames")
@@ -217,7 +225,7 @@ struct NamedPath {
 };
 
 static Result<NamedPath> choose_path(const RenderWords& words) {
-    const std::string& scene = words.scene.scene;
+    const std::string scene = words.scene.name();
     const bool from_file = !words.camera_path.empty();
     if (!from_file && !is_test_scene(scene))
         return Error{
@@ -309,6 +317,15 @@ static Result<Done> understand_view(const RenderWords& words, RenderJob& job) {
         if (!camera)
             return camera.error();
         job.camera = *camera;
+    }
+    if (!words.up.empty()) {
+        const Result<size_t> axis = parse_choice("--up", words.up, kAxes);
+        if (!axis)
+            return axis.error();
+        if (!job.shots.empty())
+            return Error{"--up and a camera path cannot be given together: its cameras say what is "
+                         "up"};
+        job.up = int(*axis);
     }
     for (const std::string& light : words.lights) {
         const Result<dvec3> position = parse_position("--light", light);

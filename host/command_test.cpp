@@ -69,6 +69,90 @@ TEST_F(CommandTest, ConvertsATestSceneAndReadsItBack) {
     EXPECT_TRUE(fs::exists(path("box.png")));
 }
 
+TEST_F(CommandTest, SeveralFilesAreOneScene) {
+    std::ofstream(path("a.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    std::ofstream(path("b.obj")) << "v 0 0 5\nv 1 0 5\nv 0 1 5\nf 1 2 3\nf 3 2 1\n";
+    ASSERT_EQ(error({"convert", path("a.obj"), path("b.obj"), "box", path("all.obj")}), "");
+    testing::internal::CaptureStdout();
+    ASSERT_EQ(error({"info", path("all.obj"), "--json"}), "");
+    EXPECT_EQ(nlohmann::json::parse(testing::internal::GetCapturedStdout())["triangles"], 33);
+    ASSERT_EQ(error({"render", path("a.obj"), path("b.obj"), "--backend", "cpu-kdtree", "--size",
+                     "8x8", "-o", path("a.png"), "--stats", path("a.json"), "--quiet", "--cache",
+                     path("cache")}),
+              "");
+    std::ifstream file(path("a.json"));
+    const nlohmann::json stats = nlohmann::json::parse(file);
+    EXPECT_EQ(stats["triangles"], 3);
+    EXPECT_EQ(stats["scene"], path("a.obj") + " + " + path("b.obj"));
+    EXPECT_THAT(error({"info", path("a.obj"), path("none.obj")}), testing::HasSubstr("none.obj"));
+    EXPECT_THAT(error({"render", path("a.obj"), path("b.obj"), "-o", path("b.obj")}),
+                testing::HasSubstr("ends in neither"));
+    EXPECT_THAT(error({"convert", path("a.obj"), path("b.obj"), path("b.obj")}),
+                testing::HasSubstr("are the same file"));
+}
+
+TEST_F(CommandTest, ZMayBeUp) {
+    // Seen from above a floor in z = 0 hides what is below.
+    std::ofstream(path("floor.obj")) << "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
+    const auto render = [&](const char* up, const char* picture) {
+        return error({"render", path("floor.obj"), "--backend", "cpu-kdtree", "--size", "16x16",
+                      "--up", up, "-o", path(picture), "--quiet"});
+    };
+    ASSERT_EQ(render("y", "y.png"), "");
+    ASSERT_EQ(render("z", "z.png"), "");
+    EXPECT_NE(bytes("y.png"), bytes("z.png"));
+    EXPECT_THAT(render("w", "w.png"), testing::HasSubstr("--up: 'w' is none of x, y, z"));
+    EXPECT_THAT(error({"render", "dragons-2", "--frames", "0", "--up", "z"}),
+                testing::HasSubstr("--up and a camera path cannot be given together"));
+}
+
+TEST_F(CommandTest, OneOfSeveralWorldsIsChosen) {
+    const std::string triangle = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]";
+    std::ofstream(path("a.pbrt")) << "WorldBegin " << triangle << " WorldEnd WorldBegin "
+                                  << triangle << "\n"
+                                  << triangle << " WorldEnd";
+    testing::internal::CaptureStdout();
+    ASSERT_EQ(error({"info", path("a.pbrt"), "--world", "2", "--json"}), "");
+    EXPECT_EQ(nlohmann::json::parse(testing::internal::GetCapturedStdout())["triangles"], 2);
+    EXPECT_THAT(error({"info", path("a.pbrt"), "--world", "3"}),
+                testing::HasSubstr("found 2 worlds, expected 3"));
+    EXPECT_THAT(error({"info", path("a.pbrt"), "--world", "0"}),
+                testing::HasSubstr("--world needs a whole number from 1"));
+}
+
+TEST_F(CommandTest, AFileThatIsNotThereMayBeMisspelt) {
+    std::ofstream(path("dragon.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    for (const char* name : {"dragn.obj", "dragonobj", "Dragon.obj"})
+        EXPECT_THAT(error({"info", path(name)}), testing::HasSubstr("did you mean 'dragon.obj'?"))
+            << name;
+    std::ofstream(path("walk.csv")) << "0,0,9,0,0,0\n";
+    EXPECT_THAT(error({"render", "box", "--camera-path", path("wlak.csv")}),
+                testing::HasSubstr("did you mean 'walk.csv'?"));
+    std::ofstream(path("one.png")) << "x";
+    EXPECT_THAT(error({"diff", path("onne.png"), path("one.png")}),
+                testing::HasSubstr("did you mean 'one.png'?"));
+}
+
+TEST_F(CommandTest, NamesReachTheTerminalPrintable) {
+    const char* name = "a\n\033[31mred\xc2\x9b"
+                       "2Jö.obj";
+    std::ofstream(path(name)) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl \033[2J\nf 1 2 3\nf 1 2\n";
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    ASSERT_EQ(error({"render", path(name), "--backend", "cpu-kdtree", "--size", "8x8", "-o",
+                     path("\033.png")}),
+              "");
+    ASSERT_EQ(error({"info", path(name)}), "");
+    const std::string all =
+        testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr();
+    EXPECT_THAT(all, testing::HasSubstr("a\\n\\x1b[31mred\\u009b2Jö.obj"));
+    EXPECT_THAT(all, testing::HasSubstr("faces with fewer than three corners left out"));
+    EXPECT_THAT(all, testing::HasSubstr("'\\x1b[2J'"));
+    EXPECT_THAT(all, testing::HasSubstr("wrote      "));
+    EXPECT_EQ(all.find('\033'), std::string::npos) << all;
+    EXPECT_EQ(all.find("\xc2\x9b"), std::string::npos) << all;
+}
+
 TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
     const std::string out = path("out.png");
     const struct {

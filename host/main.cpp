@@ -2,16 +2,15 @@
 // The `overcast` command: hands over to a subcommand; an error is one sentence and exit code 1.
 #include "host/command.h"
 #include "host/interrupt.h"
-
-#include <fmt/format.h>
+#include "host/message.h"
 
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
 
-static int fail(const char* sentence) {
-    fmt::print(stderr, "overcast: {}\n", sentence);
+static int fail(std::string_view sentence) {
+    ovc::print_message(sentence);
     return ovc::kExitError;
 }
 
@@ -21,7 +20,7 @@ int main(int argc, char** argv) {
         std::signal(SIGXFSZ, SIG_IGN); // a file that may not grow is an error of write()
         const ovc::Result<int> code = ovc::run_command({argv + 1, argv + argc});
         if (!code)
-            return fail(code.error().message.c_str());
+            return fail(code.error().message);
         if (std::fflush(stdout) != 0)
             return fail("cannot write to standard output");
         return *code;

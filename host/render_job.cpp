@@ -3,11 +3,13 @@
 #include "host/render_job.h"
 
 #include "core/parallel.h"
+#include "core/printable.h"
 #include "core/stopwatch.h"
 #include "host/camera.h"
 #include "host/device_opening.h"
 #include "host/frames.h"
 #include "host/interrupt.h"
+#include "host/message.h"
 #include "host/path_tracer.h"
 #include "host/progress.h"
 #include "host/render.h"
@@ -38,13 +40,15 @@ namespace fs = std::filesystem;
 static Camera still_camera(const Scene& scene, const RenderJob& job, const ImageSize& size) {
     if (job.camera) {
         Camera camera = *job.camera;
-        if (scene.camera)
+        if (job.up)
+            camera.up = axis_vector(*job.up);
+        else if (scene.camera)
             camera.up = scene.camera->up;
         return camera;
     }
     if (scene.camera)
         return *scene.camera;
-    return framing_camera(hittable_bounds(scene.soup), size.width, size.height);
+    return framing_camera(hittable_bounds(scene.soup), size.width, size.height, job.up.value_or(1));
 }
 
 static RenderOptions render_options(const RenderJob& job, const PicturePart& part,
@@ -228,7 +232,7 @@ private:
     /// How the picture was made, for .exr files.
     std::vector<FileNote> notes_of(const FrameStats& frame) const {
         return {{"overcast:version", version_text()},
-                {"overcast:scene", job_.scene.scene},
+                {"overcast:scene", job_.scene.name()},
                 {"overcast:options", job_.command_line},
                 {"overcast:renderer", backend_.renderer()},
                 {"overcast:statistics", frame_json(frame)}};
@@ -269,27 +273,26 @@ static void report(const RenderJob& job, const RenderStats& stats) {
     if (!job.quiet && stats.frames_there > 0)
         fmt::print("{} frames were there already\n", stats.frames_there);
     if (!job.quiet && !stats.frames.empty() && (stats.report.complete || !job.shots.empty()))
-        fmt::print("{}  wrote      {}\n", stats_summary(stats), fmt::join(job.outputs, ", "));
+        fmt::print("{}  wrote      {}\n", stats_summary(stats),
+                   printable(fmt::format("{}", fmt::join(job.outputs, ", "))));
     if (stats.report.complete)
         return;
     if (job.shots.empty() && stats.report.pixels_done == 0) {
-        fmt::print(stderr, "overcast: interrupted; no pixel was done, and nothing is saved\n");
+        print_message("interrupted; no pixel was done, and nothing is saved");
         return;
     }
     if (job.shots.empty()) {
-        fmt::print(stderr,
-                   "overcast: interrupted; {:.0f} % of the picture is in {}, and the same command "
-                   "with --continue goes on from there\n",
-                   100.0 * double(stats.report.pixels_done) /
-                       (double(stats.width) * double(stats.height)),
-                   unfinished_picture(job.outputs[0]));
+        print_message(fmt::format(
+            "interrupted; {:.0f} % of the picture is in {}, and the same command with "
+            "--continue goes on from there",
+            100.0 * double(stats.report.pixels_done) / (double(stats.width) * double(stats.height)),
+            unfinished_picture(job.outputs[0])));
         return;
     }
     const size_t saved = stats.frames_there + stats.frames.size();
-    fmt::print(stderr,
-               "overcast: interrupted; {} of {} frames are saved, frame {} is the next, and the "
-               "same command with --continue goes on from there\n",
-               saved, job.shots.size(), job.shots[saved].frame);
+    print_message(fmt::format("interrupted; {} of {} frames are saved, frame {} is the next, and "
+                              "the same command with --continue goes on from there",
+                              saved, job.shots.size(), job.shots[saved].frame));
 }
 
 /// 0: no limit.
@@ -346,7 +349,7 @@ Result<int> render(const RenderJob& job) {
     if (all_there(job)) {
         if (!job.quiet)
             fmt::print("all is there in {}; without --continue it is rendered anew\n",
-                       fmt::join(job.outputs, ", "));
+                       printable(fmt::format("{}", fmt::join(job.outputs, ", "))));
         return kExitOk;
     }
     const Stopwatch total;
@@ -362,8 +365,8 @@ Result<int> render(const RenderJob& job) {
         return scene.error();
     if (job.render.integrator == IntegratorKind::Whitted)
         tell_simplifications(*scene, job.lights.empty() ? scene->lights : job.lights,
-                             job.scene.scene, log);
-    stats.scene = job.scene.scene;
+                             job.scene.name(), log);
+    stats.scene = job.scene.name();
     const ImageSize size = job.size.value_or(scene->size.value_or(ImageSize{}));
     const Result<PicturePart> part = part_of(size, job.crop);
     if (!part)
@@ -373,18 +376,22 @@ Result<int> render(const RenderJob& job) {
     stats.seconds_import = total.seconds();
     stats.scene_from_cache = cache.found();
 
+    if (job.up && !job.camera && scene->camera)
+        say(log, LogLevel::Warning,
+            fmt::format("--up left out: {} has a camera of its own; --camera replaces it",
+                        job.scene.name()));
     const std::vector<Shot> shots =
         job.shots.empty() ? std::vector<Shot>{{0, still_camera(*scene, job, size)}} : job.shots;
     for (const Shot& shot : shots) // a file's camera is not checked yet
         if (const Result<Done> fine = check_camera(shot.camera); !fine)
-            return Error{fmt::format("{}: {}", job.scene.scene, fine.error().message)};
+            return Error{fmt::format("{}: {}", job.scene.name(), fine.error().message)};
     BackendOptions options = job.backend;
     options.saved = scene->saved;
     options.watching = job.quiet ? BuildWatching::Silent : BuildWatching::Shown;
     const Result<std::unique_ptr<Backend>> backend =
         make_backend(scene->soup, options, log, opening);
     if (!backend && backend.error().kind == ErrorKind::Cancelled) {
-        fmt::print(stderr, "overcast: interrupted while building; nothing was rendered\n");
+        print_message("interrupted while building; nothing was rendered");
         return kExitInterrupted;
     }
     if (!backend)

@@ -41,6 +41,7 @@ struct RenderJob {
     std::vector<std::string> outputs; // with a # for each digit of the frame, where there are shots
     std::optional<ImageSize> size;    // none: the scene's, else 512 x 512
     std::optional<Camera> camera;
+    std::optional<int> up; // the axis that is up in the picture: 0, 1, 2; none: y, or the scene's
     std::optional<Crop> crop;
     std::vector<Shot> shots; // empty: one picture, from `camera` or the scene's own
     std::vector<Light> lights;

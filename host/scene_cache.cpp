@@ -6,6 +6,7 @@
 #include "testscenes/catalog.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -17,13 +18,16 @@ namespace fs = std::filesystem;
 static std::string request_of(const SceneArguments& arguments, const BackendOptions& backend,
                               std::optional<ImageSize> size) {
     std::error_code ec;
-    const bool generated = is_test_scene(arguments.scene);
+    std::vector<std::string> scenes;
+    for (const std::string& scene : arguments.scenes)
+        scenes.push_back(
+            is_test_scene(scene) ? scene : fs::absolute(scene, ec).lexically_normal().string());
     // POV-Ray's scenes may ask for the picture's size.
-    const bool sized = size && arguments.scene.find(".pov") != std::string::npos;
+    const bool sized = size && arguments.name().find(".pov") != std::string::npos;
     return fmt::format(
-        "scene {} model {} strict {} most {} tolerance {} version {} size {}x{} leaf {} leaves "
-        "{} memory {} {}",
-        generated ? arguments.scene : fs::absolute(arguments.scene, ec).lexically_normal().string(),
+        "scene {} world {} model {} strict {} most {} tolerance {} version {} size {}x{} leaf "
+        "{} leaves {} memory {} {}",
+        fmt::join(scenes, "\n"), arguments.world,
         arguments.model.empty() ? "" : fs::absolute(arguments.model, ec).string(), arguments.strict,
         arguments.max_triangles, arguments.tolerance, arguments.pov_version,
         sized ? size->width : 0, sized ? size->height : 0, backend.leaf_triangles, backend.leaves,
@@ -41,10 +45,12 @@ static std::string file_name(const std::string& scene, const std::string& reques
 SceneCache::SceneCache(const std::string& folder, const SceneArguments& arguments,
                        const BackendOptions& backend, std::optional<ImageSize> size)
     : arguments_(arguments), size_(size) {
-    if (folder.empty() || fs::path(arguments.scene).extension() == ".ovc")
+    const std::string& first = arguments.scenes[0];
+    const bool is_cache = arguments.scenes.size() == 1 && fs::path(first).extension() == ".ovc";
+    if (folder.empty() || is_cache)
         return; // which is a cache itself
     from_.request = request_of(arguments, backend, size);
-    path_ = fs::path(folder) / file_name(arguments.scene, from_.request);
+    path_ = fs::path(folder) / file_name(first, from_.request);
 }
 
 Result<Scene> SceneCache::open(const LogSink& log) {

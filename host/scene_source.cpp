@@ -2,23 +2,26 @@
 // Test scenes by name, files by path.
 #include "host/scene_source.h"
 
+#include "core/suggestion.h"
 #include "host/arguments.h"
+#include "host/joined_scene.h"
+#include "host/message.h"
 #include "importers/importer.h"
 #include "testscenes/catalog.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
-#include <cstdio>
 #include <filesystem>
 #include <system_error>
 
 namespace ovc {
 
 void SceneArguments::add_to(CLI::App& app, const char* name) {
-    app.add_option(name, scene,
+    app.add_option(name, scenes,
                    "A file (.ply .obj .pbrt .pov, also .gz; .ovc, or what Assimp reads) or a test "
-                   "scene's name")
+                   "scene's name; several make one scene")
         ->required();
     app.add_option(
            "--model", model,
@@ -27,6 +30,9 @@ void SceneArguments::add_to(CLI::App& app, const char* name) {
         ->type_name("SCENE");
     app.add_flag("--strict", strict,
                  "For .pbrt: what is unknown, missing or unusable is an error, not a warning");
+    app.add_option("--world", world,
+                   "For .pbrt: which world of a file that has several; default: 1")
+        ->type_name("N");
     app.add_option("--max-triangles", max_triangles,
                    "For .pbrt and .pov: refuse a scene of more, instances expanded; default: "
                    "100000000")
@@ -68,24 +74,36 @@ static Result<std::optional<double>> pov_version_of(const std::string& text) {
     return std::optional(*value);
 }
 
+static Result<uint64_t> world_of(const std::string& text) {
+    return text.empty() ? 1 : parse_count("--world", text, 1, 1'000'000'000);
+}
+
 Result<Done> SceneArguments::check() const {
+    if (const Result<uint64_t> number = world_of(world); !number)
+        return number.error();
     if (const Result<uint64_t> limit = triangle_limit(max_triangles); !limit)
         return limit.error();
     if (const Result<std::optional<double>> fine = tolerance_of(tolerance); !fine)
         return fine.error();
     if (const Result<std::optional<double>> fine = pov_version_of(pov_version); !fine)
         return fine.error();
-    if (model.empty() || (is_test_scene(scene) && test_scene_entry(scene).takes_model))
-        return Done{};
-    return Error{fmt::format(
-        "--model goes with the test scenes that show one (dragons-N, dragonball), not with '{}'",
-        scene)};
+    for (const std::string& scene : scenes)
+        if (!model.empty() && !(is_test_scene(scene) && test_scene_entry(scene).takes_model))
+            return Error{fmt::format("--model goes with the test scenes that show one (dragons-N, "
+                                     "dragonball), not with '{}'",
+                                     scene)};
+    return Done{};
+}
+
+std::string SceneArguments::name() const {
+    return fmt::format("{}", fmt::join(scenes, " + "));
 }
 
 std::vector<NamedFile> SceneArguments::files() const {
     std::vector<NamedFile> files;
-    if (!is_test_scene(scene))
-        files.push_back({"input", scene});
+    for (const std::string& scene : scenes)
+        if (!is_test_scene(scene))
+            files.push_back({"input", scene});
     if (!model.empty() && !is_test_scene(model))
         files.push_back({"model", model});
     return files;
@@ -109,7 +127,15 @@ Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
     options.max_triangles = *triangle_limit(arguments.max_triangles);
     options.tolerance = *tolerance_of(arguments.tolerance);
     options.pov_version = *pov_version_of(arguments.pov_version);
-    return open_scene(arguments.scene, options, arguments.model);
+    options.world = *world_of(arguments.world);
+    std::vector<NamedScene> scenes;
+    for (const std::string& name : arguments.scenes) {
+        Result<Scene> scene = open_scene(name, options, arguments.model);
+        if (!scene)
+            return scene.error();
+        scenes.push_back({name, std::move(*scene)});
+    }
+    return join(std::move(scenes), log);
 }
 
 Result<Scene> open_scene(const std::string& source, const ImportOptions& options,
@@ -123,9 +149,10 @@ Result<Scene> open_scene(const std::string& source, const ImportOptions& options
     if (looks_like_a_name && !source.empty() && !std::filesystem::exists(source, ignored)) {
         // The catalog knows the nearest name; a file of this name is not there either.
         const Result<Scene> none = make_test_scene(source);
-        return none ? Error{fmt::format("there is no file '{}'", source)}
-                    : Error{fmt::format("there is no file '{}', and {}", source,
-                                        none.error().message)};
+        const std::string near = did_you_mean_file(source);
+        return none || !near.empty() ? Error{fmt::format("there is no file '{}'{}", source, near)}
+                                     : Error{fmt::format("there is no file '{}', and {}", source,
+                                                         none.error().message)};
     }
     return load(source, options);
 }
@@ -134,8 +161,7 @@ LogSink standard_error_log(LogLevel most) {
     return [most](LogLevel level, const std::string& message) {
         if (level > most)
             return;
-        fmt::print(stderr, "overcast: {}{}\n", level == LogLevel::Warning ? "warning: " : "",
-                   message);
+        print_message((level == LogLevel::Warning ? "warning: " : "") + message);
     };
 }
 

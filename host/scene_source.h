@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SCENE on the command line: a file, or the name of a generated test scene.
+// SCENE on the command line: files, or names of generated test scenes.
 #pragma once
 
 #include "core/log.h"
@@ -19,17 +19,20 @@ namespace ovc {
 
 /// SCENE and what belongs to it, the same for every subcommand that takes one.
 struct SceneArguments {
-    std::string scene;
-    std::string model; // empty: not given
+    std::vector<std::string> scenes; // one at least, all of them one scene
+    std::string model;               // empty: not given
     bool strict = false;
     std::string max_triangles; // empty: not given
     std::string tolerance;     // empty: not given
     std::string pov_version;   // empty: not given
+    std::string world;         // empty: not given
 
     /// name: what the help calls the scene.
     void add_to(CLI::App& app, const char* name = "SCENE");
     /// Whether the words make sense, and --model goes with this scene; before anything is read.
     Result<Done> check() const;
+    /// As messages and statistics have it: "dragon.ply + floor.obj".
+    std::string name() const;
     /// The files it reads.
     std::vector<NamedFile> files() const;
 };

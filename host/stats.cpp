@@ -2,6 +2,7 @@
 // Statistics, written for programs and for people.
 #include "host/stats.h"
 
+#include "core/printable.h"
 #include "host/memory_size.h"
 #include "host/process_cost.h"
 
@@ -180,8 +181,8 @@ static std::string gpu_lines(const ovc_statistics& t) {
 std::string stats_summary(const RenderStats& s) {
     const ovc_statistics& t = s.tracing;
     const RayCounts& rays = s.report.rays;
-    std::string text =
-        fmt::format("  scene      {}, {} triangles\n", s.scene, human_count(t.triangles));
+    std::string text = fmt::format("  scene      {}, {} triangles\n", printable(s.scene),
+                                   human_count(t.triangles));
     if (const uint64_t dropped = t.dropped_not_finite + t.dropped_degenerate)
         text +=
             fmt::format("  dropped    {} ({} not finite, {} without area)\n", human_count(dropped),

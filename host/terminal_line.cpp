@@ -2,6 +2,7 @@
 // Carriage return, the text, and "erase to the end of the line" (ECMA-48, EL) after it: what is
 // erased first is seen to go.
 #include "host/terminal_line.h"
+#include "core/printable.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -25,7 +26,7 @@ void TerminalLine::show(const std::string& text) {
     if (!shown_)
         return;
     // One less: a cursor behind the last column may stand on the next line.
-    const std::string fitting = text.substr(0, terminal_width() - 1);
+    const std::string fitting = printable(text).substr(0, terminal_width() - 1);
     if (fitting == there_)
         return;
     there_ = fitting;

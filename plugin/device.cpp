@@ -19,7 +19,8 @@ namespace {
 /// as in_host_function.
 class ThreadMessage {
 public:
-    void set(ovc_result, const std::string& message) {
+    void set(ovc_result, const std::string& text) {
+        const std::string message = printable(text);
         const size_t length = std::min(message.size(), sizeof(text_) - 1);
         std::memcpy(text_, message.data(), length);
         text_[length] = '\0';
@@ -144,7 +145,7 @@ ovc_result create_device(const ovc_device_config* given, ovc_device* device) {
                 if (in_host_function)
                     return; // what a call from within such a function says is its code
                 const HostFunction mark;
-                log(user, ovc_log_level(level), text.c_str());
+                log(user, ovc_log_level(level), printable(text).c_str());
             };
         check_environment();
         start_threads();

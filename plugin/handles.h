@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/log.h"
+#include "core/printable.h"
 #include "core/soup.h"
 #include "gpu/fork_mark.h"
 #include "gpu/gl_thread.h"
@@ -38,10 +39,10 @@ public:
         function_ = function;
         user_ = user;
     }
-    void set(ovc_result code, std::string message) {
+    void set(ovc_result code, const std::string& message) {
         {
             const std::lock_guard lock(mutex_);
-            messages_[std::this_thread::get_id()] = std::move(message);
+            messages_[std::this_thread::get_id()] = printable(message);
         }
         if (!function_ || in_host_function)
             return;
@@ -142,8 +143,8 @@ namespace ovc {
 /// which is called in the host's floating-point mode.
 template <class Keeper, class Body>
 ovc_result guard(Keeper& messages, Body&& body) {
-    const auto fail = [&](ovc_result code, std::string message) {
-        messages.set(code, std::move(message));
+    const auto fail = [&](ovc_result code, const std::string& message) {
+        messages.set(code, message);
         return code;
     };
     try {

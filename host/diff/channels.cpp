@@ -3,6 +3,7 @@
 #include "host/diff/channels.h"
 
 #include "core/parallel.h"
+#include "core/suggestion.h"
 #include "host/srgb.h"
 #include "importers/png.h"
 
@@ -54,7 +55,8 @@ Result<Channels> read_channels(const fs::path& path) {
         return failed("found a directory, expected a picture, .png or .exr");
     std::ifstream stream(path, std::ios::binary);
     if (!stream)
-        return failed(fmt::format("cannot be read: {}", std::strerror(errno)));
+        return failed(fmt::format("cannot be read: {}{}", std::strerror(errno),
+                                  errno == ENOENT ? did_you_mean_file(path) : ""));
     char magic[4] = {};
     stream.read(magic, sizeof(magic));
     Result<Channels> channels = Error{"found neither PNG nor OpenEXR"};
