@@ -46,7 +46,7 @@ bool transmits(int illumination) {
 }
 
 struct Entry {
-    Material material;
+    LibraryMaterial read;
     vec3 specular{0};
     std::optional<vec3> filter;
     std::optional<float> dissolve, transparency; // d and Tr: 1 is opaque, and clear
@@ -66,6 +66,7 @@ struct Entry {
 
     void finish() {
         const float mean = (specular.x + specular.y + specular.z) / 3;
+        Material& material = read.material;
         material.mirror = reflects(illumination) ? mean : 0;
         if (!transmits(illumination))
             return;
@@ -81,55 +82,31 @@ std::optional<float> parse_share(std::string_view text) {
     return value && std::isfinite(*value) ? std::optional(*value) : std::nullopt;
 }
 
-/// What the library asks for and does not get.
-class LeftOut {
-public:
-    void take(std::string_view keyword, std::string_view rest, const Material& material) {
-        if (is_texture(keyword))
-            add(textures_, fmt::format("{} {}", keyword, ovc::quoted(picture(rest))));
-        else if (keyword == "Ke" && parse_color(rest).value_or(vec3(0)) != vec3(0))
-            add(emitters_, ovc::quoted(material.name));
-    }
+/// map_aat only switches antialiasing.
+bool is_texture(std::string_view keyword) {
+    return (keyword.starts_with("map_") && keyword != "map_aat") || keyword == "bump" ||
+           keyword == "disp" || keyword == "decal" || keyword == "refl" || keyword == "norm";
+}
 
-    void say_of(const Source& library, const LogSink& log) const {
-        if (!textures_.empty())
-            say(log, LogLevel::Warning,
-                library
-                    .error(fmt::format("{} left out: {}", counted(textures_.size(), "texture"),
-                                       listed(textures_)))
-                    .message);
-        if (!emitters_.empty())
-            say(log, LogLevel::Warning,
-                library
-                    .error(fmt::format("light from {} (Ke) left out: {}",
-                                       counted(emitters_.size(), "material"), listed(emitters_)))
-                    .message);
-    }
+/// The file's name, which stands behind options such as "-s 2 2 1" and may have blanks in it.
+std::string_view picture(std::string_view rest) {
+    rest = trimmed(rest);
+    return rest.starts_with('-') ? rest.substr(rest.find_last_of(" \t") + 1) : rest;
+}
 
-private:
-    /// map_aat only switches antialiasing.
-    static bool is_texture(std::string_view keyword) {
-        return (keyword.starts_with("map_") && keyword != "map_aat") || keyword == "bump" ||
-               keyword == "disp" || keyword == "decal" || keyword == "refl" || keyword == "norm";
-    }
-
-    /// The file's name, which stands behind options such as "-s 2 2 1" and may have blanks in it.
-    static std::string_view picture(std::string_view rest) {
-        rest = trimmed(rest);
-        return rest.starts_with('-') ? rest.substr(rest.find_last_of(" \t") + 1) : rest;
-    }
-
-    static void add(std::vector<std::string>& to, std::string item) {
-        if (std::find(to.begin(), to.end(), item) == to.end())
-            to.push_back(std::move(item));
-    }
-
-    std::vector<std::string> textures_, emitters_;
-};
+void note_left_out(std::string_view keyword, std::string_view rest, LibraryMaterial& of) {
+    if (keyword == "Ke")
+        of.emits = parse_color(rest).value_or(vec3(0)) != vec3(0);
+    if (!is_texture(keyword))
+        return;
+    std::string item = fmt::format("{} {}", keyword, quoted(picture(rest)));
+    if (std::find(of.textures.begin(), of.textures.end(), item) == of.textures.end())
+        of.textures.push_back(std::move(item));
+}
 
 void read_line(std::string_view keyword, std::string_view rest, Entry& entry) {
     if (keyword == "Kd")
-        entry.material.color = parse_color(rest).value_or(entry.material.color);
+        entry.read.material.color = parse_color(rest).value_or(entry.read.material.color);
     else if (keyword == "Ks")
         entry.specular = parse_color(rest).value_or(entry.specular);
     else if (keyword == "Tf")
@@ -146,30 +123,27 @@ void read_line(std::string_view keyword, std::string_view rest, Entry& entry) {
 
 } // namespace
 
-Result<std::vector<Material>> read_mtl(const std::filesystem::path& path, const LogSink& log,
-                                       FilesRead* files) {
+Result<std::vector<LibraryMaterial>> read_mtl(const std::filesystem::path& path, FilesRead* files) {
     Result<Source> source = Source::open(path, files);
     if (!source)
         return source.error();
     std::vector<Entry> entries;
-    LeftOut left_out;
     while (const auto line = source->line()) {
         std::string_view rest = without_comment(*line);
         const std::string_view keyword = next_word(rest);
         if (keyword == "newmtl") {
-            entries.push_back({Material{std::string(trimmed(rest))}});
+            entries.push_back({{Material{std::string(trimmed(rest))}}});
         } else if (!entries.empty()) {
             read_line(keyword, rest, entries.back());
-            left_out.take(keyword, rest, entries.back().material);
+            note_left_out(keyword, rest, entries.back().read);
         }
     }
     if (source->is_damaged())
         return source->error("");
-    left_out.say_of(*source, log);
-    std::vector<Material> materials;
+    std::vector<LibraryMaterial> materials;
     for (Entry& entry : entries) {
         entry.finish();
-        materials.push_back(std::move(entry.material));
+        materials.push_back(std::move(entry.read));
     }
     return materials;
 }

@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <set>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -90,6 +92,7 @@ private:
     Mesh& mesh();
     void add_polygon();
     void add_corner(Mesh& mesh, const Corner& corner);
+    void say_left_out() const;
 
     Source& source_;
     const std::filesystem::path& path_;
@@ -108,7 +111,7 @@ private:
     std::vector<dvec3> outline_;
     std::vector<std::array<uint32_t, 3>> cut_;
 
-    std::vector<Material> materials_{Material{}}; // the first is for faces before any usemtl
+    std::vector<LibraryMaterial> materials_{LibraryMaterial{}}; // first, of faces before any usemtl
     std::unordered_map<std::string, uint32_t> material_ids_;
     std::unordered_set<std::string> libraries_; // that were read
     uint32_t material_ = 0;
@@ -290,17 +293,18 @@ bool ObjReader::read_library(std::string_view name) {
     const std::filesystem::path path = path_.parent_path() / std::string(name);
     if (libraries_.contains(path.string()))
         return true;
-    auto materials = read_mtl(path, log_, files_read_);
+    auto materials = read_mtl(path, files_read_);
     if (!materials)
         return false;
     libraries_.insert(path.string());
-    for (Material& material : *materials) {
-        const auto [at, is_new] =
-            material_ids_.try_emplace(material.name, uint32_t(materials_.size()));
+    for (LibraryMaterial& read : *materials) {
+        const std::string& called = read.material.name;
+        const auto [at, is_new] = material_ids_.try_emplace(called, uint32_t(materials_.size()));
         if (is_new)
-            materials_.push_back(std::move(material));
-        else if (materials_[at->second] == Material{material.name}) // usemtl came before its mtllib
-            materials_[at->second] = std::move(material);
+            materials_.emplace_back();
+        else if (materials_[at->second].material != Material{called})
+            continue; // else usemtl came before its mtllib
+        materials_[at->second] = std::move(read);
     }
     return true;
 }
@@ -311,7 +315,7 @@ void ObjReader::use_material(std::string_view name) {
     const auto [at, is_new] =
         material_ids_.try_emplace(std::string(name), uint32_t(materials_.size()));
     if (is_new) {
-        materials_.push_back({std::string(name)});
+        materials_.push_back({Material{std::string(name)}});
         warn("usemtl",
              fmt::format("no material {}: it becomes grey, and so do others that are missing",
                          quoted(name)));
@@ -376,6 +380,30 @@ void ObjReader::add_corner(Mesh& to, const Corner& corner) {
     to.normals = {};
 }
 
+/// Of the materials that some mesh has: a library may serve many files.
+void ObjReader::say_left_out() const {
+    std::set<uint32_t> used;
+    for (const Mesh& mesh : meshes_)
+        used.insert(mesh.material);
+    std::vector<std::string> textures, emitters;
+    for (const uint32_t m : used) {
+        for (const std::string& texture : materials_[m].textures)
+            if (std::find(textures.begin(), textures.end(), texture) == textures.end())
+                textures.push_back(texture);
+        if (materials_[m].emits)
+            emitters.push_back(ovc::quoted(materials_[m].material.name));
+    }
+    const auto warn_of = [&](const std::string& sentence) {
+        say(log_, LogLevel::Warning, source_.error(sentence).message);
+    };
+    if (!textures.empty())
+        warn_of(fmt::format("{} of its materials left out: {}", counted(textures.size(), "texture"),
+                            listed(textures)));
+    if (!emitters.empty())
+        warn_of(fmt::format("light from {} (Ke) left out: {}", counted(emitters.size(), "material"),
+                            listed(emitters)));
+}
+
 Result<Scene> ObjReader::take() {
     std::vector<dvec3>().swap(vertices_);
     std::vector<vec3>().swap(normals_);
@@ -392,7 +420,9 @@ Result<Scene> ObjReader::take() {
         mesh.normals_left_out = mesh.normals.empty() ? m.normals_stated : 0;
         mesh.texture_coordinates_left_out = m.texture_coordinates;
     }
-    scene.materials = std::move(materials_);
+    say_left_out();
+    for (LibraryMaterial& read : materials_)
+        scene.materials.push_back(std::move(read.material));
     if (scene.soup.triangle_count() == 0)
         say(log_, LogLevel::Warning, source_.error("it has no triangles").message);
     return scene;

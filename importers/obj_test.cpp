@@ -144,26 +144,28 @@ TEST(Obj, MaterialsTakeColorAndMirror) {
     EXPECT_EQ(scene->meshes[0].material, 1u);
 }
 
-TEST(Obj, TexturesAndLightOfMaterialsAreSaidOnceForALibrary) {
+TEST(Obj, TexturesAndLightOfMaterialsInUseAreSaidOnce) {
     const TestFolder folder;
     folder.write("m.mtl", "newmtl a\nKd 1 0 0\nmap_Kd wood floor.png\nmap_aat on\nKe 0 0 0\n"
                           "newmtl b\nmap_Kd wood floor.png\nmap_Bump -bm 0.5 bumps.png\n"
                           "Ke 4 4 2\nnewmtl c\nrefl -type sphere sky.png\nmap_d leaf.png\n"
-                          "norm n.png\n");
+                          "norm n.png\nnewmtl unused\nmap_Kd unused.png\nKe 1\n");
     folder.write("plain.mtl", "newmtl d\nKd 1 1 1\n");
     std::vector<std::string> warnings;
     const auto scene =
         load(folder.write("a.obj", std::string("mtllib m.mtl\nmtllib m.mtl\n") +
-                                       "mtllib plain.mtl\n" + kCorners + "usemtl a\nf 1 2 3 4\n"),
+                                       "mtllib plain.mtl\n" + kCorners +
+                                       "usemtl c\nf 1 2 3 4\nusemtl a\nf 1 2 3\nusemtl "
+                                       "b\nf 1 2 3\n"),
              gather(warnings));
-    EXPECT_EQ(triangles_of(scene), kSquare);
+    EXPECT_EQ(triangles_of(scene).size(), 4u);
     for (std::string& warning : warnings)
         warning = folder.plain(warning);
     EXPECT_EQ(warnings,
-              (std::vector<std::string>{
-                  "m.mtl: 5 textures left out: map_Kd 'wood floor.png', map_Bump 'bumps.png', "
-                  "refl 'sky.png' and 2 more",
-                  "m.mtl: light from 1 material (Ke) left out: 'b'"}));
+              (std::vector<std::string>{"a.obj: 5 textures of its materials left out: map_Kd 'wood "
+                                        "floor.png', map_Bump 'bumps.png', "
+                                        "refl 'sky.png' and 2 more",
+                                        "a.obj: light from 1 material (Ke) left out: 'b'"}));
 }
 
 /// The material that an MTL file with these statements gives.
