@@ -41,21 +41,20 @@ static void round_hits_anywhere(HitLanes& lanes) {
     round_hits_by<Two>(lanes);
 }
 
-using RoundHits = void (*)(HitLanes&);
-
-static RoundHits best_of_processor() {
+std::vector<RoundHits> ways_to_round_hits() {
+    std::vector<RoundHits> ways = {round_hits_anywhere};
 #ifdef __x86_64__
-    if (__builtin_cpu_supports("avx512f"))
-        return round_hits_avx512;
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-        return round_hits_avx2;
+        ways.push_back(round_hits_avx2);
+    if (__builtin_cpu_supports("avx512f"))
+        ways.push_back(round_hits_avx512);
 #endif
-    return round_hits_anywhere;
+    return ways;
 }
 
 void round_hits(HitLanes& lanes) {
-    static const RoundHits best = best_of_processor();
-    best(lanes);
+    static const RoundHits widest = ways_to_round_hits().back();
+    widest(lanes);
 }
 
 } // namespace ovc

@@ -3,6 +3,8 @@
 // processor has.
 #pragma once
 
+#include <vector>
+
 namespace ovc {
 
 /// Eight rays and the triangle that each of them hits. Arrays are [axis][lane].
@@ -20,5 +22,9 @@ struct HitLanes {
 /// Fills in t, u, v and known of all lanes, whatever those hold that are not used. The same bits on
 /// every processor.
 void round_hits(HitLanes& lanes);
+
+/// The same by each width of vectors that the processor has, the widest last: for tests.
+using RoundHits = void (*)(HitLanes&);
+std::vector<RoundHits> ways_to_round_hits();
 
 } // namespace ovc

@@ -66,7 +66,20 @@ TEST(HitLanes, WhatIsKnownIsTheExactValueRounded) {
                 put(lanes.org, lane, ray.org);
                 put(lanes.dir, lane, ray.dir);
             }
+            const HitLanes asked = lanes;
             round_hits(lanes);
+            for (const RoundHits way : ways_to_round_hits()) {
+                HitLanes again = asked;
+                way(again);
+                for (int lane = 0; lane < HitLanes::kCount; ++lane) {
+                    ASSERT_EQ(again.known[lane] != 0, lanes.known[lane] != 0) << c.name;
+                    if (!again.known[lane])
+                        continue;
+                    ASSERT_EQ(again.t[lane], lanes.t[lane]) << c.name << " seed " << seed;
+                    ASSERT_EQ(again.u[lane], lanes.u[lane]) << c.name << " seed " << seed;
+                    ASSERT_EQ(again.v[lane], lanes.v[lane]) << c.name << " seed " << seed;
+                }
+            }
             for (int lane = 0; lane < HitLanes::kCount; ++lane) {
                 const test::ExactHit& truth = truths[size_t(lane)];
                 if (truth.id.mesh == kNone)
