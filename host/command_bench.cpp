@@ -11,6 +11,7 @@
 #include "host/command.h"
 #include "host/interrupt.h"
 #include "host/log_arguments.h"
+#include "host/message.h"
 #include "host/output.h"
 #include "host/scene_source.h"
 #include "host/terminal_line.h"
@@ -73,7 +74,7 @@ private:
 void show(const BenchJob& job, const std::string& table) {
     if (job.json == "-")
         return;
-    fmt::print("{}", table);
+    print_lines(table);
     std::fflush(stdout);
 }
 
@@ -196,7 +197,7 @@ Result<int> bench(const BenchJob& job, LogLevel level) {
         return done.error();
     if (!stop())
         return kExitOk;
-    fmt::print(stderr, "overcast: interrupted; what was measured so far is kept\n");
+    print_message("interrupted; what was measured so far is kept");
     return kExitInterrupted;
 }
 

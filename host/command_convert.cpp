@@ -114,15 +114,20 @@ public:
         app.description("Writes the triangles of a scene as .ply (binary) or .obj, or all of it "
                         "and what tracing builds as .ovc, which starts at once (docs/cache.md).");
         source_.add_to(app, "IN");
+        // CLI11 gives IN all names there are: run() takes the last of them for OUT.
         app.add_option("OUT", output_,
-                       "The file to write; replaced only once the new one is complete")
-            ->required();
+                       "The file to write, the last that is named; replaced only once the new one "
+                       "is complete");
         log_.add_to(app, /* with_quiet= */ true);
         backend_.add_to(app);
         app.footer(kExamples);
     }
 
     Result<int> run() override {
+        if (source_.scenes.size() < 2)
+            return Error{"OUT is required; see overcast convert --help"};
+        output_ = std::move(source_.scenes.back());
+        source_.scenes.pop_back();
         if (const Result<Done> fine = check_output(output_); !fine)
             return fine.error();
         if (const Result<Done> fine = source_.check(); !fine)

@@ -180,7 +180,7 @@ private:
         if (json_)
             fmt::print("{}", diff_json(a_, b_, comparison, limits));
         else if (!quiet_)
-            fmt::print("{}", diff_text(a_, b_, comparison, limits));
+            print_lines(diff_text(a_, b_, comparison, limits));
         return int(judge(comparison, limits));
     }
 

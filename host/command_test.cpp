@@ -205,6 +205,7 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
         {{"render", "box", "-o", out, "--quiet=maybe"}, "--quiet takes no value"},
         {{"info", path("none.obj")}, "none.obj"},
         {{"trace", path("none.obj")}, "none.obj"},
+        {{"convert", path("a.ply")}, "OUT is required"},
         {{"convert", "box", path("box.stl")}, "ends in none of .ply, .obj, .ovc"},
         {{"convert", "box", path("no/box.ply")}, "does not exist"},
     };
