@@ -129,7 +129,9 @@ TEST_F(CommandTest, AFileThatIsNotThereMayBeMisspelt) {
     EXPECT_THAT(error({"render", "box", "--camera-path", path("wlak.csv")}),
                 testing::HasSubstr("did you mean 'walk.csv'?"));
     std::ofstream(path("one.png")) << "x";
-    EXPECT_THAT(error({"diff", path("onne.png"), path("one.png")}),
+    testing::internal::CaptureStderr();
+    error({"diff", path("onne.png"), path("one.png")}); // which tells by itself
+    EXPECT_THAT(testing::internal::GetCapturedStderr(),
                 testing::HasSubstr("did you mean 'one.png'?"));
 }
 
