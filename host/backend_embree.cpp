@@ -225,13 +225,13 @@ public:
 private:
     void add(const Chunk& chunk) {
         RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        const size_t corners = chunk.corners().size();
+        const size_t corners = 3 * size_t(chunk.size());
         auto* positions = static_cast<vec3*>(rtcSetNewGeometryBuffer(
             mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3), corners));
         auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
             mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), corners / 3));
         for (size_t i = 0; positions && indices && i < corners; ++i) {
-            positions[i] = vec3(chunk.origin() + dvec3(chunk.corners()[i]));
+            positions[i] = vec3(chunk.triangle(uint32_t(i / 3))[i % 3]);
             indices[i] = uint32_t(i);
         }
         rtcCommitGeometry(mesh);
@@ -288,7 +288,7 @@ private:
 
 Result<std::unique_ptr<Backend>> make_embree_backend(const Soup& soup, EmbreeMode mode) {
     for (const Chunk& chunk : soup.chunks)
-        if (chunk.corners().size() > 0xffffffffu)
+        if (chunk.size() > 0xffffffffu / 3)
             return Error{"Embree takes meshes of at most 1,431,655,765 triangles"};
     auto backend = std::make_unique<EmbreeBackend>(soup, mode);
     if (const Result<Done> built = backend->built(); !built)

@@ -75,8 +75,11 @@ private:
 static ovc_mesh mesh_of(const Chunk& chunk) {
     ovc_mesh mesh{};
     mesh.struct_size = sizeof(mesh);
-    mesh.positions = reinterpret_cast<const float*>(chunk.corners().data());
-    mesh.vertex_count = chunk.corners().size();
+    if (chunk.double_corners().empty())
+        mesh.positions = reinterpret_cast<const float*>(chunk.corners().data());
+    else
+        mesh.positions_double = reinterpret_cast<const double*>(chunk.double_corners().data());
+    mesh.vertex_count = 3 * uint64_t(chunk.size());
     for (int axis = 0; axis < 3; ++axis)
         mesh.origin[axis] = chunk.origin()[axis];
     mesh.flags = OVC_MESH_SHARED;

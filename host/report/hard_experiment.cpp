@@ -48,7 +48,10 @@ Json case_of(const Json& one) {
     Json object = {{"name", one["name"]},
                    {"triangles", one["triangles"]},
                    {"rays", one["rays"]},
-                   {"retraced_per_million", per_million(one["retraced"], one)}};
+                   {"retraced_per_million", per_million(one["retraced"], one)},
+                   {"microseconds", one["microseconds"]}};
+    if (one.contains("time_ratio"))
+        object["time_ratio"] = one["time_ratio"];
     for (const Program& program : kPrograms) {
         const bool asked = one.contains(program.key);
         const bool closed = one["closed"].get<bool>();
@@ -216,6 +219,24 @@ Table cases_of(const Json& figures, const std::string& list, const std::string& 
     return table;
 }
 
+/// Those that are timed against another.
+Table costs_of(const Json& figures) {
+    Table table;
+    table.caption = "What the hardest rays cost: microseconds a ray, from call to return, and how "
+                    "many times that of a ray "
+                    "that is decided exactly, or of a valid one";
+    table.header = {"case", "triangles", "rays", "us / ray", "times"};
+    for (size_t i = 0; i < figures["cases"].size(); ++i) {
+        if (!figures["cases"][i].contains("time_ratio"))
+            continue;
+        const std::string at = fmt::format("/cases/{}", i);
+        table.rows.push_back({{figures["cases"][i]["name"].get<std::string>()}});
+        for (const char* key : {"triangles", "rays", "microseconds", "time_ratio"})
+            table.rows.back().push_back({number(figures, at + "/" + key)});
+    }
+    return table;
+}
+
 Table optics_of(const Json& figures) {
     Table table;
     table.caption = "Stiff optics: rays spawned on shapes small and large, refraction, mirrors";
@@ -252,8 +273,10 @@ std::vector<Block> blocks(const Json& figures) {
                 blocks.push_back(map_of(figures["grid"], program));
         blocks.push_back(cases_of(figures, "grid", "The maps in numbers"));
     }
-    if (!figures["cases"].empty())
+    if (!figures["cases"].empty()) {
         blocks.push_back(cases_of(figures, "cases", "Cases that are hard on arithmetic"));
+        blocks.push_back(costs_of(figures));
+    }
     if (!figures["optics"].empty())
         blocks.push_back(optics_of(figures));
     return blocks;
