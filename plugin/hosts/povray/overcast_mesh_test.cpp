@@ -67,18 +67,17 @@ protected:
 
     /// The nearest in [t_min, t_max], the smaller number where two are equal; by all triangles.
     OvercastHit by_all(const Ray& ray) const {
-        OvercastHit nearest{INFINITY, -1};
         const PreparedRay prepared(ray);
+        ovc::Nearest nearest(prepared);
         for (size_t i = 0; i < records_.size(); ++i) {
             const auto& [a, b, c] = records_[i].corner;
             const Triangle triangle{ovc::dvec3(vertices_[size_t(a)]),
                                     ovc::dvec3(vertices_[size_t(b)]),
                                     ovc::dvec3(vertices_[size_t(c)])};
-            const auto found = ovc::candidate(prepared, triangle, {0, uint32_t(i)});
-            if (found && found->hit.t < nearest.depth)
-                nearest = {found->hit.t, long(i)};
+            nearest.offer(triangle, {0, uint32_t(i)});
         }
-        return nearest;
+        const ovc::Hit hit = nearest.hit();
+        return nearest.is_hit() ? OvercastHit{hit.t, long(hit.id.prim)} : OvercastHit{INFINITY, -1};
     }
 
     std::mt19937 random_{7};
@@ -151,7 +150,7 @@ TEST_F(PovrayMesh, BudgetsThatDoNotWorkLeaveTheMeshToPovrayAndSayWhy) {
     EXPECT_EQ(overcast_take(triangles()), nullptr);
     EXPECT_EQ(overcast_take(triangles()), nullptr);
     EXPECT_THAT(testing::internal::GetCapturedStderr(),
-                testing::MatchesRegex("\rpovray-overcast: .*1024.*; meshes stay POV-Ray's\n.*"));
+                testing::MatchesRegex(".*\rpovray-overcast: .*1024.*; meshes stay POV-Ray's\n.*"));
 }
 
 TEST_F(PovrayMesh, VariablesWithoutMeaningAreErrors) {
