@@ -304,6 +304,19 @@ TEST(Pbrt, OneOfSeveralWorldsIsRead) {
               "a.pbrt:11: found 3 worlds, expected 4, for --world asks for it");
 }
 
+TEST(Pbrt, LineEndsMayBeMixed) {
+    const TestFolder folder;
+    const std::string triangle =
+        "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0\n0 1 0]\n# a comment\n";
+    const std::string world = "WorldBegin\r" + triangle + "WorldEnd\n\n";
+    for (const uint64_t number : {1, 2}) {
+        ImportOptions options;
+        options.world = number;
+        EXPECT_EQ(triangles_of(load(folder.write("a.pbrt", world + world), options)),
+                  std::vector<Triangle>{kOne});
+    }
+}
+
 TEST(Pbrt, WhatFollowsTheWorldIsSaid) {
     const TestFolder folder;
     const Reading reading =

@@ -38,6 +38,18 @@ static bool ends_word(char c) {
     return is_blank(c) || c == '\n' || c == '"' || c == '[' || c == ']' || c == '#';
 }
 
+/// Past blanks and comments; false where nothing else is left. A line has line ends in it where CR
+/// and LF are mixed (Source::line()).
+static bool skip_to_token(std::string_view& rest) {
+    for (;;) {
+        while (!rest.empty() && (is_blank(rest[0]) || rest[0] == '\n'))
+            rest.remove_prefix(1);
+        if (rest.empty() || rest[0] != '#')
+            return !rest.empty();
+        rest.remove_prefix(std::min(rest.find('\n'), rest.size()));
+    }
+}
+
 Place Tokens::place() const {
     if (files_.empty())
         return token_.place;
@@ -54,9 +66,7 @@ bool Tokens::next() {
             token_.kind = TokenKind::End;
             return true;
         }
-        std::string_view& rest = files_.back().rest;
-        skip_blanks(rest);
-        if (!rest.empty() && rest[0] != '#')
+        if (skip_to_token(files_.back().rest))
             break;
         const bool marked = files_.back().marks_its_end;
         const size_t depth = files_.size();
