@@ -106,7 +106,7 @@ std::vector<StabilityCase> cliff_cases() {
         // Too far for doubles to walk along, so that no kernel has a part in it.
         {kTypical, false, 2000, knot, rays_at_corners(1e17), ""}};
     const auto add = [&](std::string name, size_t rays, std::function<Soup()> soup, auto&& aim) {
-        cases.push_back({std::move(name), false, rays, std::move(soup), aim, kTypical, 1000});
+        cases.push_back({std::move(name), false, rays, std::move(soup), aim, kTypical, 2000});
     };
     for (const double far : {1e15, 1e100, 1e200})
         add(fmt::format("from {:.0e} away", far), 2000, knot, rays_at_corners(far));
