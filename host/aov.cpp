@@ -3,9 +3,9 @@
 #include "host/aov.h"
 
 #include "core/parallel.h"
+#include "core/suggestion.h"
 #include "host/camera.h"
 #include "host/shade.h"
-#include "core/suggestion.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

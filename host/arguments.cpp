@@ -2,8 +2,8 @@
 // Parsing of subcommand arguments and of the values they take.
 #include "host/arguments.h"
 
-#include "host/camera.h"
 #include "core/suggestion.h"
+#include "host/camera.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Arguments: values, and what an error says.
-#include "host/arguments.h"
 #include "core/suggestion.h"
+#include "host/arguments.h"
 
 #include <gmock/gmock.h>
 

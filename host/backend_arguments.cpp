@@ -2,8 +2,8 @@
 // --backend, --gpu-memory, --leaf-triangles, --leaves, --device, --precision, --kernel, --level1,
 // --level1-build.
 #include "host/backend_arguments.h"
-#include "host/arguments.h"
 #include "core/suggestion.h"
+#include "host/arguments.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,8 +2,8 @@
 // Scenes, contenders, sizes and sweeps.
 #include "host/bench/bench_arguments.h"
 
-#include "host/output.h"
 #include "core/suggestion.h"
+#include "host/output.h"
 #include "testscenes/catalog.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 // The table of contenders, who of them was asked for, and how each is built.
 #include "host/bench/contender.h"
 
-#include "host/bench/float_kd_tree.h"
 #include "core/suggestion.h"
+#include "host/bench/float_kd_tree.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,8 +2,8 @@
 // The table of experiments.
 #include "host/report/experiment.h"
 
-#include "host/report/experiment_table.h"
 #include "core/suggestion.h"
+#include "host/report/experiment_table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
