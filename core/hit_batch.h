@@ -29,8 +29,8 @@ public:
     }
 
     /// Empties the batch: calls found(hit, tag) for each hit, t, u and v rounded once; or
-    /// unclear(tag) where exact arithmetic must tell them, or where the ray does not seem to hit the
-    /// triangle.
+    /// unclear(tag) where exact arithmetic must tell them, or where the ray does not seem to hit
+    /// the triangle.
     template <class Found, class Unclear>
     void finish(Found&& found, Unclear&& unclear) {
         if (count_ == 0)

@@ -51,7 +51,8 @@ void start_threads() {
         try {
             gather_threads(thread_count());
         } catch (const std::runtime_error&) { // oneTBB's word for the same
-            throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
+            throw std::system_error(
+                std::make_error_code(std::errc::resource_unavailable_try_again));
         }
         return true;
     }();

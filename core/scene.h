@@ -218,7 +218,7 @@ struct Scene {
     std::vector<MeshInfo> meshes;
     std::vector<Material> materials;
     std::vector<Light> lights;
-    bool may_add_light = true; // where there are none, the host adds one beside the camera
+    bool may_add_light = true;         // where there are none, the host adds one beside the camera
     std::optional<Camera> camera;      // none: the host frames the bounds
     std::optional<ImageSize> size;     // of the picture that the file asks for
     std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's

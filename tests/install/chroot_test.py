@@ -52,15 +52,16 @@ class BareDebian(unittest.TestCase):
     def test_it_says_what_is_missing_and_then_works(self):
         self.hills()
         self.succeeds(f"apt-get update -q && apt-get install -qy --no-install-recommends /package/{self.package.name}")
-        for command in ("overcast devices", "overcast render knot --size 64x64 -o /knot.png", "/hills"):
+        for command, code in {"overcast devices": 1, "/hills": 1,
+                              "overcast render knot --size 64x64 -o /cpu.png": 0}.items():  # by the CPU, which it says
             with self.subTest("without Recommends", command=command):
                 done = self.inside(command)
-                self.assertEqual(done.returncode, 1, f"{command}: {done.stdout}{done.stderr}")
+                self.assertEqual(done.returncode, code, f"{command}: {done.stdout}{done.stderr}")
                 self.assertRegex(done.stdout + done.stderr, "lib[a-z0-9-]*(mesa|gl)[a-z0-9-]*", "the package that is missing")
 
         self.succeeds(f"apt-get install -qy {self.field('Recommends')}")
         self.assertIn("llvmpipe", self.succeeds("overcast devices"))
-        self.assertGreater(len(self.succeeds("/hills").split()), 20, "a picture in letters")
+        self.assertGreater(len(self.succeeds("/hills")), 500, "a picture in letters")
         self.assertEqual(self.succeeds(f"python3 -c '{TRACE}'"), "5.0\n")
         self.succeeds("overcast render knot --size 64x64 -o /knot.png")
         self.assertEqual((self.root / "knot.png").read_bytes()[:4], b"\x89PNG")

@@ -62,15 +62,6 @@ class Tree:
         for file in [self.prefix / "bin/overcast", self.libraries / "libovercast.so"]:
             self.assertIn("__stack_chk_fail", run("nm", "--dynamic", "--undefined-only", file), file)
 
-    def test_the_manuals_command_builds_its_example(self):
-        manual = (SOURCE / "docs/abi.md").read_text()
-        command = re.search("`(cc .* hills\\.c .*?)`", manual).group(1)
-        folder = self.folder / "hills"
-        shutil.copytree(self.prefix / "share/doc/overcast/examples", folder)
-        run("sh", "-c", command, cwd=folder, environment={"PKG_CONFIG_PATH": str(self.libraries / "pkgconfig")})
-        printed = run(folder / "hills", self.libraries / "libovercast.so.1")
-        self.assertIn("\n".join(line.rstrip() for line in printed.splitlines() if line.strip()), manual)
-
     def test_the_command_finds_its_libraries(self):
         triangle = self.prefix / "triangle.obj"
         triangle.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")

@@ -3,11 +3,12 @@
 
 import os
 import pathlib
+import re
 import shutil
 import tempfile
 import unittest
 
-from installed import BUILD, Tree, run
+from installed import BUILD, SOURCE, Tree, run
 
 
 @unittest.skipUnless(shutil.which("dpkg-shlibdeps") and shutil.which("dpkg-deb"), "no dpkg-dev")
@@ -46,6 +47,15 @@ class DebianPackage(Tree, unittest.TestCase):
         self.assertEqual((control / "symbols").read_text(), f"libovercast.so.1 overcast\n ovc_get_api@Base {upstream}\n")
         for script in ("postinst", "prerm"):
             run("sh", "-n", control / script)
+
+    def test_the_manuals_command_builds_its_example(self):
+        manual = (SOURCE / "docs/abi.md").read_text()
+        command = re.search("`(cc .* hills\\.c .*?)`", manual).group(1)
+        folder = self.folder / "hills"
+        shutil.copytree(self.prefix / "share/doc/overcast/examples", folder)
+        run("sh", "-c", command, cwd=folder, environment={"PKG_CONFIG_PATH": str(self.libraries / "pkgconfig")})
+        printed = run(folder / "hills", self.libraries / "libovercast.so.1")
+        self.assertIn("\n".join(line.rstrip() for line in printed.splitlines() if line.strip()), manual)
 
     def test_lintian_finds_nothing(self):
         if not shutil.which("lintian"):
