@@ -37,6 +37,15 @@ protected:
     }
 };
 
+TEST_F(Limits, APlatformThatIsNoneIsSaidBothWhereDevicesAreListedAndOpened) {
+    const auto listed =
+        test::run_shell("EGL_PLATFORM=nonsense " OVC_BINARY_DIR "/bin/overcast devices");
+    for (const auto& run : {listed, host("EGL_PLATFORM=nonsense")}) {
+        EXPECT_EQ(run.exit_code, 1) << run.output;
+        EXPECT_THAT(run.output, HasSubstr("EGL_PLATFORM is set to 'nonsense'"));
+    }
+}
+
 TEST_F(Limits, AThreadThatIsRefusedIsOutOfMemory) {
     int refused = 0;
     for (int threads = 0; threads < 12; ++threads) {
