@@ -13,6 +13,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace ovc {
 
@@ -71,11 +72,15 @@ protected:
         if (!s_.keeps_on())
             return;
         HitBatch<size_t> certain; // of `answers`
+        std::vector<uint32_t> in_doubt;
         const auto enter = [&](const Hit& hit, size_t j) {
             if (!enter_certain(rays[j], answers[j], hit, go_on))
-                decide_in_double(rays[j], prepare(query_, rays[j]));
+                in_doubt.push_back(rays[j]);
         };
-        const auto look = [&](size_t j) { take_in_one(rays[j], answers[j], go_on); };
+        const auto look = [&](size_t j) {
+            if (!take_in_one(rays[j], answers[j], go_on))
+                in_doubt.push_back(rays[j]);
+        };
         for (size_t j = 0; j < rays.size(); ++j) {
             fetch_ahead(answers, j);
             if (!begins(rays[j], answers[j]))
@@ -90,6 +95,7 @@ protected:
                 certain.finish(enter, look);
         }
         certain.finish(enter, look);
+        decide_in_double(in_doubt);
     }
 
     /// Fetches the triangle of one of the answers behind the j-th, which is to be taken in soon.
@@ -126,13 +132,13 @@ private:
         return go_on(i, answer.leaf(), prepare(query_, i), beyond);
     }
 
+    /// False: it is to be decided in double.
     template <class GoOn>
-    void take_in_one(uint32_t i, const Answer& answer, GoOn&& go_on) {
+    bool take_in_one(uint32_t i, const Answer& answer, GoOn&& go_on) {
         const bool decided = answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
         capped_ += answer.prim == OVC_CAPPED;
-        if (!decided ||
-            !(s_.options_.certify ? take_in_certified(i, answer, go_on) : take_in_fast(i, answer)))
-            decide_in_double(i, prepare(query_, i));
+        return decided && (s_.options_.certify ? take_in_certified(i, answer, go_on)
+                                               : take_in_fast(i, answer));
     }
 
     /// False where double does not find what the kernel was certain of, or go_on() says so.
@@ -189,6 +195,18 @@ private:
             return;
         query_.set(i, arbitrate<Query::kAnyHit>(s_.soup_, s_.numbers_, s_.twins_, s_.level1_,
                                                 s_.pages_, p));
+    }
+
+    /// In parallel where there are many: each may take as long as thousands of others.
+    void decide_in_double(std::span<const uint32_t> rays) {
+        const auto decide = [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j)
+                decide_in_double(rays[j], prepare(query_, rays[j]));
+        };
+        if (rays.size() < 8)
+            decide(0, rays.size());
+        else
+            parallel_for(rays.size(), 1, decide);
     }
 
     void decide_in_double(uint32_t i, const PreparedRay& p) {
