@@ -3,6 +3,8 @@
 // doubles say that it is small.
 #include "core/coplanar.h"
 
+#include "core/double_parts.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -15,39 +17,24 @@ namespace {
 __extension__ using Wide = unsigned __int128;
 using Integer3 = std::array<int64_t, 3>;
 
-/// |x| = mantissa * 2^power, the mantissa odd; or x = 0, and the power is the largest.
-struct Parts {
-    uint64_t mantissa = 0;
-    int power = std::numeric_limits<int>::max();
-
-    explicit Parts(double x) {
-        const uint64_t bits = std::bit_cast<uint64_t>(x);
-        const int stored = int(bits >> 52 & 0x7ff); // 0 for denormals, which have no leading 1
-        const uint64_t all = (bits & ((uint64_t(1) << 52) - 1)) | uint64_t(stored != 0) << 52;
-        if (all == 0)
-            return;
-        const int zeros = std::countr_zero(all);
-        mantissa = all >> zeros;
-        power = std::max(stored, 1) - 1075 + zeros;
-    }
-};
-
-/// The power of two that all coordinates are multiples of.
+/// The power of two that all coordinates are multiples of; one at least is not 0.
 int unit_of(const Triangle& a, const Triangle& b) {
     int unit = std::numeric_limits<int>::max();
     for (const Triangle* triangle : {&a, &b})
         for (const dvec3& corner : *triangle)
             for (int axis = 0; axis < 3; ++axis)
-                unit = std::min(unit, Parts(corner[axis]).power);
+                if (const DoubleParts x(corner[axis]); x.mantissa != 0)
+                    unit = std::min(unit, x.power + std::countr_zero(x.mantissa));
     return unit;
 }
 
 /// x / 2^unit, an integer, modulo 2^64.
 uint64_t wrapped(double x, int unit) {
-    const Parts parts(x);
-    if (parts.mantissa == 0 || parts.power - unit >= 64)
+    const DoubleParts parts(x);
+    const int shift = parts.power - unit;
+    if (parts.mantissa == 0 || shift >= 64)
         return 0;
-    const uint64_t magnitude = parts.mantissa << (parts.power - unit);
+    const uint64_t magnitude = shift < 0 ? parts.mantissa >> -shift : parts.mantissa << shift;
     return x < 0 ? 0 - magnitude : magnitude;
 }
 

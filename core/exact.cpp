@@ -2,6 +2,8 @@
 // Exact: schoolbook arithmetic on limbs.
 #include "core/exact.h"
 
+#include "core/double_parts.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -19,16 +21,13 @@ constexpr int kLimbBits = 64;
 
 Exact::Exact(double x) {
     assert(std::isfinite(x));
-    const uint64_t bits = std::bit_cast<uint64_t>(x);
-    const int stored = int(bits >> 52 & 0x7ff); // 0 for denormals, whose mantissa has no leading 1
-    const uint64_t mantissa = (bits & ((uint64_t(1) << 52) - 1)) | uint64_t(stored != 0) << 52;
-    if (mantissa == 0)
+    const DoubleParts parts(x);
+    if (parts.mantissa == 0)
         return;
-    // |x| = mantissa * 2^(power - 1088): above 0, where / and % round down.
-    const int power = std::max(stored, 1) + 13;
+    const int power = parts.power + 17 * kLimbBits; // above 0, where / and % round down
     exponent_ = power / kLimbBits - 17;
-    const Wide shifted = Wide(mantissa) << power % kLimbBits;
-    negative_ = bits >> 63;
+    const Wide shifted = Wide(parts.mantissa) << power % kLimbBits;
+    negative_ = x < 0;
     limbs_[0] = uint64_t(shifted);
     limbs_[1] = uint64_t(shifted >> kLimbBits);
     size_ = 2;

@@ -64,9 +64,10 @@ bool Nearest::offer_neighbour(const Triangle& triangle, TriangleId id) {
         return true; // the same point or, seen edge-on, none: it does not win
     if (!surely_crosses(p_, triangle))
         return false;
-    best_.hit.id = id;
-    best_.support = shared;
-    take(best_, triangle);
+    Candidate same = best_; // but for u and v, which hit() computes
+    same.hit.id = id;
+    same.support = shared;
+    take(same, triangle);
     return true;
 }
 

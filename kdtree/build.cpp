@@ -16,10 +16,10 @@ namespace {
 
 constexpr int kBins = 32;
 constexpr int kMaxDepth = 96;
-constexpr size_t kWorthIsolating = 64;   // triangles
-constexpr size_t kFewestToIsolate = 16;  // of a sample: fewer say nothing of where the others are
-constexpr uint64_t kMostReferences = 24; // a triangle, over the whole tree
-constexpr size_t kParallelBuild = 8192;  // fragments; below, a task costs more than it saves
+constexpr size_t kWorthIsolating = 64;  // triangles
+constexpr size_t kFewestToIsolate = 16; // of a sample: fewer say nothing of where the others are
+constexpr double kMostReferences = 24;  // a triangle, over the whole tree
+constexpr size_t kParallelBuild = 8192; // fragments; below, a task costs more than it saves
 
 /// A triangle within a cell: the box of the part inside. In double, because a float cannot tell the
 /// millimetres of a scene of many kilometres apart.
@@ -62,16 +62,18 @@ public:
                          ? kMaxDepth
                          : std::min(kMaxDepth, int(8 + 1.3 * std::log2(double(triangles) + 1)))) {}
 
-    /// Appends the subtree over `fragments` in `cell` to `tree`, of at most so many references:
-    /// where all triangles overlap in a plane, each cut would pay by the heuristic and double them.
-    void build(std::vector<Fragment> fragments, const Box& cell, int depth, uint64_t references,
+    /// Appends the subtree over `fragments` in `cell` to `tree`. references: how many it may have
+    /// where nothing but the heuristic stops it: all triangles may overlap in a plane, where each
+    /// cut would pay and double them.
+    void build(std::vector<Fragment> fragments, const Box& cell, int depth, double references,
                KdTree& tree, const Fork& fork) const {
         tree.depth = std::max(tree.depth, depth);
         if (fragments.size() >= kWorthIsolating)
             add(options_.progress, 0);
         const Split split = depth < max_depth_ ? choose_split(fragments, cell) : Split{};
-        const uint64_t parts = split.below + split.above;
-        if (!split.found() || parts > references) {
+        const double parts = double(split.below + split.above);
+        const bool too_many = !options_.max_leaf_triangles && parts > references;
+        if (!split.found() || too_many) {
             tree.nodes.push_back(
                 KdNode::leaf(uint32_t(tree.references.size()), uint32_t(fragments.size())));
             for (const Fragment& fragment : fragments)
@@ -83,8 +85,8 @@ public:
         below_cell.hi[split.axis] = above_cell.lo[split.axis] = split.position;
         std::vector<Fragment> above = divide(fragments, split, below_cell, above_cell);
 
-        const uint64_t for_below = references * split.below / parts,
-                       for_above = references - for_below;
+        const double for_below = references * double(split.below) / parts,
+                     for_above = references - for_below;
         const uint32_t node = uint32_t(tree.nodes.size());
         tree.nodes.push_back(KdNode::inner(split.axis, split.position));
         if (fragments.size() + above.size() < kParallelBuild) {
@@ -298,7 +300,7 @@ KdTree build_kd_tree(const Soup& soup, std::span<const TriangleId> triangles, co
         }
     });
     std::erase_if(fragments, [](const Fragment& f) { return f.box.empty(); });
-    const uint64_t references = kMostReferences * fragments.size();
+    const double references = kMostReferences * double(fragments.size());
     in_forks([&](const Fork& fork) {
         builder.build(std::move(fragments), bounds, 0, references, tree, fork);
     });

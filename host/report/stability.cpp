@@ -81,6 +81,7 @@ public:
           tree_(build_kd_tree(soup_)) {
         result_.name = case_.name;
         result_.closed = case_.closed;
+        result_.time_as = case_.time_as;
         result_.triangles = soup_.triangle_count();
         Dropped dropped;
         hittable_triangles(soup_, &dropped, nullptr);

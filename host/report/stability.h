@@ -48,7 +48,8 @@ struct StabilityResult {
     uint64_t flagged = 0;
     uint64_t retraced = 0;
     double microseconds = 0; // per ray, certified nearest hits
-    double time_ratio = 0;   // to the rays of StabilityCase::time_as; 0: none
+    double time_ratio = 0;   // to the rays of time_as; 0: none
+    std::string time_as;     // see StabilityCase
     StabilityScore certified;
     std::optional<StabilityScore> fast, embree_robust, embree_default;
 };

@@ -133,10 +133,10 @@ std::string sums_of(std::span<const StabilityResult> results) {
         reference_leaks += r.reference_leaks;
         miscounted += r.miscounted;
         if (r.time_ratio > 0)
-            ratios += fmt::format(
-                "{}: {:.2f} times the time of valid rays, {} invalid rays and {} dropped "
-                "triangles counted.\n",
-                r.name, r.time_ratio, r.invalid, r.dropped);
+            ratios +=
+                fmt::format("{}: {:.2f} times the time of '{}', {} invalid rays and {} dropped "
+                            "triangles counted.\n",
+                            r.name, r.time_ratio, r.time_as, r.invalid, r.dropped);
     }
     return fmt::format("\n{} cases, {} rays. Certified: {} wrong, {} leaks; the reference: {} "
                        "leaks; {} miscounted.\n{}",
