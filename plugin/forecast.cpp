@@ -2,13 +2,12 @@
 // The sample that level 1 is cut by, all triangles counted in its cells, and pages of clusters.
 #include "plugin/forecast.h"
 
-#include "core/numbering.h"
 #include "core/parallel.h"
-#include "core/twins.h"
 #include "gpu/level1_table.h"
 #include "gpu/linked.h"
 #include "kdtree/cells.h"
 #include "kdtree/sample.h"
+#include "plugin/level2.h"
 #include "plugin/one_leaf.h"
 #include "plugin/page_rate.h"
 #include "plugin/smallest_budget.h"
@@ -40,20 +39,13 @@ struct Sizes {
     }
 };
 
-/// The sizes of what build_levels() makes: it is built, and thrown away.
-Result<Sizes> sizes_built(const Soup& soup, std::vector<TriangleId>& triangles, const Box& bounds,
-                          const LeafLimits& limits, BuildProgress* progress) {
-    const Result<Levels> levels =
-        build_levels(soup, Numbering(soup), triangles, bounds, limits, progress);
-    if (!levels)
-        return levels.error();
+Sizes sizes_of(const BuiltScene& scene) {
     Sizes sizes;
-    for (const Page& page : levels->pages) {
+    for (const Page& page : scene.pages)
         sizes.pages.push_back(page.bytes());
-        sizes.largest_page = std::max(sizes.largest_page, page.bytes());
-    }
-    sizes.references = levels->level1.reference_count();
-    sizes.nodes = levels->level1.nodes.size();
+    sizes.largest_page = scene.largest_page_bytes();
+    sizes.references = scene.level1.reference_count();
+    sizes.nodes = scene.level1.nodes.size();
     return sizes;
 }
 
@@ -173,34 +165,37 @@ Result<Forecast> forecast(const Soup& soup, const TwoLevelOptions& options,
     if (const Result<Done> fine = check_count(soup); !fine)
         return fine.error();
     begin(progress, "planning", 1, 6 * soup.triangle_count());
-    Box bounds;
-    std::vector<TriangleId> triangles = hittable_triangles(soup, nullptr, &bounds, progress);
+    BuiltScene scene(soup);
+    const Hittable hittable = take_hittable(scene, progress);
+    const auto& [triangles, bounds] = hittable;
     Forecast f;
-    f.triangles = triangles.size();
+    f.triangles = triangles.size() + scene.twins.count();
     const SmallestCut cut =
         smallest_cut(soup.triangle_count(), options.leaf_triangles, options.tell_active);
     f.smallest_budget_bytes = smallest_budget(cut.pool_bytes, device);
     f.fits = plan->pool_bytes >= cut.pool_bytes;
     if (triangles.empty())
         return f;
-    Twins::take_out(soup, triangles, progress);
-    const LeafLimits limits = limits_of(options, *plan, triangles.size());
-    const Result<Sizes> sizes = triangles.size() <= kBuiltAtOnce
-                                    ? sizes_built(soup, triangles, bounds, limits, progress)
-                                    : Estimator(soup, triangles, bounds, progress).estimate(limits);
-    if (!sizes)
-        return sizes.error();
-    f.leaves = sizes->pages.size();
-    f.references = sizes->references;
-    f.level2_bytes = sizes->level2_bytes();
-    f.largest_page_bytes = sizes->largest_page;
-    f.level1_bytes = level1_texels(f.leaves, sizes->nodes) * sizeof(uvec4);
+    scene.limits = limits_of(options, *plan, triangles.size());
+    Sizes sizes;
+    if (triangles.size() <= kBuiltAtOnce) {
+        if (const Result<Done> built = build_levels(scene, hittable, progress); !built)
+            return built.error();
+        sizes = sizes_of(scene);
+    } else {
+        sizes = Estimator(soup, triangles, bounds, progress).estimate(scene.limits);
+    }
+    f.leaves = sizes.pages.size();
+    f.references = sizes.references;
+    f.level2_bytes = sizes.level2_bytes();
+    f.largest_page_bytes = sizes.largest_page;
+    f.level1_bytes = level1_texels(f.leaves, sizes.nodes) * sizeof(uvec4);
     if (f.fits)
         f.pool_bytes = std::min(plan->pool_bytes - std::min(plan->pool_bytes, f.level1_bytes),
                                 most_linked_bytes(f.level2_bytes, f.leaves));
-    f.resident_pages = fitting(sizes->pages, f.pool_bytes);
+    f.resident_pages = fitting(sizes.pages, f.pool_bytes);
     f.host_bytes = f.level2_bytes + f.references * sizeof(TriangleId) + f.leaves * sizeof(Leaf) +
-                   sizes->nodes * sizeof(KdNode);
+                   sizes.nodes * sizeof(KdNode);
     return f;
 }
 

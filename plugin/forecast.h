@@ -5,7 +5,7 @@
 #include "core/build_progress.h"
 #include "core/result.h"
 #include "core/soup.h"
-#include "plugin/two_level.h"
+#include "plugin/two_level_options.h"
 
 #include <cstdint>
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// fuzz_levels: through the arbiter, which walks level 1 and pages as the kernel does.
+// fuzz_levels: through the exact fallback, which walks level 1 and pages as the kernel does.
 #include "plugin/fuzz_levels.h"
 
 #include "core/test_archive.h"
 #include "kdtree/test_soups.h"
-#include "plugin/arbiter.h"
+#include "plugin/exact_fallback.h"
+#include "plugin/level2.h"
 
 #include <cstdlib>
 
@@ -15,18 +16,12 @@ static void require(bool condition) {
         std::abort();
 }
 
-BuiltLevels build_for_test(const Soup& soup, const LeafLimits& limits) {
-    BuiltLevels built;
-    Box bounds;
-    std::vector<TriangleId> triangles = hittable_triangles(soup, &built.dropped, &bounds);
-    built.twins = Twins::take_out(soup, triangles);
-    built.triangles = triangles.size();
-    built.limits = limits;
-    Result<Levels> levels = build_levels(soup, Numbering(soup), triangles, bounds, limits);
-    require(bool(levels));
-    built.level1 = std::move(levels->level1);
-    built.pages = std::move(levels->pages);
-    return built;
+BuiltScene build_for_test(const Soup& soup, const LeafLimits& limits) {
+    BuiltScene scene(soup);
+    scene.limits = limits;
+    const Hittable hittable = take_hittable(scene);
+    require(bool(build_levels(scene, hittable)));
+    return scene;
 }
 
 namespace {
@@ -36,7 +31,6 @@ struct Subject {
     static constexpr LeafLimits kLimits{30, 1 << 20};
 
     Soup soup = test::random_soup(5, 120, 0.3);
-    Numbering numbers;
     test::ArchiveMemory saved;
     std::vector<Ray> rays;
 
@@ -44,24 +38,20 @@ struct Subject {
         std::vector<vec3> corners(soup.chunks[0].corners().begin(), soup.chunks[0].corners().end());
         corners.insert(corners.end(), corners.begin(), corners.begin() + 30);
         soup.chunks[0] = Chunk::owning(soup.chunks[0].origin(), std::move(corners));
-        numbers = Numbering(soup);
-        const BuiltLevels built = build_for_test(soup, kLimits);
-        require(save_levels(soup, view_of(built), saved.sink()));
+        require(save_levels(build_for_test(soup, kLimits), saved.sink()));
         rays = test::unpleasant_rays(soup, 9, 40);
     }
 };
 
-void trace(const Subject& subject, const BuiltLevels& levels) {
-    require(levels.pages.size() == levels.level1.leaves.size());
+void trace(const Subject& subject, const BuiltScene& scene) {
+    require(scene.pages.size() == scene.level1.leaves.size());
     for (const Ray& ray : subject.rays) {
         if (!ray.valid())
             continue;
         const PreparedRay prepared(ray);
-        const Hit hit = arbitrate<false>(subject.soup, subject.numbers, levels.twins, levels.level1,
-                                         levels.pages, prepared);
+        const Hit hit = trace_exactly</* kAnyHit= */ false>(scene, prepared);
         require(!hit.is_hit() || hit.id.prim < subject.soup.chunks[0].size());
-        arbitrate<true>(subject.soup, subject.numbers, levels.twins, levels.level1, levels.pages,
-                        prepared);
+        trace_exactly</* kAnyHit= */ true>(scene, prepared);
     }
 }
 

@@ -9,13 +9,8 @@
 
 namespace ovc {
 
-/// Levels of a soup as TwoLevel builds them.
-BuiltLevels build_for_test(const Soup& soup, const LeafLimits& limits);
-
-inline BuiltLevelsView view_of(const BuiltLevels& levels) {
-    return {levels.dropped, levels.twins,  levels.triangles,
-            levels.limits,  levels.level1, levels.pages};
-}
+/// The scene of a soup as TwoLevel builds it, within these limits.
+BuiltScene build_for_test(const Soup& soup, const LeafLimits& limits);
 
 /// Damages saved levels as `data` says (core/test_archive.h), makes the checksums right if its
 /// first byte is odd, and traces rays through what comes back. Aborts where that goes wrong.

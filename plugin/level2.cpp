@@ -44,11 +44,14 @@ namespace {
 
 class LevelsBuilder {
 public:
-    LevelsBuilder(const Soup& soup, const Numbering& numbers, const LeafLimits& limits,
-                  BuildProgress* progress)
-        : soup_(soup), numbers_(numbers), limits_(limits), progress_(progress) {}
+    LevelsBuilder(BuiltScene& scene, BuildProgress* progress)
+        : soup_(scene.soup),
+          numbers_(scene.numbers),
+          limits_(scene.limits),
+          progress_(progress),
+          levels_(scene) {}
 
-    Result<Levels> build(std::span<const TriangleId> triangles, const Box& bounds) {
+    Result<Done> build(std::span<const TriangleId> triangles, const Box& bounds) {
         const Stopwatch watch;
         begin(progress_, "level 1", 0.35, 2 * triangles.size());
         triangles_ = triangles.size();
@@ -59,7 +62,7 @@ public:
         levels_.level1 = partition(soup_, triangles, bounds, most, progress_, sample);
         if (one_frame || levels_.level1.leaves.size() == 1)
             share_frame(levels_.level1);
-        levels_.seconds_level1 = watch.seconds();
+        levels_.seconds_level1 += watch.seconds();
         levels_.pages.resize(levels_.level1.leaves.size());
         begin(progress_, "level 2", 0.5, 2 * levels_.level1.reference_count());
         build_missing_pages(loose_pairs());
@@ -68,23 +71,22 @@ public:
             if (!again)
                 return again.error();
             if (!*again)
-                return std::move(levels_);
+                return Done{};
             build_missing_pages(loose_pairs());
         }
     }
 
-    Levels build_smallest(std::vector<TriangleId> triangles, const Box& bounds,
-                          uint32_t leaf_triangles) {
+    void build_smallest(std::vector<TriangleId> triangles, const Box& bounds,
+                        uint32_t leaf_triangles) {
         const Stopwatch watch;
         const bool one_frame = one_frame_suits(soup_, triangles, bounds);
         levels_.level1 =
             partition_by_count(soup_, std::move(triangles), bounds, leaf_triangles, progress_);
         if (one_frame)
             share_frame(levels_.level1);
-        levels_.seconds_level1 = watch.seconds();
-        levels_.pages.resize(levels_.level1.leaves.size());
+        levels_.seconds_level1 += watch.seconds();
+        levels_.pages = std::vector<Page>(levels_.level1.leaves.size());
         build_missing_pages({});
-        return std::move(levels_);
     }
 
 private:
@@ -173,23 +175,19 @@ private:
     BuildProgress* const progress_;
     uint64_t triangles_ = 0;
     std::vector<TriangleId> sample_;
-    Levels levels_;
+    BuiltScene& levels_;
 };
 
 } // namespace
 
-Levels build_smallest_levels(const Soup& soup, const Numbering& numbers,
-                             std::vector<TriangleId> triangles, const Box& bounds,
-                             uint32_t leaf_triangles, BuildProgress* progress) {
-    const LeafLimits none{leaf_triangles, LeafLimits::kAny};
-    return LevelsBuilder(soup, numbers, none, progress)
-        .build_smallest(std::move(triangles), bounds, leaf_triangles);
+void build_smallest_levels(BuiltScene& scene, Hittable hittable, uint32_t leaf_triangles,
+                           BuildProgress* progress) {
+    LevelsBuilder(scene, progress)
+        .build_smallest(std::move(hittable.triangles), hittable.bounds, leaf_triangles);
 }
 
-Result<Levels> build_levels(const Soup& soup, const Numbering& numbers,
-                            std::span<const TriangleId> triangles, const Box& bounds,
-                            const LeafLimits& limits, BuildProgress* progress) {
-    return LevelsBuilder(soup, numbers, limits, progress).build(triangles, bounds);
+Result<Done> build_levels(BuiltScene& scene, const Hittable& hittable, BuildProgress* progress) {
+    return LevelsBuilder(scene, progress).build(hittable.triangles, hittable.bounds);
 }
 
 } // namespace ovc

@@ -6,8 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 namespace ovc {
 namespace {
 
@@ -17,13 +15,10 @@ struct Built {
 };
 
 Built build(const Soup& soup, const LeafLimits& limits) {
-    Box bounds;
-    const std::vector<TriangleId> triangles = hittable_triangles(soup, nullptr, &bounds);
-    const Result<Levels> levels = build_levels(soup, Numbering(soup), triangles, bounds, limits);
-    EXPECT_TRUE(levels);
-    return {levels->pages.size(),
-            std::accumulate(levels->pages.begin(), levels->pages.end(), uint64_t(0),
-                            [](uint64_t sum, const Page& page) { return sum + page.bytes(); })};
+    BuiltScene scene(soup);
+    scene.limits = limits;
+    EXPECT_TRUE(build_levels(scene, take_hittable(scene)));
+    return {scene.pages.size(), scene.level2_bytes()};
 }
 
 TEST(LevelsOf, ASceneThatFitsAreOneLeafWherePlanesWouldCutMuch) {

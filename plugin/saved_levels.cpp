@@ -3,6 +3,7 @@
 #include "plugin/saved_levels.h"
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "gpu/page_check.h"
 #include "plugin/page_rate.h"
 #include "shaders/layout.h"
@@ -158,21 +159,21 @@ const Error kUnsound{"is damaged: what it holds are no levels"};
 
 class Restorer {
 public:
-    Restorer(const Archive& archive, const Soup& soup) : archive_(archive), soup_(soup) {}
+    Restorer(const Archive& archive, const Soup& soup) : archive_(archive), scene_(soup) {}
 
-    Result<BuiltLevels> restore(const Summary& summary) {
-        levels_.dropped = {summary.not_finite, summary.degenerate};
-        levels_.triangles = summary.triangles;
-        levels_.level1.bounds = summary.bounds;
-        levels_.level1.padding = summary.padding;
-        levels_.level1.shares_frame = summary.shares_frame == 1;
+    Result<BuiltScene> restore(const Summary& summary) {
+        scene_.dropped = {summary.not_finite, summary.degenerate};
+        scene_.triangles = summary.triangles;
+        scene_.level1.bounds = summary.bounds;
+        scene_.level1.padding = summary.padding;
+        scene_.level1.shares_frame = summary.shares_frame == 1;
         if (Result<Done> done = read_twins(summary.twins); !done)
             return done.error();
         if (Result<Done> done = read_level1(); !done)
             return done.error();
         if (Result<Done> done = read_pages(); !done)
             return done.error();
-        return std::move(levels_);
+        return std::move(scene_);
     }
 
 private:
@@ -180,9 +181,9 @@ private:
         const auto pairs = archive_.items<Twins::Pair>("twins");
         if (!pairs)
             return pairs.error();
-        if (!are_sound(*pairs, soup_))
+        if (!are_sound(*pairs, scene_.soup))
             return kUnsound;
-        levels_.twins = Twins::restored(*pairs, count);
+        scene_.twins = Twins::restored(*pairs, count);
         return Done{};
     }
 
@@ -196,7 +197,7 @@ private:
         const auto lists = archive_.items<TriangleId>("lists");
         if (!lists)
             return lists.error();
-        Level1& level1 = levels_.level1;
+        Level1& level1 = scene_.level1;
         if (!is_walkable(*nodes, leaves->size()) || nodes->empty() != leaves->empty() ||
             !(level1.padding >= 0) || (!nodes->empty() && !is_sound(level1.bounds)))
             return kUnsound;
@@ -220,62 +221,62 @@ private:
     }
 
     Result<Done> read_pages() {
-        const auto pages = archive_.items<SavedPage>("pages", levels_.level1.leaves.size());
+        const auto pages = archive_.items<SavedPage>("pages", scene_.level1.leaves.size());
         if (!pages)
             return pages.error();
         const auto texels = archive_.items<uvec4>("texels");
         if (!texels)
             return texels.error();
-        if (!share_out(*texels, *pages, soup_.triangle_count(), levels_.pages))
+        if (!share_out(*texels, *pages, scene_.soup.triangle_count(), scene_.pages))
             return kUnsound;
         return Done{};
     }
 
     const Archive& archive_;
-    const Soup& soup_;
-    BuiltLevels levels_;
+    BuiltScene scene_;
 };
 
 } // namespace
 
-bool save_levels(const Soup& soup, const BuiltLevelsView& levels, const ByteSink& sink) {
+bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
     Summary summary;
     summary.key.layout = checksum_of_layout();
-    summary.key.soup = checksum_of_soup(soup);
-    put_limits(summary.key, levels.limits);
-    summary.not_finite = levels.dropped.not_finite;
-    summary.degenerate = levels.dropped.degenerate;
-    summary.twins = levels.twins.count();
-    summary.triangles = levels.triangles;
-    summary.shares_frame = levels.level1.shares_frame;
-    summary.bounds = levels.level1.bounds;
-    summary.padding = levels.level1.padding;
+    summary.key.soup = checksum_of_soup(scene.soup);
+    put_limits(summary.key, scene.limits);
+    summary.not_finite = scene.dropped.not_finite;
+    summary.degenerate = scene.dropped.degenerate;
+    summary.twins = scene.twins.count();
+    summary.triangles = scene.triangles;
+    summary.shares_frame = scene.level1.shares_frame;
+    summary.bounds = scene.level1.bounds;
+    summary.padding = scene.level1.padding;
     std::vector<SavedLeaf> leaves;
-    for (const Leaf& leaf : levels.level1.leaves)
+    for (const Leaf& leaf : scene.level1.leaves)
         leaves.push_back({leaf.cell, leaf.box, leaf.grid, leaf.frame.origin, leaf.frame.scale,
                           leaf.triangles.size()});
     std::vector<SavedPage> pages;
-    for (const Page& page : levels.pages)
+    for (const Page& page : scene.pages)
         pages.push_back({page.view().size(), page.depth});
 
     ArchiveWriter writer(sink, kKind, kVersion);
     writer.part<Summary>("summary", std::span(&summary, 1));
-    writer.part<Twins::Pair>("twins", levels.twins.pairs());
-    writer.part<KdNode>("nodes", levels.level1.nodes);
+    writer.part<Twins::Pair>("twins", scene.twins.pairs());
+    writer.part<KdNode>("nodes", scene.level1.nodes);
     writer.part<SavedLeaf>("leaves", leaves);
     writer.begin("lists");
-    for (const Leaf& leaf : levels.level1.leaves)
+    for (const Leaf& leaf : scene.level1.leaves)
         writer.write(bytes_of(std::span<const TriangleId>(leaf.triangles)));
     writer.part<SavedPage>("pages", pages);
     writer.begin("texels");
-    for (const Page& page : levels.pages)
+    for (const Page& page : scene.pages)
         writer.write(bytes_of(page.view()));
     return writer.finish();
 }
 
-Result<std::optional<BuiltLevels>>
+Result<std::optional<BuiltScene>>
 restore_levels(Bytes saved, const Soup& soup,
                const std::function<LeafLimits(uint64_t)>& limits_for) {
+    const Stopwatch watch;
     if (reinterpret_cast<uintptr_t>(saved.data()) % kPartAlignment)
         return Error{"is not aligned to 64 bytes"};
     const Result<Archive> archive = Archive::open(saved, kKind, kVersion);
@@ -291,12 +292,14 @@ restore_levels(Bytes saved, const Soup& soup,
     put_limits(key, limits);
     key.soup = summary.key.soup; // the rest first: this takes a while
     if (key != summary.key || checksum_of_soup(soup) != key.soup)
-        return std::optional<BuiltLevels>();
-    Result<BuiltLevels> levels = Restorer(*archive, soup).restore(summary);
-    if (!levels)
-        return levels.error();
-    levels->limits = limits;
-    return std::optional(std::move(*levels));
+        return std::optional<BuiltScene>();
+    Result<BuiltScene> scene = Restorer(*archive, soup).restore(summary);
+    if (!scene)
+        return scene.error();
+    scene->limits = limits;
+    scene->from_saved = true;
+    scene->seconds_level1 = watch.seconds();
+    return std::optional(std::move(*scene));
 }
 
 } // namespace ovc

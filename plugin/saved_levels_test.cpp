@@ -19,9 +19,9 @@ using test::ArchiveMemory;
 constexpr LeafLimits kLimits{60, 1 << 20};
 const auto kSameLimits = [](uint64_t) { return kLimits; };
 
-ArchiveMemory saved(const Soup& soup, const BuiltLevels& levels) {
+ArchiveMemory saved(const BuiltScene& scene) {
     ArchiveMemory memory;
-    EXPECT_TRUE(save_levels(soup, view_of(levels), memory.sink()));
+    EXPECT_TRUE(save_levels(scene, memory.sink()));
     return memory;
 }
 
@@ -29,7 +29,7 @@ bool same(const Box& a, const Box& b) {
     return a.lo == b.lo && a.hi == b.hi;
 }
 
-void expect_same(const BuiltLevels& a, const BuiltLevels& b) {
+void expect_same(const BuiltScene& a, const BuiltScene& b) {
     EXPECT_EQ(a.dropped.not_finite, b.dropped.not_finite);
     EXPECT_EQ(a.dropped.degenerate, b.dropped.degenerate);
     EXPECT_EQ(a.twins.count(), b.twins.count());
@@ -57,8 +57,8 @@ void expect_same(const BuiltLevels& a, const BuiltLevels& b) {
 TEST(SavedLevels, ComeBackAsTheyWere) {
     for (const auto& [name, soup] : test::unpleasant_soups()) {
         SCOPED_TRACE(name);
-        const BuiltLevels built = build_for_test(soup, kLimits);
-        const ArchiveMemory memory = saved(soup, built);
+        const BuiltScene built = build_for_test(soup, kLimits);
+        const ArchiveMemory memory = saved(built);
         const auto found = restore_levels(memory.bytes(), soup, kSameLimits);
         ASSERT_TRUE(found) << found.error().message;
         ASSERT_TRUE(*found);
@@ -68,7 +68,7 @@ TEST(SavedLevels, ComeBackAsTheyWere) {
 
 TEST(SavedLevels, OfAnotherSoupOrOtherLimitsAreNotTaken) {
     const Soup soup = test::random_soup(2, 300, 0.1);
-    const ArchiveMemory memory = saved(soup, build_for_test(soup, kLimits));
+    const ArchiveMemory memory = saved(build_for_test(soup, kLimits));
     const auto taken = [&](const Soup& other, const LeafLimits& limits) {
         const auto found = restore_levels(memory.bytes(), other, [&](uint64_t) { return limits; });
         EXPECT_TRUE(found) << found.error().message;
@@ -97,7 +97,7 @@ TEST(SavedLevels, TheSameMeshesCutOtherwiseAreAnotherSoup) {
     Soup halves;
     halves.chunks.push_back(Chunk::borrowing(soup.chunks[0].origin(), corners.first(300)));
     halves.chunks.push_back(Chunk::borrowing(soup.chunks[0].origin(), corners.subspan(300)));
-    const ArchiveMemory memory = saved(soup, build_for_test(soup, kLimits));
+    const ArchiveMemory memory = saved(build_for_test(soup, kLimits));
     const auto found = restore_levels(memory.bytes(), halves, kSameLimits);
     ASSERT_TRUE(found);
     EXPECT_FALSE(*found);
@@ -109,7 +109,7 @@ TEST(SavedLevels, WhatIsNoneOfThemIsRefusedWithAReason) {
         const auto found = restore_levels(bytes, soup, kSameLimits);
         return found ? std::string() : found.error().message;
     };
-    const ArchiveMemory memory = saved(soup, build_for_test(soup, kLimits));
+    const ArchiveMemory memory = saved(build_for_test(soup, kLimits));
     EXPECT_EQ(message({}), "is too short to be whole");
     EXPECT_EQ(message(memory.bytes().subspan(1)), "is not aligned to 64 bytes");
     EXPECT_EQ(message(memory.bytes().first(memory.size() - 64)), "is cut off");
@@ -120,8 +120,8 @@ TEST(SavedLevels, WhatIsNoneOfThemIsRefusedWithAReason) {
 
 TEST(SavedLevels, NoChangedByteIsTaken) {
     const Soup soup = test::random_soup(3, 100, 0.1);
-    const BuiltLevels built = build_for_test(soup, kLimits);
-    ArchiveMemory memory = saved(soup, built);
+    const BuiltScene built = build_for_test(soup, kLimits);
+    ArchiveMemory memory = saved(built);
     for (size_t i = 0; i < memory.size(); ++i) {
         memory.data()[i] ^= std::byte(0x10);
         const auto found = restore_levels(memory.bytes(), soup, kSameLimits);

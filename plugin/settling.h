@@ -5,7 +5,8 @@
 #include "core/hit_batch.h"
 #include "core/parallel.h"
 #include "kdtree/restart.h"
-#include "plugin/arbiter.h"
+#include "plugin/candidates.h"
+#include "plugin/exact_fallback.h"
 #include "plugin/query.h"
 #include "plugin/two_level.h"
 #include "shaders/layout.h"
@@ -27,7 +28,7 @@ protected:
     Settling(TwoLevel& structure, const Query& query)
         : s_(structure),
           query_(query),
-          scene_(structure.level1_.bounds.padded(structure.level1_.padding)) {}
+          box_(structure.scene_.level1.bounds.padded(structure.scene_.level1.padding)) {}
     ~Settling() {
         s_.statistics_.invalid_rays += invalid_;
         s_.statistics_.flagged += flagged_;
@@ -45,11 +46,11 @@ protected:
         }
         const PreparedRay p = prepare(query_, i);
         // First: from where double cannot walk, rounding may carry a ray past the whole scene.
-        if (!can_walk(s_.level1_, p)) {
+        if (!can_walk(s_.scene_.level1, p)) {
             decide_in_double(i, p);
             return false;
         }
-        return !clip(p, scene_, p.ray.t_min, p.ray.t_max).empty();
+        return !clip(p, box_, p.ray.t_min, p.ray.t_max).empty();
     }
 
     /// Ray i on its way: done with the cells up to t_from, of interest up to t_end. leaf: as
@@ -58,7 +59,7 @@ protected:
         query_.count_pass(i);
         Ray rest = query_.rays[i];
         rest.t_max = t_end;
-        return {rest, t_from, s_.number_to_skip(query_.skipped(i)),
+        return {rest, t_from, s_.scene_.number_to_skip(query_.skipped(i)),
                 leaf | (Query::kAnyHit ? OVC_RAY_ANY_HIT : 0)};
     }
 
@@ -89,8 +90,8 @@ protected:
                 look(j);
                 continue;
             }
-            const TriangleId id = seen(answers[j].prim, query_.skipped(rays[j]));
-            certain.add(query_.rays[rays[j]], s_.soup_.triangle(id), id, j);
+            const TriangleId id = s_.scene_.seen(answers[j].prim, query_.skipped(rays[j]));
+            certain.add(query_.rays[rays[j]], s_.scene_.soup.triangle(id), id, j);
             if (certain.full())
                 certain.finish(enter, look);
         }
@@ -106,8 +107,8 @@ protected:
         const uint32_t prim = answers[j + kAhead].prim;
         if (prim >= OVC_MAX_TRIANGLES || Query::kAnyHit || !s_.options_.certify)
             return; // nobody looks at its corners
-        const TriangleId id = s_.numbers_.id(prim);
-        __builtin_prefetch(s_.soup_.chunks[id.mesh].address_of(id.prim));
+        const TriangleId id = s_.scene_.numbers.id(prim);
+        __builtin_prefetch(s_.scene_.soup.chunks[id.mesh].address_of(id.prim));
     }
 
     /// Answers ray i for good, whatever it has met.
@@ -144,57 +145,43 @@ private:
     /// False where double does not find what the kernel was certain of, or go_on() says so.
     template <class GoOn>
     bool take_in_certified(uint32_t i, const Answer& answer, GoOn&& go_on) {
-        const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
-        if (answer.prim == OVC_MISS && !has_rivals)
+        const Candidates found{answer.prim, {answer.rivals()[0], answer.rivals()[1]}};
+        if (found.is_miss())
             return true;
-        if (Query::kAnyHit && !has_rivals) {
-            query_.set(i, Hit{0, 0, 0, s_.numbers_.id(answer.prim)}); // a certain hit decides
+        if (Query::kAnyHit && found.is_certain_hit()) {
+            query_.set(i, Hit{0, 0, 0, s_.scene_.numbers.id(found.certain)});
             return true;
         }
         const PreparedRay p = prepare(query_, i);
         Nearest nearest(p);
         if (query_.was_hit(i))
-            offer(nearest, s_.numbers_.of(query_.hit(i).id), p.skip);
-        if (answer.prim != OVC_MISS && !offer(nearest, answer.prim, p.skip))
+            s_.scene_.offer(nearest, query_.hit(i).id);
+        if (!found.offer_to(nearest, s_.scene_, p.skip))
             return false;
-        for (const uint32_t rival : answer.rivals())
-            if (rival != OVC_NO_TRIANGLE)
-                offer(nearest, rival, p.skip);
         if (nearest.is_hit())
             query_.set(i, nearest);
         const bool in_scene = answer.leaf() == OVC_NO_LEAF; // linked pages: no other leaf is left
         const bool settled = in_scene || (Query::kAnyHit && nearest.is_hit()) ||
                              go_on(i, answer.leaf(), p, nearest.limit());
-        if (settled && has_rivals) // decide_in_double() counts the others
+        if (settled && found.has_further()) // decide_in_double() counts the others
             count_flagged(i);
         return settled;
     }
 
     bool take_in_fast(uint32_t i, const Answer& answer) {
         if (answer.prim != OVC_MISS)
-            query_.set(
-                i, s_.twins_.seen(s_.soup_,
-                                  {answer.t(), answer.u(), answer.v(), s_.numbers_.id(answer.prim)},
-                                  query_.skipped(i)));
+            query_.set(i, s_.scene_.twins.seen(s_.scene_.soup,
+                                               {answer.t(), answer.u(), answer.v(),
+                                                s_.scene_.numbers.id(answer.prim)},
+                                               query_.skipped(i)));
         return true;
-    }
-
-    /// The triangle that a ray sees where the page has `number`.
-    TriangleId seen(uint32_t number, TriangleId skip) const {
-        return s_.twins_.seen(s_.numbers_.id(number), skip);
-    }
-
-    bool offer(Nearest& nearest, uint32_t number, TriangleId skip) const {
-        const TriangleId id = seen(number, skip);
-        return nearest.offer(s_.soup_.triangle(id), id);
     }
 
     /// Some rays take a hundred times as long as most: asked before each whether it is in vain.
     void arbitrate_ray(uint32_t i, const PreparedRay& p) {
         if (!s_.keeps_on())
             return;
-        query_.set(i, arbitrate<Query::kAnyHit>(s_.soup_, s_.numbers_, s_.twins_, s_.level1_,
-                                                s_.pages_, p));
+        query_.set(i, trace_exactly<Query::kAnyHit>(s_.scene_, p));
     }
 
     /// In parallel where there are many: each may take as long as thousands of others.
@@ -220,7 +207,7 @@ private:
         ++flagged_;
     }
 
-    const Box scene_; // empty: no triangles
+    const Box box_; // of the scene; empty: no triangles
     std::atomic<uint64_t> invalid_{0};
     std::atomic<uint64_t> flagged_{0};
     std::atomic<uint64_t> retraced_{0};

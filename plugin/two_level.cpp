@@ -3,230 +3,58 @@
 #include "plugin/two_level.h"
 
 #include "core/stopwatch.h"
-#include "gpu/level1_table.h"
 #include "gpu/linked.h"
-#include "plugin/level2.h"
 #include "plugin/one_pass.h"
-#include "plugin/page_rate.h"
-#include "plugin/smallest_budget.h"
+#include "plugin/saved_levels.h"
 #include "plugin/wave.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <numeric>
 
 namespace ovc {
 namespace {
 
 constexpr size_t kWaveRays = 4u << 20; // rays in flight: bounds the host memory of a call
-// A page takes at most this share of the pool, so that some stay resident; and where leaves are
-// ours to choose, this one, so that rays bring in little that they do not go through: but it is
-// worth a move.
-constexpr uint64_t kPagesAtOnce = 3;
-constexpr uint64_t kPagesByDefault = 32;
-constexpr uint64_t kWorthMoving = 512 << 10; // bytes
-constexpr uint64_t kDefaultLeaves = 10;      // thesis, section 4
-
 } // namespace
-
-uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device) {
-    return options.budget_bytes ? options.budget_bytes : device.default_budget_bytes();
-}
-
-Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
-                          const DeviceInfo& device) {
-    const SmallestCut cut =
-        smallest_cut(soup.triangle_count(), options.leaf_triangles, options.tell_active);
-    if (plan.pool_bytes >= cut.pool_bytes)
-        return Done{};
-    return over_budget(fmt::format(
-        "a GPU budget of {} bytes is too small for this scene: the smallest that works is {} "
-        "bytes ({} triangles in leaves of {}, whose table and largest page take {}; an eighth is "
-        "for rays)",
-        plan.budget_bytes, smallest_budget(cut.pool_bytes, device), soup.triangle_count(),
-        cut.leaf_triangles, cut.pool_bytes));
-}
-
-/// The most that a page may take of the pool: a third, so that some stay resident; half of it where
-/// the table of as many leaves might not find room beside that.
-static uint64_t share_of_page(const MemoryPlan& plan, uint64_t triangles) {
-    constexpr uint64_t kTexelsPerLeaf = OVC_LEAF_TEXELS + 2; // two nodes of level 1
-    const uint64_t page_bytes = std::max<uint64_t>(plan.pool_bytes / kPagesAtOnce, 1);
-    const uint64_t leaves = triangles * kMostBytesPerTriangle / page_bytes;
-    const uint64_t table = leaves * kTexelsPerLeaf * sizeof(uvec4);
-    return table + page_bytes <= plan.pool_bytes ? page_bytes : plan.pool_bytes / 2;
-}
-
-LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles) {
-    // Halving ends between half full and full: this much on average gives about so many leaves.
-    constexpr double kFull = 0.7;
-    constexpr uint64_t kMostPageBytes = uint64_t(OVC_MAX_UNITS - 1) * OVC_UNIT_BYTES;
-    const uint64_t page_bytes = std::min(share_of_page(plan, triangles), kMostPageBytes);
-    if (options.leaf_triangles)
-        return {options.leaf_triangles, page_bytes};
-    double most = double(triangles) / double(kDefaultLeaves);
-    if (options.leaves)
-        most = double(triangles) / (options.leaves == 1 ? 1 : kFull * options.leaves);
-    LeafLimits limits{std::max<uint64_t>(uint64_t(std::ceil(most)), 1), page_bytes};
-    if (!options.leaves) {
-        limits.page_bytes = std::min(
-            page_bytes, std::max<uint64_t>(plan.pool_bytes / kPagesByDefault, kWorthMoving));
-        const uint64_t table = level1_texels(1, 1) * sizeof(uvec4) + sizeof(uint32_t);
-        const uint64_t room =
-            std::min(plan.pool_bytes - std::min(plan.pool_bytes, table), kMostPageBytes);
-        limits.whole_bytes = triangles <= room / kMostBytesPerTriangle ? LeafLimits::kAny : room;
-    }
-    return limits;
-}
-
-Result<Done> check_count(const Soup& soup) {
-    if (soup.triangle_count() > OVC_MAX_TRIANGLES)
-        return Error{fmt::format("{} triangles are too many: a scene takes {}",
-                                 soup.triangle_count(), OVC_MAX_TRIANGLES),
-                     ErrorKind::InvalidArgument};
-    return Done{};
-}
 
 Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl,
                                                   const TwoLevelOptions& options,
                                                   const LogSink& log, BuildProgress* progress) {
-    const Result<MemoryPlan> plan = plan_memory(budget_of(options, gl.info()), gl.info());
+    Result<MemoryPlan> plan = plan_memory(budget_of(options, gl.info()), gl.info());
     if (!plan)
         return plan.error();
-    std::unique_ptr<TwoLevel> self(new TwoLevel(soup, gl, options, *plan, log));
-    self->plan_.driver_bytes = options.driver_bytes;
-
+    plan->driver_bytes = options.driver_bytes;
     if (const Result<Done> fine = check_count(soup); !fine)
         return fine.error();
     if (const Result<Done> enough = check_budget(soup, options, *plan, gl.info()); !enough)
         return enough.error();
-    self->numbers_ = Numbering(soup);
-    if (!self->restore(options.saved))
-        if (const Result<Done> made = self->make_levels(progress); !made)
-            return made.error();
-    self->warn_of_dropped();
-    self->count_levels();
-    if (self->pages_.empty())
+    Result<BuiltScene> scene = build_scene(soup, options, *plan, log, progress);
+    if (!scene)
+        return scene.error();
+    std::unique_ptr<TwoLevel> self(new TwoLevel(std::move(*scene), gl, options, *plan, log));
+    if (self->scene_.pages.empty())
         return self; // every ray misses, no GPU needed
     self->share_out();
 
     const Result<Done> made = self->make_tracer(progress);
     if (made)
         return self;
-    if (made.error().kind != ErrorKind::OutOfGpuMemory || self->pages_.size() > 1 ||
+    if (made.error().kind != ErrorKind::OutOfGpuMemory || self->scene_.pages.size() > 1 ||
         options.leaf_triangles || options.leaves)
         return made.error();
     say(log, LogLevel::Warning, "cutting the scene into leaves, of which the GPU holds some");
     TwoLevelOptions cut = options;
-    cut.leaf_triangles = self->limits_.triangles;
+    cut.leaf_triangles = self->scene_.limits.triangles;
     self.reset();
     return build(soup, gl, cut, log, progress);
 }
 
-/// Level 1 and level 2 from the soup.
-Result<Done> TwoLevel::make_levels(BuildProgress* progress) {
-    const Stopwatch watch;
-    begin(progress, "triangles", 0.1, 2 * soup_.triangle_count());
-    Box bounds;
-    std::vector<TriangleId> triangles =
-        hittable_triangles(soup_, &statistics_.dropped, &bounds, progress);
-    twins_ = Twins::take_out(soup_, triangles, progress);
-    statistics_.seconds_level1 = watch.seconds();
-    triangles_ = triangles.size();
-    limits_ = limits_of(options_, plan_, triangles_);
-    Result<Levels> levels = build_levels(soup_, numbers_, triangles, bounds, limits_, progress);
-    if (!levels)
-        return levels.error();
-    take(std::move(*levels));
-    if (has_room())
-        return Done{};
-    const SmallestCut cut =
-        smallest_cut(soup_.triangle_count(), options_.leaf_triangles, options_.tell_active);
-    take(build_smallest_levels(soup_, numbers_, std::move(triangles), bounds, cut.leaf_triangles,
-                               progress));
-    assert(has_room()); // see check_budget()
-    return Done{};
-}
-
-void TwoLevel::take(Levels levels) {
-    level1_ = std::move(levels.level1);
-    pages_ = std::move(levels.pages);
-    statistics_.seconds_level1 += levels.seconds_level1;
-    statistics_.seconds_level2 += levels.seconds_level2;
-}
-
-/// Of the pool, for level 1.
-uint64_t TwoLevel::table_bytes() const {
-    const uint64_t active_bytes = options_.tell_active ? pages_.size() * sizeof(uint32_t) : 0;
-    return level1_texels(level1_) * sizeof(uvec4) + active_bytes;
-}
-
-/// Whether the pool holds level 1 and each of the pages.
-bool TwoLevel::has_room() const {
-    uint64_t largest = 0;
-    for (const Page& page : pages_)
-        largest = std::max(largest, page.bytes());
-    return pages_.empty() || table_bytes() + largest <= plan_.pool_bytes;
-}
-
-/// The same from what was saved; false where that will not do, and level 1 is to be made.
-bool TwoLevel::restore(Bytes saved) {
-    if (saved.empty())
-        return false;
-    const Stopwatch watch;
-    Result<std::optional<BuiltLevels>> found = restore_levels(
-        saved, soup_, [&](uint64_t triangles) { return limits_of(options_, plan_, triangles); });
-    if (!found) {
-        say(log_, LogLevel::Warning,
-            fmt::format("building anew: what was saved {}", found.error().message));
-        return false;
-    }
-    if (!*found) {
-        say(log_, LogLevel::Info,
-            "building anew: what was saved is of other meshes or other options");
-        return false;
-    }
-    BuiltLevels& levels = **found;
-    statistics_.dropped = levels.dropped;
-    twins_ = std::move(levels.twins);
-    triangles_ = levels.triangles;
-    limits_ = levels.limits;
-    level1_ = std::move(levels.level1);
-    pages_ = std::move(levels.pages);
-    statistics_.seconds_level1 = watch.seconds();
-    statistics_.from_saved = has_room();
-    return statistics_.from_saved;
-}
-
 Result<Done> TwoLevel::save(const ByteSink& sink) const {
-    if (!save_levels(soup_, {statistics_.dropped, twins_, triangles_, limits_, level1_, pages_},
-                     sink))
+    if (!save_levels(scene_, sink))
         return Error{"saving was stopped", ErrorKind::Cancelled};
     return Done{};
-}
-
-void TwoLevel::warn_of_dropped() const {
-    const Dropped& dropped = statistics_.dropped;
-    if (dropped.not_finite)
-        say(log_, LogLevel::Warning,
-            fmt::format("left out {} triangles with a NaN or infinite corner", dropped.not_finite));
-    if (dropped.degenerate)
-        say(log_, LogLevel::Warning,
-            fmt::format("left out {} triangles without area", dropped.degenerate));
-}
-
-void TwoLevel::count_levels() {
-    statistics_.twins = twins_.count();
-    for (const Page& page : pages_) {
-        statistics_.level2_bytes += page.bytes();
-        statistics_.largest_page_bytes = std::max(statistics_.largest_page_bytes, page.bytes());
-    }
-    statistics_.host_bytes =
-        statistics_.level2_bytes + level1_.reference_count() * sizeof(TriangleId) +
-        level1_.leaves.size() * sizeof(Leaf) + level1_.nodes.size() * sizeof(KdNode);
 }
 
 /// The pool and what rays need, in the context there is now; smaller where the driver has no room.
@@ -238,7 +66,7 @@ Result<Done> TwoLevel::make_tracer(BuildProgress* progress) {
             tracer_generation_ = state.generation;
             if (state.context.alive())
                 made = Tracer::create(plan_, {options_.certify, options_.compute}, gl_.info(),
-                                      state.kernels, level1_, pages_);
+                                      state.kernels, scene_.level1, scene_.pages);
             else
                 made = Error{"the GPU's context is lost", ErrorKind::DeviceLost};
         });
@@ -250,7 +78,7 @@ Result<Done> TwoLevel::make_tracer(BuildProgress* progress) {
             return lost();
         if (made.error().kind != ErrorKind::OutOfGpuMemory)
             return made.error();
-        const uint64_t smaller = std::max(plan_.pool_bytes / 2, statistics_.largest_page_bytes);
+        const uint64_t smaller = std::max(plan_.pool_bytes / 2, scene_.largest_page_bytes());
         if (smaller == plan_.pool_bytes)
             return Error{fmt::format("{}: it has no room for the largest page, {} bytes",
                                      made.error().message, smaller),
@@ -267,7 +95,7 @@ Result<Done> TwoLevel::make_tracer(BuildProgress* progress) {
 
 /// Makes anew what went with an earlier context, or with purge().
 Result<Done> TwoLevel::ready_device() {
-    if (pages_.empty() || (tracer_ && tracer_generation_ == gl_.generation()))
+    if (scene_.pages.empty() || (tracer_ && tracer_generation_ == gl_.generation()))
         return Done{};
     return make_tracer(nullptr);
 }
@@ -293,14 +121,15 @@ void TwoLevel::bring_first(BuildProgress* progress) {
     constexpr uint64_t kBytesAtOnce = 32 << 20; // between two looks whether to stop
     begin(progress, "moving pages to the GPU", 0.05, plan_.pool_bytes);
     uint64_t room = plan_.pool_bytes;
-    for (size_t next = 0; next < pages_.size() && pages_[next].bytes() <= room;) {
+    for (size_t next = 0; next < scene_.pages.size() && scene_.pages[next].bytes() <= room;) {
         std::vector<uint32_t> some;
         uint64_t bytes = 0;
-        for (; next < pages_.size() && pages_[next].bytes() <= room && bytes < kBytesAtOnce;
+        for (; next < scene_.pages.size() && scene_.pages[next].bytes() <= room &&
+               bytes < kBytesAtOnce;
              ++next) {
             some.push_back(uint32_t(next));
-            bytes += pages_[next].bytes();
-            room -= pages_[next].bytes();
+            bytes += scene_.pages[next].bytes();
+            room -= scene_.pages[next].bytes();
         }
         bring(some);
         add(progress, bytes);
@@ -314,9 +143,9 @@ TwoLevel::~TwoLevel() {
 
 /// Takes level 1 off the pool, and what no page needs.
 void TwoLevel::share_out() {
-    plan_.active_bytes = options_.tell_active ? pages_.size() * sizeof(uint32_t) : 0;
-    plan_.pool_bytes = std::min(plan_.pool_bytes - table_bytes(),
-                                most_linked_bytes(statistics_.level2_bytes, pages_.size()));
+    plan_.active_bytes = options_.tell_active ? scene_.pages.size() * sizeof(uint32_t) : 0;
+    plan_.pool_bytes = std::min(plan_.pool_bytes - table_bytes(scene_, options_),
+                                most_linked_bytes(scene_.level2_bytes(), scene_.pages.size()));
 }
 
 /// Moves the first pages of `wanted` in, as many as fit; returns how many.
@@ -329,12 +158,6 @@ size_t TwoLevel::bring(std::span<const uint32_t> wanted) {
     statistics_.pages_in += moved.pages;
     statistics_.bytes_in += moved.bytes;
     return moved.pages;
-}
-
-/// The number of a triangle that a ray shall not see; OVC_NO_TRIANGLE where it stands for others,
-/// which are to be found.
-uint32_t TwoLevel::number_to_skip(TriangleId id) const {
-    return id.mesh == kNone || twins_.stands_for_others(id) ? OVC_NO_TRIANGLE : numbers_.of(id);
 }
 
 /// The rays of the batch on their way; their answers into it. Beside them, pages of `wanted` are
@@ -444,19 +267,19 @@ Result<ovc_active> TwoLevel::take_active() {
         return Error{"which pages are active is told where ovc_scene_config.tell_active is 1"};
     if (Result<Done> ready = ready_device(); !ready)
         return ready.error();
-    std::vector<uint32_t> now(pages_.size());
+    std::vector<uint32_t> now(scene_.pages.size());
     gl_.run([&](GlState& state) {
         if (tracer_ && is_ours(state))
             now = tracer_->take_active();
     });
     ovc_active active{};
-    was_active_.resize(pages_.size());
+    was_active_.resize(scene_.pages.size());
     for (size_t leaf = 0; leaf < now.size(); ++leaf) {
         if (now[leaf]) {
             active.pages += 1;
-            active.bytes += pages_[leaf].bytes();
+            active.bytes += scene_.pages[leaf].bytes();
             active.new_pages += !was_active_[leaf];
-            active.new_bytes += was_active_[leaf] ? 0 : pages_[leaf].bytes();
+            active.new_bytes += was_active_[leaf] ? 0 : scene_.pages[leaf].bytes();
         }
         was_active_[leaf] = now[leaf] != 0;
     }
@@ -477,8 +300,9 @@ Result<Done> TwoLevel::intersect_noted(RaySpan rays, std::span<const TriangleId>
         return done;
     parallel_for(notes.leaf.size(), 1024, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
-            notes.leaf[i] =
-                hits[i].is_hit() ? leaf_at(level1_, rays[i].at(hits[i].t), hits[i].id) : kNone;
+            notes.leaf[i] = hits[i].is_hit()
+                                ? leaf_at(scene_.level1, rays[i].at(hits[i].t), hits[i].id)
+                                : kNone;
     });
     return Done{};
 }
@@ -493,7 +317,7 @@ bool TwoLevel::occluded_on_cpu(const Ray& ray, TriangleId skip) const {
 
 template <bool kAnyHit>
 Hit TwoLevel::on_cpu(const Ray& ray, TriangleId skip) const {
-    return arbitrate<kAnyHit>(soup_, numbers_, twins_, level1_, pages_, PreparedRay(ray, skip));
+    return trace_exactly<kAnyHit>(scene_, PreparedRay(ray, skip));
 }
 
 Result<Done> TwoLevel::occluded(RaySpan rays, std::span<const TriangleId> skip,

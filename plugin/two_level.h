@@ -5,14 +5,9 @@
 #pragma once
 
 #include "core/log.h"
-#include "core/numbering.h"
-#include "core/twins.h"
 #include "gpu/gl_thread.h"
-#include "gpu/page.h"
 #include "gpu/tracer.h"
-#include "kdtree/partition.h"
-#include "plugin/level2.h"
-#include "plugin/saved_levels.h"
+#include "plugin/build_scene.h"
 #include "plugin/structure.h"
 
 #include <algorithm>
@@ -26,41 +21,8 @@
 
 namespace ovc {
 
-struct TwoLevelOptions {
-    uint64_t budget_bytes = 0;   // 0: the device's default
-    uint64_t leaf_triangles = 0; // 0: a tenth of the scene, or all where that is better
-    uint64_t leaves = 0;         // instead: about this many
-    bool certify = true;         // false: fast precision, the kernel's own answers
-    bool compute = false;        // which kernel
-    bool tell_active = false;    // passes mark the pages that rays are traced through
-    /// Pages move in beside a pass. Default: on a GPU; a software renderer cannot do two things at
-    /// once, and what is moved before a pass has ended is some 20 % more.
-    std::optional<bool> beside;
-    uint64_t driver_bytes = ~uint64_t(0); // for tests: as in MemoryPlan
-    Bytes saved = {}; // what save() of a structure over the same soup wrote; outlives this one
-};
-
-/// The budget in bytes that the options ask for.
-uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device);
-
-/// Error: a budget too small for the scene, with the smallest that works.
-Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
-                          const DeviceInfo& device);
-
-/// What leaves may be under a plan of which level 1 is not yet taken off, where so many triangles
-/// can be hit.
-LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles);
-
-/// Error: more triangles than a scene takes.
-Result<Done> check_count(const Soup& soup);
-
-/// Sums over the life of a structure. Fields as in ovc_statistics.
+/// Sums over the life of a structure, beside what the scene tells. Fields as in ovc_statistics.
 struct TwoLevelStatistics {
-    Dropped dropped;
-    uint64_t twins = 0;
-    bool from_saved = false;
-    uint64_t largest_page_bytes = 0;
-    uint64_t level2_bytes = 0;
     uint64_t passes = 0;
     uint64_t pages_in = 0;
     uint64_t bytes_in = 0;
@@ -76,9 +38,6 @@ struct TwoLevelStatistics {
     uint64_t longest_queue = 0;
     uint64_t stragglers = 0; // answered in double, because too few waited to move a page for
     uint64_t peak_bytes = 0;
-    uint64_t host_bytes = 0;
-    double seconds_level1 = 0;
-    double seconds_level2 = 0;
     double seconds_trace = 0;
     double seconds_kernel = 0;
     double seconds_pass = 0;
@@ -113,20 +72,13 @@ public:
 
     const TwoLevelStatistics& statistics() const { return statistics_; }
     const MemoryPlan& plan() const { return plan_; }
-    const Level1& level1() const { return level1_; }
+    const BuiltScene& scene() const { return scene_; }
 
 private:
-    TwoLevel(const Soup& soup, GlThread& gl, const TwoLevelOptions& options, const MemoryPlan& plan,
+    TwoLevel(BuiltScene scene, GlThread& gl, const TwoLevelOptions& options, const MemoryPlan& plan,
              LogSink log)
-        : soup_(soup), gl_(gl), log_(std::move(log)), options_(options), plan_(plan) {}
+        : scene_(std::move(scene)), gl_(gl), log_(std::move(log)), options_(options), plan_(plan) {}
 
-    Result<Done> make_levels(BuildProgress* progress);
-    bool restore(Bytes saved);
-    void warn_of_dropped() const;
-    void count_levels();
-    void take(Levels levels);
-    bool has_room() const;
-    uint64_t table_bytes() const;
     void share_out();
     void bring_first(BuildProgress* progress);
     Result<Done> make_tracer(BuildProgress* progress);
@@ -137,7 +89,6 @@ private:
         return state.generation == tracer_generation_ && state.context.alive();
     }
     size_t bring(std::span<const uint32_t> wanted);
-    uint32_t number_to_skip(TriangleId id) const;
 
     /// Fewer rays are not worth a pass while others wait.
     size_t few_rays() const { return std::min<size_t>(4096, plan_.batch_rays / 4); }
@@ -200,17 +151,11 @@ private:
     template <class Query>
     Result<Done> trace_in_one_pass(const Query& query);
 
-    const Soup& soup_;
+    const BuiltScene scene_;
     GlThread& gl_;
     const LogSink log_;
     TwoLevelOptions options_;
     MemoryPlan plan_;
-    Numbering numbers_;
-    Twins twins_;
-    uint64_t triangles_ = 0; // in leaves, each once
-    LeafLimits limits_{};    // that leaves keep to
-    Level1 level1_;          // without twins
-    std::vector<Page> pages_;
     std::vector<uint8_t> was_active_; // per leaf: when take_active() was asked last
     std::unique_ptr<Tracer> tracer_;  // made and destroyed on the thread of gl_; none after purge()
     uint32_t tracer_generation_ = 0;  // of the context that it was made in

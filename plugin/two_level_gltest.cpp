@@ -82,8 +82,8 @@ TEST_F(TwoLevelGl, ManyRaysAreAnsweredAsFewAre) {
     for (size_t i = 0; i < rays.size(); ++i)
         ASSERT_TRUE(test::same(hits[i], expected[i])) << "ray " << i;
     EXPECT_GT(linked->statistics().passes, 1u);
-    EXPECT_EQ(linked->statistics().pages_in, linked->level1().leaves.size());
-    EXPECT_GT(moving->statistics().pages_in, moving->level1().leaves.size());
+    EXPECT_EQ(linked->statistics().pages_in, linked->scene().level1.leaves.size());
+    EXPECT_GT(moving->statistics().pages_in, moving->scene().level1.leaves.size());
     EXPECT_EQ(linked->statistics().invalid_rays, 160000u);
     EXPECT_LT(linked->statistics().ray_visits, 140000u);
 
@@ -225,10 +225,10 @@ TEST_F(TwoLevelGl, TwinsAnswerAsBruteForceDoes) {
             SCOPED_TRACE(name);
             const auto structure = build(soup, options);
             ASSERT_TRUE(structure);
-            EXPECT_EQ(structure->statistics().twins, ids.size() - once.triangle_count());
+            EXPECT_EQ(structure->scene().twins.count(), ids.size() - once.triangle_count());
             // Not the same: which triangles pair up depends on how they are numbered.
-            const auto alone = double(build(once, options)->statistics().level2_bytes);
-            EXPECT_NEAR(double(structure->statistics().level2_bytes), alone, 0.05 * alone);
+            const auto alone = double(build(once, options)->scene().level2_bytes());
+            EXPECT_NEAR(double(structure->scene().level2_bytes()), alone, 0.05 * alone);
             std::vector<Hit> hits(rays.size());
             std::vector<uint8_t> shadows(rays.size());
             ASSERT_TRUE(ok(structure->intersect(rays, skip, hits)));
@@ -363,7 +363,7 @@ TEST_F(TwoLevelGl, TiesAcrossLeavesAndCellsGoToTheSmallerId) {
 
 TEST_F(TwoLevelGl, KeepsToTheBudgetByMovingPages) {
     const Soup soup = test::random_soup(8, 60000, 0.01);
-    const uint64_t all = build(soup, {})->statistics().level2_bytes;
+    const uint64_t all = build(soup, {})->scene().level2_bytes();
     const auto rays = test::unpleasant_rays(soup, 12, 30000);
     const auto structure = build(soup, {.budget_bytes = all / 4});
     ASSERT_TRUE(structure);
@@ -371,14 +371,14 @@ TEST_F(TwoLevelGl, KeepsToTheBudgetByMovingPages) {
     ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
     const TwoLevelStatistics& s = structure->statistics();
     EXPECT_LE(s.peak_bytes, all / 4);
-    EXPECT_GT(s.pages_in, structure->level1().leaves.size()) << "nothing had to move twice";
-    EXPECT_GE(s.bytes_in, s.level2_bytes);
+    EXPECT_GT(s.pages_in, structure->scene().level1.leaves.size()) << "nothing had to move twice";
+    EXPECT_GE(s.bytes_in, structure->scene().level2_bytes());
 }
 
 TEST_F(TwoLevelGl, TellsTheLeafOfAHitAndThePassesOfARay) {
     const Soup soup = test::random_soup(8, 60000, 0.01);
     const auto rays = test::rays_from_outside(12, 30000);
-    const uint64_t all = build(soup, {})->statistics().level2_bytes;
+    const uint64_t all = build(soup, {})->scene().level2_bytes();
     for (const uint64_t budget : {uint64_t(0), all / 4}) {
         const auto structure = build(soup, {.budget_bytes = budget});
         ASSERT_TRUE(structure);
@@ -391,7 +391,7 @@ TEST_F(TwoLevelGl, TellsTheLeafOfAHitAndThePassesOfARay) {
             ASSERT_EQ(hits[i].is_hit(), leaf[i] != kNone) << "ray " << i;
             if (!hits[i].is_hit())
                 continue;
-            const Leaf& told = structure->level1().leaves[leaf[i]];
+            const Leaf& told = structure->scene().level1.leaves[leaf[i]];
             EXPECT_TRUE(std::ranges::binary_search(told.triangles, hits[i].id)) << "ray " << i;
             EXPECT_TRUE(told.cell.contains(rays[i].at(hits[i].t))) << "ray " << i;
             EXPECT_GE(passes[i], 1u) << "ray " << i;
@@ -425,7 +425,7 @@ TEST_F(TwoLevelGl, TellsThePagesThatRaysWentThrough) {
     const Soup soup = test::random_soup(8, 60000, 0.01);
     const auto aimed = test::rays_from_outside(12, 5000);
     const std::vector<Ray> few(aimed.begin(), aimed.begin() + 3);
-    const uint64_t all = build(soup, {})->statistics().level2_bytes;
+    const uint64_t all = build(soup, {})->scene().level2_bytes();
     for (const bool compute : {false, true})
         for (const uint64_t budget : {uint64_t(0), all / 4}) {
             const auto structure = build(
@@ -444,7 +444,7 @@ TEST_F(TwoLevelGl, TellsThePagesThatRaysWentThrough) {
             const Result<ovc_active> active = structure->take_active();
             ASSERT_TRUE(active) << active.error().message;
             EXPECT_GE(active->pages, hit);
-            EXPECT_LE(active->bytes, structure->statistics().level2_bytes);
+            EXPECT_LE(active->bytes, structure->scene().level2_bytes());
             EXPECT_EQ(active->pages, active->new_pages);
             // Fewer rays: no page is new.
             trace(few);

@@ -17,7 +17,7 @@ TEST_F(TwoLevelGl, GoesOnWithASmallerPoolWhereTheDriverHasNoRoom) {
     std::vector<std::string> warnings;
     const LogSink log = [&](LogLevel, std::string_view line) { warnings.emplace_back(line); };
     TwoLevelOptions options{.budget_bytes = 2u << 20, .leaf_triangles = 200};
-    const uint64_t level2_bytes = whole->statistics().level2_bytes;
+    const uint64_t level2_bytes = whole->scene().level2_bytes();
     options.driver_bytes = whole->plan().ray_bytes() + level2_bytes / 2;
     auto built = TwoLevel::build(soup, *gl, options, log);
     ASSERT_TRUE(built) << built.error().message;
@@ -39,10 +39,10 @@ TEST_F(TwoLevelGl, CutsASceneThatIsOneLeafWhereTheDriverHasNoRoom) {
     const auto rays = test::unpleasant_rays(soup, 5, 1000);
     TwoLevelOptions options{.budget_bytes = 2u << 20};
     const auto whole = build(soup, options);
-    ASSERT_EQ(whole->level1().leaves.size(), 1u);
-    options.driver_bytes = whole->plan().ray_bytes() + whole->statistics().level2_bytes / 2;
+    ASSERT_EQ(whole->scene().level1.leaves.size(), 1u);
+    options.driver_bytes = whole->plan().ray_bytes() + whole->scene().level2_bytes() / 2;
     const auto cut = build(soup, options);
-    EXPECT_GT(cut->level1().leaves.size(), 5u);
+    EXPECT_GT(cut->scene().level1.leaves.size(), 5u);
     std::vector<Hit> expected(rays.size()), hits(rays.size());
     ASSERT_TRUE(ok(whole->intersect(rays, {}, expected)));
     ASSERT_TRUE(ok(cut->intersect(rays, {}, hits)));

@@ -23,8 +23,8 @@ public:
     Wave(TwoLevel& structure, const Query& query)
         : Base(structure, query),
           positions_(query.rays.size()),
-          waiting_(structure.level1_.leaves.size()),
-          used_(structure.level1_.leaves.size()) {}
+          waiting_(structure.scene_.level1.leaves.size()),
+          used_(structure.scene_.level1.leaves.size()) {}
 
     /// The query's arrays have moved, or have more rays than before.
     void show(const Query& query) {
@@ -62,7 +62,7 @@ public:
     /// Answers all rays that wait, in double.
     void answer_waiting() {
         std::vector<uint32_t> rays;
-        for (uint32_t leaf = 0; leaf < s_.pages_.size(); ++leaf) {
+        for (uint32_t leaf = 0; leaf < s_.scene_.pages.size(); ++leaf) {
             const std::vector<uint32_t> queue = waiting_.take(leaf);
             rays.insert(rays.end(), queue.begin(), queue.end());
         }
@@ -188,7 +188,7 @@ private:
     /// in the leaf's cell: then nothing of later cells is nearer, nor as near. False where rounding
     /// would send it back: t must grow, or two cells at a corner pass a ray to and fro.
     bool go_on_behind(uint32_t i, uint32_t leaf, const PreparedRay& p, double end) {
-        const Box& cell = s_.level1_.leaves[leaf].cell;
+        const Box& cell = s_.scene_.level1.leaves[leaf].cell;
         // No rounding leads out of the cell.
         const Box safe = cell.padded(-(p.margin(cell) + cell.rounding()));
         const double exit = clip(p, cell, p.ray.t_min, p.ray.t_max).exit;
@@ -212,11 +212,11 @@ template <class... Queries>
 std::vector<uint32_t> TwoLevel::wanted_by(const Wave<Queries>&... waves) const {
     if ((waves.ready() + ...) >= few_rays() || (waves.waiting() + ...) == 0)
         return {};
-    std::vector<size_t> counts(pages_.size());
+    std::vector<size_t> counts(scene_.pages.size());
     for (uint32_t leaf = 0; leaf < counts.size(); ++leaf)
         counts[leaf] = (waves.queues().count(leaf) + ...);
     // Where active pages are told, each that a ray goes through is to be in the pool.
-    return worth_moving(counts, pages_, options_.tell_active ? ~uint64_t(0) : kBytesARay);
+    return worth_moving(counts, scene_.pages, options_.tell_active ? ~uint64_t(0) : kBytesARay);
 }
 
 /// Fills the batch with rays that are ready.

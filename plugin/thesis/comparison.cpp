@@ -4,7 +4,8 @@
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
-#include "gpu/page_walk.h"
+#include "plugin/candidates.h"
+#include "plugin/exact_fallback.h"
 #include "plugin/thesis/hittable.h"
 #include "shaders/layout.h"
 
@@ -27,27 +28,27 @@ Result<std::unique_ptr<Structure>> Comparison::build(const Soup& soup, GlThread&
     std::unique_ptr<Comparison> self(new Comparison(soup, gl, options));
     ovc_statistics& statistics = self->statistics_;
     statistics.gpu_budget_bytes = options.budget_bytes;
-    Hittable hittable = take_hittable(soup, statistics, log, progress);
-    self->twins_ = std::move(hittable.twins);
-    const std::vector<TriangleId>& triangles = hittable.triangles;
-    if (!triangles.empty())
-        if (const Result<Done> built = self->build_system(triangles, hittable.bounds, progress);
-            !built)
+    const Hittable hittable = take_hittable(self->scene_, statistics, log, progress);
+    if (!hittable.triangles.empty())
+        if (const Result<Done> built = self->build_system(hittable, progress); !built)
             return built.error();
     return std::unique_ptr<Structure>(std::move(self));
 }
 
-Result<Done> Comparison::build_system(const std::vector<TriangleId>& triangles, const Box& bounds,
-                                      BuildProgress* progress) {
+Result<Done> Comparison::build_system(const Hittable& hittable, BuildProgress* progress) {
+    const auto& [triangles, bounds] = hittable;
     begin(progress, thesis::name_of(options_.structure), 0.9,
           work_of(options_.structure, triangles.size()));
     const Stopwatch watch;
-    whole_ = whole_leaf(soup_, triangles, bounds);
+    scene_.level1.nodes = {KdNode::leaf(0, 1)};
+    scene_.level1.bounds = bounds;
+    scene_.level1.leaves = {whole_leaf(scene_.soup, triangles, bounds)};
     // What cannot fit is not built.
     const uint64_t least = least_bytes(options_.structure, triangles.size()) / sizeof(uvec4);
     if (const Result<MemoryPlan> plan = plan_memory(options_, least, "at least "); !plan)
         return plan.error();
-    Result<System> system = thesis::build_system(options_.structure, soup_, whole_, progress);
+    Result<System> system =
+        thesis::build_system(options_.structure, scene_.soup, whole(), progress);
     if (!system)
         return system.error();
     const Result<MemoryPlan> plan = plan_memory(options_, system->texels.size());
@@ -134,10 +135,10 @@ private:
         }
         bool decidable = true;
         PreparedRay p = prepare(query_, first_ + i);
-        if (c_.twins_.stands_for_others(p.skip))
+        if (c_.scene_.twins.stands_for_others(p.skip))
             p.skip = {}; // the others are to be found
         if (c_.runner_)
-            rays_[i] = frame_ray(c_.whole_, p, decidable);
+            rays_[i] = frame_ray(c_.whole(), p, decidable);
         decidable_[i] = decidable;
     }
 
@@ -161,54 +162,49 @@ private:
                 query_.set(first_ + i, fast_hit(p, answer));
             return true;
         }
-        const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
-        if (Query::kAnyHit && !has_rivals && answer.prim != OVC_MISS) {
-            query_.set(first_ + i, Hit{0, 0, 0, c_.whole_.triangles[answer.prim]});
+        const Candidates found = candidates(answer);
+        if (found.is_miss())
+            return true;
+        if (Query::kAnyHit && found.is_certain_hit()) {
+            query_.set(first_ + i, Hit{0, 0, 0, c_.scene_.numbers.id(found.certain)});
             return true;
         }
         Nearest nearest(p);
-        if (answer.prim != OVC_MISS && !offer(nearest, answer.prim, p.skip))
+        if (!found.offer_to(nearest, c_.scene_, p.skip))
             return false;
-        for (const uint32_t rival : answer.rivals())
-            if (rival != OVC_NO_TRIANGLE)
-                offer(nearest, rival, p.skip);
         query_.set(first_ + i, nearest);
-        flagged_ += has_rivals; // retrace() counts the others
+        flagged_ += found.has_further(); // retrace() counts the others
         return true;
     }
 
+    /// The kernels of the thesis name triangles by their index in the one leaf.
+    Candidates candidates(const FrameAnswer& answer) const {
+        const auto number = [&](uint32_t index) {
+            return index < c_.whole().triangles.size()
+                       ? c_.scene_.numbers.of(c_.whole().triangles[index])
+                       : index; // OVC_MISS, OVC_NO_TRIANGLE
+        };
+        return {number(answer.prim), {number(answer.rivals()[0]), number(answer.rivals()[1])}};
+    }
+
     Hit fast_hit(const PreparedRay& p, const FrameAnswer& answer) const {
-        const Hit hit{world_t(c_.whole_, p, answer.t()), answer.u(), answer.v(),
-                      c_.whole_.triangles[answer.prim]};
-        return c_.twins_.seen(c_.soup_, hit, p.skip);
+        const Hit hit{world_t(c_.whole(), p, answer.t()), answer.u(), answer.v(),
+                      c_.whole().triangles[answer.prim]};
+        return c_.scene_.twins.seen(c_.scene_.soup, hit, p.skip);
     }
 
-    bool offer(Nearest& nearest, uint32_t index, TriangleId skip) const {
-        const TriangleId id = c_.twins_.seen(c_.whole_.triangles[index], skip);
-        return nearest.offer(c_.soup_.triangle(id), id);
-    }
-
-    /// Builds the arbiter's page the first time; not within the loop over rays, whose threads would
-    /// wait for it.
+    /// Builds the page the first time; not within the loop over rays, whose threads would wait for
+    /// it.
     void retrace() {
-        if (c_.arbiter_.texels.empty())
-            c_.arbiter_ = build_page(c_.soup_, c_.whole_);
+        BuiltScene& scene = c_.scene_;
+        if (scene.pages.empty())
+            scene.pages.push_back(build_page(scene.soup, scene.numbers, c_.whole()));
         each_ray([&](size_t i) {
             if (retrace_[i])
-                decide_in_double(i);
+                query_.set(first_ + i,
+                           trace_exactly<Query::kAnyHit>(scene, prepare(query_, first_ + i)));
         });
         flagged_ += retraced_;
-    }
-
-    /// As the product's arbiter does in each leaf (plugin/arbiter.h).
-    void decide_in_double(size_t i) {
-        const PreparedRay p = prepare(query_, first_ + i);
-        Nearest nearest(p);
-        const auto test = [&](uint32_t index) {
-            return offer(nearest, index, p.skip) && Query::kAnyHit;
-        };
-        walk_page(c_.arbiter_, c_.whole_, p, p.ray.t_min, test, [&] { return nearest.limit(); });
-        query_.set(first_ + i, nearest);
     }
 
     Comparison& c_;

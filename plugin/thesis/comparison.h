@@ -3,13 +3,12 @@
 // answers: the kernel proves what it can, doubles decide the rest.
 #pragma once
 
-#include "core/twins.h"
-#include "gpu/page.h"
+#include "plugin/built_scene.h"
 #include "plugin/query.h"
 #include "plugin/structure.h"
 #include "plugin/thesis/runner.h"
 
-#include <vector>
+#include <memory>
 
 namespace ovc::thesis {
 
@@ -29,24 +28,21 @@ public:
 
 private:
     Comparison(const Soup& soup, GlThread& gl, const RunnerOptions& options)
-        : soup_(soup), gl_(gl), options_(options) {}
+        : scene_(soup), gl_(gl), options_(options) {}
 
-    Result<Done> build_system(const std::vector<TriangleId>& triangles, const Box& bounds,
-                              BuildProgress* progress);
+    const Leaf& whole() const { return scene_.level1.leaves.front(); }
+    Result<Done> build_system(const Hittable& hittable, BuildProgress* progress);
 
     template <class Query>
     class Batch;
     template <class Query>
     Result<Done> trace(const Query& query);
 
-    const Soup& soup_;
+    BuiltScene scene_; // of one leaf, whose page is built when a ray needs the exact fallback
     GlThread& gl_;
     RunnerOptions options_;
-    Twins twins_;
-    Leaf whole_; // without them
     uint32_t batch_rays_ = 0;
     std::unique_ptr<Runner> runner_; // made and destroyed on the thread of gl_; none: no triangles
-    Page arbiter_; // walked on the CPU; empty until a ray must be traced again in double
     ovc_statistics statistics_{sizeof(ovc_statistics)};
 };
 

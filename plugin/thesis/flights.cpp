@@ -3,7 +3,8 @@
 #include "plugin/thesis/flights.h"
 
 #include "core/parallel.h"
-#include "plugin/arbiter.h"
+#include "plugin/candidates.h"
+#include "plugin/exact_fallback.h"
 
 #include <algorithm>
 #include <cassert>
@@ -71,8 +72,8 @@ void Flights::find_leaf(Flight& flight) {
         return;
     const PreparedRay rest = rest_of(flight);
     flight.leaf = flight.state == Flight::InLastCell
-                      ? next_leaf_in_cell(s_.level1, rest, flight.place).leaf
-                      : next_leaf(s_.walk, s_.level1, rest, flight.place).leaf;
+                      ? next_leaf_in_cell(s_.built.level1, rest, flight.place).leaf
+                      : next_leaf(s_.walk, s_.built.level1, rest, flight.place).leaf;
 }
 
 void Flights::begin(Flight& flight) {
@@ -81,7 +82,7 @@ void Flights::begin(Flight& flight) {
         ++invalid_;
         return;
     }
-    if (!can_walk(s_.level1, PreparedRay(flight.ray))) {
+    if (!can_walk(s_.built.level1, PreparedRay(flight.ray))) {
         decide_in_double(flight);
         return;
     }
@@ -92,7 +93,7 @@ void Flights::begin(Flight& flight) {
 
 Result<Done> Flights::trace_next_leaf() {
     const uint32_t leaf =
-        queues_.choose([&](uint32_t l) { return s_.passes->resident(l); }, s_.pages);
+        queues_.choose([&](uint32_t l) { return s_.passes->resident(l); }, s_.built.pages);
     const std::vector<uint32_t> queue = queues_.take(leaf);
     const size_t most = s_.plan.batch_rays;
     for (size_t at = 0; at < queue.size(); at += most)
@@ -137,10 +138,8 @@ void Flights::load(uint32_t leaf, std::span<const uint32_t> batch) {
         for (size_t j = from; j < to; ++j) {
             const Flight& flight = flights_[batch[j]];
             bool decidable = true;
-            rays_[j] = frame_ray(s_.level1.leaves[leaf], rest_of(flight), decidable);
-            const bool sees_all =
-                flight.skip.mesh == kNone || s_.twins.stands_for_others(flight.skip);
-            rays_[j].skip = sees_all ? OVC_NO_TRIANGLE : s_.numbers.of(flight.skip);
+            rays_[j] = frame_ray(s_.built.level1.leaves[leaf], rest_of(flight), decidable);
+            rays_[j].skip = s_.built.number_to_skip(flight.skip);
             decidable_[j] = decidable;
         }
     });
@@ -160,38 +159,35 @@ void Flights::settle(Flight& flight, const FrameAnswer& answer, bool decidable) 
 /// Enters what the kernel found in the leaf. False where double does not find what the kernel was
 /// certain of.
 bool Flights::take_in(Flight& flight, const FrameAnswer& answer) {
-    const bool has_rivals = answer.rivals()[0] != OVC_NO_TRIANGLE;
-    if (answer.prim == OVC_MISS && !has_rivals)
+    const Candidates found{answer.prim, answer.rivals()};
+    if (found.is_miss())
         return true;
-    if (flight.any_hit && !has_rivals) {
-        flight.hit = {0, 0, 0, s_.numbers.id(answer.prim)}; // a certain hit decides
+    if (flight.any_hit && found.is_certain_hit()) {
+        flight.hit = {0, 0, 0, s_.built.numbers.id(found.certain)};
         flight.state = Flight::Answered;
         return true;
     }
     const PreparedRay p(flight.ray, flight.skip);
     Nearest nearest(p);
     if (flight.hit.is_hit())
-        nearest.offer(s_.soup.triangle(flight.hit.id), flight.hit.id);
-    if (answer.prim != OVC_MISS && !offer(nearest, answer.prim, p.skip))
+        s_.built.offer(nearest, flight.hit.id);
+    if (!found.offer_to(nearest, s_.built, p.skip))
         return false;
-    for (const uint32_t rival : answer.rivals())
-        if (rival != OVC_NO_TRIANGLE)
-            offer(nearest, rival, p.skip);
-    flagged_ += has_rivals; // decide_in_double() counts the others
+    flagged_ += found.has_further(); // decide_in_double() counts the others
     flight.hit = flight.any_hit ? nearest.unrounded_hit() : nearest.hit();
     if (flight.hit.is_hit())
-        end_at(flight, p, nearest.limit(), -p.margin(s_.level1.leaves[flight.leaf].cell));
+        end_at(flight, p, nearest.limit(), -p.margin(s_.built.level1.leaves[flight.leaf].cell));
     return true;
 }
 
 void Flights::take_in_fast(Flight& flight, const FrameAnswer& answer) {
     if (answer.prim == OVC_MISS)
         return;
-    const Leaf& leaf = s_.level1.leaves[flight.leaf];
+    const Leaf& leaf = s_.built.level1.leaves[flight.leaf];
     const PreparedRay p(flight.ray, flight.skip);
     const double t = world_t(leaf, p, answer.t());
-    const Hit hit = s_.twins.seen(s_.soup, {t, answer.u(), answer.v(), s_.numbers.id(answer.prim)},
-                                  flight.skip);
+    const Hit hit = s_.built.twins.seen(
+        s_.built.soup, {t, answer.u(), answer.v(), s_.built.numbers.id(answer.prim)}, flight.skip);
     if (hit.nearer_than(flight.hit))
         flight.hit = hit;
     // t is as good as float is: what lies on the cell's last plane may come out behind it.
@@ -203,23 +199,17 @@ void Flights::take_in_fast(Flight& flight, const FrameAnswer& answer) {
 /// in the leaf's cell, larger by `slack`: then nothing of later cells is nearer, nor as near.
 void Flights::end_at(Flight& flight, const PreparedRay& p, double end, double slack) {
     flight.t_end = std::min(flight.t_end, end);
-    const Box cell = s_.level1.leaves[flight.leaf].cell.padded(slack);
+    const Box cell = s_.built.level1.leaves[flight.leaf].cell.padded(slack);
     if (flight.any_hit)
         flight.state = Flight::Answered;
     else if (s_.walk.along_the_ray() && end <= clip(p, cell, p.ray.t_min, p.ray.t_max).exit)
         flight.state = Flight::InLastCell;
 }
 
-/// Offers what stands in the page as `number`.
-bool Flights::offer(Nearest& nearest, uint32_t number, TriangleId skip) const {
-    const TriangleId seen = s_.twins.seen(s_.numbers.id(number), skip);
-    return nearest.offer(s_.soup.triangle(seen), seen);
-}
-
 void Flights::decide_in_double(Flight& flight) {
     const PreparedRay p(flight.ray, flight.skip);
-    const auto arbiter = flight.any_hit ? arbitrate<true> : arbitrate<false>;
-    flight.hit = arbiter(s_.soup, s_.numbers, s_.twins, s_.level1, s_.pages, p);
+    flight.hit =
+        flight.any_hit ? trace_exactly<true>(s_.built, p) : trace_exactly<false>(s_.built, p);
     flight.state = Flight::Answered;
     ++flagged_;
     ++retraced_;

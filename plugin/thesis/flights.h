@@ -32,7 +32,7 @@ struct Flight {
 
 class Flights {
 public:
-    explicit Flights(QueuedScene& scene) : s_(scene), queues_(scene.level1.leaves.size()) {}
+    explicit Flights(QueuedScene& scene) : s_(scene), queues_(scene.built.level1.leaves.size()) {}
     ~Flights();
     Flights(const Flights&) = delete;
 
@@ -73,7 +73,6 @@ private:
     bool take_in(Flight& flight, const FrameAnswer& answer);
     void take_in_fast(Flight& flight, const FrameAnswer& answer);
     void end_at(Flight& flight, const PreparedRay& p, double end, double slack);
-    bool offer(Nearest& nearest, uint32_t number, TriangleId skip) const;
     void decide_in_double(Flight& flight);
 
     QueuedScene& s_;

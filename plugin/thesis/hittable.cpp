@@ -6,20 +6,18 @@
 
 namespace ovc::thesis {
 
-Hittable take_hittable(const Soup& soup, ovc_statistics& statistics, const LogSink& log,
+Hittable take_hittable(BuiltScene& scene, ovc_statistics& statistics, const LogSink& log,
                        BuildProgress* progress) {
-    Hittable hittable;
-    Dropped dropped;
-    hittable.triangles = hittable_triangles(soup, &dropped, &hittable.bounds, progress);
+    Hittable hittable = ovc::take_hittable(scene, progress);
+    const Dropped& dropped = scene.dropped;
     if (dropped.total())
         say(log, LogLevel::Warning,
             fmt::format("left out {} triangles with a NaN or infinite corner, {} without area",
                         dropped.not_finite, dropped.degenerate));
-    hittable.twins = Twins::take_out(soup, hittable.triangles, progress);
-    statistics.triangles = soup.triangle_count();
+    statistics.triangles = scene.soup.triangle_count();
     statistics.dropped_not_finite = dropped.not_finite;
     statistics.dropped_degenerate = dropped.degenerate;
-    statistics.twins = hittable.twins.count();
+    statistics.twins = scene.twins.count();
     return hittable;
 }
 

@@ -30,12 +30,13 @@ uint64_t most_triangles(const QueuedOptions& options, uint64_t triangles) {
 
 /// All pages. Returns the number of the largest.
 size_t build_pages(QueuedScene& scene, BuildProgress* progress) {
-    std::vector<Page>& pages = scene.pages;
+    std::vector<Page>& pages = scene.built.pages;
     pages.clear();
-    pages.resize(scene.level1.leaves.size());
+    pages.resize(scene.built.level1.leaves.size());
     parallel_for(pages.size(), 1, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
-            pages[i] = build_page(scene.soup, scene.numbers, scene.level1.leaves[i], progress);
+            pages[i] = build_page(scene.built.soup, scene.built.numbers,
+                                  scene.built.level1.leaves[i], progress);
     });
     const auto largest = std::max_element(pages.begin(), pages.end(),
                                           [](auto& a, auto& b) { return a.bytes() < b.bytes(); });
@@ -50,19 +51,19 @@ Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint
     most = std::clamp<uint64_t>(std::min(most, page_bytes / kBytesPerTriangle), 1, kNone);
     while (true) {
         Stopwatch watch;
-        scene.level1 = builder.cut(uint32_t(most), scene.walk);
+        scene.built.level1 = builder.cut(uint32_t(most), scene.walk);
         scene.statistics.seconds_level1 += watch.seconds();
         watch = Stopwatch();
         const size_t largest = build_pages(scene, progress);
         scene.statistics.seconds_level2 += watch.seconds();
-        const uint64_t bytes = scene.pages[largest].bytes();
+        const uint64_t bytes = scene.built.pages[largest].bytes();
         if (bytes <= page_bytes)
             return Done{};
         if (most == 1)
             return over_budget(
                 fmt::format("a page of one triangle does not fit into {} bytes", page_bytes));
         // What this page took a triangle, and a little more, tells how many fit.
-        const double triangles = double(scene.level1.leaves[largest].triangles.size());
+        const double triangles = double(scene.built.level1.leaves[largest].triangles.size());
         const uint64_t fit = uint64_t(0.95 * double(page_bytes) / double(bytes) * triangles);
         most = std::clamp<uint64_t>(fit, 1, most - 1);
     }
@@ -70,19 +71,17 @@ Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint
 
 void count(QueuedScene& scene) {
     ovc_statistics& statistics = scene.statistics;
-    statistics.leaves = scene.level1.leaves.size();
-    statistics.leaf_references = scene.level1.reference_count();
-    for (const Page& page : scene.pages) {
-        statistics.level2_bytes += page.bytes();
-        statistics.largest_page_bytes = std::max(statistics.largest_page_bytes, page.bytes());
-    }
+    statistics.leaves = scene.built.level1.leaves.size();
+    statistics.leaf_references = scene.built.level1.reference_count();
+    statistics.level2_bytes = scene.built.level2_bytes();
+    statistics.largest_page_bytes = scene.built.largest_page_bytes();
 }
 
 Result<Done> make_passes(QueuedScene& scene) {
     scene.plan.pool_bytes = std::min(scene.plan.pool_bytes, scene.statistics.level2_bytes);
     Result<std::unique_ptr<LeafPasses>> passes = Error{};
     scene.gl.run([&](GlState&) {
-        passes = LeafPasses::create(scene.plan, scene.gl.info(), scene.pages, scene.certify);
+        passes = LeafPasses::create(scene.plan, scene.gl.info(), scene.built.pages, scene.certify);
     });
     if (!passes)
         return passes.error();
@@ -114,11 +113,9 @@ Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThre
         return plan.error();
     scene->plan = *plan;
     scene->statistics.gpu_budget_bytes = plan->budget_bytes;
-    scene->numbers = Numbering(soup);
     const Stopwatch watch;
     begin(progress, "triangles", 0.1, 2 * soup.triangle_count());
-    Hittable hittable = take_hittable(soup, scene->statistics, log, progress);
-    scene->twins = std::move(hittable.twins);
+    const Hittable hittable = take_hittable(scene->built, scene->statistics, log, progress);
     if (hittable.triangles.empty())
         return scene;
     begin(progress, "levels 1 and 2", 0.9, 5 * hittable.triangles.size());

@@ -4,16 +4,13 @@
 #pragma once
 
 #include "core/log.h"
-#include "core/numbering.h"
-#include "core/twins.h"
 #include "gpu/gl_thread.h"
-#include "gpu/page.h"
+#include "plugin/built_scene.h"
 #include "plugin/overcast.h"
 #include "plugin/thesis/leaf_passes.h"
 #include "plugin/thesis/level1_walk.h"
 
 #include <memory>
-#include <vector>
 
 namespace ovc::thesis {
 
@@ -27,20 +24,16 @@ struct QueuedOptions {
 };
 
 struct QueuedScene {
-    QueuedScene(const Soup& soup_, GlThread& gl_, bool certify_)
-        : soup(soup_), gl(gl_), certify(certify_) {}
+    QueuedScene(const Soup& soup, GlThread& gl_, bool certify_)
+        : built(soup), gl(gl_), certify(certify_) {}
     ~QueuedScene();
     QueuedScene(const QueuedScene&) = delete;
 
-    const Soup& soup;
+    BuiltScene built;
     GlThread& gl;
     bool certify;
     ovc::MemoryPlan plan;
-    Numbering numbers;
-    Twins twins;
-    Level1 level1; // without them
     Level1Walk walk;
-    std::vector<Page> pages;            // of the leaves; name triangles by their numbers
     std::unique_ptr<LeafPasses> passes; // made and destroyed on the thread of gl; none: no leaves
     ovc_statistics statistics{sizeof(ovc_statistics)};
 };

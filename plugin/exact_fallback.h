@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The arbiter: a ray that float32 could not decide, traced in double through level 1 and the pages
-// in host memory. Equals the CPU KDT of kdtree/traverse.h bit for bit, because both test with
+// The exact fallback: a ray that float32 could not decide, traced in double through level 1 and the
+// pages in host memory. Equals the CPU KDT of kdtree/traverse.h bit for bit, because both test with
 // core/triangle.h every triangle that could be hit.
 #pragma once
 
-#include "core/numbering.h"
-#include "core/triangle.h"
-#include "core/twins.h"
-#include "gpu/page.h"
 #include "gpu/page_walk.h"
 #include "kdtree/approach.h"
-#include "kdtree/partition.h"
 #include "kdtree/walk.h"
-
-#include <span>
+#include "plugin/built_scene.h"
 
 namespace ovc {
 
-/// The nearest hit, or with kAnyHit some hit, of a valid ray. pages[i] belongs to level1.leaves[i];
-/// neither holds the twins that were taken out.
+/// The nearest hit, or with kAnyHit some hit, of a valid ray.
 template <bool kAnyHit>
-Hit arbitrate(const Soup& soup, const Numbering& numbers, const Twins& twins, const Level1& level1,
-              std::span<const Page> pages, const PreparedRay& p) {
+Hit trace_exactly(const BuiltScene& scene, const PreparedRay& p) {
+    const Level1& level1 = scene.level1;
     Nearest nearest(p);
     Approach approach(p, level1.bounds);
     const auto limit = [&] { return approach.limit(nearest); };
@@ -30,15 +23,15 @@ Hit arbitrate(const Soup& soup, const Numbering& numbers, const Twins& twins, co
         [&](const KdNode& cell, double, double) {
             for (uint32_t l = cell.first(); l < cell.first() + cell.count(); ++l) {
                 const auto test = [&](uint32_t number) {
-                    const TriangleId id = twins.seen(numbers.id(number), p.skip);
-                    const Triangle triangle = soup.triangle(id);
+                    const TriangleId id = scene.seen(number, p.skip);
+                    const Triangle triangle = scene.soup.triangle(id);
                     const bool hit = nearest.offer(triangle, id);
                     if (hit)
                         approach.note_hit(triangle);
                     return hit && kAnyHit;
                 };
-                if (walk_page(pages[l], level1.leaves[l], approach.ray(), approach.ray().ray.t_min,
-                              test, limit))
+                if (walk_page(scene.pages[l], level1.leaves[l], approach.ray(),
+                              approach.ray().ray.t_min, test, limit))
                     return true;
             }
             return false;

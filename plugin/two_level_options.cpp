@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a budget limits leaves, and which budgets are too small.
+#include "plugin/two_level_options.h"
+
+#include "gpu/level1_table.h"
+#include "plugin/page_rate.h"
+#include "plugin/smallest_budget.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ovc {
+namespace {
+
+// A page takes at most this share of the pool, so that some stay resident; and where leaves are
+// ours to choose, this one, so that rays bring in little that they do not go through: but it is
+// worth a move.
+constexpr uint64_t kPagesAtOnce = 3;
+constexpr uint64_t kPagesByDefault = 32;
+constexpr uint64_t kWorthMoving = 512 << 10; // bytes
+constexpr uint64_t kDefaultLeaves = 10;      // thesis, section 4
+
+} // namespace
+
+uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device) {
+    return options.budget_bytes ? options.budget_bytes : device.default_budget_bytes();
+}
+
+Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
+                          const DeviceInfo& device) {
+    const SmallestCut cut =
+        smallest_cut(soup.triangle_count(), options.leaf_triangles, options.tell_active);
+    if (plan.pool_bytes >= cut.pool_bytes)
+        return Done{};
+    return over_budget(fmt::format(
+        "a GPU budget of {} bytes is too small for this scene: the smallest that works is {} "
+        "bytes ({} triangles in leaves of {}, whose table and largest page take {}; an eighth is "
+        "for rays)",
+        plan.budget_bytes, smallest_budget(cut.pool_bytes, device), soup.triangle_count(),
+        cut.leaf_triangles, cut.pool_bytes));
+}
+
+/// The most that a page may take of the pool: a third, so that some stay resident; half of it where
+/// the table of as many leaves might not find room beside that.
+static uint64_t share_of_page(const MemoryPlan& plan, uint64_t triangles) {
+    constexpr uint64_t kTexelsPerLeaf = OVC_LEAF_TEXELS + 2; // two nodes of level 1
+    const uint64_t page_bytes = std::max<uint64_t>(plan.pool_bytes / kPagesAtOnce, 1);
+    const uint64_t leaves = triangles * kMostBytesPerTriangle / page_bytes;
+    const uint64_t table = leaves * kTexelsPerLeaf * sizeof(uvec4);
+    return table + page_bytes <= plan.pool_bytes ? page_bytes : plan.pool_bytes / 2;
+}
+
+LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles) {
+    // Halving ends between half full and full: this much on average gives about so many leaves.
+    constexpr double kFull = 0.7;
+    constexpr uint64_t kMostPageBytes = uint64_t(OVC_MAX_UNITS - 1) * OVC_UNIT_BYTES;
+    const uint64_t page_bytes = std::min(share_of_page(plan, triangles), kMostPageBytes);
+    if (options.leaf_triangles)
+        return {options.leaf_triangles, page_bytes};
+    double most = double(triangles) / double(kDefaultLeaves);
+    if (options.leaves)
+        most = double(triangles) / (options.leaves == 1 ? 1 : kFull * options.leaves);
+    LeafLimits limits{std::max<uint64_t>(uint64_t(std::ceil(most)), 1), page_bytes};
+    if (!options.leaves) {
+        limits.page_bytes = std::min(
+            page_bytes, std::max<uint64_t>(plan.pool_bytes / kPagesByDefault, kWorthMoving));
+        const uint64_t table = level1_texels(1, 1) * sizeof(uvec4) + sizeof(uint32_t);
+        const uint64_t room =
+            std::min(plan.pool_bytes - std::min(plan.pool_bytes, table), kMostPageBytes);
+        limits.whole_bytes = triangles <= room / kMostBytesPerTriangle ? LeafLimits::kAny : room;
+    }
+    return limits;
+}
+
+Result<Done> check_count(const Soup& soup) {
+    if (soup.triangle_count() > OVC_MAX_TRIANGLES)
+        return Error{fmt::format("{} triangles are too many: a scene takes {}",
+                                 soup.triangle_count(), OVC_MAX_TRIANGLES),
+                     ErrorKind::InvalidArgument};
+    return Done{};
+}
+
+} // namespace ovc

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// TwoLevelOptions: what a host asks of two-level, and what that makes of a budget.
+#pragma once
+
+#include "core/archive.h"
+#include "core/result.h"
+#include "core/soup.h"
+#include "gpu/tracer.h"
+#include "plugin/leaf_limits.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace ovc {
+
+struct TwoLevelOptions {
+    uint64_t budget_bytes = 0;   // 0: the device's default
+    uint64_t leaf_triangles = 0; // 0: a tenth of the scene, or all where that is better
+    uint64_t leaves = 0;         // instead: about this many
+    bool certify = true;         // false: fast precision, the kernel's own answers
+    bool compute = false;        // which kernel
+    bool tell_active = false;    // passes mark the pages that rays are traced through
+    /// Pages move in beside a pass. Default: on a GPU; a software renderer cannot do two things at
+    /// once, and what is moved before a pass has ended is some 20 % more.
+    std::optional<bool> beside;
+    uint64_t driver_bytes = ~uint64_t(0); // for tests: as in MemoryPlan
+    Bytes saved = {}; // what save() of a structure over the same soup wrote; outlives this one
+};
+
+/// The budget in bytes that the options ask for.
+uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device);
+
+/// Error: a budget too small for the scene, with the smallest that works.
+Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
+                          const DeviceInfo& device);
+
+/// What leaves may be under a plan of which level 1 is not yet taken off, where so many triangles
+/// can be hit.
+LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles);
+
+/// Error: more triangles than a scene takes.
+Result<Done> check_count(const Soup& soup);
+
+} // namespace ovc
