@@ -77,7 +77,7 @@ Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
 }
 
 ovc_statistics TwoLevel::report() const {
-    const TwoLevelStatistics& s = statistics();
+    const TraceStatistics& s = statistics_;
     ovc_statistics told = {sizeof(ovc_statistics),
                            scene_.soup.triangle_count(),
                            scene_.dropped.not_finite,
@@ -109,7 +109,7 @@ ovc_statistics TwoLevel::report() const {
                            s.longest_queue,
                            scene_.from_saved,
                            s.seconds_pass,
-                           tracer_ ? tracer_->ledger().in_use : 0};
+                           passes_.gpu_bytes()};
     told.stragglers = s.stragglers;
     return told;
 }

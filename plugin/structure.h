@@ -12,25 +12,14 @@
 #include "core/result.h"
 #include "core/soup.h"
 #include "gpu/gl_thread.h"
+#include "plugin/call_watch.h"
 #include "plugin/overcast.h"
 
-#include <atomic>
 #include <cassert>
 #include <memory>
 #include <span>
-#include <thread>
 
 namespace ovc {
-
-/// Who waits for rays, and may stop their tracing.
-class TraceWatch {
-public:
-    /// done: the share of the rays that is answered. false: stop.
-    virtual bool goes_on(double done) = 0;
-
-protected:
-    ~TraceWatch() = default;
-};
 
 /// Built over a soup. One call at a time, but for those that say otherwise.
 class Structure {
@@ -42,17 +31,14 @@ public:
     /// so.
     class Watched {
     public:
-        Watched(Structure& structure, TraceWatch* watch) : structure_(structure) {
-            structure_.watch_ = watch;
-            structure_.watching_ = std::this_thread::get_id();
-            structure_.share_ = 0;
-            structure_.cancelled_ = false;
+        Watched(Structure& structure, TraceWatch* watch) : watch_(structure.watch_) {
+            watch_.begin(watch);
         }
-        ~Watched() { structure_.watch_ = nullptr; }
+        ~Watched() { watch_.end(); }
         Watched(const Watched&) = delete;
 
     private:
-        Structure& structure_;
+        CallWatch& watch_;
     };
 
     /// hits[i] for rays[i]; skip: empty, or per ray the triangle it does not see.
@@ -94,34 +80,7 @@ public:
     virtual ovc_statistics report() const = 0;
 
 protected:
-    /// What a call of so many rays asks between passes.
-    Result<Done> go_on(size_t answered, size_t rays) {
-        share_ = double(answered) / double(rays);
-        keeps_on();
-        return unless_cancelled();
-    }
-    /// The end of a call: what was in vain is no answer.
-    Result<Done> unless_cancelled() const {
-        if (watch_ && cancelled_)
-            return Error{"cancelled", ErrorKind::Cancelled};
-        return Done{};
-    }
-    /// The same within a pass, from any thread, as often as something may take long. false: what is
-    /// under way is in vain.
-    bool keeps_on() const {
-        if (!watch_)
-            return true;
-        if (watching_ == std::this_thread::get_id() && !watch_->goes_on(share_))
-            cancelled_ = true;
-        return !cancelled_;
-    }
-    bool is_watched() const { return watch_ != nullptr; }
-
-private:
-    TraceWatch* watch_ = nullptr;
-    std::thread::id watching_;
-    double share_ = 0; // of the call's rays that is answered
-    mutable std::atomic<bool> cancelled_{false};
+    CallWatch watch_;
 };
 
 /// Throws a Failure for what this library cannot do on the device, as far as that can be told

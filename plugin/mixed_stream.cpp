@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mixed form over two-level: rays of both kinds are under way together, and what the host
 // spawns joins them before pages are moved. Based on: thesis, section 3.5 (algorithm 6).
+#include "plugin/mixed_stream.h"
+
 #include "core/backlog.h"
 #include "core/stopwatch.h"
-#include "plugin/wave.h"
+#include "plugin/wave_round.h"
 
 namespace ovc {
+namespace {
 
 /// Rays of one kind under way in a stream: each has a slot, from when it starts until its answer is
 /// handed over.
 template <class Query>
-class TwoLevel::Lane {
+class Lane {
     using Result = std::remove_reference_t<decltype(Query{}.results[0])>;
 
 public:
-    explicit Lane(TwoLevel& structure) : wave_(structure, Query{}) {}
+    Lane(const Tracing& tracing, PassRunner& passes) : wave_(tracing, passes, Query{}) {}
 
     Wave<Query>& wave() { return wave_; }
     void push(const StreamRays& rays) { backlog_.push(rays); }
@@ -95,17 +98,22 @@ private:
     Wave<Query> wave_;
 };
 
-class TwoLevel::Stream final : public RayStream {
+class MixedStream final : public RayStream {
 public:
-    Stream(TwoLevel& structure, StreamHost& host)
-        : s_(structure), host_(host), nearest_(structure), any_(structure) {}
+    MixedStream(const Tracing& tracing, PassRunner& passes, StreamHost& host)
+        : statistics_(tracing.statistics),
+          host_(host),
+          nearest_(tracing, passes),
+          any_(tracing, passes),
+          round_(tracing, passes, any_.wave(), nearest_.wave()) {}
 
     void push(const StreamRays& rays) override {
         rays.any_hit ? any_.push(rays) : nearest_.push(rays);
     }
 
-    /// What a pass answers is handed over while the next one runs; but where pages are moved before
-    /// it, so that what it spawns goes with that one.
+    /// The host gets the answers of a pass while the next one runs. Where pages are to be moved
+    /// before the next one, the host gets them first, so that the rays that it spawns join that
+    /// pass.
     ovc::Result<Done> run() {
         bool goes_on = true;
         while (goes_on && fill()) {
@@ -122,14 +130,11 @@ public:
             if (ready == 0 && beside)
                 continue;
             const Stopwatch watch;
-            const ovc::Result<Done> done = s_.round(
-                beside ? kPassRays : ~size_t(0),
-                [&] {
-                    goes_on = !beside || deliver();
-                    return goes_on;
-                },
-                any_.wave(), nearest_.wave());
-            s_.statistics_.seconds_trace += watch.seconds();
+            const ovc::Result<Done> done = round_.run(beside ? kPassRays : ~size_t(0), [&] {
+                goes_on = !beside || deliver();
+                return goes_on;
+            });
+            statistics_.seconds_trace += watch.seconds();
             if (!done)
                 return done;
         }
@@ -153,9 +158,9 @@ private:
         const Stopwatch watch;
         const size_t nearest = nearest_.start();
         const size_t any = any_.start();
-        s_.statistics_.nearest_rays += nearest;
-        s_.statistics_.occlusion_rays += any;
-        s_.statistics_.seconds_trace += watch.seconds();
+        statistics_.nearest_rays += nearest;
+        statistics_.occlusion_rays += any;
+        statistics_.seconds_trace += watch.seconds();
     }
 
     /// Rays a pass where no page need be moved: enough to keep a device busy, and few enough that
@@ -171,17 +176,18 @@ private:
         });
     }
 
-    TwoLevel& s_;
+    TraceStatistics& statistics_;
     StreamHost& host_;
     Lane<NearestQuery> nearest_;
     Lane<OcclusionQuery> any_;
+    WaveRound<OcclusionQuery, NearestQuery> round_;
     bool more_ = true;
 };
 
-Result<Done> TwoLevel::stream(StreamHost& host) {
-    if (Result<Done> ready = ready_device(); !ready)
-        return ready;
-    return Stream(*this, host).run();
+} // namespace
+
+Result<Done> trace_stream(const Tracing& tracing, PassRunner& passes, StreamHost& host) {
+    return MixedStream(tracing, passes, host).run();
 }
 
 } // namespace ovc
