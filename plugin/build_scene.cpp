@@ -5,7 +5,6 @@
 #include "gpu/level1_table.h"
 #include "plugin/level2.h"
 #include "plugin/saved_levels.h"
-#include "plugin/smallest_budget.h"
 
 #include <fmt/format.h>
 
@@ -67,8 +66,7 @@ Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const
         return done.error();
     if (has_room(scene, options, plan))
         return scene;
-    const SmallestCut cut =
-        smallest_cut(soup.triangle_count(), options.leaf_triangles, options.tell_active);
+    const SmallestCut cut = smallest_cut(soup, options);
     build_smallest_levels(scene, std::move(hittable), cut.leaf_triangles, progress);
     assert(has_room(scene, options, plan)); // see check_budget()
     return scene;

@@ -6,17 +6,57 @@
 #include "core/build_progress.h"
 #include "core/numbering.h"
 #include "core/soup.h"
+#include "core/stopwatch.h"
 #include "core/triangle.h"
 #include "core/twins.h"
 #include "gpu/page.h"
 #include "kdtree/partition.h"
-#include "plugin/leaf_limits.h"
 #include "shaders/layout.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 namespace ovc {
+
+/// About how many copies of a triangle leaves have together (as in LoosePairs) where its pages are
+/// to fit into little: what is too large for that is cut again.
+inline constexpr double kCopiesOfLeaves = 1.4;
+
+/// What leaves may be: so many triangles at most (> 0), and so many bytes of a page. But where all
+/// triangles fit into one page of `whole_bytes`, there is one leaf if rays gain by it.
+struct LeafLimits {
+    static constexpr uint64_t kAny = ~uint64_t(0);
+
+    uint64_t triangles;
+    uint64_t page_bytes;
+    uint64_t whole_bytes = 0; // 0: never one leaf for that; kAny: it fits, whatever it takes
+
+    /// How many triangles a leaf may have, of so many. rate(n, copies): about what a page of n
+    /// takes, in bytes a triangle (copies: as in LoosePairs); asked only where that matters.
+    /// one_leaf(): whether rays gain by one leaf (one_leaf.h), asked only where there may be one.
+    template <class Rate, class OneLeaf>
+    uint32_t most_of(uint64_t all, Rate&& rate, OneLeaf&& one_leaf) const {
+        if (whole_bytes > 0 && one_leaf() && (whole_bytes == kAny || fits(all, rate(all, 1))))
+            return kNone - 1;
+        return pages_matter() ? triangles_at(rate(triangles, kCopiesOfLeaves))
+                              : uint32_t(std::min<uint64_t>(triangles, kNone - 1));
+    }
+    /// The most bytes of a page where there are so many leaves.
+    uint64_t page_bytes_of(uint64_t leaves) const {
+        return leaves == 1 ? std::max(page_bytes, whole_bytes) : page_bytes;
+    }
+    /// Whether a page could be too large at all: else triangles alone decide.
+    bool pages_matter() const;
+    /// How many triangles a leaf may have for its page to fit where one takes so many bytes. At
+    /// least 1.
+    uint32_t triangles_at(double bytes_per_triangle) const;
+    /// The same for the parts of a leaf whose page was too large; less than it had.
+    uint32_t triangles_again(uint64_t triangles_before, uint64_t bytes_before) const;
+
+private:
+    bool fits(uint64_t all, double bytes_per_triangle) const;
+};
 
 struct BuiltScene {
     explicit BuiltScene(const Soup& soup_) : soup(soup_), numbers(soup_) {}
@@ -49,9 +89,23 @@ struct BuiltScene {
         return nearest.offer(soup.triangle(id), id);
     }
 
-    uint64_t level2_bytes() const;
-    uint64_t largest_page_bytes() const;
-    uint64_t host_bytes() const; // of level 1 and level 2
+    uint64_t level2_bytes() const {
+        uint64_t bytes = 0;
+        for (const Page& page : pages)
+            bytes += page.bytes();
+        return bytes;
+    }
+    uint64_t largest_page_bytes() const {
+        uint64_t bytes = 0;
+        for (const Page& page : pages)
+            bytes = std::max(bytes, page.bytes());
+        return bytes;
+    }
+    /// Of level 1 and level 2.
+    uint64_t host_bytes() const {
+        return level2_bytes() + level1.reference_count() * sizeof(TriangleId) +
+               level1.leaves.size() * sizeof(Leaf) + level1.nodes.size() * sizeof(KdNode);
+    }
 };
 
 /// The triangles that leaves are made of: those that can be hit, without twins.
@@ -61,6 +115,14 @@ struct Hittable {
 };
 
 /// Finds them, and enters in the scene what is left out. A triangle is two units of progress.
-Hittable take_hittable(BuiltScene& scene, BuildProgress* progress = nullptr);
+inline Hittable take_hittable(BuiltScene& scene, BuildProgress* progress = nullptr) {
+    const Stopwatch watch;
+    Hittable hittable;
+    hittable.triangles = hittable_triangles(scene.soup, &scene.dropped, &hittable.bounds, progress);
+    scene.twins = Twins::take_out(scene.soup, hittable.triangles, progress);
+    scene.triangles = hittable.triangles.size();
+    scene.seconds_level1 = watch.seconds();
+    return hittable;
+}
 
 } // namespace ovc

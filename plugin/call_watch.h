@@ -23,14 +23,21 @@ protected:
 /// What the call under way asks as it goes on: the watch that it was given, if it was given one.
 class CallWatch {
 public:
-    /// The watch, which may be nullptr, is asked on this thread alone.
-    void begin(TraceWatch* watch) {
-        watch_ = watch;
-        thread_ = std::this_thread::get_id();
-        share_ = 0;
-        cancelled_ = false;
-    }
-    void end() { watch_ = nullptr; }
+    /// While it lives, `watch`, which may be nullptr, is asked, on this thread alone.
+    class Scope {
+    public:
+        Scope(CallWatch& call, TraceWatch* watch) : call_(call) {
+            call.watch_ = watch;
+            call.thread_ = std::this_thread::get_id();
+            call.share_ = 0;
+            call.cancelled_ = false;
+        }
+        ~Scope() { call_.watch_ = nullptr; }
+        Scope(const Scope&) = delete;
+
+    private:
+        CallWatch& call_;
+    };
 
     bool is_watched() const { return watch_ != nullptr; }
 

@@ -10,7 +10,6 @@
 #include "plugin/level2.h"
 #include "plugin/one_leaf.h"
 #include "plugin/page_rate.h"
-#include "plugin/smallest_budget.h"
 
 #include <algorithm>
 #include <cmath>
@@ -157,26 +156,30 @@ uint64_t fitting(std::span<const uint64_t> pages, uint64_t bytes) {
 
 } // namespace
 
-Result<Forecast> forecast(const Soup& soup, const TwoLevelOptions& options,
+Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
                           const DeviceInfo& device, BuildProgress* progress) {
-    const Result<MemoryPlan> plan = plan_memory(budget_of(options, device), device);
-    if (!plan)
-        return plan.error();
+    const Result<MemoryPlan> memory = plan_memory(budget_of(options, device), device);
+    if (!memory)
+        return memory.error();
     if (const Result<Done> fine = check_count(soup); !fine)
         return fine.error();
     begin(progress, "planning", 1, 6 * soup.triangle_count());
     BuiltScene scene(soup);
     const Hittable hittable = take_hittable(scene, progress);
     const auto& [triangles, bounds] = hittable;
-    Forecast f;
-    f.triangles = triangles.size() + scene.twins.count();
-    const SmallestCut cut =
-        smallest_cut(soup.triangle_count(), options.leaf_triangles, options.tell_active);
-    f.smallest_budget_bytes = smallest_budget(cut.pool_bytes, device);
-    f.fits = plan->pool_bytes >= cut.pool_bytes;
+    const SmallestCut cut = smallest_cut(soup, options);
+    ovc_plan plan{};
+    plan.struct_size = sizeof(plan);
+    plan.triangles = soup.triangle_count();
+    plan.hittable = triangles.size() + scene.twins.count();
+    plan.gpu_budget_bytes = memory->budget_bytes;
+    plan.smallest_budget_bytes = smallest_budget(cut.pool_bytes, device);
+    plan.ray_bytes = memory->ray_bytes();
+    plan.batch_rays = memory->batch_rays;
+    plan.fits = memory->pool_bytes >= cut.pool_bytes;
     if (triangles.empty())
-        return f;
-    scene.limits = limits_of(options, *plan, triangles.size());
+        return plan;
+    scene.limits = limits_of(options, *memory, triangles.size());
     Sizes sizes;
     if (triangles.size() <= kBuiltAtOnce) {
         if (const Result<Done> built = build_levels(scene, hittable, progress); !built)
@@ -185,18 +188,19 @@ Result<Forecast> forecast(const Soup& soup, const TwoLevelOptions& options,
     } else {
         sizes = Estimator(soup, triangles, bounds, progress).estimate(scene.limits);
     }
-    f.leaves = sizes.pages.size();
-    f.references = sizes.references;
-    f.level2_bytes = sizes.level2_bytes();
-    f.largest_page_bytes = sizes.largest_page;
-    f.level1_bytes = level1_texels(f.leaves, sizes.nodes) * sizeof(uvec4);
-    if (f.fits)
-        f.pool_bytes = std::min(plan->pool_bytes - std::min(plan->pool_bytes, f.level1_bytes),
-                                most_linked_bytes(f.level2_bytes, f.leaves));
-    f.resident_pages = fitting(sizes.pages, f.pool_bytes);
-    f.host_bytes = f.level2_bytes + f.references * sizeof(TriangleId) + f.leaves * sizeof(Leaf) +
-                   sizes.nodes * sizeof(KdNode);
-    return f;
+    plan.leaves = sizes.pages.size();
+    plan.leaf_references = sizes.references;
+    plan.level2_bytes = sizes.level2_bytes();
+    plan.largest_page_bytes = sizes.largest_page;
+    plan.level1_bytes = level1_texels(plan.leaves, sizes.nodes) * sizeof(uvec4);
+    if (plan.fits)
+        plan.pool_bytes =
+            std::min(memory->pool_bytes - std::min(memory->pool_bytes, plan.level1_bytes),
+                     most_linked_bytes(plan.level2_bytes, plan.leaves));
+    plan.resident_pages = fitting(sizes.pages, plan.pool_bytes);
+    plan.host_bytes = plan.level2_bytes + plan.leaf_references * sizeof(TriangleId) +
+                      plan.leaves * sizeof(Leaf) + sizes.nodes * sizeof(KdNode);
+    return plan;
 }
 
 } // namespace ovc

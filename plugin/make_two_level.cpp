@@ -51,66 +51,25 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
 
 Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
                                 const ovc_scene_config& config, BuildProgress* progress) {
-    const TwoLevelOptions options = options_of(config);
-    const Result<Forecast> told = forecast(soup, options, device, progress);
-    if (!told)
-        return told.error();
-    const MemoryPlan memory = *plan_memory(budget_of(options, device), device);
-    ovc_plan plan{};
-    plan.struct_size = sizeof(plan);
-    plan.triangles = soup.triangle_count();
-    plan.hittable = told->triangles;
-    plan.leaves = told->leaves;
-    plan.leaf_references = told->references;
-    plan.level2_bytes = told->level2_bytes;
-    plan.largest_page_bytes = told->largest_page_bytes;
-    plan.gpu_budget_bytes = memory.budget_bytes;
-    plan.smallest_budget_bytes = told->smallest_budget_bytes;
-    plan.ray_bytes = memory.ray_bytes();
-    plan.level1_bytes = told->level1_bytes;
-    plan.pool_bytes = told->pool_bytes;
-    plan.resident_pages = told->resident_pages;
-    plan.host_bytes = told->host_bytes;
-    plan.batch_rays = memory.batch_rays;
-    plan.fits = told->fits;
-    return plan;
+    return forecast(soup, options_of(config), device, progress);
 }
 
 ovc_statistics TwoLevel::report() const {
-    const TraceStatistics& s = statistics_;
-    ovc_statistics told = {sizeof(ovc_statistics),
-                           scene_.soup.triangle_count(),
-                           scene_.dropped.not_finite,
-                           scene_.dropped.degenerate,
-                           scene_.twins.count(),
-                           scene_.level1.leaves.size(),
-                           scene_.level1.reference_count(),
-                           scene_.level2_bytes(),
-                           scene_.largest_page_bytes(),
-                           plan().budget_bytes,
-                           s.peak_bytes,
-                           s.passes,
-                           s.pages_in,
-                           s.bytes_in,
-                           s.nearest_rays,
-                           s.occlusion_rays,
-                           s.invalid_rays,
-                           s.ray_visits,
-                           s.flagged,
-                           s.retraced,
-                           s.capped,
-                           scene_.seconds_level1,
-                           scene_.seconds_level2,
-                           s.seconds_trace,
-                           s.seconds_kernel,
-                           scene_.host_bytes(),
-                           s.queues,
-                           s.queued_rays,
-                           s.longest_queue,
-                           scene_.from_saved,
-                           s.seconds_pass,
-                           passes_.gpu_bytes()};
-    told.stragglers = s.stragglers;
+    ovc_statistics told = statistics_;
+    told.triangles = scene_.soup.triangle_count();
+    told.dropped_not_finite = scene_.dropped.not_finite;
+    told.dropped_degenerate = scene_.dropped.degenerate;
+    told.twins = scene_.twins.count();
+    told.leaves = scene_.level1.leaves.size();
+    told.leaf_references = scene_.level1.reference_count();
+    told.level2_bytes = scene_.level2_bytes();
+    told.largest_page_bytes = scene_.largest_page_bytes();
+    told.gpu_budget_bytes = plan().budget_bytes;
+    told.seconds_level1 = scene_.seconds_level1;
+    told.seconds_level2 = scene_.seconds_level2;
+    told.host_bytes = scene_.host_bytes();
+    told.from_saved = scene_.from_saved;
+    told.gpu_bytes = passes_.gpu_bytes();
     return told;
 }
 

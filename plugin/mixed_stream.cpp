@@ -176,7 +176,7 @@ private:
         });
     }
 
-    TraceStatistics& statistics_;
+    ovc_statistics& statistics_;
     StreamHost& host_;
     Lane<NearestQuery> nearest_;
     Lane<OcclusionQuery> any_;

@@ -54,8 +54,8 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
         plan_.pool_bytes = smaller;
     }
     bring_first(progress);
-    tracing_.statistics.peak_bytes =
-        std::max(tracing_.statistics.peak_bytes, tracer_->ledger().peak);
+    tracing_.statistics.gpu_peak_bytes =
+        std::max(tracing_.statistics.gpu_peak_bytes, tracer_->ledger().peak);
     return Done{};
 }
 
@@ -135,7 +135,7 @@ Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
         return lost();
     if (!done)
         return done.error();
-    TraceStatistics& statistics = tracing_.statistics;
+    ovc_statistics& statistics = tracing_.statistics;
     statistics.passes += 1;
     statistics.ray_visits += count;
     statistics.seconds_pass += seconds;

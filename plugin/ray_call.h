@@ -94,7 +94,7 @@ inline void check_notes(const RayCall& call, const Structure& structure) {
 inline void trace(const RayCall& call, Structure& structure, TraceWatch* watch) {
     check_notes(call, structure);
     const auto skip = skip_of(call.query, call.rays.size());
-    const Structure::Watched watched(structure, watch);
+    const CallWatch::Scope watched(structure.call_watch(), watch);
     if (watch && !watch->goes_on(0))
         cancelled(call.name);
     const Result<Done> done =

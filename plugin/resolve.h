@@ -31,7 +31,7 @@ public:
           query_(query),
           box_(scene_.level1.bounds.padded(scene_.level1.padding)) {}
     ~Resolver() {
-        TraceStatistics& statistics = tracing_.statistics;
+        ovc_statistics& statistics = tracing_.statistics;
         statistics.invalid_rays += invalid_;
         statistics.flagged += flagged_;
         statistics.retraced += retraced_;

@@ -26,20 +26,9 @@ class Structure {
 public:
     virtual ~Structure() = default;
 
-    /// While it lives, intersect and occluded, called on this thread, ask `watch` here as they go
-    /// on, if it is not nullptr and the structure can; Error of the kind Cancelled where it says
-    /// so.
-    class Watched {
-    public:
-        Watched(Structure& structure, TraceWatch* watch) : watch_(structure.watch_) {
-            watch_.begin(watch);
-        }
-        ~Watched() { watch_.end(); }
-        Watched(const Watched&) = delete;
-
-    private:
-        CallWatch& watch_;
-    };
+    /// What intersect and occluded ask as they go on, if the structure can. Error of the kind
+    /// Cancelled where they are told to stop.
+    CallWatch& call_watch() { return watch_; }
 
     /// hits[i] for rays[i]; skip: empty, or per ray the triangle it does not see.
     virtual Result<Done> intersect(RaySpan rays, std::span<const TriangleId> skip,

@@ -41,7 +41,7 @@ public:
     Result<Done> purge() override;
 
     const BuiltScene& scene() const { return scene_; }
-    const TraceStatistics& statistics() const { return statistics_; }
+    const ovc_statistics& statistics() const { return statistics_; }
     const MemoryPlan& plan() const { return passes_.plan(); }
 
 private:
@@ -54,7 +54,7 @@ private:
 
     const BuiltScene scene_;
     const TwoLevelOptions options_;
-    TraceStatistics statistics_;
+    ovc_statistics statistics_{sizeof(ovc_statistics)};
     const Tracing tracing_{scene_, options_, statistics_, watch_};
     PassRunner passes_;
     std::vector<uint8_t> was_active_; // per leaf: when take_active() was asked last

@@ -39,8 +39,8 @@ TEST_F(TwoLevelGl, EqualsBruteForceBitForBit) {
             const auto structure = build(soup, options);
             ASSERT_TRUE(structure);
             test::expect_answers(*structure, rays, expected);
-            const TraceStatistics& s = structure->statistics();
-            EXPECT_LE(s.peak_bytes, structure->plan().budget_bytes);
+            const ovc_statistics& s = structure->statistics();
+            EXPECT_LE(s.gpu_peak_bytes, structure->plan().budget_bytes);
             EXPECT_EQ(s.nearest_rays, rays.size());
         }
     }
@@ -309,7 +309,7 @@ TEST_F(TwoLevelGl, ALoopThatTheDriverEndsIsCountedAndDecidedInDouble) {
             EXPECT_EQ(hits[0].id, (TriangleId{0, 0}));
             EXPECT_FALSE(hits[1].is_hit());
             EXPECT_EQ(hits[2].id, (TriangleId{0, 199'999}));
-            const TraceStatistics& s = structure->statistics();
+            const ovc_statistics& s = structure->statistics();
             EXPECT_LE(s.capped, s.retraced);
             if (gl->info().is_software) {
                 EXPECT_EQ(s.capped, certify ? 2u : 1u) << "no loop was ended: nothing was tested";
@@ -369,8 +369,8 @@ TEST_F(TwoLevelGl, KeepsToTheBudgetByMovingPages) {
     ASSERT_TRUE(structure);
     std::vector<Hit> hits(rays.size());
     ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
-    const TraceStatistics& s = structure->statistics();
-    EXPECT_LE(s.peak_bytes, all / 4);
+    const ovc_statistics& s = structure->statistics();
+    EXPECT_LE(s.gpu_peak_bytes, all / 4);
     EXPECT_GT(s.pages_in, structure->scene().level1.leaves.size()) << "nothing had to move twice";
     EXPECT_GE(s.bytes_in, structure->scene().level2_bytes());
 }

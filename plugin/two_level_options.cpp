@@ -4,7 +4,6 @@
 
 #include "gpu/level1_table.h"
 #include "plugin/page_rate.h"
-#include "plugin/smallest_budget.h"
 
 #include <fmt/format.h>
 
@@ -28,10 +27,41 @@ uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device) {
     return options.budget_bytes ? options.budget_bytes : device.default_budget_bytes();
 }
 
+SmallestCut smallest_cut(const Soup& soup, const TwoLevelOptions& options) {
+    const uint64_t triangles = soup.triangle_count(); // whether they can be hit or not
+    const uint64_t active_bytes = options.tell_active ? sizeof(uint32_t) : 0;
+    if (triangles == 0)
+        return {};
+    const uint64_t first_bytes = level1_texels(1, 1) * sizeof(uvec4) + active_bytes;
+    const uint64_t leaf_bytes =
+        (level1_texels(2, 1) - level1_texels(1, 1)) * sizeof(uvec4) + active_bytes;
+    const double balanced =
+        std::sqrt(double(triangles) * double(leaf_bytes) / double(kMaxUncutBytesPerTriangle));
+    uint64_t most =
+        std::clamp<uint64_t>(uint64_t(balanced), 1, std::min(triangles, uint64_t(kNone - 1)));
+    if (options.leaf_triangles)
+        most = std::min(most, options.leaf_triangles);
+    const uint64_t leaves = (triangles + most - 1) / most;
+    const uint64_t table = first_bytes + (leaves - 1) * leaf_bytes;
+    return {uint32_t(most), table + kPageStart + most * kMaxUncutBytesPerTriangle};
+}
+
+uint64_t smallest_budget(uint64_t pool_bytes, const DeviceInfo& device) {
+    const auto holds = [&](uint64_t budget) {
+        const Result<MemoryPlan> plan = plan_memory(budget, device);
+        return plan && plan->pool_bytes >= pool_bytes;
+    };
+    uint64_t low = 0, high = 2 * pool_bytes + (1 << 20); // a pool is never less than half of that
+    while (high - low > 1) {
+        const uint64_t middle = low + (high - low) / 2;
+        (holds(middle) ? high : low) = middle;
+    }
+    return high;
+}
+
 Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
                           const DeviceInfo& device) {
-    const SmallestCut cut =
-        smallest_cut(soup.triangle_count(), options.leaf_triangles, options.tell_active);
+    const SmallestCut cut = smallest_cut(soup, options);
     if (plan.pool_bytes >= cut.pool_bytes)
         return Done{};
     return over_budget(fmt::format(

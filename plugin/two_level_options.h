@@ -6,7 +6,7 @@
 #include "core/result.h"
 #include "core/soup.h"
 #include "gpu/tracer.h"
-#include "plugin/leaf_limits.h"
+#include "plugin/built_scene.h"
 
 #include <cstdint>
 #include <optional>
@@ -29,6 +29,21 @@ struct TwoLevelOptions {
 
 /// The budget in bytes that the options ask for.
 uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device);
+
+/// Of a page in which planes cut nothing: a unit a triangle, and a node above every two.
+inline constexpr uint64_t kMaxUncutBytesPerTriangle = 128;
+
+/// How a scene is cut where hardly anything fits: leaves by count (kdtree/partition.h), all of them
+/// about as large as level 1's table is, which takes the least together. Told by counts alone, so
+/// that plan and commit say the same before anything is built, and every larger budget works too.
+struct SmallestCut {
+    uint32_t leaf_triangles = 1;
+    uint64_t pool_bytes = 0; // that the table and the largest page take, at most
+};
+SmallestCut smallest_cut(const Soup& soup, const TwoLevelOptions& options);
+
+/// The smallest budget that leaves so much to the pool.
+uint64_t smallest_budget(uint64_t pool_bytes, const DeviceInfo& device);
 
 /// Error: a budget too small for the scene, with the smallest that works.
 Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,

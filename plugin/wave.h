@@ -50,7 +50,7 @@ public:
         for (const uint32_t leaf : leaves) {
             const std::vector<uint32_t> queue = waiting_.take(leaf);
             ready_.insert(ready_.end(), queue.begin(), queue.end());
-            TraceStatistics& statistics = tracing_.statistics;
+            ovc_statistics& statistics = tracing_.statistics;
             statistics.queues += !queue.empty();
             statistics.queued_rays += queue.size();
             statistics.longest_queue = std::max<uint64_t>(statistics.longest_queue, queue.size());
