@@ -20,6 +20,11 @@ namespace ovc {
 
 inline constexpr size_t kRaysPerTask = 256; // of parallel loops over rays that are traced
 
+/// Of an answer in certified precision that names triangles or OVC_MISS.
+inline Candidates candidates_of(const Answer& answer) {
+    return {answer.prim, {answer.rivals()[0], answer.rivals()[1]}};
+}
+
 /// The part that is the same however rays come to their leaves. Its members may be called for
 /// different rays at once; its counts go to the statistics when it is destroyed.
 template <class Query>
@@ -125,7 +130,7 @@ private:
     /// Whether the answer names the nearest hit, and nothing is left to decide but t, u and v.
     bool is_certain_hit(uint32_t i, const Answer& answer) const {
         return !Query::kAnyHit && tracing_.options.certify && answer.prim < OVC_MAX_TRIANGLES &&
-               answer.rivals()[0] == OVC_NO_TRIANGLE && !query_.was_hit(i);
+               !candidates_of(answer).has_further() && !query_.was_hit(i);
     }
 
     template <class GoOn>
@@ -152,7 +157,7 @@ private:
     /// False where exact arithmetic does not confirm the certain hit, or go_on() says so.
     template <class GoOn>
     bool resolve_candidates(uint32_t i, const Answer& answer, GoOn&& go_on) {
-        const Candidates found{answer.prim, {answer.rivals()[0], answer.rivals()[1]}};
+        const Candidates found = candidates_of(answer);
         if (found.is_miss())
             return true;
         if (Query::kAnyHit && found.is_certain_hit()) {

@@ -149,7 +149,7 @@ private:
             // The answer is that of all leaves before the one whose key it has, if any.
             if (answer.key() != OVC_NO_LEAF)
                 at = {at.t_from, at.t_end, answer.key(), State::Waits};
-            if (answer.prim == OVC_MISS && answer.rivals()[0] == OVC_NO_TRIANGLE)
+            if (candidates_of(answer).is_miss())
                 return false;
             at.stage = State::Done;
             return true;
@@ -174,7 +174,7 @@ private:
     /// In certified precision an answer that names a triangle names the leaf it ended in.
     void note_use(const Answer& answer) {
         const bool names = answer.prim < OVC_MAX_TRIANGLES ||
-                           (answer.prim == OVC_MISS && answer.rivals()[0] != OVC_NO_TRIANGLE);
+                           (answer.prim == OVC_MISS && candidates_of(answer).has_further());
         if (!tracing_.options.certify || !names || answer.leaf() == OVC_NO_LEAF)
             return;
         std::atomic<uint8_t>& used = used_[answer.leaf()];

@@ -105,7 +105,7 @@ public:
             c_.statistics_.seconds_pass += watch.seconds();
             c_.statistics_.seconds_kernel = c_.statistics_.seconds_pass;
             c_.statistics_.ray_visits += count_;
-            each_ray([&](size_t i) { settle(i); });
+            each_ray([&](size_t i) { resolve(i); });
             if (retraced_ > 0)
                 retrace();
         }
@@ -142,21 +142,21 @@ private:
         decidable_[i] = decidable;
     }
 
-    void settle(size_t i) {
+    void resolve(size_t i) {
         const FrameAnswer& answer = answers_[i];
         if (decidable_[i] && rays_[i].t_end < 0)
             return; // invalid, or past the scene
         const PreparedRay p = prepare(query_, first_ + i);
         capped_ += decidable_[i] && answer.prim == OVC_CAPPED;
         const bool named = decidable_[i] && answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
-        if (!named || !take_in(i, p, answer)) {
+        if (!named || !resolve_candidates(i, p, answer)) {
             retrace_[i] = true;
             ++retraced_;
         }
     }
 
-    /// False when double does not find what the kernel was certain of.
-    bool take_in(size_t i, const PreparedRay& p, const FrameAnswer& answer) {
+    /// False where exact arithmetic does not confirm the certain hit.
+    bool resolve_candidates(size_t i, const PreparedRay& p, const FrameAnswer& answer) {
         if (!c_.options_.certify) {
             if (answer.prim != OVC_MISS)
                 query_.set(first_ + i, fast_hit(p, answer));

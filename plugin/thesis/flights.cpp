@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flights: from level 1 into a queue, through a pass, and back; certain hits settled in double.
+// Flights: from level 1 into a queue, through a pass, and back; what the kernel leaves is resolved.
 #include "plugin/thesis/flights.h"
 
 #include "core/parallel.h"
@@ -83,7 +83,7 @@ void Flights::begin(Flight& flight) {
         return;
     }
     if (!can_walk(s_.built.level1, PreparedRay(flight.ray))) {
-        decide_in_double(flight);
+        fall_back(flight);
         return;
     }
     flight.place.cells.t = flight.ray.t_min;
@@ -123,7 +123,7 @@ Result<Done> Flights::pass(uint32_t leaf, std::span<const uint32_t> queued) {
     s_.statistics.seconds_kernel = s_.statistics.seconds_pass;
     parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
         for (size_t j = from; j < to; ++j)
-            settle(flights_[batch[j]], answers_[j], decidable_[j]);
+            resolve(flights_[batch[j]], answers_[j], decidable_[j]);
     });
     level1_queue_.insert(level1_queue_.end(), batch.begin(), batch.end());
     return Done{};
@@ -145,20 +145,20 @@ void Flights::load(uint32_t leaf, std::span<const uint32_t> batch) {
     });
 }
 
-void Flights::settle(Flight& flight, const FrameAnswer& answer, bool decidable) {
+void Flights::resolve(Flight& flight, const FrameAnswer& answer, bool decidable) {
     const bool capped = decidable && answer.prim == OVC_CAPPED;
     capped_ += capped;
     if (!decidable || capped || answer.prim == OVC_FLAGGED)
-        decide_in_double(flight);
+        fall_back(flight);
     else if (!s_.certify)
-        take_in_fast(flight, answer);
-    else if (!take_in(flight, answer))
-        decide_in_double(flight);
+        enter_fast(flight, answer);
+    else if (!resolve_candidates(flight, answer))
+        fall_back(flight);
 }
 
-/// Enters what the kernel found in the leaf. False where double does not find what the kernel was
-/// certain of.
-bool Flights::take_in(Flight& flight, const FrameAnswer& answer) {
+/// Enters the kernel's candidates of the leaf, as exact arithmetic decides them. False where it
+/// does not confirm the certain hit.
+bool Flights::resolve_candidates(Flight& flight, const FrameAnswer& answer) {
     const Candidates found{answer.prim, answer.rivals()};
     if (found.is_miss())
         return true;
@@ -173,14 +173,14 @@ bool Flights::take_in(Flight& flight, const FrameAnswer& answer) {
         s_.built.offer(nearest, flight.hit.id);
     if (!found.offer_to(nearest, s_.built, p.skip))
         return false;
-    flagged_ += found.has_further(); // decide_in_double() counts the others
+    flagged_ += found.has_further(); // fall_back() counts the others
     flight.hit = flight.any_hit ? nearest.unrounded_hit() : nearest.hit();
     if (flight.hit.is_hit())
         end_at(flight, p, nearest.limit(), -p.margin(s_.built.level1.leaves[flight.leaf].cell));
     return true;
 }
 
-void Flights::take_in_fast(Flight& flight, const FrameAnswer& answer) {
+void Flights::enter_fast(Flight& flight, const FrameAnswer& answer) {
     if (answer.prim == OVC_MISS)
         return;
     const Leaf& leaf = s_.built.level1.leaves[flight.leaf];
@@ -206,7 +206,7 @@ void Flights::end_at(Flight& flight, const PreparedRay& p, double end, double sl
         flight.state = Flight::InLastCell;
 }
 
-void Flights::decide_in_double(Flight& flight) {
+void Flights::fall_back(Flight& flight) {
     const PreparedRay p(flight.ray, flight.skip);
     flight.hit =
         flight.any_hit ? trace_exactly<true>(s_.built, p) : trace_exactly<false>(s_.built, p);

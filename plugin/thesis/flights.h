@@ -69,11 +69,11 @@ private:
     void find_leaf(Flight& flight);
     Result<Done> pass(uint32_t leaf, std::span<const uint32_t> batch);
     void load(uint32_t leaf, std::span<const uint32_t> batch);
-    void settle(Flight& flight, const FrameAnswer& answer, bool decidable);
-    bool take_in(Flight& flight, const FrameAnswer& answer);
-    void take_in_fast(Flight& flight, const FrameAnswer& answer);
+    void resolve(Flight& flight, const FrameAnswer& answer, bool decidable);
+    bool resolve_candidates(Flight& flight, const FrameAnswer& answer);
+    void enter_fast(Flight& flight, const FrameAnswer& answer);
     void end_at(Flight& flight, const PreparedRay& p, double end, double slack);
-    void decide_in_double(Flight& flight);
+    void fall_back(Flight& flight);
 
     QueuedScene& s_;
     Queues queues_; // of leaves; hold indices of flights_, as all below
