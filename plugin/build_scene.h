@@ -8,8 +8,8 @@
 
 namespace ovc {
 
-/// The scene of a soup of at most check_count() triangles, under a plan that check_budget() lets
-/// pass: the pool holds level 1 and the largest page. The soup and options.saved must outlive it.
+/// The scene of a soup under its plan_memory(), which check_budget() lets pass: the pool holds
+/// level 1 and the largest page. The soup and options.saved must outlive it.
 Result<BuiltScene> build_scene(const Soup& soup, const TwoLevelOptions& options,
                                const MemoryPlan& plan, const LogSink& log,
                                BuildProgress* progress = nullptr);

@@ -158,11 +158,9 @@ uint64_t fitting(std::span<const uint64_t> pages, uint64_t bytes) {
 
 Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
                           const DeviceInfo& device, BuildProgress* progress) {
-    const Result<MemoryPlan> memory = plan_memory(budget_of(options, device), device);
+    const Result<MemoryPlan> memory = plan_memory(soup, options, device);
     if (!memory)
         return memory.error();
-    if (const Result<Done> fine = check_count(soup); !fine)
-        return fine.error();
     begin(progress, "planning", 1, 6 * soup.triangle_count());
     BuiltScene scene(soup);
     const Hittable hittable = take_hittable(scene, progress);

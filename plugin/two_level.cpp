@@ -16,12 +16,9 @@ namespace ovc {
 Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl,
                                                   const TwoLevelOptions& options,
                                                   const LogSink& log, BuildProgress* progress) {
-    Result<MemoryPlan> plan = plan_memory(budget_of(options, gl.info()), gl.info());
+    const Result<MemoryPlan> plan = plan_memory(soup, options, gl.info());
     if (!plan)
         return plan.error();
-    plan->driver_bytes = options.driver_bytes;
-    if (const Result<Done> fine = check_count(soup); !fine)
-        return fine.error();
     if (const Result<Done> enough = check_budget(soup, options, *plan, gl.info()); !enough)
         return enough.error();
     Result<BuiltScene> scene = build_scene(soup, options, *plan, log, progress);

@@ -23,8 +23,18 @@ constexpr uint64_t kDefaultLeaves = 10;      // thesis, section 4
 
 } // namespace
 
-uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device) {
-    return options.budget_bytes ? options.budget_bytes : device.default_budget_bytes();
+Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
+                               const DeviceInfo& device) {
+    Result<MemoryPlan> plan = plan_memory(
+        options.budget_bytes ? options.budget_bytes : device.default_budget_bytes(), device);
+    if (!plan)
+        return plan;
+    if (soup.triangle_count() > OVC_MAX_TRIANGLES)
+        return Error{fmt::format("{} triangles are too many: a scene takes {}",
+                                 soup.triangle_count(), OVC_MAX_TRIANGLES),
+                     ErrorKind::InvalidArgument};
+    plan->driver_bytes = options.driver_bytes;
+    return plan;
 }
 
 SmallestCut smallest_cut(const Soup& soup, const TwoLevelOptions& options) {
@@ -102,14 +112,6 @@ LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uin
         limits.whole_bytes = triangles <= room / kMostBytesPerTriangle ? LeafLimits::kAny : room;
     }
     return limits;
-}
-
-Result<Done> check_count(const Soup& soup) {
-    if (soup.triangle_count() > OVC_MAX_TRIANGLES)
-        return Error{fmt::format("{} triangles are too many: a scene takes {}",
-                                 soup.triangle_count(), OVC_MAX_TRIANGLES),
-                     ErrorKind::InvalidArgument};
-    return Done{};
 }
 
 } // namespace ovc

@@ -27,8 +27,10 @@ struct TwoLevelOptions {
     Bytes saved = {}; // what save() of a structure over the same soup wrote; outlives this one
 };
 
-/// The budget in bytes that the options ask for.
-uint64_t budget_of(const TwoLevelOptions& options, const DeviceInfo& device);
+/// The plan for the budget that the options ask for, level 1 not yet taken off. Error: as of
+/// plan_memory(); more triangles than a scene takes.
+Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
+                               const DeviceInfo& device);
 
 /// Of a page in which planes cut nothing: a unit a triangle, and a node above every two.
 inline constexpr uint64_t kMaxUncutBytesPerTriangle = 128;
@@ -52,8 +54,5 @@ Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, cons
 /// What leaves may be under a plan of which level 1 is not yet taken off, where so many triangles
 /// can be hit.
 LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles);
-
-/// Error: more triangles than a scene takes.
-Result<Done> check_count(const Soup& soup);
 
 } // namespace ovc
