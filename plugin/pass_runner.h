@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PassRunner: a scene's side on the device. It owns the tracer, moves pages into the pool and runs
-// passes of the kernel; it makes the tracer anew after purge() and where a context was lost.
+// PassRunner: what a scene has on the device. It owns the tracer, moves pages into the pool and
+// runs passes of the kernel; it makes the tracer anew after purge() and where a context was lost.
 #pragma once
 
 #include "core/log.h"

@@ -58,7 +58,7 @@ public:
         const PreparedRay p = prepare(query_, i);
         // First: from where double cannot walk, rounding may carry a ray past the whole scene.
         if (!can_walk(scene_.level1, p)) {
-            fall_back(i, p);
+            fall_back(i);
             return false;
         }
         return !clip(p, box_, p.ray.t_min, p.ray.t_max).empty();
@@ -112,7 +112,10 @@ public:
 
     /// Answers ray i for good, whatever it has met. Asks before whether that is in vain, because
     /// some rays take a hundred times as long as most.
-    void answer_exactly(uint32_t i) { answer_exactly(i, prepare(query_, i)); }
+    void answer_exactly(uint32_t i) {
+        if (tracing_.watch.keeps_on())
+            query_.set(i, trace_exactly<Query::kAnyHit>(scene_, prepare(query_, i)));
+    }
 
 private:
     /// Fetches the triangle of one of the answers behind the j-th, which is soon to be resolved.
@@ -187,16 +190,11 @@ private:
         query_.set(i, scene_.twins.seen(scene_.soup, hit, query_.skipped(i)));
     }
 
-    void answer_exactly(uint32_t i, const PreparedRay& p) {
-        if (tracing_.watch.keeps_on())
-            query_.set(i, trace_exactly<Query::kAnyHit>(scene_, p));
-    }
-
-    /// In parallel where there are many: each may take as long as thousands of others.
+    /// In parallel where the rays are many, because each may take as long as thousands of others.
     void fall_back(std::span<const uint32_t> rays) {
         const auto each = [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j)
-                fall_back(rays[j], prepare(query_, rays[j]));
+                fall_back(rays[j]);
         };
         if (rays.size() < 8)
             each(0, rays.size());
@@ -204,8 +202,8 @@ private:
             parallel_for(rays.size(), 1, each);
     }
 
-    void fall_back(uint32_t i, const PreparedRay& p) {
-        answer_exactly(i, p);
+    void fall_back(uint32_t i) {
+        answer_exactly(i);
         count_flagged(i);
         ++retraced_;
     }

@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-/// All of it outlives what it is handed to.
+/// What is referred to outlives everything that is handed a Tracing.
 struct Tracing {
     const BuiltScene& scene;
     const TwoLevelOptions& options;

@@ -14,7 +14,7 @@
 
 namespace ovc {
 
-/// A scene, its side on the device, and rays through them. One call at a time.
+/// A scene, what it has on the device, and rays through it. One call at a time.
 class TwoLevel final : public Structure {
 public:
     /// The soup and the thread must outlive it. Error: a budget too small, with the smallest that
