@@ -51,7 +51,7 @@ void AnswerPixels::read(std::span<Answer> answers) {
 AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays)
     : rays_(rays), buffer_(ledger, uint64_t(rays) * sizeof(Answer), "answers") {
     texture_.show(buffer_, GL_R32UI, 0, buffer_.bytes());
-    // Stays like this where pages are linked: no answer names a leaf.
+    // Stays like this where all pages are resident: no answer names a leaf.
     fill_plane(3, rays_, OVC_NO_LEAF);
 }
 

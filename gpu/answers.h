@@ -21,7 +21,7 @@ struct Answer {
     uint32_t prim;
 
     uint32_t leaf() const { return words[2]; }
-    /// Where pages hang under links: of the one that the ray waits for, or OVC_NO_LEAF.
+    /// Under the top-level tree: of the link that the ray waits for, or OVC_NO_LEAF.
     uint32_t key() const { return words[2]; }
     /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
     std::span<const uint32_t, 2> rivals() const { return std::span(words).first<2>(); }

@@ -120,8 +120,8 @@ bool compiles_fragment_shaders() {
 std::string ShaderConfig::defines() const {
     return fmt::format("#define OVC_ANY_HIT {:d}\n"
                        "#define OVC_CERTIFY {:d}\n"
-                       "#define OVC_LINKED {:d}\n"
-                       "#define OVC_LINKS {:d}\n"
+                       "#define OVC_TOP_LEVEL {:d}\n"
+                       "#define OVC_MAY_WAIT {:d}\n"
                        "#define OVC_TELL_ACTIVE {:d}\n"
                        "#define OVC_LOOSE_PAIRS {:d}\n"
                        "#define OVC_STACK_DEPTH {}\n"
@@ -132,7 +132,7 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_DEAL_GROUPS {:d}\n"
                        "#define OVC_BUFFER_IMAGES {:d}\n"
                        "#define OVC_MOST_ROUNDS {}\n",
-                       any_hit, certify, linked, links, tell_active, loose_pairs, stack_depth,
+                       any_hit, certify, top_level, may_wait, tell_active, loose_pairs, stack_depth,
                        stack_registers, packet, turns, branches, deal_groups, buffer_images,
                        most_rounds);
 }

@@ -23,8 +23,8 @@ struct ShaderConfig {
     bool compute = false; // which wrapper; no switch of config.glsl
     bool any_hit = false;
     bool certify = true;
-    bool linked = false;
-    bool links = false;
+    bool top_level = false;
+    bool may_wait = false;
     bool tell_active = false;
     bool loose_pairs = false;
     uint32_t stack_depth = 16;

@@ -26,7 +26,7 @@ TEST(ShaderSource, IncludesAreReplacedAndDefinesFollowTheVersion) {
                 testing::ElementsAre("trace.frag.glsl", "layout.h", "config.glsl", "page.glsl",
                                      "box.glsl", "children.glsl", "triangle.glsl", "occluder.glsl",
                                      "found.glsl", "pair.glsl", "traverse.glsl", "level1.glsl",
-                                     "ray.glsl", "linked.glsl", "walk.glsl"));
+                                     "ray.glsl", "trace.glsl", "walk.glsl"));
 }
 
 TEST(ShaderSource, AMissingFileIsNamed) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages under links: whatever is in the pool, a ray comes to each leaf on its way once, and meets
-// what the whole scene holds.
+// Pages that come and go: whatever is in the pool, a ray comes to each leaf on its way once, and
+// meets what the whole scene holds.
 #include "gpu/test_gl.h"
 #include "gpu/tracer.h"
 #include "kdtree/test_soups.h"
@@ -29,13 +29,15 @@ protected:
             pages.push_back(build_page(soup, numbers, leaf));
             largest = std::max(largest, pages.back().bytes());
         }
+        top = build_top_level(pages, pages.size());
         gl->run([&](GlState& state) {
             MemoryPlan plan = *plan_memory(64u << 20, gl->info());
             plan.pool_bytes = 4 * largest;
             tracer = std::move(*Tracer::create(plan, {.certify = true, .compute = GetParam()},
-                                               gl->info(), state.kernels, level1, pages));
+                                               gl->info(), state.kernels, level1, pages, top));
         });
-        ASSERT_TRUE(tracer->has_links());
+        ASSERT_TRUE(tracer->has_tree());
+        ASSERT_FALSE(tracer->all_resident());
     }
     void TearDown() override {
         if (gl)
@@ -104,6 +106,7 @@ protected:
     std::vector<TriangleId> ids;
     Level1 level1;
     std::vector<Page> pages;
+    TopLevel top;
     std::unique_ptr<Tracer> tracer;
     std::map<uint32_t, std::vector<uint32_t>> queues; // of rays, per leaf that they wait for
 };

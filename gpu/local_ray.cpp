@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays into the frame of linked pages.
+// Rays into the frame of the top-level tree.
 #include "gpu/local_ray.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ray in the frame that linked pages share, as the kernel takes it (docs/numerics.md, "Frames"):
+// A ray in the frame of the top-level tree, as the kernel takes it (docs/numerics.md, "Frames"):
 // the twin in C++ of rebase() in shaders/level1.glsl, so that a ray goes over as 32 bytes.
 #pragma once
 
@@ -21,7 +21,7 @@ struct LocalRay {
 };
 static_assert(sizeof(LocalRay) == OVC_LOCAL_RAY_TEXELS * 16);
 
-/// Where pages hang under links.
+/// Where not all pages are in the pool.
 struct ResumedRay {
     LocalRay ray;
     uint32_t waited_for; // the key of a link, or 0

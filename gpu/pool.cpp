@@ -2,7 +2,7 @@
 // Pool: eviction by least recent use among neighbours, upload.
 #include "gpu/pool.h"
 
-#include "gpu/linked.h"
+#include "gpu/top_level.h"
 
 #include <algorithm>
 #include <cassert>
@@ -65,14 +65,14 @@ bool Residency::admit(uint32_t leaf, uint64_t bytes, uint64_t keep,
     return true;
 }
 
-void Pool::upload(uint64_t offset, const Page& page, uint32_t first_unit, uint32_t owner) const {
+void Pool::upload(uint64_t offset, const Page& page, uint32_t first_unit) const {
     if (page.bytes() == 0)
         return;
     void* const to = glMapNamedBufferRange(buffer_.id(), GLintptr(offset), GLsizeiptr(page.bytes()),
                                            GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT);
     if (!to)
         return; // the context is lost, which is asked for after every pass
-    copy_relocated(page, first_unit, {static_cast<uvec4*>(to), page.view().size()}, owner);
+    copy_relocated(page, first_unit, {static_cast<uvec4*>(to), page.view().size()});
     glUnmapNamedBuffer(buffer_.id());
 }
 

@@ -67,10 +67,8 @@ public:
     Residency& residency() { return residency_; }
     const Residency& residency() const { return residency_; }
 
-    /// Writes the page at `offset`, in bytes, its units counted from `first_unit` on. owner: as in
-    /// copy_relocated().
-    void upload(uint64_t offset, const Page& page, uint32_t first_unit = 0,
-                uint32_t owner = 0) const;
+    /// Writes the page at `offset`, in bytes, its units counted from `first_unit` on.
+    void upload(uint64_t offset, const Page& page, uint32_t first_unit = 0) const;
 
     const gl::Buffer& buffer() const { return buffer_; }
 

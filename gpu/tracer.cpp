@@ -37,6 +37,25 @@ size_t turns(size_t rays, size_t packet) {
     return std::clamp<size_t>(rays / packet / lanes, 1, kLaneRays / packet);
 }
 
+uint64_t bytes_of(std::span<const Page> pages) {
+    uint64_t bytes = 0;
+    for (const Page& page : pages)
+        bytes += page.bytes();
+    return bytes;
+}
+
+/// Whether rays can go through the tree: its units and the pages' can be counted in a stack word,
+/// its pages named by a key, and the largest lies beside it.
+bool is_usable(const TopLevel& top, uint64_t pool_bytes, std::span<const Page> pages) {
+    uint64_t largest = 0;
+    for (const Page& page : pages)
+        largest = std::max(largest, page.bytes());
+    const uint64_t used = std::min(pool_bytes, top.tree.bytes() + bytes_of(pages));
+    return !top.empty() && used / OVC_UNIT_BYTES < OVC_MAX_UNITS &&
+           (pages.size() < OVC_KEY_LEAF || used < pool_bytes) &&
+           top.tree.bytes() + largest <= pool_bytes;
+}
+
 } // namespace
 
 Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
@@ -69,25 +88,23 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
 
 Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const PassOptions& options,
                const DeviceInfo& device, KernelCache& kernels, const Level1& level1,
-               std::span<const Page> pages)
+               std::span<const Page> pages, const TopLevel& top)
     : ledger_(std::move(ledger)),
       kernels_(kernels),
       options_(options),
       level1_data_(level1),
       page_data_(pages),
       software_(device.is_software),
-      linked_(link_pages(level1, pages, plan.pool_bytes)),
-      links_(linked_ || !options.certify ? std::optional<LinkTree>()
-                                         : make_link_tree(level1, pages, plan.pool_bytes)),
+      top_(top),
+      all_fit_(top.tree.bytes() + bytes_of(pages) <= plan.pool_bytes),
+      has_tree_(is_usable(top, plan.pool_bytes, pages) && (all_fit_ || options.certify)),
       scene_(scene_leaf(level1.bounds)),
-      stack_depth_(linked_  ? stack_depth(linked_->depth)
-                   : links_ ? stack_depth(links_->depth)
-                            : stack_depth(pages)),
+      stack_depth_(has_tree_ ? stack_depth(top.depth) : stack_depth(pages)),
       stack_words_(software_ ? std::min(stack_depth_, kMostStackWordsInSoftware) : stack_depth_),
       most_slots_(plan.batch_rays + plan.parted_rays()),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
       level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
-      pool_(*ledger_, plan.pool_bytes, pages.size(), links_ ? links_->top.bytes() : 0) {
+      pool_(*ledger_, plan.pool_bytes, pages.size(), has_tree_ ? top.tree.bytes() : 0) {
     takes_turns_ = device.has_ballots && takes_packets();
     if (options.compute)
         words_.emplace(*ledger_, most_slots_);
@@ -109,8 +126,8 @@ Result<Done> Tracer::set_up() {
                          table.data());
     level1_.show(level1_buffer_, GL_RGBA32UI, 0, level1_buffer_.bytes());
     rays_.show(ray_buffer_, GL_RGBA32UI, 0, ray_buffer_.bytes());
-    if (links_)
-        pool_.upload(0, links_->top);
+    if (has_tree_)
+        pool_.upload(0, top_.tree);
     pages_.show(pool_.buffer(), GL_RGBA32UI, 0, pool_.buffer().bytes());
     if (active_buffer_) {
         active_.show(*active_buffer_, GL_R32UI, 0, active_buffer_->bytes());
@@ -123,26 +140,29 @@ Result<Done> Tracer::set_up() {
 
 Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const PassOptions& options,
                                                const DeviceInfo& device, KernelCache& kernels,
-                                               const Level1& level1, std::span<const Page> pages) {
+                                               const Level1& level1, std::span<const Page> pages,
+                                               const TopLevel& top) {
     auto ledger = std::make_unique<Ledger>();
     ledger->budget = plan.budget_bytes;
     ledger->driver_bytes = plan.driver_bytes;
     ledger->takes_host_pages = device.takes_host_pages;
     std::unique_ptr<Tracer> tracer(
-        new Tracer(std::move(ledger), plan, options, device, kernels, level1, pages));
+        new Tracer(std::move(ledger), plan, options, device, kernels, level1, pages, top));
     if (Result<Done> ok = tracer->set_up(); !ok)
         return ok.error();
     return tracer;
 }
 
-/// Tells the kernel, by a link or a texel of level 1, at which unit of the pool a page is now.
+/// Tells the kernel, by the page's links or a texel of level 1, where a page is now.
 void Tracer::say_where(uint32_t leaf) {
     const uint32_t page = uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES);
-    if (links_) {
-        const uint32_t unit = resident(leaf) ? page + OVC_ROOT_UNIT : OVC_LEADS_NOWHERE;
-        const size_t texel = size_t(links_->link_unit[leaf]) * OVC_UNIT_TEXELS + 3;
-        glNamedBufferSubData(pool_.buffer().id(), GLintptr(texel * sizeof(uvec4)), sizeof(unit),
-                             &unit);
+    if (has_tree_) {
+        for (const Link& link : top_.links_of(leaf)) {
+            const uint32_t unit = resident(leaf) ? page + link.first_child : OVC_LEADS_NOWHERE;
+            const size_t texel = size_t(link.unit) * OVC_UNIT_TEXELS + 3;
+            glNamedBufferSubData(pool_.buffer().id(), GLintptr(texel * sizeof(uvec4)), sizeof(unit),
+                                 &unit);
+        }
         return;
     }
     const uint32_t unit = resident(leaf) ? page : OVC_NOT_RESIDENT;
@@ -150,27 +170,9 @@ void Tracer::say_where(uint32_t leaf) {
                          sizeof(unit), &unit);
 }
 
-Moved Tracer::bring_linked(std::span<const uint32_t> wanted) {
-    Moved moved;
-    const auto put = [&](const Page& page, uint32_t unit, uint32_t owner) {
-        pool_.upload(uint64_t(unit) * OVC_UNIT_BYTES, page, unit, owner);
-        moved.bytes += page.bytes();
-    };
-    for (const uint32_t leaf : wanted) {
-        put(page_data_[leaf], linked_->first_unit[leaf], leaf + 1);
-        linked_->moved += 1;
-    }
-    moved.pages = wanted.size();
-    if (linked_->moved == page_data_.size())
-        put(linked_->top, linked_->top_unit, 0);
-    return moved;
-}
-
 Moved Tracer::bring(std::span<const uint32_t> wanted) {
     if (wanted.empty())
         return {};
-    if (linked_)
-        return bring_linked(wanted);
     Moved moved;
     std::vector<uint32_t> evicted;
     const uint64_t keep = pool_.residency().now();
@@ -179,28 +181,29 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
         if (!pool_.residency().admit(leaf, page.bytes(), keep, evicted))
             break;
         const uint64_t offset = pool_.residency().slot(leaf).offset;
-        pool_.upload(offset, page, links_ ? uint32_t(offset / OVC_UNIT_BYTES) : 0);
+        pool_.upload(offset, page, has_tree_ ? uint32_t(offset / OVC_UNIT_BYTES) : 0);
         say_where(leaf);
         moved.pages += 1;
         moved.bytes += page.bytes();
     }
     for (const uint32_t leaf : evicted)
         say_where(leaf);
+    pages_moved_ += moved.pages;
     return moved;
 }
 
 void Tracer::upload(std::span<const Traveller> rays) {
-    if (linked_)
-        upload_local(rays, local_);
-    else if (links_)
+    if (may_wait())
         upload_local(rays, resumed_);
+    else if (has_tree_)
+        upload_local(rays, local_);
     else
         glNamedBufferSubData(ray_buffer_.id(), 0,
                              GLsizeiptr(whole_blocks(rays.size()) * sizeof(Traveller)),
                              rays.data());
 }
 
-/// In the frame of linked pages; and how to come back from there.
+/// In the frame of the top-level tree; and how to come back from there.
 template <class Sent>
 void Tracer::upload_local(std::span<const Traveller> rays, std::vector<Sent>& sent) {
     sent.resize(whole_blocks(rays.size()));
@@ -233,7 +236,7 @@ void Tracer::upload_local(std::span<const Traveller> rays, std::vector<Sent>& se
                          sent.data());
 }
 
-/// Fast precision: t from the frame of linked pages to the rays' own.
+/// Fast precision: t from the frame of the top-level tree to the rays' own.
 void Tracer::come_back(std::span<Answer> answers) const {
     for (size_t i = 0; i < answers.size(); ++i) {
         if (answers[i].prim >= OVC_MAX_TRIANGLES)
@@ -251,8 +254,8 @@ ShaderConfig Tracer::shader_config() const {
     config.compute = options_.compute;
     config.any_hit = any_hit_;
     config.certify = options_.certify;
-    config.linked = linked_ || links_;
-    config.links = links_.has_value();
+    config.top_level = has_tree_;
+    config.may_wait = may_wait();
     config.tell_active = active_buffer_.has_value();
     config.loose_pairs = std::ranges::any_of(page_data_, &Page::has_loose_pairs);
     config.stack_depth = stack_words_;
@@ -286,9 +289,6 @@ Result<Done> Tracer::launch() {
     const Result<GLuint> program = kernels_.program(config);
     if (!program)
         return program.error();
-
-    if (config.linked)
-        glProgramUniform1i(*program, OVC_LOCATION_ROOT, linked_ ? GLint(linked_->top_unit) : 0);
 
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);
@@ -374,14 +374,14 @@ bool Tracer::go_on_longer() {
 Result<Done> Tracer::collect(std::span<Answer> answers) {
     read(answers);
     while (lost_many(answers) && go_on_longer()) {
-        // Linked pages stay where they were. Others may have been pushed out by now.
-        if (!linked_)
+        // Where all fit they stay where they are. Others may have been pushed out by now.
+        if (!has_tree_ || !all_fit_)
             break;
         if (Result<Done> ok = launch(); !ok)
             return ok;
         read(answers);
     }
-    if (linked_ && !options_.certify)
+    if (has_tree_ && !options_.certify)
         come_back(answers);
     return check_gl("reading the answers of a pass");
 }

@@ -9,9 +9,9 @@
 #include "gpu/egl_context.h"
 #include "gpu/kernel.h"
 #include "gpu/ledger.h"
-#include "gpu/linked.h"
 #include "gpu/packets.h"
 #include "gpu/pool.h"
+#include "gpu/top_level.h"
 #include "shaders/layout.h"
 
 #include <cstdint>
@@ -71,23 +71,26 @@ struct Moved {
 class Tracer {
 public:
     /// Error of the kind OutOfGpuMemory: the driver refused the plan's bytes; a smaller pool may
-    /// do. kernels outlives the tracer. level1 has leaves, pages[i] belongs to its leaf i; both
-    /// outlive the tracer. The plan's pool holds the largest page.
-    static Result<std::unique_ptr<Tracer>>
-    create(const MemoryPlan& plan, const PassOptions& options, const DeviceInfo& device,
-           KernelCache& kernels, const Level1& level1, std::span<const Page> pages);
+    /// do. kernels outlives the tracer. level1 has leaves, pages[i] belongs to its leaf i, and top
+    /// is the tree over them, empty where they share no frame; all outlive the tracer. The plan's
+    /// pool holds the tree and the largest page.
+    static Result<std::unique_ptr<Tracer>> create(const MemoryPlan& plan,
+                                                  const PassOptions& options,
+                                                  const DeviceInfo& device, KernelCache& kernels,
+                                                  const Level1& level1, std::span<const Page> pages,
+                                                  const TopLevel& top);
 
     /// Moves in the pages of `wanted`, leaves that are not resident, in this order, as many as fit
-    /// without pushing each other out: the first at least. Where all leaves share a frame and all
-    /// pages fit, they are linked once the last is there, and none leaves again.
+    /// without pushing each other out: the first at least.
     Moved bring(std::span<const uint32_t> wanted);
 
-    /// All pages are in the pool, under one tree: a pass answers its rays for good.
-    bool all_linked() const { return linked_ && linked_->moved == page_data_.size(); }
+    /// All pages are in the pool, under the top-level tree, so that a pass answers its rays for
+    /// good.
+    bool all_resident() const { return has_tree_ && pages_moved_ == page_data_.size(); }
 
-    /// Pages hang under links: an answer is that of all leaves on the way to the one it names,
-    /// which the ray waits for, or of all.
-    bool has_links() const { return links_.has_value(); }
+    /// Rays go through the top-level tree: an answer is that of all pages on the way to the one it
+    /// names, which the ray waits for, or of all.
+    bool has_tree() const { return has_tree_; }
 
     /// Marks a leaf as used now: others are pushed out before it.
     void touch(uint32_t leaf) { pool_.residency().touch(leaf); }
@@ -114,11 +117,13 @@ public:
 private:
     Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const PassOptions& options,
            const DeviceInfo& device, KernelCache& kernels, const Level1& level1,
-           std::span<const Page> pages);
+           std::span<const Page> pages, const TopLevel& top);
 
     bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
     Result<Done> set_up();
-    bool takes_packets() const { return software_ && options_.compute && (linked_ || links_); }
+    bool takes_packets() const { return software_ && options_.compute && has_tree_; }
+    /// Whether rays of the pass may have to wait for a page.
+    bool may_wait() const { return has_tree_ && !all_fit_; }
     void upload(std::span<const Traveller> rays);
     void come_back(std::span<Answer> answers) const;
     ShaderConfig shader_config() const;
@@ -127,7 +132,6 @@ private:
     static bool lost_many(std::span<const Answer> answers);
     bool go_on_longer();
     void say_where(uint32_t leaf);
-    Moved bring_linked(std::span<const uint32_t> wanted);
     template <class Sent>
     void upload_local(std::span<const Traveller> rays, std::vector<Sent>& sent);
 
@@ -137,20 +141,22 @@ private:
     const Level1& level1_data_;
     std::span<const Page> page_data_;
     bool software_;
-    bool takes_turns_ = false;          // lanes go on to a next ray
-    std::optional<LinkedPages> linked_; // where all pages are to be in the pool
-    std::optional<LinkTree> links_;     // where they share a frame, and not all are
-    Leaf scene_;                        // as one leaf: the frame of linked pages
-    std::vector<LocalRay> local_;       // of the pass, where pages are linked
-    std::vector<ResumedRay> resumed_;   // where they hang under links
-    std::vector<LocalTime> times_;      // of them, in fast precision
-    uint32_t stack_depth_;              // with which no ray is lost
-    uint32_t stack_words_;              // of the kernel
-    uint32_t most_slots_;               // of a pass
-    bool any_hit_ = false;              // all rays of the pass ask whether anything is hit
-    size_t rays_sent_ = 0;              // of the pass
-    size_t slots_sent_ = 0;             // and with those that were parted
-    bool packets_ = false;              // they are taken two at a time
+    bool takes_turns_ = false; // lanes go on to a next ray
+    const TopLevel& top_;
+    bool all_fit_;                    // the pool has room for all pages and the tree
+    bool has_tree_;                   // rays go through the top-level tree
+    uint64_t pages_moved_ = 0;        // into the pool, all in all
+    Leaf scene_;                      // as one leaf: the frame of the top-level tree
+    std::vector<LocalRay> local_;     // of the pass, where all pages fit
+    std::vector<ResumedRay> resumed_; // where they do not
+    std::vector<LocalTime> times_;    // of them, in fast precision
+    uint32_t stack_depth_;            // with which no ray is lost
+    uint32_t stack_words_;            // of the kernel
+    uint32_t most_slots_;             // of a pass
+    bool any_hit_ = false;            // all rays of the pass ask whether anything is hit
+    size_t rays_sent_ = 0;            // of the pass
+    size_t slots_sent_ = 0;           // and with those that were parted
+    bool packets_ = false;            // they are taken two at a time
     std::vector<Parted> parted_;
     std::vector<Answer> parted_answers_;
     gl::Buffer ray_buffer_;

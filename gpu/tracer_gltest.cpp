@@ -24,9 +24,10 @@ protected:
         level1 = partition(soup, ids, bounds, 1u << 30);
         ASSERT_EQ(level1.leaves.size(), 1u);
         if (options.compute)
-            share_frame(level1); // linked: rays take turns
+            share_frame(level1); // under a top-level tree: rays take turns
         numbers = Numbering(soup);
         pages = {build_page(soup, numbers, level1.leaves[0], nullptr, loose)};
+        top = options.compute ? build_top_level(pages, 1) : TopLevel();
         const Result<MemoryPlan> plan = plan_memory(64u << 20, gl->info());
         ASSERT_TRUE(plan);
         MemoryPlan shared = *plan;
@@ -34,7 +35,8 @@ protected:
         DeviceInfo device = gl->info();
         device.takes_host_pages = device.takes_host_pages && with_host_pages;
         gl->run([&](GlState& state) {
-            auto created = Tracer::create(shared, options, device, state.kernels, level1, pages);
+            auto created =
+                Tracer::create(shared, options, device, state.kernels, level1, pages, top);
             ASSERT_TRUE(created) << created.error().message;
             tracer = std::move(*created);
             EXPECT_EQ(tracer->bring(std::vector<uint32_t>{0}).bytes, pages[0].bytes());
@@ -67,6 +69,7 @@ protected:
     Level1 level1;
     Numbering numbers;
     std::vector<Page> pages;
+    TopLevel top;
 };
 
 const Leaf& leaf_of(const Level1& level1) {
@@ -270,7 +273,8 @@ TEST_F(KernelGl, ARayWaitsForALeafThatIsNotInThePool) {
         const Result<MemoryPlan> plan = plan_memory(64u << 20, gl->info());
         MemoryPlan shared = *plan;
         shared.pool_bytes -= 1u << 20;
-        tracer = std::move(*Tracer::create(shared, {}, gl->info(), state.kernels, level1, pages));
+        tracer =
+            std::move(*Tracer::create(shared, {}, gl->info(), state.kernels, level1, pages, top));
     });
     const Answer answer = trace(std::span(&ray, 1))[0];
     EXPECT_EQ(answer.leaf(), 0u);

@@ -80,8 +80,13 @@ Result<BuiltScene> build_scene(const Soup& soup, const TwoLevelOptions& options,
     std::optional<BuiltScene> found = restored(soup, options, plan, log);
     Result<BuiltScene> scene =
         found ? Result<BuiltScene>(std::move(*found)) : built(soup, options, plan, progress);
-    if (scene)
-        warn_of_dropped(scene->dropped, log);
+    if (!scene)
+        return scene;
+    warn_of_dropped(scene->dropped, log);
+    if (scene->level1.shares_frame && !scene->pages.empty())
+        scene->top = build_top_level(scene->pages,
+                                     max_links(scene->pages.size(), scene->level2_bytes(),
+                                               plan.pool_bytes - table_bytes(*scene, options)));
     return scene;
 }
 

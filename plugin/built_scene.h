@@ -10,6 +10,7 @@
 #include "core/triangle.h"
 #include "core/twins.h"
 #include "gpu/page.h"
+#include "gpu/top_level.h"
 #include "kdtree/partition.h"
 #include "shaders/layout.h"
 
@@ -69,6 +70,7 @@ struct BuiltScene {
     LeafLimits limits{};     // that the leaves keep to
     Level1 level1;           // without twins
     std::vector<Page> pages; // pages[i] belongs to level1.leaves[i]
+    TopLevel top;            // over the pages, where they share a frame; else empty
     bool from_saved = false;
     double seconds_level1 = 0;
     double seconds_level2 = 0;

@@ -18,18 +18,24 @@ Hit trace_exactly(const BuiltScene& scene, const PreparedRay& p) {
     Nearest nearest(p);
     Approach approach(p, level1.bounds);
     const auto limit = [&] { return approach.limit(nearest); };
+    const auto test = [&](uint32_t number) {
+        const TriangleId id = scene.seen(number, p.skip);
+        const Triangle triangle = scene.soup.triangle(id);
+        const bool hit = nearest.offer(triangle, id);
+        if (hit)
+            approach.note_hit(triangle);
+        return hit && kAnyHit;
+    };
+    const auto result = [&] { return kAnyHit ? nearest.unrounded_hit() : nearest.hit(); };
+    if (!scene.top.empty()) {
+        walk_tree(scene.top.tree, scene.pages, scene_leaf(level1.bounds), approach.ray(),
+                  approach.ray().ray.t_min, test, limit);
+        return result();
+    }
     walk(
         level1.nodes, level1.bounds, approach.ray(),
         [&](const KdNode& cell, double, double) {
             for (uint32_t l = cell.first(); l < cell.first() + cell.count(); ++l) {
-                const auto test = [&](uint32_t number) {
-                    const TriangleId id = scene.seen(number, p.skip);
-                    const Triangle triangle = scene.soup.triangle(id);
-                    const bool hit = nearest.offer(triangle, id);
-                    if (hit)
-                        approach.note_hit(triangle);
-                    return hit && kAnyHit;
-                };
                 if (walk_page(scene.pages[l], level1.leaves[l], approach.ray(),
                               approach.ray().ray.t_min, test, limit))
                     return true;
@@ -37,7 +43,7 @@ Hit trace_exactly(const BuiltScene& scene, const PreparedRay& p) {
             return false;
         },
         limit);
-    return kAnyHit ? nearest.unrounded_hit() : nearest.hit();
+    return result();
 }
 
 } // namespace ovc

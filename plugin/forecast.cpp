@@ -3,8 +3,8 @@
 #include "plugin/forecast.h"
 
 #include "core/parallel.h"
+#include "gpu/frames.h"
 #include "gpu/level1_table.h"
-#include "gpu/linked.h"
 #include "kdtree/cells.h"
 #include "kdtree/sample.h"
 #include "plugin/level2.h"
@@ -191,10 +191,11 @@ Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
     plan.level2_bytes = sizes.level2_bytes();
     plan.largest_page_bytes = sizes.largest_page;
     plan.level1_bytes = level1_texels(plan.leaves, sizes.nodes) * sizeof(uvec4);
-    if (plan.fits)
-        plan.pool_bytes =
-            std::min(memory->pool_bytes - std::min(memory->pool_bytes, plan.level1_bytes),
-                     most_linked_bytes(plan.level2_bytes, plan.leaves));
+    if (plan.fits) {
+        const uint64_t room = memory->pool_bytes - std::min(memory->pool_bytes, plan.level1_bytes);
+        const uint64_t links = max_links(plan.leaves, plan.level2_bytes, room);
+        plan.pool_bytes = std::min(room, plan.level2_bytes + max_top_level_bytes(links));
+    }
     plan.resident_pages = fitting(sizes.pages, plan.pool_bytes);
     plan.host_bytes = plan.level2_bytes + plan.leaf_references * sizeof(TriangleId) +
                       plan.leaves * sizeof(Leaf) + sizes.nodes * sizeof(KdNode);

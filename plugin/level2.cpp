@@ -4,7 +4,7 @@
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
-#include "gpu/linked.h"
+#include "gpu/frames.h"
 #include "kdtree/sample.h"
 #include "plugin/one_leaf.h"
 #include "plugin/page_rate.h"
@@ -66,6 +66,7 @@ public:
         levels_.pages.resize(levels_.level1.leaves.size());
         begin(progress_, "level 2", 0.5, 2 * levels_.level1.reference_count());
         build_missing_pages(loose_pairs());
+        agree_on_loose_pairs();
         while (true) {
             const Result<bool> again = cut_too_large();
             if (!again)
@@ -120,7 +121,7 @@ private:
 
     /// In a frame of its own a leaf may have triangles that reach far beyond it.
     LoosePairs loose_pairs() const {
-        return {levels_.level1.shares_frame,
+        return {levels_.level1.shares_frame && loose_pairs_pay_,
                 double(levels_.level1.reference_count()) / double(triangles_)};
     }
 
@@ -133,6 +134,22 @@ private:
                         build_page(soup_, numbers_, levels_.level1.leaves[i], progress_, loose);
         });
         levels_.seconds_level2 += watch.seconds();
+    }
+
+    /// A kernel that knows loose pairs takes longer over every pair. Where few pages have them,
+    /// those pages are built again without.
+    void agree_on_loose_pairs() {
+        uint64_t loose = 0;
+        for (size_t i = 0; i < levels_.pages.size(); ++i)
+            loose +=
+                levels_.pages[i].has_loose_pairs() ? levels_.level1.leaves[i].triangles.size() : 0;
+        loose_pairs_pay_ = 2 * loose > levels_.level1.reference_count();
+        if (loose == 0 || loose_pairs_pay_)
+            return;
+        for (Page& page : levels_.pages)
+            if (page.has_loose_pairs())
+                page = {};
+        build_missing_pages(loose_pairs());
     }
 
     /// Cuts the leaves whose pages are too large, which are then missing; false where there are
@@ -175,6 +192,7 @@ private:
     BuildProgress* const progress_;
     uint64_t triangles_ = 0;
     std::vector<TriangleId> sample_;
+    bool loose_pairs_pay_ = true;
     BuiltScene& levels_;
 };
 

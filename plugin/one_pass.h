@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OnePass: a query where all pages are linked, so that one pass of the kernel answers a ray. Beside
-// the pass of one part of the rays, the part before is resolved and the next one made ready.
+// OnePass: a query where all pages are resident, so that one pass of the kernel answers a ray.
+// Beside the pass of one part of the rays, the part before is resolved and the next one made ready.
 #pragma once
 
 #include "plugin/pass_runner.h"

@@ -3,7 +3,7 @@
 #include "plugin/page_rate.h"
 
 #include "core/parallel.h"
-#include "gpu/linked.h"
+#include "gpu/frames.h"
 #include "gpu/page.h"
 #include "kdtree/clip.h"
 #include "kdtree/partition.h"

@@ -18,7 +18,7 @@ PassRunner::PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& p
         return;
     plan_.active_bytes = tracing.options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
     plan_.pool_bytes = std::min(plan_.pool_bytes - table_bytes(scene, tracing.options),
-                                most_linked_bytes(scene.level2_bytes(), scene.pages.size()));
+                                scene.level2_bytes() + scene.top.tree.bytes());
 }
 
 Result<Done> PassRunner::open(BuildProgress* progress) {
@@ -29,8 +29,9 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
             tracer_.reset();
             tracer_generation_ = state.generation;
             if (state.context.alive())
-                made = Tracer::create(plan_, options, gl_.info(), state.kernels,
-                                      tracing_.scene.level1, tracing_.scene.pages);
+                made =
+                    Tracer::create(plan_, options, gl_.info(), state.kernels, tracing_.scene.level1,
+                                   tracing_.scene.pages, tracing_.scene.top);
             else
                 made = Error{"the GPU's context is lost", ErrorKind::DeviceLost};
         });

@@ -46,10 +46,10 @@ public:
     /// Gives back all GPU memory.
     void purge();
 
-    /// Whether all pages are under one tree in the pool, so that a pass answers its rays for good.
-    bool all_linked() const { return tracer_ && tracer_->all_linked(); }
-    /// As Tracer::has_links() and touch(); after ready(), where the scene has pages.
-    bool has_links() const { return tracer_->has_links(); }
+    /// Whether a pass answers its rays for good, because all pages are resident.
+    bool all_resident() const { return tracer_ && tracer_->all_resident(); }
+    /// As Tracer::has_tree() and touch(); after ready(), where the scene has pages.
+    bool has_tree() const { return tracer_->has_tree(); }
     void touch(uint32_t leaf) { tracer_->touch(leaf); }
 
     /// Moves the first pages of `wanted` in, as many as fit; returns how many.

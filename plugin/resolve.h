@@ -77,7 +77,7 @@ public:
     /// Enters the kernel's answers for these rays, as far as they are certain or exact arithmetic
     /// decides them. takes(i, answer) is asked before; false: the answer is to be left alone.
     /// go_on(i, leaf, p, limit) is asked where later leaves may hold a hit before `limit`; false:
-    /// it cannot say where. leaf: the answer's, its key where pages hang under links.
+    /// it cannot say where. leaf: the answer's, its key under the top-level tree.
     template <class Takes, class GoOn>
     void resolve(std::span<const uint32_t> rays, std::span<const Answer> answers, Takes&& takes,
                  GoOn&& go_on) {
@@ -175,7 +175,7 @@ private:
             return false;
         if (nearest.is_hit())
             query_.set(i, nearest);
-        const bool in_scene = answer.leaf() == OVC_NO_LEAF; // linked pages: no other leaf is left
+        const bool in_scene = answer.leaf() == OVC_NO_LEAF; // no page is left
         const bool resolved = in_scene || (Query::kAnyHit && nearest.is_hit()) ||
                               go_on(i, answer.leaf(), p, nearest.limit());
         if (resolved && found.has_further()) // fall_back() counts the others

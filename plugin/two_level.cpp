@@ -46,8 +46,8 @@ Result<Done> TwoLevel::trace(const Query& query) {
     const Stopwatch watch;
     if (Result<Done> ready = passes_.ready(); !ready)
         return ready;
-    const Result<Done> done = passes_.all_linked() ? OnePass(tracing_, passes_, query).run()
-                                                   : trace_in_waves(tracing_, passes_, query);
+    const Result<Done> done = passes_.all_resident() ? OnePass(tracing_, passes_, query).run()
+                                                     : trace_in_waves(tracing_, passes_, query);
     if (!done)
         return done;
     (Query::kAnyHit ? statistics_.occlusion_rays : statistics_.nearest_rays) += query.rays.size();

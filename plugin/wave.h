@@ -134,7 +134,7 @@ private:
             if (states_[i].stage == State::Ready)
                 ready_.push_back(i);
             else if (states_[i].stage == State::Waits)
-                waiting_.push(passes_.has_links() ? leaf_of(states_[i].leaf) : states_[i].leaf, i);
+                waiting_.push(passes_.has_tree() ? leaf_of(states_[i].leaf) : states_[i].leaf, i);
             else
                 finished_.push_back(i);
         }
@@ -145,7 +145,7 @@ private:
     bool takes(uint32_t i, const Answer& answer) {
         State& at = states_[i];
         at.stage = State::Done;
-        if (passes_.has_links()) {
+        if (passes_.has_tree()) {
             // The answer is that of all leaves before the one whose key it has, if any.
             if (answer.key() != OVC_NO_LEAF)
                 at = {at.t_from, at.t_end, answer.key(), State::Waits};
@@ -163,9 +163,9 @@ private:
     }
 
     /// The ray's best hit lies not beyond `end`, and later leaves may hold a nearer one. leaf: the
-    /// one that it was found in, or under links the key of the next.
+    /// one that it was found in, or under the top-level tree the key of the next.
     bool goes_on(uint32_t i, uint32_t leaf, const PreparedRay& p, double end) {
-        if (!passes_.has_links())
+        if (!passes_.has_tree())
             return go_on_behind(i, leaf, p, end);
         states_[i] = {states_[i].t_from, end, leaf, State::Waits};
         return true;

@@ -36,7 +36,7 @@ Boxes boxes_of(uvec4 x, uvec4 y, uvec4 z, bvec3 backward) {
                  vec4[3](coordinates(x.zw), coordinates(y.zw), coordinates(z.zw)));
 }
 
-#if OVC_LINKS
+#if OVC_MAY_WAIT
 #define OVC_EXACTLY precise // the key of a link has the same bits in whichever kernel
 #else
 #define OVC_EXACTLY

@@ -7,11 +7,11 @@
 #ifndef OVC_CERTIFY
 #define OVC_CERTIFY 1 // 0: fast precision, float32's own answer, nothing flagged but what did not end
 #endif
-#ifndef OVC_LINKED
-#define OVC_LINKED 0 // 1: all pages are in the pool, under one tree, and units count from the pool's first
+#ifndef OVC_TOP_LEVEL
+#define OVC_TOP_LEVEL 0 // 1: rays go through the top-level tree, and units count from the pool's first
 #endif
-#ifndef OVC_LINKS
-#define OVC_LINKS 0 // 1, with OVC_LINKED: pages hang under links, and a ray waits where one leads to a page that is not in the pool
+#ifndef OVC_MAY_WAIT
+#define OVC_MAY_WAIT 0 // 1, with OVC_TOP_LEVEL: a ray waits where a link leads to a page that is not in the pool
 #endif
 #ifndef OVC_TELL_ACTIVE
 #define OVC_TELL_ACTIVE 0 // 1: pages that rays are traced through are marked

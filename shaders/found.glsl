@@ -55,7 +55,7 @@ bool take(inout Found found, Corner a, Corner b, Corner c, Edges e, Depths depth
     return take(found, candidate(a, b, c, e, depths), valid, prim, order);
 }
 
-// What planes cut comes once for each part, within a page and in linked ones: it is no rival of itself.
+// What planes cut comes once for each part, within a page and in others: it is no rival of itself.
 bool is_known(Found found, uint prim) { return prim == found.prim; }
 
 // The weights of the pair's corners as u and v of the triangle's own: order says which of its corners v0 and v2 are.

@@ -14,7 +14,7 @@
 //                      hi0|hi1<<16, hi2|hi3<<16; signed 16-bit, in cells from the grid's middle. In the kernel an upper half has the
 //                      lower one as its fraction, so that lo1 and lo3 are one less than their boxes'. A missing child has the
 //                      greatest lo and the least hi.
-//         texel 3: unit of the first child (children are contiguous), 0 or for a root of linked pages 1 + its leaf, 0, 0
+//         texel 3: unit of the first child (children are contiguous), 0, 0, 0
 // pair    texels 0..3: corners v0 v1 v2 v3 (float bits) of the triangles A = (v0, v1, v2) and B = (v0, v3, v2);
 //         w of texel 0: number of A; w of texel 1: that of B or OVC_NO_TRIANGLE; w of texel 3: OVC_PAIR;
 //         w of texel 2: which corner of the triangle itself the pair's v0 and v2 are, two bits each, A's then B's
@@ -34,10 +34,10 @@
 #define OVC_NO_TRIANGLE 0xffffffffu
 #define OVC_MAX_UNITS 0x800000 // a stack word has 23 bits for a unit and must not be negative
 
-// Where pages are linked (gpu/linked.h) units count from the pool's first; else from the page's own.
-// Where not all linked pages are in the pool, each hangs under a link: a node of one child, the page's root, in texel 3 its unit
-// or OVC_LEADS_NOWHERE, 1 + its leaf, 0, 0. Of a ray that meets it a link has a key, by which links are in order: the upper half of
-// the bits of the t (float; 0 where it is less), and below it 1 + the leaf.
+// Under the top-level tree (gpu/top_level.h) units count from the pool's first, where the tree lies; else from the page's own. The
+// tree's lowest nodes are links, copies of pages' nodes; texel 3: the unit of the first child in the pool, or OVC_LEADS_NOWHERE;
+// 1 + the page's leaf; the first child's unit in the page, 0. Of a ray that meets it a link has a key, by which links are in order: the
+// upper half of the bits of the t (float; 0 where it is less), and below it 1 + the leaf.
 #define OVC_LEADS_NOWHERE 0
 #define OVC_KEY_LEAF 0xffff
 
@@ -62,14 +62,14 @@
 #define OVC_NO_LEAF 0x7fffffffu
 #define OVC_RAY_ANY_HIT 0x80000000u
 
-// Where pages are linked a ray is two texels, in the frame that they share: org xyz, t_end (float bits); dir xyz (float bits),
+// Under the top-level tree a ray is two texels, in the frame that pages share: org xyz, t_end (float bits); dir xyz (float bits),
 // the number of the triangle it does not see or OVC_SKIPS_NONE, with OVC_RAY_ANY_HIT added where any hit will do. It begins at
 // t = 0. t_end: OVC_NO_RAY where there is none, OVC_UNDECIDABLE where only doubles can answer it; closer to 0 than any t of a box.
 #define OVC_LOCAL_RAY_TEXELS 2
 #define OVC_SKIPS_NONE 0x7fffffffu
 #define OVC_NO_RAY -1.1754943508222875e-38f // -2^-126
 #define OVC_UNDECIDABLE -2.350988701644575e-38f
-// Where pages hang under links, a third texel has the key of the one that the ray waited for, 0 for none; 0, 0, 0. It is done with
+// Where not all pages are in the pool, a third texel has the key of the one that the ray waited for, 0 for none; 0, 0, 0. It is done with
 // those that it meets before.
 #define OVC_RESUMED_RAY_TEXELS 3
 
@@ -79,14 +79,14 @@
 #define OVC_TILE 4
 
 // An answer is RGBA32UI; triangles are named by their numbers in the soup. w: the certain nearest hit in leaf z, or where z is
-// OVC_NO_LEAF in the scene; where pages hang under links, in those that the ray met before the one of the key z, which it waits for; or
+// OVC_NO_LEAF in the scene; where not all pages are in the pool, in those that the ray met before the one of the key z, which it waits for; or
 //   OVC_MISS      none in any leaf on the way
 //   OVC_WAITS     the walk stopped before leaf z, which is not in the pool; x, y: the t of the cells done (double)
 //   OVC_FLAGGED   the kernel cannot tell
 //   OVC_CAPPED    a loop was ended before it was done, or the stack was full
 // x, y: up to two rivals, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is none; what is
 // named neither in w nor here is certainly not the answer in leaf z.
-// In fast precision x, y: t of the hit (double; of linked pages x: t in their frame, float bits); z: u and v in 16 bits each.
+// In fast precision x, y: t of the hit (double; under the top-level tree x: t in its frame, float bits); z: u and v in 16 bits each.
 #define OVC_MISS 0x7fffffffu
 #define OVC_FLAGGED 0x7ffffffeu
 #define OVC_CAPPED 0x7ffffffdu
@@ -99,7 +99,6 @@
 #define OVC_SAYS_MORE 0x80000000u
 #define OVC_LOCATION_PLANE 0 // of the uniform that says how many words a plane has
 #define OVC_LOCATION_RAYS 2  // of the one that says how many rays the pass has
-#define OVC_LOCATION_ROOT 1  // of the one that says at which unit the header of linked pages is
 
 #define OVC_BINDING_PAGE 0
 #define OVC_BINDING_RAYS 1

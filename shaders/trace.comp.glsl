@@ -20,7 +20,7 @@
 #include "traverse.glsl"
 #include "level1.glsl"
 #include "ray.glsl"
-#include "linked.glsl"
+#include "trace.glsl"
 #include "walk.glsl"
 
 layout(local_size_x = OVC_GROUP_SIZE) in;
@@ -43,9 +43,9 @@ uint dealt_group() {
 
 // A miss is not written: it stands there before (gpu/answers.h).
 void give(int ray, uvec4 answer) {
-    const bool tells_leaf = OVC_LINKED == 0 || OVC_LINKS != 0 || OVC_CERTIFY == 0;
+    const bool tells_leaf = OVC_TOP_LEVEL == 0 || OVC_MAY_WAIT != 0 || OVC_CERTIFY == 0;
     bool more = answer.x != OVC_NO_TRIANGLE || answer.w == OVC_WAITS ||
-                (OVC_LINKS == 0 ? tells_leaf && answer.w < OVC_MAX_TRIANGLES : answer.z != OVC_NO_LEAF);
+                (OVC_MAY_WAIT == 0 ? tells_leaf && answer.w < OVC_MAX_TRIANGLES : answer.z != OVC_NO_LEAF);
     uint word = answer.w | (more ? OVC_SAYS_MORE : 0u);
     if (word != OVC_MISS)
         imageStore(answers, ray, uvec4(word));
@@ -68,8 +68,8 @@ void main() {
     int lanes = int(gl_SubGroupSizeARB);
     int begin = (group * OVC_GROUP_SIZE + lane / lanes * lanes) * OVC_PACKET * turns;
     trace_in_turn(begin, min(begin + lanes * OVC_PACKET * turns, ray_count));
-#elif OVC_LINKED
-    trace_linked(ray);
+#elif OVC_TOP_LEVEL
+    trace_once(ray);
 #else
     give(ray, walk(traveller(ray)));
 #endif

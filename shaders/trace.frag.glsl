@@ -16,7 +16,7 @@
 #include "traverse.glsl"
 #include "level1.glsl"
 #include "ray.glsl"
-#include "linked.glsl"
+#include "trace.glsl"
 #include "walk.glsl"
 
 layout(location = 0) out uvec4 answer;
@@ -25,8 +25,8 @@ void give(int ray, uvec4 words) { answer = words; }
 
 void main() {
     int ray = ray_at(ivec2(gl_FragCoord.xy));
-#if OVC_LINKED
-    trace_linked(ray);
+#if OVC_TOP_LEVEL
+    trace_once(ray);
 #else
     give(ray, walk(traveller(ray)));
 #endif

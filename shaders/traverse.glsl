@@ -76,7 +76,7 @@ void advance(inout Descent d, int first_child, Children children, bool leave) {
     d.done = d.done || (back && empty) || d.lost;
 }
 
-#if OVC_TELL_ACTIVE && OVC_LINKED && !OVC_LINKS
+#if OVC_TELL_ACTIVE && OVC_TOP_LEVEL && !OVC_MAY_WAIT
 void tell_active(Unit unit, bool here) {
     if (here && unit.w.y != 0u)
         mark_active(int(unit.w.y) - 1);
@@ -94,21 +94,21 @@ struct Links {
 
 Links no_links() { return Links(0, OVC_NO_CHILD); }
 
-#if OVC_LINKS
+#if OVC_MAY_WAIT
 // The children that a ray goes down to from `unit`: none where it is a link that the ray is done with, or to which it does not come.
 Children follow(inout Links links, Unit unit, Stretches s) {
-    ivec4 keys = entries(s);
+    ivec4 entered = entries(s);
+    int first = min(min(entered.x, entered.y), min(entered.z, entered.w));
     bool link = unit.w.y != 0u;
-    int key = (max(keys.x, 0) & ~OVC_KEY_LEAF) | int(unit.w.y);
-    bool open = link && keys.x != OVC_NO_CHILD && key >= links.done && key < links.waits;
+    int key = (max(first, 0) & ~OVC_KEY_LEAF) | int(unit.w.y);
+    bool open = link && first != OVC_NO_CHILD && key >= links.done && key < links.waits;
     bool nowhere = int(unit.w.x) == OVC_LEADS_NOWHERE;
     links.waits = open && nowhere ? key : links.waits;
 #if OVC_TELL_ACTIVE
     if (open && !nowhere)
         mark_active(int(unit.w.y) - 1);
 #endif
-    keys.x = link && (!open || nowhere) ? OVC_NO_CHILD : keys.x; // a link has no other child
-    return children_met(keys);
+    return children_met(link && (!open || nowhere) ? ivec4(OVC_NO_CHILD) : entered);
 }
 #else
 Children follow(inout Links links, Unit unit, Stretches s) { return children_met(s); }
@@ -126,7 +126,7 @@ struct Packet {
     Links links[OVC_PACKET];
 };
 
-// Of the page, or of all linked pages, whose header is the pool's unit `page`.
+// Of the page, or of the top-level tree, whose header is the pool's unit `page`.
 struct Tree {
     vec3 grid_middle;
     vec3 grid_cell;

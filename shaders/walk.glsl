@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A ray's way through level 1: from leaf to leaf as long as they are in the pool, until one has an answer for it.
 
-#if !OVC_LINKED
+#if !OVC_TOP_LEVEL
 // The words of an answer (layout.h).
 uvec4 walk(Traveller traveller) {
     WorldRay ray = traveller.ray;

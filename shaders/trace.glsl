@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays through linked pages: all leaves share a frame, and one tree holds them.
+// Rays through the top-level tree, in the frame that all pages share.
 
-#if OVC_LINKED
-layout(location = OVC_LOCATION_ROOT) uniform int linked_root;
-
+#if OVC_TOP_LEVEL
 // What the wrapper does with the words of an answer.
 void give(int ray, uvec4 answer);
 
 // The rays from `first` on. A packet has the octant and the axis of its first ray; the host sees to it, and a ray with others is for doubles
 // to decide. Returns whether any of them is a ray.
 bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACKET]) {
-    const int texels = OVC_LINKS == 0 ? OVC_LOCAL_RAY_TEXELS : OVC_RESUMED_RAY_TEXELS;
+    const int texels = OVC_MAY_WAIT == 0 ? OVC_LOCAL_RAY_TEXELS : OVC_RESUMED_RAY_TEXELS;
     bool any = false;
     for (int k = 0; k < OVC_PACKET; ++k) {
         uvec4 from = ray_texel((first + k) * texels);
@@ -29,7 +27,7 @@ bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACK
         set_ray(packet, k, tree, uintBitsToFloat(from.xyz), direction_of(dir, packet.axes), to.w & OVC_SKIPS_NONE,
                 OVC_ANY_HIT != 0 || (to.w & OVC_RAY_ANY_HIT) != 0u);
         packet.links[k] = no_links();
-#if OVC_LINKS
+#if OVC_MAY_WAIT
         packet.links[k].done = int(ray_texel((first + k) * texels + 2).x);
 #endif
         any = any || t_end >= 0.0;
@@ -40,7 +38,7 @@ bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACK
 void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended) {
     for (int k = 0; k < OVC_PACKET; ++k) {
         uvec4 answer = answer_of(found[k], packet.any_hit[k], OVC_NO_LEAF);
-#if OVC_LINKS
+#if OVC_MAY_WAIT
         // What lies beyond the best hit is not waited for.
         int waits = packet.links[k].waits;
         answer.z = (waits & ~OVC_KEY_LEAF) <= floatBitsToInt(found[k].best_hi) ? uint(waits) : answer.z;
@@ -54,8 +52,8 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended)
 }
 
 #if !OVC_TURNS
-void trace_linked(int ray) {
-    Tree tree = tree_of(linked_root, 0);
+void trace_once(int ray) {
+    Tree tree = tree_of(0, 0);
     Descent d = descent(tree);
     Packet packet;
     Found found[OVC_PACKET];
@@ -72,7 +70,7 @@ const int OVC_TURN_ROUNDS = OVC_PACKET > 1 ? 5 : 3;
 // nobody has taken, so that they do not wait for each other.
 // Based on: Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs" (replacing terminated rays).
 void trace_in_turn(int begin, int end) {
-    Tree tree = tree_of(linked_root, 0);
+    Tree tree = tree_of(0, 0);
     Descent d = descent(tree);
     Packet packet;
     Found found[OVC_PACKET];
