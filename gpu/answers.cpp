@@ -25,7 +25,7 @@ size_t pixel_of(size_t ray) {
 } // namespace
 
 AnswerPixels::AnswerPixels(Ledger& ledger, uint32_t rays)
-    : texture_(ledger, GL_RGBA32UI, sizeof(Answer), OVC_ROW_RAYS, rays / OVC_ROW_RAYS, "answers"),
+    : texture_(ledger, GL_RGBA32UI, kAnswerBytes, OVC_ROW_RAYS, rays / OVC_ROW_RAYS, "answers"),
       framebuffer_(texture_) {}
 
 void AnswerPixels::draw(size_t rays) const {
@@ -43,13 +43,15 @@ void AnswerPixels::read(std::span<Answer> answers) {
     glReadPixels(0, 0, OVC_ROW_RAYS, GLsizei(pixels_.size() / OVC_ROW_RAYS), GL_RGBA_INTEGER,
                  GL_UNSIGNED_INT, pixels_.data());
     parallel_for(answers.size(), kGrain, [&](size_t first, size_t last) {
-        for (size_t ray = first; ray < last; ++ray)
-            answers[ray] = pixels_[pixel_of(ray)];
+        for (size_t ray = first; ray < last; ++ray) {
+            const uvec4& p = pixels_[pixel_of(ray)];
+            answers[ray] = {{p.x, p.y, p.z}, p.w, p.z};
+        }
     });
 }
 
 AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays)
-    : rays_(rays), buffer_(ledger, uint64_t(rays) * sizeof(Answer), "answers") {
+    : rays_(rays), buffer_(ledger, uint64_t(rays) * kAnswerBytes, "answers") {
     texture_.show(buffer_, GL_R32UI, 0, buffer_.bytes());
     // Stays like this where all pages are resident: no answer names a leaf.
     fill_plane(3, rays_, OVC_NO_LEAF);
@@ -89,7 +91,8 @@ void AnswerWords::read(std::span<Answer> answers, size_t first_ray) {
         for (size_t ray = first; ray < last; ++ray) {
             all |= names[ray];
             answers[ray] = {{OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, OVC_NO_LEAF},
-                            names[ray] & ~OVC_SAYS_MORE};
+                            names[ray] & ~OVC_SAYS_MORE,
+                            OVC_NO_LEAF};
         }
         seen |= all;
     });
@@ -99,8 +102,10 @@ void AnswerWords::read(std::span<Answer> answers, size_t first_ray) {
                           plane(3, first_ray, answers.size())};
     parallel_for(answers.size(), kGrain, [&](size_t first, size_t last) {
         for (size_t ray = first; ray < last; ++ray)
-            if (names[ray] & OVC_SAYS_MORE)
+            if (names[ray] & OVC_SAYS_MORE) {
                 answers[ray].words = {more[0][ray], more[1][ray], more[2][ray]};
+                answers[ray].where = more[2][ray];
+            }
     });
 }
 

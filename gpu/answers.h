@@ -3,6 +3,7 @@
 // (the compute kernel). The layouts: shaders/layout.h.
 #pragma once
 
+#include "core/vec.h"
 #include "gpu/gl_object.h"
 #include "shaders/layout.h"
 
@@ -19,10 +20,10 @@ namespace ovc {
 struct Answer {
     std::array<uint32_t, 3> words;
     uint32_t prim;
+    /// Under the top-level tree the key of the link that the ray waits for, else the leaf that the
+    /// answer is of; OVC_NO_LEAF: no other page is left.
+    uint32_t where;
 
-    uint32_t leaf() const { return words[2]; }
-    /// Under the top-level tree: of the link that the ray waits for, or OVC_NO_LEAF.
-    uint32_t key() const { return words[2]; }
     /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
     std::span<const uint32_t, 2> rivals() const { return std::span(words).first<2>(); }
     /// Fast precision: where the hit is. OVC_WAITS: the t of the cells done.
@@ -31,7 +32,9 @@ struct Answer {
     double u() const { return (words[2] & 0xffffu) / 65535.0; }
     double v() const { return (words[2] >> 16) / 65535.0; }
 };
-static_assert(sizeof(Answer) == 16);
+
+/// On the GPU.
+inline constexpr uint64_t kAnswerBytes = 16;
 
 /// The leaf that the key of a link names.
 inline uint32_t leaf_of(uint32_t key) {
@@ -59,7 +62,7 @@ private:
     gl::Texture2D texture_;
     gl::Framebuffer framebuffer_;
     gl::VertexArray vertex_array_;
-    std::vector<Answer> pixels_;
+    std::vector<uvec4> pixels_;
 };
 
 /// The kernel writes no misses: dispatch() puts them there before.

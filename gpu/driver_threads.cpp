@@ -73,7 +73,7 @@ std::optional<double> DriverThreads::seconds_each() const {
     }
     // A driver that has threads for each kind of kernel runs one kind at a time.
     workers = std::min(workers, std::max(std::thread::hardware_concurrency(), 1u));
-    if (threads_.empty())
+    if (all <= 0) // the driver works on threads that came after find()
         return {};
     return all / std::max(workers, 1u);
 }

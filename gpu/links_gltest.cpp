@@ -88,7 +88,7 @@ protected:
         for (size_t j = 0; j < some.size(); ++j) {
             UnderWay& way = rays[some[j]];
             take_in(way, answers[j]);
-            const uint32_t key = answers[j].key();
+            const uint32_t key = answers[j].where;
             if (key == OVC_NO_LEAF)
                 continue;
             ASSERT_LT(leaf_of(key), pages.size());

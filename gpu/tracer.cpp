@@ -97,7 +97,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       software_(device.is_software),
       top_(top),
       all_fit_(top.tree.bytes() + bytes_of(pages) <= plan.pool_bytes),
-      has_tree_(is_usable(top, plan.pool_bytes, pages) && (all_fit_ || options.certify)),
+      has_tree_(is_usable(top, plan.pool_bytes, pages)),
       scene_(scene_leaf(level1.bounds)),
       stack_depth_(has_tree_ ? stack_depth(top.depth) : stack_depth(pages)),
       stack_words_(software_ ? std::min(stack_depth_, kMostStackWordsInSoftware) : stack_depth_),
@@ -236,15 +236,19 @@ void Tracer::upload_local(std::span<const Traveller> rays, std::vector<Sent>& se
                          sent.data());
 }
 
-/// Fast precision: t from the frame of the top-level tree to the rays' own.
+/// Fast precision: hits as Answer has them, where the kernel told t in the frame of the top-level
+/// tree, then u and v.
 void Tracer::come_back(std::span<Answer> answers) const {
     for (size_t i = 0; i < answers.size(); ++i) {
         if (answers[i].prim >= OVC_MAX_TRIANGLES)
             continue;
+        if (!has_tree_) { // the walk ends where it hits
+            answers[i].where = OVC_NO_LEAF;
+            continue;
+        }
         const double local = std::bit_cast<float>(answers[i].words[0]);
         const auto t = std::bit_cast<uint64_t>(times_[i].enter + local / times_[i].speed);
-        answers[i].words[0] = uint32_t(t);
-        answers[i].words[1] = uint32_t(t >> 32);
+        answers[i].words = {uint32_t(t), uint32_t(t >> 32), answers[i].words[1]};
     }
 }
 
@@ -381,7 +385,7 @@ Result<Done> Tracer::collect(std::span<Answer> answers) {
             return ok;
         read(answers);
     }
-    if (has_tree_ && !options_.certify)
+    if (!options_.certify)
         come_back(answers);
     return check_gl("reading the answers of a pass");
 }

@@ -45,21 +45,19 @@ struct MemoryPlan {
     uint32_t batch_rays = 0; // most rays a pass
     uint64_t pool_bytes = 0;
     uint64_t active_bytes = 0; // 4 a leaf, or 0: passes mark which pages rays are traced through
-    uint64_t bytes_per_ray = sizeof(Traveller) + sizeof(Answer);
+    uint64_t bytes_per_ray = sizeof(Traveller) + kAnswerBytes;
     uint64_t driver_bytes = ~uint64_t(0); // for tests: what the driver has
 
     /// For how many rays besides there are answers: those that packets part (gpu/packets.h).
     uint32_t parted_rays() const { return batch_rays / 64 / kBlockRays * kBlockRays; }
-    uint64_t ray_bytes() const {
-        return batch_rays * bytes_per_ray + parted_rays() * sizeof(Answer);
-    }
+    uint64_t ray_bytes() const { return batch_rays * bytes_per_ray + parted_rays() * kAnswerBytes; }
 };
 
 /// The plan for a budget, clamped to the device, level 1 not yet taken off. Error: a budget below
 /// what the smallest page and batch need, with the number.
 /// bytes_per_ray: of a ray and its answer.
 Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
-                               uint64_t bytes_per_ray = sizeof(Traveller) + sizeof(Answer));
+                               uint64_t bytes_per_ray = sizeof(Traveller) + kAnswerBytes);
 
 /// Pages moved to the GPU.
 struct Moved {
@@ -86,7 +84,7 @@ public:
 
     /// All pages are in the pool, under the top-level tree, so that a pass answers its rays for
     /// good.
-    bool all_resident() const { return has_tree_ && pages_moved_ == page_data_.size(); }
+    bool all_resident() const { return has_tree_ && all_fit_ && pages_moved_ == page_data_.size(); }
 
     /// Rays go through the top-level tree: an answer is that of all pages on the way to the one it
     /// names, which the ray waits for, or of all.

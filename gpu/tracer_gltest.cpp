@@ -277,7 +277,7 @@ TEST_F(KernelGl, ARayWaitsForALeafThatIsNotInThePool) {
             std::move(*Tracer::create(shared, {}, gl->info(), state.kernels, level1, pages, top));
     });
     const Answer answer = trace(std::span(&ray, 1))[0];
-    EXPECT_EQ(answer.leaf(), 0u);
+    EXPECT_EQ(answer.where, 0u);
     EXPECT_EQ(answer.t(), 0.0);
 }
 

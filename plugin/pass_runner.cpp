@@ -84,7 +84,7 @@ void PassRunner::bring_first(BuildProgress* progress) {
     constexpr uint64_t kBytesAtOnce = 32 << 20; // between two looks whether to stop
     const std::vector<Page>& pages = tracing_.scene.pages;
     begin(progress, "moving pages to the GPU", 0.05, plan_.pool_bytes);
-    uint64_t room = plan_.pool_bytes;
+    uint64_t room = plan_.pool_bytes - std::min(plan_.pool_bytes, tracing_.scene.top.tree.bytes());
     for (size_t next = 0; next < pages.size() && pages[next].bytes() <= room;) {
         std::vector<uint32_t> some;
         uint64_t bytes = 0;

@@ -139,10 +139,10 @@ private:
     template <class GoOn>
     bool enter_certain(uint32_t i, const Answer& answer, const Hit& hit, GoOn&& go_on) {
         query_.set(i, hit);
-        if (answer.leaf() == OVC_NO_LEAF)
+        if (answer.where == OVC_NO_LEAF)
             return true;
         const double beyond = std::nextafter(hit.t, std::numeric_limits<double>::max());
-        return go_on(i, answer.leaf(), prepare(query_, i), beyond);
+        return go_on(i, answer.where, prepare(query_, i), beyond);
     }
 
     /// False: the ray goes to the exact fallback.
@@ -153,8 +153,7 @@ private:
             return false;
         if (tracing_.options.certify)
             return resolve_candidates(i, answer, go_on);
-        enter_fast(i, answer);
-        return true;
+        return enter_fast(i, answer, go_on);
     }
 
     /// False where exact arithmetic does not confirm the certain hit, or go_on() says so.
@@ -175,19 +174,24 @@ private:
             return false;
         if (nearest.is_hit())
             query_.set(i, nearest);
-        const bool in_scene = answer.leaf() == OVC_NO_LEAF; // no page is left
+        const bool in_scene = answer.where == OVC_NO_LEAF; // no page is left
         const bool resolved = in_scene || (Query::kAnyHit && nearest.is_hit()) ||
-                              go_on(i, answer.leaf(), p, nearest.limit());
+                              go_on(i, answer.where, p, nearest.limit());
         if (resolved && found.has_further()) // fall_back() counts the others
             count_flagged(i);
         return resolved;
     }
 
-    void enter_fast(uint32_t i, const Answer& answer) {
+    /// False where go_on() says so. The ray was asked about up to the hit before, if there was one,
+    /// so that this one is nearer.
+    template <class GoOn>
+    bool enter_fast(uint32_t i, const Answer& answer, GoOn&& go_on) {
         if (answer.prim == OVC_MISS)
-            return;
+            return true;
         const Hit hit{answer.t(), answer.u(), answer.v(), scene_.numbers.id(answer.prim)};
         query_.set(i, scene_.twins.seen(scene_.soup, hit, query_.skipped(i)));
+        return Query::kAnyHit || answer.where == OVC_NO_LEAF ||
+               go_on(i, answer.where, prepare(query_, i), hit.t);
     }
 
     /// In parallel where the rays are many, because each may take as long as thousands of others.

@@ -63,6 +63,32 @@ TEST_F(TwoLevelGl, ARayFromFarAwayMeetsTheCornerOfTheScene) {
         EXPECT_TRUE(hits[i].is_hit()) << "ray " << i;
 }
 
+/// The pool holds all pages, or all but the top-level tree beside them, or all but one.
+TEST_F(TwoLevelGl, AnyBudgetNearThatOfAllPagesAnswersAlike) {
+    const Soup soup = test::closed_grid(60);
+    const std::vector<Ray> rays = test::rays_from_outside(13, 4000);
+    const auto all = build(soup, {.leaf_triangles = 100});
+    ASSERT_TRUE(all);
+    std::vector<Hit> expected(rays.size()), hits(rays.size());
+    ASSERT_TRUE(ok(all->intersect(rays, {}, expected)));
+    const uint64_t pages = all->scene().level2_bytes();
+    size_t waited = 0, resident = 0; // structures whose rays waited for pages, or did not
+    for (uint64_t pool = pages - (16 << 10); pool < pages + (128 << 10); pool += 8 << 10) {
+        const uint64_t budget = pool / 7 * 8; // an eighth is for rays
+        const auto structure = build(soup, {.budget_bytes = budget, .leaf_triangles = 100});
+        ASSERT_TRUE(structure);
+        for (int call = 0; call < 3; ++call) { // pages move in the first
+            ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+            for (size_t i = 0; i < rays.size(); ++i)
+                ASSERT_TRUE(test::same(hits[i], expected[i])) << "ray " << i << ", pool " << pool;
+        }
+        const ovc_statistics told = structure->report();
+        ++(told.queues + told.stragglers > 0 ? waited : resident);
+    }
+    EXPECT_GT(waited, 0u);
+    EXPECT_GT(resident, 0u);
+}
+
 /// So many rays that they come in several parts, of which one has no ray for the kernel at all.
 TEST_F(TwoLevelGl, ManyRaysAreAnsweredAsFewAre) {
     const Soup soup = test::closed_grid(60);
@@ -463,8 +489,13 @@ TEST_F(TwoLevelGl, TellsThePagesThatRaysWentThrough) {
 TEST_F(TwoLevelGl, FastPrecisionIsCloseAndFlagsNothing) {
     const Soup soup = test::closed_grid(100);
     const auto ids = hittable_triangles(soup, nullptr, nullptr);
-    for (const bool compute : {false, true}) {
-        const auto structure = build(soup, {.certify = false, .compute = compute});
+    for (const auto& [compute, budget] :
+         {std::pair(false, 0u), std::pair(true, 0u), std::pair(false, 192u << 10),
+          std::pair(true, 192u << 10)}) {
+        const auto structure = build(soup, {.budget_bytes = budget,
+                                            .leaf_triangles = budget > 0 ? 300u : 0u,
+                                            .certify = false,
+                                            .compute = compute});
         ASSERT_TRUE(structure);
         test::Random random(15);
         std::vector<Ray> rays(5000);
@@ -489,6 +520,11 @@ TEST_F(TwoLevelGl, FastPrecisionIsCloseAndFlagsNothing) {
         }
         EXPECT_LT(other, rays.size() / 500);
         EXPECT_EQ(structure->statistics().flagged, 0u);
+        EXPECT_EQ(structure->statistics().queues > 0, budget > 0);
+        std::vector<uint8_t> occluded(rays.size());
+        ASSERT_TRUE(ok(structure->occluded(rays, {}, occluded)));
+        for (size_t i = 0; i < rays.size(); ++i)
+            EXPECT_EQ(occluded[i] != 0, hits[i].is_hit()) << "ray " << i;
     }
 }
 

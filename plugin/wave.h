@@ -147,15 +147,15 @@ private:
         at.stage = State::Done;
         if (passes_.has_tree()) {
             // The answer is that of all leaves before the one whose key it has, if any.
-            if (answer.key() != OVC_NO_LEAF)
-                at = {at.t_from, at.t_end, answer.key(), State::Waits};
+            if (answer.where != OVC_NO_LEAF)
+                at = {at.t_from, at.t_end, answer.where, State::Waits};
             if (candidates_of(answer).is_miss())
                 return false;
             at.stage = State::Done;
             return true;
         }
         if (answer.prim == OVC_WAITS) {
-            at = {answer.t(), at.t_end, answer.leaf(), State::Waits};
+            at = {answer.t(), at.t_end, answer.where, State::Waits};
             return false;
         }
         note_use(answer);
@@ -175,9 +175,9 @@ private:
     void note_use(const Answer& answer) {
         const bool names = answer.prim < OVC_MAX_TRIANGLES ||
                            (answer.prim == OVC_MISS && candidates_of(answer).has_further());
-        if (!tracing_.options.certify || !names || answer.leaf() == OVC_NO_LEAF)
+        if (!tracing_.options.certify || !names || answer.where == OVC_NO_LEAF)
             return;
-        std::atomic<uint8_t>& used = used_[answer.leaf()];
+        std::atomic<uint8_t>& used = used_[answer.where];
         if (used.load(std::memory_order_relaxed) == 0)
             used.store(1, std::memory_order_relaxed);
     }

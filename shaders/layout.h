@@ -86,7 +86,8 @@
 //   OVC_CAPPED    a loop was ended before it was done, or the stack was full
 // x, y: up to two rivals, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is none; what is
 // named neither in w nor here is certainly not the answer in leaf z.
-// In fast precision x, y: t of the hit (double; under the top-level tree x: t in its frame, float bits); z: u and v in 16 bits each.
+// In fast precision x, y: t of the hit (double); z: u and v in 16 bits each. But under the top-level tree x: t in its frame (float bits);
+// y: u and v; z: as above.
 #define OVC_MISS 0x7fffffffu
 #define OVC_FLAGGED 0x7ffffffeu
 #define OVC_CAPPED 0x7ffffffdu

@@ -43,7 +43,7 @@ uint dealt_group() {
 
 // A miss is not written: it stands there before (gpu/answers.h).
 void give(int ray, uvec4 answer) {
-    const bool tells_leaf = OVC_TOP_LEVEL == 0 || OVC_MAY_WAIT != 0 || OVC_CERTIFY == 0;
+    const bool tells_leaf = OVC_TOP_LEVEL == 0 || OVC_MAY_WAIT != 0;
     bool more = answer.x != OVC_NO_TRIANGLE || answer.w == OVC_WAITS ||
                 (OVC_MAY_WAIT == 0 ? tells_leaf && answer.w < OVC_MAX_TRIANGLES : answer.z != OVC_NO_LEAF);
     uint word = answer.w | (more ? OVC_SAYS_MORE : 0u);

@@ -44,7 +44,8 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended)
         answer.z = (waits & ~OVC_KEY_LEAF) <= floatBitsToInt(found[k].best_hi) ? uint(waits) : answer.z;
 #endif
 #if !OVC_CERTIFY
-        answer.xyz = uvec3(floatBitsToUint(found[k].best_lo), 0u, packUnorm2x16(barycentric(found[k])));
+        if (found[k].prim != OVC_MISS)
+            answer.xy = uvec2(floatBitsToUint(found[k].best_lo), packUnorm2x16(barycentric(found[k])));
 #endif
         answer.w = found[k].best_hi == OVC_UNDECIDABLE ? OVC_FLAGGED : answer.w;
         give(first + k, ended ? answer : uvec4(0u, 0u, OVC_NO_LEAF, OVC_CAPPED));
