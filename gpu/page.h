@@ -29,6 +29,19 @@ struct Page {
     }
 };
 
+inline uint64_t total_bytes(std::span<const Page> pages) {
+    uint64_t bytes = 0;
+    for (const Page& page : pages)
+        bytes += page.bytes();
+    return bytes;
+}
+inline uint64_t largest_bytes(std::span<const Page> pages) {
+    uint64_t bytes = 0;
+    for (const Page& page : pages)
+        bytes = std::max(bytes, page.bytes());
+    return bytes;
+}
+
 /// Stack words that the kernel needs for all of these pages, rounded up: few programs, and no
 /// register more than needed.
 uint32_t stack_depth(std::span<const Page> pages);

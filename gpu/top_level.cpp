@@ -160,6 +160,13 @@ TopLevel build_top_level(std::span<const Page> pages, size_t max_links) {
     return top;
 }
 
+bool is_usable(const TopLevel& top, std::span<const Page> pages, uint64_t pool_bytes) {
+    const uint64_t all = top.tree.bytes() + total_bytes(pages);
+    return !top.empty() && std::min(pool_bytes, all) / OVC_UNIT_BYTES < OVC_MAX_UNITS &&
+           (pages.size() < OVC_KEY_LEAF || all <= pool_bytes) &&
+           top.tree.bytes() + largest_bytes(pages) <= pool_bytes;
+}
+
 void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to) {
     constexpr size_t kGrain = 4096; // units a task
     const std::span<const uvec4> from = page.view();

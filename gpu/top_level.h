@@ -54,6 +54,11 @@ inline uint64_t max_links(uint64_t pages, uint64_t page_bytes, uint64_t pool_byt
 /// would be links count as such, but lie in the tree themselves.
 TopLevel build_top_level(std::span<const Page> pages, size_t max_links);
 
+/// Whether rays can go through the tree in a pool of so many bytes: all units can be counted in a
+/// stack word, where pages come and go they can be named by a key, and the largest has room beside
+/// the tree.
+bool is_usable(const TopLevel& top, std::span<const Page> pages, uint64_t pool_bytes);
+
 /// Writes a page as it must be where it begins at `first_unit` and units count from the pool's
 /// first; on all cores. to: as large as the page.
 void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to);

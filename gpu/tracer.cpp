@@ -37,25 +37,6 @@ size_t turns(size_t rays, size_t packet) {
     return std::clamp<size_t>(rays / packet / lanes, 1, kLaneRays / packet);
 }
 
-uint64_t bytes_of(std::span<const Page> pages) {
-    uint64_t bytes = 0;
-    for (const Page& page : pages)
-        bytes += page.bytes();
-    return bytes;
-}
-
-/// Whether rays can go through the tree: its units and the pages' can be counted in a stack word,
-/// its pages named by a key, and the largest lies beside it.
-bool is_usable(const TopLevel& top, uint64_t pool_bytes, std::span<const Page> pages) {
-    uint64_t largest = 0;
-    for (const Page& page : pages)
-        largest = std::max(largest, page.bytes());
-    const uint64_t used = std::min(pool_bytes, top.tree.bytes() + bytes_of(pages));
-    return !top.empty() && used / OVC_UNIT_BYTES < OVC_MAX_UNITS &&
-           (pages.size() < OVC_KEY_LEAF || used < pool_bytes) &&
-           top.tree.bytes() + largest <= pool_bytes;
-}
-
 } // namespace
 
 Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
@@ -96,8 +77,8 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       page_data_(pages),
       software_(device.is_software),
       top_(top),
-      all_fit_(top.tree.bytes() + bytes_of(pages) <= plan.pool_bytes),
-      has_tree_(is_usable(top, plan.pool_bytes, pages)),
+      all_fit_(top.tree.bytes() + total_bytes(pages) <= plan.pool_bytes),
+      has_tree_(is_usable(top, pages, plan.pool_bytes)),
       scene_(scene_leaf(level1.bounds)),
       stack_depth_(has_tree_ ? stack_depth(top.depth) : stack_depth(pages)),
       stack_words_(software_ ? std::min(stack_depth_, kMostStackWordsInSoftware) : stack_depth_),

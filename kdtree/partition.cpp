@@ -35,28 +35,34 @@ void collect_cells(std::span<const KdNode> nodes, uint32_t node, const Box& box,
     collect_cells(nodes, nodes[node].above(), above, padding, cells);
 }
 
-/// members[c]: the triangles of cell c, in the order of `triangles`. A triangle is a unit of
-/// progress.
+/// members[c]: the triangles of cell c, in the order of `triangles`; behind all cells those that
+/// touch far_cells of them or more. A triangle is a unit of progress.
 std::vector<std::vector<TriangleId>> gather(const Soup& soup, const CellFinder& finder,
                                             size_t cells, std::span<const TriangleId> triangles,
-                                            BuildProgress* progress) {
+                                            uint32_t far_cells, BuildProgress* progress) {
     constexpr size_t kBlocks =
         64; // each with lists of its own, so that the order never depends on threads
     const size_t block = triangles.size() / kBlocks + 1;
     std::vector<std::vector<std::vector<TriangleId>>> parts(kBlocks);
     parallel_for(kBlocks, 1, [&](size_t first, size_t last) {
         LoopProgress loop(progress);
+        std::vector<uint32_t> touched;
         for (size_t b = first; b < last; ++b) {
-            parts[b].resize(cells);
+            parts[b].resize(cells + 1);
             const size_t end = std::min(triangles.size(), (b + 1) * block);
-            for (size_t i = b * block; i < end; ++i, loop.step())
-                finder.find(soup.triangle(triangles[i]),
-                            [&](uint32_t c) { parts[b][c].push_back(triangles[i]); });
+            for (size_t i = b * block; i < end; ++i, loop.step()) {
+                touched.clear();
+                finder.find(soup.triangle(triangles[i]), [&](uint32_t c) { touched.push_back(c); });
+                if (touched.size() >= far_cells)
+                    touched = {uint32_t(cells)};
+                for (const uint32_t c : touched)
+                    parts[b][c].push_back(triangles[i]);
+            }
         }
         loop.finish();
     });
-    std::vector<std::vector<TriangleId>> members(cells);
-    parallel_for(cells, 1, [&](size_t first, size_t last) {
+    std::vector<std::vector<TriangleId>> members(cells + 1);
+    parallel_for(members.size(), 1, [&](size_t first, size_t last) {
         for (size_t c = first; c < last; ++c)
             for (auto& part : parts) {
                 members[c].insert(members[c].end(), part[c].begin(), part[c].end());
@@ -64,6 +70,31 @@ std::vector<std::vector<TriangleId>> gather(const Soup& soup, const CellFinder& 
             }
     });
     return members;
+}
+
+/// Hands `triangles` to leaves of exactly `most` each but for the last: halves by the median of
+/// centres along the axis on which they are most apart.
+void halve(const Soup& soup, std::span<TriangleId> triangles, uint32_t most,
+           std::vector<std::vector<TriangleId>>& lists) {
+    if (triangles.size() <= most) {
+        lists.emplace_back(triangles.begin(), triangles.end());
+        std::ranges::sort(lists.back());
+        return;
+    }
+    const auto center = [&](TriangleId id) {
+        const Triangle t = soup.triangle(id);
+        return t[0] + t[1] + t[2];
+    };
+    Box centers;
+    for (const TriangleId id : triangles)
+        centers.add(center(id));
+    const int axis = major_axis(centers.extent());
+    const size_t leaves = (triangles.size() + most - 1) / most;
+    const size_t below = leaves / 2 * most;
+    std::ranges::nth_element(triangles, triangles.begin() + ptrdiff_t(below), {},
+                             [&](TriangleId id) { return std::pair(center(id)[axis], id); });
+    halve(soup, triangles.first(below), most, lists);
+    halve(soup, triangles.subspan(below), most, lists);
 }
 
 Frame frame_of(const Box& box, double reach) {
@@ -96,14 +127,16 @@ public:
     }
 
     /// Appends the tree over `box`, which holds `triangles`, by a sample of them. Cells that hold
-    /// more than the sample made believe are cut again by all they hold.
+    /// more than the sample made believe are cut again by all they hold. finds_far: triangles that
+    /// reach far may go into a leaf of their own; only where there are no leaves yet.
     void cut(std::span<const TriangleId> triangles, const Box& box, uint32_t most,
-             const Sample& drawn = {}) {
+             const Sample& drawn = {}, bool finds_far = false) {
         const uint32_t rate = sample_rate(triangles.size(), most);
         if (drawn.rate == rate)
-            cut(triangles, drawn.triangles, rate, box, most);
+            cut(triangles, drawn.triangles, rate, box, most, finds_far);
         else
-            cut(triangles, sample_triangles(soup_, triangles, rate, progress_), rate, box, most);
+            cut(triangles, sample_triangles(soup_, triangles, rate, progress_), rate, box, most,
+                finds_far);
     }
 
     /// A node for a cell of so many leaves; none where it is empty.
@@ -112,6 +145,12 @@ public:
         for (std::vector<TriangleId>& list : lists)
             leaves_.push_back({padded_cell, std::move(list)});
         level1_.nodes.push_back(KdNode::leaf(first, leaves() - first));
+    }
+
+    /// A leaf in no cell, before all that lie in cells.
+    void add_far_leaf(std::vector<TriangleId> triangles) {
+        leaves_.push_back({level1_.bounds.padded(level1_.padding), std::move(triangles)});
+        level1_.far_leaves += 1;
     }
 
     uint32_t leaves() const { return uint32_t(leaves_.size()); }
@@ -153,19 +192,38 @@ public:
     void fill(std::span<const KdNode> nodes, const Box& box, std::span<const TriangleId> triangles,
               PutCell&& put_cell) {
         const std::vector<Cell> cells = cells_of(nodes, box, level1_.padding);
-        std::vector<std::vector<TriangleId>> members = gather(
-            soup_, CellFinder(nodes, cells, level1_.padding), cells.size(), triangles, progress_);
+        fill(nodes, box, members(nodes, cells, triangles, kNone), put_cell);
+    }
+
+private:
+    std::vector<std::vector<TriangleId>> members(std::span<const KdNode> nodes,
+                                                 std::span<const Cell> cells,
+                                                 std::span<const TriangleId> triangles,
+                                                 uint32_t far_cells) const {
+        return gather(soup_, CellFinder(nodes, cells, level1_.padding), cells.size(), triangles,
+                      far_cells, progress_);
+    }
+
+    template <class PutCell>
+    void fill(std::span<const KdNode> nodes, const Box& box,
+              const std::vector<std::vector<TriangleId>>& members, PutCell&& put_cell) {
         auto inside = members.begin();
         copy(nodes, box, [&](const Cell& cell, const KdNode&) { put_cell(cell, *inside++); });
     }
 
-private:
     void cut(std::span<const TriangleId> triangles, std::span<const TriangleId> sample,
-             uint32_t rate, const Box& box, uint32_t most) {
+             uint32_t rate, const Box& box, uint32_t most, bool finds_far) {
         const KdTree tree = cut_sample(soup_, sample, rate, box, most, progress_);
-        fill(tree.nodes, box, triangles, [&](const Cell& cell, std::span<const TriangleId> inside) {
+        const std::vector<Cell> cells = cells_of(tree.nodes, box, level1_.padding);
+        auto lists = members(tree.nodes, cells, triangles, finds_far ? kFarCells : kNone);
+        const uint64_t far = lists.back().size();
+        if (far_leaf_pays(far, triangles.size(), most))
+            add_far_leaf(std::move(lists.back()));
+        else if (far > 0)
+            lists = members(tree.nodes, cells, triangles, kNone);
+        fill(tree.nodes, box, lists, [&](const Cell& cell, std::span<const TriangleId> inside) {
             if (inside.size() > most && rate > 1)
-                cut(inside, inside, 1, cell.box, most);
+                cut(inside, inside, 1, cell.box, most, /* finds_far= */ false);
             else
                 add_leaves(cell.padded, in_parts(inside, most));
         });
@@ -258,49 +316,26 @@ Leaf whole_leaf(const Soup& soup, std::span<const TriangleId> triangles, const B
 }
 
 Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
-                 uint32_t max_leaf_triangles, BuildProgress* progress, const Sample& drawn) {
+                 uint32_t max_leaf_triangles, BuildProgress* progress, const Sample& drawn,
+                 bool may_have_far_leaves) {
     assert(max_leaf_triangles > 0);
     if (triangles.empty())
-        return {{}, {}, bounds, 0, false};
+        return Level1{.bounds = bounds};
     if (triangles.size() <= max_leaf_triangles) { // a sample might make believe they are more
-        Level1 level1{{KdNode::leaf(0, 1)}, {}, bounds, padding_of(bounds), false};
+        Level1 level1{
+            .nodes = {KdNode::leaf(0, 1)}, .bounds = bounds, .padding = padding_of(bounds)};
         level1.leaves.push_back(whole_leaf(soup, triangles, bounds));
         return level1;
     }
     Partitioner partitioner(soup, bounds, progress);
-    partitioner.cut(triangles, bounds, max_leaf_triangles, drawn);
+    partitioner.cut(triangles, bounds, max_leaf_triangles, drawn, may_have_far_leaves);
     return partitioner.finish();
-}
-
-/// Hands `triangles`, the first of which is number `first`, to leaves of exactly `most` each but
-/// for the last: halves by the median of centres along the axis on which they are most apart.
-static void halve(const Soup& soup, std::span<TriangleId> triangles, uint32_t most,
-                  std::vector<std::vector<TriangleId>>& lists) {
-    if (triangles.size() <= most) {
-        lists.emplace_back(triangles.begin(), triangles.end());
-        std::ranges::sort(lists.back());
-        return;
-    }
-    const auto center = [&](TriangleId id) {
-        const Triangle t = soup.triangle(id);
-        return t[0] + t[1] + t[2];
-    };
-    Box centers;
-    for (const TriangleId id : triangles)
-        centers.add(center(id));
-    const int axis = major_axis(centers.extent());
-    const size_t leaves = (triangles.size() + most - 1) / most;
-    const size_t below = leaves / 2 * most;
-    std::ranges::nth_element(triangles, triangles.begin() + ptrdiff_t(below), {},
-                             [&](TriangleId id) { return std::pair(center(id)[axis], id); });
-    halve(soup, triangles.first(below), most, lists);
-    halve(soup, triangles.subspan(below), most, lists);
 }
 
 Level1 partition_by_count(const Soup& soup, std::vector<TriangleId> triangles, const Box& bounds,
                           uint32_t max_leaf_triangles, BuildProgress* progress) {
     if (triangles.empty())
-        return {{}, {}, bounds, 0, false};
+        return Level1{.bounds = bounds};
     std::vector<std::vector<TriangleId>> lists;
     halve(soup, triangles, max_leaf_triangles, lists);
     Partitioner partitioner(soup, bounds, progress);
@@ -311,7 +346,7 @@ Level1 partition_by_count(const Soup& soup, std::vector<TriangleId> triangles, c
 Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                   std::span<const KdNode> nodes, uint32_t max_leaf_triangles) {
     if (nodes.empty())
-        return {{}, {}, bounds, 0, false};
+        return Level1{.bounds = bounds};
     Partitioner partitioner(soup, bounds, nullptr);
     partitioner.fill(nodes, bounds, triangles,
                      [&](const Cell& cell, std::span<const TriangleId> inside) {
@@ -326,6 +361,9 @@ uint32_t leaf_at(const Level1& level1, const dvec3& point, TriangleId id) {
         const KdNode& n = level1.nodes[node];
         node = point[n.axis()] <= n.split() ? node + 1 : n.above();
     }
+    for (uint32_t leaf = 0; leaf < level1.far_leaves; ++leaf)
+        if (std::ranges::binary_search(level1.leaves[leaf].triangles, id))
+            return leaf;
     const KdNode& cell = level1.nodes[node];
     for (uint32_t leaf = cell.first(); leaf < cell.first() + cell.count(); ++leaf)
         if (std::ranges::binary_search(level1.leaves[leaf].triangles, id))
@@ -338,6 +376,13 @@ Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most
     assert(most.size() == level1.leaves.size());
     was.clear();
     Partitioner partitioner(soup, level1.bounds, progress);
+    for (uint32_t i = 0; i < level1.far_leaves; ++i) {
+        std::vector<std::vector<TriangleId>> lists;
+        halve(soup, level1.leaves[i].triangles, most[i], lists);
+        for (std::vector<TriangleId>& list : lists)
+            partitioner.add_far_leaf(std::move(list));
+        was.resize(partitioner.leaves(), lists.size() == 1 ? i : kNone);
+    }
     partitioner.copy(level1.nodes, level1.bounds, [&](const Cell& cell, const KdNode& node) {
         const uint32_t first = node.first();
         uint32_t limit = kNone; // an empty cell stays as it is

@@ -41,6 +41,9 @@ struct Leaf {
 struct Level1 {
     std::vector<KdNode> nodes;
     std::vector<Leaf> leaves;
+    /// The first of `leaves`, in no cell: triangles that reach through many cells, a floor say, and
+    /// are in none of them.
+    uint32_t far_leaves = 0;
     Box bounds;
     double padding =
         0; // of every cell, so that what rounding moves across a plane is on both sides
@@ -73,12 +76,23 @@ double padding_of(const Box& scene);
 KdTree cut_sample(const Soup& soup, std::span<const TriangleId> sample, uint32_t rate,
                   const Box& box, uint32_t max_leaf_triangles, BuildProgress* progress = nullptr);
 
+/// A triangle that touches so many cells reaches far. In each of them it would make the leaf's box
+/// larger, and a ray that hits it would look for it in one page after the other.
+inline constexpr uint32_t kFarCells = 6;
+
+/// Whether so many far-reaching triangles of all get a leaf of their own, of at most
+/// max_leaf_triangles. Where they are many, each cell does better with its part of them.
+inline bool far_leaf_pays(uint64_t far, uint64_t all, uint64_t max_leaf_triangles) {
+    return far > 0 && far <= max_leaf_triangles && far <= all / 64;
+}
+
 /// Cuts `triangles` of the soup, which lie in `bounds`, into leaves of at most max_leaf_triangles
 /// (> 0). A triangle is about two units of progress. drawn: a sample of `triangles`, which is not
-/// drawn again where it is the one to cut by.
+/// drawn again where it is the one to cut by. may_have_far_leaves: whether rays come to leaves that
+/// lie in no cell.
 Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                  uint32_t max_leaf_triangles, BuildProgress* progress = nullptr,
-                 const Sample& drawn = {});
+                 const Sample& drawn = {}, bool may_have_far_leaves = false);
 
 /// Cuts `triangles`, as above, into as few leaves of at most max_leaf_triangles (> 0) as there can
 /// be, no triangle in two: by medians of their centres, all in one cell.

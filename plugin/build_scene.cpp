@@ -57,18 +57,29 @@ void warn_of_dropped(const Dropped& dropped, const LogSink& log) {
 }
 
 Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
-                         BuildProgress* progress) {
+                         bool may_have_far_leaves, BuildProgress* progress) {
     BuiltScene scene(soup);
     begin(progress, "triangles", 0.1, 2 * soup.triangle_count());
     Hittable hittable = take_hittable(scene, progress);
     scene.limits = limits_of(options, plan, scene.triangles);
-    if (const Result<Done> done = build_levels(scene, hittable, progress); !done)
+    if (const Result<Done> done = build_levels(scene, hittable, progress, may_have_far_leaves);
+        !done)
         return done.error();
     if (has_room(scene, options, plan))
         return scene;
     const SmallestCut cut = smallest_cut(soup, options);
     build_smallest_levels(scene, std::move(hittable), cut.leaf_triangles, progress);
     assert(has_room(scene, options, plan)); // see check_budget()
+    return scene;
+}
+
+Result<BuiltScene> with_tree(Result<BuiltScene> scene, const TwoLevelOptions& options,
+                             const MemoryPlan& plan) {
+    if (!scene || !scene->level1.shares_frame || scene->pages.empty())
+        return scene;
+    const uint64_t room = plan.pool_bytes - table_bytes(*scene, options);
+    scene->top =
+        build_top_level(scene->pages, max_links(scene->pages.size(), scene->level2_bytes(), room));
     return scene;
 }
 
@@ -79,14 +90,17 @@ Result<BuiltScene> build_scene(const Soup& soup, const TwoLevelOptions& options,
                                BuildProgress* progress) {
     std::optional<BuiltScene> found = restored(soup, options, plan, log);
     Result<BuiltScene> scene =
-        found ? Result<BuiltScene>(std::move(*found)) : built(soup, options, plan, progress);
+        with_tree(found ? Result<BuiltScene>(std::move(*found))
+                        : built(soup, options, plan, /* may_have_far_leaves= */ true, progress),
+                  options, plan);
     if (!scene)
         return scene;
     warn_of_dropped(scene->dropped, log);
-    if (scene->level1.shares_frame && !scene->pages.empty())
-        scene->top = build_top_level(scene->pages,
-                                     max_links(scene->pages.size(), scene->level2_bytes(),
-                                               plan.pool_bytes - table_bytes(*scene, options)));
+    // Rays that do not go through the tree come to leaves in cells alone.
+    if (scene->level1.far_leaves > 0 &&
+        !is_usable(scene->top, scene->pages, plan.pool_bytes - table_bytes(*scene, options)))
+        return with_tree(built(soup, options, plan, /* may_have_far_leaves= */ false, progress),
+                         options, plan);
     return scene;
 }
 

@@ -91,18 +91,8 @@ struct BuiltScene {
         return nearest.offer(soup.triangle(id), id);
     }
 
-    uint64_t level2_bytes() const {
-        uint64_t bytes = 0;
-        for (const Page& page : pages)
-            bytes += page.bytes();
-        return bytes;
-    }
-    uint64_t largest_page_bytes() const {
-        uint64_t bytes = 0;
-        for (const Page& page : pages)
-            bytes = std::max(bytes, page.bytes());
-        return bytes;
-    }
+    uint64_t level2_bytes() const { return total_bytes(pages); }
+    uint64_t largest_page_bytes() const { return largest_bytes(pages); }
     /// Of level 1 and level 2.
     uint64_t host_bytes() const {
         return level2_bytes() + level1.reference_count() * sizeof(TriangleId) +

@@ -48,22 +48,31 @@ Sizes sizes_of(const BuiltScene& scene) {
     return sizes;
 }
 
-/// counts[c]: the triangles that touch cell c.
+/// counts[c]: the triangles that touch cell c; behind all cells those that touch far_cells of them
+/// or more.
 std::vector<uint64_t> counted(const Soup& soup, const CellFinder& finder, size_t cells,
-                              std::span<const TriangleId> triangles, BuildProgress* progress) {
+                              std::span<const TriangleId> triangles, uint32_t far_cells,
+                              BuildProgress* progress) {
     constexpr size_t kBlocks = 64;
     const size_t block = triangles.size() / kBlocks + 1;
-    std::vector<std::vector<uint64_t>> parts(kBlocks, std::vector<uint64_t>(cells, 0));
+    std::vector<std::vector<uint64_t>> parts(kBlocks, std::vector<uint64_t>(cells + 1, 0));
     parallel_for(kBlocks, 1, [&](size_t first, size_t last) {
         LoopProgress loop(progress);
+        std::vector<uint32_t> touched;
         for (size_t b = first; b < last; ++b) {
             const size_t end = std::min(triangles.size(), (b + 1) * block);
-            for (size_t i = b * block; i < end; ++i, loop.step())
-                finder.find(soup.triangle(triangles[i]), [&](uint32_t c) { ++parts[b][c]; });
+            for (size_t i = b * block; i < end; ++i, loop.step()) {
+                touched.clear();
+                finder.find(soup.triangle(triangles[i]), [&](uint32_t c) { touched.push_back(c); });
+                if (touched.size() >= far_cells)
+                    touched = {uint32_t(cells)};
+                for (const uint32_t c : touched)
+                    ++parts[b][c];
+            }
         }
         loop.finish();
     });
-    std::vector<uint64_t> counts(cells, 0);
+    std::vector<uint64_t> counts(cells + 1, 0);
     for (const auto& part : parts)
         std::transform(part.begin(), part.end(), counts.begin(), counts.begin(), std::plus());
     return counts;
@@ -80,11 +89,12 @@ public:
     Sizes estimate(const LeafLimits& limits) {
         draw(sample_rate(triangles_.size(), limits.triangles));
         rates_.emplace(soup_, triangles_, sample_, rate_, bounds_, progress_);
+        const bool one_frame = one_frame_suits(soup_, triangles_, bounds_);
         most_ = limits.most_of(
             triangles_.size(),
             [&](uint64_t page, double copies) { return rates_->mean_of(double(page), copies); },
             [&] {
-                return one_frame_suits(soup_, triangles_, bounds_) &&
+                return one_frame &&
                        one_leaf_pays(soup_, sample_, rate_, bounds_, uint32_t(limits.triangles));
             });
         if (const uint32_t rate = sample_rate(triangles_.size(), most_); rate != rate_)
@@ -93,13 +103,21 @@ public:
                                        triangles_.size() <= most_ ? kNone - 1 : most_, progress_);
         const double padding = padding_of(bounds_);
         const std::vector<Cell> cells = cells_of(tree.nodes, bounds_, padding);
-        const std::vector<uint64_t> counts = counted(soup_, CellFinder(tree.nodes, cells, padding),
-                                                     cells.size(), triangles_, progress_);
+        const CellFinder finder(tree.nodes, cells, padding);
+        const auto count = [&](uint32_t far_cells) {
+            return counted(soup_, finder, cells.size(), triangles_, far_cells, progress_);
+        };
+        std::vector<uint64_t> counts = count(one_frame ? kFarCells : kNone);
+        if (counts.back() > 0 && !far_leaf_pays(counts.back(), triangles_.size(), most_))
+            counts = count(kNone);
         sizes_.nodes = tree.nodes.size();
         const uint64_t references = std::accumulate(counts.begin(), counts.end(), uint64_t(0));
         copies_ = std::max(double(references) / double(triangles_.size()), 1.0);
+        const uint64_t page_bytes = limits.page_bytes_of(cells.size() + (counts.back() > 0));
+        if (counts.back() > 0)
+            add_cell(bounds_.padded(padding), counts.back(), page_bytes, limits);
         for (size_t c = 0; c < cells.size(); ++c)
-            add_cell(cells[c].padded, counts[c], limits.page_bytes_of(cells.size()), limits);
+            add_cell(cells[c].padded, counts[c], page_bytes, limits);
         return std::move(sizes_);
     }
 
@@ -180,7 +198,9 @@ Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
     scene.limits = limits_of(options, *memory, triangles.size());
     Sizes sizes;
     if (triangles.size() <= kBuiltAtOnce) {
-        if (const Result<Done> built = build_levels(scene, hittable, progress); !built)
+        if (const Result<Done> built =
+                build_levels(scene, hittable, progress, /* may_have_far_leaves= */ true);
+            !built)
             return built.error();
         sizes = sizes_of(scene);
     } else {

@@ -44,11 +44,12 @@ namespace {
 
 class LevelsBuilder {
 public:
-    LevelsBuilder(BuiltScene& scene, BuildProgress* progress)
+    LevelsBuilder(BuiltScene& scene, BuildProgress* progress, bool may_have_far_leaves = false)
         : soup_(scene.soup),
           numbers_(scene.numbers),
           limits_(scene.limits),
           progress_(progress),
+          may_have_far_leaves_(may_have_far_leaves),
           levels_(scene) {}
 
     Result<Done> build(std::span<const TriangleId> triangles, const Box& bounds) {
@@ -59,7 +60,8 @@ public:
         const bool one_frame = one_frame_suits(soup_, triangles, bounds);
         const Sample sample = drawn(triangles, one_frame);
         const uint32_t most = first_most(triangles, bounds, one_frame, sample);
-        levels_.level1 = partition(soup_, triangles, bounds, most, progress_, sample);
+        levels_.level1 = partition(soup_, triangles, bounds, most, progress_, sample,
+                                   may_have_far_leaves_ && one_frame);
         if (one_frame || levels_.level1.leaves.size() == 1)
             share_frame(levels_.level1);
         levels_.seconds_level1 += watch.seconds();
@@ -190,6 +192,7 @@ private:
     const Numbering& numbers_;
     const LeafLimits& limits_;
     BuildProgress* const progress_;
+    const bool may_have_far_leaves_;
     uint64_t triangles_ = 0;
     std::vector<TriangleId> sample_;
     bool loose_pairs_pay_ = true;
@@ -204,8 +207,10 @@ void build_smallest_levels(BuiltScene& scene, Hittable hittable, uint32_t leaf_t
         .build_smallest(std::move(hittable.triangles), hittable.bounds, leaf_triangles);
 }
 
-Result<Done> build_levels(BuiltScene& scene, const Hittable& hittable, BuildProgress* progress) {
-    return LevelsBuilder(scene, progress).build(hittable.triangles, hittable.bounds);
+Result<Done> build_levels(BuiltScene& scene, const Hittable& hittable, BuildProgress* progress,
+                          bool may_have_far_leaves) {
+    return LevelsBuilder(scene, progress, may_have_far_leaves)
+        .build(hittable.triangles, hittable.bounds);
 }
 
 } // namespace ovc

@@ -16,8 +16,9 @@ void build_smallest_levels(BuiltScene& scene, Hittable hittable, uint32_t leaf_t
                            BuildProgress* progress = nullptr);
 
 /// Makes level 1 and the pages, of leaves within scene.limits; one whose page turns out too large
-/// is cut further. Error: a page of a single triangle does not fit.
+/// is cut further. may_have_far_leaves: as in partition(), where a frame suits all leaves. Error: a
+/// page of a single triangle does not fit.
 Result<Done> build_levels(BuiltScene& scene, const Hittable& hittable,
-                          BuildProgress* progress = nullptr);
+                          BuildProgress* progress = nullptr, bool may_have_far_leaves = false);
 
 } // namespace ovc

@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view kKind = "ovc levels";
 /// To be raised when a build makes other leaves or pages of the same soup; a change of layout.h is
 /// noticed without.
-constexpr uint32_t kVersion = 4;
+constexpr uint32_t kVersion = 5;
 
 /// Where all of it is the same, a build makes the same levels.
 struct Key {
@@ -39,10 +39,11 @@ struct Summary {
     uint64_t twins = 0;
     uint64_t triangles = 0;
     uint64_t shares_frame = 0;
+    uint64_t far_leaves = 0;
     Box bounds;
     double padding = 0;
 };
-static_assert(sizeof(Summary) == 17 * 8);
+static_assert(sizeof(Summary) == 18 * 8);
 
 struct SavedLeaf {
     Box cell;
@@ -167,6 +168,7 @@ public:
         scene_.level1.bounds = summary.bounds;
         scene_.level1.padding = summary.padding;
         scene_.level1.shares_frame = summary.shares_frame == 1;
+        scene_.level1.far_leaves = uint32_t(std::min<uint64_t>(summary.far_leaves, kNone));
         if (Result<Done> done = read_twins(summary.twins); !done)
             return done.error();
         if (Result<Done> done = read_level1(); !done)
@@ -199,7 +201,8 @@ private:
             return lists.error();
         Level1& level1 = scene_.level1;
         if (!is_walkable(*nodes, leaves->size()) || nodes->empty() != leaves->empty() ||
-            !(level1.padding >= 0) || (!nodes->empty() && !is_sound(level1.bounds)))
+            level1.far_leaves > leaves->size() || !(level1.padding >= 0) ||
+            (!nodes->empty() && !is_sound(level1.bounds)))
             return kUnsound;
         level1.nodes.assign(nodes->begin(), nodes->end());
         std::span<const TriangleId> rest = *lists;
@@ -248,6 +251,7 @@ bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
     summary.twins = scene.twins.count();
     summary.triangles = scene.triangles;
     summary.shares_frame = scene.level1.shares_frame;
+    summary.far_leaves = scene.level1.far_leaves;
     summary.bounds = scene.level1.bounds;
     summary.padding = scene.level1.padding;
     std::vector<SavedLeaf> leaves;
