@@ -9,11 +9,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace ovc {
 namespace {
 
-/// A unit of a page, and its box in grid coordinates.
+/// A unit of a page, and its box in cells of the grid, each as large as it is in the frame.
 struct Entry {
     uint32_t page;
     uint32_t unit;
@@ -32,16 +33,25 @@ uint32_t first_child(std::span<const Page> pages, const Entry& node) {
     return unit_of(pages[node.page], node.unit)[3].x;
 }
 
+vec3 vector_of(const uvec4& t) {
+    return vec3(std::bit_cast<float>(t.x), std::bit_cast<float>(t.y), std::bit_cast<float>(t.z));
+}
+
+GridHeader header_of(const Page& page) {
+    return {vector_of(page.view()[0]), vector_of(page.view()[1])};
+}
+
 /// Calls visit(entry) for each child of a node.
 template <class Visit>
 void for_each_child(std::span<const Page> pages, uint32_t page, uint32_t node, Visit&& visit) {
     const auto words = unit_of(pages[page], node);
+    const vec3 cell = header_of(pages[page]).cell;
     for (uint32_t child = 0; child < 4; ++child) {
         Entry entry{page, words[3].x + child, {}};
         for (int axis = 0; axis < 3; ++axis) {
             const GridRange range = range_of(words[size_t(axis)], child);
-            entry.box.lo[axis] = float(range.lo);
-            entry.box.hi[axis] = float(range.hi);
+            entry.box.lo[axis] = float(range.lo) * cell[axis];
+            entry.box.hi[axis] = float(range.hi) * cell[axis];
         }
         if (!entry.box.empty())
             visit(entry);
@@ -84,21 +94,15 @@ std::vector<Entry> opened(std::span<const Page> pages, size_t max) {
     return nodes;
 }
 
-/// Boxes that are in grid coordinates already.
-struct Counted {
+/// Where the boxes of entries, and of several together, lie on the grid.
+struct Cells {
+    vec3 size;
+
     GridRange range(const Boxf& box, int axis) const {
-        return {uint32_t(box.lo[axis]), uint32_t(box.hi[axis])};
+        return {uint32_t(std::lround(box.lo[axis] / size[axis])),
+                uint32_t(std::lround(box.hi[axis] / size[axis]))};
     }
 };
-
-GridHeader header_of(const Page& page) {
-    const auto vector = [&](size_t i) {
-        const uvec4& t = page.view()[i];
-        return vec3(std::bit_cast<float>(t.x), std::bit_cast<float>(t.y),
-                    std::bit_cast<float>(t.z));
-    };
-    return {vector(0), vector(1)};
-}
 
 /// A BVH whose leaf i has item i, over the entries.
 Page tree_over(std::span<const Page> pages, std::span<const Entry> entries) {
@@ -112,7 +116,7 @@ Page tree_over(std::span<const Page> pages, std::span<const Entry> entries) {
         if (!is_pair(pages[entries[i].page], entries[i].unit))
             unit[3] = {i, 1, 0, 0}; // found again by build_top_level()
     };
-    return Packer(nodes, header_of(pages[0]), Counted(), put, nullptr).pack();
+    return Packer(nodes, header_of(pages[0]), Cells{header_of(pages[0]).cell}, put, nullptr).pack();
 }
 
 /// The root of the only page is the tree's.

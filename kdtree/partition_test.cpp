@@ -85,5 +85,58 @@ TEST(Partition, RefusesToWalkWhereDoublesLoseTheLeaf) {
     EXPECT_FALSE(can_walk(level1, PreparedRay(Ray{{0, 0, 0}, 0, {1, 1e-310, 0}})));
 }
 
+Level1 cut_with_far_leaves(const Soup& soup, uint32_t most) {
+    Box bounds;
+    const auto ids = hittable_triangles(soup, nullptr, &bounds);
+    return partition(soup, ids, bounds, most, nullptr, {}, /* may_have_far_leaves= */ true);
+}
+
+TEST(FarLeaf, HoldsTheFloorAndNoOtherLeafDoes) {
+    const Soup soup = test::grid_on_floor(24);
+    const uint32_t floor = 1; // the mesh
+    const Level1 level1 = cut_with_far_leaves(soup, 60);
+    ASSERT_EQ(level1.far_leaves, 1u);
+    EXPECT_EQ(level1.leaves[0].triangles, (std::vector<TriangleId>{{floor, 0}, {floor, 1}}));
+    for (size_t i = 1; i < level1.leaves.size(); ++i)
+        for (const TriangleId id : level1.leaves[i].triangles)
+            EXPECT_NE(id.mesh, floor) << "leaf " << i;
+    for (const KdNode& node : level1.nodes)
+        EXPECT_TRUE(!node.is_leaf() || node.count() == 0 || node.first() > 0);
+    EXPECT_EQ(leaf_at(level1, {3, 2, -0.3}, {floor, 0}), 0u);
+
+    const Level1 without = cut(soup, 60);
+    EXPECT_EQ(without.far_leaves, 0u);
+    EXPECT_GE(without.reference_count(), level1.reference_count() + 2 * (kFarCells - 1));
+}
+
+TEST(FarLeaf, IsNoneWhereManyTrianglesReachFar) {
+    EXPECT_EQ(cut_with_far_leaves(test::random_soup(3, 1000, 0.6), 40).far_leaves, 0u);
+    EXPECT_EQ(cut_with_far_leaves(test::closed_grid(24), 60).far_leaves, 0u);
+    EXPECT_EQ(cut_with_far_leaves(test::grid_on_floor(24), 1).far_leaves, 0u) << "of one at most";
+    EXPECT_EQ(cut_with_far_leaves(test::grid_on_floor(4), 10).far_leaves, 0u) << "a sixteenth";
+}
+
+TEST(FarLeaf, IsCutAgainLikeTheOthers) {
+    const Soup soup = test::grid_on_floor(24);
+    const Level1 before = cut_with_far_leaves(soup, 60);
+    std::vector<uint32_t> most(before.leaves.size(), kNone), was;
+    const Level1 same = cut_again(soup, before, most, was);
+    EXPECT_EQ(same.far_leaves, 1u);
+    EXPECT_EQ(same.leaves.size(), before.leaves.size());
+    EXPECT_EQ(was[0], 0u);
+
+    most[0] = 1;
+    most.back() = 7;
+    const Level1 smaller = cut_again(soup, before, most, was);
+    ASSERT_EQ(smaller.far_leaves, 2u);
+    for (uint32_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(smaller.leaves[i].triangles.size(), 1u);
+        EXPECT_EQ(was[i], kNone);
+    }
+    EXPECT_EQ(was[2], 1u);
+    EXPECT_EQ(was.back(), kNone);
+    EXPECT_EQ(was.size(), smaller.leaves.size());
+}
+
 } // namespace
 } // namespace ovc

@@ -69,6 +69,15 @@ inline Soup closed_grid(int n, dvec3 origin = dvec3(0)) {
     return one_chunk(std::move(corners), origin);
 }
 
+/// A closed grid that dips into a floor of two triangles, twenty times as wide.
+inline Soup grid_on_floor(int n) {
+    Soup soup = closed_grid(n);
+    const std::vector<vec3> floor{{-14, -14, -0.3f}, {14, -14, -0.3f}, {14, 14, -0.3f},
+                                  {-14, -14, -0.3f}, {14, 14, -0.3f},  {-14, 14, -0.3f}};
+    soup.chunks.push_back(Chunk::owning(dvec3(0), floor));
+    return soup;
+}
+
 /// The soups every structure must get right: ordinary, and unpleasant.
 inline std::vector<NamedSoup> unpleasant_soups() {
     std::vector<NamedSoup> soups;
@@ -78,6 +87,7 @@ inline std::vector<NamedSoup> unpleasant_soups() {
     soups.push_back({"slivers", random_soup(3, 1000, 0.6)});
     soups.push_back({"closed", closed_grid(24)});
     soups.push_back({"far", closed_grid(24, dvec3(4.5e6, 6e6, -6))});
+    soups.push_back({"floor", grid_on_floor(24)});
     std::vector<vec3> same, flat, fan, mixed;
     for (int i = 0; i < 400; ++i) {
         const float x = float(i % 20), y = float(i / 20);

@@ -20,7 +20,7 @@ BuiltScene build_for_test(const Soup& soup, const LeafLimits& limits) {
     BuiltScene scene(soup);
     scene.limits = limits;
     const Hittable hittable = take_hittable(scene);
-    require(bool(build_levels(scene, hittable)));
+    require(bool(build_levels(scene, hittable, nullptr, /* may_have_far_leaves= */ true)));
     return scene;
 }
 

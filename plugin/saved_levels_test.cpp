@@ -36,6 +36,7 @@ void expect_same(const BuiltScene& a, const BuiltScene& b) {
     ASSERT_EQ(a.twins.pairs().size(), b.twins.pairs().size());
     EXPECT_EQ(a.triangles, b.triangles);
     EXPECT_EQ(a.level1.shares_frame, b.level1.shares_frame);
+    EXPECT_EQ(a.level1.far_leaves, b.level1.far_leaves);
     EXPECT_TRUE(same(a.level1.bounds, b.level1.bounds) || a.level1.leaves.empty());
     EXPECT_EQ(a.level1.padding, b.level1.padding);
     ASSERT_EQ(a.level1.nodes.size(), b.level1.nodes.size());

@@ -63,6 +63,31 @@ TEST_F(TwoLevelGl, ARayFromFarAwayMeetsTheCornerOfTheScene) {
         EXPECT_TRUE(hits[i].is_hit()) << "ray " << i;
 }
 
+TEST_F(TwoLevelGl, AFloorLiesInALeafOfItsOwn) {
+    const Soup soup = test::grid_on_floor(24);
+    const auto unpleasant = test::unpleasant_rays(soup, 34, 3000);
+    const std::vector<Hit> expected = test::brute_force(soup, unpleasant);
+    const auto rays = test::rays_from_outside(35, 3000);
+    const std::vector<Hit> ordinary = test::brute_force(soup, rays);
+    for (const uint64_t budget : {0u, 112u << 10})
+        for (const bool certify : {true, false}) {
+            const auto structure =
+                build(soup, {.budget_bytes = budget, .leaf_triangles = 60, .certify = certify});
+            ASSERT_TRUE(structure);
+            EXPECT_EQ(structure->scene().level1.far_leaves, 1u);
+            if (certify) {
+                test::expect_answers(*structure, unpleasant, expected);
+                continue;
+            }
+            std::vector<Hit> hits(rays.size());
+            ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
+            size_t other = 0;
+            for (size_t i = 0; i < rays.size(); ++i)
+                other += hits[i].id != ordinary[i].id;
+            EXPECT_LT(other, rays.size() / 500);
+        }
+}
+
 /// The pool holds all pages, or all but the top-level tree beside them, or all but one.
 TEST_F(TwoLevelGl, AnyBudgetNearThatOfAllPagesAnswersAlike) {
     const Soup soup = test::closed_grid(60);
