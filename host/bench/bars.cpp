@@ -112,6 +112,40 @@ std::vector<Bar> leaves_bars(const BenchResult& sweep) {
     return bars;
 }
 
+std::vector<Bar> leaves_of_scene_bars(const BenchResult& sweep, const std::string& what) {
+    constexpr std::array<Promise, 2> promises = {{{1.08, 1.03}, {1.15, 1.03}}};
+    std::vector<Bar> bars;
+    for (size_t i = 1; i < sweep.entrants.size() && i <= promises.size(); ++i) {
+        const BenchEntrant& entrant = sweep.entrants[i];
+        Bar bar{fmt::format("kernel in {} leaves against one, {}", entrant.contender.leaves.words,
+                            what),
+                Better::Less,
+                promises[i - 1].at_least,
+                promises[i - 1].aim,
+                {},
+                ""};
+        for (const Measurement& m : sweep.measurements) {
+            const std::optional<double> ratio = ratios_of(sweep, m).kernel_time_to_first;
+            if (m.entrant != i || !sweep.complete || !ratio || *ratio <= bar.measured.value_or(0))
+                continue;
+            bar.measured = ratio;
+            bar.note =
+                fmt::format("times as long, {} rays, the worst of three sets; {} leaves made",
+                            sweep.workloads[m.workload], entrant.built.leaves);
+        }
+        bars.push_back(bar);
+    }
+    return bars;
+}
+
+std::vector<Bar> default_leaves_bars(const BenchResult& scene, const std::string& what) {
+    constexpr std::array<Promise, 3> robust = {{{1.1, 1.3}, {1.0, 1.3}, {1.0, 1.3}}};
+    std::vector<Bar> bars;
+    for (size_t i = 0; i < kRaySets.size(); ++i)
+        bars.push_back(against(scene, kRaySets[i], what, "embree-robust", robust[i]));
+    return bars;
+}
+
 Bar budget_bar(const BenchResult& sweep) {
     Bar bar{"budget of 30 % against all resident, dragons-10, frame with shadows",
             Better::Less,

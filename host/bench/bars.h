@@ -39,6 +39,10 @@ std::vector<Bar> high_quality_bars(const BenchResult& scene, const std::string& 
 /// Call seconds over those of one leaf, all sets of rays together; entrants are sweep values of
 /// certified, the first of one leaf.
 std::vector<Bar> leaves_bars(const BenchResult& sweep);
+/// Kernel seconds over those of one leaf, the worst of all sets of rays; entrants as above.
+std::vector<Bar> leaves_of_scene_bars(const BenchResult& sweep, const std::string& what);
+/// Kernel seconds of Embree's robust mode over ours, with the plugin's own choice of leaves.
+std::vector<Bar> default_leaves_bars(const BenchResult& scene, const std::string& what);
 /// The frame's call seconds under a budget over those with all pages resident.
 Bar budget_bar(const BenchResult& sweep);
 Bar bytes_bar(const BenchResult& scene, const std::string& what, double at_least, double aim);

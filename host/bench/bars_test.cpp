@@ -66,6 +66,24 @@ TEST(Bars, SumTheRaySetsOfEachPlaceInASweep) {
     EXPECT_EQ(verdict(leaves_bars(r)[0]), "skipped");
 }
 
+TEST(Bars, TellTheWorstKernelOfManyLeaves) {
+    BenchResult r = example();
+    for (BenchEntrant& entrant : r.entrants)
+        entrant.contender = contender("certified", ContenderKind::TwoLevel);
+    r.entrants[1].contender.leaves = {14, std::string("14")};
+    for (Measurement& m : r.measurements)
+        if (m.entrant == 1 && r.workloads[m.workload] == "shadow")
+            m.kernel_seconds = {0.6}; // 0.4 of the others; of one leaf 0.5
+    const std::vector<Bar> bars = leaves_of_scene_bars(r, "city");
+    ASSERT_EQ(bars.size(), 2u);
+    EXPECT_EQ(bars[0].what, "kernel in 14 leaves against one, city");
+    EXPECT_DOUBLE_EQ(bars[0].measured.value(), 1.2);
+    EXPECT_THAT(bars[0].note, testing::HasSubstr("shadow rays"));
+    EXPECT_EQ(verdict(bars[0]), "failed");
+    r.complete = false;
+    EXPECT_EQ(verdict(leaves_of_scene_bars(r, "city")[0]), "skipped");
+}
+
 TEST(Bars, CountBytes) {
     BenchResult r = example();
     EXPECT_DOUBLE_EQ(*bytes_bar(r, "mesh", 52, 44).measured, 50);

@@ -21,6 +21,7 @@ constexpr uint32_t kImports = 9;
 constexpr uint32_t kOfShortCalls = 3;
 constexpr const char* kSoup = "soup-500";
 constexpr const char* kArchitecture = "powerplant-400000";
+constexpr const char* kPlants = "plants-5";
 constexpr const char* kBeyondMemory = "dragons-10";
 
 Contender two_level(std::string_view name, ovc_precision precision) {
@@ -64,7 +65,8 @@ public:
         using Step = Result<Done> (BarsRun::*)();
         for (const Step step :
              {&BarsRun::import, &BarsRun::kernels, &BarsRun::high_quality, &BarsRun::leaves,
-              &BarsRun::budget, &BarsRun::build, &BarsRun::programs, &BarsRun::rest}) {
+              &BarsRun::leaves_of_scenes, &BarsRun::default_leaves, &BarsRun::budget,
+              &BarsRun::build, &BarsRun::programs, &BarsRun::rest}) {
             if (around_.stop())
                 break;
             if (const Result<Done> done = (this->*step)(); !done)
@@ -171,6 +173,39 @@ private:
         if (!r)
             return r.error();
         add(leaves_bars(**r));
+        return Done{};
+    }
+
+    /// A promise that holds on one mesh is none.
+    Result<Done> leaves_of_scenes() {
+        std::vector<Contender> contenders;
+        for (const uint32_t leaves : {1, 14, 136}) {
+            contenders.push_back(kCertified);
+            contenders.back().leaves = {leaves, std::to_string(leaves)};
+        }
+        for (const std::string& scene :
+             {job_.mesh, std::string("plants-2"), std::string(kArchitecture), std::string("city"),
+              std::string("dragons-2")}) {
+            if (around_.stop())
+                break;
+            const Result<const BenchResult*> r =
+                bench(scene, {.size = large_, .frame = false}, contenders, job_.repeats, true);
+            if (!r)
+                return r.error();
+            add(leaves_of_scene_bars(**r, scene == job_.mesh ? "mesh" : scene));
+        }
+        return Done{};
+    }
+
+    Result<Done> default_leaves() {
+        std::vector<Contender> contenders = {kCertified};
+        if (has_embree())
+            contenders.push_back(embree("embree-robust", EmbreeMode::Robust));
+        const Result<const BenchResult*> r =
+            bench(kPlants, {.size = large_, .frame = false}, contenders, job_.repeats);
+        if (!r)
+            return r.error();
+        add(default_leaves_bars(**r, kPlants));
         return Done{};
     }
 
