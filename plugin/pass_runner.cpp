@@ -43,9 +43,13 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
             return lost();
         if (made.error().kind != ErrorKind::OutOfGpuMemory)
             return made.error();
-        const uint64_t smaller =
-            std::max(plan_.pool_bytes / 2, tracing_.scene.largest_page_bytes());
-        if (smaller == plan_.pool_bytes)
+        const BuiltScene& scene = tracing_.scene;
+        const bool needs_tree = scene.level1.far_leaves > 0; // else rays can do without it
+        const uint64_t least =
+            scene.largest_page_bytes() + (needs_tree ? scene.top.tree.bytes() : 0);
+        const uint64_t smaller = std::max(plan_.pool_bytes / 2, least);
+        if (smaller == plan_.pool_bytes ||
+            (needs_tree && !is_usable(scene.top, scene.pages, smaller)))
             return Error{fmt::format("{}: it has no room for the largest page, {} bytes",
                                      made.error().message, smaller),
                          ErrorKind::OutOfGpuMemory};

@@ -34,6 +34,35 @@ TEST_F(TwoLevelGl, GoesOnWithASmallerPoolWhereTheDriverHasNoRoom) {
     EXPECT_EQ(refused.error().kind, ErrorKind::OutOfGpuMemory);
 }
 
+/// Rays come to a far leaf by the top-level tree alone, so the pool is never without it.
+TEST_F(TwoLevelGl, KeepsTheTreeThatLeadsToTheFloorWhereTheDriverHasNoRoom) {
+    const Soup soup = test::grid_on_floor(24);
+    const auto rays = test::rays_from_outside(36, 2000);
+    TwoLevelOptions options{.budget_bytes = 2u << 20, .leaf_triangles = 60};
+    const auto whole = build(soup, options);
+    ASSERT_EQ(whole->scene().level1.far_leaves, 1u);
+    std::vector<Hit> expected(rays.size()), hits(rays.size());
+    ASSERT_TRUE(ok(whole->intersect(rays, {}, expected)));
+    size_t refused = 0, answered = 0;
+    const uint64_t enough = whole->plan().ray_bytes() + (64 << 10);
+    for (uint64_t driver_bytes = enough / 2; driver_bytes < enough; driver_bytes += 1 << 10) {
+        options.driver_bytes = driver_bytes;
+        const auto built = TwoLevel::build(soup, *gl, options, LogSink());
+        if (!built) {
+            ASSERT_EQ(built.error().kind, ErrorKind::OutOfGpuMemory) << built.error().message;
+            ++refused;
+            continue;
+        }
+        ++answered;
+        ASSERT_TRUE(ok((*built)->intersect(rays, {}, hits)));
+        for (size_t i = 0; i < rays.size(); ++i)
+            ASSERT_TRUE(test::same(expected[i], hits[i]))
+                << "ray " << i << ", driver " << driver_bytes;
+    }
+    EXPECT_GT(refused, 0u);
+    EXPECT_GT(answered, 0u);
+}
+
 TEST_F(TwoLevelGl, CutsASceneThatIsOneLeafWhereTheDriverHasNoRoom) {
     const Soup soup = test::random_soup(2, 3000, 0.05);
     const auto rays = test::unpleasant_rays(soup, 5, 1000);
