@@ -24,7 +24,7 @@ public:
     void start();
     /// CPU seconds since start(), shared out evenly among the threads that have had work so far:
     /// how long the kernel takes where nothing else runs, since work is dealt to whoever is free.
-    /// None where there are no threads.
+    /// None where none of them has worked: the driver may have started others since find().
     std::optional<double> seconds_each() const;
 
 private:

@@ -29,7 +29,8 @@ struct Traveller {
     double t_from;       // the walk begins in the cell after this t; ray.t_min at first
     uint32_t skip;       // number of a triangle it does not see, or OVC_NO_TRIANGLE
     uint32_t first_leaf; // of that cell, where the ray has been in it; else OVC_NO_LEAF; under
-                         // links the key it waited for; with OVC_RAY_ANY_HIT added: any hit will do
+                         // the top-level tree the key it waited for; with OVC_RAY_ANY_HIT added:
+                         // any hit will do
 };
 static_assert(sizeof(Traveller) == 80);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact fallback: a ray that float32 could not decide, traced in double through level 1 and the
-// pages in host memory. Equals the CPU KDT of kdtree/traverse.h bit for bit, because both test with
+// The exact fallback: a ray that float32 could not decide, traced in double down the top-level
+// tree and through the pages in host memory, or from cell to cell of level 1 where pages share no
+// frame. Equals the CPU KDT of kdtree/traverse.h bit for bit, because both test with
 // core/triangle.h every triangle that could be hit.
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two-level: level 1, a page per leaf, passes in which rays walk from leaf to leaf as far as pages
+// Two-level: level 1, a page per leaf, passes in which rays go from page to page as far as these
 // are in the pool, and wait for the others. Based on: thesis, sections 3.3 and 3.4 (algorithms 2, 3
-// and 4), with level 1 walked in the kernel.
+// and 4), with the way from page to page found in the kernel.
 #pragma once
 
 #include "core/log.h"
