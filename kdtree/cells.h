@@ -2,9 +2,12 @@
 // Cells: the spaces that a KD-tree's leaves stand for, and which of them a triangle touches.
 #pragma once
 
+#include "core/build_progress.h"
+#include "core/parallel.h"
 #include "kdtree/clip.h"
 #include "kdtree/tree.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -38,6 +41,8 @@ public:
             descend(triangle, bounds_of(triangle), 0, visit);
     }
 
+    size_t cells() const { return cells_.size(); }
+
 private:
     template <class Visit>
     void descend(const Triangle& triangle, const Box& box, uint32_t node, Visit&& visit) const {
@@ -62,5 +67,34 @@ private:
     const double padding_;
     std::vector<uint32_t> cell_of_node_;
 };
+
+/// Triangles are dealt in so many blocks, each with lists of its own, so that the order in which
+/// cells get them never depends on threads.
+inline constexpr size_t kDealtBlocks = 64;
+
+/// Calls put(block, c, id) for each cell c that a triangle touches, or once with c = finder.cells()
+/// where the triangle touches far_cells of them or more. Blocks run in parallel; within one,
+/// triangles come in order. A triangle is a unit of progress.
+template <class Put>
+void deal(const Soup& soup, const CellFinder& finder, std::span<const TriangleId> triangles,
+          uint32_t far_cells, BuildProgress* progress, Put&& put) {
+    const size_t size = triangles.size() / kDealtBlocks + 1;
+    parallel_for(kDealtBlocks, 1, [&](size_t first, size_t last) {
+        LoopProgress loop(progress);
+        std::vector<uint32_t> touched;
+        for (size_t block = first; block < last; ++block) {
+            const size_t end = std::min(triangles.size(), (block + 1) * size);
+            for (size_t i = block * size; i < end; ++i, loop.step()) {
+                touched.clear();
+                finder.find(soup.triangle(triangles[i]), [&](uint32_t c) { touched.push_back(c); });
+                if (touched.size() >= far_cells)
+                    touched = {uint32_t(finder.cells())};
+                for (const uint32_t c : touched)
+                    put(block, c, triangles[i]);
+            }
+        }
+        loop.finish();
+    });
+}
 
 } // namespace ovc

@@ -38,30 +38,13 @@ void collect_cells(std::span<const KdNode> nodes, uint32_t node, const Box& box,
 /// members[c]: the triangles of cell c, in the order of `triangles`; behind all cells those that
 /// touch far_cells of them or more. A triangle is a unit of progress.
 std::vector<std::vector<TriangleId>> gather(const Soup& soup, const CellFinder& finder,
-                                            size_t cells, std::span<const TriangleId> triangles,
+                                            std::span<const TriangleId> triangles,
                                             uint32_t far_cells, BuildProgress* progress) {
-    constexpr size_t kBlocks =
-        64; // each with lists of its own, so that the order never depends on threads
-    const size_t block = triangles.size() / kBlocks + 1;
-    std::vector<std::vector<std::vector<TriangleId>>> parts(kBlocks);
-    parallel_for(kBlocks, 1, [&](size_t first, size_t last) {
-        LoopProgress loop(progress);
-        std::vector<uint32_t> touched;
-        for (size_t b = first; b < last; ++b) {
-            parts[b].resize(cells + 1);
-            const size_t end = std::min(triangles.size(), (b + 1) * block);
-            for (size_t i = b * block; i < end; ++i, loop.step()) {
-                touched.clear();
-                finder.find(soup.triangle(triangles[i]), [&](uint32_t c) { touched.push_back(c); });
-                if (touched.size() >= far_cells)
-                    touched = {uint32_t(cells)};
-                for (const uint32_t c : touched)
-                    parts[b][c].push_back(triangles[i]);
-            }
-        }
-        loop.finish();
-    });
-    std::vector<std::vector<TriangleId>> members(cells + 1);
+    std::vector<std::vector<std::vector<TriangleId>>> parts(
+        kDealtBlocks, std::vector<std::vector<TriangleId>>(finder.cells() + 1));
+    deal(soup, finder, triangles, far_cells, progress,
+         [&](size_t block, uint32_t c, TriangleId id) { parts[block][c].push_back(id); });
+    std::vector<std::vector<TriangleId>> members(finder.cells() + 1);
     parallel_for(members.size(), 1, [&](size_t first, size_t last) {
         for (size_t c = first; c < last; ++c)
             for (auto& part : parts) {
@@ -200,14 +183,14 @@ private:
                                                  std::span<const Cell> cells,
                                                  std::span<const TriangleId> triangles,
                                                  uint32_t far_cells) const {
-        return gather(soup_, CellFinder(nodes, cells, level1_.padding), cells.size(), triangles,
-                      far_cells, progress_);
+        return gather(soup_, CellFinder(nodes, cells, level1_.padding), triangles, far_cells,
+                      progress_);
     }
 
     template <class PutCell>
     void fill(std::span<const KdNode> nodes, const Box& box,
-              const std::vector<std::vector<TriangleId>>& members, PutCell&& put_cell) {
-        auto inside = members.begin();
+              const std::vector<std::vector<TriangleId>>& lists, PutCell&& put_cell) {
+        auto inside = lists.begin();
         copy(nodes, box, [&](const Cell& cell, const KdNode&) { put_cell(cell, *inside++); });
     }
 

@@ -50,29 +50,14 @@ Sizes sizes_of(const BuiltScene& scene) {
 
 /// counts[c]: the triangles that touch cell c; behind all cells those that touch far_cells of them
 /// or more.
-std::vector<uint64_t> counted(const Soup& soup, const CellFinder& finder, size_t cells,
+std::vector<uint64_t> counted(const Soup& soup, const CellFinder& finder,
                               std::span<const TriangleId> triangles, uint32_t far_cells,
                               BuildProgress* progress) {
-    constexpr size_t kBlocks = 64;
-    const size_t block = triangles.size() / kBlocks + 1;
-    std::vector<std::vector<uint64_t>> parts(kBlocks, std::vector<uint64_t>(cells + 1, 0));
-    parallel_for(kBlocks, 1, [&](size_t first, size_t last) {
-        LoopProgress loop(progress);
-        std::vector<uint32_t> touched;
-        for (size_t b = first; b < last; ++b) {
-            const size_t end = std::min(triangles.size(), (b + 1) * block);
-            for (size_t i = b * block; i < end; ++i, loop.step()) {
-                touched.clear();
-                finder.find(soup.triangle(triangles[i]), [&](uint32_t c) { touched.push_back(c); });
-                if (touched.size() >= far_cells)
-                    touched = {uint32_t(cells)};
-                for (const uint32_t c : touched)
-                    ++parts[b][c];
-            }
-        }
-        loop.finish();
-    });
-    std::vector<uint64_t> counts(cells + 1, 0);
+    std::vector<std::vector<uint64_t>> parts(kDealtBlocks,
+                                             std::vector<uint64_t>(finder.cells() + 1));
+    deal(soup, finder, triangles, far_cells, progress,
+         [&](size_t block, uint32_t c, TriangleId) { ++parts[block][c]; });
+    std::vector<uint64_t> counts(finder.cells() + 1);
     for (const auto& part : parts)
         std::transform(part.begin(), part.end(), counts.begin(), counts.begin(), std::plus());
     return counts;
@@ -105,7 +90,7 @@ public:
         const std::vector<Cell> cells = cells_of(tree.nodes, bounds_, padding);
         const CellFinder finder(tree.nodes, cells, padding);
         const auto count = [&](uint32_t far_cells) {
-            return counted(soup_, finder, cells.size(), triangles_, far_cells, progress_);
+            return counted(soup_, finder, triangles_, far_cells, progress_);
         };
         std::vector<uint64_t> counts = count(one_frame ? kFarCells : kNone);
         if (counts.back() > 0 && !far_leaf_pays(counts.back(), triangles_.size(), most_))
