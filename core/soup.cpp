@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace ovc {
@@ -73,6 +74,17 @@ Chunk Chunk::instance() const {
     if (placement_)
         chunk.placement_ = std::make_unique<Placement>(*placement_);
     return chunk;
+}
+
+Chunk Chunk::unplaced() const {
+    return double_corners_.empty() ? borrowing(origin_, corners_)
+                                   : borrowing_doubles(origin_, double_corners_);
+}
+
+bool Chunk::is_of_same_mesh(const Chunk& other) const {
+    return corners_.data() == other.corners_.data() &&
+           double_corners_.data() == other.double_corners_.data() && size() == other.size() &&
+           origin_ == other.origin_;
 }
 
 void Chunk::place(const Placement& placement) {
@@ -154,11 +166,21 @@ Survey survey(const Chunk& chunk, uint32_t first, uint32_t last, std::vector<uin
 
 std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, Box* bounds,
                                            BuildProgress* progress) {
+    std::vector<uint32_t> all(soup.chunks.size());
+    std::iota(all.begin(), all.end(), 0u);
+    return hittable_triangles(soup, all, dropped, bounds, progress);
+}
+
+std::vector<TriangleId> hittable_triangles(const Soup& soup, std::span<const uint32_t> chunks,
+                                           Dropped* dropped, Box* bounds, BuildProgress* progress) {
     std::vector<TriangleId> ids;
-    ids.reserve(soup.triangle_count());
     Survey total;
     std::vector<uint8_t> kept;
-    for (uint32_t mesh = 0; mesh < soup.chunks.size(); ++mesh) {
+    size_t count = 0;
+    for (const uint32_t mesh : chunks)
+        count += soup.chunks[mesh].size();
+    ids.reserve(count);
+    for (const uint32_t mesh : chunks) {
         const Chunk& chunk = soup.chunks[mesh];
         kept.assign(chunk.size(), 0);
         const Survey found = parallel_reduce(

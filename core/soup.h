@@ -29,6 +29,10 @@ public:
     static Chunk borrowing_doubles(dvec3 origin, std::span<const dvec3> corners);
     /// The same triangles once more. Borrows this chunk's corners.
     Chunk instance() const;
+    /// The same where they are without a placement.
+    Chunk unplaced() const;
+    /// Whether both are the same triangles, placed or not.
+    bool is_of_same_mesh(const Chunk& other) const;
     /// Moves the triangles from where they are.
     void place(const Placement& placement);
 
@@ -106,6 +110,11 @@ struct Dropped {
 /// dropped, bounds: optional, receive what was left out and the box of what was kept. A triangle is
 /// a unit of progress.
 std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, Box* bounds,
+                                           BuildProgress* progress = nullptr);
+
+/// Those of some chunks alone, by their numbers, which rise.
+std::vector<TriangleId> hittable_triangles(const Soup& soup, std::span<const uint32_t> chunks,
+                                           Dropped* dropped, Box* bounds,
                                            BuildProgress* progress = nullptr);
 
 inline Box bounds_of(const Triangle& t) {

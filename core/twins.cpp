@@ -165,8 +165,7 @@ Twins Twins::take_out(const Soup& soup, std::vector<TriangleId>& triangles,
     return twins;
 }
 
-Hit Twins::seen(const Soup& soup, const Hit& hit, TriangleId skip) const {
-    const TriangleId id = seen(hit.id, skip);
+Hit as_hit_of(TriangleId id, const Soup& soup, const Hit& hit) {
     if (id == hit.id)
         return hit;
     const Triangle from = soup.triangle(hit.id);

@@ -14,6 +14,10 @@ namespace ovc {
 /// Do both have the same three corners, in any order and either winding? 0 equals -0.
 bool same_corners(const Triangle& a, const Triangle& b);
 
+/// The hit as one of `id`, whose corners are those of the triangle that was hit: u and v then count
+/// from its own.
+Hit as_hit_of(TriangleId id, const Soup& soup, const Hit& hit);
+
 /// The sets of twins of a soup. Equal t goes to the smaller id, so the smallest of a set is the
 /// answer wherever one of them is; only a ray that does not see the smallest is answered with
 /// another one, and then with the second smallest.
@@ -24,15 +28,8 @@ public:
     static Twins take_out(const Soup& soup, std::vector<TriangleId>& triangles,
                           BuildProgress* progress = nullptr);
 
-    /// Which triangle a ray that does not see `skip` meets where `id` stands: `id`, or, where that
-    /// is the one it does not see, its twin; `id` still where it has none.
-    TriangleId seen(TriangleId id, TriangleId skip) const { return id == skip ? second(id) : id; }
-
-    /// The same for a hit: u and v then count from the corners of the triangle named.
-    Hit seen(const Soup& soup, const Hit& hit, TriangleId skip) const;
-
-    /// Whether the triangle stands for others as well.
-    bool stands_for_others(TriangleId id) const { return !pairs_.empty() && second(id) != id; }
+    /// The second smallest of the set whose smallest is `id`; `id` where there is no such set.
+    TriangleId second(TriangleId id) const;
 
     /// Triangles taken out.
     uint64_t count() const { return count_; }
@@ -54,9 +51,6 @@ public:
     }
 
 private:
-    /// The second smallest of the set whose smallest is `id`; `id` where there is no such set.
-    TriangleId second(TriangleId id) const;
-
     std::vector<Pair> pairs_; // sorted by smallest
     uint64_t count_ = 0;
 };

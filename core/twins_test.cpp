@@ -56,9 +56,7 @@ TEST(Twins, KeepTheSmallestOfEachSetAndNameTheSecond) {
         std::vector<TriangleId> smallest;
         for (const auto& [key, set] : sets) {
             smallest.push_back(set[0]);
-            EXPECT_EQ(twins.stands_for_others(set[0]), set.size() > 1);
-            EXPECT_EQ(twins.seen(set[0], set[0]), set.size() > 1 ? set[1] : set[0]);
-            EXPECT_EQ(twins.seen(set[0], {7, 7}), set[0]) << "to a ray that skips another";
+            EXPECT_EQ(twins.second(set[0]), set.size() > 1 ? set[1] : set[0]);
         }
         std::sort(smallest.begin(), smallest.end());
         EXPECT_EQ(kept, smallest) << "seed " << seed;
@@ -79,8 +77,7 @@ TEST(Twins, LeaveASoupWithoutThemAlone) {
     const Twins twins = Twins::take_out(soup, kept);
     EXPECT_EQ(kept, before);
     EXPECT_EQ(twins.count(), 0u);
-    EXPECT_FALSE(twins.stands_for_others(before[0]));
-    EXPECT_EQ(twins.seen(before[0], before[0]), before[0]);
+    EXPECT_EQ(twins.second(before[0]), before[0]);
 }
 
 TEST(Twins, CountUAndVFromTheirOwnCorners) {
@@ -93,7 +90,7 @@ TEST(Twins, CountUAndVFromTheirOwnCorners) {
                        vec3(corner[order[1]]), vec3(corner[order[2]])}));
         std::vector<TriangleId> kept = all_of(soup);
         const Twins twins = Twins::take_out(soup, kept);
-        const Hit hit = twins.seen(soup, {1, 0.25, 0.125, {0, 0}}, {0, 0});
+        const Hit hit = as_hit_of(twins.second({0, 0}), soup, {1, 0.25, 0.125, {0, 0}});
         ASSERT_EQ(hit.id, (TriangleId{0, 1}));
         const Triangle t = soup.triangle(hit.id);
         EXPECT_EQ((1 - hit.u - hit.v) * t[0] + hit.u * t[1] + hit.v * t[2], dvec3(1, 0.5, 0));

@@ -15,18 +15,16 @@
 
 namespace ovc {
 
-/// What the kernel answers. prim: the number of a triangle, or OVC_MISS, OVC_WAITS, OVC_FLAGGED,
-/// OVC_CAPPED.
+/// What the kernel answers. prim: the number of a triangle, or OVC_MISS, OVC_FLAGGED, OVC_CAPPED.
 struct Answer {
     std::array<uint32_t, 3> words;
     uint32_t prim;
-    /// Under the top-level tree the key of the link that the ray waits for, else the leaf that the
-    /// answer is of; OVC_NO_LEAF: no other page is left.
+    /// The key of the link that the ray waits for; OVC_NO_LEAF: no page is left.
     uint32_t where;
 
     /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
     std::span<const uint32_t, 2> rivals() const { return std::span(words).first<2>(); }
-    /// Fast precision: where the hit is. OVC_WAITS: the t of the cells done.
+    /// Fast precision: where the hit is.
     double t() const { return std::bit_cast<double>(uint64_t(words[1]) << 32 | words[0]); }
     /// Fast precision.
     double u() const { return (words[2] & 0xffffu) / 65535.0; }

@@ -6,6 +6,7 @@
 #include "shaders/layout.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -62,7 +63,71 @@ double doubtful_share(const Soup& soup, std::span<const TriangleId> triangles, c
 }
 
 bool one_frame_suits(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds) {
-    return doubtful_share(soup, triangles, scene_leaf(bounds).frame) <= kMostDoubtful;
+    return doubtful_share(soup, triangles, scene_leaf(bounds).frame) <= kMaxDoubtful;
+}
+
+namespace {
+
+/// Some of the triangles in the leaves, evenly.
+std::vector<TriangleId> sample_of(std::span<const Leaf> leaves) {
+    constexpr size_t kSample = 8192;
+    size_t all = 0;
+    for (const Leaf& leaf : leaves)
+        all += leaf.triangles.size();
+    const size_t step = all / kSample + 1;
+    std::vector<TriangleId> sample;
+    size_t at = 0; // in the next leaf
+    for (const Leaf& leaf : leaves) {
+        for (; at < leaf.triangles.size(); at += step)
+            sample.push_back(leaf.triangles[at]);
+        at -= leaf.triangles.size();
+    }
+    return sample;
+}
+
+class FrameChooser {
+public:
+    FrameChooser(const Soup& soup, Level1& level1) : soup_(soup), level1_(level1) {}
+
+    void choose(uint32_t node) {
+        const auto [first, end] = leaves_below(node);
+        const auto leaves = std::span(level1_.leaves).subspan(first, end - first);
+        if (leaves.empty())
+            return;
+        share_frame(leaves);
+        if (leaves.size() == 1 ||
+            doubtful_share(soup_, sample_of(leaves), leaves.front().frame) <= kMaxDoubtfulOfPart)
+            return;
+        const KdNode& n = level1_.nodes[node];
+        if (n.is_leaf()) {
+            for (Leaf& leaf : leaves)
+                share_frame(std::span(&leaf, 1));
+            return;
+        }
+        choose(node + 1);
+        choose(n.above());
+    }
+
+private:
+    /// Leaves lie in the order of their cells. [first, end), or none.
+    std::pair<uint32_t, uint32_t> leaves_below(uint32_t node) const {
+        const KdNode& n = level1_.nodes[node];
+        if (n.is_leaf())
+            return {n.first(), n.first() + n.count()};
+        const auto below = leaves_below(node + 1), above = leaves_below(n.above());
+        return {below.first, std::max(below.second, above.second)};
+    }
+
+    const Soup& soup_;
+    Level1& level1_;
+};
+
+} // namespace
+
+void share_frames(const Soup& soup, Level1& level1) {
+    for (uint32_t i = 0; i < level1.far_leaves; ++i)
+        share_frame(std::span(&level1.leaves[i], 1));
+    FrameChooser(soup, level1).choose(0);
 }
 
 } // namespace ovc

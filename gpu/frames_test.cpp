@@ -23,8 +23,8 @@ TEST(DoubtfulShare, GrowsAsTrianglesShrinkInTheFrame) {
     EXPECT_GT(coarse, 0);
     EXPECT_NEAR(share_of(test::closed_grid(32)) / coarse, 2, 0.2);
 
-    EXPECT_LT(share_of(test::closed_grid(32)), kMostDoubtful);
-    EXPECT_GT(share_of(test::random_soup(3, 1000, 1e-7)), kMostDoubtful);
+    EXPECT_LT(share_of(test::closed_grid(32)), kMaxDoubtful);
+    EXPECT_GT(share_of(test::random_soup(3, 1000, 1e-7)), kMaxDoubtful);
 }
 
 Soup together(Soup soup, Soup more) {
@@ -42,7 +42,7 @@ TEST(DoubtfulShare, LeavesSmallTrianglesToLargeOnesBesideThem) {
 
 TEST(DoubtfulShare, ATriangleThatReachesFarDoesNotHideThoseInOneSpot) {
     Soup ground = test::one_chunk({{-1e6, -1e6, 0}, {1e6, -1e6, 0}, {0, 1e6, 0}});
-    EXPECT_GT(share_of(together(test::closed_grid(32), std::move(ground))), kMostDoubtful);
+    EXPECT_GT(share_of(together(test::closed_grid(32), std::move(ground))), kMaxDoubtful);
 }
 
 } // namespace

@@ -107,6 +107,14 @@ Result<gl::Program> link(const ShaderConfig& config) {
     return link_program(stages, config.defines());
 }
 
+/// Who compiles, as a comment. Mesa's own cache of programs goes by their sources, and overlooks
+/// how wide llvmpipe's vectors are, though gl_SubGroupSizeARB is a constant of the program: one of
+/// eight lanes would be taken for sixteen, and every other ray would have no answer.
+std::string driver_line() {
+    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    return fmt::format("// {}\n", renderer ? renderer : "");
+}
+
 /// llvmpipe (Mesa 22.3, LLVM 15) crashes when it compiles any fragment shader for vectors of 512
 /// bits, which its user has to ask for.
 bool compiles_fragment_shaders() {
@@ -120,7 +128,7 @@ bool compiles_fragment_shaders() {
 std::string ShaderConfig::defines() const {
     return fmt::format("#define OVC_ANY_HIT {:d}\n"
                        "#define OVC_CERTIFY {:d}\n"
-                       "#define OVC_TOP_LEVEL {:d}\n"
+                       "#define OVC_PORTALS {:d}\n"
                        "#define OVC_MAY_WAIT {:d}\n"
                        "#define OVC_TELL_ACTIVE {:d}\n"
                        "#define OVC_LOOSE_PAIRS {:d}\n"
@@ -132,7 +140,7 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_DEAL_GROUPS {:d}\n"
                        "#define OVC_BUFFER_IMAGES {:d}\n"
                        "#define OVC_MOST_ROUNDS {}\n",
-                       any_hit, certify, top_level, may_wait, tell_active, loose_pairs, stack_depth,
+                       any_hit, certify, portals, may_wait, tell_active, loose_pairs, stack_depth,
                        stack_registers, packet, turns, branches, deal_groups, buffer_images,
                        most_rounds);
 }
@@ -147,7 +155,8 @@ Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std:
     std::vector<std::string> sources;
     for (const ShaderStage& stage : stages) {
         ExpandedStage next{stage, {}, {}};
-        Result<std::string> source = expand_shader(stage.source, defines, next.files);
+        Result<std::string> source =
+            expand_shader(stage.source, driver_line() + defines, next.files);
         if (!source)
             return source.error();
         next.source = std::move(*source);

@@ -23,7 +23,7 @@ struct ShaderConfig {
     bool compute = false; // which wrapper; no switch of config.glsl
     bool any_hit = false;
     bool certify = true;
-    bool top_level = false;
+    bool portals = false;
     bool may_wait = false;
     bool tell_active = false;
     bool loose_pairs = false;

@@ -19,14 +19,14 @@ TEST(ShaderSource, IncludesAreReplacedAndDefinesFollowTheVersion) {
         expand_shader("trace.frag.glsl", ShaderConfig{.any_hit = true}.defines(), files);
     ASSERT_TRUE(source);
     EXPECT_THAT(*source, Not(HasSubstr("#include")));
-    EXPECT_THAT(*source, HasSubstr("uvec4 walk("));
+    EXPECT_THAT(*source, HasSubstr("void trace_once("));
     EXPECT_LT(source->find("#version"), source->find("#define OVC_ANY_HIT 1"));
     EXPECT_LT(source->find("#define OVC_ANY_HIT 1"), source->find("#ifndef OVC_ANY_HIT"));
     EXPECT_THAT(files,
                 testing::ElementsAre("trace.frag.glsl", "layout.h", "config.glsl", "page.glsl",
-                                     "box.glsl", "children.glsl", "triangle.glsl", "occluder.glsl",
-                                     "found.glsl", "pair.glsl", "traverse.glsl", "level1.glsl",
-                                     "ray.glsl", "trace.glsl", "walk.glsl"));
+                                     "box.glsl", "children.glsl", "triangle.glsl", "times.glsl",
+                                     "occluder.glsl", "found.glsl", "pair.glsl", "traverse.glsl",
+                                     "ray.glsl", "portals.glsl", "trace.glsl"));
 }
 
 TEST(ShaderSource, AMissingFileIsNamed) {

@@ -33,10 +33,10 @@ protected:
         gl->run([&](GlState& state) {
             MemoryPlan plan = *plan_memory(64u << 20, gl->info());
             plan.pool_bytes = 4 * largest;
-            tracer = std::move(*Tracer::create(plan, {.certify = true, .compute = GetParam()},
-                                               gl->info(), state.kernels, level1, pages, top));
+            tracer =
+                std::move(*Tracer::create(plan, {.certify = true, .compute = GetParam()},
+                                          gl->info(), state.kernels, level1.bounds, pages, top));
         });
-        ASSERT_TRUE(tracer->has_tree());
         ASSERT_FALSE(tracer->all_resident());
     }
     void TearDown() override {
@@ -52,11 +52,10 @@ protected:
         std::vector<uint32_t> waited{};
         bool decided = true;
 
-        Traveller traveller() const {
+        RayState state() const {
             Ray rest = ray;
             rest.t_max = limit;
-            return {rest, rest.t_min, OVC_NO_TRIANGLE,
-                    waited.empty() ? OVC_NO_LEAF : waited.back()};
+            return {.ray = rest, .asks = waited.empty() ? 0 : waited.back()};
         }
     };
 
@@ -76,13 +75,12 @@ protected:
 
     /// A pass of these rays; those that wait join the queues.
     void pass(std::vector<UnderWay>& rays, std::span<const uint32_t> some) {
-        const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
-        std::vector<Traveller> travellers(whole_blocks(some.size()), none);
+        std::vector<RayState> states(whole_blocks(some.size()));
         for (size_t j = 0; j < some.size(); ++j)
-            travellers[j] = rays[some[j]].traveller();
-        std::vector<Answer> answers(travellers.size());
+            states[j] = rays[some[j]].state();
+        std::vector<Answer> answers(states.size());
         gl->run([&](GlState&) {
-            ASSERT_TRUE(tracer->submit(std::span(travellers).first(some.size())));
+            ASSERT_TRUE(tracer->submit(std::span(states).first(some.size())));
             ASSERT_TRUE(tracer->collect(std::span(answers).first(some.size())));
         });
         for (size_t j = 0; j < some.size(); ++j) {

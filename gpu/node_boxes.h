@@ -4,6 +4,7 @@
 
 #include "gpu/page.h"
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -16,6 +17,15 @@ struct GridHeader {
     vec3 middle;
     vec3 cell;
 };
+
+/// Of the page whose texels these are.
+inline GridHeader header_of(std::span<const uvec4> texels) {
+    const auto vector = [](const uvec4& t) {
+        return vec3(std::bit_cast<float>(t.x), std::bit_cast<float>(t.y),
+                    std::bit_cast<float>(t.z));
+    };
+    return {vector(texels[0]), vector(texels[1])};
+}
 
 constexpr uint32_t kGridLast = 0xffff;
 constexpr uint32_t kGridMiddle = 0x8000;

@@ -5,6 +5,8 @@
 #include "gpu/bvh.h"
 #include "gpu/node_boxes.h"
 
+#include <cmath>
+
 namespace ovc {
 namespace {
 
@@ -18,7 +20,8 @@ public:
         if (texels_.size() % OVC_UNIT_TEXELS || units <= OVC_ROOT_UNIT || units >= OVC_MAX_UNITS ||
             page_.depth > uint32_t(kMaxBvhDepth))
             return false;
-        if (texels_[2] != uvec4(OVC_ROOT_UNIT, 0xffffffffu, 0, 0))
+        if (texels_[2] != uvec4(OVC_ROOT_UNIT, 0xffffffffu, 0, 0) || !has_sound_grid() ||
+            is_missing(OVC_ROOT_UNIT, 0))
             return false;
         seen_.assign(units, 0);
         if (!reach(OVC_ROOT_UNIT, 1))
@@ -37,6 +40,17 @@ private:
         uint32_t unit;
         uint32_t depth;
     };
+
+    /// In a leaf's frame, where the leaf is about as large as 1.
+    bool has_sound_grid() const {
+        constexpr float kFarthest = 16;
+        const GridHeader grid = header_of(texels_);
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(std::abs(grid.middle[axis]) <= kFarthest) || !(grid.cell[axis] > 0) ||
+                !(grid.cell[axis] <= kFarthest / kGridLast))
+                return false;
+        return true;
+    }
 
     const uvec4& texel(uint32_t unit, uint32_t i) const {
         return texels_[size_t(unit) * OVC_UNIT_TEXELS + i];
@@ -64,7 +78,8 @@ private:
             return false;
         const uint64_t base = last.x;
         for (uint32_t child = 0; child < 4; ++child)
-            if (!is_missing(at.unit, child) && !reach(base + child, at.depth + 1))
+            if (!is_missing(at.unit, child) &&
+                (!has_box(at.unit, child) || !reach(base + child, at.depth + 1)))
                 return false;
         return true;
     }
@@ -72,6 +87,13 @@ private:
     bool is_missing(uint32_t unit, uint32_t child) const {
         for (uint32_t axis = 0; axis < 3; ++axis)
             if (range_of(texel(unit, axis), child) != GridRange())
+                return false;
+        return true;
+    }
+
+    bool has_box(uint32_t unit, uint32_t child) const {
+        for (uint32_t axis = 0; axis < 3; ++axis)
+            if (range_of(texel(unit, axis), child).empty())
                 return false;
         return true;
     }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The largest nodes of the pages are opened, and a BVH is built over what they held.
+// The largest nodes of the pages are opened, and a BVH is built over what they held; and one over
+// the portals to several such trees.
 #include "gpu/top_level.h"
 
+#include "gpu/grid.h"
 #include "gpu/node_boxes.h"
 #include "gpu/packer.h"
 #include "gpu/reinsert.h"
@@ -33,19 +35,11 @@ uint32_t first_child(std::span<const Page> pages, const Entry& node) {
     return unit_of(pages[node.page], node.unit)[3].x;
 }
 
-vec3 vector_of(const uvec4& t) {
-    return vec3(std::bit_cast<float>(t.x), std::bit_cast<float>(t.y), std::bit_cast<float>(t.z));
-}
-
-GridHeader header_of(const Page& page) {
-    return {vector_of(page.view()[0]), vector_of(page.view()[1])};
-}
-
 /// Calls visit(entry) for each child of a node.
 template <class Visit>
 void for_each_child(std::span<const Page> pages, uint32_t page, uint32_t node, Visit&& visit) {
     const auto words = unit_of(pages[page], node);
-    const vec3 cell = header_of(pages[page]).cell;
+    const vec3 cell = header_of(pages[page].view()).cell;
     for (uint32_t child = 0; child < 4; ++child) {
         Entry entry{page, words[3].x + child, {}};
         for (int axis = 0; axis < 3; ++axis) {
@@ -116,7 +110,9 @@ Page tree_over(std::span<const Page> pages, std::span<const Entry> entries) {
         if (!is_pair(pages[entries[i].page], entries[i].unit))
             unit[3] = {i, 1, 0, 0}; // found again by build_top_level()
     };
-    return Packer(nodes, header_of(pages[0]), Cells{header_of(pages[0]).cell}, put, nullptr).pack();
+    return Packer(nodes, header_of(pages[0].view()), Cells{header_of(pages[0].view()).cell}, put,
+                  nullptr)
+        .pack();
 }
 
 /// The root of the only page is the tree's.
@@ -127,6 +123,41 @@ Page tree_of_one(const Page& page) {
     tree.texels.assign(units.begin(), units.end());
     tree.texels[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + 3] = {0, 1, 0, 0}; // as in tree_over()
     return tree;
+}
+
+/// A BVH whose leaf i is a portal with the number i + 1, over their boxes in the world.
+Page tree_over(std::span<const Portal> portals, const Leaf& scene) {
+    std::vector<Boxf> boxes;
+    for (const Portal& portal : portals)
+        boxes.push_back({vec3(scene.frame.to_local(portal.bounds.lo)),
+                         vec3(scene.frame.to_local(portal.bounds.hi))});
+    std::vector<BvhNode> nodes = build_bvh(boxes, nullptr);
+    reinsert(nodes, nullptr);
+    const Grid grid({scene.frame.to_local(scene.grid.lo), scene.frame.to_local(scene.grid.hi)});
+    const auto put = [&](uint32_t i, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
+        for (int axis = 0; axis < 3; ++axis)
+            for (size_t child = 0; child < 4; ++child)
+                put_range(unit[size_t(axis)], child,
+                          child == 0 ? grid.range(boxes[i], axis) : GridRange());
+        unit[3] = {~i, 0, 0, 0}; // -(i + 1)
+    };
+    return Packer(nodes, grid.header(), grid, put, nullptr).pack();
+}
+
+/// Appends the tree of the part whose pages begin with `first_page`; returns where it begins.
+uint32_t append(TopLevel& top, const TopLevel& part, uint32_t first_page) {
+    const auto begin = uint32_t(top.tree.units());
+    top.tree.texels.resize(top.tree.texels.size() + part.tree.texels.size());
+    const auto to = std::span(top.tree.texels).last(part.tree.texels.size());
+    copy_relocated(part.tree, begin, to);
+    for (const Link& link : part.links) {
+        to[size_t(link.unit) * OVC_UNIT_TEXELS + 3].y += first_page;
+        top.links.push_back({begin + link.unit, link.first_child});
+    }
+    for (size_t page = 1; page < part.first_link.size(); ++page)
+        top.first_link.push_back(top.first_link[first_page] + part.first_link[page]);
+    top.depth = std::max(top.depth, part.depth);
+    return begin;
 }
 
 } // namespace
@@ -164,6 +195,41 @@ TopLevel build_top_level(std::span<const Page> pages, size_t max_links) {
     return top;
 }
 
+TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links) {
+    const std::vector<LeafRange> parts = parts_of(level1);
+    if (parts.empty())
+        return {};
+    if (parts.size() == 1)
+        return build_top_level(pages, max_links);
+    std::vector<Portal> portals;
+    for (uint32_t i = 0; i < parts.size(); ++i) {
+        const Leaf& leaf = level1.leaves[parts[i].first];
+        portals.push_back(portal_into(leaf.frame, leaf.grid));
+        portals.back().tree = i;
+    }
+    return build_top_level(scene_leaf(level1.bounds), parts, std::move(portals), pages, max_links);
+}
+
+TopLevel build_top_level(const Leaf& scene, std::span<const LeafRange> parts,
+                         std::vector<Portal> portals, std::span<const Page> pages,
+                         size_t max_links) {
+    TopLevel top;
+    top.tree = tree_over(portals, scene);
+    const uint32_t depth = top.tree.depth;
+    top.first_link = {0};
+    std::vector<uint32_t> begins;
+    for (const auto& [first, count] : parts) {
+        const size_t links = std::max<size_t>(max_links * count / pages.size(), count);
+        begins.push_back(append(top, build_top_level(pages.subspan(first, count), links), first));
+    }
+    for (Portal& portal : portals)
+        portal.tree = begins[portal.tree];
+    top.portals = {portal_into(scene.frame, scene.box)};
+    top.portals.insert(top.portals.end(), portals.begin(), portals.end());
+    top.depth += depth + 1; // and the word by which a ray comes back
+    return top;
+}
+
 bool is_usable(const TopLevel& top, std::span<const Page> pages, uint64_t pool_bytes) {
     const uint64_t all = top.tree.bytes() + total_bytes(pages);
     return !top.empty() && std::min(pool_bytes, all) / OVC_UNIT_BYTES < OVC_MAX_UNITS &&
@@ -183,7 +249,8 @@ void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to) 
             texel[1] = source[1];
             texel[2] = source[2];
             uvec4 last = source[3];
-            last.x += last.w & OVC_PAIR || unit < OVC_ROOT_UNIT ? 0 : first_unit;
+            const bool is_link = last.y != 0; // of the tree of a part
+            last.x += last.w & OVC_PAIR || unit < OVC_ROOT_UNIT || is_link ? 0 : first_unit;
             texel[3] = last;
         }
     });

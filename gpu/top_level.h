@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The top-level tree: a tree over all pages of a scene, which a ray goes through first. It is
-// always in the pool. Its lowest units are copies of units out of the pages, so that a ray goes
-// straight on into a page that is resident.
+// always in the pool. Where pages share a frame its lowest units are copies of units out of the
+// pages, so that a ray goes straight on into a page that is resident. Else they are portals into
+// frames, behind each of which is a tree like that.
 #pragma once
 
 #include "gpu/page.h"
+#include "gpu/portal.h"
 
 #include <cstdint>
 #include <span>
@@ -19,9 +21,9 @@ struct Link {
     uint32_t first_child; // of the page
 };
 
-/// The tree over pages that share a frame and count their boxes on the same grid.
 struct TopLevel {
-    Page tree;                        // all its links lead nowhere
+    Page tree;                        // all its links lead nowhere; behind it the trees of parts
+    std::vector<Portal> portals;      // [0]: the way back; none where all pages share a frame
     std::vector<Link> links;          // those of one page lie together
     std::vector<uint32_t> first_link; // per page, and one past the last of all
     uint32_t depth = 0;               // nodes on the longest way down, pages included
@@ -37,10 +39,14 @@ struct TopLevel {
 /// 64, and 1 costs a fifth more among slivers in 200 leaves.
 inline constexpr uint64_t kLinksPerPage = 4;
 
-/// The most bytes that the tree takes with so many links.
+/// The most bytes that the tree takes with so many links where all pages share a frame.
 inline uint64_t max_top_level_bytes(uint64_t links) {
-    return (2 * links + OVC_ROOT_UNIT + 1) * OVC_UNIT_BYTES;
+    return ((links > 1 ? 2 * links : 0) + OVC_ROOT_UNIT + 1) * OVC_UNIT_BYTES;
 }
+
+/// The most that each of so many pages adds to the tree and the table of portals where each has a
+/// frame of its own: a portal, a header, a link, an inner node and an entry of the table.
+inline constexpr uint64_t kMaxBytesPerPart = 4 * OVC_UNIT_BYTES + kPortalBytes;
 
 /// How many links the tree over pages of `page_bytes` in all may have. One a page where the pool
 /// has not room for all, because a ray that comes to a page by several links may wait for it more
@@ -50,9 +56,20 @@ inline uint64_t max_links(uint64_t pages, uint64_t page_bytes, uint64_t pool_byt
     return page_bytes + max_top_level_bytes(links) <= pool_bytes ? links : pages;
 }
 
-/// The tree over at least one page. max_links: at least as many as there are pages. Pairs that
-/// would be links count as such, but lie in the tree themselves.
+/// The tree over at least one page; they share a frame and count their boxes on the same grid.
+/// max_links: at least as many as there are pages. Pairs that would be links count as such, but lie
+/// in the tree themselves.
 TopLevel build_top_level(std::span<const Page> pages, size_t max_links);
+
+/// The same over any number of pages, in the frames of their leaves. Neighbours that share one are
+/// a part.
+TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links);
+
+/// The same over parts that portals lead to: of each, Portal::tree says to which. scene: its box
+/// and frame.
+TopLevel build_top_level(const Leaf& scene, std::span<const LeafRange> parts,
+                         std::vector<Portal> portals, std::span<const Page> pages,
+                         size_t max_links);
 
 /// Whether rays can go through the tree in a pool of so many bytes: all units can be counted in a
 /// stack word, where pages come and go they can be named by a key, and the largest has room beside

@@ -21,18 +21,19 @@ struct Built {
     TopLevel top;
 };
 
-Built build(const Soup& soup, size_t leaves, size_t links_per_page) {
+/// in_one_frame: else each leaf keeps its own, behind a portal.
+Built build(const Soup& soup, size_t leaves, size_t links_per_page, bool in_one_frame = true) {
     Built built;
     Box bounds;
     built.triangles = hittable_triangles(soup, nullptr, &bounds);
     built.level1 = partition(soup, built.triangles, bounds,
                              uint32_t(std::max<size_t>(built.triangles.size() / leaves, 1)));
-    share_frame(built.level1);
+    if (in_one_frame)
+        share_frame(built.level1);
     const Numbering numbers(soup);
     for (const Leaf& leaf : built.level1.leaves)
         built.pages.push_back(build_page(soup, numbers, leaf));
-    if (!built.pages.empty())
-        built.top = build_top_level(built.pages, links_per_page * built.pages.size());
+    built.top = build_top_level(built.level1, built.pages, links_per_page * built.pages.size());
     return built;
 }
 
@@ -77,13 +78,44 @@ TEST_P(TopLevelTree, HoldsWhatBruteForceFinds) {
                     return false;
                 };
             };
-            walk_tree(built.top.tree, built.pages, scene, p, p.ray.t_min, offer_to(apart),
+            walk_tree(built.top, built.pages, scene, p, p.ray.t_min, offer_to(apart),
                       [&] { return apart.limit(); });
             walk_page(pool, scene, p, p.ray.t_min, offer_to(together),
                       [&] { return together.limit(); });
             ASSERT_TRUE(test::same(expected, apart.hit()))
                 << name << ": " << test::describe(expected);
             ASSERT_TRUE(test::same(expected, together.hit()))
+                << name << ": " << test::describe(expected);
+        }
+    }
+}
+
+TEST_P(TopLevelTree, LeadsThroughPortalsToWhatBruteForceFinds) {
+    for (const auto& [name, soup] : test::unpleasant_soups()) {
+        const auto [leaves, links] = GetParam();
+        const Built built = build(soup, leaves, links, /* in_one_frame= */ false);
+        if (built.pages.empty())
+            continue;
+        const size_t parts = built.pages.size(); // at most: leaves in one place share a frame
+        EXPECT_LE(built.top.portals.size(), 1 + parts);
+        EXPECT_LE(built.top.tree.bytes(),
+                  max_top_level_bytes(links * parts) + parts * (kMaxBytesPerPart - kPortalBytes));
+        const Numbering numbers(soup);
+        for (const Ray& ray : test::unpleasant_rays(soup, 79, 200)) {
+            if (!ray.valid())
+                continue;
+            const PreparedRay p(ray);
+            Nearest nearest(p);
+            walk_tree(
+                built.top, built.pages, scene_leaf(built.level1.bounds), p, p.ray.t_min,
+                [&](uint32_t number) {
+                    const TriangleId id = numbers.id(number);
+                    nearest.offer(soup.triangle(id), id);
+                    return false;
+                },
+                [&] { return nearest.limit(); });
+            const Hit expected = test::brute_force(soup, built.triangles, ray);
+            ASSERT_TRUE(test::same(expected, nearest.hit()))
                 << name << ": " << test::describe(expected);
         }
     }

@@ -6,7 +6,6 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gpu/gl_check.h"
-#include "gpu/level1_table.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>
@@ -28,6 +27,7 @@ constexpr size_t kMostLostShare = 256; // of rays, one in so many; else kernels 
 // By turns: the most rays of a lane on average, as long as each thread has some groups.
 constexpr size_t kLaneRays = 128;
 constexpr size_t kGroupsAThread = 4;
+constexpr size_t kGrain = 1024;           // rays a task
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
 /// How many packets each lane takes, on average.
@@ -68,29 +68,28 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
 }
 
 Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const PassOptions& options,
-               const DeviceInfo& device, KernelCache& kernels, const Level1& level1,
+               const DeviceInfo& device, KernelCache& kernels, const Box& bounds,
                std::span<const Page> pages, const TopLevel& top)
     : ledger_(std::move(ledger)),
       kernels_(kernels),
       options_(options),
-      level1_data_(level1),
       page_data_(pages),
       software_(device.is_software),
       top_(top),
       all_fit_(top.tree.bytes() + total_bytes(pages) <= plan.pool_bytes),
-      has_tree_(is_usable(top, pages, plan.pool_bytes)),
-      scene_(scene_leaf(level1.bounds)),
-      stack_depth_(has_tree_ ? stack_depth(top.depth) : stack_depth(pages)),
+      scene_(scene_leaf(bounds)),
+      stack_depth_(stack_depth(top.depth)),
       stack_words_(software_ ? std::min(stack_depth_, kMostStackWordsInSoftware) : stack_depth_),
       most_slots_(plan.batch_rays + plan.parted_rays()),
-      ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(Traveller), "rays"),
-      level1_buffer_(*ledger_, level1_texels(level1) * sizeof(uvec4), "level 1"),
-      pool_(*ledger_, plan.pool_bytes, pages.size(), has_tree_ ? top.tree.bytes() : 0) {
-    takes_turns_ = device.has_ballots && takes_packets();
+      ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(RayState), "rays"),
+      pool_(*ledger_, plan.pool_bytes, pages.size(), top.tree.bytes()) {
+    takes_turns_ = device.has_ballots && software_ && options.compute;
     if (options.compute)
         words_.emplace(*ledger_, most_slots_);
     else
         pixels_.emplace(*ledger_, plan.batch_rays);
+    if (has_portals())
+        portal_buffer_.emplace(*ledger_, top.portals.size() * kPortalBytes, "portals");
     if (plan.active_bytes > 0)
         active_buffer_.emplace(*ledger_, plan.active_bytes, "active leaves");
 }
@@ -102,13 +101,14 @@ Result<Done> Tracer::set_up() {
         return Error{"the GPU is out of memory", ErrorKind::OutOfGpuMemory};
     if (!allocated)
         return allocated;
-    const std::vector<uvec4> table = pack_level1(level1_data_);
-    glNamedBufferSubData(level1_buffer_.id(), 0, GLsizeiptr(table.size() * sizeof(uvec4)),
-                         table.data());
-    level1_.show(level1_buffer_, GL_RGBA32UI, 0, level1_buffer_.bytes());
+    if (portal_buffer_) {
+        const std::vector<uvec4> table = pack_portals(top_.portals);
+        glNamedBufferSubData(portal_buffer_->id(), 0, GLsizeiptr(table.size() * sizeof(uvec4)),
+                             table.data());
+        portals_.show(*portal_buffer_, GL_RGBA32UI, 0, portal_buffer_->bytes());
+    }
     rays_.show(ray_buffer_, GL_RGBA32UI, 0, ray_buffer_.bytes());
-    if (has_tree_)
-        pool_.upload(0, top_.tree);
+    pool_.upload(0, top_.tree);
     pages_.show(pool_.buffer(), GL_RGBA32UI, 0, pool_.buffer().bytes());
     if (active_buffer_) {
         active_.show(*active_buffer_, GL_R32UI, 0, active_buffer_->bytes());
@@ -121,34 +121,29 @@ Result<Done> Tracer::set_up() {
 
 Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const PassOptions& options,
                                                const DeviceInfo& device, KernelCache& kernels,
-                                               const Level1& level1, std::span<const Page> pages,
+                                               const Box& bounds, std::span<const Page> pages,
                                                const TopLevel& top) {
+    assert(is_usable(top, pages, plan.pool_bytes));
     auto ledger = std::make_unique<Ledger>();
     ledger->budget = plan.budget_bytes;
     ledger->driver_bytes = plan.driver_bytes;
     ledger->takes_host_pages = device.takes_host_pages;
     std::unique_ptr<Tracer> tracer(
-        new Tracer(std::move(ledger), plan, options, device, kernels, level1, pages, top));
+        new Tracer(std::move(ledger), plan, options, device, kernels, bounds, pages, top));
     if (Result<Done> ok = tracer->set_up(); !ok)
         return ok.error();
     return tracer;
 }
 
-/// Tells the kernel, by the page's links or a texel of level 1, where a page is now.
+/// Tells the kernel, by the page's links, where a page is now.
 void Tracer::say_where(uint32_t leaf) {
     const uint32_t page = uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES);
-    if (has_tree_) {
-        for (const Link& link : top_.links_of(leaf)) {
-            const uint32_t unit = resident(leaf) ? page + link.first_child : OVC_LEADS_NOWHERE;
-            const size_t texel = size_t(link.unit) * OVC_UNIT_TEXELS + 3;
-            glNamedBufferSubData(pool_.buffer().id(), GLintptr(texel * sizeof(uvec4)), sizeof(unit),
-                                 &unit);
-        }
-        return;
+    for (const Link& link : top_.links_of(leaf)) {
+        const uint32_t unit = resident(leaf) ? page + link.first_child : OVC_LEADS_NOWHERE;
+        const size_t texel = size_t(link.unit) * OVC_UNIT_TEXELS + 3;
+        glNamedBufferSubData(pool_.buffer().id(), GLintptr(texel * sizeof(uvec4)), sizeof(unit),
+                             &unit);
     }
-    const uint32_t unit = resident(leaf) ? page : OVC_NOT_RESIDENT;
-    glNamedBufferSubData(level1_buffer_.id(), GLintptr(page_texel_of(leaf) * sizeof(uvec4)),
-                         sizeof(unit), &unit);
 }
 
 Moved Tracer::bring(std::span<const uint32_t> wanted) {
@@ -162,7 +157,7 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
         if (!pool_.residency().admit(leaf, page.bytes(), keep, evicted))
             break;
         const uint64_t offset = pool_.residency().slot(leaf).offset;
-        pool_.upload(offset, page, has_tree_ ? uint32_t(offset / OVC_UNIT_BYTES) : 0);
+        pool_.upload(offset, page, uint32_t(offset / OVC_UNIT_BYTES));
         say_where(leaf);
         moved.pages += 1;
         moved.bytes += page.bytes();
@@ -173,35 +168,42 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
     return moved;
 }
 
-void Tracer::upload(std::span<const Traveller> rays) {
-    if (may_wait())
+void Tracer::upload(std::span<const RayState> rays) {
+    if (has_portals())
+        upload_world(rays);
+    else if (may_wait())
         upload_local(rays, resumed_);
-    else if (has_tree_)
-        upload_local(rays, local_);
     else
-        glNamedBufferSubData(ray_buffer_.id(), 0,
-                             GLsizeiptr(whole_blocks(rays.size()) * sizeof(Traveller)),
-                             rays.data());
+        upload_local(rays, local_);
+}
+
+/// As they are, for a kernel that changes frames.
+void Tracer::upload_world(std::span<const RayState> rays) {
+    glNamedBufferSubData(ray_buffer_.id(), 0,
+                         GLsizeiptr(whole_blocks(rays.size()) * sizeof(RayState)), rays.data());
+    if (options_.certify)
+        return;
+    times_.resize(rays.size());
+    parallel_for(rays.size(), kGrain, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            local_ray(scene_, rays[i].ray, OVC_NO_TRIANGLE, false, times_[i]);
+    });
 }
 
 /// In the frame of the top-level tree; and how to come back from there.
 template <class Sent>
-void Tracer::upload_local(std::span<const Traveller> rays, std::vector<Sent>& sent) {
+void Tracer::upload_local(std::span<const RayState> rays, std::vector<Sent>& sent) {
     sent.resize(whole_blocks(rays.size()));
     times_.resize(options_.certify ? 0 : sent.size());
-    constexpr size_t kGrain = 1024;
     parallel_for(sent.size(), kGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
-            const Traveller& t = rays.data()[i]; // up to the next whole block: see collect()
+            const RayState& state = rays.data()[i]; // up to the next whole block: see collect()
             LocalTime time;
-            const LocalRay ray =
-                local_ray(scene_, t.ray, t.skip, (t.first_leaf & OVC_RAY_ANY_HIT) != 0, time);
-            if constexpr (std::is_same_v<Sent, LocalRay>) {
+            const LocalRay ray = local_ray(scene_, state.ray, state.skip, state.any_hit(), time);
+            if constexpr (std::is_same_v<Sent, LocalRay>)
                 sent[i] = ray;
-            } else {
-                const uint32_t key = t.first_leaf & OVC_NO_LEAF;
-                sent[i] = {ray, key == OVC_NO_LEAF ? 0 : key, {}};
-            }
+            else
+                sent[i] = {ray, state.key(), {}};
             if (!options_.certify)
                 times_[i] = time;
         }
@@ -223,10 +225,6 @@ void Tracer::come_back(std::span<Answer> answers) const {
     for (size_t i = 0; i < answers.size(); ++i) {
         if (answers[i].prim >= OVC_MAX_TRIANGLES)
             continue;
-        if (!has_tree_) { // the walk ends where it hits
-            answers[i].where = OVC_NO_LEAF;
-            continue;
-        }
         const double local = std::bit_cast<float>(answers[i].words[0]);
         const auto t = std::bit_cast<uint64_t>(times_[i].enter + local / times_[i].speed);
         answers[i].words = {uint32_t(t), uint32_t(t >> 32), answers[i].words[1]};
@@ -239,7 +237,7 @@ ShaderConfig Tracer::shader_config() const {
     config.compute = options_.compute;
     config.any_hit = any_hit_;
     config.certify = options_.certify;
-    config.top_level = has_tree_;
+    config.portals = has_portals();
     config.may_wait = may_wait();
     config.tell_active = active_buffer_.has_value();
     config.loose_pairs = std::ranges::any_of(page_data_, &Page::has_loose_pairs);
@@ -256,12 +254,11 @@ ShaderConfig Tracer::shader_config() const {
     return config;
 }
 
-Result<Done> Tracer::submit(std::span<const Traveller> rays) {
+Result<Done> Tracer::submit(std::span<const RayState> rays) {
     assert(!rays.empty());
     rays_sent_ = rays.size();
     slots_sent_ = rays.size();
-    any_hit_ = std::ranges::all_of(
-        rays, [](const Traveller& t) { return (t.first_leaf & OVC_RAY_ANY_HIT) != 0; });
+    any_hit_ = std::ranges::all_of(rays, [](const RayState& state) { return state.any_hit(); });
     packets_ = false;
     parted_.clear();
     upload(rays);
@@ -277,9 +274,10 @@ Result<Done> Tracer::launch() {
 
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);
-    const std::pair<GLuint, GLuint> inputs[] = {{OVC_BINDING_PAGE, pages_.id()},
-                                                {OVC_BINDING_RAYS, rays_.id()},
-                                                {OVC_BINDING_LEVEL1, level1_.id()}};
+    std::vector<std::pair<GLuint, GLuint>> inputs{{OVC_BINDING_PAGE, pages_.id()},
+                                                  {OVC_BINDING_RAYS, rays_.id()}};
+    if (has_portals())
+        inputs.emplace_back(OVC_BINDING_PORTALS, portals_.id());
     for (const auto& [binding, texture] : inputs)
         if (config.buffer_images)
             glBindImageTexture(binding, texture, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
@@ -360,7 +358,7 @@ Result<Done> Tracer::collect(std::span<Answer> answers) {
     read(answers);
     while (lost_many(answers) && go_on_longer()) {
         // Where all fit they stay where they are. Others may have been pushed out by now.
-        if (!has_tree_ || !all_fit_)
+        if (!all_fit_)
             break;
         if (Result<Done> ok = launch(); !ok)
             return ok;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tracer: passes of the kernel over rays on their way through the resident leaves, within a budget
-// of GPU bytes.
+// Tracer: passes of the kernel over rays on their way through the top-level tree and the resident
+// pages, within a budget of GPU bytes.
 #pragma once
 
 #include "core/result.h"
@@ -22,17 +22,18 @@
 
 namespace ovc {
 
-/// A ray on its way through level 1, in the layout of shaders/layout.h. In the world's coordinates:
-/// finite, of a direction whose reciprocals are finite, as can_walk() of kdtree/restart.h asks.
-struct Traveller {
-    Ray ray;             // t_max < t_min: no ray
-    double t_from;       // the walk begins in the cell after this t; ray.t_min at first
-    uint32_t skip;       // number of a triangle it does not see, or OVC_NO_TRIANGLE
-    uint32_t first_leaf; // of that cell, where the ray has been in it; else OVC_NO_LEAF; under
-                         // the top-level tree the key it waited for; with OVC_RAY_ANY_HIT added:
-                         // any hit will do
+/// A ray on its way, in the layout of shaders/layout.h. In the world's coordinates: finite, of a
+/// direction whose reciprocals are finite, as can_walk() of kdtree/restart.h asks.
+struct RayState {
+    Ray ray{dvec3(0), 0, dvec3(0, 0, 1), -1}; // t_max < t_min: no ray
+    std::array<uint32_t, 2> zeros{};
+    uint32_t skip = OVC_NO_TRIANGLE; // number of a triangle it does not see
+    uint32_t asks = 0; // the resume key, or 0; with OVC_RAY_ANY_HIT added: any hit will do
+
+    bool any_hit() const { return (asks & OVC_RAY_ANY_HIT) != 0; }
+    uint32_t key() const { return asks & ~OVC_RAY_ANY_HIT; }
 };
-static_assert(sizeof(Traveller) == 80);
+static_assert(sizeof(RayState) == OVC_RAY_TEXELS * sizeof(uvec4));
 
 /// How passes are made.
 struct PassOptions {
@@ -40,13 +41,13 @@ struct PassOptions {
     bool compute = false; // which kernel: they answer alike
 };
 
-/// How a budget is shared out: pages get what rays, answers and level 1 leave.
+/// How a budget is shared out: pages get what rays, answers and portals leave.
 struct MemoryPlan {
     uint64_t budget_bytes = 0;
     uint32_t batch_rays = 0; // most rays a pass
     uint64_t pool_bytes = 0;
     uint64_t active_bytes = 0; // 4 a leaf, or 0: passes mark which pages rays are traced through
-    uint64_t bytes_per_ray = sizeof(Traveller) + kAnswerBytes;
+    uint64_t bytes_per_ray = sizeof(RayState) + kAnswerBytes;
     uint64_t driver_bytes = ~uint64_t(0); // for tests: what the driver has
 
     /// For how many rays besides there are answers: those that packets part (gpu/packets.h).
@@ -54,11 +55,11 @@ struct MemoryPlan {
     uint64_t ray_bytes() const { return batch_rays * bytes_per_ray + parted_rays() * kAnswerBytes; }
 };
 
-/// The plan for a budget, clamped to the device, level 1 not yet taken off. Error: a budget below
+/// The plan for a budget, clamped to the device, portals not yet taken off. Error: a budget below
 /// what the smallest page and batch need, with the number.
 /// bytes_per_ray: of a ray and its answer.
 Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
-                               uint64_t bytes_per_ray = sizeof(Traveller) + kAnswerBytes);
+                               uint64_t bytes_per_ray = sizeof(RayState) + kAnswerBytes);
 
 /// Pages moved to the GPU.
 struct Moved {
@@ -70,34 +71,27 @@ struct Moved {
 class Tracer {
 public:
     /// Error of the kind OutOfGpuMemory: the driver refused the plan's bytes; a smaller pool may
-    /// do. kernels outlives the tracer. level1 has leaves, pages[i] belongs to its leaf i, and top
-    /// is the tree over them, empty where they share no frame; all outlive the tracer. The plan's
-    /// pool holds the tree and the largest page.
+    /// do. kernels outlives the tracer. pages lie in `bounds`, and top is the tree over them; both
+    /// outlive the tracer. is_usable() in the plan's pool.
     static Result<std::unique_ptr<Tracer>> create(const MemoryPlan& plan,
                                                   const PassOptions& options,
                                                   const DeviceInfo& device, KernelCache& kernels,
-                                                  const Level1& level1, std::span<const Page> pages,
+                                                  const Box& bounds, std::span<const Page> pages,
                                                   const TopLevel& top);
 
     /// Moves in the pages of `wanted`, leaves that are not resident, in this order, as many as fit
     /// without pushing each other out: the first at least.
     Moved bring(std::span<const uint32_t> wanted);
 
-    /// All pages are in the pool, under the top-level tree, so that a pass answers its rays for
-    /// good.
-    bool all_resident() const { return has_tree_ && all_fit_ && pages_moved_ == page_data_.size(); }
+    /// All pages are in the pool, so that a pass answers its rays for good.
+    bool all_resident() const { return all_fit_ && pages_moved_ == page_data_.size(); }
 
-    /// Rays go through the top-level tree: an answer is that of all pages on the way to the one it
-    /// names, which the ray waits for, or of all.
-    bool has_tree() const { return has_tree_; }
-
-    /// Marks a leaf as used now: others are pushed out before it.
-    void touch(uint32_t leaf) { pool_.residency().touch(leaf); }
-
-    /// Sends the rays (at most plan.batch_rays) on their walk through the leaves that are resident
-    /// now. Pages moved in from here on serve the next pass, and may go over while this one runs.
+    /// Sends the rays (at most plan.batch_rays) on their way through the pages that are resident
+    /// now. An answer is that of all pages on the way to the one it names, which the ray waits for,
+    /// or of all. Pages moved in from here on serve the next pass, and may go over while this one
+    /// runs.
     /// Where all rays ask whether anything is hit, an answer does not tell which triangle is.
-    Result<Done> submit(std::span<const Traveller> rays);
+    Result<Done> submit(std::span<const RayState> rays);
 
     /// Waits for the answers of the pass that was submitted, as many as its rays. The storage of
     /// rays is used up to the next whole block: see whole_blocks().
@@ -115,15 +109,17 @@ public:
 
 private:
     Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const PassOptions& options,
-           const DeviceInfo& device, KernelCache& kernels, const Level1& level1,
+           const DeviceInfo& device, KernelCache& kernels, const Box& bounds,
            std::span<const Page> pages, const TopLevel& top);
 
     bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
     Result<Done> set_up();
-    bool takes_packets() const { return software_ && options_.compute && has_tree_; }
+    bool has_portals() const { return !top_.portals.empty(); }
+    bool takes_packets() const { return software_ && options_.compute && !has_portals(); }
     /// Whether rays of the pass may have to wait for a page.
-    bool may_wait() const { return has_tree_ && !all_fit_; }
-    void upload(std::span<const Traveller> rays);
+    bool may_wait() const { return !all_fit_; }
+    void upload(std::span<const RayState> rays);
+    void upload_world(std::span<const RayState> rays);
     void come_back(std::span<Answer> answers) const;
     ShaderConfig shader_config() const;
     Result<Done> launch();
@@ -132,18 +128,16 @@ private:
     bool go_on_longer();
     void say_where(uint32_t leaf);
     template <class Sent>
-    void upload_local(std::span<const Traveller> rays, std::vector<Sent>& sent);
+    void upload_local(std::span<const RayState> rays, std::vector<Sent>& sent);
 
     std::unique_ptr<Ledger> ledger_; // the objects below keep its address
     KernelCache& kernels_;
     PassOptions options_;
-    const Level1& level1_data_;
     std::span<const Page> page_data_;
     bool software_;
     bool takes_turns_ = false; // lanes go on to a next ray
     const TopLevel& top_;
     bool all_fit_;                    // the pool has room for all pages and the tree
-    bool has_tree_;                   // rays go through the top-level tree
     uint64_t pages_moved_ = 0;        // into the pool, all in all
     Leaf scene_;                      // as one leaf: the frame of the top-level tree
     std::vector<LocalRay> local_;     // of the pass, where all pages fit
@@ -162,8 +156,8 @@ private:
     gl::BufferTexture rays_;
     std::optional<AnswerPixels> pixels_; // of the fragment kernel
     std::optional<AnswerWords> words_;   // of the compute kernel
-    gl::Buffer level1_buffer_;
-    gl::BufferTexture level1_;
+    std::optional<gl::Buffer> portal_buffer_;
+    gl::BufferTexture portals_;
     std::optional<gl::Buffer> active_buffer_;
     gl::BufferTexture active_;
     Pool pool_;

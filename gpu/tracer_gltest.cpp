@@ -23,20 +23,18 @@ protected:
         gl->run([&](GlState&) { tracer.reset(); });
         level1 = partition(soup, ids, bounds, 1u << 30);
         ASSERT_EQ(level1.leaves.size(), 1u);
-        if (options.compute)
-            share_frame(level1); // under a top-level tree: rays take turns
+        share_frame(level1);
         numbers = Numbering(soup);
         pages = {build_page(soup, numbers, level1.leaves[0], nullptr, loose)};
-        top = options.compute ? build_top_level(pages, 1) : TopLevel();
+        top = build_top_level(pages, 1);
         const Result<MemoryPlan> plan = plan_memory(64u << 20, gl->info());
         ASSERT_TRUE(plan);
         MemoryPlan shared = *plan;
-        shared.pool_bytes -= 1u << 20; // for level 1
         DeviceInfo device = gl->info();
         device.takes_host_pages = device.takes_host_pages && with_host_pages;
         gl->run([&](GlState& state) {
             auto created =
-                Tracer::create(shared, options, device, state.kernels, level1, pages, top);
+                Tracer::create(shared, options, device, state.kernels, level1.bounds, pages, top);
             ASSERT_TRUE(created) << created.error().message;
             tracer = std::move(*created);
             EXPECT_EQ(tracer->bring(std::vector<uint32_t>{0}).bytes, pages[0].bytes());
@@ -45,13 +43,12 @@ protected:
 
     std::vector<Answer> trace(std::span<const Ray> rays, bool any_hit = false) {
         const size_t rows = whole_blocks(rays.size());
-        std::vector<Traveller> travellers(rows, {kNoRay, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF});
+        std::vector<RayState> states(rows);
         for (size_t i = 0; i < rays.size(); ++i)
-            travellers[i] = {rays[i], rays[i].t_min, OVC_NO_TRIANGLE,
-                             OVC_NO_LEAF | (any_hit ? OVC_RAY_ANY_HIT : 0)};
+            states[i] = {.ray = rays[i], .asks = any_hit ? OVC_RAY_ANY_HIT : 0};
         std::vector<Answer> answers(rows);
         gl->run([&](GlState&) {
-            const Result<Done> sent = tracer->submit(std::span(travellers).first(rays.size()));
+            const Result<Done> sent = tracer->submit(std::span(states).first(rays.size()));
             ASSERT_TRUE(sent) << sent.error().message;
             const Result<Done> back = tracer->collect(std::span(answers).first(rays.size()));
             ASSERT_TRUE(back) << back.error().message;
@@ -261,24 +258,6 @@ TEST_F(KernelGl, RaysOfThousandsOfRoundsAreAnsweredByTheKernel) {
     EXPECT_TRUE(std::all_of(answers.begin(), answers.end(), [](const Answer& answer) {
         return answer.prim == OVC_MISS && is_certain(answer);
     }));
-}
-
-TEST_F(KernelGl, ARayWaitsForALeafThatIsNotInThePool) {
-    const Soup soup = test::closed_grid(8);
-    load(soup);
-    const Ray ray{dvec3(1.01, 0.02, -4), 0, dvec3(0, 0, 1)};
-    EXPECT_LT(trace(std::span(&ray, 1))[0].prim, OVC_MAX_TRIANGLES);
-    gl->run([&](GlState& state) {
-        tracer.reset();
-        const Result<MemoryPlan> plan = plan_memory(64u << 20, gl->info());
-        MemoryPlan shared = *plan;
-        shared.pool_bytes -= 1u << 20;
-        tracer =
-            std::move(*Tracer::create(shared, {}, gl->info(), state.kernels, level1, pages, top));
-    });
-    const Answer answer = trace(std::span(&ray, 1))[0];
-    EXPECT_EQ(answer.where, 0u);
-    EXPECT_EQ(answer.t(), 0.0);
 }
 
 } // namespace

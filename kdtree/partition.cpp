@@ -234,7 +234,8 @@ Leaf make_leaf(const Soup& soup, const Box& cell, double padding,
     leaf.cell = cell;
     const Box reached = all.intersection(cell);
     leaf.box = reached.padded(std::max(kMargin * max_component(reached.extent()), padding));
-    leaf.frame = frame_of(leaf.box, max_component(all.extent()));
+    leaf.reach = max_component(all.extent());
+    leaf.frame = frame_of(leaf.box, leaf.reach);
     leaf.grid = leaf.box;
     leaf.triangles = std::move(triangles);
     return leaf;
@@ -257,6 +258,33 @@ void share_frame(Level1& level1) {
         leaf.grid = scene.grid;
     }
     level1.shares_frame = true;
+}
+
+void share_frame(std::span<Leaf> leaves) {
+    Box box;
+    double reach = 0;
+    for (const Leaf& leaf : leaves) {
+        box.add(leaf.box);
+        reach = std::max(reach, leaf.reach);
+    }
+    box = box.padded(kMargin * max_component(box.extent()));
+    for (Leaf& leaf : leaves) {
+        leaf.frame = frame_of(box, reach);
+        leaf.grid = box;
+    }
+}
+
+std::vector<LeafRange> parts_of(const Level1& level1) {
+    std::vector<LeafRange> parts;
+    const auto same = [](const Leaf& a, const Leaf& b) {
+        return a.frame == b.frame && a.grid.lo == b.grid.lo && a.grid.hi == b.grid.hi;
+    };
+    for (uint32_t i = 0; i < level1.leaves.size(); ++i)
+        if (i > 0 && same(level1.leaves[i - 1], level1.leaves[i]))
+            ++parts.back().count;
+        else
+            parts.push_back({i, 1});
+    return parts;
 }
 
 double padding_of(const Box& scene) {
@@ -358,6 +386,7 @@ Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most
                  std::vector<uint32_t>& was, BuildProgress* progress) {
     assert(most.size() == level1.leaves.size());
     was.clear();
+    std::vector<uint32_t> of; // per leaf: one whose frame it keeps; kNone: it has its own
     Partitioner partitioner(soup, level1.bounds, progress);
     for (uint32_t i = 0; i < level1.far_leaves; ++i) {
         std::vector<std::vector<TriangleId>> lists;
@@ -365,18 +394,23 @@ Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most
         for (std::vector<TriangleId>& list : lists)
             partitioner.add_far_leaf(std::move(list));
         was.resize(partitioner.leaves(), lists.size() == 1 ? i : kNone);
+        of.resize(partitioner.leaves(), i);
     }
     partitioner.copy(level1.nodes, level1.bounds, [&](const Cell& cell, const KdNode& node) {
         const uint32_t first = node.first();
+        bool share_frame = true;
         uint32_t limit = kNone; // an empty cell stays as it is
         std::vector<std::vector<TriangleId>> lists;
         for (uint32_t i = first; i < first + node.count(); ++i) {
             limit = std::min(limit, most[i]);
             lists.push_back(std::move(level1.leaves[i].triangles));
+            share_frame = share_frame && level1.leaves[i].frame == level1.leaves[first].frame;
         }
         if (limit == kNone) {
-            for (uint32_t i = first; i < first + node.count(); ++i)
+            for (uint32_t i = first; i < first + node.count(); ++i) {
                 was.push_back(i);
+                of.push_back(i);
+            }
             partitioner.add_leaves(cell.padded, std::move(lists));
             return;
         }
@@ -388,8 +422,17 @@ Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most
         else
             partitioner.add_leaves(cell.padded, in_parts(all, limit));
         was.resize(partitioner.leaves(), kNone);
+        of.resize(partitioner.leaves(), share_frame ? first : kNone);
     });
-    return partitioner.finish();
+    Level1 cut = partitioner.finish();
+    cut.shares_frame = level1.shares_frame;
+    for (size_t i = 0; i < cut.leaves.size(); ++i) {
+        if (of[i] == kNone)
+            continue;
+        cut.leaves[i].frame = level1.leaves[of[i]].frame;
+        cut.leaves[i].grid = level1.leaves[of[i]].grid;
+    }
+    return cut;
 }
 
 } // namespace ovc

@@ -21,6 +21,7 @@ struct Frame {
     double scale = 1;
 
     dvec3 to_local(const dvec3& world) const { return (world - origin) * scale; }
+    bool operator==(const Frame&) const = default;
 };
 
 /// A level-1 leaf. Every triangle that touches `cell` is listed. `box` holds the part of the cell
@@ -34,6 +35,7 @@ struct Leaf {
     Frame frame;
     Box grid;
     std::vector<TriangleId> triangles; // sorted
+    double reach = 0;                  // the extent of all of them, in the cell or not
 };
 
 /// nodes' leaves name ranges of `leaves`: no leaf where a cell is empty, several where a cell
@@ -62,6 +64,18 @@ Leaf scene_leaf(const Box& bounds);
 
 /// Gives all leaves the frame and the grid of scene_leaf().
 void share_frame(Level1& level1);
+
+/// The same for some of them: a frame and a grid around these.
+void share_frame(std::span<Leaf> leaves);
+
+/// Some of the leaves, one behind the other.
+struct LeafRange {
+    uint32_t first;
+    uint32_t count;
+};
+
+/// The leaves by frames: neighbours that share a frame and a grid are a part of the scene.
+std::vector<LeafRange> parts_of(const Level1& level1);
 
 /// All of `triangles`, which lie in `bounds`, as one leaf.
 Leaf whole_leaf(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds);

@@ -2,28 +2,47 @@
 // A scene is restored or built, and cut as small as can be where the budget has no room for it.
 #include "plugin/build_scene.h"
 
-#include "gpu/level1_table.h"
 #include "plugin/level2.h"
 #include "plugin/saved_levels.h"
 
 #include <fmt/format.h>
 
-#include <cassert>
+#include <algorithm>
 #include <optional>
 
 namespace ovc {
 
-uint64_t table_bytes(const BuiltScene& scene, const TwoLevelOptions& options) {
+uint64_t room_for_pool(const BuiltScene& scene, const TwoLevelOptions& options,
+                       const MemoryPlan& plan) {
     const uint64_t active_bytes = options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
-    return level1_texels(scene.level1) * sizeof(uvec4) + active_bytes;
+    const uint64_t table_bytes = scene.top.portals.size() * kPortalBytes + active_bytes;
+    return plan.pool_bytes - std::min(plan.pool_bytes, table_bytes);
+}
+
+void set_limits(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan) {
+    uint64_t unique = scene.triangles;
+    for (const SharedMesh& mesh : scene.shared)
+        unique += mesh.scene.triangles;
+    scene.limits = limits_of(options, plan, scene.triangles, unique);
+    for (SharedMesh& mesh : scene.shared)
+        mesh.scene.limits = limits_of(options, plan, mesh.scene.triangles, unique);
 }
 
 namespace {
 
-/// Whether the pool holds level 1 and each of the pages.
-bool has_room(const BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan) {
-    return scene.pages.empty() ||
-           table_bytes(scene, options) + scene.largest_page_bytes() <= plan.pool_bytes;
+/// Puts the tree over the scene's pages, smaller where the pool has not room for all of them; false
+/// where it has no room for the tree and the largest page.
+bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan) {
+    const size_t pages = scene.pages.size();
+    if (pages == 0)
+        return true; // every ray misses
+    const size_t links = max_links(pages, scene.level2_bytes(), plan.pool_bytes);
+    for (const size_t some : {links, pages}) {
+        scene.top = top_level_of(scene, some);
+        if (is_usable(scene.top, scene.pages, room_for_pool(scene, options, plan)))
+            return true;
+    }
+    return false;
 }
 
 /// The scene from what was saved; none where that will not do, and the scene is to be built.
@@ -32,8 +51,9 @@ std::optional<BuiltScene> restored(const Soup& soup, const TwoLevelOptions& opti
     if (options.saved.empty())
         return std::nullopt;
     Result<std::optional<BuiltScene>> found =
-        restore_levels(options.saved, soup,
-                       [&](uint64_t triangles) { return limits_of(options, plan, triangles); });
+        restore_levels(options.saved, soup, [&](uint64_t triangles, uint64_t unique) {
+            return limits_of(options, plan, triangles, unique);
+        });
     if (!found) {
         say(log, LogLevel::Warning,
             fmt::format("building anew: what was saved {}", found.error().message));
@@ -42,7 +62,7 @@ std::optional<BuiltScene> restored(const Soup& soup, const TwoLevelOptions& opti
     if (!*found)
         say(log, LogLevel::Info,
             "building anew: what was saved is of other meshes or other options");
-    else if (!has_room(**found, options, plan))
+    else if (!add_tree(**found, options, plan))
         return std::nullopt;
     return std::move(*found);
 }
@@ -57,30 +77,34 @@ void warn_of_dropped(const Dropped& dropped, const LogSink& log) {
 }
 
 Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
-                         bool may_have_far_leaves, BuildProgress* progress) {
+                         BuildProgress* progress) {
     BuiltScene scene(soup);
     begin(progress, "triangles", 0.1, 2 * soup.triangle_count());
-    Hittable hittable = take_hittable(scene, progress);
-    scene.limits = limits_of(options, plan, scene.triangles);
-    if (const Result<Done> done = build_levels(scene, hittable, progress, may_have_far_leaves);
-        !done)
+    HittableParts hittable = take_hittable_parts(scene, progress);
+    set_limits(scene, options, plan);
+    if (const Result<Done> done = build_levels(scene, hittable.once, progress); !done)
         return done.error();
-    if (has_room(scene, options, plan))
+    for (size_t i = 0; i < scene.shared.size(); ++i)
+        if (const Result<Done> done =
+                build_levels(scene.shared[i].scene, hittable.shared[i], progress);
+            !done)
+            return done.error();
+    gather_pages(scene);
+    if (add_tree(scene, options, plan))
         return scene;
     const SmallestCut cut = smallest_cut(soup, options);
-    build_smallest_levels(scene, std::move(hittable), cut.leaf_triangles, progress);
-    assert(has_room(scene, options, plan)); // see check_budget()
-    return scene;
-}
-
-Result<BuiltScene> with_tree(Result<BuiltScene> scene, const TwoLevelOptions& options,
-                             const MemoryPlan& plan) {
-    if (!scene || !scene->level1.shares_frame || scene->pages.empty())
+    build_smallest_levels(scene, std::move(hittable.once), cut.leaf_triangles,
+                          /* in_one_frame= */ false, progress);
+    for (size_t i = 0; i < scene.shared.size(); ++i)
+        build_smallest_levels(scene.shared[i].scene, std::move(hittable.shared[i]),
+                              cut.leaf_triangles, /* in_one_frame= */ true, progress);
+    gather_pages(scene);
+    if (add_tree(scene, options, plan))
         return scene;
-    const uint64_t room = plan.pool_bytes - table_bytes(*scene, options);
-    scene->top =
-        build_top_level(scene->pages, max_links(scene->pages.size(), scene->level2_bytes(), room));
-    return scene;
+    // check_budget() told that bytes suffice.
+    return over_budget(fmt::format("{} pages under a budget are too many: at most {}; let leaves "
+                                   "hold more triangles",
+                                   scene.pages.size(), OVC_KEY_LEAF - 1));
 }
 
 } // namespace
@@ -90,17 +114,9 @@ Result<BuiltScene> build_scene(const Soup& soup, const TwoLevelOptions& options,
                                BuildProgress* progress) {
     std::optional<BuiltScene> found = restored(soup, options, plan, log);
     Result<BuiltScene> scene =
-        with_tree(found ? Result<BuiltScene>(std::move(*found))
-                        : built(soup, options, plan, /* may_have_far_leaves= */ true, progress),
-                  options, plan);
-    if (!scene)
-        return scene;
-    warn_of_dropped(scene->dropped, log);
-    // Rays that do not go through the tree come to leaves in cells alone.
-    if (scene->level1.far_leaves > 0 &&
-        !is_usable(scene->top, scene->pages, plan.pool_bytes - table_bytes(*scene, options)))
-        return with_tree(built(soup, options, plan, /* may_have_far_leaves= */ false, progress),
-                         options, plan);
+        found ? Result<BuiltScene>(std::move(*found)) : built(soup, options, plan, progress);
+    if (scene)
+        warn_of_dropped(scene->dropped, log);
     return scene;
 }
 

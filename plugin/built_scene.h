@@ -12,10 +12,12 @@
 #include "gpu/page.h"
 #include "gpu/top_level.h"
 #include "kdtree/partition.h"
+#include "plugin/shared_meshes.h"
 #include "shaders/layout.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace ovc {
@@ -59,32 +61,59 @@ private:
     bool fits(uint64_t all, double bytes_per_triangle) const;
 };
 
+struct SharedMesh;
+
 struct BuiltScene {
-    explicit BuiltScene(const Soup& soup_) : soup(soup_), numbers(soup_) {}
+    explicit BuiltScene(const Soup& soup_);
+    ~BuiltScene();
+    BuiltScene(BuiltScene&&);
 
     const Soup& soup; // outlives the scene
     Numbering numbers;
     Dropped dropped;
     Twins twins;
-    uint64_t triangles = 0;  // in leaves, each counted once
-    LeafLimits limits{};     // that the leaves keep to
-    Level1 level1;           // without twins
-    std::vector<Page> pages; // pages[i] belongs to level1.leaves[i]
-    TopLevel top;            // over the pages, where they share a frame; else empty
+    uint64_t triangles = 0; // in leaves, each counted once
+    LeafLimits limits{};    // that the leaves keep to
+    Level1 level1;          // without twins, and without meshes that are shared
+    std::vector<SharedMesh> shared;
+    std::vector<uint32_t> mesh_of_chunk; // into `shared`, or kNone; empty where nothing is shared
+    std::vector<Placed::Copies> copies;
+    /// pages[i] belongs to level1.leaves[i]; then those of shared meshes, borrowed from them.
+    std::vector<Page> pages;
+    TopLevel top; // over the pages
     bool from_saved = false;
     double seconds_level1 = 0;
     double seconds_level2 = 0;
 
-    /// The triangle that a ray which does not see `skip` meets where a page has `number`.
+    /// The next smallest of the triangles that lie exactly where `id` does, which stands for them
+    /// all; `id` where there is none.
+    TriangleId second(TriangleId id) const;
+    bool stands_for_others(TriangleId id) const { return second(id) != id; }
+
+    /// The triangle that a ray which does not see `skip` meets where `id` stands.
+    TriangleId seen(TriangleId id, TriangleId skip) const { return id == skip ? second(id) : id; }
+    /// The same where a page has `number`.
     TriangleId seen(uint32_t number, TriangleId skip) const {
-        return twins.seen(numbers.id(number), skip);
+        return seen(numbers.id(number), skip);
+    }
+    /// The same for a hit.
+    Hit seen(const Hit& hit, TriangleId skip) const {
+        return as_hit_of(seen(hit.id, skip), soup, hit);
     }
 
     /// The number of a triangle that the kernel passes over for a ray; OVC_NO_TRIANGLE where the
-    /// triangle stands for twins, which the ray does see.
+    /// triangle stands for others, which the ray does see.
     uint32_t number_to_skip(TriangleId id) const {
-        return id.mesh == kNone || twins.stands_for_others(id) ? OVC_NO_TRIANGLE : numbers.of(id);
+        return id.mesh == kNone || stands_for_others(id) ? OVC_NO_TRIANGLE : numbers.of(id);
     }
+
+    /// Adds a mesh that is shared, with nothing built of it.
+    SharedMesh& share(const Placed::Instances& instances);
+    /// The shared mesh whose instance the chunk is; null where it is none.
+    const SharedMesh* shared_mesh_of(uint32_t chunk) const;
+    /// The page around a point of the triangle, one that has it where there is one; kNone: the
+    /// point lies where no page is.
+    uint32_t page_at(const dvec3& point, TriangleId id) const;
 
     /// As Nearest::offer().
     bool offer(Nearest& nearest, TriangleId id) const {
@@ -93,11 +122,22 @@ struct BuiltScene {
 
     uint64_t level2_bytes() const { return total_bytes(pages); }
     uint64_t largest_page_bytes() const { return largest_bytes(pages); }
-    /// Of level 1 and level 2.
-    uint64_t host_bytes() const {
-        return level2_bytes() + level1.reference_count() * sizeof(TriangleId) +
-               level1.leaves.size() * sizeof(Leaf) + level1.nodes.size() * sizeof(KdNode);
-    }
+    /// Triangles of the soup, of a mesh that is shared once.
+    uint64_t unique_triangles() const;
+    /// Triangles in leaves, counted in each.
+    uint64_t reference_count() const;
+    /// Those that lie exactly where a smaller one does.
+    uint64_t twin_count() const;
+    /// Of level 1, level 2 and what leads to it.
+    uint64_t host_bytes() const;
+};
+
+/// A mesh that lies in several places, cut and packed by itself.
+struct SharedMesh {
+    std::unique_ptr<const Soup> soup; // of one chunk, not placed
+    BuiltScene scene;                 // of it; numbers are those of the mesh
+    Placed::Instances instances;
+    uint32_t first_page; // among those of the whole scene
 };
 
 /// The triangles that leaves are made of: those that can be hit, without twins.
@@ -107,14 +147,19 @@ struct Hittable {
 };
 
 /// Finds them, and enters in the scene what is left out. A triangle is two units of progress.
-inline Hittable take_hittable(BuiltScene& scene, BuildProgress* progress = nullptr) {
-    const Stopwatch watch;
-    Hittable hittable;
-    hittable.triangles = hittable_triangles(scene.soup, &scene.dropped, &hittable.bounds, progress);
-    scene.twins = Twins::take_out(scene.soup, hittable.triangles, progress);
-    scene.triangles = hittable.triangles.size();
-    scene.seconds_level1 = watch.seconds();
-    return hittable;
-}
+Hittable take_hittable(BuiltScene& scene, BuildProgress* progress = nullptr);
+
+/// The same with meshes that are placed more than once taken by themselves.
+struct HittableParts {
+    Hittable once;                // its bounds are those of the whole scene
+    std::vector<Hittable> shared; // of scene.shared, which has their soups now
+};
+HittableParts take_hittable_parts(BuiltScene& scene, BuildProgress* progress = nullptr);
+
+/// Appends the pages of the shared meshes, which are built, to those of the scene.
+void gather_pages(BuiltScene& scene);
+
+/// The tree over all pages, with portals to what is shared. max_links: as build_top_level() has it.
+TopLevel top_level_of(const BuiltScene& scene, size_t max_links);
 
 } // namespace ovc

@@ -4,9 +4,9 @@
 
 #include "core/parallel.h"
 #include "gpu/frames.h"
-#include "gpu/level1_table.h"
 #include "kdtree/cells.h"
 #include "kdtree/sample.h"
+#include "plugin/build_scene.h"
 #include "plugin/level2.h"
 #include "plugin/one_leaf.h"
 #include "plugin/page_rate.h"
@@ -31,10 +31,17 @@ struct Sizes {
     std::vector<uint64_t> pages; // bytes, in the order of leaves
     uint64_t references = 0;
     uint64_t nodes = 0;
+    uint64_t parts = 0; // in frames of their own
     uint64_t largest_page = 0;
 
     uint64_t level2_bytes() const {
         return std::accumulate(pages.begin(), pages.end(), uint64_t(0));
+    }
+    void add(const Sizes& more) {
+        pages.insert(pages.end(), more.pages.begin(), more.pages.end());
+        references += more.references;
+        nodes += more.nodes;
+        largest_page = std::max(largest_page, more.largest_page);
     }
 };
 
@@ -45,6 +52,7 @@ Sizes sizes_of(const BuiltScene& scene) {
     sizes.largest_page = scene.largest_page_bytes();
     sizes.references = scene.level1.reference_count();
     sizes.nodes = scene.level1.nodes.size();
+    sizes.parts = parts_of(scene.level1).size();
     return sizes;
 }
 
@@ -92,7 +100,7 @@ public:
         const auto count = [&](uint32_t far_cells) {
             return counted(soup_, finder, triangles_, far_cells, progress_);
         };
-        std::vector<uint64_t> counts = count(one_frame ? kFarCells : kNone);
+        std::vector<uint64_t> counts = count(kFarCells);
         if (counts.back() > 0 && !far_leaf_pays(counts.back(), triangles_.size(), most_))
             counts = count(kNone);
         sizes_.nodes = tree.nodes.size();
@@ -103,6 +111,8 @@ public:
             add_cell(bounds_.padded(padding), counts.back(), page_bytes, limits);
         for (size_t c = 0; c < cells.size(); ++c)
             add_cell(cells[c].padded, counts[c], page_bytes, limits);
+        // Where one frame does not suit all, hardly any two of few large leaves share theirs.
+        sizes_.parts = one_frame || sizes_.pages.size() == 1 ? 1 : sizes_.pages.size();
         return std::move(sizes_);
     }
 
@@ -150,6 +160,18 @@ private:
     Sizes sizes_;
 };
 
+/// Of what is cut together.
+Result<Sizes> sizes_of(BuiltScene& scene, const Hittable& hittable, BuildProgress* progress) {
+    if (hittable.triangles.empty())
+        return Sizes();
+    if (hittable.triangles.size() > kBuiltAtOnce)
+        return Estimator(scene.soup, hittable.triangles, hittable.bounds, progress)
+            .estimate(scene.limits);
+    if (const Result<Done> built = build_levels(scene, hittable, progress); !built)
+        return built.error();
+    return sizes_of(scene);
+}
+
 uint64_t fitting(std::span<const uint64_t> pages, uint64_t bytes) {
     uint64_t count = 0;
     for (; count < pages.size() && pages[count] <= bytes; ++count)
@@ -164,46 +186,52 @@ Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
     const Result<MemoryPlan> memory = plan_memory(soup, options, device);
     if (!memory)
         return memory.error();
-    begin(progress, "planning", 1, 6 * soup.triangle_count());
     BuiltScene scene(soup);
-    const Hittable hittable = take_hittable(scene, progress);
-    const auto& [triangles, bounds] = hittable;
+    begin(progress, "planning", 1, 6 * soup.triangle_count());
+    const HittableParts hittable = take_hittable_parts(scene, progress);
+    set_limits(scene, options, *memory);
     const SmallestCut cut = smallest_cut(soup, options);
     ovc_plan plan{};
     plan.struct_size = sizeof(plan);
     plan.triangles = soup.triangle_count();
-    plan.hittable = triangles.size() + scene.twins.count();
+    plan.hittable = scene.triangles + scene.twin_count();
+    for (const SharedMesh& mesh : scene.shared)
+        plan.hittable += mesh.scene.triangles * mesh.instances.size();
     plan.gpu_budget_bytes = memory->budget_bytes;
     plan.smallest_budget_bytes = smallest_budget(cut.pool_bytes, device);
     plan.ray_bytes = memory->ray_bytes();
     plan.batch_rays = memory->batch_rays;
     plan.fits = memory->pool_bytes >= cut.pool_bytes;
-    if (triangles.empty())
-        return plan;
-    scene.limits = limits_of(options, *memory, triangles.size());
-    Sizes sizes;
-    if (triangles.size() <= kBuiltAtOnce) {
-        if (const Result<Done> built =
-                build_levels(scene, hittable, progress, /* may_have_far_leaves= */ true);
-            !built)
-            return built.error();
-        sizes = sizes_of(scene);
-    } else {
-        sizes = Estimator(soup, triangles, bounds, progress).estimate(scene.limits);
+    Result<Sizes> first = sizes_of(scene, hittable.once, progress);
+    if (!first)
+        return first.error();
+    Sizes sizes = std::move(*first);
+    uint64_t portals = sizes.parts;
+    for (size_t i = 0; i < scene.shared.size(); ++i) {
+        const Result<Sizes> more = sizes_of(scene.shared[i].scene, hittable.shared[i], progress);
+        if (!more)
+            return more.error();
+        sizes.add(*more);
+        sizes.parts += more->parts;
+        portals += more->parts * scene.shared[i].instances.size();
     }
+    if (sizes.pages.empty())
+        return plan;
     plan.leaves = sizes.pages.size();
     plan.leaf_references = sizes.references;
     plan.level2_bytes = sizes.level2_bytes();
     plan.largest_page_bytes = sizes.largest_page;
-    plan.level1_bytes = level1_texels(plan.leaves, sizes.nodes) * sizeof(uvec4);
-    if (plan.fits) {
-        const uint64_t room = memory->pool_bytes - std::min(memory->pool_bytes, plan.level1_bytes);
-        const uint64_t links = max_links(plan.leaves, plan.level2_bytes, room);
-        plan.pool_bytes = std::min(room, plan.level2_bytes + max_top_level_bytes(links));
-    }
-    plan.resident_pages = fitting(sizes.pages, plan.pool_bytes);
+    plan.level1_bytes = portals > 1 ? (1 + portals) * kPortalBytes : 0;
+    const uint64_t room = memory->pool_bytes - std::min(memory->pool_bytes, plan.level1_bytes);
+    uint64_t tree = max_top_level_bytes(max_links(plan.leaves, plan.level2_bytes, room));
+    if (portals > 1) // and inner nodes above: a third of them
+        tree += portals * OVC_UNIT_BYTES * 4 / 3 + 2 * sizes.parts * OVC_UNIT_BYTES;
+    if (plan.fits)
+        plan.pool_bytes = std::min(room, plan.level2_bytes + tree);
+    plan.resident_pages = fitting(sizes.pages, plan.pool_bytes - std::min(plan.pool_bytes, tree));
     plan.host_bytes = plan.level2_bytes + plan.leaf_references * sizeof(TriangleId) +
-                      plan.leaves * sizeof(Leaf) + sizes.nodes * sizeof(KdNode);
+                      plan.leaves * sizeof(Leaf) + sizes.nodes * sizeof(KdNode) + tree +
+                      (portals > 1 ? (1 + portals) * sizeof(Portal) : 0);
     return plan;
 }
 

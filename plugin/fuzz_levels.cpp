@@ -20,7 +20,8 @@ BuiltScene build_for_test(const Soup& soup, const LeafLimits& limits) {
     BuiltScene scene(soup);
     scene.limits = limits;
     const Hittable hittable = take_hittable(scene);
-    require(bool(build_levels(scene, hittable, nullptr, /* may_have_far_leaves= */ true)));
+    require(bool(build_levels(scene, hittable)));
+    scene.top = build_top_level(scene.level1, scene.pages, scene.pages.size());
     return scene;
 }
 
@@ -65,12 +66,15 @@ void fuzz_levels(const uint8_t* data, size_t size) {
     test::damage(memory, {data + 1, size - 1});
     if (data[0] % 2)
         test::reseal(memory);
-    const auto found =
-        restore_levels(memory.bytes(), subject.soup, [](uint64_t) { return Subject::kLimits; });
+    auto found = restore_levels(memory.bytes(), subject.soup,
+                                [](uint64_t, uint64_t) { return Subject::kLimits; });
     if (!found)
         require(!found.error().message.empty());
-    else if (*found)
-        trace(subject, **found);
+    if (!found || !*found)
+        return;
+    BuiltScene& scene = **found;
+    scene.top = build_top_level(scene.level1, scene.pages, scene.pages.size());
+    trace(subject, scene);
 }
 
 } // namespace ovc

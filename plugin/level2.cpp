@@ -44,29 +44,36 @@ namespace {
 
 class LevelsBuilder {
 public:
-    LevelsBuilder(BuiltScene& scene, BuildProgress* progress, bool may_have_far_leaves = false)
+    LevelsBuilder(BuiltScene& scene, BuildProgress* progress)
         : soup_(scene.soup),
           numbers_(scene.numbers),
           limits_(scene.limits),
           progress_(progress),
-          may_have_far_leaves_(may_have_far_leaves),
-          levels_(scene) {}
+          scene_(scene) {}
 
     Result<Done> build(std::span<const TriangleId> triangles, const Box& bounds) {
         const Stopwatch watch;
+        if (triangles.empty()) {
+            scene_.level1 = Level1{.bounds = bounds};
+            if (!bounds.empty()) // of meshes that are shared
+                scene_.level1.padding = padding_of(bounds);
+            return Done{};
+        }
         begin(progress_, "level 1", 0.35, 2 * triangles.size());
         triangles_ = triangles.size();
         // Where small triangles are not lost in the scene.
         const bool one_frame = one_frame_suits(soup_, triangles, bounds);
         const Sample sample = drawn(triangles, one_frame);
         const uint32_t most = first_most(triangles, bounds, one_frame, sample);
-        levels_.level1 = partition(soup_, triangles, bounds, most, progress_, sample,
-                                   may_have_far_leaves_ && one_frame);
-        if (one_frame || levels_.level1.leaves.size() == 1)
-            share_frame(levels_.level1);
-        levels_.seconds_level1 += watch.seconds();
-        levels_.pages.resize(levels_.level1.leaves.size());
-        begin(progress_, "level 2", 0.5, 2 * levels_.level1.reference_count());
+        scene_.level1 = partition(soup_, triangles, bounds, most, progress_, sample,
+                                  /* may_have_far_leaves= */ true);
+        if (one_frame || scene_.level1.leaves.size() == 1)
+            share_frame(scene_.level1);
+        else
+            share_frames(soup_, scene_.level1);
+        scene_.seconds_level1 += watch.seconds();
+        scene_.pages.resize(scene_.level1.leaves.size());
+        begin(progress_, "level 2", 0.5, 2 * scene_.level1.reference_count());
         build_missing_pages(loose_pairs());
         agree_on_loose_pairs();
         while (true) {
@@ -80,15 +87,20 @@ public:
     }
 
     void build_smallest(std::vector<TriangleId> triangles, const Box& bounds,
-                        uint32_t leaf_triangles) {
+                        uint32_t leaf_triangles, bool in_one_frame) {
+        scene_.pages.clear();
+        if (triangles.empty())
+            return;
         const Stopwatch watch;
-        const bool one_frame = one_frame_suits(soup_, triangles, bounds);
-        levels_.level1 =
+        const bool one_frame = in_one_frame || one_frame_suits(soup_, triangles, bounds);
+        scene_.level1 =
             partition_by_count(soup_, std::move(triangles), bounds, leaf_triangles, progress_);
         if (one_frame)
-            share_frame(levels_.level1);
-        levels_.seconds_level1 += watch.seconds();
-        levels_.pages = std::vector<Page>(levels_.level1.leaves.size());
+            share_frame(scene_.level1);
+        else
+            share_frames(soup_, scene_.level1);
+        scene_.seconds_level1 += watch.seconds();
+        scene_.pages = std::vector<Page>(scene_.level1.leaves.size());
         build_missing_pages({});
     }
 
@@ -123,32 +135,32 @@ private:
 
     /// In a frame of its own a leaf may have triangles that reach far beyond it.
     LoosePairs loose_pairs() const {
-        return {levels_.level1.shares_frame && loose_pairs_pay_,
-                double(levels_.level1.reference_count()) / double(triangles_)};
+        return {scene_.level1.shares_frame && loose_pairs_pay_,
+                double(scene_.level1.reference_count()) / double(triangles_)};
     }
 
     void build_missing_pages(const LoosePairs& loose) {
         const Stopwatch watch;
-        parallel_for(levels_.pages.size(), 1, [&](size_t first, size_t last) {
+        parallel_for(scene_.pages.size(), 1, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
-                if (levels_.pages[i].texels.empty())
-                    levels_.pages[i] =
-                        build_page(soup_, numbers_, levels_.level1.leaves[i], progress_, loose);
+                if (scene_.pages[i].texels.empty())
+                    scene_.pages[i] =
+                        build_page(soup_, numbers_, scene_.level1.leaves[i], progress_, loose);
         });
-        levels_.seconds_level2 += watch.seconds();
+        scene_.seconds_level2 += watch.seconds();
     }
 
     /// A kernel that knows loose pairs takes longer over every pair. Where few pages have them,
     /// those pages are built again without.
     void agree_on_loose_pairs() {
         uint64_t loose = 0;
-        for (size_t i = 0; i < levels_.pages.size(); ++i)
+        for (size_t i = 0; i < scene_.pages.size(); ++i)
             loose +=
-                levels_.pages[i].has_loose_pairs() ? levels_.level1.leaves[i].triangles.size() : 0;
-        loose_pairs_pay_ = 2 * loose > levels_.level1.reference_count();
+                scene_.pages[i].has_loose_pairs() ? scene_.level1.leaves[i].triangles.size() : 0;
+        loose_pairs_pay_ = 2 * loose > scene_.level1.reference_count();
         if (loose == 0 || loose_pairs_pay_)
             return;
-        for (Page& page : levels_.pages)
+        for (Page& page : scene_.pages)
             if (page.has_loose_pairs())
                 page = {};
         build_missing_pages(loose_pairs());
@@ -158,12 +170,12 @@ private:
     /// none.
     Result<bool> cut_too_large() {
         const Stopwatch watch;
-        std::vector<uint32_t> most(levels_.pages.size(), kNone);
+        std::vector<uint32_t> most(scene_.pages.size(), kNone);
         const uint64_t most_bytes = limits_.page_bytes_of(most.size());
         bool any = false;
         for (size_t i = 0; i < most.size(); ++i) {
-            const uint64_t bytes = levels_.pages[i].bytes();
-            const size_t triangles = levels_.level1.leaves[i].triangles.size();
+            const uint64_t bytes = scene_.pages[i].bytes();
+            const size_t triangles = scene_.level1.leaves[i].triangles.size();
             if (bytes <= most_bytes)
                 continue;
             if (triangles == 1)
@@ -175,16 +187,13 @@ private:
         if (!any)
             return false;
         std::vector<uint32_t> was;
-        const bool shares_frame = levels_.level1.shares_frame;
-        levels_.level1 = cut_again(soup_, std::move(levels_.level1), most, was, progress_);
-        if (shares_frame)
-            share_frame(levels_.level1);
+        scene_.level1 = cut_again(soup_, std::move(scene_.level1), most, was, progress_);
         std::vector<Page> pages(was.size());
         for (size_t i = 0; i < was.size(); ++i)
             if (was[i] != kNone)
-                pages[i] = std::move(levels_.pages[was[i]]);
-        levels_.pages = std::move(pages);
-        levels_.seconds_level1 += watch.seconds();
+                pages[i] = std::move(scene_.pages[was[i]]);
+        scene_.pages = std::move(pages);
+        scene_.seconds_level1 += watch.seconds();
         return true;
     }
 
@@ -192,25 +201,23 @@ private:
     const Numbering& numbers_;
     const LeafLimits& limits_;
     BuildProgress* const progress_;
-    const bool may_have_far_leaves_;
     uint64_t triangles_ = 0;
     std::vector<TriangleId> sample_;
     bool loose_pairs_pay_ = true;
-    BuiltScene& levels_;
+    BuiltScene& scene_;
 };
 
 } // namespace
 
 void build_smallest_levels(BuiltScene& scene, Hittable hittable, uint32_t leaf_triangles,
-                           BuildProgress* progress) {
+                           bool in_one_frame, BuildProgress* progress) {
     LevelsBuilder(scene, progress)
-        .build_smallest(std::move(hittable.triangles), hittable.bounds, leaf_triangles);
+        .build_smallest(std::move(hittable.triangles), hittable.bounds, leaf_triangles,
+                        in_one_frame);
 }
 
-Result<Done> build_levels(BuiltScene& scene, const Hittable& hittable, BuildProgress* progress,
-                          bool may_have_far_leaves) {
-    return LevelsBuilder(scene, progress, may_have_far_leaves)
-        .build(hittable.triangles, hittable.bounds);
+Result<Done> build_levels(BuiltScene& scene, const Hittable& hittable, BuildProgress* progress) {
+    return LevelsBuilder(scene, progress).build(hittable.triangles, hittable.bounds);
 }
 
 } // namespace ovc

@@ -12,13 +12,13 @@ namespace ovc {
 
 /// Makes level 1 of leaves of at most leaf_triangles, cut by count (kdtree/partition.h), and pages
 /// in which planes cut nothing: what takes least where a budget has hardly room for anything.
+/// in_one_frame: whether it suits all leaves or not.
 void build_smallest_levels(BuiltScene& scene, Hittable hittable, uint32_t leaf_triangles,
-                           BuildProgress* progress = nullptr);
+                           bool in_one_frame, BuildProgress* progress = nullptr);
 
 /// Makes level 1 and the pages, of leaves within scene.limits; one whose page turns out too large
-/// is cut further. may_have_far_leaves: as in partition(), where a frame suits all leaves. Error: a
-/// page of a single triangle does not fit.
+/// is cut further. Error: a page of a single triangle does not fit.
 Result<Done> build_levels(BuiltScene& scene, const Hittable& hittable,
-                          BuildProgress* progress = nullptr, bool may_have_far_leaves = false);
+                          BuildProgress* progress = nullptr);
 
 } // namespace ovc

@@ -59,15 +59,19 @@ ovc_statistics TwoLevel::report() const {
     told.triangles = scene_.soup.triangle_count();
     told.dropped_not_finite = scene_.dropped.not_finite;
     told.dropped_degenerate = scene_.dropped.degenerate;
-    told.twins = scene_.twins.count();
-    told.leaves = scene_.level1.leaves.size();
-    told.leaf_references = scene_.level1.reference_count();
+    told.twins = scene_.twin_count();
+    told.leaves = scene_.pages.size();
+    told.leaf_references = scene_.reference_count();
     told.level2_bytes = scene_.level2_bytes();
     told.largest_page_bytes = scene_.largest_page_bytes();
     told.gpu_budget_bytes = plan().budget_bytes;
     told.seconds_level1 = scene_.seconds_level1;
     told.seconds_level2 = scene_.seconds_level2;
     told.host_bytes = scene_.host_bytes();
+    told.unique_triangles = scene_.unique_triangles();
+    for (const SharedMesh& mesh : scene_.shared)
+        told.instances += mesh.instances.size();
+    told.top_level_bytes = scene_.top.tree.bytes() + scene_.top.portals.size() * kPortalBytes;
     told.from_saved = scene_.from_saved;
     told.gpu_bytes = passes_.gpu_bytes();
     return told;

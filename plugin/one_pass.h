@@ -54,7 +54,7 @@ private:
             resolver_.resolve(
                 std::span(batch.rays).subspan(from, to - from),
                 std::span(batch.answers).subspan(from, to - from), [](auto&&...) { return true; },
-                [](auto&&...) { return false; }); // there is no later leaf
+                [](auto&&...) {}); // there is no other page
         });
     }
 
@@ -92,8 +92,7 @@ private:
         parallel_for(batch.rays.size(), kRaysPerTask, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j) {
                 const uint32_t i = batch.rays[j];
-                const Ray& ray = query_.rays[i];
-                batch.states[j] = resolver_.ray_state(i, ray.t_min, ray.t_max, OVC_NO_LEAF);
+                batch.states[j] = resolver_.ray_state(i, query_.rays[i].t_max, 0);
             }
         });
     }

@@ -210,8 +210,8 @@ typedef struct ovc_mesh {
  * turns the other side out. A singular one flattens: triangles left without area are dropped and counted, as are those that
  * overflow.
  *
- * What it costs: the positions are kept once, for all instances, but commit builds pages for the triangles of every instance, as if
- * they were meshes of their own: some 45 to 80 bytes each, in host memory and, while rays go there, in the pool. */
+ * What it costs: positions and pages are kept once, for all instances, and each adds some 250 bytes to what leads there. But instances
+ * of small meshes, and of transforms that doubles cannot invert well enough, are built as if they were meshes of their own. */
 typedef struct ovc_instance {
     size_t struct_size;
     uint32_t mesh;           /* the number of a mesh added before, or of an instance: then that one's transform comes first, in one product of both */
@@ -298,6 +298,9 @@ typedef struct ovc_statistics {
     uint64_t single_rays;          /* of nearest_rays and occlusion_rays, those of intersect1 and occluded1 */
     uint64_t gathered_rays;        /* of single_rays, those that the GPU answered in batches; the CPU did the others */
     uint64_t stragglers;           /* rays that doubles answered on the CPU, because too few waited for a page to be worth moving */
+    uint64_t unique_triangles;     /* of `triangles`, those that are packed: once for a mesh whose instances share pages */
+    uint64_t instances;            /* that share pages */
+    uint64_t top_level_bytes;      /* of the tree over all pages and instances, on the GPU */
 } ovc_statistics;
 
 /* The pages that rays went through since this was asked last, or since the commit; experimental. */

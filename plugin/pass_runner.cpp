@@ -17,7 +17,7 @@ PassRunner::PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& p
     if (scene.pages.empty())
         return;
     plan_.active_bytes = tracing.options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
-    plan_.pool_bytes = std::min(plan_.pool_bytes - table_bytes(scene, tracing.options),
+    plan_.pool_bytes = std::min(room_for_pool(scene, tracing.options, plan),
                                 scene.level2_bytes() + scene.top.tree.bytes());
 }
 
@@ -29,9 +29,9 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
             tracer_.reset();
             tracer_generation_ = state.generation;
             if (state.context.alive())
-                made =
-                    Tracer::create(plan_, options, gl_.info(), state.kernels, tracing_.scene.level1,
-                                   tracing_.scene.pages, tracing_.scene.top);
+                made = Tracer::create(plan_, options, gl_.info(), state.kernels,
+                                      tracing_.scene.level1.bounds, tracing_.scene.pages,
+                                      tracing_.scene.top);
             else
                 made = Error{"the GPU's context is lost", ErrorKind::DeviceLost};
         });
@@ -44,12 +44,9 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
         if (made.error().kind != ErrorKind::OutOfGpuMemory)
             return made.error();
         const BuiltScene& scene = tracing_.scene;
-        const bool needs_tree = scene.level1.far_leaves > 0; // else rays can do without it
-        const uint64_t least =
-            scene.largest_page_bytes() + (needs_tree ? scene.top.tree.bytes() : 0);
-        const uint64_t smaller = std::max(plan_.pool_bytes / 2, least);
-        if (smaller == plan_.pool_bytes ||
-            (needs_tree && !is_usable(scene.top, scene.pages, smaller)))
+        const uint64_t smaller =
+            std::max(plan_.pool_bytes / 2, scene.largest_page_bytes() + scene.top.tree.bytes());
+        if (smaller == plan_.pool_bytes || !is_usable(scene.top, scene.pages, smaller))
             return Error{fmt::format("{}: it has no room for the largest page, {} bytes",
                                      made.error().message, smaller),
                          ErrorKind::OutOfGpuMemory};
@@ -116,8 +113,7 @@ size_t PassRunner::bring(std::span<const uint32_t> wanted) {
 Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
                                 const std::function<void()>& meanwhile) {
     const size_t count = batch.rays.size();
-    const Traveller none{{dvec3(0), 0, dvec3(0, 0, 1), -1}, 0, OVC_NO_TRIANGLE, OVC_NO_LEAF};
-    std::fill_n(batch.states.begin() + ptrdiff_t(count), whole_blocks(count) - count, none);
+    std::fill_n(batch.states.begin() + ptrdiff_t(count), whole_blocks(count) - count, RayState());
     Result<Done> done = Done{};
     bool alive = false;
     Moved moved;

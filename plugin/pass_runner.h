@@ -21,7 +21,7 @@ namespace ovc {
 struct Batch {
     std::vector<uint32_t> rays;       // their numbers in the query
     std::array<size_t, 2> of_waves{}; // so many of each wave, one behind the other
-    std::vector<Traveller> states;    // as the next, at least one per ray, to a whole block
+    std::vector<RayState> states;     // as the next, at least one per ray, to a whole block
     std::vector<Answer> answers;
 
     void make_room() {
@@ -33,7 +33,7 @@ struct Batch {
 
 class PassRunner {
 public:
-    /// plan: level 1 is not yet taken off. The thread must outlive the runner.
+    /// plan: portals are not yet taken off. The thread must outlive the runner.
     PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& plan, LogSink log);
     ~PassRunner() { purge(); }
     PassRunner(const PassRunner&) = delete;
@@ -48,9 +48,6 @@ public:
 
     /// Whether a pass answers its rays for good, because all pages are resident.
     bool all_resident() const { return tracer_ && tracer_->all_resident(); }
-    /// As Tracer::has_tree() and touch(); after ready(), where the scene has pages.
-    bool has_tree() const { return tracer_->has_tree(); }
-    void touch(uint32_t leaf) { tracer_->touch(leaf); }
 
     /// Moves the first pages of `wanted` in, as many as fit; returns how many.
     size_t bring(std::span<const uint32_t> wanted);

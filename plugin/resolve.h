@@ -11,6 +11,7 @@
 #include "plugin/query.h"
 #include "plugin/tracing.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -23,6 +24,20 @@ inline constexpr size_t kRaysPerTask = 256; // of parallel loops over rays that 
 /// Of an answer in certified precision that names triangles or OVC_MISS.
 inline Candidates candidates_of(const Answer& answer) {
     return {answer.prim, {answer.rivals()[0], answer.rivals()[1]}};
+}
+
+/// The hit with t, u and v of where the ray meets the triangle's plane, as doubles have it; as it
+/// is where they cannot tell. Based on: Moller and Trumbore 1997.
+inline Hit in_doubles(const Hit& hit, const Ray& ray, const Triangle& triangle) {
+    const dvec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
+    const dvec3 p = glm::cross(ray.dir, ac), from = ray.org - triangle[0];
+    const dvec3 q = glm::cross(from, ab);
+    const double determinant = glm::dot(ab, p);
+    const double t = glm::dot(ac, q) / determinant;
+    if (!(t >= ray.t_min && t <= ray.t_max))
+        return hit;
+    return {t, std::clamp(glm::dot(from, p) / determinant, 0.0, 1.0),
+            std::clamp(glm::dot(ray.dir, q) / determinant, 0.0, 1.0), hit.id};
 }
 
 /// The part that is the same however rays come to their leaves. Its members may be called for
@@ -64,20 +79,21 @@ public:
         return !clip(p, box_, p.ray.t_min, p.ray.t_max).empty();
     }
 
-    /// Ray i on its way: done with the cells up to t_from, of interest up to t_end. leaf: as
-    /// Traveller::first_leaf.
-    Traveller ray_state(uint32_t i, double t_from, double t_end, uint32_t leaf) const {
+    /// Ray i on its way: of interest up to t_end; key: as RayState::key().
+    RayState ray_state(uint32_t i, double t_end, uint32_t key) const {
         query_.count_pass(i);
         Ray rest = query_.rays[i];
         rest.t_max = t_end;
-        return {rest, t_from, scene_.number_to_skip(query_.skipped(i)),
-                leaf | (Query::kAnyHit ? OVC_RAY_ANY_HIT : 0)};
+        return {rest,
+                {},
+                scene_.number_to_skip(query_.skipped(i)),
+                key | (Query::kAnyHit ? OVC_RAY_ANY_HIT : 0)};
     }
 
     /// Enters the kernel's answers for these rays, as far as they are certain or exact arithmetic
     /// decides them. takes(i, answer) is asked before; false: the answer is to be left alone.
-    /// go_on(i, leaf, p, limit) is asked where later leaves may hold a hit before `limit`; false:
-    /// it cannot say where. leaf: the answer's, its key under the top-level tree.
+    /// go_on(i, key, limit) is told where a page that is not resident may hold a hit before
+    /// `limit`; key: of the link that leads there.
     template <class Takes, class GoOn>
     void resolve(std::span<const uint32_t> rays, std::span<const Answer> answers, Takes&& takes,
                  GoOn&& go_on) {
@@ -86,8 +102,7 @@ public:
         HitBatch<size_t> certain; // of `answers`
         std::vector<uint32_t> in_doubt;
         const auto enter = [&](const Hit& hit, size_t j) {
-            if (!enter_certain(rays[j], answers[j], hit, go_on))
-                in_doubt.push_back(rays[j]);
+            enter_certain(rays[j], answers[j], hit, go_on);
         };
         const auto look = [&](size_t j) {
             if (!resolve_one(rays[j], answers[j], go_on))
@@ -137,12 +152,10 @@ private:
     }
 
     template <class GoOn>
-    bool enter_certain(uint32_t i, const Answer& answer, const Hit& hit, GoOn&& go_on) {
+    void enter_certain(uint32_t i, const Answer& answer, const Hit& hit, GoOn&& go_on) {
         query_.set(i, hit);
-        if (answer.where == OVC_NO_LEAF)
-            return true;
-        const double beyond = std::nextafter(hit.t, std::numeric_limits<double>::max());
-        return go_on(i, answer.where, prepare(query_, i), beyond);
+        if (answer.where != OVC_NO_LEAF)
+            go_on(i, answer.where, std::nextafter(hit.t, std::numeric_limits<double>::max()));
     }
 
     /// False: the ray goes to the exact fallback.
@@ -153,10 +166,11 @@ private:
             return false;
         if (tracing_.options.certify)
             return resolve_candidates(i, answer, go_on);
-        return enter_fast(i, answer, go_on);
+        enter_fast(i, answer, go_on);
+        return true;
     }
 
-    /// False where exact arithmetic does not confirm the certain hit, or go_on() says so.
+    /// False where exact arithmetic does not confirm the certain hit.
     template <class GoOn>
     bool resolve_candidates(uint32_t i, const Answer& answer, GoOn&& go_on) {
         const Candidates found = candidates_of(answer);
@@ -174,24 +188,24 @@ private:
             return false;
         if (nearest.is_hit())
             query_.set(i, nearest);
-        const bool in_scene = answer.where == OVC_NO_LEAF; // no page is left
-        const bool resolved = in_scene || (Query::kAnyHit && nearest.is_hit()) ||
-                              go_on(i, answer.where, p, nearest.limit());
-        if (resolved && found.has_further()) // fall_back() counts the others
+        if (answer.where != OVC_NO_LEAF && !(Query::kAnyHit && nearest.is_hit()))
+            go_on(i, answer.where, nearest.limit());
+        if (found.has_further()) // fall_back() counts the others
             count_flagged(i);
-        return resolved;
+        return true;
     }
 
-    /// False where go_on() says so. The ray was asked about up to the hit before, if there was one,
-    /// so that this one is nearer.
+    /// The ray was asked about up to the hit before, if there was one, so that this one is nearer.
     template <class GoOn>
-    bool enter_fast(uint32_t i, const Answer& answer, GoOn&& go_on) {
+    void enter_fast(uint32_t i, const Answer& answer, GoOn&& go_on) {
         if (answer.prim == OVC_MISS)
-            return true;
-        const Hit hit{answer.t(), answer.u(), answer.v(), scene_.numbers.id(answer.prim)};
-        query_.set(i, scene_.twins.seen(scene_.soup, hit, query_.skipped(i)));
-        return Query::kAnyHit || answer.where == OVC_NO_LEAF ||
-               go_on(i, answer.where, prepare(query_, i), hit.t);
+            return;
+        Hit hit{answer.t(), answer.u(), answer.v(), scene_.numbers.id(answer.prim)};
+        if (!scene_.top.portals.empty()) // its t was told in the frame of the scene
+            hit = in_doubles(hit, query_.rays[i], scene_.soup.triangle(hit.id));
+        query_.set(i, scene_.seen(hit, query_.skipped(i)));
+        if (!Query::kAnyHit && answer.where != OVC_NO_LEAF)
+            go_on(i, answer.where, hit.t);
     }
 
     /// In parallel where the rays are many, because each may take as long as thousands of others.

@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view kKind = "ovc levels";
 /// To be raised when a build makes other leaves or pages of the same soup; a change of layout.h is
 /// noticed without.
-constexpr uint32_t kVersion = 5;
+constexpr uint32_t kVersion = 6;
 
 /// Where all of it is the same, a build makes the same levels.
 struct Key {
@@ -32,18 +32,21 @@ struct Key {
     bool operator==(const Key&) const = default;
 };
 
-struct Summary {
-    Key key;
+/// What is cut together: first all that is placed once, then each mesh that is shared.
+struct SavedCut {
     uint64_t not_finite = 0;
     uint64_t degenerate = 0;
     uint64_t twins = 0;
+    uint64_t twin_pairs = 0; // so many of the part "twins", behind those of the cuts before; as are
+    uint64_t nodes = 0;      // the next two
+    uint64_t leaves = 0;
     uint64_t triangles = 0;
     uint64_t shares_frame = 0;
     uint64_t far_leaves = 0;
     Box bounds;
     double padding = 0;
 };
-static_assert(sizeof(Summary) == 18 * 8);
+static_assert(sizeof(SavedCut) == 16 * 8);
 
 struct SavedLeaf {
     Box cell;
@@ -125,6 +128,16 @@ bool share_frame(const SavedLeaf& a, const SavedLeaf& b) {
            a.grid.hi == b.grid.hi;
 }
 
+/// The first `count` of what is left, and less is left; nothing where there are not so many.
+template <class T>
+std::optional<std::span<const T>> take(std::span<const T>& left, uint64_t count) {
+    if (count > left.size())
+        return std::nullopt;
+    const auto taken = left.first(count);
+    left = left.subspan(count);
+    return taken;
+}
+
 bool are_sound(std::span<const Twins::Pair> pairs, const Soup& soup) {
     const auto exists = [&](TriangleId id) {
         return id.mesh < soup.chunks.size() && id.prim < soup.chunks[id.mesh].size();
@@ -136,140 +149,203 @@ bool are_sound(std::span<const Twins::Pair> pairs, const Soup& soup) {
     return true;
 }
 
-/// Each page its part of the texels; false where they do not come out even, or a page is no page.
-bool share_out(std::span<const uvec4> texels, std::span<const SavedPage> saved,
-               uint64_t triangle_count, std::vector<Page>& pages) {
-    pages.resize(saved.size());
-    for (size_t i = 0; i < saved.size(); ++i) {
-        if (saved[i].texels == 0 || saved[i].texels > texels.size() || saved[i].depth > 0xffffffffu)
-            return false;
-        pages[i].borrowed = texels.first(saved[i].texels);
-        pages[i].depth = uint32_t(saved[i].depth);
-        texels = texels.subspan(saved[i].texels);
-    }
-    std::atomic<bool> walkable{texels.empty()};
-    parallel_for(pages.size(), 1, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last && walkable; ++i)
-            if (!is_walkable(pages[i], uint32_t(triangle_count)))
-                walkable = false;
-    });
-    return walkable;
-}
-
 const Error kUnsound{"is damaged: what it holds are no levels"};
 
-class Restorer {
-public:
-    Restorer(const Archive& archive, const Soup& soup) : archive_(archive), scene_(soup) {}
+/// The arrays of all cuts, one behind the other; what is not yet read.
+struct Arrays {
+    std::span<const Twins::Pair> twins;
+    std::span<const KdNode> nodes;
+    std::span<const SavedLeaf> leaves;
+    std::span<const TriangleId> lists;
+    std::span<const SavedPage> pages; // one a leaf
+    std::span<const uvec4> texels;
 
-    Result<BuiltScene> restore(const Summary& summary) {
-        scene_.dropped = {summary.not_finite, summary.degenerate};
-        scene_.triangles = summary.triangles;
-        scene_.level1.bounds = summary.bounds;
-        scene_.level1.padding = summary.padding;
-        scene_.level1.shares_frame = summary.shares_frame == 1;
-        scene_.level1.far_leaves = uint32_t(std::min<uint64_t>(summary.far_leaves, kNone));
-        if (Result<Done> done = read_twins(summary.twins); !done)
-            return done.error();
-        if (Result<Done> done = read_level1(); !done)
-            return done.error();
-        if (Result<Done> done = read_pages(); !done)
-            return done.error();
-        return std::move(scene_);
+    bool all_read() const {
+        return twins.empty() && nodes.empty() && leaves.empty() && lists.empty() && pages.empty() &&
+               texels.empty();
+    }
+};
+
+/// A cut, from the beginning of the arrays. False where it is none.
+class CutReader {
+public:
+    CutReader(const SavedCut& cut, Arrays& arrays, BuiltScene& scene)
+        : cut_(cut), arrays_(arrays), scene_(scene) {}
+
+    bool read() {
+        scene_.dropped = {cut_.not_finite, cut_.degenerate};
+        scene_.triangles = cut_.triangles;
+        return read_twins() && read_level1() && read_pages();
     }
 
 private:
-    Result<Done> read_twins(uint64_t count) {
-        const auto pairs = archive_.items<Twins::Pair>("twins");
-        if (!pairs)
-            return pairs.error();
-        if (!are_sound(*pairs, scene_.soup))
-            return kUnsound;
-        scene_.twins = Twins::restored(*pairs, count);
-        return Done{};
+    bool read_twins() {
+        const auto pairs = take(arrays_.twins, cut_.twin_pairs);
+        if (!pairs || !are_sound(*pairs, scene_.soup))
+            return false;
+        scene_.twins = Twins::restored(*pairs, cut_.twins);
+        return true;
     }
 
-    Result<Done> read_level1() {
-        const auto nodes = archive_.items<KdNode>("nodes");
-        if (!nodes)
-            return nodes.error();
-        const auto leaves = archive_.items<SavedLeaf>("leaves");
-        if (!leaves)
-            return leaves.error();
-        const auto lists = archive_.items<TriangleId>("lists");
-        if (!lists)
-            return lists.error();
+    bool read_level1() {
+        const auto nodes = take(arrays_.nodes, cut_.nodes);
+        const auto leaves = take(arrays_.leaves, cut_.leaves);
+        if (!nodes || !leaves)
+            return false;
         Level1& level1 = scene_.level1;
+        level1.bounds = cut_.bounds;
+        level1.padding = cut_.padding;
+        level1.shares_frame = cut_.shares_frame == 1;
+        level1.far_leaves = uint32_t(std::min<uint64_t>(cut_.far_leaves, kNone));
         if (!is_walkable(*nodes, leaves->size()) || nodes->empty() != leaves->empty() ||
             level1.far_leaves > leaves->size() || !(level1.padding >= 0) ||
             (!nodes->empty() && !is_sound(level1.bounds)))
-            return kUnsound;
+            return false;
         level1.nodes.assign(nodes->begin(), nodes->end());
-        std::span<const TriangleId> rest = *lists;
         for (const SavedLeaf& leaf : *leaves) {
-            if (!is_sound(leaf) || leaf.triangles > rest.size() ||
+            const auto list = take(arrays_.lists, leaf.triangles);
+            if (!is_sound(leaf) || !list ||
                 (level1.shares_frame && !share_frame(leaf, leaves->front())))
-                return kUnsound;
-            const auto list = rest.first(leaf.triangles);
-            rest = rest.subspan(leaf.triangles);
+                return false;
             level1.leaves.push_back({leaf.cell,
                                      leaf.box,
                                      {leaf.origin, leaf.scale},
                                      leaf.grid,
-                                     {list.begin(), list.end()}});
+                                     {list->begin(), list->end()}});
         }
-        if (!rest.empty())
-            return kUnsound;
-        return Done{};
+        return true;
     }
 
-    Result<Done> read_pages() {
-        const auto pages = archive_.items<SavedPage>("pages", scene_.level1.leaves.size());
+    /// Each page its part of the texels.
+    bool read_pages() {
+        const auto pages = take(arrays_.pages, cut_.leaves);
         if (!pages)
-            return pages.error();
-        const auto texels = archive_.items<uvec4>("texels");
-        if (!texels)
-            return texels.error();
-        if (!share_out(*texels, *pages, scene_.soup.triangle_count(), scene_.pages))
-            return kUnsound;
-        return Done{};
+            return false;
+        for (const SavedPage& saved : *pages) {
+            const auto texels = take(arrays_.texels, saved.texels);
+            if (!texels || texels->empty() || saved.depth > kNone)
+                return false;
+            scene_.pages.push_back(
+                {.texels = {}, .borrowed = *texels, .depth = uint32_t(saved.depth)});
+        }
+        const auto triangle_count = uint32_t(scene_.soup.triangle_count());
+        std::atomic<bool> walkable{true};
+        parallel_for(scene_.pages.size(), 1, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last && walkable; ++i)
+                if (!is_walkable(scene_.pages[i], triangle_count))
+                    walkable = false;
+        });
+        return walkable;
     }
 
-    const Archive& archive_;
-    BuiltScene scene_;
+    const SavedCut& cut_;
+    Arrays& arrays_;
+    BuiltScene& scene_;
 };
+
+Result<Arrays> arrays_of(const Archive& archive) {
+    const auto twins = archive.items<Twins::Pair>("twins");
+    if (!twins)
+        return twins.error();
+    const auto nodes = archive.items<KdNode>("nodes");
+    if (!nodes)
+        return nodes.error();
+    const auto leaves = archive.items<SavedLeaf>("leaves");
+    if (!leaves)
+        return leaves.error();
+    const auto lists = archive.items<TriangleId>("lists");
+    if (!lists)
+        return lists.error();
+    const auto pages = archive.items<SavedPage>("pages", leaves->size());
+    if (!pages)
+        return pages.error();
+    const auto texels = archive.items<uvec4>("texels");
+    if (!texels)
+        return texels.error();
+    return Arrays{*twins, *nodes, *leaves, *lists, *pages, *texels};
+}
+
+Result<BuiltScene> restored(const Archive& archive, std::span<const SavedCut> cuts,
+                            const Soup& soup) {
+    Result<Arrays> arrays = arrays_of(archive);
+    if (!arrays)
+        return arrays.error();
+    BuiltScene scene(soup);
+    if (!CutReader(cuts.front(), *arrays, scene).read())
+        return kUnsound;
+    Placed placed = placed_chunks(soup); // which meshes are shared is told by the soup
+    scene.copies = std::move(placed.copies);
+    if (cuts.size() != 1 + placed.shared.size())
+        return kUnsound;
+    for (size_t i = 0; i < placed.shared.size(); ++i) {
+        SharedMesh& mesh = scene.share(placed.shared[i]);
+        if (!CutReader(cuts[i + 1], *arrays, mesh.scene).read())
+            return kUnsound;
+    }
+    if (!arrays->all_read())
+        return kUnsound;
+    gather_pages(scene);
+    return scene;
+}
+
+/// All that is cut by itself.
+std::vector<const BuiltScene*> cuts_of(const BuiltScene& scene) {
+    std::vector<const BuiltScene*> cuts{&scene};
+    for (const SharedMesh& mesh : scene.shared)
+        cuts.push_back(&mesh.scene);
+    return cuts;
+}
+
+SavedCut saved_cut(const BuiltScene& scene) {
+    SavedCut cut;
+    cut.not_finite = scene.dropped.not_finite;
+    cut.degenerate = scene.dropped.degenerate;
+    cut.twins = scene.twins.count();
+    cut.twin_pairs = scene.twins.pairs().size();
+    cut.nodes = scene.level1.nodes.size();
+    cut.leaves = scene.level1.leaves.size();
+    cut.triangles = scene.triangles;
+    cut.shares_frame = scene.level1.shares_frame;
+    cut.far_leaves = scene.level1.far_leaves;
+    cut.bounds = scene.level1.bounds;
+    cut.padding = scene.level1.padding;
+    return cut;
+}
 
 } // namespace
 
 bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
-    Summary summary;
-    summary.key.layout = checksum_of_layout();
-    summary.key.soup = checksum_of_soup(scene.soup);
-    put_limits(summary.key, scene.limits);
-    summary.not_finite = scene.dropped.not_finite;
-    summary.degenerate = scene.dropped.degenerate;
-    summary.twins = scene.twins.count();
-    summary.triangles = scene.triangles;
-    summary.shares_frame = scene.level1.shares_frame;
-    summary.far_leaves = scene.level1.far_leaves;
-    summary.bounds = scene.level1.bounds;
-    summary.padding = scene.level1.padding;
+    Key key;
+    key.layout = checksum_of_layout();
+    key.soup = checksum_of_soup(scene.soup);
+    put_limits(key, scene.limits);
+    const std::vector<const BuiltScene*> scenes = cuts_of(scene);
+    std::vector<SavedCut> cuts;
     std::vector<SavedLeaf> leaves;
-    for (const Leaf& leaf : scene.level1.leaves)
-        leaves.push_back({leaf.cell, leaf.box, leaf.grid, leaf.frame.origin, leaf.frame.scale,
-                          leaf.triangles.size()});
-    std::vector<SavedPage> pages;
+    for (const BuiltScene* cut : scenes) {
+        cuts.push_back(saved_cut(*cut));
+        for (const Leaf& leaf : cut->level1.leaves)
+            leaves.push_back({leaf.cell, leaf.box, leaf.grid, leaf.frame.origin, leaf.frame.scale,
+                              leaf.triangles.size()});
+    }
+    std::vector<SavedPage> pages; // scene.pages has all of them, in the same order
     for (const Page& page : scene.pages)
         pages.push_back({page.view().size(), page.depth});
 
     ArchiveWriter writer(sink, kKind, kVersion);
-    writer.part<Summary>("summary", std::span(&summary, 1));
-    writer.part<Twins::Pair>("twins", scene.twins.pairs());
-    writer.part<KdNode>("nodes", scene.level1.nodes);
+    writer.part<Key>("key", std::span(&key, 1));
+    writer.part<SavedCut>("cuts", cuts);
+    writer.begin("twins");
+    for (const BuiltScene* cut : scenes)
+        writer.write(bytes_of(cut->twins.pairs()));
+    writer.begin("nodes");
+    for (const BuiltScene* cut : scenes)
+        writer.write(bytes_of(std::span<const KdNode>(cut->level1.nodes)));
     writer.part<SavedLeaf>("leaves", leaves);
     writer.begin("lists");
-    for (const Leaf& leaf : scene.level1.leaves)
-        writer.write(bytes_of(std::span<const TriangleId>(leaf.triangles)));
+    for (const BuiltScene* cut : scenes)
+        for (const Leaf& leaf : cut->level1.leaves)
+            writer.write(bytes_of(std::span<const TriangleId>(leaf.triangles)));
     writer.part<SavedPage>("pages", pages);
     writer.begin("texels");
     for (const Page& page : scene.pages)
@@ -279,25 +355,32 @@ bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
 
 Result<std::optional<BuiltScene>>
 restore_levels(Bytes saved, const Soup& soup,
-               const std::function<LeafLimits(uint64_t)>& limits_for) {
+               const std::function<LeafLimits(uint64_t, uint64_t)>& limits_for) {
     const Stopwatch watch;
     if (reinterpret_cast<uintptr_t>(saved.data()) % kPartAlignment)
         return Error{"is not aligned to 64 bytes"};
     const Result<Archive> archive = Archive::open(saved, kKind, kVersion);
     if (!archive)
         return archive.error();
-    const auto summaries = archive->items<Summary>("summary", 1);
-    if (!summaries)
-        return summaries.error();
-    const Summary& summary = summaries->front();
+    const auto keys = archive->items<Key>("key", 1);
+    if (!keys)
+        return keys.error();
+    const auto cuts = archive->items<SavedCut>("cuts");
+    if (!cuts)
+        return cuts.error();
+    if (cuts->empty())
+        return kUnsound;
+    uint64_t unique = 0;
+    for (const SavedCut& cut : *cuts)
+        unique += cut.triangles;
+    const LeafLimits limits = limits_for(cuts->front().triangles, unique);
     Key key;
     key.layout = checksum_of_layout();
-    const LeafLimits limits = limits_for(summary.triangles);
     put_limits(key, limits);
-    key.soup = summary.key.soup; // the rest first: this takes a while
-    if (key != summary.key || checksum_of_soup(soup) != key.soup)
+    key.soup = keys->front().soup; // the rest first: this takes a while
+    if (key != keys->front() || checksum_of_soup(soup) != key.soup)
         return std::optional<BuiltScene>();
-    Result<BuiltScene> scene = Restorer(*archive, soup).restore(summary);
+    Result<BuiltScene> scene = restored(*archive, *cuts, soup);
     if (!scene)
         return scene.error();
     scene->limits = limits;

@@ -16,11 +16,11 @@ bool save_levels(const BuiltScene& scene, const ByteSink& sink);
 
 /// The scene that save_levels() wrote of this soup. Pages stay in `saved`, which is aligned to
 /// kPartAlignment and outlives them. Nothing: what was saved is of another soup, or a build would
-/// now make another scene. limits_for: the limits for so many triangles. Error: the bytes are
+/// now make another scene. limits_for: as limits_of(triangles, unique). Error: the bytes are
 /// damaged, or are not such bytes; the sentence goes on from a name. Whatever the bytes are, the
 /// scene that comes back is safe to walk.
 Result<std::optional<BuiltScene>>
 restore_levels(Bytes saved, const Soup& soup,
-               const std::function<LeafLimits(uint64_t)>& limits_for);
+               const std::function<LeafLimits(uint64_t, uint64_t)>& limits_for);
 
 } // namespace ovc

@@ -17,7 +17,7 @@ namespace {
 using test::ArchiveMemory;
 
 constexpr LeafLimits kLimits{60, 1 << 20};
-const auto kSameLimits = [](uint64_t) { return kLimits; };
+const auto kSameLimits = [](uint64_t, uint64_t) { return kLimits; };
 
 ArchiveMemory saved(const BuiltScene& scene) {
     ArchiveMemory memory;
@@ -71,7 +71,8 @@ TEST(SavedLevels, OfAnotherSoupOrOtherLimitsAreNotTaken) {
     const Soup soup = test::random_soup(2, 300, 0.1);
     const ArchiveMemory memory = saved(build_for_test(soup, kLimits));
     const auto taken = [&](const Soup& other, const LeafLimits& limits) {
-        const auto found = restore_levels(memory.bytes(), other, [&](uint64_t) { return limits; });
+        const auto found =
+            restore_levels(memory.bytes(), other, [&](uint64_t, uint64_t) { return limits; });
         EXPECT_TRUE(found) << found.error().message;
         return found && *found;
     };

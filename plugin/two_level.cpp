@@ -74,9 +74,8 @@ Result<Done> TwoLevel::intersect_noted(RaySpan rays, std::span<const TriangleId>
         return done;
     parallel_for(notes.leaf.size(), 1024, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
-            notes.leaf[i] = hits[i].is_hit()
-                                ? leaf_at(scene_.level1, rays[i].at(hits[i].t), hits[i].id)
-                                : kNone;
+            notes.leaf[i] =
+                hits[i].is_hit() ? scene_.page_at(rays[i].at(hits[i].t), hits[i].id) : kNone;
     });
     return Done{};
 }

@@ -2,8 +2,9 @@
 // How a budget limits leaves, and which budgets are too small.
 #include "plugin/two_level_options.h"
 
-#include "gpu/level1_table.h"
+#include "gpu/top_level.h"
 #include "plugin/page_rate.h"
+#include "plugin/shared_meshes.h"
 
 #include <fmt/format.h>
 
@@ -38,21 +39,26 @@ Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
 }
 
 SmallestCut smallest_cut(const Soup& soup, const TwoLevelOptions& options) {
-    const uint64_t triangles = soup.triangle_count(); // whether they can be hit or not
+    const Placed placed = placed_chunks(soup);
+    const uint64_t triangles = unique_triangles(soup, placed); // whether they can be hit or not
     const uint64_t active_bytes = options.tell_active ? sizeof(uint32_t) : 0;
     if (triangles == 0)
         return {};
-    const uint64_t first_bytes = level1_texels(1, 1) * sizeof(uvec4) + active_bytes;
-    const uint64_t leaf_bytes =
-        (level1_texels(2, 1) - level1_texels(1, 1)) * sizeof(uvec4) + active_bytes;
+    const uint64_t first_bytes = kPortalBytes + max_top_level_bytes(1);
+    const uint64_t leaf_bytes = kMaxBytesPerPart + active_bytes;
     const double balanced =
         std::sqrt(double(triangles) * double(leaf_bytes) / double(kMaxUncutBytesPerTriangle));
     uint64_t most =
         std::clamp<uint64_t>(uint64_t(balanced), 1, std::min(triangles, uint64_t(kNone - 1)));
     if (options.leaf_triangles)
         most = std::min(most, options.leaf_triangles);
-    const uint64_t leaves = (triangles + most - 1) / most;
-    const uint64_t table = first_bytes + (leaves - 1) * leaf_bytes;
+    // Each mesh has a leaf that is not full, and is one part, with a portal an instance.
+    const uint64_t leaves = (triangles + most - 1) / most + placed.shared.size();
+    uint64_t portals = 0;
+    for (const Placed::Instances& chunks : placed.shared)
+        portals += chunks.size();
+    const uint64_t table =
+        first_bytes + leaves * leaf_bytes + portals * (kPortalBytes + 2 * OVC_UNIT_BYTES);
     return {uint32_t(most), table + kPageStart + most * kMaxUncutBytesPerTriangle};
 }
 
@@ -76,27 +82,27 @@ Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, cons
         return Done{};
     return over_budget(fmt::format(
         "a GPU budget of {} bytes is too small for this scene: the smallest that works is {} "
-        "bytes ({} triangles in leaves of {}, whose table and largest page take {}; an eighth is "
+        "bytes ({} triangles in leaves of {}, whose tree and largest page take {}; an eighth is "
         "for rays)",
-        plan.budget_bytes, smallest_budget(cut.pool_bytes, device), soup.triangle_count(),
-        cut.leaf_triangles, cut.pool_bytes));
+        plan.budget_bytes, smallest_budget(cut.pool_bytes, device),
+        unique_triangles(soup, placed_chunks(soup)), cut.leaf_triangles, cut.pool_bytes));
 }
 
 /// The most that a page may take of the pool: a third, so that some stay resident; half of it where
-/// the table of as many leaves might not find room beside that.
+/// what leads to as many leaves might not find room beside that.
 static uint64_t share_of_page(const MemoryPlan& plan, uint64_t triangles) {
-    constexpr uint64_t kTexelsPerLeaf = OVC_LEAF_TEXELS + 2; // two nodes of level 1
     const uint64_t page_bytes = std::max<uint64_t>(plan.pool_bytes / kPagesAtOnce, 1);
     const uint64_t leaves = triangles * kMostBytesPerTriangle / page_bytes;
-    const uint64_t table = leaves * kTexelsPerLeaf * sizeof(uvec4);
+    const uint64_t table = leaves * kMaxBytesPerPart;
     return table + page_bytes <= plan.pool_bytes ? page_bytes : plan.pool_bytes / 2;
 }
 
-LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles) {
+LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles,
+                     uint64_t unique) {
     // Halving ends between half full and full: this much on average gives about so many leaves.
     constexpr double kFull = 0.7;
     constexpr uint64_t kMostPageBytes = uint64_t(OVC_MAX_UNITS - 1) * OVC_UNIT_BYTES;
-    const uint64_t page_bytes = std::min(share_of_page(plan, triangles), kMostPageBytes);
+    const uint64_t page_bytes = std::min(share_of_page(plan, unique), kMostPageBytes);
     if (options.leaf_triangles)
         return {options.leaf_triangles, page_bytes};
     double most = double(triangles) / double(kDefaultLeaves);
@@ -106,10 +112,12 @@ LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uin
     if (!options.leaves) {
         limits.page_bytes = std::min(
             page_bytes, std::max<uint64_t>(plan.pool_bytes / kPagesByDefault, kWorthMoving));
-        const uint64_t table = level1_texels(1, 1) * sizeof(uvec4) + sizeof(uint32_t);
+        const uint64_t table = max_top_level_bytes(1) + sizeof(uint32_t);
         const uint64_t room =
             std::min(plan.pool_bytes - std::min(plan.pool_bytes, table), kMostPageBytes);
-        limits.whole_bytes = triangles <= room / kMostBytesPerTriangle ? LeafLimits::kAny : room;
+        limits.whole_bytes = unique <= room / kMostBytesPerTriangle ? LeafLimits::kAny
+                             : unique == triangles                  ? room
+                                                                    : 0;
     }
     return limits;
 }

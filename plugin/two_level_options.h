@@ -27,7 +27,7 @@ struct TwoLevelOptions {
     Bytes saved = {}; // what save() of a structure over the same soup wrote; outlives this one
 };
 
-/// The plan for the budget that the options ask for, level 1 not yet taken off. Error: as of
+/// The plan for the budget that the options ask for, portals not yet taken off. Error: as of
 /// plan_memory(); more triangles than a scene takes.
 Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
                                const DeviceInfo& device);
@@ -36,11 +36,12 @@ Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
 inline constexpr uint64_t kMaxUncutBytesPerTriangle = 128;
 
 /// How a scene is cut where hardly anything fits: leaves by count (kdtree/partition.h), all of them
-/// about as large as level 1's table is, which takes the least together. Told by counts alone, so
-/// that plan and commit say the same before anything is built, and every larger budget works too.
+/// about as large as what leads to them is, which takes the least together. Told by counts alone,
+/// so that plan and commit say the same before anything is built, and every larger budget works
+/// too.
 struct SmallestCut {
     uint32_t leaf_triangles = 1;
-    uint64_t pool_bytes = 0; // that the table and the largest page take, at most
+    uint64_t pool_bytes = 0; // that portals, tree and the largest page take, at most
 };
 SmallestCut smallest_cut(const Soup& soup, const TwoLevelOptions& options);
 
@@ -51,8 +52,13 @@ uint64_t smallest_budget(uint64_t pool_bytes, const DeviceInfo& device);
 Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
                           const DeviceInfo& device);
 
-/// What leaves may be under a plan of which level 1 is not yet taken off, where so many triangles
-/// can be hit.
-LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles);
+/// What leaves may be under a plan of which portals are not yet taken off, where so many triangles
+/// can be hit, and `unique` with those of meshes that are cut by themselves.
+LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles,
+                     uint64_t unique);
+inline LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan,
+                            uint64_t triangles) {
+    return limits_of(options, plan, triangles, triangles);
+}
 
 } // namespace ovc

@@ -57,14 +57,12 @@ public:
             if (!moved)
                 return moved.error();
             wanted_beside.resize(*moved);
-            tell_used();
             call_up(beside);
             call_up(wanted_beside);
             beside = std::move(wanted_beside);
             std::swap(now, other);
         }
         resolve(*other);
-        tell_used();
         call_up(beside);
         return Done{};
     }
@@ -82,9 +80,6 @@ private:
     }
     void call_up(std::span<const uint32_t> leaves) {
         each([&](auto& wave) { wave.call_up(leaves); });
-    }
-    void tell_used() {
-        each([](auto& wave) { wave.tell_used(); });
     }
 
     /// The leaves worth moving in for rays of these waves where few are ready; else none.

@@ -7,11 +7,11 @@
 #ifndef OVC_CERTIFY
 #define OVC_CERTIFY 1 // 0: fast precision, float32's own answer, nothing flagged but what did not end
 #endif
-#ifndef OVC_TOP_LEVEL
-#define OVC_TOP_LEVEL 0 // 1: rays go through the top-level tree, and units count from the pool's first
+#ifndef OVC_PORTALS
+#define OVC_PORTALS 0 // 1: the top-level tree leads to parts in frames of their own, and rays come in doubles
 #endif
 #ifndef OVC_MAY_WAIT
-#define OVC_MAY_WAIT 0 // 1, with OVC_TOP_LEVEL: a ray waits where a link leads to a page that is not in the pool
+#define OVC_MAY_WAIT 0 // 1: a ray waits where a link leads to a page that is not in the pool
 #endif
 #ifndef OVC_TELL_ACTIVE
 #define OVC_TELL_ACTIVE 0 // 1: pages that rays are traced through are marked
@@ -40,7 +40,7 @@
                           // of the dispatch (llvmpipe: 8 % of camera rays); by turns groups are too few for it
 #endif
 #ifndef OVC_BUFFER_IMAGES
-#define OVC_BUFFER_IMAGES 1 // pages, level 1, rays: 1: imageLoad (inlined on llvmpipe, 5 % faster); 0: texelFetch
+#define OVC_BUFFER_IMAGES 1 // pages, portals, rays: 1: imageLoad (inlined on llvmpipe, 5 % faster); 0: texelFetch
 #endif
 #ifndef OVC_MOST_ROUNDS
 #define OVC_MOST_ROUNDS 0x7fffffff // a ray's loops end after so many rounds and say so, before a driver ends them silently

@@ -37,6 +37,11 @@ void add_rival(inout Found found, float lo, uint prim) {
 // Takes a candidate in. Returns true when it is now the best.
 bool take(inout Found found, Candidate c, bool valid, uint prim, uint order) {
     bool possible = valid && c.possible && c.hi >= 0.0;
+#if OVC_PORTALS
+    // What lies beyond a part is met in another. And a triangle that parts share may be in doubt in several of them.
+    bool named = (prim == found.rival[0] && found.rival_lo[0] < OVC_NEVER) || (prim == found.rival[1] && found.rival_lo[1] < OVC_NEVER);
+    possible = possible && c.lo <= found.best_hi && (c.certain || !named);
+#endif
     bool better = possible && c.certain && (c.lo > 0.0 || OVC_CERTIFY == 0) && c.hi < found.best_hi;
     if (OVC_CERTIFY != 0) {
         float lo = better ? found.best_lo : c.lo; // the one of the two that is not the best
@@ -68,12 +73,39 @@ vec2 barycentric(Found found) {
     return vec2(u, v);
 }
 
+bool has_hit(Found found) { return found.prim != OVC_MISS; }
+
+#if OVC_PORTALS
+// The same in another frame, rounded outwards. t_end: the ray's end there.
+Found in_times(Found found, Times from, Times to, float t_end) {
+    bool hit = has_hit(found);
+    Found there = found;
+    there.best_lo = hit ? earlier(found.best_lo, from, to) : OVC_NEVER;
+    there.best_hi = hit ? later(found.best_hi, from, to) : t_end;
+    for (int i = 0; i < 2; ++i) {
+        bool counts = found.rival_lo[i] < OVC_NEVER && !(hit && found.rival_lo[i] > found.best_hi);
+        there.rival_lo[i] = counts ? earlier(found.rival_lo[i], from, to) : OVC_NEVER;
+    }
+    bool others = found.others_lo < OVC_NEVER && !(hit && found.others_lo > found.best_hi);
+    there.others_lo = others ? earlier(found.others_lo, from, to) : OVC_NEVER;
+    return there;
+}
+#endif
+
 // The words of an answer from `leaf`.
 uvec4 answer_of(Found found, bool any_hit, uint leaf) {
     if (OVC_CERTIFY == 0 || (any_hit && found.prim != OVC_MISS))
         return uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, leaf, found.prim);
     // A rival counts unless it certainly lies beyond the best; with more than two, none can be named.
-    uint first = found.rival_lo[0] <= found.best_hi ? found.rival[0] : OVC_NO_TRIANGLE;
-    uint second = found.rival_lo[1] <= found.best_hi ? found.rival[1] : OVC_NO_TRIANGLE;
-    return uvec4(first, second, leaf, found.others_lo <= found.best_hi ? OVC_FLAGGED : found.prim);
+    // Without a hit best_hi is the end of the part that was met last, and rivals are of all.
+    float end = OVC_PORTALS != 0 && !has_hit(found) ? 0.5 * OVC_NEVER : found.best_hi;
+    uint first = found.rival_lo[0] <= end ? found.rival[0] : OVC_NO_TRIANGLE;
+    uint second = found.rival_lo[1] <= end ? found.rival[1] : OVC_NO_TRIANGLE;
+#if OVC_PORTALS
+    // In doubt in one part, and certain in another.
+    second = second == found.prim ? OVC_NO_TRIANGLE : second;
+    first = first == found.prim ? second : first;
+    second = first == second ? OVC_NO_TRIANGLE : second;
+#endif
+    return uvec4(first, second, leaf, found.others_lo <= end ? OVC_FLAGGED : found.prim);
 }

@@ -32,66 +32,56 @@
 #define OVC_HAS_LOOSE_PAIRS 1u
 #define OVC_OWN_ORDER 0x88u // both triangles' corners 0 and 2 are the pair's
 #define OVC_NO_TRIANGLE 0xffffffffu
-#define OVC_MAX_UNITS 0x800000 // a stack word has 23 bits for a unit and must not be negative
+#define OVC_MAX_UNITS 0x2000000 // a stack word has 25 bits for a unit
 
 // Under the top-level tree (gpu/top_level.h) units count from the pool's first, where the tree lies; else from the page's own. The
 // tree's lowest nodes are links, copies of pages' nodes; texel 3: the unit of the first child in the pool, or OVC_LEADS_NOWHERE;
 // 1 + the page's leaf; the first child's unit in the page, 0. Of a ray that meets it a link has a key, by which links are in order: the
-// upper half of the bits of the t (float; 0 where it is less), and below it 1 + the leaf.
+// upper half of the bits of the t in the tree's frame (float; 0 where it is less), and below it 1 + the leaf.
 #define OVC_LEADS_NOWHERE 0
 #define OVC_KEY_LEAF 0xffff
 
-// Level 1 is an array of RGBA32UI texels: a header, the leaves, the KD-tree's nodes. A double is two words, low one first.
+// Where pages lie in several frames the tree's lowest nodes are portals, each with one child, and behind it come the parts' trees, each
+// with a header of its own; texel 3 of a portal: its number, negative; 0, 0, 0. The table of portals has OVC_PORTAL_TEXELS texels each;
+// number 0 is the way back to the top-level tree. A double is two words, low one first.
 //
-// header  texel of the root, 0, 0, 0
-// leaf    texels 0..2: the leaf's box (doubles); texels 3 and 4: the frame's origin xyz, its scale (doubles)
-//         texel 5: the unit of the pool where the page begins, or OVC_NOT_RESIDENT; 0, 0, 0
-// node    split (double), axis, texel of the node above the split (the one below is next); or
-//         0, 0, 3 | number of leaves << 2, first leaf
-#define OVC_LEVEL1_START 0
-#define OVC_LEVEL1_LEAVES 1
-#define OVC_LEAF_TEXELS 6
-#define OVC_LEAF_PAGE_TEXEL 5
-#define OVC_NOT_RESIDENT 0xffffffffu
+// portal  texels 0 to 5: 12 doubles, the point of the world that lies at 0 in the frame, and the rows of the matrix from there
+//         texels 6 to 8: 6 doubles, the box of what lies behind it, in the frame
+//         texel 9: the unit of the tree's header, the number of the first triangle, 0, 0
+#define OVC_PORTAL_TEXELS 10
 
-// A ray is five RGBA32UI texels: the record of core/ray.h, org, t_min, dir, t_max (doubles; t_max < t_min: no
-// ray here); then the t of the cells it is done with (double), the number of the triangle it does not see or
-// OVC_NO_TRIANGLE, and, where the cell just after that t is one it has been in, the leaf of it to go on with, one past the
-// last where it is done with all; else any leaf of other cells, or OVC_NO_LEAF; with OVC_RAY_ANY_HIT added where any hit will do.
-#define OVC_RAY_TEXELS 5
-#define OVC_NO_LEAF 0x7fffffffu
-#define OVC_RAY_ANY_HIT 0x80000000u
-
-// Under the top-level tree a ray is two texels, in the frame that pages share: org xyz, t_end (float bits); dir xyz (float bits),
+// A ray is two RGBA32UI texels, in the frame that pages share: org xyz, t_end (float bits); dir xyz (float bits),
 // the number of the triangle it does not see or OVC_SKIPS_NONE, with OVC_RAY_ANY_HIT added where any hit will do. It begins at
 // t = 0. t_end: OVC_NO_RAY where there is none, OVC_UNDECIDABLE where only doubles can answer it; closer to 0 than any t of a box.
 #define OVC_LOCAL_RAY_TEXELS 2
+#define OVC_RAY_ANY_HIT 0x80000000u
 #define OVC_SKIPS_NONE 0x7fffffffu
 #define OVC_NO_RAY -1.1754943508222875e-38f // -2^-126
 #define OVC_UNDECIDABLE -2.350988701644575e-38f
 // Where not all pages are in the pool, a third texel has the key of the one that the ray waited for, 0 for none; 0, 0, 0. It is done with
 // those that it meets before.
 #define OVC_RESUMED_RAY_TEXELS 3
+// Under portals it is five texels: the record of core/ray.h, org, t_min, dir, t_max (doubles; t_max < t_min: no ray here); then 0, 0,
+// the number of the triangle it does not see or OVC_NO_TRIANGLE, and the key or 0, with OVC_RAY_ANY_HIT added.
+#define OVC_RAY_TEXELS 5
 
 // The answers of the fragment kernel are a texture. Rays lie in it in tiles of 4 x 4, in rows of tiles: fragments that a driver shades together are rays
 // that came one after the other.
 #define OVC_ROW_RAYS 64
 #define OVC_TILE 4
 
-// An answer is RGBA32UI; triangles are named by their numbers in the soup. w: the certain nearest hit in leaf z, or where z is
-// OVC_NO_LEAF in the scene; where not all pages are in the pool, in those that the ray met before the one of the key z, which it waits for; or
-//   OVC_MISS      none in any leaf on the way
-//   OVC_WAITS     the walk stopped before leaf z, which is not in the pool; x, y: the t of the cells done (double)
+// An answer is RGBA32UI; triangles are named by their numbers in the soup. z: the key of the link that the ray waits for, or
+// OVC_NO_LEAF. w: the certain nearest hit in all pages that the ray met before that link, or
+//   OVC_MISS      none
 //   OVC_FLAGGED   the kernel cannot tell
 //   OVC_CAPPED    a loop was ended before it was done, or the stack was full
 // x, y: up to two rivals, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is none; what is
-// named neither in w nor here is certainly not the answer in leaf z.
-// In fast precision x, y: t of the hit (double); z: u and v in 16 bits each. But under the top-level tree x: t in its frame (float bits);
-// y: u and v; z: as above.
+// named neither in w nor here is certainly not the answer.
+// In fast precision x: t of the hit in the tree's frame (float bits); y: u and v in 16 bits each.
+#define OVC_NO_LEAF 0x7fffffffu
 #define OVC_MISS 0x7fffffffu
 #define OVC_FLAGGED 0x7ffffffeu
 #define OVC_CAPPED 0x7ffffffdu
-#define OVC_WAITS 0x7ffffffcu
 #define OVC_MAX_TRIANGLES 0x7ffffff0u
 // The compute kernel writes its answers to a buffer in four planes, w x y z, a word a ray, as rays lie. A miss of which there is no
 // more to say is not written: the host has put OVC_MISS there. x, y and z are written only where they say something: w then has
@@ -104,7 +94,7 @@
 #define OVC_BINDING_PAGE 0
 #define OVC_BINDING_RAYS 1
 #define OVC_BINDING_ANSWERS 2
-#define OVC_BINDING_LEVEL1 3
+#define OVC_BINDING_PORTALS 3
 // A word a leaf, not 0 where a ray was traced through its page.
 #define OVC_BINDING_ACTIVE 4
 // The systems of the thesis: a ray is two texels, origin xyz, end t (negative: no ray); direction xyz, the index of the
@@ -132,7 +122,5 @@
 
 // Farther than this from a leaf, in leaf sizes, a ray's place of entry is off by more than 1/64 of a float rounding.
 #define OVC_MOST_LEAF_SIZES 2097152.0
-// Fast precision: of a leaf, by how much a hit may lie beyond the cell; 16 roundings.
-#define OVC_FAST_SLACK 9.5367431640625e-7
 
 #endif

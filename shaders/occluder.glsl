@@ -35,6 +35,16 @@ bool take(inout Found found, Corner a, Corner b, Corner c, Edges e, Depths depth
 // A part of what planes cut may be a rival of the others: it is named again, and settled once more.
 bool is_known(Found found, uint prim) { return false; }
 
+bool has_hit(Found found) { return false; }
+
+#if OVC_PORTALS
+// The same in another frame. t_end: the ray's end there.
+Found in_times(Found found, Times from, Times to, float t_end) {
+    found.best_hi = t_end;
+    return found;
+}
+#endif
+
 // The words of an answer from `leaf`. Which triangle is hit is not told.
 uvec4 answer_of(Found found, bool any_hit, uint leaf) {
     if (found.best_hi == OVC_ENOUGH)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A unit's two triangles (layout.h), offered to what a ray has found: take_pair() returns true when one of them was taken.
+// A unit's two triangles (layout.h), offered to what a ray has found: take_pair() returns true when one of them was taken. Numbers in
+// the unit count from first_number.
 
 #if OVC_LOOSE_PAIRS
 // The coordinate in the upper 24 bits of a word, and the one in the low bytes of three.
@@ -17,7 +18,8 @@ bool take_alone(inout Found found, Corner v[3], bool valid, uint prim, uint orde
 
 // A pair of either kind: where it is not a loose one, two of B's corners are A's.
 bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pair, Line line,
-               uint skip) {
+               uint skip, uint first_number) {
+    uint number_a = X.w + first_number, number_b = Y.w + first_number;
     bool loose = (W.w & OVC_LOOSE_PAIR) != 0u;
     vec3 p0 = loose ? upper(X) : uintBitsToFloat(X.xyz);
     vec3 p1 = loose ? upper(Y) : uintBitsToFloat(Y.xyz);
@@ -28,15 +30,16 @@ bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pa
     uint order = loose ? OVC_OWN_ORDER : Z.w;
     Corner a[3] = Corner[3](corner(p0, line), corner(p1, line), corner(p2, line));
     Corner b[3] = Corner[3](corner(loose ? p3 : p0, line), corner(loose ? b1 : p3, line), corner(loose ? b2 : p2, line));
-    bool seen_a = is_pair && X.w != skip && !is_known(found, X.w);
-    bool seen_b = is_pair && Y.w != skip && Y.w != OVC_NO_TRIANGLE && !is_known(found, Y.w);
-    bool took_a = take_alone(found, a, seen_a, X.w, order);
-    bool took_b = take_alone(found, b, seen_b, Y.w, order >> 4);
+    bool seen_a = is_pair && number_a != skip && !is_known(found, number_a);
+    bool seen_b = is_pair && number_b != skip && Y.w != OVC_NO_TRIANGLE && !is_known(found, number_b);
+    bool took_a = take_alone(found, a, seen_a, number_a, order);
+    bool took_b = take_alone(found, b, seen_b, number_b, order >> 4);
     return took_a || took_b;
 }
 #else
 bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pair, Line line,
-               uint skip) {
+               uint skip, uint first_number) {
+    uint number_a = X.w + first_number, number_b = Y.w + first_number;
     Corner v0 = corner(uintBitsToFloat(X.xyz), line);
     Corner v1 = corner(uintBitsToFloat(Y.xyz), line);
     Corner v2 = corner(uintBitsToFloat(Z.xyz), line);
@@ -47,10 +50,10 @@ bool take_pair(inout Found found, uvec4 X, uvec4 Y, uvec4 Z, uvec4 W, bool is_pa
     Depths depths = depths_of(v0, v2, error);
     Edges a = Edges(edge(v0, v1), edge(v1, v2), e20, edge_error(v0, v1, error), edge_error(v1, v2, error), e20_error);
     Edges b = Edges(edge(v0, v3), edge(v3, v2), e20, edge_error(v0, v3, error), edge_error(v3, v2, error), e20_error);
-    bool seen_a = is_pair && X.w != skip && !is_known(found, X.w);
-    bool seen_b = is_pair && Y.w != skip && Y.w != OVC_NO_TRIANGLE && !is_known(found, Y.w);
-    bool took_a = take(found, v0, v1, v2, a, with_corner(depths, v1), seen_a, X.w, Z.w);
-    bool took_b = take(found, v0, v3, v2, b, with_corner(depths, v3), seen_b, Y.w, Z.w >> 4);
+    bool seen_a = is_pair && number_a != skip && !is_known(found, number_a);
+    bool seen_b = is_pair && number_b != skip && Y.w != OVC_NO_TRIANGLE && !is_known(found, number_b);
+    bool took_a = take(found, v0, v1, v2, a, with_corner(depths, v1), seen_a, number_a, Z.w);
+    bool took_b = take(found, v0, v3, v2, b, with_corner(depths, v3), seen_b, number_b, Z.w >> 4);
     return took_a || took_b;
 }
 #endif

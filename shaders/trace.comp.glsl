@@ -11,6 +11,7 @@
 #include "box.glsl"
 #include "children.glsl"
 #include "triangle.glsl"
+#include "times.glsl"
 #if OVC_ANY_HIT && OVC_CERTIFY
 #include "occluder.glsl"
 #else
@@ -18,10 +19,9 @@
 #endif
 #include "pair.glsl"
 #include "traverse.glsl"
-#include "level1.glsl"
 #include "ray.glsl"
+#include "portals.glsl"
 #include "trace.glsl"
-#include "walk.glsl"
 
 layout(local_size_x = OVC_GROUP_SIZE) in;
 layout(r32ui, binding = OVC_BINDING_ANSWERS) uniform writeonly restrict uimageBuffer answers;
@@ -43,16 +43,14 @@ uint dealt_group() {
 
 // A miss is not written: it stands there before (gpu/answers.h).
 void give(int ray, uvec4 answer) {
-    const bool tells_leaf = OVC_TOP_LEVEL == 0 || OVC_MAY_WAIT != 0;
-    bool more = answer.x != OVC_NO_TRIANGLE || answer.w == OVC_WAITS ||
-                (OVC_MAY_WAIT == 0 ? tells_leaf && answer.w < OVC_MAX_TRIANGLES : answer.z != OVC_NO_LEAF);
+    bool more = answer.x != OVC_NO_TRIANGLE || (OVC_MAY_WAIT != 0 && answer.z != OVC_NO_LEAF);
     uint word = answer.w | (more ? OVC_SAYS_MORE : 0u);
     if (word != OVC_MISS)
         imageStore(answers, ray, uvec4(word));
     if (more) {
         imageStore(answers, plane + ray, uvec4(answer.x));
         imageStore(answers, 2 * plane + ray, uvec4(answer.y));
-        if (tells_leaf)
+        if (OVC_MAY_WAIT != 0)
             imageStore(answers, 3 * plane + ray, uvec4(answer.z));
     }
 }
@@ -68,9 +66,7 @@ void main() {
     int lanes = int(gl_SubGroupSizeARB);
     int begin = (group * OVC_GROUP_SIZE + lane / lanes * lanes) * OVC_PACKET * turns;
     trace_in_turn(begin, min(begin + lanes * OVC_PACKET * turns, ray_count));
-#elif OVC_TOP_LEVEL
-    trace_once(ray);
 #else
-    give(ray, walk(traveller(ray)));
+    trace_once(ray);
 #endif
 }

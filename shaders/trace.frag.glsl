@@ -7,6 +7,7 @@
 #include "box.glsl"
 #include "children.glsl"
 #include "triangle.glsl"
+#include "times.glsl"
 #if OVC_ANY_HIT && OVC_CERTIFY
 #include "occluder.glsl"
 #else
@@ -14,20 +15,14 @@
 #endif
 #include "pair.glsl"
 #include "traverse.glsl"
-#include "level1.glsl"
 #include "ray.glsl"
+#include "portals.glsl"
 #include "trace.glsl"
-#include "walk.glsl"
 
 layout(location = 0) out uvec4 answer;
 
 void give(int ray, uvec4 words) { answer = words; }
 
 void main() {
-    int ray = ray_at(ivec2(gl_FragCoord.xy));
-#if OVC_TOP_LEVEL
-    trace_once(ray);
-#else
-    give(ray, walk(traveller(ray)));
-#endif
+    trace_once(ray_at(ivec2(gl_FragCoord.xy)));
 }

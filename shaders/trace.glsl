@@ -1,12 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays through the top-level tree, in the frame that all pages share.
+// Rays through the top-level tree.
 
-#if OVC_TOP_LEVEL
 // What the wrapper does with the words of an answer.
 void give(int ray, uvec4 answer);
 
-// The rays from `first` on. A packet has the octant and the axis of its first ray; the host sees to it, and a ray with others is for doubles
-// to decide. Returns whether any of them is a ray.
+#if OVC_PORTALS
+// The ray `ray`, in the frame of the top-level tree. Returns whether it is one.
+bool take_rays(int ray, Tree tree, out Packet packet, out Found found[OVC_PACKET]) {
+    uvec4 asks = ray_texel(ray * OVC_RAY_TEXELS + 4);
+    packet.skip[0] = asks.z;
+    packet.any_hit[0] = OVC_ANY_HIT != 0 || (asks.w & OVC_RAY_ANY_HIT) != 0u;
+    packet.links[0] = no_links();
+#if OVC_MAY_WAIT
+    packet.links[0].done = int(asks.w & OVC_NO_LEAF);
+#endif
+    LocalRay local = scene_ray(ray);
+    found[0] = nothing_found(!local.meets ? OVC_NO_RAY : (local.decidable ? local.t_end : OVC_UNDECIDABLE));
+    set_local_ray(packet, local, tree);
+    packet.first_number = 0u;
+    packet.place.behind_portal = false;
+    packet.place.part = local.times;
+    packet.place.scene = local.times;
+    packet.place.grid = packet.grid[0];
+    packet.place.backward = packet.backward;
+    packet.place.end = found[0].best_hi;
+    measure(packet.place);
+    return local.meets && local.decidable;
+}
+#else
+// The rays from `first` on, in the frame that all pages share. A packet has the octant and the axis of its first ray; the host sees to
+// it, and a ray with others is for doubles to decide. Returns whether any of them is a ray.
 bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACKET]) {
     const int texels = OVC_MAY_WAIT == 0 ? OVC_LOCAL_RAY_TEXELS : OVC_RESUMED_RAY_TEXELS;
     bool any = false;
@@ -32,8 +55,10 @@ bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACK
 #endif
         any = any || t_end >= 0.0;
     }
+    packet.first_number = 0u;
     return any;
 }
+#endif
 
 void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended) {
     for (int k = 0; k < OVC_PACKET; ++k) {
@@ -41,15 +66,29 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended)
 #if OVC_MAY_WAIT
         // What lies beyond the best hit is not waited for.
         int waits = packet.links[k].waits;
-        answer.z = (waits & ~OVC_KEY_LEAF) <= floatBitsToInt(found[k].best_hi) ? uint(waits) : answer.z;
+        float end = found[k].best_hi < 0.0 ? found[k].best_hi : end_of(packet, found[k], k);
+        answer.z = (waits & ~OVC_KEY_LEAF) <= floatBitsToInt(end) ? uint(waits) : answer.z;
 #endif
 #if !OVC_CERTIFY
+        float t = found[k].best_lo;
+#if OVC_PORTALS
+        t = float(moved(t, packet.place.part, packet.place.scene));
+#endif
         if (found[k].prim != OVC_MISS)
-            answer.xy = uvec2(floatBitsToUint(found[k].best_lo), packUnorm2x16(barycentric(found[k])));
+            answer.xy = uvec2(floatBitsToUint(t), packUnorm2x16(barycentric(found[k])));
 #endif
         answer.w = found[k].best_hi == OVC_UNDECIDABLE ? OVC_FLAGGED : answer.w;
         give(first + k, ended ? answer : uvec4(0u, 0u, OVC_NO_LEAF, OVC_CAPPED));
     }
+}
+
+// Traces on for at least a round, until all rays have their answers or as long as `rounds` is less than most_rounds. True: they have.
+bool trace_on(int first, inout Descent d, inout Packet packet, inout Found found[OVC_PACKET], int most_rounds, inout int rounds) {
+    bool ended = run(d, found, packet, 0, most_rounds, rounds);
+#if OVC_PORTALS
+    ended = ended && !enter_portal(first, d, packet, found[0]);
+#endif
+    return ended;
 }
 
 #if !OVC_TURNS
@@ -60,7 +99,11 @@ void trace_once(int ray) {
     Found found[OVC_PACKET];
     int rounds = 0;
     d.done = !take_rays(ray, tree, packet, found);
-    bool ended = run(d, found, packet, 0, OVC_MOST_ROUNDS, rounds);
+    bool ended = trace_on(ray, d, packet, found, OVC_MOST_ROUNDS, rounds);
+#if OVC_PORTALS
+    while (!ended && rounds < OVC_MOST_ROUNDS)
+        ended = trace_on(ray, d, packet, found, OVC_MOST_ROUNDS, rounds);
+#endif
     give_answers(ray, packet, found, ended && !d.lost);
 }
 #else
@@ -83,7 +126,7 @@ void trace_in_turn(int begin, int end) {
     while (ray < end) {
         bool enough = rounds >= OVC_MOST_ROUNDS;
         int own = 0;
-        bool ended = run(d, found, packet, 0, enough ? 1 : OVC_TURN_ROUNDS, own);
+        bool ended = trace_on(ray, d, packet, found, enough ? 1 : OVC_TURN_ROUNDS, own);
         rounds += OVC_TURN_ROUNDS + 1;
         bool ready = ended || enough;
         uint ready_lanes = uint(ballotARB(ready));
@@ -96,5 +139,4 @@ void trace_in_turn(int begin, int end) {
         next += bitCount(ready_lanes) * OVC_PACKET;
     }
 }
-#endif
 #endif

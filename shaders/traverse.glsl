@@ -28,44 +28,47 @@ Unit unit_at(int unit) {
 
 bool is_pair(Unit unit) { return int(unit.w.w) < 0; }
 
-// Where a ray is in the tree. A stack word is a node with children still to come: the unit of the first of its children << 8, and
-// in the lowest eight bits the numbers of those to come, two bits each, the next one lowest, below a 1; 0 is no word.
+// Where a ray is in the tree. A stack word is a node with children still to come: the unit of the first of its children << 7, and
+// in the lowest seven bits the numbers of those to come, two bits each, the next one lowest, below a 1; 0 is no word.
 struct Descent {
-    int unit;   // where it goes next
-    int top;    // the word on top of the stack; 0: the stack is empty
+    int unit;   // where it goes next; under portals 0: back to the top-level tree, and a negative one: behind the portal -unit
+    uint top;   // the word on top of the stack; 0: the stack is empty
     int height; // of the words below `top`, less one, where the stack is an array
-    int stack[OVC_STACK_DEPTH]; // in registers the word below `top` is the first
+    uint stack[OVC_STACK_DEPTH]; // in registers the word below `top` is the first
     bool done;
     bool lost; // the stack was too short: what has been found is not all
 };
+
+// Whether the ray goes on by itself: not to a portal.
+bool goes_on(Descent d) { return OVC_PORTALS == 0 || d.unit >= 0; }
 
 // Goes down to the first of the children; where there is none, and `leave`, to the next of the stack.
 void advance(inout Descent d, int first_child, Children children, bool leave) {
     Way way = way_to(children);
     bool back = leave && !way.down;
-    int word = first_child << 8 | way.others;
+    uint word = uint(first_child << 7 | way.others);
 
-    int rest = (d.top & ~255) | ((d.top >> 2) & 63);
-    d.unit = way.down ? first_child + way.first : (back ? (d.top >> 8) + (d.top & 3) : d.unit);
+    uint rest = (d.top & ~127u) | ((d.top >> 2) & 31u);
+    d.unit = way.down ? first_child + way.first : (back ? int(d.top >> 7) + int(d.top & 3u) : d.unit);
 
-    bool empty = d.top == 0;
+    bool empty = d.top == 0u;
     bool store = way.more && !empty;
-    bool pop = back && (d.top & 0xf0) == 0; // no more than one was to come
-    int below;
+    bool pop = back && (d.top & 0x70u) == 0u; // no more than one was to come
+    uint below;
 #if OVC_STACK_REGISTERS
     // All words move: two selections a word and no comparison.
     below = d.stack[0];
-    d.lost = d.lost || (store && d.stack[OVC_STACK_DEPTH - 1] != 0);
-    int above = d.top;
+    d.lost = d.lost || (store && d.stack[OVC_STACK_DEPTH - 1] != 0u);
+    uint above = d.top;
     for (int i = 0; i < OVC_STACK_DEPTH; ++i) {
-        int own = d.stack[i];
-        int next = i + 1 < OVC_STACK_DEPTH ? d.stack[i + 1] : 0;
+        uint own = d.stack[i];
+        uint next = i + 1 < OVC_STACK_DEPTH ? d.stack[i + 1] : 0u;
         d.stack[i] = store ? above : (pop ? next : own);
         above = own;
     }
 #else
     d.lost = d.lost || (store && d.height >= OVC_STACK_DEPTH - 1);
-    below = 0;
+    below = 0u;
     if (store)
         d.stack[d.height + 1] = d.top;
     if (pop && d.height >= 0)
@@ -76,7 +79,7 @@ void advance(inout Descent d, int first_child, Children children, bool leave) {
     d.done = d.done || (back && empty) || d.lost;
 }
 
-#if OVC_TELL_ACTIVE && OVC_TOP_LEVEL && !OVC_MAY_WAIT
+#if OVC_TELL_ACTIVE && !OVC_MAY_WAIT
 void tell_active(Unit unit, bool here) {
     if (here && unit.w.y != 0u)
         mark_active(int(unit.w.y) - 1);
@@ -96,11 +99,11 @@ Links no_links() { return Links(0, OVC_NO_CHILD); }
 
 #if OVC_MAY_WAIT
 // The children that a ray goes down to from `unit`: none where it is a link that the ray is done with, or to which it does not come.
-Children follow(inout Links links, Unit unit, Stretches s) {
+Children follow(inout Links links, Unit unit, Stretches s, Place place) {
     ivec4 entered = entries(s);
     int first = min(min(entered.x, entered.y), min(entered.z, entered.w));
     bool link = unit.w.y != 0u;
-    int key = (max(first, 0) & ~OVC_KEY_LEAF) | int(unit.w.y);
+    int key = (not_after(place, max(first, 0)) & ~OVC_KEY_LEAF) | int(unit.w.y);
     bool open = link && first != OVC_NO_CHILD && key >= links.done && key < links.waits;
     bool nowhere = int(unit.w.x) == OVC_LEADS_NOWHERE;
     links.waits = open && nowhere ? key : links.waits;
@@ -111,7 +114,7 @@ Children follow(inout Links links, Unit unit, Stretches s) {
     return children_met(link && (!open || nowhere) ? ivec4(OVC_NO_CHILD) : entered);
 }
 #else
-Children follow(inout Links links, Unit unit, Stretches s) { return children_met(s); }
+Children follow(inout Links links, Unit unit, Stretches s, Place place) { return children_met(s); }
 #endif
 
 // Rays that go through a tree together, so that a node is fetched, decoded and sorted once for all of them.
@@ -121,12 +124,14 @@ struct Packet {
     vec3 org[OVC_PACKET]; // by axis
     vec2 shear[OVC_PACKET];
     GridRay grid[OVC_PACKET];
+    uint first_number; // of the triangles of a part: that of its first
     uint skip[OVC_PACKET];
     bool any_hit[OVC_PACKET];
     Links links[OVC_PACKET];
+    Place place;
 };
 
-// Of the page, or of the top-level tree, whose header is the pool's unit `page`.
+// Of the page, or of the top-level tree or a part of it, whose header is the pool's unit `page`.
 struct Tree {
     vec3 grid_middle;
     vec3 grid_cell;
@@ -153,9 +158,9 @@ void start(inout Descent d, Tree tree) {
     d.height = tree.start.y;
 #if OVC_STACK_REGISTERS
     for (int i = 0; i < OVC_STACK_DEPTH; ++i)
-        d.stack[i] = tree.start.z;
+        d.stack[i] = uint(tree.start.z);
 #endif
-    d.top = tree.start.z;
+    d.top = uint(tree.start.z);
     d.done = tree.start.w != 0;
     d.lost = tree.start.w != 0;
 }
@@ -166,13 +171,38 @@ Descent descent(Tree tree) {
     return d;
 }
 
-// The children of the node that any ray of the packet meets. Where not `here` the unit is a pair, whose bits mean nothing as boxes.
+#if OVC_PORTALS
+bvec3 backward_of(Packet packet) {
+    bvec3 here = packet.backward, there = packet.place.backward;
+    bool behind = packet.place.behind_portal;
+    return bvec3(behind ? here.x : there.x, behind ? here.y : there.y, behind ? here.z : there.z);
+}
+GridRay grid_of(Packet packet, int k) {
+    bool behind = packet.place.behind_portal;
+    return GridRay(behind ? packet.grid[k].scale : packet.place.grid.scale, behind ? packet.grid[k].offset : packet.place.grid.offset);
+}
+float end_of(Packet packet, Found found, int k) { return packet.place.behind_portal ? found.best_hi : packet.place.end; }
+
+// A ray is back from a part, where `back`: what it has hit ends it in the top-level tree.
+void leave(inout Place place, Found found, bool back) {
+    float end = greater(place.not_before.x + found.best_hi * place.not_before.y, 0.0);
+    place.end = back && place.behind_portal && has_hit(found) ? lesser(place.end, end) : place.end;
+    place.behind_portal = place.behind_portal && !back;
+}
+#else
+bvec3 backward_of(Packet packet) { return packet.backward; }
+GridRay grid_of(Packet packet, int k) { return packet.grid[k]; }
+float end_of(Packet packet, Found found, int k) { return found.best_hi; }
+#endif
+
+// The children of the node that any ray of the packet meets. Where not `here` the unit is a pair or a header, whose bits mean nothing as
+// boxes.
 Children children_of(Unit node, inout Packet packet, Found found[OVC_PACKET], bool here) {
-    Boxes boxes = boxes_of(node.x, node.y, node.z, packet.backward);
+    Boxes boxes = boxes_of(node.x, node.y, node.z, backward_of(packet));
     Children children = no_children();
     for (int k = 0; k < OVC_PACKET; ++k) {
-        int end = here ? floatBitsToInt(found[k].best_hi) : OVC_NO_END;
-        add(children, follow(packet.links[k], node, stretches(boxes, packet.grid[k], end)));
+        int end = here ? floatBitsToInt(end_of(packet, found[k], k)) : OVC_NO_END;
+        add(children, follow(packet.links[k], node, stretches(boxes, grid_of(packet, k), end), packet.place));
     }
     return children;
 }
@@ -181,7 +211,7 @@ Children children_of(Unit node, inout Packet packet, Found found[OVC_PACKET], bo
 void take_pairs(inout Found found[OVC_PACKET], Unit pair, Packet packet, bool here) {
     for (int k = 0; k < OVC_PACKET; ++k) {
         bool took = take_pair(found[k], pair.x, pair.y, pair.z, pair.w, here && found[k].best_hi >= 0.0,
-                              Line(packet.axes, packet.org[k], packet.shear[k]), packet.skip[k]);
+                              Line(packet.axes, packet.org[k], packet.shear[k]), packet.skip[k], packet.first_number);
         found[k].best_hi = packet.any_hit[k] && took ? OVC_ENOUGH : found[k].best_hi;
     }
 }
@@ -193,38 +223,54 @@ bool all_have_enough(Found found[OVC_PACKET]) {
     return all;
 }
 
+// Below the units of a part lies unit 0, a header, by which a ray comes back.
+bool comes_back(inout Descent d, inout Packet packet, Found found[OVC_PACKET]) {
+#if OVC_PORTALS
+    bool back = d.unit == 0;
+    leave(packet.place, found[0], back);
+    return back;
+#else
+    return false;
+#endif
+}
+
+Unit unit_of(Descent d, int first_unit) { return unit_at(OVC_PORTALS == 0 ? first_unit + d.unit : max(d.unit, 0)); }
+
 void go_round(inout Descent d, inout Found found[OVC_PACKET], inout Packet packet, int first_unit) {
 #if OVC_BRANCHES
-    Unit unit = unit_at(first_unit + d.unit);
+    Unit unit = unit_of(d, first_unit);
     Children children = no_children();
+    bool back = comes_back(d, packet, found);
     if (is_pair(unit)) {
         take_pairs(found, unit, packet, true);
     } else {
         tell_active(unit, true);
-        children = children_of(unit, packet, found, true);
+        children = children_of(unit, packet, found, !back);
     }
-    advance(d, int(unit.w.x), children, true);
+    advance(d, int(unit.w.x), children, goes_on(d));
 #else
-    Unit node = unit_at(first_unit + d.unit);
+    Unit node = unit_of(d, first_unit);
     bool here = !is_pair(node); // a pair waits for the second step
+    bool back = comes_back(d, packet, found);
     tell_active(node, here);
-    advance(d, int(node.w.x), children_of(node, packet, found, here), here);
+    advance(d, int(node.w.x), children_of(node, packet, found, here && !back), here);
 
     // A ray that is done by now is at unit 0, a header, which has neither pairs nor links.
-    Unit unit = unit_at(first_unit + d.unit);
+    Unit unit = unit_of(d, first_unit);
     bool pair = is_pair(unit);
+    back = comes_back(d, packet, found);
     tell_active(unit, !pair);
-    Children children = children_of(unit, packet, found, !pair);
+    Children children = children_of(unit, packet, found, !pair && !back && goes_on(d));
 #if OVC_PACKET > 1
     take_pairs(found, unit, packet, pair);
-    advance(d, int(unit.w.x), children, true);
+    advance(d, int(unit.w.x), children, goes_on(d));
 #else
     // Earlier by so much that its way goes on while pairs are tested: 5 % of the time, which two rays do not gain.
-    advance(d, int(unit.w.x), children, true);
+    advance(d, int(unit.w.x), children, goes_on(d));
     take_pairs(found, unit, packet, pair);
 #endif
 #endif
-    d.done = d.done || all_have_enough(found);
+    d.done = d.done || !goes_on(d) || all_have_enough(found);
 }
 
 // Takes into `found` what the rays may hit, for a round at least, until the end or as long as `rounds` is less than most_rounds.
@@ -249,6 +295,7 @@ bool traverse(inout Found found, int page, vec3 org, Direction direction, uint s
     Descent d = descent(tree);
     Packet packet;
     packet.links[0] = no_links();
+    packet.first_number = 0u;
     packet.backward = lessThan(direction.inv_dir, vec3(0.0));
     packet.axes = direction.axes;
     set_ray(packet, 0, tree, org, direction, skip, any_hit);

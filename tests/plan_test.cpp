@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What plan() tells against what commit then makes: within 10 %, or one leaf or page.
 #include "importers/importer.h"
+#include "kdtree/test_soups.h"
 #include "tests/abi_scene.h"
 #include "tests/real_data.h"
 #include "testscenes/catalog.h"
@@ -117,6 +118,30 @@ TEST_F(Plan, OfPlants) {
 
 TEST_F(Plan, OfDragons) {
     compare_all("dragons-2");
+}
+
+/// It looks at each mesh once, not at each instance of it: 36 million triangles here.
+TEST_F(Plan, OfAThousandInstances) {
+    Scene scene = std::move(*make_test_scene("sphere-5"));
+    Scene trees = std::move(*make_test_scene("terrain-130"));
+    scene.soup.chunks.push_back(std::move(trees.soup.chunks[0]));
+    test::Random random(5);
+    for (int i = 0; i < 1000; ++i) {
+        Chunk chunk = scene.soup.chunks[size_t(i % 2)].unplaced();
+        Placement placement{};
+        for (size_t row = 0; row < 3; ++row) {
+            const dvec3 r = random.point(-1, 1);
+            placement.rows[row] = {r.x, r.y, r.z, 300 * random.point(-1, 1).x};
+        }
+        chunk.place(placement);
+        scene.soup.chunks.push_back(std::move(chunk));
+    }
+    auto config = sized<ovc_scene_config>();
+    const ovc_statistics made = compare(scene.soup, config);
+    EXPECT_EQ(made.unique_triangles, 20480u + 33800u);
+    EXPECT_EQ(made.instances, 1002u);
+    config.gpu_memory_bytes = 4 << 20;
+    compare(scene.soup, config);
 }
 
 TEST_F(Plan, OfTheRealDragonAndKitchen) {

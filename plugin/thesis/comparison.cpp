@@ -135,7 +135,7 @@ private:
         }
         bool decidable = true;
         PreparedRay p = prepare(query_, first_ + i);
-        if (c_.scene_.twins.stands_for_others(p.skip))
+        if (c_.scene_.stands_for_others(p.skip))
             p.skip = {}; // the others are to be found
         if (c_.runner_)
             rays_[i] = frame_ray(c_.whole(), p, decidable);
@@ -190,15 +190,17 @@ private:
     Hit fast_hit(const PreparedRay& p, const FrameAnswer& answer) const {
         const Hit hit{world_t(c_.whole(), p, answer.t()), answer.u(), answer.v(),
                       c_.whole().triangles[answer.prim]};
-        return c_.scene_.twins.seen(c_.scene_.soup, hit, p.skip);
+        return c_.scene_.seen(hit, p.skip);
     }
 
     /// Builds the page the first time; not within the loop over rays, whose threads would wait for
     /// it.
     void retrace() {
         BuiltScene& scene = c_.scene_;
-        if (scene.pages.empty())
+        if (scene.pages.empty()) {
             scene.pages.push_back(build_page(scene.soup, scene.numbers, c_.whole()));
+            scene.top = build_top_level(scene.pages, 1);
+        }
         each_ray([&](size_t i) {
             if (retrace_[i])
                 query_.set(first_ + i,

@@ -10,6 +10,9 @@
 #include <cassert>
 
 namespace ovc::thesis {
+
+/// Fast precision: of a leaf, by how much a hit may lie beyond the cell; 16 roundings.
+static constexpr double kFastSlack = 0x1p-20;
 namespace {
 
 constexpr size_t kGrain = 256; // rays a task
@@ -186,12 +189,12 @@ void Flights::enter_fast(Flight& flight, const FrameAnswer& answer) {
     const Leaf& leaf = s_.built.level1.leaves[flight.leaf];
     const PreparedRay p(flight.ray, flight.skip);
     const double t = world_t(leaf, p, answer.t());
-    const Hit hit = s_.built.twins.seen(
-        s_.built.soup, {t, answer.u(), answer.v(), s_.built.numbers.id(answer.prim)}, flight.skip);
+    const Hit hit =
+        s_.built.seen({t, answer.u(), answer.v(), s_.built.numbers.id(answer.prim)}, flight.skip);
     if (hit.nearer_than(flight.hit))
         flight.hit = hit;
     // t is as good as float is: what lies on the cell's last plane may come out behind it.
-    const double slack = OVC_FAST_SLACK / leaf.frame.scale;
+    const double slack = kFastSlack / leaf.frame.scale;
     end_at(flight, p, flight.hit.t + slack / std::abs(p.ray.dir[p.kz]), 2 * slack);
 }
 

@@ -57,8 +57,11 @@ Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint
         const size_t largest = build_pages(scene, progress);
         scene.statistics.seconds_level2 += watch.seconds();
         const uint64_t bytes = scene.built.pages[largest].bytes();
-        if (bytes <= page_bytes)
+        if (bytes <= page_bytes) {
+            scene.built.top = build_top_level(scene.built.level1, scene.built.pages,
+                                              scene.built.pages.size()); // for the exact fallback
             return Done{};
+        }
         if (most == 1)
             return over_budget(
                 fmt::format("a page of one triangle does not fit into {} bytes", page_bytes));

@@ -8,6 +8,7 @@
 #include "box.glsl"
 #include "children.glsl"
 #include "triangle.glsl"
+#include "times.glsl"
 #include "found.glsl"
 #include "pair.glsl"
 #include "traverse.glsl"

@@ -6,6 +6,7 @@
 #include "scene_texels.glsl"
 #include "box.glsl"
 #include "triangle.glsl"
+#include "times.glsl"
 #include "found.glsl"
 #include "single_triangle.glsl"
 #include "frame_answer.glsl"

@@ -82,7 +82,8 @@ class ovc_statistics(Sized):
                 ("queued_rays", c.c_uint64), ("longest_queue", c.c_uint64), ("from_saved", c.c_uint64),
                 ("seconds_pass", c.c_double), ("gpu_bytes", c.c_uint64), ("soup_bytes", c.c_uint64),
                 ("single_rays", c.c_uint64), ("gathered_rays", c.c_uint64),
-                ("stragglers", c.c_uint64)]
+                ("stragglers", c.c_uint64), ("unique_triangles", c.c_uint64), ("instances", c.c_uint64),
+                ("top_level_bytes", c.c_uint64)]
 
 
 def _call(*arguments: type) -> type:

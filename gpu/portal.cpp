@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Portals as texels, and rays through them in double.
+#include "gpu/portal.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace ovc {
+
+double Portal::stretch() const {
+    double most = 0;
+    for (const dvec3& row : rows)
+        most = std::max(most, std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
+    return most;
+}
+
+PreparedRay Portal::local_ray(const PreparedRay& p) const {
+    PreparedRay local = p;
+    local.ray.org = to_local(p.ray.org);
+    local.ray.dir = to_local_direction(p.ray.dir);
+    local.inv_dir = 1.0 / local.ray.dir;
+    return local;
+}
+
+Portal portal_into(const Frame& frame, const Box& box) {
+    Portal portal;
+    portal.origin = frame.origin;
+    for (int axis = 0; axis < 3; ++axis)
+        portal.rows[size_t(axis)][axis] = frame.scale;
+    portal.box = {frame.to_local(box.lo), frame.to_local(box.hi)};
+    portal.bounds = box;
+    return portal;
+}
+
+std::vector<uvec4> pack_portals(std::span<const Portal> portals) {
+    std::vector<uvec4> texels;
+    for (const Portal& portal : portals) {
+        std::array<double, 18> numbers{};
+        auto next = numbers.begin();
+        for (const dvec3& v : {portal.origin, portal.rows[0], portal.rows[1], portal.rows[2],
+                               portal.box.lo, portal.box.hi})
+            for (int axis = 0; axis < 3; ++axis)
+                *next++ = v[axis];
+        for (size_t i = 0; i < numbers.size(); i += 2) {
+            const auto a = std::bit_cast<uint64_t>(numbers[i]);
+            const auto b = std::bit_cast<uint64_t>(numbers[i + 1]);
+            texels.emplace_back(uint32_t(a), uint32_t(a >> 32), uint32_t(b), uint32_t(b >> 32));
+        }
+        texels.emplace_back(portal.tree, portal.first_number, 0, 0);
+    }
+    return texels;
+}
+
+} // namespace ovc

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Portals: where a ray comes to a part in another frame, in doubles, from the world's (docs/numerics.md, "Frames").
+
+#if OVC_PORTALS
+#if OVC_BUFFER_IMAGES
+layout(rgba32ui, binding = OVC_BINDING_PORTALS) uniform readonly restrict uimageBuffer portals;
+uvec4 portal_texel(int i) { return imageLoad(portals, i); }
+#else
+layout(binding = OVC_BINDING_PORTALS) uniform usamplerBuffer portals;
+uvec4 portal_texel(int i) { return texelFetch(portals, i); }
+#endif
+
+dvec2 doubles_of(uvec4 words) { return dvec2(packDouble2x32(words.xy), packDouble2x32(words.zw)); }
+
+// The points org + t dir, t_min <= t <= t_max, in the world.
+struct WorldRay {
+    dvec3 org;
+    dvec3 dir;
+    double t_min;
+    double t_max;
+};
+
+WorldRay world_ray(int ray) {
+    int texel = ray * OVC_RAY_TEXELS;
+    dvec2 a = doubles_of(ray_texel(texel)), b = doubles_of(ray_texel(texel + 1));
+    dvec2 c = doubles_of(ray_texel(texel + 2)), d = doubles_of(ray_texel(texel + 3));
+    return WorldRay(dvec3(a, b.x), dvec3(c, d.x), b.y, d.y);
+}
+
+// The map from the world to the frame behind a portal, and what lies there (layout.h).
+struct Portal {
+    dvec3 origin; // in the world; 0 in the frame
+    dvec3 rows[3];
+    dvec3 lo; // the box of what lies behind it, in the frame
+    dvec3 hi;
+    int tree; // the unit of its header
+    uint first_number;
+};
+
+Portal portal_at(int number) {
+    int texel = number * OVC_PORTAL_TEXELS;
+    dvec2 d[9];
+    for (int i = 0; i < 9; ++i)
+        d[i] = doubles_of(portal_texel(texel + i));
+    uvec4 last = portal_texel(texel + 9);
+    return Portal(dvec3(d[0], d[1].x), dvec3[3](dvec3(d[1].y, d[2]), dvec3(d[3], d[4].x), dvec3(d[4].y, d[5])),
+                  dvec3(d[6], d[7].x), dvec3(d[7].y, d[8]), int(last.x), last.y);
+}
+
+dvec3 times(dvec3 rows[3], dvec3 v) {
+    precise dvec3 result = dvec3(rows[0].x * v.x + rows[0].y * v.y + rows[0].z * v.z,
+                                 rows[1].x * v.x + rows[1].y * v.y + rows[1].z * v.z,
+                                 rows[2].x * v.x + rows[2].y * v.y + rows[2].z * v.z);
+    return result;
+}
+double largest(dvec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
+
+// The t's of org + t dir, t_min <= t <= t_max, inside the box; empty where x > y.
+dvec2 inside_box(dvec3 org, dvec3 dir, dvec3 lo, dvec3 hi, double t_min, double t_max) {
+    dvec2 inside = dvec2(t_min, t_max);
+    bool outside = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        bool still = dir[axis] == 0.0;
+        double inv_dir = 1.0 / (still ? 1.0 : dir[axis]);
+        precise double a = (lo[axis] - org[axis]) * inv_dir, b = (hi[axis] - org[axis]) * inv_dir;
+        outside = outside || (still && (org[axis] < lo[axis] || org[axis] > hi[axis]));
+        inside = still ? inside : dvec2(max(inside.x, min(a, b)), min(inside.y, max(a, b)));
+    }
+    return outside ? dvec2(1.0, 0.0) : inside;
+}
+
+// Rounded to nearest, whatever the driver's conversion does.
+float nearest_float(double d) {
+    precise float rounded = float(d);
+    precise float rest = float(d - double(rounded));
+    precise float result = rounded + rest;
+    return result;
+}
+vec3 nearest_floats(dvec3 d) { return vec3(nearest_float(d.x), nearest_float(d.y), nearest_float(d.z)); }
+
+// A ray in a frame: what the traversal takes, and how to come back.
+struct LocalRay {
+    vec3 org; // where it enters the box
+    vec3 dir; // the largest component 1 or -1
+    float t_end;
+    bool meets;     // the box
+    bool decidable; // doubles can say where
+    Times times;
+};
+
+LocalRay local_ray(WorldRay ray, Portal portal) {
+    precise dvec3 from_origin = ray.org - portal.origin;
+    dvec3 org = times(portal.rows, from_origin);
+    dvec3 dir = times(portal.rows, ray.dir);
+    dvec2 inside = inside_box(org, dir, portal.lo, portal.hi, ray.t_min, ray.t_max);
+    double speed = largest(dir);
+    LocalRay local;
+    local.meets = inside.x <= inside.y && ray.t_min <= ray.t_max;
+    local.times = Times(inside.x, speed);
+    precise dvec3 at = org + dir * inside.x;
+    local.org = nearest_floats(at);
+    precise dvec3 unit = dir / speed;
+    // Exactly 1 or -1, which the basis builds on and a driver's division need not give.
+    vec3 signs = mix(vec3(1.0), vec3(-1.0), lessThan(dir, dvec3(0.0)));
+    local.dir = mix(nearest_floats(unit), signs, equal(abs(dir), dvec3(speed)));
+    double length = (inside.y - inside.x) * speed;
+    local.t_end = uintBitsToFloat(floatBitsToUint(float(length)) + 2u); // up, past what the conversion may have lost
+    dvec3 sizes[3] = dvec3[3](abs(portal.rows[0]), abs(portal.rows[1]), abs(portal.rows[2]));
+    double reach = max(largest(times(sizes, abs(from_origin))), largest(times(sizes, abs(ray.dir))) * abs(inside.x));
+    // Written so that a NaN is not decidable either.
+    local.decidable = reach <= double(OVC_MOST_LEAF_SIZES) && length <= 1.0e30 && speed >= 1.0e-300 && speed <= 1.0e300;
+    return local;
+}
+
+// Puts a word below those of the part that the ray comes to. It leads to unit 0.
+void push_mark(inout Descent d) {
+    uint below = d.top;
+    d.top = 4u;
+    if (below != 0u) {
+#if OVC_STACK_REGISTERS
+        d.lost = d.lost || d.stack[OVC_STACK_DEPTH - 1] != 0u;
+        for (int i = OVC_STACK_DEPTH - 1; i > 0; --i)
+            d.stack[i] = d.stack[i - 1];
+        d.stack[0] = below;
+#else
+        d.lost = d.lost || d.height >= OVC_STACK_DEPTH - 1;
+        if (!d.lost) {
+            ++d.height;
+            d.stack[d.height] = below;
+        }
+#endif
+    }
+}
+
+void set_local_ray(inout Packet packet, LocalRay local, Tree tree) {
+    packet.backward = lessThan(local.dir, vec3(0.0));
+    packet.axes = axes_of(local.dir);
+    set_ray(packet, 0, tree, local.org, direction_of(local.dir, packet.axes), packet.skip[0], packet.any_hit[0]);
+}
+
+// The ray in the frame of the top-level tree, whose portal is the first.
+LocalRay scene_ray(int ray) { return local_ray(world_ray(ray), portal_at(0)); }
+
+// Takes a ray that has come to a portal behind it. False: there was none, or it goes no farther.
+bool enter_portal(int ray, inout Descent d, inout Packet packet, inout Found found) {
+    if (d.unit >= 0 || d.lost || found.best_hi < 0.0)
+        return false;
+    Portal portal = portal_at(-d.unit);
+    LocalRay local = local_ray(world_ray(ray), portal);
+    Found there = in_times(found, packet.place.part, local.times, local.t_end);
+    bool decidable = local.decidable && there.best_hi != OVC_UNDECIDABLE;
+    d.unit = 0; // where the part has nothing for it, to the next of the stack
+    if (local.meets && !decidable) {
+        found.best_hi = OVC_UNDECIDABLE;
+    } else if (local.meets && there.best_hi >= 0.0) { // else what it hits comes before
+        Tree tree = tree_of(portal.tree, 0);
+        found = there;
+        packet.place.part = local.times;
+        packet.place.behind_portal = true;
+        packet.first_number = portal.first_number;
+        measure(packet.place);
+        set_local_ray(packet, local, tree);
+        push_mark(d);
+        d.unit = tree.start.x;
+    }
+    d.done = d.lost || found.best_hi < 0.0;
+    return !d.done;
+}
+#endif
