@@ -34,7 +34,8 @@ void SceneArguments::add_to(CLI::App& app, const char* name) {
                    "For .pbrt: which world of a file that has several; default: 1")
         ->type_name("N");
     app.add_option("--max-triangles", max_triangles,
-                   "For .pbrt and .pov: refuse a scene of more, instances expanded; default: "
+                   "For .pbrt and .pov: refuse a scene of more, those of instances that share a "
+                   "mesh counted once; default: "
                    "100000000")
         ->type_name("N");
     app.add_option("--tolerance", tolerance,

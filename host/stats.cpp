@@ -136,6 +136,9 @@ std::string stats_json(const RenderStats& s) {
         {"leaf_references", t.leaf_references},
         {"level2_bytes", t.level2_bytes},
         {"largest_page_bytes", t.largest_page_bytes},
+        {"unique_triangles", t.unique_triangles},
+        {"instances", t.instances},
+        {"top_level_bytes", t.top_level_bytes},
         {"gpu_budget_bytes", t.gpu_budget_bytes},
         {"gpu_peak_bytes", t.gpu_peak_bytes},
         {"host_peak_bytes", host_peak_bytes()},
@@ -171,6 +174,10 @@ static std::string gpu_lines(const ovc_statistics& t) {
     std::string text =
         fmt::format("  leaves     {}, {} of level 2, {} the largest page\n", human_count(t.leaves),
                     human_bytes(t.level2_bytes), human_bytes(t.largest_page_bytes));
+    if (t.instances > 0)
+        text += fmt::format("  instances  {} share pages of {} triangles, {} to find them by\n",
+                            human_count(t.instances), human_count(t.unique_triangles),
+                            human_bytes(t.top_level_bytes));
     text += fmt::format("  GPU        {} at most, of a budget of {}\n",
                         human_bytes(t.gpu_peak_bytes), human_bytes(t.gpu_budget_bytes));
     text += fmt::format("  moved      {} in {} pages, {} passes\n", human_bytes(t.bytes_in),

@@ -12,6 +12,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
 
 namespace ovc {
 
@@ -20,22 +23,60 @@ namespace {
 constexpr std::string_view kKind = "ovc scene";
 /// To be raised with every change of scene_fields.h, and where importers make another scene of the
 /// same file.
-constexpr uint32_t kVersion = 4;
+constexpr uint32_t kVersion = 5;
 
 /// What of a mesh lies in other parts.
 struct MeshExtent {
     dvec3 origin{0};
-    uint64_t corners = 0;
+    uint64_t corners = 0; // its own, in the part "corners"
     uint64_t normals = 0;
+    uint64_t corners_from = kOwnCorners; // else those of this mesh, an earlier one
+    uint64_t is_placed = 0;
+    Placement placement{};
+
+    static constexpr uint64_t kOwnCorners = ~uint64_t(0);
 };
-static_assert(sizeof(MeshExtent) == 40);
+static_assert(sizeof(MeshExtent) == 152);
 
 std::vector<MeshExtent> extents_of(const Scene& scene) {
     std::vector<MeshExtent> extents;
-    for (size_t m = 0; m < scene.meshes.size(); ++m)
-        extents.push_back({scene.soup.chunks[m].origin(), scene.soup.chunks[m].corners().size(),
-                           scene.meshes[m].normals.size()});
+    std::map<const vec3*, size_t> first_with; // corners, by where they lie
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        const Chunk& chunk = scene.soup.chunks[m];
+        MeshExtent extent{chunk.origin(), chunk.corners().size(), scene.meshes[m].normals.size()};
+        const auto [first, is_new] = first_with.try_emplace(chunk.corners().data(), m);
+        if (!is_new && chunk.is_of_same_mesh(scene.soup.chunks[first->second])) {
+            extent.corners = 0;
+            extent.corners_from = first->second;
+        }
+        if (chunk.placement()) {
+            extent.is_placed = 1;
+            extent.placement = *chunk.placement();
+        }
+        extents.push_back(extent);
+    }
     return extents;
+}
+
+/// A mesh's chunk; none where the extent says nothing that can be.
+std::optional<Chunk> chunk_of(const MeshExtent& extent, std::span<const vec3> corners,
+                              const Soup& before) {
+    if (extent.corners > corners.size() || extent.corners % 3 ||
+        extent.corners / 3 > kMostTriangles || !is_finite(extent.origin))
+        return std::nullopt;
+    const bool has_own = extent.corners_from == MeshExtent::kOwnCorners;
+    if (!has_own && (extent.corners > 0 || extent.corners_from >= before.chunks.size()))
+        return std::nullopt;
+    Chunk chunk = has_own ? Chunk::borrowing(extent.origin, corners.first(extent.corners))
+                          : before.chunks[extent.corners_from].unplaced();
+    if (extent.is_placed == 0)
+        return chunk;
+    for (const auto& row : extent.placement.rows)
+        for (const double number : row)
+            if (!std::isfinite(number))
+                return std::nullopt;
+    chunk.place(extent.placement);
+    return chunk;
 }
 
 /// Gives the meshes their corners, in place, and normals; false where they do not come out even.
@@ -45,11 +86,10 @@ bool share_out(std::span<const MeshExtent> extents, std::span<const vec3> corner
         return false;
     for (size_t m = 0; m < extents.size(); ++m) {
         const MeshExtent& extent = extents[m];
-        if (extent.corners > corners.size() || extent.corners % 3 ||
-            extent.corners / 3 > kMostTriangles || extent.normals > normals.size() ||
-            !is_finite(extent.origin))
+        std::optional<Chunk> chunk = chunk_of(extent, corners, scene.soup);
+        if (!chunk || extent.normals > normals.size())
             return false;
-        scene.soup.chunks.push_back(Chunk::borrowing(extent.origin, corners.first(extent.corners)));
+        scene.soup.chunks.push_back(std::move(*chunk));
         corners = corners.subspan(extent.corners);
         scene.meshes[m].normals.assign(normals.begin(),
                                        normals.begin() + ptrdiff_t(extent.normals));
@@ -119,10 +159,12 @@ Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
     fields(scene, scene.meshes, from.request, from.files, from.warnings);
     ArchiveWriter writer(out->sink(), kKind, kVersion);
     writer.part<std::byte>("fields", fields.bytes());
-    writer.part<MeshExtent>("extents", extents_of(scene));
+    const std::vector<MeshExtent> extents = extents_of(scene);
+    writer.part<MeshExtent>("extents", extents);
     writer.begin("corners");
-    for (const Chunk& chunk : scene.soup.chunks)
-        writer.write(bytes_of(chunk.corners()));
+    for (size_t m = 0; m < extents.size(); ++m)
+        if (extents[m].corners > 0)
+            writer.write(bytes_of(scene.soup.chunks[m].corners()));
     writer.begin("normals");
     for (const MeshInfo& mesh : scene.meshes)
         writer.write(bytes_of(std::span<const vec3>(mesh.normals)));
@@ -144,10 +186,11 @@ uint64_t checksum_of(const Scene& scene) {
     fields(scene, scene.meshes);
     Checksum sum;
     sum.add(fields.bytes());
+    const std::vector<MeshExtent> extents = extents_of(scene);
+    sum.add(bytes_of(std::span<const MeshExtent>(extents)));
     for (size_t m = 0; m < scene.meshes.size(); ++m) {
-        for (int axis = 0; axis < 3; ++axis)
-            sum.add_value(scene.soup.chunks[m].origin()[axis]);
-        sum.add(bytes_of(scene.soup.chunks[m].corners()));
+        if (extents[m].corners > 0)
+            sum.add(bytes_of(scene.soup.chunks[m].corners()));
         sum.add(bytes_of(std::span<const vec3>(scene.meshes[m].normals)));
     }
     return sum.value();

@@ -19,6 +19,7 @@ Scene make_sphere_scene(uint32_t level);
 Scene make_knot();
 Scene make_soup(uint32_t thousands);
 Scene make_city();
+Scene make_fractal();
 Scene make_mirrors();
 Scene make_glass();
 Scene make_box();

@@ -6,6 +6,7 @@
 #include "importers/origin.h"
 
 #include <algorithm>
+#include <array>
 
 namespace ovc::pbrt {
 
@@ -22,6 +23,9 @@ struct Run {
     bool has_normals = false;
     uint64_t last_size = 0;        // triangles of the last shape
     uint32_t normals_from = kNone; // the first mesh made of it, where the normals are
+    /// The first meshes made of it, whose corners other instances borrow: as the file has it, and
+    /// with its triangles turned round, for places that mirror.
+    std::array<uint32_t, 2> corners_from{kNone, kNone};
     uint64_t normals_left_out = 0, texture_coordinates_left_out = 0; // as in MeshInfo
 
     void tell_left_out(MeshInfo& mesh) const {
@@ -122,6 +126,11 @@ struct Placement {
     dmat4 place;
 };
 
+/// Whether it is a matrix and a shift, as an instance's transform is.
+bool is_affine(const dmat4& m) {
+    return m[0].w == 0 && m[1].w == 0 && m[2].w == 0 && m[3].w == 1;
+}
+
 /// All instances in all instances, outermost first.
 std::vector<Placement> placements_of(const World& world, const Census& census) {
     std::vector<Placement> found;
@@ -147,10 +156,12 @@ size_t nth_corner(size_t triangle, size_t i, bool flipped) {
     return 3 * triangle + (flipped && i > 0 ? 3 - i : i);
 }
 
-/// to: three a triangle, from the run's first one on.
-void write_corners(const Shape& shape, const dmat4& place, const Frame& frame, vec3* to) {
+/// to: three a triangle, from the run's first one on. mirrored_place: where the corners go from
+/// there, triangles are turned round.
+void write_corners(const Shape& shape, const dmat4& place, const Frame& frame, bool mirrored_place,
+                   vec3* to) {
     const dmat4 m = place * shape.to_object;
-    const bool mirrored = swaps_handedness(m);
+    const bool mirrored = swaps_handedness(m) != mirrored_place;
     parallel_for(shape.mesh.size(), 1024, [&](size_t first, size_t last) {
         for (size_t t = first; t < last; ++t) {
             const bool flipped = is_flipped(shape, t) != mirrored;
@@ -193,11 +204,11 @@ std::vector<vec3> normals_of(const Object& object, const Run& run, bool mirrored
 }
 
 std::vector<vec3> corners_of(const Object& object, const Run& run, const dmat4& place,
-                             const Frame& frame) {
+                             const Frame& frame, bool mirrored_place = false) {
     std::vector<vec3> corners(size_t(run.triangles) * 3);
     vec3* to = corners.data();
     for (size_t i = run.first; i < run.last; ++i) {
-        write_corners(object.shapes[i], place, frame, to);
+        write_corners(object.shapes[i], place, frame, mirrored_place, to);
         to += 3 * object.shapes[i].mesh.size();
     }
     return corners;
@@ -216,7 +227,8 @@ void add_top(Object& top, const Frame& frame, Scene& scene) {
         std::vector<vec3> corners;
         Mesh& first = top.shapes[run.first].mesh;
         if (run.last == run.first + 1 && !first.is_indexed()) {
-            write_corners(top.shapes[run.first], dmat4(1), frame, first.corners.data());
+            write_corners(top.shapes[run.first], dmat4(1), frame, /* mirrored_place= */ false,
+                          first.corners.data());
             corners = std::move(first.corners);
         } else {
             corners = corners_of(top, run, dmat4(1), frame);
@@ -229,8 +241,24 @@ void add_top(Object& top, const Frame& frame, Scene& scene) {
     }
 }
 
+/// The run's corners in the object's own coordinates, then placed.
+Chunk placed_chunk(const Object& object, const Run& run, const Placement& placement,
+                   const Frame& frame, bool mirrored, const Scene& scene) {
+    const uint32_t from = run.corners_from[mirrored];
+    Chunk chunk = from != kNone ? scene.soup.chunks[from].unplaced()
+                                : Chunk::owning(frame.origin,
+                                                corners_of(object, run, dmat4(1), frame, mirrored));
+    ovc::Placement rows{};
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            rows.rows[size_t(row)][size_t(column)] = placement.place[column][row];
+    chunk.place(rows);
+    return chunk;
+}
+
+/// frame: of the corners; of the object where they are shared, else of the world.
 void add_instance(const Object& object, std::vector<Run>& runs, const Placement& placement,
-                  const Frame& frame, Scene& scene) {
+                  const Frame& frame, bool shares_corners, Scene& scene) {
     const bool mirrored = swaps_handedness(placement.place);
     dmat3 turn = normal_matrix(placement.place);
     const double largest =
@@ -239,10 +267,15 @@ void add_instance(const Object& object, std::vector<Run>& runs, const Placement&
     turn = largest > 0 && largest < 1e300 ? turn / largest : dmat3(1);
     for (Run& run : runs) {
         const bool shares = run.has_normals && !mirrored && run.normals_from != kNone;
-        const uint32_t mesh = scene.add_mesh(
-            name_of(object, run), run.material,
-            Chunk::owning(frame.origin, corners_of(object, run, placement.place, frame)),
-            shares ? std::vector<vec3>() : normals_of(object, run, mirrored));
+        Chunk chunk =
+            shares_corners
+                ? placed_chunk(object, run, placement, frame, mirrored, scene)
+                : Chunk::owning(frame.origin, corners_of(object, run, placement.place, frame));
+        const uint32_t mesh =
+            scene.add_mesh(name_of(object, run), run.material, std::move(chunk),
+                           shares ? std::vector<vec3>() : normals_of(object, run, mirrored));
+        if (run.corners_from[mirrored] == kNone)
+            run.corners_from[mirrored] = mesh;
         run.tell_left_out(scene.meshes[mesh]);
         if (!run.has_normals)
             continue;
@@ -270,9 +303,14 @@ void assemble(World world, const Census& census, Scene& scene) {
     const Frame common{chunk_origin(bounds, kFar)};
 
     add_top(world.top, common, scene);
-    for (const Placement& p : placements)
+    for (const Placement& p : placements) {
+        const Box& box = boxes[p.object];
+        const bool shares_corners = census.shared[p.object] && is_affine(p.place);
         add_instance(world.objects[p.object], runs[p.object], p,
-                     frame_of(boxes[p.object], p.place, common.origin), scene);
+                     shares_corners ? Frame{chunk_origin(box, kFar)}
+                                    : frame_of(box, p.place, common.origin),
+                     shares_corners, scene);
+    }
 }
 
 } // namespace ovc::pbrt
