@@ -23,6 +23,9 @@ constexpr uint32_t kMostBlocksInSoftware = 512; // llvmpipe clears what it alloc
 // Each word is a register, and 1 % of the time; of a million rays at the Stanford dragon thirty
 // want more (docs/decisions/0012).
 constexpr uint32_t kMostStackWordsInSoftware = 8;
+/// Mesa unrolls loops of so many rounds, and of a stack in registers that is longer llvmpipe (22.3)
+/// loses words without a trace.
+constexpr uint32_t kMaxWordsInRegisters = 32;
 constexpr size_t kMostLostShare = 256; // of rays, one in so many; else kernels go on longer
 // By turns: the most rays of a lane on average, as long as each thread has some groups.
 constexpr size_t kLaneRays = 128;
@@ -242,7 +245,7 @@ ShaderConfig Tracer::shader_config() const {
     config.tell_active = active_buffer_.has_value();
     config.loose_pairs = std::ranges::any_of(page_data_, &Page::has_loose_pairs);
     config.stack_depth = stack_words_;
-    config.stack_registers = software_;
+    config.stack_registers = software_ && stack_words_ <= kMaxWordsInRegisters;
     config.branches = !software_;
     config.deal_groups = software_;
     config.buffer_images = software_;

@@ -114,22 +114,23 @@ LocalRay local_ray(WorldRay ray, Portal portal) {
 
 // Puts a word below those of the part that the ray comes to. It leads to unit 0.
 void push_mark(inout Descent d) {
-    uint below = d.top;
-    d.top = 4u;
-    if (below != 0u) {
+    bool store = d.top != 0u;
 #if OVC_STACK_REGISTERS
-        d.lost = d.lost || d.stack[OVC_STACK_DEPTH - 1] != 0u;
-        for (int i = OVC_STACK_DEPTH - 1; i > 0; --i)
-            d.stack[i] = d.stack[i - 1];
-        d.stack[0] = below;
-#else
-        d.lost = d.lost || d.height >= OVC_STACK_DEPTH - 1;
-        if (!d.lost) {
-            ++d.height;
-            d.stack[d.height] = below;
-        }
-#endif
+    d.lost = d.lost || (store && d.stack[OVC_STACK_DEPTH - 1] != 0u);
+    uint above = d.top;
+    for (int i = 0; i < OVC_STACK_DEPTH; ++i) {
+        uint own = d.stack[i];
+        d.stack[i] = store ? above : own;
+        above = own;
     }
+#else
+    d.lost = d.lost || (store && d.height >= OVC_STACK_DEPTH - 1);
+    if (store && !d.lost) {
+        ++d.height;
+        d.stack[d.height] = d.top;
+    }
+#endif
+    d.top = 4u;
 }
 
 void set_local_ray(inout Packet packet, LocalRay local, Tree tree) {

@@ -473,7 +473,8 @@ TEST_F(Instances, SharePagesAndAnswerAlike) {
     const double seconds = asked ? std::strtod(asked, nullptr) : 8;
     const Stopwatch watch;
     uint64_t rays_asked = 0, shared = 0;
-    for (uint64_t seed = 0; seed < 6 || watch.seconds() < seconds; ++seed) {
+    for (uint64_t round = 0; round < 6 || watch.seconds() < seconds; ++round) {
+        const uint64_t seed = round == 0 ? 360 : round - 1; // 360: a stack of 36 words
         SCOPED_TRACE(seed);
         test::Random random(seed);
         config.leaf_triangles = random.below(3) ? 0 : 40;
