@@ -294,6 +294,8 @@ void add_benchmarks(std::vector<Claim>& claims) {
               "python3 host/bench/doubles.py");
     Section(claims, kBenchmarks, "Far-reaching triangles")
         .held("cannot hold both,", "doubles settle what it leaves", "ctest -R Stability");
+    Section(claims, kBenchmarks, "Instances")
+        .held("The pictures have", "the same pixels", "ctest -R Instances");
     Section(claims, kBenchmarks, "Single rays")
         .held("intersect1, 256 threads", "0.81", "single_rays_cost DRAGON --threads 256");
     Section(claims, kBenchmarks, "The plan")
