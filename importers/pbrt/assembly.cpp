@@ -274,7 +274,7 @@ void add_instance(const Object& object, std::vector<Run>& runs, const Placement&
         const uint32_t mesh =
             scene.add_mesh(name_of(object, run), run.material, std::move(chunk),
                            shares ? std::vector<vec3>() : normals_of(object, run, mirrored));
-        if (run.corners_from[mirrored] == kNone)
+        if (shares_corners && run.corners_from[mirrored] == kNone)
             run.corners_from[mirrored] = mesh;
         run.tell_left_out(scene.meshes[mesh]);
         if (!run.has_normals)

@@ -492,6 +492,26 @@ TEST(Pbrt, FarInstancesKeepTheirPrecisionAndTheirSeams) {
     }
 }
 
+/// What a transform is not affine for is expanded; what comes after it has its own corners still.
+TEST(Pbrt, AnInstanceThatIsExpandedLendsNobodyItsCorners) {
+    const TestFolder folder;
+    std::string mesh =
+        "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 "
+        "0 1 0]\n";
+    std::string object = "ObjectBegin \"a\"\n";
+    for (int i = 0; i < 64; ++i)
+        object += mesh;
+    object += "ObjectEnd\n";
+    const std::string projected = "AttributeBegin Transform [1 0 0 0  0 1 0 0  0 0 1 1  0 0 0 1] "
+                                  "ObjectInstance \"a\" AttributeEnd\n";
+    const std::string moved = "Translate 0 0 5 ObjectInstance \"a\" Translate 0 0 5 "
+                              "ObjectInstance \"a\"";
+    const auto found = triangles(folder, object + projected + moved);
+    ASSERT_EQ(found.size(), 3 * 64u);
+    EXPECT_EQ(found[64][1], dvec3(1, 0, 5));
+    EXPECT_EQ(found[128][2], dvec3(0, 1, 10));
+}
+
 TEST(Pbrt, NormalsFollowInstances) {
     const TestFolder folder;
     const std::string mesh =
