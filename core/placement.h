@@ -5,7 +5,9 @@
 #include "core/vec.h"
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <optional>
 
 namespace ovc {
 
@@ -33,6 +35,29 @@ inline Placement then(const Placement& first, const Placement& second) {
                 both.rows[i][j] += second.rows[i][3];
         }
     return both;
+}
+
+inline constexpr Placement kUnplaced{{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
+
+/// null: where a mesh lies by itself.
+inline const Placement& or_unplaced(const Placement* placement) {
+    return placement ? *placement : kUnplaced;
+}
+
+/// The rows of the inverse of the matrix, without its shift; none where doubles cannot tell it.
+inline std::optional<std::array<dvec3, 3>> inverse_matrix(const Placement& placement) {
+    const auto row = [&](size_t i) {
+        return dvec3(placement.rows[i][0], placement.rows[i][1], placement.rows[i][2]);
+    };
+    const dvec3 a = glm::cross(row(1), row(2)), b = glm::cross(row(2), row(0)),
+                c = glm::cross(row(0), row(1));
+    const double determinant = glm::dot(row(0), a);
+    if (!(std::abs(determinant) >= 0x1p-500 && std::abs(determinant) <= 0x1p500))
+        return std::nullopt;
+    std::array<dvec3, 3> rows;
+    for (int i = 0; i < 3; ++i)
+        rows[size_t(i)] = dvec3(a[i], b[i], c[i]) / determinant;
+    return rows;
 }
 
 } // namespace ovc

@@ -5,6 +5,7 @@
 #include "core/exact.h"
 #include "core/parallel.h"
 
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -81,10 +82,10 @@ Chunk Chunk::unplaced() const {
                                    : borrowing_doubles(origin_, double_corners_);
 }
 
-bool Chunk::is_of_same_mesh(const Chunk& other) const {
-    return corners_.data() == other.corners_.data() &&
-           double_corners_.data() == other.double_corners_.data() && size() == other.size() &&
-           origin_ == other.origin_;
+Chunk::MeshKey Chunk::mesh_key() const {
+    return {uint64_t(reinterpret_cast<uintptr_t>(address_of(0))), size(),
+            std::bit_cast<uint64_t>(origin_.x), std::bit_cast<uint64_t>(origin_.y),
+            std::bit_cast<uint64_t>(origin_.z)};
 }
 
 void Chunk::place(const Placement& placement) {

@@ -31,8 +31,9 @@ public:
     Chunk instance() const;
     /// The same where they are without a placement.
     Chunk unplaced() const;
-    /// Whether both are the same triangles, placed or not.
-    bool is_of_same_mesh(const Chunk& other) const;
+    /// Chunks of the same triangles, placed or not, have equal keys, and no others have.
+    using MeshKey = std::array<uint64_t, 5>;
+    MeshKey mesh_key() const;
     /// Moves the triangles from where they are.
     void place(const Placement& placement);
 

@@ -22,13 +22,24 @@ PreparedRay Portal::local_ray(const PreparedRay& p) const {
     return local;
 }
 
-Portal portal_into(const Frame& frame, const Box& box) {
+Box placed_box(const Box& box, const Placement* placement) {
+    if (!placement)
+        return box;
+    Box placed;
+    for (int corner = 0; corner < 8; ++corner)
+        placed.add((*placement)({corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                                 corner & 4 ? box.hi.z : box.lo.z}));
+    return placed.padded(placed.rounding());
+}
+
+Portal portal_into(const Frame& frame, const Box& box, const Placement* placement) {
     Portal portal;
-    portal.origin = frame.origin;
-    for (int axis = 0; axis < 3; ++axis)
-        portal.rows[size_t(axis)][axis] = frame.scale;
+    portal.origin = placement ? (*placement)(frame.origin) : frame.origin;
+    portal.rows = *inverse_matrix(or_unplaced(placement));
+    for (dvec3& row : portal.rows)
+        row *= frame.scale;
     portal.box = {frame.to_local(box.lo), frame.to_local(box.hi)};
-    portal.bounds = box;
+    portal.bounds = placed_box(box, placement);
     return portal;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/box.h"
+#include "core/placement.h"
 #include "core/triangle.h"
 #include "kdtree/partition.h"
 #include "shaders/layout.h"
@@ -33,8 +34,13 @@ struct Portal {
     PreparedRay local_ray(const PreparedRay& p) const;
 };
 
-/// Into a frame without a turn, with all that lies in `box` of the world behind it.
-Portal portal_into(const Frame& frame, const Box& box);
+/// The box in the world of what lies in `box` before it is placed. placement: null where it is in
+/// the world.
+Box placed_box(const Box& box, const Placement* placement);
+
+/// Into the frame, with all that lies in `box` behind it. placement: of both, which has an inverse;
+/// null where they are in the world. Error bound: docs/numerics.md, "Frames".
+Portal portal_into(const Frame& frame, const Box& box, const Placement* placement = nullptr);
 
 inline constexpr uint64_t kPortalBytes = OVC_PORTAL_TEXELS * sizeof(uvec4);
 

@@ -10,6 +10,7 @@
 #include "shaders/layout.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -196,36 +197,42 @@ TopLevel build_top_level(std::span<const Page> pages, size_t max_links) {
 }
 
 TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links) {
-    const std::vector<LeafRange> parts = parts_of(level1);
-    if (parts.empty())
+    Parts parts;
+    parts.add(level1, 0, std::array{Place()});
+    if (parts.pages.empty())
         return {};
-    if (parts.size() == 1)
+    if (parts.pages.size() == 1)
         return build_top_level(pages, max_links);
-    std::vector<Portal> portals;
-    for (uint32_t i = 0; i < parts.size(); ++i) {
-        const Leaf& leaf = level1.leaves[parts[i].first];
-        portals.push_back(portal_into(leaf.frame, leaf.grid));
-        portals.back().tree = i;
-    }
-    return build_top_level(scene_leaf(level1.bounds), parts, std::move(portals), pages, max_links);
+    return build_top_level(scene_leaf(level1.bounds), std::move(parts), pages, max_links);
 }
 
-TopLevel build_top_level(const Leaf& scene, std::span<const LeafRange> parts,
-                         std::vector<Portal> portals, std::span<const Page> pages,
+void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place> places) {
+    for (const LeafRange& part : parts_of(level1)) {
+        const Leaf& leaf = level1.leaves[part.first];
+        for (const Place& place : places) {
+            portals.push_back(portal_into(leaf.frame, leaf.grid, place.placement));
+            portals.back().tree = uint32_t(pages.size());
+            portals.back().first_number = place.first_number;
+        }
+        pages.push_back({first_page + part.first, part.count});
+    }
+}
+
+TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> pages,
                          size_t max_links) {
     TopLevel top;
-    top.tree = tree_over(portals, scene);
+    top.tree = tree_over(parts.portals, scene);
     const uint32_t depth = top.tree.depth;
     top.first_link = {0};
     std::vector<uint32_t> begins;
-    for (const auto& [first, count] : parts) {
+    for (const auto& [first, count] : parts.pages) {
         const size_t links = std::max<size_t>(max_links * count / pages.size(), count);
         begins.push_back(append(top, build_top_level(pages.subspan(first, count), links), first));
     }
-    for (Portal& portal : portals)
+    for (Portal& portal : parts.portals)
         portal.tree = begins[portal.tree];
     top.portals = {portal_into(scene.frame, scene.box)};
-    top.portals.insert(top.portals.end(), portals.begin(), portals.end());
+    top.portals.insert(top.portals.end(), parts.portals.begin(), parts.portals.end());
     top.depth += depth + 1; // and the word by which a ray comes back
     return top;
 }

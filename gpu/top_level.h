@@ -65,10 +65,23 @@ TopLevel build_top_level(std::span<const Page> pages, size_t max_links);
 /// a part.
 TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links);
 
-/// The same over parts that portals lead to: of each, Portal::tree says to which. scene: its box
-/// and frame.
-TopLevel build_top_level(const Leaf& scene, std::span<const LeafRange> parts,
-                         std::vector<Portal> portals, std::span<const Page> pages,
+/// Where a mesh lies, and the number that its triangles count from there.
+struct Place {
+    const Placement* placement = nullptr;
+    uint32_t first_number = 0;
+};
+
+/// Parts of a scene, and the portals that lead to them.
+struct Parts {
+    std::vector<LeafRange> pages;
+    std::vector<Portal> portals; // Portal::tree: which part
+
+    /// Those of a level 1 whose pages begin with `first_page`, in all its places.
+    void add(const Level1& level1, uint32_t first_page, std::span<const Place> places);
+};
+
+/// The same over parts. scene: its box and frame.
+TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> pages,
                          size_t max_links);
 
 /// Whether rays can go through the tree in a pool of so many bytes: all units can be counted in a

@@ -83,7 +83,7 @@ static std::string plan_text(const Result<ovc_plan>& plan) {
                                   "works\n",
                                   human_bytes(p.gpu_budget_bytes),
                                   human_bytes(p.smallest_budget_bytes));
-    text += fmt::format("  budget     {}: {} for rays, {} for level 1, {} for pages; {} would do\n",
+    text += fmt::format("  budget     {}: {} for rays, {} for portals, {} for pages; {} would do\n",
                         human_bytes(p.gpu_budget_bytes), human_bytes(p.ray_bytes),
                         human_bytes(p.level1_bytes), human_bytes(p.pool_bytes),
                         human_bytes(p.smallest_budget_bytes));

@@ -40,12 +40,12 @@ static_assert(sizeof(MeshExtent) == 152);
 
 std::vector<MeshExtent> extents_of(const Scene& scene) {
     std::vector<MeshExtent> extents;
-    std::map<const vec3*, size_t> first_with; // corners, by where they lie
+    std::map<Chunk::MeshKey, size_t> first_of;
     for (size_t m = 0; m < scene.meshes.size(); ++m) {
         const Chunk& chunk = scene.soup.chunks[m];
         MeshExtent extent{chunk.origin(), chunk.corners().size(), scene.meshes[m].normals.size()};
-        const auto [first, is_new] = first_with.try_emplace(chunk.corners().data(), m);
-        if (!is_new && chunk.is_of_same_mesh(scene.soup.chunks[first->second])) {
+        const auto [first, is_new] = first_of.try_emplace(chunk.mesh_key(), m);
+        if (!is_new) {
             extent.corners = 0;
             extent.corners_from = first->second;
         }

@@ -79,15 +79,18 @@ void warn_of_dropped(const Dropped& dropped, const LogSink& log) {
 Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
                          BuildProgress* progress) {
     BuiltScene scene(soup);
-    begin(progress, "triangles", 0.1, 2 * soup.triangle_count());
-    HittableParts hittable = take_hittable_parts(scene, progress);
+    Placed placed = placed_chunks(soup);
+    const uint64_t unique = unique_triangles(soup, placed);
+    begin(progress, "triangles", 0.1, 2 * unique);
+    HittableParts hittable = take_hittable_parts(scene, std::move(placed), progress);
     set_limits(scene, options, plan);
-    if (const Result<Done> done = build_levels(scene, hittable.once, progress); !done)
+    const auto build = [&](BuiltScene& part, const Hittable& of) {
+        return build_levels(part, of, progress, double(of.triangles.size()) / double(unique));
+    };
+    if (const Result<Done> done = build(scene, hittable.once); !done)
         return done.error();
     for (size_t i = 0; i < scene.shared.size(); ++i)
-        if (const Result<Done> done =
-                build_levels(scene.shared[i].scene, hittable.shared[i], progress);
-            !done)
+        if (const Result<Done> done = build(scene.shared[i].scene, hittable.shared[i]); !done)
             return done.error();
     gather_pages(scene);
     if (add_tree(scene, options, plan))

@@ -3,7 +3,7 @@
 #include "plugin/built_scene.h"
 
 #include <algorithm>
-#include <numeric>
+#include <array>
 
 namespace ovc {
 
@@ -114,8 +114,9 @@ public:
     void take(const std::vector<Placed::Instances>& shared, std::vector<Hittable>& hittable,
               BuildProgress* progress) {
         for (const Placed::Instances& instances : shared) {
-            const BuiltScene& mesh = scene_.share(instances).scene;
-            hittable.push_back(take_hittable(scene_.shared.back().scene, progress));
+            BuiltScene& mesh = scene_.share(instances).scene;
+            hittable.push_back(take_hittable(mesh, progress));
+            mesh.seconds_level1 = 0; // it is part of what the whole took
             note(mesh, instances, hittable.back().bounds);
         }
     }
@@ -166,9 +167,8 @@ Hittable take_hittable(BuiltScene& scene, BuildProgress* progress) {
     return hittable;
 }
 
-HittableParts take_hittable_parts(BuiltScene& scene, BuildProgress* progress) {
+HittableParts take_hittable_parts(BuiltScene& scene, Placed placed, BuildProgress* progress) {
     const Stopwatch watch;
-    Placed placed = placed_chunks(scene.soup);
     scene.copies = std::move(placed.copies);
     HittableParts parts;
     parts.once.triangles =
@@ -195,26 +195,15 @@ void gather_pages(BuiltScene& scene) {
 TopLevel top_level_of(const BuiltScene& scene, size_t max_links) {
     if (scene.shared.empty())
         return build_top_level(scene.level1, scene.pages, max_links);
-    std::vector<LeafRange> parts;
-    std::vector<Portal> portals;
-    for (const LeafRange& part : parts_of(scene.level1)) {
-        const Leaf& leaf = scene.level1.leaves[part.first];
-        portals.push_back(portal_into(leaf.frame, leaf.grid));
-        portals.back().tree = uint32_t(parts.size());
-        parts.push_back(part);
+    Parts parts;
+    parts.add(scene.level1, 0, std::array{Place()});
+    for (const SharedMesh& mesh : scene.shared) {
+        std::vector<Place> places;
+        for (const uint32_t chunk : mesh.instances)
+            places.push_back({scene.soup.chunks[chunk].placement(), scene.numbers.of({chunk, 0})});
+        parts.add(mesh.scene.level1, mesh.first_page, places);
     }
-    for (const SharedMesh& mesh : scene.shared)
-        for (const LeafRange& part : parts_of(mesh.scene.level1)) {
-            const Leaf& leaf = mesh.scene.level1.leaves[part.first];
-            for (const uint32_t chunk : mesh.instances) {
-                portals.push_back(
-                    portal_into(leaf.frame, leaf.grid, scene.soup.chunks[chunk].placement()));
-                portals.back().tree = uint32_t(parts.size());
-                portals.back().first_number = scene.numbers.of({chunk, 0});
-            }
-            parts.push_back({mesh.first_page + part.first, part.count});
-        }
-    return build_top_level(scene_leaf(scene.level1.bounds), parts, std::move(portals), scene.pages,
+    return build_top_level(scene_leaf(scene.level1.bounds), std::move(parts), scene.pages,
                            max_links);
 }
 

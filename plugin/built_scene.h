@@ -149,12 +149,14 @@ struct Hittable {
 /// Finds them, and enters in the scene what is left out. A triangle is two units of progress.
 Hittable take_hittable(BuiltScene& scene, BuildProgress* progress = nullptr);
 
-/// The same with meshes that are placed more than once taken by themselves.
+/// The same with meshes that are placed more than once, as placed_chunks() tells, taken by
+/// themselves. Of these a triangle is two units of progress once.
 struct HittableParts {
     Hittable once;                // its bounds are those of the whole scene
     std::vector<Hittable> shared; // of scene.shared, which has their soups now
 };
-HittableParts take_hittable_parts(BuiltScene& scene, BuildProgress* progress = nullptr);
+HittableParts take_hittable_parts(BuiltScene& scene, Placed placed,
+                                  BuildProgress* progress = nullptr);
 
 /// Appends the pages of the shared meshes, which are built, to those of the scene.
 void gather_pages(BuiltScene& scene);

@@ -41,6 +41,7 @@ struct Sizes {
         pages.insert(pages.end(), more.pages.begin(), more.pages.end());
         references += more.references;
         nodes += more.nodes;
+        parts += more.parts;
         largest_page = std::max(largest_page, more.largest_page);
     }
 };
@@ -167,8 +168,9 @@ Result<Sizes> sizes_of(BuiltScene& scene, const Hittable& hittable, BuildProgres
     if (hittable.triangles.size() > kBuiltAtOnce)
         return Estimator(scene.soup, hittable.triangles, hittable.bounds, progress)
             .estimate(scene.limits);
-    if (const Result<Done> built = build_levels(scene, hittable, progress); !built)
+    if (const Result<Done> built = build_levels(scene, hittable); !built)
         return built.error();
+    add(progress, 4 * hittable.triangles.size());
     return sizes_of(scene);
 }
 
@@ -187,8 +189,9 @@ Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
     if (!memory)
         return memory.error();
     BuiltScene scene(soup);
-    begin(progress, "planning", 1, 6 * soup.triangle_count());
-    const HittableParts hittable = take_hittable_parts(scene, progress);
+    Placed placed = placed_chunks(soup);
+    begin(progress, "planning", 1, 6 * unique_triangles(soup, placed));
+    const HittableParts hittable = take_hittable_parts(scene, std::move(placed), progress);
     set_limits(scene, options, *memory);
     const SmallestCut cut = smallest_cut(soup, options);
     ovc_plan plan{};
@@ -212,7 +215,6 @@ Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
         if (!more)
             return more.error();
         sizes.add(*more);
-        sizes.parts += more->parts;
         portals += more->parts * scene.shared[i].instances.size();
     }
     if (sizes.pages.empty())

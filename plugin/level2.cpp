@@ -44,11 +44,12 @@ namespace {
 
 class LevelsBuilder {
 public:
-    LevelsBuilder(BuiltScene& scene, BuildProgress* progress)
+    LevelsBuilder(BuiltScene& scene, BuildProgress* progress, double share)
         : soup_(scene.soup),
           numbers_(scene.numbers),
           limits_(scene.limits),
           progress_(progress),
+          share_(share),
           scene_(scene) {}
 
     Result<Done> build(std::span<const TriangleId> triangles, const Box& bounds) {
@@ -59,7 +60,7 @@ public:
                 scene_.level1.padding = padding_of(bounds);
             return Done{};
         }
-        begin(progress_, "level 1", 0.35, 2 * triangles.size());
+        begin(progress_, "level 1", 0.35 * share_, 2 * triangles.size());
         triangles_ = triangles.size();
         // Where small triangles are not lost in the scene.
         const bool one_frame = one_frame_suits(soup_, triangles, bounds);
@@ -73,7 +74,7 @@ public:
             share_frames(soup_, scene_.level1);
         scene_.seconds_level1 += watch.seconds();
         scene_.pages.resize(scene_.level1.leaves.size());
-        begin(progress_, "level 2", 0.5, 2 * scene_.level1.reference_count());
+        begin(progress_, "level 2", 0.5 * share_, 2 * scene_.level1.reference_count());
         build_missing_pages(loose_pairs());
         agree_on_loose_pairs();
         while (true) {
@@ -201,6 +202,7 @@ private:
     const Numbering& numbers_;
     const LeafLimits& limits_;
     BuildProgress* const progress_;
+    const double share_; // of what the progress tells of
     uint64_t triangles_ = 0;
     std::vector<TriangleId> sample_;
     bool loose_pairs_pay_ = true;
@@ -211,13 +213,14 @@ private:
 
 void build_smallest_levels(BuiltScene& scene, Hittable hittable, uint32_t leaf_triangles,
                            bool in_one_frame, BuildProgress* progress) {
-    LevelsBuilder(scene, progress)
+    LevelsBuilder(scene, progress, 0)
         .build_smallest(std::move(hittable.triangles), hittable.bounds, leaf_triangles,
                         in_one_frame);
 }
 
-Result<Done> build_levels(BuiltScene& scene, const Hittable& hittable, BuildProgress* progress) {
-    return LevelsBuilder(scene, progress).build(hittable.triangles, hittable.bounds);
+Result<Done> build_levels(BuiltScene& scene, const Hittable& hittable, BuildProgress* progress,
+                          double share) {
+    return LevelsBuilder(scene, progress, share).build(hittable.triangles, hittable.bounds);
 }
 
 } // namespace ovc

@@ -17,8 +17,9 @@ void build_smallest_levels(BuiltScene& scene, Hittable hittable, uint32_t leaf_t
                            bool in_one_frame, BuildProgress* progress = nullptr);
 
 /// Makes level 1 and the pages, of leaves within scene.limits; one whose page turns out too large
-/// is cut further. Error: a page of a single triangle does not fit.
+/// is cut further. share: of all that is built while `progress` goes from 0 to 1, from 0 to 1.
+/// Error: a page of a single triangle does not fit.
 Result<Done> build_levels(BuiltScene& scene, const Hittable& hittable,
-                          BuildProgress* progress = nullptr);
+                          BuildProgress* progress = nullptr, double share = 1);
 
 } // namespace ovc

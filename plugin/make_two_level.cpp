@@ -67,6 +67,10 @@ ovc_statistics TwoLevel::report() const {
     told.gpu_budget_bytes = plan().budget_bytes;
     told.seconds_level1 = scene_.seconds_level1;
     told.seconds_level2 = scene_.seconds_level2;
+    for (const SharedMesh& mesh : scene_.shared) {
+        told.seconds_level1 += mesh.scene.seconds_level1;
+        told.seconds_level2 += mesh.scene.seconds_level2;
+    }
     told.host_bytes = scene_.host_bytes();
     told.unique_triangles = scene_.unique_triangles();
     for (const SharedMesh& mesh : scene_.shared)

@@ -225,7 +225,7 @@ typedef struct ovc_query {
     const ovc_triangle* skip; /* ray_count, or NULL: the triangle that ray i starts on and therefore does not see; {OVC_NONE, OVC_NONE}: none */
     /* Experimental. Written by intersect of OVC_STRUCTURE_TWO_LEVEL alone; NULL for all else. */
     uint32_t* leaf;   /* ray_count, or NULL: the level-1 leaf that the hit of ray i lies in; OVC_NONE: a miss */
-    uint32_t* passes; /* ray_count, or NULL: kernel launches that ray i took part in; 0: it meets no leaf's box, or doubles alone could walk it */
+    uint32_t* passes; /* ray_count, or NULL: kernel launches that ray i took part in; 0: an invalid ray, or one that doubles alone could walk */
     uint32_t* flagged; /* ray_count, or NULL: 1 where the kernel was not certain and doubles decided; else 0 */
     uint32_t ray_format; /* ovc_ray_format */
     uint32_t reserved;   /* 0 */
@@ -250,8 +250,8 @@ typedef struct ovc_plan {
     uint64_t gpu_budget_bytes;
     uint64_t smallest_budget_bytes; /* works, as all larger ones do; commit names the same */
     uint64_t ray_bytes;            /* of the budget, for rays and answers */
-    uint64_t level1_bytes;         /* of the budget, for level 1 */
-    uint64_t pool_bytes;           /* of the budget, for pages: what rays and level 1 leave, and no more than pages take */
+    uint64_t level1_bytes;         /* of the budget, for the table of portals: 0 where one frame suits all pages */
+    uint64_t pool_bytes;           /* of the budget, for pages: what rays and portals leave, and no more than pages take */
     uint64_t resident_pages;       /* pages that are in the pool at once when commit returns */
     uint64_t host_bytes;           /* level 1 and level 2 in host memory */
     uint64_t batch_rays;           /* most rays a pass */

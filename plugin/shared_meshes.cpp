@@ -2,14 +2,12 @@
 // Chunks by the corners that they borrow, and what a placement does to them.
 #include "plugin/shared_meshes.h"
 
+#include "core/placement.h"
 #include "gpu/top_level.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <optional>
-#include <tuple>
 
 namespace ovc {
 namespace {
@@ -18,27 +16,6 @@ namespace {
 constexpr uint64_t kBytesPerTriangle = 46;
 /// Bytes are worth a portal's time if there are so many times more of them.
 constexpr uint64_t kWorthAPortal = 4;
-
-using Rows = std::array<std::array<double, 4>, 3>;
-constexpr Rows kIdentity{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-
-const Rows& rows_of(const Placement* placement) {
-    return placement ? placement->rows : kIdentity;
-}
-
-/// The inverse of the matrix of a placement, without its shift; nothing where there is none.
-std::optional<std::array<dvec3, 3>> inverse(const Rows& m) {
-    const auto row = [&](size_t i) { return dvec3(m[i][0], m[i][1], m[i][2]); };
-    const dvec3 a = glm::cross(row(1), row(2)), b = glm::cross(row(2), row(0)),
-                c = glm::cross(row(0), row(1));
-    const double determinant = glm::dot(row(0), a);
-    if (!(std::abs(determinant) >= 0x1p-500 && std::abs(determinant) <= 0x1p500))
-        return std::nullopt;
-    std::array<dvec3, 3> rows;
-    for (int i = 0; i < 3; ++i)
-        rows[size_t(i)] = dvec3(a[i], b[i], c[i]) / determinant;
-    return rows;
-}
 
 /// The box of a mesh before it is placed; empty where a corner is not finite.
 Box bounds_of(const Chunk& mesh) {
@@ -57,8 +34,8 @@ Box bounds_of(const Chunk& mesh) {
 bool is_well_placed(const Box& box, const Placement* placement) {
     constexpr double kFarthest = 0x1p19;    // in sizes of the mesh
     constexpr double kWithinRange = 0x1p80; // no product of three is out of range
-    const Rows& m = rows_of(placement);
-    const auto inverted = inverse(m);
+    const auto& m = or_unplaced(placement).rows;
+    const auto inverted = inverse_matrix(or_unplaced(placement));
     const double size = max_component(box.extent()) / 2;
     if (!inverted || box.empty() || !(size >= 1 / kWithinRange))
         return false;
@@ -77,17 +54,13 @@ bool is_well_placed(const Box& box, const Placement* placement) {
 
 /// Chunks of the same mesh, in the order of their numbers, by their first.
 std::vector<std::vector<uint32_t>> by_mesh(const Soup& soup) {
-    using Key = std::tuple<const void*, const void*, uint32_t, double, double, double>;
-    std::map<Key, size_t> found;
+    std::map<Chunk::MeshKey, size_t> found;
     std::vector<std::vector<uint32_t>> meshes;
     for (uint32_t i = 0; i < soup.chunks.size(); ++i) {
         const Chunk& chunk = soup.chunks[i];
         if (chunk.size() == 0)
             continue;
-        const dvec3& at = chunk.origin();
-        const Key key{
-            chunk.corners().data(), chunk.double_corners().data(), chunk.size(), at.x, at.y, at.z};
-        const auto [place, is_new] = found.try_emplace(key, meshes.size());
+        const auto [place, is_new] = found.try_emplace(chunk.mesh_key(), meshes.size());
         if (is_new)
             meshes.emplace_back();
         meshes[place->second].push_back(i);
@@ -97,11 +70,11 @@ std::vector<std::vector<uint32_t>> by_mesh(const Soup& soup) {
 
 /// Takes out those that lie where one before does.
 void take_copies_out(const Soup& soup, std::vector<uint32_t>& chunks, Placed& placed) {
-    std::map<Rows, Placed::Copies> places;
+    std::map<decltype(Placement::rows), Placed::Copies> places;
     std::vector<uint32_t> apart;
     for (const uint32_t chunk : chunks) {
-        const auto [place, is_new] = places.try_emplace(rows_of(soup.chunks[chunk].placement()),
-                                                        Placed::Copies{chunk, chunk, 0});
+        const auto [place, is_new] = places.try_emplace(
+            or_unplaced(soup.chunks[chunk].placement()).rows, Placed::Copies{chunk, chunk, 0});
         Placed::Copies& copies = place->second;
         if (is_new)
             apart.push_back(chunk);
@@ -149,28 +122,6 @@ uint64_t unique_triangles(const Soup& soup, const Placed& placed) {
     for (const Placed::Instances& instances : placed.shared)
         count += soup.chunks[instances.front()].size();
     return count;
-}
-
-Box placed_box(const Box& box, const Placement* placement) {
-    Box placed;
-    for (int corner = 0; corner < 8; ++corner) {
-        const dvec3 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                      corner & 4 ? box.hi.z : box.lo.z);
-        placed.add(placement ? (*placement)(p) : p);
-    }
-    return placed.padded(placed.rounding());
-}
-
-Portal portal_into(const Frame& frame, const Box& box, const Placement* placement) {
-    Portal portal = portal_into(frame, box);
-    if (!placement)
-        return portal;
-    const auto inverted = inverse(placement->rows);
-    for (size_t i = 0; i < 3; ++i)
-        portal.rows[i] = (*inverted)[i] * frame.scale;
-    portal.origin = (*placement)(frame.origin);
-    portal.bounds = placed_box(box, placement);
-    return portal;
 }
 
 } // namespace ovc

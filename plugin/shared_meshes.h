@@ -4,10 +4,8 @@
 #pragma once
 
 #include "core/soup.h"
-#include "gpu/portal.h"
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace ovc {
@@ -34,12 +32,5 @@ Placed placed_chunks(const Soup& soup);
 
 /// The triangles that are packed: once for each mesh that is shared.
 uint64_t unique_triangles(const Soup& soup, const Placed& placed);
-
-/// Into the frame of a shared mesh, with all that lies in `box` of the mesh behind it. placement:
-/// null where the mesh lies by itself. Error bound: docs/numerics.md, "Frames".
-Portal portal_into(const Frame& frame, const Box& box, const Placement* placement);
-
-/// The box in the world of what lies in `box` before it is placed.
-Box placed_box(const Box& box, const Placement* placement);
 
 } // namespace ovc
