@@ -7,6 +7,7 @@
 #include "gpu/fork_mark.h"
 #include "gpu/gl.h"
 #include "gpu/gl_libraries.h"
+#include "shaders/layout.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -16,6 +17,7 @@
 #include <cctype>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 namespace ovc {
@@ -105,6 +107,23 @@ uint64_t free_memory() {
     return kib > 0 ? uint64_t(kib) * 1024 : kSoftwareMemory;
 }
 
+/// Both kernels' limits: images on a software renderer, else textures
+/// (ShaderConfig::buffer_images).
+uint32_t max_pool_buffers(bool as_images) {
+    const std::array<GLenum, 2> limits =
+        as_images
+            ? std::array<GLenum, 2>{GL_MAX_COMPUTE_IMAGE_UNIFORMS, GL_MAX_FRAGMENT_IMAGE_UNIFORMS}
+            : std::array<GLenum, 2>{GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, GL_MAX_TEXTURE_IMAGE_UNITS};
+    GLint least = std::numeric_limits<GLint>::max();
+    for (const GLenum limit : limits) {
+        GLint value = 0;
+        glGetIntegerv(limit, &value);
+        least = std::min(least, value);
+    }
+    constexpr GLint kMaxUnitNumberBuffers = int(1u << (31 - OVC_MAX_BUFFER_BITS));
+    return uint32_t(std::clamp(least - OVC_BINDING_POOL, 1, kMaxUnitNumberBuffers));
+}
+
 DeviceInfo describe() {
     DeviceInfo info;
     info.renderer = gl_string(GL_RENDERER);
@@ -123,6 +142,7 @@ DeviceInfo describe() {
     info.max_texture_size = uint32_t(value);
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &value);
     info.max_buffer_texels = std::min(uint64_t(value), kMaxBufferTexels);
+    info.max_pool_buffers = max_pool_buffers(info.is_software);
     glGetIntegerv(GL_TEXTURE_BUFFER_OFFSET_ALIGNMENT, &value);
     info.buffer_alignment = std::max<uint64_t>(uint64_t(value), 16);
     info.memory_bytes = info.is_software ? kSoftwareMemory : free_memory();

@@ -24,6 +24,7 @@ struct DeviceInfo {
     bool takes_host_pages = false;
     uint32_t max_texture_size = 0;
     uint64_t max_buffer_texels = 0;
+    uint32_t max_pool_buffers = 1;  // that a kernel can read besides its other inputs
     uint64_t buffer_alignment = 16; // bytes, of windows into a buffer
     uint64_t memory_bytes = 0;      // free, as reported; on a software renderer 1 GiB
 

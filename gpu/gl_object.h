@@ -166,6 +166,13 @@ public:
     void show(const Buffer& buffer, GLenum format, uint64_t offset, uint64_t bytes) {
         glTextureBufferRange(id(), format, buffer.id(), GLintptr(offset), GLsizeiptr(bytes));
     }
+    /// RGBA32UI texels, for a kernel to read.
+    void bind(GLuint unit, bool as_image) const {
+        if (as_image)
+            glBindImageTexture(unit, id(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
+        else
+            glBindTextureUnit(unit, id());
+    }
 
 private:
     Handle<delete_texture> handle_;

@@ -132,6 +132,8 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_MAY_WAIT {:d}\n"
                        "#define OVC_TELL_ACTIVE {:d}\n"
                        "#define OVC_LOOSE_PAIRS {:d}\n"
+                       "#define OVC_POOL_BUFFERS {}\n"
+                       "#define OVC_BUFFER_BITS {}\n"
                        "#define OVC_STACK_DEPTH {}\n"
                        "#define OVC_STACK_REGISTERS {:d}\n"
                        "#define OVC_PACKET {}\n"
@@ -140,9 +142,9 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_DEAL_GROUPS {:d}\n"
                        "#define OVC_BUFFER_IMAGES {:d}\n"
                        "#define OVC_MOST_ROUNDS {}\n",
-                       any_hit, certify, portals, may_wait, tell_active, loose_pairs, stack_depth,
-                       stack_registers, packet, turns, branches, deal_groups, buffer_images,
-                       most_rounds);
+                       any_hit, certify, portals, may_wait, tell_active, loose_pairs, pool_buffers,
+                       buffer_bits, stack_depth, stack_registers, packet, turns, branches,
+                       deal_groups, buffer_images, most_rounds);
 }
 
 Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines) {

@@ -27,6 +27,8 @@ struct ShaderConfig {
     bool may_wait = false;
     bool tell_active = false;
     bool loose_pairs = false;
+    uint32_t pool_buffers = 1;
+    uint32_t buffer_bits = 25;
     uint32_t stack_depth = 16;
     bool stack_registers = true;
     uint32_t packet = 1; // rays that an invocation traces together

@@ -24,9 +24,9 @@ TEST(ShaderSource, IncludesAreReplacedAndDefinesFollowTheVersion) {
     EXPECT_LT(source->find("#define OVC_ANY_HIT 1"), source->find("#ifndef OVC_ANY_HIT"));
     EXPECT_THAT(files,
                 testing::ElementsAre("trace.frag.glsl", "layout.h", "config.glsl", "page.glsl",
-                                     "box.glsl", "children.glsl", "triangle.glsl", "times.glsl",
-                                     "occluder.glsl", "found.glsl", "pair.glsl", "traverse.glsl",
-                                     "ray.glsl", "portals.glsl", "trace.glsl"));
+                                     "unit.glsl", "box.glsl", "children.glsl", "triangle.glsl",
+                                     "times.glsl", "occluder.glsl", "found.glsl", "pair.glsl",
+                                     "traverse.glsl", "ray.glsl", "portals.glsl", "trace.glsl"));
 }
 
 TEST(ShaderSource, AMissingFileIsNamed) {

@@ -115,7 +115,7 @@ Page pack(const PageItems& items, const Leaf& leaf, BuildProgress* progress) {
     };
     Page page = Packer(items.nodes(), grid.header(), grid, put, progress).pack();
     page.texels[OVC_LOOSE_TEXEL].x = items.is_loose() ? OVC_HAS_LOOSE_PAIRS : 0;
-    assert(page.texels.size() / OVC_UNIT_TEXELS < OVC_MAX_UNITS);
+    assert(page.texels.size() / OVC_UNIT_TEXELS < OVC_MAX_PAGE_UNITS);
     return page;
 }
 

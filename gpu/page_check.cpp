@@ -17,8 +17,8 @@ public:
 
     bool check() {
         const uint64_t units = page_.units();
-        if (texels_.size() % OVC_UNIT_TEXELS || units <= OVC_ROOT_UNIT || units >= OVC_MAX_UNITS ||
-            page_.depth > uint32_t(kMaxBvhDepth))
+        if (texels_.size() % OVC_UNIT_TEXELS || units <= OVC_ROOT_UNIT ||
+            units >= OVC_MAX_PAGE_UNITS || page_.depth > uint32_t(kMaxBvhDepth))
             return false;
         if (texels_[2] != uvec4(OVC_ROOT_UNIT, 0xffffffffu, 0, 0) || !has_sound_grid() ||
             is_missing(OVC_ROOT_UNIT, 0))

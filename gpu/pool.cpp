@@ -10,70 +10,125 @@
 
 namespace ovc {
 
-Residency::Residency(uint64_t end, uint64_t alignment, size_t leaves, uint64_t begin)
-    : begin_((begin + alignment - 1) / alignment * alignment),
-      end_(end),
-      alignment_(alignment),
-      slots_(leaves, Slot{0, 0}),
-      last_use_(leaves, 0) {}
+namespace {
+
+uint64_t rounded_up(uint64_t bytes, uint64_t alignment) {
+    return (bytes + alignment - 1) / alignment * alignment;
+}
+
+std::vector<Stretch> stretches_of(const PoolLayout& layout, uint64_t begin) {
+    std::vector<Stretch> stretches;
+    for (uint32_t i = 0; i < layout.count(); ++i)
+        stretches.push_back(
+            {layout.begin_of(i) + (i == 0 ? begin : 0), layout.begin_of(i) + layout.bytes_of(i)});
+    return stretches;
+}
+
+} // namespace
+
+size_t fitting_pages(std::span<const Page> pages, const PoolLayout& layout, uint64_t begin) {
+    std::vector<Stretch> free = stretches_of(layout, begin);
+    size_t count = 0;
+    for (; count < pages.size(); ++count) {
+        const uint64_t bytes = pages[count].bytes();
+        const auto room =
+            std::ranges::find_if(free, [&](const Stretch& s) { return s.begin + bytes <= s.end; });
+        if (room == free.end())
+            break;
+        room->begin += bytes;
+    }
+    return count;
+}
+
+Residency::Residency(std::span<const Stretch> stretches, uint64_t alignment, size_t leaves)
+    : alignment_(alignment), slots_(leaves, Slot{0, 0}), last_use_(leaves, 0) {
+    for (const Stretch& stretch : stretches)
+        shelves_.push_back({{rounded_up(stretch.begin, alignment), stretch.end}, {}});
+}
 
 /// A run of neighbouring pages and the gaps around them that is wide enough. Of all such runs the
 /// one whose most recently used page was used longest ago; a gap that is wide enough by itself
-/// evicts nobody.
-Residency::Range Residency::cheapest_range(uint64_t bytes) const {
+/// evicts nobody. Takes its place in `best` where that is cheaper.
+void Residency::find_cheaper(size_t shelf, uint64_t bytes, Range& best) const {
+    const auto& [room, leaves] = shelves_[shelf];
     const auto gap_begin = [&](size_t i) {
-        return i == 0 ? begin_ : slots_[order_[i - 1]].offset + slots_[order_[i - 1]].bytes;
+        return i == 0 ? room.begin : slots_[leaves[i - 1]].offset + slots_[leaves[i - 1]].bytes;
     };
     const auto gap_end = [&](size_t i) {
-        return i == order_.size() ? end_ : slots_[order_[i]].offset;
+        return i == leaves.size() ? room.end : slots_[leaves[i]].offset;
     };
-    Range best{0, 0, 0, std::numeric_limits<uint64_t>::max()};
-    for (size_t first = 0; first <= order_.size(); ++first) {
+    for (size_t first = 0; first <= leaves.size() && best.use > 0; ++first) {
         const uint64_t begin = gap_begin(first);
         uint64_t use = 0;
-        for (size_t last = first; last <= order_.size(); ++last) {
+        for (size_t last = first; last <= leaves.size(); ++last) {
             if (last > first)
-                use = std::max(use, last_use_[order_[last - 1]]);
+                use = std::max(use, last_use_[leaves[last - 1]]);
             if (use >= best.use)
                 break;
-            if (gap_end(last) - begin >= bytes) {
-                best = {first, last, begin, use};
+            if (begin + bytes <= gap_end(last)) {
+                best = {shelf, first, last, begin, use};
                 break;
             }
         }
     }
-    return best;
 }
 
 bool Residency::admit(uint32_t leaf, uint64_t bytes, uint64_t keep,
                       std::vector<uint32_t>& evicted) {
     assert(!resident(leaf));
-    bytes = (bytes + alignment_ - 1) / alignment_ * alignment_;
-    assert(bytes <= end_ - begin_);
-    const Range range = cheapest_range(bytes);
+    bytes = rounded_up(bytes, alignment_);
+    Range range{0, 0, 0, 0, std::numeric_limits<uint64_t>::max()};
+    for (size_t shelf = 0; shelf < shelves_.size(); ++shelf)
+        find_cheaper(shelf, bytes, range);
     if (range.use >= keep)
         return false;
+    std::vector<uint32_t>& leaves = shelves_[range.shelf].leaves;
     for (size_t i = range.first; i < range.last; ++i) {
-        slots_[order_[i]] = {0, 0};
-        evicted.push_back(order_[i]);
+        slots_[leaves[i]] = {0, 0};
+        evicted.push_back(leaves[i]);
     }
-    const auto at = order_.erase(order_.begin() + ptrdiff_t(range.first),
-                                 order_.begin() + ptrdiff_t(range.last));
-    order_.insert(at, leaf);
+    const auto at = leaves.erase(leaves.begin() + ptrdiff_t(range.first),
+                                 leaves.begin() + ptrdiff_t(range.last));
+    leaves.insert(at, leaf);
     slots_[leaf] = {range.offset, bytes};
     touch(leaf);
     return true;
 }
 
+Pool::Pool(Ledger& ledger, const PoolLayout& layout, size_t leaves, uint64_t begin)
+    : layout_(layout), residency_(stretches_of(layout, begin), OVC_UNIT_BYTES, leaves) {
+    for (uint32_t i = 0; i < layout.count(); ++i)
+        buffers_.emplace_back(ledger, layout.bytes_of(i), "page pool");
+}
+
+void Pool::show() {
+    for (const gl::Buffer& buffer : buffers_)
+        texels_.emplace_back().show(buffer, GL_RGBA32UI, 0, buffer.bytes());
+}
+
 void Pool::upload(uint64_t offset, const Page& page, uint32_t first_unit) const {
     if (page.bytes() == 0)
         return;
-    void* const to = glMapNamedBufferRange(buffer_.id(), GLintptr(offset), GLsizeiptr(page.bytes()),
-                                           GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT);
+    const uint32_t buffer = layout_.buffer_of(offset);
+    const uint64_t inside = offset - layout_.begin_of(buffer);
+    void* const to =
+        glMapNamedBufferRange(buffers_[buffer].id(), GLintptr(inside), GLsizeiptr(page.bytes()),
+                              GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT);
     if (!to)
         return; // the context is lost, which is asked for after every pass
     copy_relocated(page, first_unit, {static_cast<uvec4*>(to), page.view().size()});
-    glUnmapNamedBuffer(buffer_.id());
+    glUnmapNamedBuffer(buffers_[buffer].id());
+}
+
+void Pool::write(uint64_t offset, uint32_t word) const {
+    const uint32_t buffer = layout_.buffer_of(offset);
+    glNamedBufferSubData(buffers_[buffer].id(), GLintptr(offset - layout_.begin_of(buffer)),
+                         sizeof(word), &word);
+}
+
+void Pool::bind(bool as_images) const {
+    for (size_t i = 0; i < texels_.size(); ++i)
+        texels_[i].bind(OVC_BINDING_POOL + GLuint(i), as_images);
 }
 
 } // namespace ovc

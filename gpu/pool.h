@@ -1,28 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pool: the fixed number of GPU bytes that pages live in. One buffer, allocated once, filled by
-// sub-buffer updates.
+// Pool: the fixed number of GPU bytes that pages live in. As many buffers as that takes, allocated
+// once, filled by sub-buffer updates. No page lies in two.
 #pragma once
 
 #include "gpu/gl_object.h"
 #include "gpu/page.h"
+#include "shaders/layout.h"
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace ovc {
 
-/// Where a page lies in the pool.
+/// A pool's bytes in buffers: each as large as one may be, and the last has what is left. A unit's
+/// number has the buffer's above its number within that.
+struct PoolLayout {
+    uint64_t bytes;
+    uint64_t buffer_bytes; // the most of one
+
+    uint32_t count() const { return uint32_t((bytes + buffer_bytes - 1) / buffer_bytes); }
+    uint64_t bytes_of(uint32_t buffer) const {
+        return std::min(buffer_bytes, bytes - buffer * buffer_bytes);
+    }
+    /// Of the number of a unit, those that count within its buffer.
+    uint32_t buffer_bits() const {
+        return count() == 1 ? OVC_MAX_BUFFER_BITS
+                            : uint32_t(std::bit_width(buffer_bytes / OVC_UNIT_BYTES - 1));
+    }
+    /// The buffer's first byte among those of a pool whose buffers could be filled to the last
+    /// number that a unit of them can have.
+    uint64_t begin_of(uint32_t buffer) const {
+        return (uint64_t(buffer) << buffer_bits()) * OVC_UNIT_BYTES;
+    }
+    uint32_t buffer_of(uint64_t offset) const {
+        return uint32_t(offset / OVC_UNIT_BYTES >> buffer_bits());
+    }
+};
+
+/// How many pages, the first of these, find room one after the other behind the first `begin`
+/// bytes.
+size_t fitting_pages(std::span<const Page> pages, const PoolLayout& layout, uint64_t begin);
+inline bool all_fit(std::span<const Page> pages, const PoolLayout& layout, uint64_t begin) {
+    return fitting_pages(pages, layout, begin) == pages.size();
+}
+
+/// Where a page lies in the pool, as PoolLayout::begin_of() counts.
 struct Slot {
     uint64_t offset;
     uint64_t bytes;
+};
+
+/// A stretch of the pool.
+struct Stretch {
+    uint64_t begin;
+    uint64_t end;
 };
 
 /// Book-keeping of the pool, apart from GL: which leaf's page lies where, and which go when room is
 /// needed.
 class Residency {
 public:
-    /// Pages lie in [begin, end) of the pool, in bytes.
-    Residency(uint64_t end, uint64_t alignment, size_t leaves, uint64_t begin = 0);
+    /// Pages lie within one of the stretches each, in bytes.
+    Residency(std::span<const Stretch> stretches, uint64_t alignment, size_t leaves);
 
     bool resident(uint32_t leaf) const { return slots_[leaf].bytes != 0; }
     const Slot& slot(uint32_t leaf) const { return slots_[leaf]; }
@@ -33,47 +75,60 @@ public:
     /// Every use so far is before what this returns.
     uint64_t now() const { return clock_ + 1; }
 
-    /// Finds room for the leaf's page, which must fit the pool, and evicts what has to go: the
+    /// Finds room for the leaf's page, which must fit some stretch, and evicts what has to go: the
     /// least recently used pages that together with the gaps between them make enough room. Pages
     /// used at `keep` or later stay: false, and nothing changes, where that leaves no room.
     /// evicted: receives who went.
     bool admit(uint32_t leaf, uint64_t bytes, uint64_t keep, std::vector<uint32_t>& evicted);
 
 private:
+    /// A stretch, and the leaves whose pages lie in it, by offset.
+    struct Shelf {
+        Stretch room;
+        std::vector<uint32_t> leaves;
+    };
     struct Range {
-        size_t first; // into order_: pages to evict
+        size_t shelf;
+        size_t first; // into its leaves: pages to evict
         size_t last;
         uint64_t offset;
         uint64_t use; // the latest of them; 0: none goes
     };
-    Range cheapest_range(uint64_t bytes) const;
+    void find_cheaper(size_t shelf, uint64_t bytes, Range& best) const;
 
-    uint64_t begin_;
-    uint64_t end_;
+    std::vector<Shelf> shelves_;
     uint64_t alignment_;
     uint64_t clock_ = 0;
     std::vector<Slot> slots_;
     std::vector<uint64_t> last_use_;
-    std::vector<uint32_t> order_; // resident leaves by offset
 };
 
-/// The buffer and its books. Needs the context current.
+/// The buffers and their books. Needs the context current.
 class Pool {
 public:
     /// Pages come behind the first `begin` bytes.
-    Pool(Ledger& ledger, uint64_t bytes, size_t leaves, uint64_t begin = 0)
-        : buffer_(ledger, bytes, "page pool"), residency_(bytes, OVC_UNIT_BYTES, leaves, begin) {}
+    Pool(Ledger& ledger, const PoolLayout& layout, size_t leaves, uint64_t begin = 0);
 
     Residency& residency() { return residency_; }
     const Residency& residency() const { return residency_; }
+    const PoolLayout& layout() const { return layout_; }
+
+    /// Once the buffers are allocated.
+    void show();
 
     /// Writes the page at `offset`, in bytes, its units counted from `first_unit` on.
     void upload(uint64_t offset, const Page& page, uint32_t first_unit = 0) const;
 
-    const gl::Buffer& buffer() const { return buffer_; }
+    /// Writes a word at `offset`, in bytes.
+    void write(uint64_t offset, uint32_t word) const;
+
+    /// Binds all buffers for a kernel to read, as images or as textures.
+    void bind(bool as_images) const;
 
 private:
-    gl::Buffer buffer_;
+    PoolLayout layout_;
+    std::vector<gl::Buffer> buffers_;
+    std::vector<gl::BufferTexture> texels_;
     Residency residency_;
 };
 

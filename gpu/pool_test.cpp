@@ -10,6 +10,10 @@
 namespace ovc {
 namespace {
 
+std::vector<Stretch> whole(uint64_t bytes) {
+    return {{0, bytes}};
+}
+
 /// Room for the page, whoever has to go.
 void admit(Residency& residency, uint32_t leaf, uint64_t bytes) {
     std::vector<uint32_t> evicted;
@@ -25,7 +29,7 @@ TEST(Residency, PagesNeverOverlapNorLeaveThePool) {
     std::vector<uint64_t> size(kLeaves);
     for (uint64_t& s : size)
         s = 64 * (1 + random.below(50));
-    Residency residency(kBytes, 16, kLeaves);
+    Residency residency(whole(kBytes), 16, kLeaves);
     for (int step = 0; step < 5000; ++step) {
         const uint32_t leaf = uint32_t(random.below(kLeaves));
         if (residency.resident(leaf))
@@ -46,7 +50,7 @@ TEST(Residency, PagesNeverOverlapNorLeaveThePool) {
 }
 
 TEST(Residency, EvictsTheLeastRecentlyUsed) {
-    Residency residency(300, 1, 4);
+    Residency residency(whole(300), 1, 4);
     admit(residency, 0, 100);
     admit(residency, 1, 100);
     admit(residency, 2, 100);
@@ -58,7 +62,7 @@ TEST(Residency, EvictsTheLeastRecentlyUsed) {
 }
 
 TEST(Residency, EvictsNobodyWhereAGapIsWideEnough) {
-    Residency residency(400, 1, 5);
+    Residency residency(whole(400), 1, 5);
     admit(residency, 0, 100);
     admit(residency, 1, 200);
     admit(residency, 2, 100);
@@ -73,7 +77,7 @@ TEST(Residency, EvictsNobodyWhereAGapIsWideEnough) {
 }
 
 TEST(Residency, TakesAPageAsLargeAsThePool) {
-    Residency residency(1000, 16, 3);
+    Residency residency(whole(1000), 16, 3);
     admit(residency, 0, 320);
     admit(residency, 1, 320);
     admit(residency, 2, 992);
@@ -83,7 +87,7 @@ TEST(Residency, TakesAPageAsLargeAsThePool) {
 }
 
 TEST(Residency, WhatWasUsedSinceStays) {
-    Residency residency(300, 1, 5);
+    Residency residency(whole(300), 1, 5);
     admit(residency, 0, 100);
     const uint64_t keep = residency.now();
     admit(residency, 1, 100);
@@ -94,6 +98,44 @@ TEST(Residency, WhatWasUsedSinceStays) {
     EXPECT_FALSE(residency.admit(4, 100, keep, evicted));
     EXPECT_EQ(evicted.size(), 1u);
     EXPECT_TRUE(residency.resident(1) && residency.resident(2) && residency.resident(3));
+}
+
+TEST(Residency, NoPageLiesInTwoStretches) {
+    const std::vector<Stretch> stretches{{32, 100}, {128, 228}, {256, 300}};
+    Residency residency(stretches, 1, 6);
+    admit(residency, 0, 60);
+    admit(residency, 1, 60);
+    admit(residency, 2, 40); // the gap of 8 behind 0 is too small, that behind 1 is not
+    admit(residency, 3, 44);
+    EXPECT_EQ(residency.slot(0).offset, 32u);
+    EXPECT_EQ(residency.slot(1).offset, 128u);
+    EXPECT_EQ(residency.slot(2).offset, 188u);
+    EXPECT_EQ(residency.slot(3).offset, 256u);
+    residency.touch(0);
+    admit(residency, 4, 100); // in place of 1 and 2, which were used before the others
+    EXPECT_EQ(residency.slot(4).offset, 128u);
+    EXPECT_TRUE(residency.resident(0) && residency.resident(3));
+}
+
+TEST(PoolLayout, NumbersOfUnitsHaveTheBuffersAbove) {
+    const PoolLayout one{3 << 20, 3 << 20};
+    EXPECT_EQ(one.count(), 1u);
+    EXPECT_EQ(one.buffer_bits(), uint32_t(OVC_MAX_BUFFER_BITS));
+    const PoolLayout three{7 << 20, 3 << 20}; // 49,152 units a buffer: 16 bits
+    EXPECT_EQ(three.count(), 3u);
+    EXPECT_EQ(three.bytes_of(1), uint64_t(3 << 20));
+    EXPECT_EQ(three.bytes_of(2), uint64_t(1 << 20));
+    EXPECT_EQ(three.buffer_bits(), 16u);
+    EXPECT_EQ(three.begin_of(2), uint64_t(2 * 65536 * OVC_UNIT_BYTES));
+    EXPECT_EQ(three.buffer_of(three.begin_of(2)), 2u);
+    EXPECT_EQ(three.buffer_of(three.begin_of(2) - OVC_UNIT_BYTES), 1u);
+}
+
+TEST(PoolLayout, LargePoolsAreCountedToo) {
+    const PoolLayout layout{uint64_t(100) << 30, uint64_t(2) << 30};
+    EXPECT_EQ(layout.count(), 50u);
+    EXPECT_EQ(layout.buffer_bits(), 25u);
+    EXPECT_EQ(layout.begin_of(49), uint64_t(98) << 30);
 }
 
 TEST(Ledger, KeepsThePeak) {

@@ -237,11 +237,14 @@ TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> p
     return top;
 }
 
-bool is_usable(const TopLevel& top, std::span<const Page> pages, uint64_t pool_bytes) {
-    const uint64_t all = top.tree.bytes() + total_bytes(pages);
-    return !top.empty() && std::min(pool_bytes, all) / OVC_UNIT_BYTES < OVC_MAX_UNITS &&
-           (pages.size() < OVC_KEY_LEAF || all <= pool_bytes) &&
-           top.tree.bytes() + largest_bytes(pages) <= pool_bytes;
+bool is_usable(const TopLevel& top, std::span<const Page> pages, const PoolLayout& pool) {
+    const uint64_t tree = top.tree.bytes();
+    if (top.empty() || pool.bytes == 0 || tree > pool.bytes_of(0))
+        return false;
+    const uint64_t beside = pool.bytes_of(0) - tree;
+    const uint64_t room = pool.count() > 1 ? std::max(beside, pool.bytes_of(1)) : beside;
+    return largest_bytes(pages) <= room &&
+           (pages.size() < OVC_KEY_LEAF || all_fit(pages, pool, tree));
 }
 
 void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "gpu/page.h"
+#include "gpu/pool.h"
 #include "gpu/portal.h"
 
 #include <cstdint>
@@ -84,10 +85,9 @@ struct Parts {
 TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> pages,
                          size_t max_links);
 
-/// Whether rays can go through the tree in a pool of so many bytes: all units can be counted in a
-/// stack word, where pages come and go they can be named by a key, and the largest has room beside
-/// the tree.
-bool is_usable(const TopLevel& top, std::span<const Page> pages, uint64_t pool_bytes);
+/// Whether rays can go through the tree in a pool: it lies in the first buffer, the largest page
+/// has room in some, and where pages come and go they can be named by a key.
+bool is_usable(const TopLevel& top, std::span<const Page> pages, const PoolLayout& pool);
 
 /// Writes a page as it must be where it begins at `first_unit` and units count from the pool's
 /// first; on all cores. to: as large as the page.

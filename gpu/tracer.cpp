@@ -43,7 +43,7 @@ size_t turns(size_t rays, size_t packet) {
 } // namespace
 
 Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
-                               uint64_t bytes_per_ray) {
+                               uint64_t bytes_per_ray, uint64_t buffer_bytes) {
     MemoryPlan plan;
     plan.bytes_per_ray = bytes_per_ray;
     plan.budget_bytes = budget_bytes;
@@ -66,7 +66,10 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
         plan.batch_rays -= kBlockRays;
     plan.pool_bytes =
         (budget_bytes - ray_share) / device.buffer_alignment * device.buffer_alignment;
-    plan.pool_bytes = std::min(plan.pool_bytes, device.max_buffer_texels * sizeof(uvec4));
+    plan.buffer_bytes = device.max_buffer_texels * sizeof(uvec4);
+    if (buffer_bytes > 0)
+        plan.buffer_bytes = std::min(plan.buffer_bytes, buffer_bytes);
+    plan.pool_bytes = std::min(plan.pool_bytes, plan.buffer_bytes * device.max_pool_buffers);
     return plan;
 }
 
@@ -79,13 +82,13 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       page_data_(pages),
       software_(device.is_software),
       top_(top),
-      all_fit_(top.tree.bytes() + total_bytes(pages) <= plan.pool_bytes),
+      all_fit_(all_fit(pages, plan.pool(), top.tree.bytes())),
       scene_(scene_leaf(bounds)),
       stack_depth_(stack_depth(top.depth)),
       stack_words_(software_ ? std::min(stack_depth_, kMostStackWordsInSoftware) : stack_depth_),
       most_slots_(plan.batch_rays + plan.parted_rays()),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(RayState), "rays"),
-      pool_(*ledger_, plan.pool_bytes, pages.size(), top.tree.bytes()) {
+      pool_(*ledger_, plan.pool(), pages.size(), top.tree.bytes()) {
     takes_turns_ = device.has_ballots && software_ && options.compute;
     if (options.compute)
         words_.emplace(*ledger_, most_slots_);
@@ -111,8 +114,8 @@ Result<Done> Tracer::set_up() {
         portals_.show(*portal_buffer_, GL_RGBA32UI, 0, portal_buffer_->bytes());
     }
     rays_.show(ray_buffer_, GL_RGBA32UI, 0, ray_buffer_.bytes());
+    pool_.show();
     pool_.upload(0, top_.tree);
-    pages_.show(pool_.buffer(), GL_RGBA32UI, 0, pool_.buffer().bytes());
     if (active_buffer_) {
         active_.show(*active_buffer_, GL_R32UI, 0, active_buffer_->bytes());
         take_active(); // clears it
@@ -126,7 +129,7 @@ Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const Pas
                                                const DeviceInfo& device, KernelCache& kernels,
                                                const Box& bounds, std::span<const Page> pages,
                                                const TopLevel& top) {
-    assert(is_usable(top, pages, plan.pool_bytes));
+    assert(is_usable(top, pages, plan.pool()));
     auto ledger = std::make_unique<Ledger>();
     ledger->budget = plan.budget_bytes;
     ledger->driver_bytes = plan.driver_bytes;
@@ -143,9 +146,8 @@ void Tracer::say_where(uint32_t leaf) {
     const uint32_t page = uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES);
     for (const Link& link : top_.links_of(leaf)) {
         const uint32_t unit = resident(leaf) ? page + link.first_child : OVC_LEADS_NOWHERE;
-        const size_t texel = size_t(link.unit) * OVC_UNIT_TEXELS + 3;
-        glNamedBufferSubData(pool_.buffer().id(), GLintptr(texel * sizeof(uvec4)), sizeof(unit),
-                             &unit);
+        const uint64_t texel = uint64_t(link.unit) * OVC_UNIT_TEXELS + 3;
+        pool_.write(texel * sizeof(uvec4), unit);
     }
 }
 
@@ -243,6 +245,8 @@ ShaderConfig Tracer::shader_config() const {
     config.portals = has_portals();
     config.may_wait = may_wait();
     config.tell_active = active_buffer_.has_value();
+    config.pool_buffers = pool_.layout().count();
+    config.buffer_bits = pool_.layout().buffer_bits();
     config.loose_pairs = std::ranges::any_of(page_data_, &Page::has_loose_pairs);
     config.stack_depth = stack_words_;
     config.stack_registers = software_ && stack_words_ <= kMaxWordsInRegisters;
@@ -277,15 +281,10 @@ Result<Done> Tracer::launch() {
 
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
     glUseProgram(*program);
-    std::vector<std::pair<GLuint, GLuint>> inputs{{OVC_BINDING_PAGE, pages_.id()},
-                                                  {OVC_BINDING_RAYS, rays_.id()}};
+    pool_.bind(config.buffer_images);
+    rays_.bind(OVC_BINDING_RAYS, config.buffer_images);
     if (has_portals())
-        inputs.emplace_back(OVC_BINDING_PORTALS, portals_.id());
-    for (const auto& [binding, texture] : inputs)
-        if (config.buffer_images)
-            glBindImageTexture(binding, texture, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
-        else
-            glBindTextureUnit(binding, texture);
+        portals_.bind(OVC_BINDING_PORTALS, config.buffer_images);
     if (config.tell_active)
         glBindImageTexture(OVC_BINDING_ACTIVE, active_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
                            GL_R32UI);

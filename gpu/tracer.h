@@ -46,20 +46,24 @@ struct MemoryPlan {
     uint64_t budget_bytes = 0;
     uint32_t batch_rays = 0; // most rays a pass
     uint64_t pool_bytes = 0;
+    uint64_t buffer_bytes = 0; // the most of one of the pool's buffers
     uint64_t active_bytes = 0; // 4 a leaf, or 0: passes mark which pages rays are traced through
     uint64_t bytes_per_ray = sizeof(RayState) + kAnswerBytes;
     uint64_t driver_bytes = ~uint64_t(0); // for tests: what the driver has
 
     /// For how many rays besides there are answers: those that packets part (gpu/packets.h).
     uint32_t parted_rays() const { return batch_rays / 64 / kBlockRays * kBlockRays; }
+    PoolLayout pool() const { return {pool_bytes, buffer_bytes}; }
     uint64_t ray_bytes() const { return batch_rays * bytes_per_ray + parted_rays() * kAnswerBytes; }
 };
 
 /// The plan for a budget, clamped to the device, portals not yet taken off. Error: a budget below
 /// what the smallest page and batch need, with the number.
-/// bytes_per_ray: of a ray and its answer.
+/// bytes_per_ray: of a ray and its answer. buffer_bytes: at most, of one of the pool's buffers; 0:
+/// as much as the device can.
 Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
-                               uint64_t bytes_per_ray = sizeof(RayState) + kAnswerBytes);
+                               uint64_t bytes_per_ray = sizeof(RayState) + kAnswerBytes,
+                               uint64_t buffer_bytes = 0);
 
 /// Pages moved to the GPU.
 struct Moved {
@@ -161,7 +165,6 @@ private:
     std::optional<gl::Buffer> active_buffer_;
     gl::BufferTexture active_;
     Pool pool_;
-    gl::BufferTexture pages_;
     gl::TimeQuery time_;
     DriverThreads driver_threads_ = DriverThreads::find();
     double kernel_seconds_ = 0;

@@ -39,7 +39,8 @@ bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPla
     const size_t links = max_links(pages, scene.level2_bytes(), plan.pool_bytes);
     for (const size_t some : {links, pages}) {
         scene.top = top_level_of(scene, some);
-        if (is_usable(scene.top, scene.pages, room_for_pool(scene, options, plan)))
+        if (is_usable(scene.top, scene.pages,
+                      {room_for_pool(scene, options, plan), plan.buffer_bytes}))
             return true;
     }
     return false;

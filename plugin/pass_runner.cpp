@@ -46,7 +46,8 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
         const BuiltScene& scene = tracing_.scene;
         const uint64_t smaller =
             std::max(plan_.pool_bytes / 2, scene.largest_page_bytes() + scene.top.tree.bytes());
-        if (smaller == plan_.pool_bytes || !is_usable(scene.top, scene.pages, smaller))
+        if (smaller == plan_.pool_bytes ||
+            !is_usable(scene.top, scene.pages, {smaller, plan_.buffer_bytes}))
             return Error{fmt::format("{}: it has no room for the largest page, {} bytes",
                                      made.error().message, smaller),
                          ErrorKind::OutOfGpuMemory};
@@ -85,14 +86,13 @@ void PassRunner::bring_first(BuildProgress* progress) {
     constexpr uint64_t kBytesAtOnce = 32 << 20; // between two looks whether to stop
     const std::vector<Page>& pages = tracing_.scene.pages;
     begin(progress, "moving pages to the GPU", 0.05, plan_.pool_bytes);
-    uint64_t room = plan_.pool_bytes - std::min(plan_.pool_bytes, tracing_.scene.top.tree.bytes());
-    for (size_t next = 0; next < pages.size() && pages[next].bytes() <= room;) {
+    const size_t fitting = fitting_pages(pages, plan_.pool(), tracing_.scene.top.tree.bytes());
+    for (size_t next = 0; next < fitting;) {
         std::vector<uint32_t> some;
         uint64_t bytes = 0;
-        for (; next < pages.size() && pages[next].bytes() <= room && bytes < kBytesAtOnce; ++next) {
+        for (; next < fitting && bytes < kBytesAtOnce; ++next) {
             some.push_back(uint32_t(next));
             bytes += pages[next].bytes();
-            room -= pages[next].bytes();
         }
         bring(some);
         add(progress, bytes);

@@ -19,6 +19,8 @@ namespace {
 // worth a move.
 constexpr uint64_t kPagesAtOnce = 3;
 constexpr uint64_t kPagesByDefault = 32;
+constexpr uint64_t kPagesABuffer =
+    8; // at least, where there are several: what is left over is less
 constexpr uint64_t kWorthMoving = 512 << 10; // bytes
 constexpr uint64_t kDefaultLeaves = 10;      // thesis, section 4
 
@@ -26,8 +28,9 @@ constexpr uint64_t kDefaultLeaves = 10;      // thesis, section 4
 
 Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
                                const DeviceInfo& device) {
-    Result<MemoryPlan> plan = plan_memory(
-        options.budget_bytes ? options.budget_bytes : device.default_budget_bytes(), device);
+    Result<MemoryPlan> plan =
+        plan_memory(options.budget_bytes ? options.budget_bytes : device.default_budget_bytes(),
+                    device, sizeof(RayState) + kAnswerBytes, options.buffer_bytes);
     if (!plan)
         return plan;
     if (soup.triangle_count() > OVC_MAX_TRIANGLES)
@@ -91,7 +94,9 @@ Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, cons
 /// The most that a page may take of the pool: a third, so that some stay resident; half of it where
 /// what leads to as many leaves might not find room beside that.
 static uint64_t share_of_page(const MemoryPlan& plan, uint64_t triangles) {
-    const uint64_t page_bytes = std::max<uint64_t>(plan.pool_bytes / kPagesAtOnce, 1);
+    uint64_t page_bytes = std::max<uint64_t>(plan.pool_bytes / kPagesAtOnce, 1);
+    if (plan.pool().count() > 1)
+        page_bytes = std::min(page_bytes, plan.buffer_bytes / kPagesABuffer);
     const uint64_t leaves = triangles * kMostBytesPerTriangle / page_bytes;
     const uint64_t table = leaves * kMaxBytesPerPart;
     return table + page_bytes <= plan.pool_bytes ? page_bytes : plan.pool_bytes / 2;
@@ -101,8 +106,7 @@ LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uin
                      uint64_t unique) {
     // Halving ends between half full and full: this much on average gives about so many leaves.
     constexpr double kFull = 0.7;
-    constexpr uint64_t kMostPageBytes = uint64_t(OVC_MAX_UNITS - 1) * OVC_UNIT_BYTES;
-    const uint64_t page_bytes = std::min(share_of_page(plan, unique), kMostPageBytes);
+    const uint64_t page_bytes = std::min(share_of_page(plan, unique), plan.buffer_bytes);
     if (options.leaf_triangles)
         return {options.leaf_triangles, page_bytes};
     double most = double(triangles) / double(kDefaultLeaves);
@@ -113,8 +117,8 @@ LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uin
         limits.page_bytes = std::min(
             page_bytes, std::max<uint64_t>(plan.pool_bytes / kPagesByDefault, kWorthMoving));
         const uint64_t table = max_top_level_bytes(1) + sizeof(uint32_t);
-        const uint64_t room =
-            std::min(plan.pool_bytes - std::min(plan.pool_bytes, table), kMostPageBytes);
+        const uint64_t first_buffer = std::min(plan.pool_bytes, plan.buffer_bytes);
+        const uint64_t room = first_buffer - std::min(first_buffer, table);
         limits.whole_bytes = unique <= room / kMostBytesPerTriangle ? LeafLimits::kAny
                              : unique == triangles                  ? room
                                                                     : 0;

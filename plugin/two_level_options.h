@@ -24,6 +24,7 @@ struct TwoLevelOptions {
     /// once, and what is moved before a pass has ended is some 20 % more.
     std::optional<bool> beside;
     uint64_t driver_bytes = ~uint64_t(0); // for tests: as in MemoryPlan
+    uint64_t buffer_bytes = 0;            // for tests: as in plan_memory()
     Bytes saved = {}; // what save() of a structure over the same soup wrote; outlives this one
 };
 

@@ -16,6 +16,12 @@
 #ifndef OVC_TELL_ACTIVE
 #define OVC_TELL_ACTIVE 0 // 1: pages that rays are traced through are marked
 #endif
+#ifndef OVC_POOL_BUFFERS
+#define OVC_POOL_BUFFERS 1 // that the pool consists of
+#endif
+#ifndef OVC_BUFFER_BITS
+#define OVC_BUFFER_BITS 25 // of a unit's number, those within a buffer; above them the buffer's number
+#endif
 #ifndef OVC_LOOSE_PAIRS
 #define OVC_LOOSE_PAIRS 0 // 1: a page may hold two triangles that share no side in a unit
 #endif
@@ -41,6 +47,13 @@
 #endif
 #ifndef OVC_BUFFER_IMAGES
 #define OVC_BUFFER_IMAGES 1 // pages, portals, rays: 1: imageLoad (inlined on llvmpipe, 5 % faster); 0: texelFetch
+#endif
+#if OVC_BUFFER_IMAGES
+#define OVC_TEXELS(number) layout(rgba32ui, binding = number) uniform readonly restrict uimageBuffer
+#define OVC_TEXEL(texels, i) imageLoad(texels, i)
+#else
+#define OVC_TEXELS(number) layout(binding = number) uniform usamplerBuffer
+#define OVC_TEXEL(texels, i) texelFetch(texels, i)
 #endif
 #ifndef OVC_MOST_ROUNDS
 #define OVC_MOST_ROUNDS 0x7fffffff // a ray's loops end after so many rounds and say so, before a driver ends them silently

@@ -32,9 +32,11 @@
 #define OVC_HAS_LOOSE_PAIRS 1u
 #define OVC_OWN_ORDER 0x88u // both triangles' corners 0 and 2 are the pair's
 #define OVC_NO_TRIANGLE 0xffffffffu
-#define OVC_MAX_UNITS 0x2000000 // a stack word has 25 bits for a unit
+#define OVC_MAX_BUFFER_BITS 25 // of the number of a unit within its buffer; where there is one buffer a stack word has no more
+#define OVC_MAX_PAGE_UNITS (1 << OVC_MAX_BUFFER_BITS)
 
-// Under the top-level tree (gpu/top_level.h) units count from the pool's first, where the tree lies; else from the page's own. The
+// Under the top-level tree (gpu/top_level.h) units count from the pool's first, where the tree lies; else from the page's own. Where
+// the pool is several buffers a unit's number is that within its buffer, and above it the number of the buffer (gpu/pool.h). The
 // tree's lowest nodes are links, copies of pages' nodes; texel 3: the unit of the first child in the pool, or OVC_LEADS_NOWHERE;
 // 1 + the page's leaf; the first child's unit in the page, 0. Of a ray that meets it a link has a key, by which links are in order: the
 // upper half of the bits of the t in the tree's frame (float; 0 where it is less), and below it 1 + the leaf.
@@ -91,12 +93,12 @@
 #define OVC_LOCATION_PLANE 0 // of the uniform that says how many words a plane has
 #define OVC_LOCATION_RAYS 2  // of the one that says how many rays the pass has
 
-#define OVC_BINDING_PAGE 0
 #define OVC_BINDING_RAYS 1
 #define OVC_BINDING_ANSWERS 2
 #define OVC_BINDING_PORTALS 3
 // A word a leaf, not 0 where a ray was traced through its page.
 #define OVC_BINDING_ACTIVE 4
+#define OVC_BINDING_POOL 5 // and the next, one for each buffer of the pool
 // The systems of the thesis: a ray is two texels, origin xyz, end t (negative: no ray); direction xyz, the index of the
 // triangle it does not see. It begins at t = 0, in the frame of the whole scene, or of a leaf. In fast precision x, y, z of its answer
 // are t, u, v (float bits).

@@ -2,13 +2,8 @@
 // Portals: where a ray comes to a part in another frame, in doubles, from the world's (docs/numerics.md, "Frames").
 
 #if OVC_PORTALS
-#if OVC_BUFFER_IMAGES
-layout(rgba32ui, binding = OVC_BINDING_PORTALS) uniform readonly restrict uimageBuffer portals;
-uvec4 portal_texel(int i) { return imageLoad(portals, i); }
-#else
-layout(binding = OVC_BINDING_PORTALS) uniform usamplerBuffer portals;
-uvec4 portal_texel(int i) { return texelFetch(portals, i); }
-#endif
+OVC_TEXELS(OVC_BINDING_PORTALS) portals;
+uvec4 portal_texel(int i) { return OVC_TEXEL(portals, i); }
 
 dvec2 doubles_of(uvec4 words) { return dvec2(packDouble2x32(words.xy), packDouble2x32(words.zw)); }
 
@@ -114,12 +109,12 @@ LocalRay local_ray(WorldRay ray, Portal portal) {
 
 // Puts a word below those of the part that the ray comes to. It leads to unit 0.
 void push_mark(inout Descent d) {
-    bool store = d.top != 0u;
+    bool store = !is_none(d.top);
 #if OVC_STACK_REGISTERS
-    d.lost = d.lost || (store && d.stack[OVC_STACK_DEPTH - 1] != 0u);
-    uint above = d.top;
+    d.lost = d.lost || (store && !is_none(d.stack[OVC_STACK_DEPTH - 1]));
+    Word above = d.top;
     for (int i = 0; i < OVC_STACK_DEPTH; ++i) {
-        uint own = d.stack[i];
+        Word own = d.stack[i];
         d.stack[i] = store ? above : own;
         above = own;
     }
@@ -130,7 +125,7 @@ void push_mark(inout Descent d) {
         d.stack[d.height] = d.top;
     }
 #endif
-    d.top = 4u;
+    d.top = word_of(0, 4);
 }
 
 void set_local_ray(inout Packet packet, LocalRay local, Tree tree) {

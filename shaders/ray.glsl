@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rays of a pass (layout.h), and the pixels of their answers.
 
-#if OVC_BUFFER_IMAGES
-layout(rgba32ui, binding = OVC_BINDING_RAYS) uniform readonly restrict uimageBuffer rays;
-uvec4 ray_texel(int i) { return imageLoad(rays, i); }
-#else
-layout(binding = OVC_BINDING_RAYS) uniform usamplerBuffer rays;
-uvec4 ray_texel(int i) { return texelFetch(rays, i); }
-#endif
+OVC_TEXELS(OVC_BINDING_RAYS) rays;
+uvec4 ray_texel(int i) { return OVC_TEXEL(rays, i); }
 
 // The number of the ray whose answer goes to `pixel`.
 int ray_at(ivec2 pixel) {

@@ -13,28 +13,29 @@ struct Direction {
 Direction direction_of(vec3 dir, Axes axes) { return Direction(finite_reciprocal(dir), axes, by_axis(axes, dir).xy); }
 Direction direction_of(vec3 dir) { return direction_of(dir, axes_of(dir)); }
 
-// The four texels of a unit (layout.h).
-struct Unit {
-    uvec4 x;
-    uvec4 y;
-    uvec4 z;
-    uvec4 w;
-};
+// A stack word is a node with children still to come: the unit of the first of its children, and the numbers of those to come in
+// seven bits, two each, the next one lowest, below a 1; 0 is no word.
+#if OVC_POOL_BUFFERS == 1
+#define Word uint
+Word word_of(int first_child, int to_come) { return uint(first_child << 7 | to_come); }
+int first_child_of(Word word) { return int(word >> 7); }
+uint to_come_of(Word word) { return word & 127u; }
+Word with_to_come(Word word, uint to_come) { return (word & ~127u) | to_come; }
+#else
+#define Word uvec2
+Word word_of(int first_child, int to_come) { return uvec2(first_child, to_come); }
+int first_child_of(Word word) { return int(word.x); }
+uint to_come_of(Word word) { return word.y; }
+Word with_to_come(Word word, uint to_come) { return uvec2(word.x, to_come); }
+#endif
+bool is_none(Word word) { return to_come_of(word) == 0u; }
 
-Unit unit_at(int unit) {
-    int at = unit * OVC_UNIT_TEXELS;
-    return Unit(page_texel(at), page_texel(at + 1), page_texel(at + 2), page_texel(at + 3));
-}
-
-bool is_pair(Unit unit) { return int(unit.w.w) < 0; }
-
-// Where a ray is in the tree. A stack word is a node with children still to come: the unit of the first of its children << 7, and
-// in the lowest seven bits the numbers of those to come, two bits each, the next one lowest, below a 1; 0 is no word.
+// Where a ray is in the tree.
 struct Descent {
     int unit;   // where it goes next; under portals 0: back to the top-level tree, and a negative one: behind the portal -unit
-    uint top;   // the word on top of the stack; 0: the stack is empty
+    Word top;   // the word on top of the stack; none: the stack is empty
     int height; // of the words below `top`, less one, where the stack is an array
-    uint stack[OVC_STACK_DEPTH]; // in registers the word below `top` is the first
+    Word stack[OVC_STACK_DEPTH]; // in registers the word below `top` is the first
     bool done;
     bool lost; // the stack was too short: what has been found is not all
 };
@@ -46,29 +47,30 @@ bool goes_on(Descent d) { return OVC_PORTALS == 0 || d.unit >= 0; }
 void advance(inout Descent d, int first_child, Children children, bool leave) {
     Way way = way_to(children);
     bool back = leave && !way.down;
-    uint word = uint(first_child << 7 | way.others);
+    Word word = word_of(first_child, way.others);
 
-    uint rest = (d.top & ~127u) | ((d.top >> 2) & 31u);
-    d.unit = way.down ? first_child + way.first : (back ? int(d.top >> 7) + int(d.top & 3u) : d.unit);
+    uint to_come = to_come_of(d.top);
+    Word rest = with_to_come(d.top, to_come >> 2);
+    d.unit = way.down ? first_child + way.first : (back ? first_child_of(d.top) + int(to_come & 3u) : d.unit);
 
-    bool empty = d.top == 0u;
+    bool empty = is_none(d.top);
     bool store = way.more && !empty;
-    bool pop = back && (d.top & 0x70u) == 0u; // no more than one was to come
-    uint below;
+    bool pop = back && (to_come & 0x70u) == 0u; // no more than one was to come
+    Word below;
 #if OVC_STACK_REGISTERS
     // All words move: two selections a word and no comparison.
     below = d.stack[0];
-    d.lost = d.lost || (store && d.stack[OVC_STACK_DEPTH - 1] != 0u);
-    uint above = d.top;
+    d.lost = d.lost || (store && !is_none(d.stack[OVC_STACK_DEPTH - 1]));
+    Word above = d.top;
     for (int i = 0; i < OVC_STACK_DEPTH; ++i) {
-        uint own = d.stack[i];
-        uint next = i + 1 < OVC_STACK_DEPTH ? d.stack[i + 1] : 0u;
+        Word own = d.stack[i];
+        Word next = i + 1 < OVC_STACK_DEPTH ? d.stack[i + 1] : Word(0u);
         d.stack[i] = store ? above : (pop ? next : own);
         above = own;
     }
 #else
     d.lost = d.lost || (store && d.height >= OVC_STACK_DEPTH - 1);
-    below = 0u;
+    below = Word(0u);
     if (store)
         d.stack[d.height + 1] = d.top;
     if (pop && d.height >= 0)
@@ -140,9 +142,8 @@ struct Tree {
 };
 
 Tree tree_of(int page, int first_unit) {
-    int header = page * OVC_UNIT_TEXELS;
-    return Tree(uintBitsToFloat(page_texel(header).xyz), uintBitsToFloat(page_texel(header + 1).xyz),
-                ivec4(page_texel(header + 2)), first_unit);
+    Unit header = unit_at(page);
+    return Tree(uintBitsToFloat(header.x.xyz), uintBitsToFloat(header.y.xyz), ivec4(header.z), first_unit);
 }
 
 void set_ray(inout Packet packet, int k, Tree tree, vec3 org, Direction direction, uint skip, bool any_hit) {
@@ -158,9 +159,9 @@ void start(inout Descent d, Tree tree) {
     d.height = tree.start.y;
 #if OVC_STACK_REGISTERS
     for (int i = 0; i < OVC_STACK_DEPTH; ++i)
-        d.stack[i] = uint(tree.start.z);
+        d.stack[i] = Word(tree.start.z);
 #endif
-    d.top = uint(tree.start.z);
+    d.top = Word(tree.start.z);
     d.done = tree.start.w != 0;
     d.lost = tree.start.w != 0;
 }

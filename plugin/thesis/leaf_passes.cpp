@@ -34,8 +34,8 @@ LeafPasses::LeafPasses(std::unique_ptr<Ledger> ledger, const ovc::MemoryPlan& pl
       answers_(*ledger_, GL_RGBA32UI, sizeof(FrameAnswer), kRowRays, plan.batch_rays / kRowRays,
                "answers"),
       framebuffer_(answers_),
-      pool_(*ledger_, plan.pool_bytes, pages.size()) {
-    page_texels_.show(pool_.buffer(), GL_RGBA32UI, 0, pool_.buffer().bytes());
+      pool_(*ledger_, {plan.pool_bytes, plan.buffer_bytes}, pages.size()) {
+    pool_.show();
 }
 
 Result<std::unique_ptr<LeafPasses>> LeafPasses::create(const ovc::MemoryPlan& plan,
@@ -106,11 +106,7 @@ Result<LeafPass> LeafPasses::run(uint32_t leaf, std::span<const FrameRay> rays,
                        GLint(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES));
     glProgramUniform1i(*program, kFirstOcclusionRay, GLint(first_occlusion));
     glUseProgram(*program);
-    if (software_) // as config.buffer_images says
-        glBindImageTexture(OVC_BINDING_PAGE, page_texels_.id(), 0, GL_FALSE, 0, GL_READ_ONLY,
-                           GL_RGBA32UI);
-    else
-        glBindTextureUnit(OVC_BINDING_PAGE, page_texels_.id());
+    pool_.bind(software_); // as config.buffer_images says
     glBindTextureUnit(OVC_BINDING_RAYS, rays_.id());
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     glBindVertexArray(vertex_array_.id());

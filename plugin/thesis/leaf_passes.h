@@ -61,7 +61,6 @@ private:
     gl::Framebuffer framebuffer_;
     gl::VertexArray vertex_array_;
     Pool pool_;
-    gl::BufferTexture page_texels_;
     std::optional<gl::Program> kernel_;
 };
 

@@ -46,8 +46,7 @@ size_t build_pages(QueuedScene& scene, BuildProgress* progress) {
 /// Both levels, again with smaller leaves where a page turns out too large.
 Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint64_t most,
                           BuildProgress* progress) {
-    const uint64_t page_bytes = std::min<uint64_t>(scene.plan.pool_bytes / kPagesAtOnce,
-                                                   uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES);
+    const uint64_t page_bytes = scene.plan.pool_bytes / kPagesAtOnce;
     most = std::clamp<uint64_t>(std::min(most, page_bytes / kBytesPerTriangle), 1, kNone);
     while (true) {
         Stopwatch watch;
@@ -115,6 +114,7 @@ Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThre
     if (!plan)
         return plan.error();
     scene->plan = *plan;
+    scene->plan.pool_bytes = std::min(plan->pool_bytes, plan->buffer_bytes); // one buffer
     scene->statistics.gpu_budget_bytes = plan->budget_bytes;
     const Stopwatch watch;
     begin(progress, "triangles", 0.1, 2 * soup.triangle_count());

@@ -23,10 +23,10 @@ const char* name_of(ovc_structure structure) {
 static Result<System> build_page_system(const Soup& soup, const Leaf& whole,
                                         BuildProgress* progress) {
     Page page = build_page(soup, whole, progress);
-    if (page.units() >= OVC_MAX_UNITS)
+    if (page.units() >= OVC_MAX_PAGE_UNITS)
         return over_budget(
             fmt::format("a BVH of {} bytes is more than its nodes can name: {} bytes", page.bytes(),
-                        uint64_t(OVC_MAX_UNITS) * OVC_UNIT_BYTES));
+                        uint64_t(OVC_MAX_PAGE_UNITS) * OVC_UNIT_BYTES));
     const uint32_t depth = stack_depth({&page, 1});
     const uint64_t units = page.units();
     return System{std::move(page.texels), whole.triangles.size(), depth, units};

@@ -4,7 +4,7 @@
 // The words of an answer (layout.h) from the page whose header is unit `page`.
 uvec4 trace_page(int page, vec3 org, float t_end, vec3 dir, uint skip, bool any_hit) {
     Found found = nothing_found(t_end);
-    int rounds = int(page_texel(page * OVC_UNIT_TEXELS + 2).w); // 0, fetched
+    int rounds = int(unit_at(page).z.w); // 0, fetched
     bool done = t_end < 0.0;
     if (!done)
         done = traverse(found, page, org, direction_of(dir), skip, any_hit, rounds);

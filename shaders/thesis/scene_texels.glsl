@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene as one array of texels, in one square texture or tiled over several behind one look-up with branches.
 // Based on: thesis, section 3.2 (algorithm 1).
+#include "unit.glsl"
 
 #ifndef OVC_TILES
 #define OVC_TILES 1 // textures. Each costs a fetch a look-up where the lanes of a group fetch together
@@ -43,5 +44,7 @@ uvec4 scene_texel(int i) {
     return texelFetch(scene[0], at, 0);
 }
 
-// What traverse.glsl calls it.
-uvec4 page_texel(int i) { return scene_texel(i); }
+Unit unit_at(int unit) {
+    int at = unit * OVC_UNIT_TEXELS;
+    return Unit(scene_texel(at), scene_texel(at + 1), scene_texel(at + 2), scene_texel(at + 3));
+}
