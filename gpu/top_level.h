@@ -6,8 +6,8 @@
 #pragma once
 
 #include "gpu/page.h"
-#include "gpu/pool.h"
 #include "gpu/portal.h"
+#include "gpu/residency.h"
 
 #include <cstdint>
 #include <span>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pool's books: pages never overlap, never leave the pool, and the least recently used go
 // first.
-#include "gpu/pool.h"
+#include "gpu/residency.h"
 
 #include "kdtree/test_soups.h"
 
@@ -136,16 +136,6 @@ TEST(PoolLayout, LargePoolsAreCountedToo) {
     EXPECT_EQ(layout.count(), 50u);
     EXPECT_EQ(layout.buffer_bits(), 25u);
     EXPECT_EQ(layout.begin_of(49), uint64_t(98) << 30);
-}
-
-TEST(Ledger, KeepsThePeak) {
-    Ledger ledger;
-    ledger.budget = 100;
-    ledger.add(60);
-    ledger.remove(50);
-    ledger.add(20);
-    EXPECT_EQ(ledger.in_use, 30u);
-    EXPECT_EQ(ledger.peak, 60u);
 }
 
 } // namespace
