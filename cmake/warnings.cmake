@@ -3,7 +3,7 @@
 add_library(ovc_flags INTERFACE)
 target_compile_options(ovc_flags INTERFACE
     -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers
-    # The edge functions of core/triangle.h stay antisymmetric only when products and sums round separately.
+    # The edge functions of core/exact/triangle.h stay antisymmetric only when products and sums round separately.
     -ffp-contract=off
     $<$<BOOL:${OVC_WERROR}>:-Werror>)
 target_include_directories(ovc_flags INTERFACE ${PROJECT_SOURCE_DIR})

@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-/// Batches: has intersect() and occluded() as plugin/structure.h declares them.
+/// Batches: has intersect() and occluded() as plugin/structure/structure.h declares them.
 template <class Batches>
 class BatchedStream final : public RayStream {
 public:

@@ -2,7 +2,7 @@
 // BuildProgress: what is told, how often, and that it stops every thread.
 #include "core/build_progress.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray and Hit, in double: the records of the C ABI, byte for byte (plugin/plugin.cpp asserts it).
+// Ray and Hit, in double: the records of the C ABI, byte for byte (plugin/abi/plugin.cpp asserts
+// it).
 #pragma once
 
 #include "core/vec.h"

@@ -3,7 +3,7 @@
 // cameras.
 #pragma once
 
-#include "core/mapped_file.h"
+#include "core/file/mapped_file.h"
 #include "core/soup.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 // Soup: ownership of chunks, and which triangles can be hit.
 #include "core/soup.h"
 
-#include "core/exact.h"
-#include "core/parallel.h"
+#include "core/exact/exact.h"
+#include "core/system/parallel.h"
 
 #include <bit>
 #include <cassert>

@@ -5,7 +5,7 @@
 #include "core/twins.h"
 
 #include "core/corner_hash.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 #include <algorithm>
 #include <bit>

@@ -2,7 +2,7 @@
 // Which reader, which writer: by the extension.
 #include "importers/importer.h"
 
-#include "core/suggestion.h"
+#include "core/text/suggestion.h"
 #include "importers/readers.h"
 
 #include <fmt/format.h>

@@ -2,10 +2,10 @@
 // Importers: a file in, a Scene out; and back, for `overcast convert`.
 #pragma once
 
-#include "core/log.h"
 #include "core/result.h"
 #include "core/scene.h"
-#include "importers/files_read.h"
+#include "core/system/log.h"
+#include "importers/file/files_read.h"
 
 #include <filesystem>
 #include <string>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writers: PLY (binary little endian) and OBJ.
-#include "importers/output_file.h"
+#include "importers/file/output_file.h"
+#include "importers/mesh/unique_vertices.h"
 #include "importers/readers.h"
-#include "importers/unique_vertices.h"
 
 #include <fmt/format.h>
 

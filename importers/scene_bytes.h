@@ -3,7 +3,7 @@
 // length. Reading believes nothing.
 #pragma once
 
-#include "core/archive.h"
+#include "core/file/archive.h"
 
 #include <algorithm>
 #include <cstring>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/scene.h"
-#include "importers/files_read.h"
+#include "importers/file/files_read.h"
 
 #include <concepts>
 

@@ -3,7 +3,7 @@
 // levels.
 #include "importers/scene_file.h"
 
-#include "importers/output_file.h"
+#include "importers/file/output_file.h"
 #include "importers/readers.h"
 #include "importers/scene_bytes.h"
 #include "importers/scene_fields.h"

@@ -3,8 +3,8 @@
 // into memory when it is read. It is a cache: for this version on this kind of machine.
 #pragma once
 
-#include "core/archive.h"
-#include "importers/files_read.h"
+#include "core/file/archive.h"
+#include "importers/file/files_read.h"
 #include "importers/importer.h"
 
 #include <filesystem>

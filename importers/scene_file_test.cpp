@@ -3,11 +3,11 @@
 // is told.
 #include "importers/scene_file.h"
 
-#include "importers/fuzz/fuzz.h"
 #include "importers/readers.h"
 #include "importers/scene_bytes.h"
 #include "importers/scene_fields.h"
 #include "importers/test_files.h"
+#include "tests/fuzz/importers.h"
 
 #include <random>
 

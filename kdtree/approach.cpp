@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kdtree/approach.h"
 
-#include "core/exact.h"
+#include "core/exact/exact.h"
 #include "kdtree/partition.h"
 
 #include <algorithm>

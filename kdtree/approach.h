@@ -4,7 +4,7 @@
 // every triangle would have to be asked.
 #pragma once
 
-#include "core/triangle.h"
+#include "core/exact/triangle.h"
 
 #include <optional>
 

@@ -3,7 +3,7 @@
 // current cell).
 #include "kdtree/build.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "kdtree/clip.h"
 
 #include <algorithm>

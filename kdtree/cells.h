@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/build_progress.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "kdtree/clip.h"
 #include "kdtree/tree.h"
 

@@ -3,7 +3,7 @@
 // handed to the cells they touch.
 #include "kdtree/partition.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "kdtree/build.h"
 #include "kdtree/cells.h"
 #include "kdtree/sample.h"

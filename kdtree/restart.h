@@ -4,7 +4,7 @@
 // 4).
 #pragma once
 
-#include "core/triangle.h"
+#include "core/exact/triangle.h"
 #include "kdtree/partition.h"
 
 namespace ovc {

@@ -3,7 +3,7 @@
 #include "kdtree/sample.h"
 
 #include "core/corner_hash.h"
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 #include <algorithm>
 #include <bit>

@@ -3,7 +3,7 @@
 // triangle.
 #pragma once
 
-#include "core/triangle.h"
+#include "core/exact/triangle.h"
 
 #include <cstdint>
 #include <random>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU KDT: leaves visited by walk.h, triangles tested by core/triangle.h.
+// The CPU KDT: leaves visited by walk.h, triangles tested by core/exact/triangle.h.
 #include "kdtree/traverse.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "kdtree/approach.h"
 #include "kdtree/walk.h"
 

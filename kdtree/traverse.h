@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CPU KDT: nearest hits and occlusion in double over a full tree, many rays a call. What it
-// answers is, bit for bit, what testing every triangle with core/triangle.h answers. Based on:
-// Pharr and Humphreys 2004, section 4.4 (traversal); thesis, chapter 4 (the interface for many
+// answers is, bit for bit, what testing every triangle with core/exact/triangle.h answers. Based
+// on: Pharr and Humphreys 2004, section 4.4 (traversal); thesis, chapter 4 (the interface for many
 // rays).
 #pragma once
 
-#include "core/triangle.h"
+#include "core/exact/triangle.h"
 #include "kdtree/tree.h"
 
 #include <span>

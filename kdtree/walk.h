@@ -3,7 +3,7 @@
 // margin, so that a leaf the exact ray touches is never passed by; a leaf too many is.
 #pragma once
 
-#include "core/triangle.h"
+#include "core/exact/triangle.h"
 #include "kdtree/tree.h"
 
 #include <array>

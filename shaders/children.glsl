@@ -9,7 +9,7 @@ struct Way {
 };
 
 #if OVC_ANY_HIT
-// In the order of their numbers, the largest first (gpu/packer.h): nearest first found a hit no sooner.
+// In the order of their numbers, the largest first (gpu/page/packer.h): nearest first found a hit no sooner.
 struct Children {
     bvec4 met;
 };

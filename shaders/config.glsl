@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every switch of the kernel, with its default. ShaderConfig (gpu/kernel.h) always defines all of them.
+// Every switch of the kernel, with its default. ShaderConfig (gpu/gl/kernel.h) always defines all of them.
 
 #ifndef OVC_ANY_HIT
 #define OVC_ANY_HIT 0 // 1: all rays ask whether anything is hit; 0: each says what it asks, those of the thesis the nearest hit

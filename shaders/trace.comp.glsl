@@ -41,7 +41,7 @@ uint dealt_group() {
 #endif
 }
 
-// A miss is not written: it stands there before (gpu/answers.h).
+// A miss is not written: it stands there before (gpu/trace/answers.h).
 void give(int ray, uvec4 answer) {
     bool more = answer.x != OVC_NO_TRIANGLE || (OVC_MAY_WAIT != 0 && answer.z != OVC_NO_LEAF);
     uint word = answer.w | (more ? OVC_SAYS_MORE : 0u);

@@ -4,10 +4,10 @@
 // Based on: Goral et al. 1984, "Modeling the Interaction of Light between Diffuse Surfaces"; the
 // measured box of Cornell University, with the colors and the light of
 // pbrt-v4-scenes/cornell-box.
-#include "host/path_tracer.h"
+#include "host/shade/path_tracer.h"
 
-#include "host/camera_rays.h"
-#include "host/render_batched.h"
+#include "host/camera/camera_rays.h"
+#include "host/render/render_batched.h"
 #include "importers/importer.h"
 #include "tests/real_data.h"
 

@@ -2,7 +2,7 @@
 // Rays against triangles in exact rational arithmetic: the judge where two programs disagree.
 #pragma once
 
-#include "core/triangle.h"
+#include "core/exact/triangle.h"
 
 #include <boost/multiprecision/cpp_int.hpp>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The picture of far-terrain, 1e7 m with 1 mm detail at the far corner where the camera stands: no
 // background shows through the ground, and each pixel sees the triangle that the reference sees.
-#include "host/backend.h"
-#include "host/camera.h"
-#include "host/render.h"
-#include "host/report/terrain_rays.h"
+#include "host/backend/backend.h"
+#include "host/camera/camera.h"
+#include "host/render/render.h"
+#include "host/report/stability/terrain_rays.h"
 #include "testscenes/catalog.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // import_cost FILE [--assimp] [--times N]: what reading a file costs, as a line of JSON, for
 // importers/measure.py. A process of its own per file, so that peaks do not mix.
-#include "host/process_cost.h"
+#include "host/terminal/process_cost.h"
 #include "importers/readers.h"
 
 #include <fmt/format.h>

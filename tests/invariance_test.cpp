@@ -2,8 +2,8 @@
 // One hash for all: the hits of a scene are the same bits whatever the system, the leaf size, the
 // budget, the batch size, the order of the rays, the kernel and the vector width of the software
 // renderer.
-#include "core/parallel.h"
-#include "host/backend.h"
+#include "core/system/parallel.h"
+#include "host/backend/backend.h"
 #include "importers/importer.h"
 #include "kdtree/test_soups.h"
 #include "tests/real_data.h"

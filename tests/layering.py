@@ -19,18 +19,31 @@ MAY_INCLUDE = {
     "host": {"core", "importers", "testscenes", "kdtree", "host"},
 }
 
+# Within a folder, what a part of it may know of the others; parts that are not named know all.
+PARTS = {
+    "gpu/gl": set(),
+    "gpu/bvh": set(),
+    "gpu/page": {"gpu/bvh"},
+    "gpu/trace": {"gpu/gl", "gpu/page"},
+    "plugin/structure": {"plugin"},
+    "plugin/abi": {"plugin", "plugin/structure"},
+    "plugin/build": {"plugin", "plugin/plan"},
+    "plugin/plan": {"plugin", "plugin/build"},
+    "plugin/two_level": {"plugin", "plugin/structure", "plugin/build", "plugin/plan"},
+}
+
 # Header pattern -> the files that may name it. Tests may name any.
 PLACES = {
     r"glm/": ["core/vec.h"],
-    r"(oneapi/)?tbb/": ["core/parallel.h"],
-    r"xxhash\.h": ["core/checksum.cpp"],
-    r"assimp/": ["importers/assimp.cpp"],
-    r"zlib\.h": ["importers/source.cpp", "importers/source.h"],
-    r"epoxy/": ["gpu/gl.h"],
+    r"(oneapi/)?tbb/": ["core/system/parallel.h"],
+    r"xxhash\.h": ["core/file/checksum.cpp"],
+    r"assimp/": ["importers/mesh/assimp.cpp"],
+    r"zlib\.h": ["importers/file/source.cpp", "importers/file/source.h"],
+    r"epoxy/": ["gpu/gl/gl.h"],
     r"(EGL|GL|GLES\d?|KHR)/": [],
-    r"(OpenEXR/|Imf)": ["host/image_exr.cpp"],
+    r"(OpenEXR/|Imf)": ["host/output/image_exr.cpp"],
     r"png\.h": ["importers/png.cpp"],
-    r"embree": ["host/backend_embree.cpp"],
+    r"embree": ["host/backend/backend_embree.cpp"],
     r"boost/": ["importers/csg/exact.h"],
     r"tachyon\.h": ["plugin/hosts/tachyon/tachyon_triangle.h"],
     r"(gtest|gmock)/": [],
@@ -59,6 +72,9 @@ def check(root, path):
             hosts = "/".join(name.split("/")[:3])
             if not is_test and hosts.startswith("plugin/hosts/") and target != "plugin/overcast.h" and not target.startswith(hosts):
                 yield f"{name} includes {target}; a host knows its own folder and plugin/overcast.h"
+            part, known = name.rpartition("/")[0], target.rpartition("/")[0]
+            if part in PARTS and not is_test and known != part and known.startswith(folder) and known not in PARTS[part]:
+                yield f"{name} includes {target}; {part} may include {sorted(PARTS[part]) or 'none of its neighbours'}"
             if folder == "plugin" and name.endswith("overcast.h"):
                 yield f"{name} includes {target}; the C header includes nothing of ours"
             elif folder not in MAY_INCLUDE or other not in MAY_INCLUDE[folder]:

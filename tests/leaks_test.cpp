@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // `overcast report --only leaks` in its short form, and what it aims at in meshes with holes.
-#include "host/report/leak_cases.h"
+#include "host/report/stability/leak_cases.h"
 
-#include "host/report/sound_targets.h"
-#include "host/report/stability.h"
-#include "host/report/stability_meshes.h"
+#include "host/report/stability/sound_targets.h"
+#include "host/report/stability/stability.h"
+#include "host/report/stability/stability_meshes.h"
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
 #include "tests/real_data.h"

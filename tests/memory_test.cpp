@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How lean: bytes a triangle, GPU bytes under a budget, memory while reading.
 #include "importers/importer.h"
-#include "tests/abi_scene.h"
+#include "tests/abi/abi_scene.h"
 #include "tests/real_data.h"
 #include "tests/run_command.h"
 #include "testscenes/catalog.h"

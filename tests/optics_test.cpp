@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The optics table in a short form: spawned rays neither hit what they leave nor escape, glass
 // bends light as it must, mirrors are deep.
-#include "host/report/optics.h"
+#include "host/report/optics/optics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // pov_mask SCENE WIDTH HEIGHT: which pixels' middles the scene covers, a byte of 0 or 1 each, on
 // stdout; 2 where a bent picture shows nothing. For importers/pov/compare.py.
-#include "host/backend.h"
-#include "host/camera.h"
+#include "host/backend/backend.h"
+#include "host/camera/camera.h"
 #include "importers/importer.h"
 
 #include <cstdio>

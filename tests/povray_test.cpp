@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Glass, mirrors and shadows through glass look as POV-Ray draws them: its own spheres, our
 // triangles.
-#include "host/render.h"
+#include "host/render/render.h"
 #include "importers/importer.h"
 #include "tests/run_command.h"
 #include "testscenes/catalog.h"

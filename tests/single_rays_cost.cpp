@@ -4,18 +4,18 @@
 // the CPU KD-tree, and the same rays gathered for the GPU. All in turn, medians; what a call
 // waited. On a machine that others use too, rays per second of this process' CPU time are what can
 // be compared.
-#include "core/parallel.h"
-#include "core/stopwatch.h"
+#include "core/system/parallel.h"
+#include "core/system/stopwatch.h"
 #include "host/bench/ray_sets.h"
-#include "host/camera.h"
-#include "host/process_cost.h"
-#include "host/scene_source.h"
-#include "host/scene_summary.h"
+#include "host/camera/camera.h"
+#include "host/scene/scene_source.h"
+#include "host/scene/scene_summary.h"
+#include "host/terminal/process_cost.h"
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
-#include "plugin/gathering.h"
-#include "plugin/two_level.h"
-#include "tests/abi_scene.h"
+#include "plugin/structure/gathering.h"
+#include "plugin/two_level/two_level.h"
+#include "tests/abi/abi_scene.h"
 
 #include <fmt/format.h>
 

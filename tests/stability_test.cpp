@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stability suite in its short form: certified mode answers what the reference answers, and the
 // reference names the triangle that exact arithmetic names.
-#include "host/report/stability.h"
+#include "host/report/stability/stability.h"
 
-#include "host/report/stability_table.h"
+#include "host/report/stability/stability_table.h"
 #include "kdtree/build.h"
 #include "kdtree/traverse.h"
 #include "tests/exact.h"

@@ -7,7 +7,7 @@
 #include "testscenes/noise.h"
 #include "testscenes/scenes.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 #include <cmath>
 #include <string>

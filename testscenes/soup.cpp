@@ -4,7 +4,7 @@
 #include "testscenes/random.h"
 #include "testscenes/scenes.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 namespace ovc {
 

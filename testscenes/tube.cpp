@@ -2,7 +2,7 @@
 // The points of a tube, its triangles, and its normals.
 #include "testscenes/tube.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 #include <algorithm>
 #include <array>

@@ -2,9 +2,9 @@
 // Rounds of calls, and what each took.
 #include "host/bench/bench.h"
 
-#include "core/parallel.h"
-#include "core/stopwatch.h"
-#include "host/process_cost.h"
+#include "core/system/parallel.h"
+#include "core/system/stopwatch.h"
+#include "host/terminal/process_cost.h"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ uint64_t count_differing(std::span<const uint64_t> a, std::span<const uint64_t> 
 
 /// What the kernel took, without bringing rays and answers. Of one on the CPU, its share of the CPU
 /// time a thread had: as on a machine that has nothing else to do, where that is the share of the
-/// call. A software renderer's kernel comes as CPU time already (gpu/driver_threads.h).
+/// call. A software renderer's kernel comes as CPU time already (gpu/gl/driver_threads.h).
 double kernel_alone(const ovc_statistics& before, const ovc_statistics& after, double seconds,
                     double cpu_seconds) {
     const double kernel = after.seconds_kernel - before.seconds_kernel;

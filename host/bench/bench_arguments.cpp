@@ -2,8 +2,8 @@
 // Scenes, contenders, sizes and sweeps.
 #include "host/bench/bench_arguments.h"
 
-#include "core/suggestion.h"
-#include "host/output.h"
+#include "core/text/suggestion.h"
+#include "host/output/output.h"
 #include "testscenes/catalog.h"
 
 #include <algorithm>

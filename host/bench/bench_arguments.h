@@ -2,7 +2,7 @@
 // What `overcast bench` is asked to do, from its words.
 #pragma once
 
-#include "host/arguments.h"
+#include "host/arguments/arguments.h"
 #include "host/bench/contender.h"
 
 #include <string>

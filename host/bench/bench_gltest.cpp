@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command with the plugin: certified contenders answer alike, whatever the sweep.
-#include "host/command.h"
-#include "host/interrupt.h"
-#include "host/plugin_loader.h"
+#include "host/backend/plugin_loader.h"
+#include "host/command/command.h"
+#include "host/terminal/interrupt.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A bench for people: a table of who was built and one a workload.
+#include "host/arguments/memory_size.h"
 #include "host/bench/bench_text.h"
 #include "host/bench/ratios.h"
-#include "host/memory_size.h"
-#include "host/text_table.h"
+#include "host/terminal/text_table.h"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 // Taking turns, counting what differs, and stopping, with backends that answer what they are told.
 #include "host/bench/bench.h"
 
-#include "core/parallel.h"
-#include "host/process_cost.h"
+#include "core/system/parallel.h"
+#include "host/terminal/process_cost.h"
 
 #include <gmock/gmock.h>
 

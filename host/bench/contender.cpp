@@ -2,7 +2,7 @@
 // The table of contenders, who of them was asked for, and how each is built.
 #include "host/bench/contender.h"
 
-#include "core/suggestion.h"
+#include "core/text/suggestion.h"
 #include "host/bench/float_kd_tree.h"
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/result.h"
-#include "host/backend.h"
+#include "host/backend/backend.h"
 #include "kdtree/tree.h"
 
 #include <map>

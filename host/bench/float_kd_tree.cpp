@@ -2,8 +2,8 @@
 // The tree of the CPU KDT, rounded to float32 and packed.
 #include "host/bench/float_kd_tree.h"
 
-#include "core/parallel.h"
-#include "core/stopwatch.h"
+#include "core/system/parallel.h"
+#include "core/system/stopwatch.h"
 
 #include <array>
 #include <bit>

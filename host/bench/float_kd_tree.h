@@ -4,7 +4,7 @@
 // section 4.4 (8-byte nodes, traversal); Moeller and Trumbore 1997 (triangles).
 #pragma once
 
-#include "host/backend.h"
+#include "host/backend/backend.h"
 #include "kdtree/tree.h"
 
 namespace ovc {

@@ -3,11 +3,11 @@
 #include "host/bench/ray_sets.h"
 
 #include "core/box.h"
-#include "core/triangle.h"
-#include "host/camera.h"
-#include "host/memory_size.h"
-#include "host/scene_summary.h"
-#include "host/shade.h"
+#include "core/exact/triangle.h"
+#include "host/arguments/memory_size.h"
+#include "host/camera/camera.h"
+#include "host/scene/scene_summary.h"
+#include "host/shade/shade.h"
 #include "testscenes/random.h"
 
 #include <cassert>

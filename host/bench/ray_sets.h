@@ -5,7 +5,7 @@
 #include "core/ray.h"
 #include "core/result.h"
 #include "core/scene.h"
-#include "host/backend.h"
+#include "host/backend/backend.h"
 
 #include <cstdint>
 #include <string>

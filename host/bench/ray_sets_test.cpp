@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bench's rays: the same on every run, and where geometry says they must be.
 #include "host/bench/ray_sets.h"
-#include "host/camera.h"
-#include "host/scene_summary.h"
+#include "host/camera/camera.h"
+#include "host/scene/scene_summary.h"
 #include "testscenes/catalog.h"
 
 #include <gtest/gtest.h>

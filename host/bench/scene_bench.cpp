@@ -2,14 +2,14 @@
 // From the name of a scene to what everyone took.
 #include "host/bench/scene_bench.h"
 
-#include "core/parallel.h"
-#include "core/stopwatch.h"
+#include "core/system/parallel.h"
+#include "core/system/stopwatch.h"
 #include "host/bench/ray_sets.h"
-#include "host/camera.h"
-#include "host/scene_source.h"
-#include "host/scene_summary.h"
-#include "host/shade.h"
-#include "host/terminal_line.h"
+#include "host/camera/camera.h"
+#include "host/scene/scene_source.h"
+#include "host/scene/scene_summary.h"
+#include "host/shade/shade.h"
+#include "host/terminal/terminal_line.h"
 #include "kdtree/build.h"
 
 #include <fmt/format.h>

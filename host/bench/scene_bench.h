@@ -3,7 +3,7 @@
 // and asked in turn.
 #pragma once
 
-#include "core/log.h"
+#include "core/system/log.h"
 #include "host/bench/bench.h"
 
 #include <functional>

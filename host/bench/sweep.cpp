@@ -2,9 +2,9 @@
 // Sweeps as benches whose scenes, rays or contenders grow, and the line through their logarithms.
 #include "host/bench/sweep.h"
 
+#include "host/arguments/memory_size.h"
 #include "host/bench/ratios.h"
-#include "host/memory_size.h"
-#include "host/text_table.h"
+#include "host/terminal/text_table.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -2,7 +2,7 @@
 // Rays and frames as workloads. Buffers are made once, so that no contender pays for them.
 #include "host/bench/workload.h"
 
-#include "host/render.h"
+#include "host/render/render.h"
 
 #include <bit>
 #include <cassert>

@@ -2,9 +2,9 @@
 // PNG into channels, and which reader a file's first bytes ask for.
 #include "host/diff/channels.h"
 
-#include "core/parallel.h"
-#include "core/suggestion.h"
-#include "host/srgb.h"
+#include "core/system/parallel.h"
+#include "core/text/suggestion.h"
+#include "host/output/srgb.h"
 #include "importers/png.h"
 
 #include <fmt/format.h>

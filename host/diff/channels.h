@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/result.h"
-#include "host/output.h"
+#include "host/output/output.h"
 
 #include <cstdint>
 #include <filesystem>

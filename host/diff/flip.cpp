@@ -3,9 +3,9 @@
 // are the paper's.
 #include "host/diff/flip.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "core/vec.h"
-#include "host/srgb.h"
+#include "host/output/srgb.h"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 // The limits, and the two reports.
 #include "host/diff/verdict.h"
 
-#include "host/memory_size.h"
-#include "host/text_table.h"
+#include "host/arguments/memory_size.h"
+#include "host/terminal/text_table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,7 +2,7 @@
 // Assembly: runs of shapes, their place, their corners.
 #include "importers/pbrt/assembly.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "importers/origin.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // Census: sums along the order in which objects were completed.
 #include "importers/pbrt/census.h"
 
-#include "importers/available_memory.h"
+#include "importers/file/available_memory.h"
 #include "importers/readers.h"
 
 #include <fmt/format.h>

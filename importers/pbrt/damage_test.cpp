@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fuzzer's seeds, cut off everywhere and with bytes changed: what the fuzzer does for longer.
-#include "importers/pbrt/fuzz.h"
 #include "importers/test_files.h"
+#include "tests/fuzz/pbrt.h"
 
 #include <random>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What becomes of PBRT's materials, spectra, lights, cameras and films.
-#include "importers/pbrt/spectrum.h"
+#include "importers/pbrt/look/spectrum.h"
 #include "importers/test_files.h"
 
 #include <numbers>

@@ -2,8 +2,8 @@
 // Objects: shapes under a name, placed by instances; the world is one that is placed once.
 #pragma once
 
-#include "importers/pbrt/mesh.h"
-#include "importers/pbrt/transform.h"
+#include "importers/pbrt/interpret/transform.h"
+#include "importers/pbrt/shapes/mesh.h"
 
 namespace ovc::pbrt {
 

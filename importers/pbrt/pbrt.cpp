@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // PBRT: the scene descriptions of pbrt-v1 to v4. docs/pbrt.md says what is read and how.
 #include "importers/pbrt/assembly.h"
-#include "importers/pbrt/exposure.h"
-#include "importers/pbrt/interpreter.h"
+#include "importers/pbrt/interpret/interpreter.h"
+#include "importers/pbrt/look/exposure.h"
 #include "importers/readers.h"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fuzzer's seeds, cut off everywhere and with bytes changed: what the fuzzer does for longer.
-#include "importers/pov/fuzz.h"
 #include "importers/readers.h"
 #include "importers/test_files.h"
+#include "tests/fuzz/pov.h"
 
 #include <random>
 

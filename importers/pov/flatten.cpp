@@ -2,9 +2,9 @@
 // First every visible shape with what it inherits, then how finely to cut, then the cutting.
 #include "importers/pov/flatten.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "importers/origin.h"
-#include "importers/pov/bounds.h"
+#include "importers/pov/shapes/bounds.h"
 #include "importers/pov/solid.h"
 #include "importers/pov/trace.h"
 #include "importers/readers.h"

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "core/box.h"
-#include "importers/pov/facets.h"
-#include "importers/pov/value.h"
+#include "importers/pov/shapes/facets.h"
+#include "importers/pov/values/value.h"
 
 namespace ovc::pov {
 

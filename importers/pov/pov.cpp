@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The POV-Ray reader: statements of a scene, and the errors it ends with. docs/pov.md says what is
 // read.
-#include "importers/pov/block.h"
-#include "importers/pov/files.h"
+#include "importers/file/text.h"
 #include "importers/pov/flatten.h"
-#include "importers/pov/parse_camera.h"
-#include "importers/pov/parse_object.h"
-#include "importers/pov/parse_sky.h"
-#include "importers/pov/parse_value.h"
-#include "importers/pov/texture.h"
+#include "importers/pov/parse/parse_camera.h"
+#include "importers/pov/parse/parse_object.h"
+#include "importers/pov/parse/parse_sky.h"
+#include "importers/pov/parse/parse_value.h"
+#include "importers/pov/parse/texture.h"
+#include "importers/pov/words/block.h"
+#include "importers/pov/words/files.h"
 #include "importers/readers.h"
-#include "importers/text.h"
 
 #include <fmt/format.h>
 

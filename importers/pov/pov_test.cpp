@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // POV-Ray's scene language: values, directives, errors. importers/pov/compare.py and
 // tests/povray_test.cpp ask POV-Ray itself.
-#include "core/stopwatch.h"
+#include "core/system/stopwatch.h"
 #include "importers/readers.h"
 #include "importers/test_files.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/pov/solid.h"
 
-#include "importers/pov/bounds.h"
 #include "importers/pov/flatten.h"
-#include "importers/pov/implicit.h"
-#include "importers/pov/shape.h"
+#include "importers/pov/shapes/bounds.h"
+#include "importers/pov/shapes/implicit.h"
+#include "importers/pov/shapes/shape.h"
 
 #include <algorithm>
 #include <cmath>

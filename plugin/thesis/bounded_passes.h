@@ -4,7 +4,7 @@
 // occlusion queries, early z-culling).
 #pragma once
 
-#include "gpu/gl_object.h"
+#include "gpu/gl/gl_object.h"
 
 #include <array>
 #include <cstdint>

@@ -2,11 +2,11 @@
 // Comparison: building, and batches of rays into the scene's frame, through the kernel and back.
 #include "plugin/thesis/comparison.h"
 
-#include "core/parallel.h"
-#include "core/stopwatch.h"
-#include "plugin/candidates.h"
-#include "plugin/exact_fallback.h"
-#include "plugin/thesis/hittable.h"
+#include "core/system/parallel.h"
+#include "core/system/stopwatch.h"
+#include "plugin/thesis/queued/hittable.h"
+#include "plugin/two_level/candidates.h"
+#include "plugin/two_level/exact_fallback.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>

@@ -3,10 +3,10 @@
 // answers: the kernel proves what it can, doubles decide the rest.
 #pragma once
 
-#include "plugin/built_scene.h"
-#include "plugin/query.h"
-#include "plugin/structure.h"
+#include "plugin/build/built_scene.h"
+#include "plugin/structure/structure.h"
 #include "plugin/thesis/runner.h"
+#include "plugin/two_level/query.h"
 
 #include <memory>
 

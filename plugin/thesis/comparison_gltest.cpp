@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The twin rule for the systems of the thesis: each answers bit for bit what testing every triangle
 // in double answers.
-#include "gpu/test_gl.h"
-#include "plugin/failure.h"
-#include "plugin/test_structures.h"
+#include "gpu/gl/test_gl.h"
+#include "plugin/structure/failure.h"
+#include "plugin/structure/test_structures.h"
 #include "plugin/thesis/runner.h"
 
 #include <gmock/gmock.h>

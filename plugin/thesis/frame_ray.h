@@ -3,7 +3,7 @@
 // holds the whole scene.
 #pragma once
 
-#include "core/triangle.h"
+#include "core/exact/triangle.h"
 #include "kdtree/partition.h"
 
 #include <array>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The structures of libovercast-thesis.so.
-#include "plugin/failure.h"
-#include "plugin/structure.h"
+#include "plugin/structure/failure.h"
+#include "plugin/structure/structure.h"
 #include "plugin/thesis/comparison.h"
-#include "plugin/thesis/queued_two_level.h"
+#include "plugin/thesis/queued/queued_two_level.h"
 
 #include <fmt/format.h>
 

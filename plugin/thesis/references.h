@@ -3,8 +3,8 @@
 // threads and sorted by place.
 #pragma once
 
-#include "core/parallel.h"
 #include "core/soup.h"
+#include "core/system/parallel.h"
 #include "plugin/thesis/system.h"
 
 #include <algorithm>

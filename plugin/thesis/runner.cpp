@@ -3,8 +3,8 @@
 // section 3.1.
 #include "plugin/thesis/runner.h"
 
-#include "gpu/gl_check.h"
-#include "gpu/kernel.h"
+#include "gpu/gl/gl_check.h"
+#include "gpu/gl/kernel.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // Depth-first packing of the tree by insertion.
 #include "plugin/thesis/skip_bvh.h"
 
-#include "plugin/thesis/goldsmith_salmon.h"
+#include "plugin/thesis/level1/goldsmith_salmon.h"
 
 namespace ovc::thesis {
 namespace {

@@ -2,8 +2,8 @@
 // The systems by their number in the ABI.
 #include "plugin/thesis/system.h"
 
-#include "core/parallel.h"
-#include "gpu/page.h"
+#include "core/system/parallel.h"
+#include "gpu/page/page.h"
 #include "plugin/thesis/grid.h"
 #include "plugin/thesis/kd_texels.h"
 #include "plugin/thesis/skip_bvh.h"

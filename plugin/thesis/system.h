@@ -6,7 +6,7 @@
 #include "core/build_progress.h"
 #include "core/result.h"
 #include "core/soup.h"
-#include "gpu/pairs.h"
+#include "gpu/bvh/pairs.h"
 #include "kdtree/partition.h"
 #include "plugin/overcast.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/result.h"
-#include "gpu/gl_object.h"
+#include "gpu/gl/gl_object.h"
 #include "plugin/thesis/system.h"
 
 #include <cstdint>

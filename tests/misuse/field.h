@@ -3,7 +3,7 @@
 // grid holds triangle x + y kSide, whose corners are (x, y), (x + 1, y), (x, y + 1) at height 0.
 #pragma once
 
-#include "tests/abi_scene.h"
+#include "tests/abi/abi_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fuzzer's function over sequences of calls drawn at random: the same on every run.
-#include "plugin/fuzz_calls.h"
+#include "tests/fuzz/calls.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // The parts of a HostState, read.
 #include "tests/misuse/host_state.h"
 
-#include "gpu/gl.h"
+#include "gpu/gl/gl.h"
 
 #include <array>
 #include <clocale>

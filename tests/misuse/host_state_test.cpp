@@ -3,8 +3,8 @@
 // used or misused: in all floating-point modes, and with the host's own GL context current.
 #include "tests/misuse/host_state.h"
 
-#include "gpu/egl_context.h"
-#include "gpu/gl.h"
+#include "gpu/gl/egl_context.h"
+#include "gpu/gl/gl.h"
 #include "tests/misuse/entries.h"
 
 #include <csignal>

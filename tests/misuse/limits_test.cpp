@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hosts on machines that refuse: threads, address space, libraries, disk. A sentence and a code, or
 // the right answer; never the end of the process.
-#include "gpu/gl_libraries.h"
+#include "gpu/gl/gl_libraries.h"
 #include "tests/run_command.h"
 
 #include <gmock/gmock.h>

@@ -2,7 +2,7 @@
 // The C ABI against the oracle: the right triangle, and t, u and v to the last bit, of rays in
 // batches and one by one, over cases that are hard. OVC_ORACLE_RAYS says how many rays; the gate
 // asks few.
-#include "tests/abi_scene.h"
+#include "tests/abi/abi_scene.h"
 #include "tests/oracle/cases.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // A model scaled to fit, the sheet under it, the camera's circle.
 #include "testscenes/dragons/stage.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "testscenes/dragons/creature.h"
 #include "testscenes/noise.h"
 

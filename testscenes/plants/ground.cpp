@@ -2,7 +2,7 @@
 // The ground and the water of the plants scene.
 #include "testscenes/plants/ground.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "testscenes/noise.h"
 #include "testscenes/plants/landscape.h"
 

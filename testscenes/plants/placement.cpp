@@ -3,7 +3,7 @@
 // grows there.
 #include "testscenes/plants/placement.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "testscenes/noise.h"
 #include "testscenes/plants/landscape.h"
 

@@ -3,7 +3,7 @@
 // own.
 #include "testscenes/scenes.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 #include "testscenes/noise.h"
 #include "testscenes/plants/ground.h"
 #include "testscenes/plants/landscape.h"

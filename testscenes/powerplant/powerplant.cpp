@@ -5,7 +5,7 @@
 #include "testscenes/scenes.h"
 #include "testscenes/spline.h"
 
-#include "core/parallel.h"
+#include "core/system/parallel.h"
 
 #include <algorithm>
 #include <cmath>

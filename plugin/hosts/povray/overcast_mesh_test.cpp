@@ -2,7 +2,7 @@
 // What POV-Ray is given for a mesh, against every triangle tested in turn.
 #include "plugin/hosts/povray/overcast_mesh.h"
 
-#include "core/triangle.h"
+#include "core/exact/triangle.h"
 #include "plugin/hosts/povray/overcast_settings.h"
 
 #include <gmock/gmock.h>

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// HitBatch: hits that are known to be the nearest, and whose t, u and v are still to be computed,
+// several at once.
+#pragma once
+
+#include "core/exact/hit_lanes.h"
+#include "core/ray.h"
+#include "core/soup.h"
+
+#include <array>
+#include <cstddef>
+
+namespace ovc {
+
+/// Tag: what the caller knows of a ray.
+template <class Tag>
+class HitBatch {
+public:
+    bool full() const { return count_ == HitLanes::kCount; }
+
+    /// The ray hits the triangle of that name. Needs room: not full().
+    void add(const Ray& ray, const Triangle& triangle, TriangleId id, const Tag& tag) {
+        put(lanes_.a, triangle[0]);
+        put(lanes_.b, triangle[1]);
+        put(lanes_.c, triangle[2]);
+        put(lanes_.org, ray.org);
+        put(lanes_.dir, ray.dir);
+        entries_[size_t(count_++)] = {ray.t_min, ray.t_max, id, tag};
+    }
+
+    /// Empties the batch: calls found(hit, tag) for each hit, t, u and v rounded once; or
+    /// unclear(tag) where exact arithmetic must tell them, or where the ray does not seem to hit
+    /// the triangle.
+    template <class Found, class Unclear>
+    void finish(Found&& found, Unclear&& unclear) {
+        if (count_ == 0)
+            return;
+        round_hits(lanes_);
+        for (int lane = 0; lane < count_; ++lane) {
+            const Entry& entry = entries_[size_t(lane)];
+            const double t = lanes_.t[lane], u = lanes_.u[lane], v = lanes_.v[lane];
+            const bool inside = u >= 0 && v >= 0 && u + v <= 1;
+            if (lanes_.known[lane] && inside && t >= entry.t_min && t <= entry.t_max)
+                found(Hit{t, u, v, entry.id}, entry.tag);
+            else
+                unclear(entry.tag);
+        }
+        count_ = 0;
+    }
+
+private:
+    struct Entry {
+        double t_min, t_max;
+        TriangleId id;
+        Tag tag;
+    };
+
+    void put(HitLanes::Vec& to, const dvec3& v) {
+        for (int axis = 0; axis < 3; ++axis)
+            to[axis][count_] = v[axis];
+    }
+
+    HitLanes lanes_{};
+    std::array<Entry, HitLanes::kCount> entries_{};
+    int count_ = 0;
+};
+
+} // namespace ovc

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// round_hits() by four doubles at once. Compiled for AVX2 with FMA; see hit_lanes_kernel.h.
+#include "core/exact/hit_lanes_kernel.h"
+
+#include <immintrin.h>
+
+namespace ovc {
+
+using Four = double __attribute__((vector_size(32)));
+
+template <>
+struct Lanes<Four> {
+    OVC_INLINE static Four product_error(Four a, Four b, Four product) {
+        return _mm256_fmsub_pd(a, b, product);
+    }
+    OVC_INLINE static Four magnitude(Four x) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), x); }
+};
+
+void round_hits_avx2(HitLanes& lanes) {
+    round_hits_by<Four>(lanes);
+}
+
+} // namespace ovc

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bounds are derived in docs/numerics.md, "The reference".
+#include "core/exact/refined.h"
+
+#include "core/exact/exact_solution.h"
+#include "core/exact/rounding.h"
+
+namespace ovc {
+namespace {
+
+Vec3Of<double> vec(const dvec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+BoundedSolution<double> solution_of(const PreparedRay& p, const Triangle& triangle) {
+    return bounded_solution(Meeting<double>{vec(triangle[0]), vec(triangle[1]), vec(triangle[2]),
+                                            vec(p.ray.org), vec(p.ray.dir)});
+}
+
+/// -1 or 1; 0 where it is not known, or is exactly 0.
+int sign_of(const DoubleDouble& value, double error) {
+    return value.hi > error ? 1 : value.hi < -error ? -1 : 0;
+}
+
+/// The sign of the quotient minus x; 0 where its error leaves it open.
+int compare(const Quotient<double>& quotient, double x) {
+    // The difference of neighbours is exact; of others its rounding does not matter.
+    const double gap = (quotient.value.hi - x) + quotient.value.lo;
+    const double error = quotient.error + 0x1p-51 * std::abs(quotient.value.lo);
+    return gap > error ? 1 : gap < -error ? -1 : 0;
+}
+
+Quotient<double> over_det(const BoundedSolution<double>& s, const DoubleDouble& value,
+                          double error) {
+    return quotient(value, error, s.value.det, s.error.det, 1 / s.value.det.hi);
+}
+
+} // namespace
+
+RefinedAnswer refined_candidate(const PreparedRay& p, const Triangle& triangle, TriangleId id) {
+    const BoundedSolution<double> s = solution_of(p, triangle);
+    const int w = sign_of(s.w(), s.w_error());
+    const int u = sign_of(s.value.u, s.error.u);
+    const int v = sign_of(s.value.v, s.error.v);
+    const bool positive = w > 0 || u > 0 || v > 0;
+    const bool negative = w < 0 || u < 0 || v < 0;
+    if (positive && negative)
+        return {true, std::nullopt};
+    if (w == 0 || u == 0 || v == 0)
+        return {};
+    const Quotient<double> t = over_det(s, s.value.t, s.error.t);
+    const int behind = compare(t, p.ray.t_min), beyond = compare(t, p.ray.t_max);
+    if (behind < 0 || beyond > 0)
+        return {true, std::nullopt};
+    const double hi = t.value.hi;
+    if (behind == 0 || beyond == 0 || !(t.error <= 0x1p-50 * std::abs(hi)))
+        return {};
+    const double inverse = 1 / s.value.det.hi;
+    const Hit about{hi, s.value.u.hi * inverse, s.value.v.hi * inverse, id};
+    return {true, Candidate{about, t.value.lo, t.error, Candidate::kAllCorners, true}};
+}
+
+Hit rounded_hit(const PreparedRay& p, const Triangle& triangle, TriangleId id, uint32_t support) {
+    const BoundedSolution<double> s = solution_of(p, triangle);
+    const Quotient<double> t = over_det(s, s.value.t, s.error.t);
+    const Quotient<double> u = over_det(s, s.value.u, s.error.u);
+    const Quotient<double> v = over_det(s, s.value.v, s.error.v);
+    const bool at_a = support == 1, no_u = at_a || !(support & 2), no_v = at_a || !(support & 4);
+    if (t.is_rounded() && (no_u || u.is_rounded()) && (no_v || v.is_rounded()))
+        return {t.value.hi, no_u ? 0 : u.value.hi, no_v ? 0 : v.value.hi, id};
+    const ExactSolution exact(p.ray, triangle);
+    return {exact.t(), exact.u(), exact.v(), id};
+}
+
+} // namespace ovc

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// The reference where doubles leave a doubt: the same determinants, exactly.
+#include "core/exact/triangle.h"
+
+#include "core/exact/coplanar.h"
+#include "core/exact/refined.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace ovc {
+namespace {
+
+/// Which corners of `b` lie where those of `a` do that `support` names; 0 where not all have one.
+/// Then a ray that meets `a` there meets `b` in the same point, unless it runs along its plane.
+uint32_t shared_support(const Triangle& a, uint32_t support, const Triangle& b) {
+    uint32_t shared = 0;
+    for (int i = 0; i < 3; ++i) {
+        if (!(support >> i & 1))
+            continue;
+        const int k = a[i] == b[0] ? 0 : a[i] == b[1] ? 1 : a[i] == b[2] ? 2 : 3;
+        if (k == 3)
+            return 0;
+        shared |= 1u << k;
+    }
+    return shared;
+}
+
+/// Does the line cross the triangle's plane, for sure?
+bool surely_crosses(const PreparedRay& p, const Triangle& triangle) {
+    const dvec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
+    const dvec3 d = p.ray.dir;
+    const dvec3 left = dvec3(ab.y * ac.z, ab.z * ac.x, ab.x * ac.y);
+    const dvec3 right = dvec3(ab.z * ac.y, ab.x * ac.z, ab.y * ac.x);
+    const double det = glm::dot(left - right, d);
+    const double magnitude = glm::dot(glm::abs(left) + glm::abs(right), glm::abs(d));
+    // Eight roundings in a row, and what underflows.
+    const double error = 0x1p-49 * magnitude + 1e-300 * (1 + max_component(glm::abs(d)));
+    return std::abs(det) > error && std::isfinite(magnitude);
+}
+
+} // namespace
+
+std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& triangle,
+                                         TriangleId id) {
+    if (!is_finite(triangle[0]) || !is_finite(triangle[1]) || !is_finite(triangle[2]))
+        return std::nullopt;
+    if (const RefinedAnswer refined = refined_candidate(p, triangle, id); refined.known)
+        return refined.candidate;
+    const ExactSolution exact(p.ray, triangle);
+    if (!exact.inside() || exact.compare_t(p.ray.t_min) < 0 || exact.compare_t(p.ray.t_max) > 0)
+        return std::nullopt;
+    const double t = exact.t();
+    return Candidate{
+        {t, exact.u(), exact.v(), id}, 0, 0x1p-53 * std::abs(t) + 0x1p-1074, exact.support()};
+}
+
+bool Nearest::offer_neighbour(const Triangle& triangle, TriangleId id) {
+    const uint32_t shared = shared_support(triangle_, best_.support, triangle);
+    if (shared == 0)
+        return false;
+    if (best_.hit.id < id)
+        return true; // the same point or, seen edge-on, none: it does not win
+    if (!surely_crosses(p_, triangle))
+        return false;
+    Candidate same = best_; // but for u and v, which hit() computes
+    same.hit.id = id;
+    same.support = shared;
+    take(same, triangle);
+    return true;
+}
+
+std::optional<Candidate> Nearest::in_doubt(const Triangle& triangle, TriangleId id) {
+    if (!decided_)
+        decided_.emplace();
+    if (decided_->has(id))
+        return std::nullopt;
+    decided_->add(id);
+    return exact_candidate(p_, triangle, id);
+}
+
+/// The order of two hits that doubles leave open.
+bool Nearest::wins_closely(Candidate& other, const Triangle& triangle) {
+    const TriangleId id = other.hit.id;
+    if (shared_support(triangle_, best_.support, triangle) != 0 ||
+        surely_coplanar(triangle_, triangle))
+        return id < best_.hit.id;
+    const auto refine = [&](Candidate& candidate, const Triangle& of) {
+        if (candidate.refined)
+            return;
+        if (const RefinedAnswer better = refined_candidate(p_, of, candidate.hit.id);
+            better.candidate)
+            candidate = *better.candidate;
+    };
+    refine(best_, triangle_);
+    refine(other, triangle);
+    int order = other.compare_t(best_);
+    if (order == 0) {
+        if (!best_exactly_)
+            best_exactly_.emplace(p_.ray, triangle_);
+        order = ExactSolution(p_.ray, triangle).compare_t(*best_exactly_);
+    }
+    return order != 0 ? order < 0 : id < best_.hit.id;
+}
+
+Hit Nearest::hit() const {
+    return is_hit() ? rounded_hit(p_, triangle_, best_.hit.id, best_.support) : Hit{};
+}
+
+std::optional<Hit> intersect(const PreparedRay& p, const Triangle& triangle, TriangleId id) {
+    const std::optional<Candidate> found = candidate(p, triangle, id);
+    if (!found)
+        return std::nullopt;
+    return rounded_hit(p, triangle, id, found->support);
+}
+
+} // namespace ovc

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// The reference: rays against triangles as exact arithmetic decides, and against boxes. What it
+// answers is what certified mode returns. Based on: Woop, Benthin and Wald 2013, "Watertight
+// Ray/Triangle Intersection", section 3; Shewchuk 1997 (doubles first, exact sums where they leave
+// a doubt); Ize 2013, "Robust BVH Ray Traversal", section 3. Needs -ffp-contract=off and rounding
+// to nearest.
+#pragma once
+
+#include "core/box.h"
+#include "core/exact/exact_solution.h"
+#include "core/ray.h"
+#include "core/soup.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace ovc {
+
+/// A ray made ready: the basis that maps it onto the z axis, and the margin that keeps box tests
+/// conservative.
+struct PreparedRay {
+    Ray ray;
+    int kx, ky, kz;       // kz: the major axis of dir
+    double sx, sy, sz;    // shear and scale of Woop et al. 2013, section 3.1
+    dvec3 inv_dir;        // may be infinite
+    TriangleId skip;      // a triangle this ray does not see: the one it starts on
+    double org_error = 0; // how far in each coordinate its line may be from the one that is meant
+
+    explicit PreparedRay(const Ray& r, TriangleId skipped = {}) : ray(r), skip(skipped) {
+        // Beyond the largest double no hit can be told.
+        ray.t_max = std::min(r.t_max, std::numeric_limits<double>::max());
+        kz = major_axis(r.dir);
+        kx = (kz + 1) % 3;
+        ky = (kz + 2) % 3;
+        sx = r.dir[kx] / r.dir[kz];
+        sy = r.dir[ky] / r.dir[kz];
+        sz = 1.0 / r.dir[kz];
+        inv_dir = dvec3(1.0) / r.dir;
+    }
+
+    /// More than the rounding error, in each coordinate, of positions along this ray within
+    /// `bounds`.
+    double margin(const Box& bounds) const {
+        return 0x1p-46 * max_component(glm::max(glm::abs(bounds.lo - ray.org),
+                                                glm::abs(bounds.hi - ray.org))) +
+               org_error;
+    }
+};
+
+/// A hit of one triangle.
+struct Candidate {
+    static constexpr uint32_t kAllCorners = 7;
+
+    Hit hit;          // t, u and v approximately
+    double t_low = 0; // t is within t_error of hit.t + t_low
+    double t_error = 0;
+    uint32_t support =
+        kAllCorners;      // bit i: corner i has a part in the hit. One bit: the hit is that
+                          // corner, two: it lies on that side. All where nobody looked
+    bool refined = false; // t is as doubled precision has it: no use to ask that again
+
+    /// The sign of this t minus the other's, on the same ray; 0 where the errors leave it open.
+    int compare_t(const Candidate& other) const {
+        const double low = t_low - other.t_low;
+        const double gap = (hit.t - other.hit.t) + low;
+        const double error = t_error + other.t_error + 0x1p-52 * std::abs(low);
+        return gap > error ? 1 : gap < -error ? -1 : 0;
+    }
+};
+
+/// What candidate() answers where doubles cannot tell: in doubled precision (core/exact/refined.h),
+/// and exactly where that leaves a doubt.
+std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& triangle,
+                                         TriangleId id);
+
+/// Where the ray meets the closed triangle, t_min <= t <= t_max; nothing where it does not. Decided
+/// as by exact arithmetic: in double with an error bound, and by exact_candidate() where that
+/// leaves a doubt. So a ray never slips between two triangles that share corners bit for bit. A
+/// triangle seen exactly edge-on is not hit. in_doubt(p, triangle, id): instead of
+/// exact_candidate().
+template <class InDoubt>
+std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangle, TriangleId id,
+                                   InDoubt&& in_doubt) {
+    if (id == p.skip)
+        return std::nullopt;
+    constexpr double u = 0x1p-53;
+    double x[3], y[3], z[3], size[3], reach[3];
+    for (int i = 0; i < 3; ++i) {
+        const dvec3 d = triangle[i] - p.ray.org;
+        x[i] = d[p.kx] - p.sx * d[p.kz];
+        y[i] = d[p.ky] - p.sy * d[p.kz];
+        z[i] = d[p.kz];
+        size[i] = std::abs(x[i]) + std::abs(y[i]);
+        reach[i] = size[i] + std::abs(z[i]);
+    }
+    // docs/numerics.md, "The reference": a projected corner is off by 6u reach, an edge function by
+    // what that and its own roundings make.
+    const auto edge_error = [&](int i, int j) {
+        return 12 * u * (reach[i] * size[j] + reach[j] * size[i] + 12 * u * reach[i] * reach[j]) +
+               1e-300;
+    };
+    const double a = x[2] * y[1] - y[2] * x[1];
+    const double b = x[0] * y[2] - y[0] * x[2];
+    const double c = x[1] * y[0] - y[1] * x[0];
+    const double a_error = edge_error(2, 1);
+    const double b_error = edge_error(0, 2);
+    const double c_error = edge_error(1, 0);
+    const bool any_positive = a > a_error || b > b_error || c > c_error;
+    const bool any_negative = a < -a_error || b < -b_error || c < -c_error;
+    if (any_positive && any_negative)
+        return std::nullopt;
+    const bool inside = std::abs(a) > a_error && std::abs(b) > b_error && std::abs(c) > c_error;
+    if (!inside)
+        return in_doubt(p, triangle, id);
+    const double area = a + b + c;
+    const double t = (a * z[0] + b * z[1] + c * z[2]) / area * p.sz;
+    const double share = std::min(2 * (a_error + b_error + c_error) / std::abs(area), 1.0);
+    const double z_min = std::min({z[0], z[1], z[2]});
+    const double z_max = std::max({z[0], z[1], z[2]});
+    const double t_error =
+        (share * (z_max - z_min) + 12 * u * std::max(std::abs(z_min), std::abs(z_max))) *
+            std::abs(p.sz) +
+        0x1p-1060;
+    if (t + t_error < p.ray.t_min || t - t_error > p.ray.t_max)
+        return std::nullopt;
+    if (!(t - t_error >= p.ray.t_min && t + t_error <= p.ray.t_max))
+        return in_doubt(p, triangle, id);
+    return Candidate{{t, b / area, c / area, id}, 0, t_error};
+}
+
+inline std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangle,
+                                          TriangleId id) {
+    return candidate(p, triangle, id, exact_candidate);
+}
+
+/// The nearest of the triangles offered, as exact arithmetic would choose: smaller t, equal t to
+/// the smaller id.
+class Nearest {
+public:
+    explicit Nearest(const PreparedRay& p) : p_(p) {}
+
+    /// Tests the triangle. True: it is hit, though perhaps not the nearest, or seen edge-on through
+    /// the nearest hit. False: it is missed, or has lost before.
+    bool offer(const Triangle& triangle, TriangleId id) {
+        if (id == best_.hit.id)
+            return is_hit();
+        if (best_.support != Candidate::kAllCorners && id != p_.skip &&
+            offer_neighbour(triangle, id))
+            return true;
+        std::optional<Candidate> found =
+            candidate(p_, triangle, id, [&](auto&&...) { return in_doubt(triangle, id); });
+        if (found && (!is_hit() || wins(*found, triangle)))
+            take(*found, triangle);
+        return found.has_value();
+    }
+
+    bool is_hit() const { return best_.hit.is_hit(); }
+
+    /// The hit, its t, u and v rounded once: the doubles nearest to the exact values.
+    Hit hit() const;
+    /// The same with t, u and v as they were found: for who asks only whether something is hit.
+    const Hit& unrounded_hit() const { return best_.hit; }
+
+    /// Nothing beyond this t can win any more.
+    double limit() const {
+        return is_hit()
+                   ? std::min(best_.hit.t + (std::abs(best_.t_low) + best_.t_error), p_.ray.t_max)
+                   : p_.ray.t_max;
+    }
+
+private:
+    /// Triangles of late: a table in which they push each other out.
+    class Recent {
+    public:
+        void add(TriangleId id) { ids_[slot(id)] = id; }
+        bool has(TriangleId id) const { return ids_[slot(id)] == id; }
+
+    private:
+        static constexpr size_t kSlots = 512;
+        static size_t slot(TriangleId id) { return (id.prim + 31 * size_t(id.mesh)) % kSlots; }
+
+        std::array<TriangleId, kSlots> ids_{};
+    };
+
+    /// Where the best hit is a corner or on a side that the triangle has as well: thousands may
+    /// have it, and are decided without another exact number. False: nothing is decided.
+    bool offer_neighbour(const Triangle& triangle, TriangleId id);
+    /// exact_candidate(); but nothing where that was asked before: leaves that overlap offer a
+    /// triangle again.
+    std::optional<Candidate> in_doubt(const Triangle& triangle, TriangleId id);
+    bool wins(Candidate& other, const Triangle& triangle) {
+        const int order = other.compare_t(best_);
+        return order != 0 ? order < 0 : wins_closely(other, triangle);
+    }
+    bool wins_closely(Candidate& other, const Triangle& triangle);
+    void take(const Candidate& found, const Triangle& triangle) {
+        best_ = found;
+        triangle_ = triangle;
+        best_exactly_.reset();
+    }
+
+    const PreparedRay& p_;
+    Candidate best_{};
+    Triangle triangle_{};
+    std::optional<ExactSolution> best_exactly_; // where a tie has asked for it
+    std::optional<Recent> decided_; // triangles that were in doubt, and are the best or none
+};
+
+/// The hit of a single triangle, rounded once.
+std::optional<Hit> intersect(const PreparedRay& p, const Triangle& triangle, TriangleId id);
+
+/// The part of a ray inside something: empty when enter > exit.
+struct Interval {
+    double enter;
+    double exit;
+
+    bool empty() const { return !(enter <= exit); }
+};
+
+/// The part of [from, to] that the ray spends in `box`. May be a little too long, never too short,
+/// when the box was padded by PreparedRay::margin.
+inline Interval clip(const PreparedRay& p, const Box& box, double from, double to) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double org = p.ray.org[axis];
+        if (p.ray.dir[axis] == 0) {
+            if (org < box.lo[axis] || org > box.hi[axis])
+                return {1, 0};
+            continue;
+        }
+        double near = (box.lo[axis] - org) * p.inv_dir[axis];
+        double far = (box.hi[axis] - org) * p.inv_dir[axis];
+        if (p.inv_dir[axis] < 0)
+            std::swap(near, far);
+        // A NaN (0 times infinity: dir is denormal, org on the face) leaves the bound as it was.
+        from = near > from ? near : from;
+        to = far < to ? far : to;
+    }
+    return {from, to};
+}
+
+} // namespace ovc

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Archive: named parts of bytes one after the other, each with a checksum, made to be mapped into
+// memory. What the cache file and the saved levels of the plugin are.
+//
+//   header   64 bytes: kind (16 characters), version (u32), a mark of the byte order (u32), 0
+//   parts    each begins at a multiple of 64; zeros in between
+//   table    per part: name (16 characters), offset, bytes, checksum (u64 each)
+//   end      offset of the table, number of parts, checksum of header and table (u64 each), mark
+//
+// The end comes last, so that a file that was not written to its end is known at once.
+#pragma once
+
+#include "core/file/checksum.h"
+#include "core/result.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ovc {
+
+using Bytes = std::span<const std::byte>;
+
+/// Takes the next bytes of what is written; false: it wants no more.
+using ByteSink = std::function<bool(Bytes)>;
+
+template <class T>
+Bytes bytes_of(std::span<const T> items) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    return std::as_bytes(items);
+}
+
+/// Where parts begin, so that what is in them may be used in place.
+inline constexpr size_t kPartAlignment = 64;
+
+struct ArchivePart {
+    std::array<char, 16> name{};
+    uint64_t offset = 0;
+    uint64_t bytes = 0;
+    uint64_t checksum = 0;
+};
+static_assert(sizeof(ArchivePart) == 40);
+
+/// Writes an archive front to back, so that nobody need hold it whole.
+class ArchiveWriter {
+public:
+    /// kind, and a part's name: at most 15 characters.
+    ArchiveWriter(ByteSink sink, std::string_view kind, uint32_t version);
+
+    /// What is written from here on belongs to a part of this name.
+    void begin(std::string_view name);
+    void write(Bytes bytes);
+    template <class T>
+    void part(std::string_view name, std::span<const T> items) {
+        begin(name);
+        write(bytes_of(items));
+    }
+
+    /// Once, after the last part. False where the sink wanted no more.
+    bool finish();
+
+private:
+    void pass_on(Bytes bytes);
+    void end_part();
+
+    ByteSink sink_;
+    Checksum frame_; // of header and table
+    std::vector<ArchivePart> parts_;
+    Checksum part_;
+    uint64_t offset_ = 0;
+    bool wanted_ = true;
+};
+
+/// A view of an archive's bytes, which outlive it.
+class Archive {
+public:
+    /// Error: not such an archive, another version, or damage to header and table. The sentence
+    /// goes on from a name: "is …".
+    static Result<Archive> open(Bytes bytes, std::string_view kind, uint32_t version);
+
+    /// The part's bytes, their checksum found right. Error: none of this name, or damage.
+    Result<Bytes> part(std::string_view name) const;
+    /// The same, not checked: for a part that checks itself. Empty where there is none.
+    Bytes unchecked(std::string_view name) const;
+
+    /// A part of any number of T, or, with `count`, of so many.
+    template <class T>
+    Result<std::span<const T>> items(std::string_view name, uint64_t count = ~uint64_t(0)) const {
+        static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kPartAlignment);
+        const Result<Bytes> bytes = part(name);
+        if (!bytes)
+            return bytes.error();
+        const uint64_t found = bytes->size() / sizeof(T);
+        if (bytes->size() % sizeof(T) || (count != ~uint64_t(0) && found != count))
+            return wrong_size(name);
+        return std::span(reinterpret_cast<const T*>(bytes->data()), size_t(found));
+    }
+
+private:
+    static Error wrong_size(std::string_view name);
+    const ArchivePart* find(std::string_view name) const;
+
+    Bytes bytes_;
+    std::span<const ArchivePart> parts_;
+};
+
+} // namespace ovc

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// A binary bounding volume hierarchy over boxes, one box a leaf. Collapsed to four children when
+// packed (page.h). Based on: Wald 2007, "On fast Construction of SAH-based Bounding Volume
+// Hierarchies" (binning); Stich, Friedrich and Dietrich 2009 (spatial splits).
+#pragma once
+
+#include "core/box.h"
+#include "core/build_progress.h"
+#include "gpu/bvh/pairs.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+/// A subtree over n boxes takes 2 n - 1 nodes in a row: its root, then the subtree of `left`, then
+/// that of `right`. Where boxes may be cut (build_split_bvh) it takes those for as many as it might
+/// have become, and some are not used.
+struct BvhNode {
+    Boxf box;
+    uint32_t right = 0; // inner: index of the right child; the left one is the next node
+    uint32_t item = 0;  // leaf: index of the box
+    bool is_leaf() const { return right == 0; }
+};
+
+/// The hierarchy over `boxes` (none of them empty), root first; empty for none. Deterministic. At
+/// most kMaxBvhDepth deep. A box is a unit of progress.
+std::vector<BvhNode> build_bvh(std::span<const Boxf> boxes, BuildProgress* progress = nullptr);
+
+/// The same over the boxes of `pairs`, of which up to `most_added` are cut in two by planes, where
+/// the heuristic gains by it: each part is a leaf of its own. Every point of a pair that is in its
+/// box is in one of the parts' boxes (cut_pair.h).
+std::vector<BvhNode> build_split_bvh(std::span<const Boxf> boxes,
+                                     std::span<const TrianglePair> pairs, size_t most_added,
+                                     BuildProgress* progress = nullptr);
+
+/// Inner levels of any tree of build_bvh: where the heuristic would go deeper, halves by count keep
+/// to it.
+inline constexpr int kMaxBvhDepth = 48;
+
+} // namespace ovc

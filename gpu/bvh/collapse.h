@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Collapse: which nodes of a binary BVH remain when a node has up to four children. Based on:
+// Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed
+// Wide BVHs", section 4.1.
+#pragma once
+
+#include "core/build_progress.h"
+#include "core/system/parallel.h"
+#include "gpu/bvh/bvh.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace ovc {
+
+/// A subtree of a BVH, which lies in the nodes [node, end).
+struct Subtree {
+    uint32_t node;
+    uint32_t end;
+};
+
+/// Up to four subtrees that together hold the boxes of one.
+struct Children {
+    std::array<Subtree, 4> subtree;
+    int count;
+};
+
+/// The cheapest choice by the surface-area heuristic: the areas of all nodes that remain, added up,
+/// are least. The same on any number of threads.
+class Collapse {
+public:
+    /// Keeps `nodes`, which are not empty. Asks `progress` whether to go on.
+    Collapse(const std::vector<BvhNode>& nodes, BuildProgress* progress);
+
+    Subtree root() const { return {0, uint32_t(nodes_.size())}; }
+
+    /// Of a node that remains; of a leaf, the leaf itself.
+    Children children(Subtree of) const;
+
+private:
+    /// What a subtree costs where its boxes may lie under up to 1, 2, 3 nodes.
+    using Costs = std::array<float, 3>;
+
+    /// A choice of at most so many nodes on either side.
+    struct Shares {
+        int left;
+        int right;
+        float cost;
+    };
+
+    Subtree left(Subtree of) const { return {of.node + 1, nodes_[of.node].right}; }
+    Subtree right(Subtree of) const { return {nodes_[of.node].right, of.end}; }
+    Shares shares(uint32_t node, int most) const;
+    void weigh(Subtree of, const Fork& fork);
+    void collect(Subtree of, int most, Children& children) const;
+
+    const std::vector<BvhNode>& nodes_;
+    std::vector<Costs> costs_;
+    BuildProgress* const progress_;
+};
+
+} // namespace ovc

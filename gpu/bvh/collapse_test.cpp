@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The choice of nodes that remain, against every choice there is.
+#include "gpu/bvh/collapse.h"
+
+#include "kdtree/test_soups.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace ovc {
+namespace {
+
+std::vector<Boxf> strewn(uint64_t seed, size_t count) {
+    test::Random random(seed);
+    std::vector<Boxf> boxes;
+    for (size_t i = 0; i < count; ++i) {
+        const vec3 p(random.point(0, 1));
+        boxes.push_back({p, p + vec3(random.point(0, 0.3))});
+    }
+    return boxes;
+}
+
+/// The least sum of areas, by trying all: of the boxes below `node` under at most `most` nodes.
+double least(const std::vector<BvhNode>& nodes, uint32_t node, int most) {
+    const BvhNode& n = nodes[node];
+    if (n.is_leaf())
+        return 0;
+    double best = std::numeric_limits<double>::infinity();
+    for (int i = 1; i < most; ++i)
+        best = std::min(best, least(nodes, node + 1, i) + least(nodes, n.right, most - i));
+    for (int i = 1; i < 4; ++i)
+        best = std::min(best, double(n.box.half_area()) + least(nodes, node + 1, i) +
+                                  least(nodes, n.right, 4 - i));
+    return best;
+}
+
+double cost(const std::vector<BvhNode>& nodes, const Collapse& collapse, Subtree of,
+            std::vector<int>& seen) {
+    const BvhNode& n = nodes[of.node];
+    if (n.is_leaf()) {
+        ++seen[n.item];
+        return 0;
+    }
+    const Children children = collapse.children(of);
+    EXPECT_GE(children.count, 2);
+    double sum = n.box.half_area();
+    for (int i = 0; i < children.count; ++i)
+        sum += cost(nodes, collapse, children.subtree[size_t(i)], seen);
+    return sum;
+}
+
+TEST(Collapse, IsTheCheapestOfAllAndLosesNoBox) {
+    for (uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(seed);
+        const std::vector<Boxf> boxes = strewn(seed, 2 + seed % 7);
+        const std::vector<BvhNode> nodes = build_bvh(boxes);
+        const Collapse collapse(nodes, nullptr);
+        std::vector<int> seen(boxes.size(), 0);
+        const double expected = least(nodes, 0, 1);
+        EXPECT_NEAR(cost(nodes, collapse, collapse.root(), seen), expected, 1e-5 * expected);
+        EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), ptrdiff_t(boxes.size()));
+    }
+}
+
+} // namespace
+} // namespace ovc

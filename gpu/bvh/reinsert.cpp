@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rounds: moves are looked for in parallel, in a tree that stands still, and made one by one.
+#include "gpu/bvh/reinsert.h"
+
+#include "core/system/parallel.h"
+#include "gpu/bvh/best_move.h"
+
+#include <algorithm>
+
+namespace ovc {
+namespace {
+
+constexpr double kTried = 0.05;      // of all subtrees, a round: the most promising
+constexpr double kWorthwhile = 0.01; // of the cost: what a round must gain for another one
+constexpr int kMostRounds = 16;
+constexpr size_t kGrain = 256; // searches a task
+
+/// hope: what the tree would save without the subtree, but for what nodes above then shrink by.
+struct Candidate {
+    float hope;
+    uint32_t place;
+};
+
+std::vector<Candidate> candidates(const SiblingTree& tree) {
+    std::vector<Candidate> all;
+    all.reserve(tree.end());
+    for (uint32_t place = SiblingTree::kFirst; place < tree.end(); ++place)
+        all.push_back(
+            {tree.half_area(tree.parent(place)) - tree.half_area(SiblingTree::sibling(place)),
+             place});
+    const size_t tried = size_t(kTried * double(all.size())) + 1;
+    if (tried < all.size()) {
+        std::nth_element(all.begin(), all.begin() + ptrdiff_t(tried), all.end(),
+                         [](const Candidate& a, const Candidate& b) {
+                             return a.hope > b.hope || (a.hope == b.hope && a.place < b.place);
+                         });
+        all.resize(tried);
+    }
+    return all;
+}
+
+/// What is worth moving, most gain first.
+std::vector<Move> moves(const SiblingTree& tree, BuildProgress* progress) {
+    const std::vector<Candidate> tried = candidates(tree);
+    std::vector<Move> moves(tried.size());
+    parallel_for(tried.size(), kGrain, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            moves[i] = MoveSearch(tree, tried[i].place).best();
+        add(progress, 0);
+    });
+    std::erase_if(moves, [](const Move& move) -> bool { return move.to == kNone; });
+    std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
+        return a.gain > b.gain || (a.gain == b.gain && a.from < b.from);
+    });
+    return moves;
+}
+
+/// Makes those that still gain after the ones before them; what they gain together.
+double make(const std::vector<Move>& moves, uint32_t most_height, SiblingTree& tree) {
+    double gain = 0;
+    for (const auto& [from, to, hoped] : moves) {
+        if (!tree.can_move(from, to))
+            continue;
+        const uint32_t parent = tree.parent(from);
+        const float change = tree.move(from, to);
+        if (change < 0 && tree.height(0) <= most_height)
+            gain -= double(change);
+        else
+            tree.move(from, parent);
+    }
+    return gain;
+}
+
+} // namespace
+
+void reinsert(std::vector<BvhNode>& nodes, BuildProgress* progress) {
+    if (nodes.empty())
+        return;
+    SiblingTree tree(nodes);
+    const uint32_t most_height = tree.height(0);
+    double cost = tree.cost();
+    for (int round = 0; round < kMostRounds; ++round) {
+        const double gain = make(moves(tree, progress), most_height, tree);
+        cost -= gain;
+        if (gain <= kWorthwhile * cost)
+            break;
+    }
+    nodes = tree.nodes();
+}
+
+} // namespace ovc

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the driver has to say (KHR_debug), into the log.
+#pragma once
+
+#include "core/system/log.h"
+
+#include <memory>
+
+namespace ovc {
+
+/// While this lives, errors and warnings of the current context go to the log; in debug builds they
+/// come synchronously, and an error stops the program where it happened.
+class DebugOutput {
+public:
+    explicit DebugOutput(LogSink log);
+    ~DebugOutput();
+    DebugOutput(DebugOutput&&) = default;
+    DebugOutput& operator=(DebugOutput&&) = default;
+
+private:
+    std::unique_ptr<LogSink> log_; // the driver keeps its address
+};
+
+} // namespace ovc

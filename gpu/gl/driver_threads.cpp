@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Threads by /proc, their clocks by the formula of pthread_getcpuclockid().
+#include "gpu/gl/driver_threads.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#ifdef __linux__
+#include <ctime>
+#include <pthread.h>
+#include <unistd.h>
+#endif
+
+namespace ovc {
+
+#ifdef __linux__
+
+static double cpu_seconds(int thread) {
+    constexpr clockid_t kPerThread = 4, kScheduled = 2; // linux/posix-timers.h
+    timespec time{};
+    if (clock_gettime(clockid_t(~unsigned(thread) << 3) | kPerThread | kScheduled, &time) != 0)
+        return 0;
+    return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+void name_device_thread() {
+    pthread_setname_np(pthread_self(), kDeviceThreadName);
+}
+
+DriverThreads DriverThreads::find() {
+    DriverThreads found;
+    std::error_code error;
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", error)) {
+        std::string name;
+        std::getline(std::ifstream(task.path() / "comm"), name);
+        const int thread = std::atoi(task.path().filename().c_str());
+        const bool unnamed = name == kDeviceThreadName && thread != gettid();
+        if (unnamed || name.starts_with("llvmpipe-"))
+            found.threads_.push_back(thread);
+    }
+    return found;
+}
+
+#else
+
+void name_device_thread() {}
+static double cpu_seconds(int) {
+    return 0;
+}
+DriverThreads DriverThreads::find() {
+    return {};
+}
+
+#endif
+
+void DriverThreads::start() {
+    started_.clear();
+    for (const int thread : threads_)
+        started_.push_back(cpu_seconds(thread));
+}
+
+std::optional<double> DriverThreads::seconds_each() const {
+    constexpr double kIdle = 1e-3; // what a thread takes to come into being, and more
+    double all = 0;
+    unsigned workers = 0;
+    for (size_t i = 0; i < started_.size(); ++i) {
+        const double now = cpu_seconds(threads_[i]);
+        all += now - started_[i];
+        workers += now > kIdle;
+    }
+    // A driver that has threads for each kind of kernel runs one kind at a time.
+    workers = std::min(workers, std::max(std::thread::hardware_concurrency(), 1u));
+    if (all <= 0) // the driver works on threads that came after find()
+        return {};
+    return all / std::max(workers, 1u);
+}
+
+} // namespace ovc

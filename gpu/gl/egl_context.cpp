@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: Apache-2.0
+// EGL without windows: EGL_EXT_platform_device for each listed device,
+// EGL_MESA_platform_surfaceless where there is none.
+#include "gpu/gl/egl_context.h"
+
+#include "gpu/gl/driver_faults.h"
+#include "gpu/gl/fork_mark.h"
+#include "gpu/gl/gl.h"
+#include "gpu/gl/gl_libraries.h"
+#include "shaders/layout.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace ovc {
+
+struct EglContext::Platform {
+    std::string name; // "EGL device 0"
+    EGLenum platform;
+    void* native; // EGLDeviceEXT, or EGL_DEFAULT_DISPLAY
+};
+
+namespace {
+
+constexpr uint64_t kSoftwareMemory = uint64_t(1) << 30;
+// llvmpipe (Mesa 22.3) crashes on larger buffers bound as images.
+constexpr uint64_t kMaxBufferTexels = uint64_t(1) << 27;
+
+/// What most often is behind a display that does not start.
+std::string likely_cause() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        return fmt::format("; this process may have too little address space for its driver: "
+                           "ulimit -v is {} KiB",
+                           limit.rlim_cur / 1024);
+    return "; its driver may be missing: install libgl1-mesa-dri for Mesa's, or your GPU's";
+}
+
+std::string egl_error() {
+    switch (eglGetError()) {
+    case EGL_SUCCESS:
+        return "no error given";
+    case EGL_NOT_INITIALIZED:
+        return "EGL_NOT_INITIALIZED";
+    case EGL_BAD_ACCESS:
+        return "EGL_BAD_ACCESS";
+    case EGL_BAD_ALLOC:
+        return "EGL_BAD_ALLOC";
+    case EGL_BAD_ATTRIBUTE:
+        return "EGL_BAD_ATTRIBUTE";
+    case EGL_BAD_CONFIG:
+        return "EGL_BAD_CONFIG";
+    case EGL_BAD_CONTEXT:
+        return "EGL_BAD_CONTEXT";
+    case EGL_BAD_DISPLAY:
+        return "EGL_BAD_DISPLAY";
+    case EGL_BAD_MATCH:
+        return "EGL_BAD_MATCH";
+    case EGL_BAD_PARAMETER:
+        return "EGL_BAD_PARAMETER";
+    case EGL_CONTEXT_LOST:
+        return "EGL_CONTEXT_LOST";
+    default:
+        return "an unknown EGL error";
+    }
+}
+
+bool lists(const char* extensions, std::string_view wanted) {
+    const std::string_view all = extensions ? extensions : "";
+    for (size_t at = all.find(wanted); at != std::string_view::npos;
+         at = all.find(wanted, at + 1)) {
+        const size_t end = at + wanted.size();
+        if ((at == 0 || all[at - 1] == ' ') && (end == all.size() || all[end] == ' '))
+            return true;
+    }
+    return false;
+}
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
+std::string gl_string(GLenum name) {
+    const char* text = reinterpret_cast<const char*>(glGetString(name));
+    return text ? text : "";
+}
+
+uint64_t free_memory() {
+    GLint kib = 0;
+    if (epoxy_has_gl_extension("GL_NVX_gpu_memory_info"))
+        glGetIntegerv(GL_GPU_MEMORY_INFO_CURRENT_AVAILABLE_VIDMEM_NVX, &kib);
+    else if (epoxy_has_gl_extension("GL_ATI_meminfo")) {
+        std::array<GLint, 4> values{};
+        glGetIntegerv(GL_TEXTURE_FREE_MEMORY_ATI, values.data());
+        kib = values[0];
+    }
+    return kib > 0 ? uint64_t(kib) * 1024 : kSoftwareMemory;
+}
+
+/// Both kernels' limits: images on a software renderer, else textures
+/// (ShaderConfig::buffer_images).
+uint32_t max_pool_buffers(bool as_images) {
+    const std::array<GLenum, 2> limits =
+        as_images
+            ? std::array<GLenum, 2>{GL_MAX_COMPUTE_IMAGE_UNIFORMS, GL_MAX_FRAGMENT_IMAGE_UNIFORMS}
+            : std::array<GLenum, 2>{GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, GL_MAX_TEXTURE_IMAGE_UNITS};
+    GLint least = std::numeric_limits<GLint>::max();
+    for (const GLenum limit : limits) {
+        GLint value = 0;
+        glGetIntegerv(limit, &value);
+        least = std::min(least, value);
+    }
+    constexpr GLint kMaxUnitNumberBuffers = int(1u << (31 - OVC_MAX_BUFFER_BITS));
+    return uint32_t(std::clamp(least - OVC_BINDING_POOL, 1, kMaxUnitNumberBuffers));
+}
+
+DeviceInfo describe() {
+    DeviceInfo info;
+    info.renderer = gl_string(GL_RENDERER);
+    info.vendor = gl_string(GL_VENDOR);
+    info.version = gl_string(GL_VERSION);
+    const std::string name = lower(info.renderer);
+    info.is_software = name.find("llvmpipe") != std::string::npos ||
+                       name.find("softpipe") != std::string::npos ||
+                       name.find("swrast") != std::string::npos;
+    info.is_tested = name.starts_with("llvmpipe");
+    info.has_ballots = epoxy_has_gl_extension("GL_ARB_shader_ballot") &&
+                       epoxy_has_gl_extension("GL_ARB_gpu_shader_int64");
+    info.takes_host_pages = info.is_software && epoxy_has_gl_extension("GL_AMD_pinned_memory");
+    GLint value = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &value);
+    info.max_texture_size = uint32_t(value);
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &value);
+    info.max_buffer_texels = std::min(uint64_t(value), kMaxBufferTexels);
+    info.max_pool_buffers = max_pool_buffers(info.is_software);
+    glGetIntegerv(GL_TEXTURE_BUFFER_OFFSET_ALIGNMENT, &value);
+    info.buffer_alignment = std::max<uint64_t>(uint64_t(value), 16);
+    info.memory_bytes = info.is_software ? kSoftwareMemory : free_memory();
+    return info;
+}
+
+} // namespace
+
+Result<Done> check_egl_environment() {
+    const char* value = std::getenv("EGL_PLATFORM");
+    if (!value || !*value)
+        return Done{};
+    static constexpr std::array known{"surfaceless", "device", "x11",  "xcb",     "wayland",
+                                      "drm",         "gbm",    "null", "android", "haiku"};
+    if (std::any_of(known.begin(), known.end(),
+                    [&](const char* name) { return lower(value) == name; }))
+        return Done{};
+    return Error{fmt::format(
+        "EGL cannot start: EGL_PLATFORM is set to '{}', which is no EGL platform; Overcast tried "
+        "'device' and 'surfaceless'; unset EGL_PLATFORM or set it to one of these",
+        value)};
+}
+
+Result<std::vector<EglContext::Platform>> EglContext::platforms() {
+    // EGL is one for the whole process. What it began before a fork looks open in the child, but
+    // llvmpipe's threads are not there, and libGLX forgets which context is current.
+    static const ForkMark began_here;
+    if (began_here.forked())
+        return Error{"OpenGL began in the process that this one was forked from, and does not "
+                     "work on both sides; fork before a device is opened or listed"};
+    if (Result<Done> checked = check_egl_environment(); !checked)
+        return checked.error();
+    if (Result<Done> there = open_gl_libraries(); !there)
+        return there.error();
+    if (const auto cache = mesa_shader_cache())
+        if (Result<Done> reserved = reserve_shader_cache_index(*cache); !reserved)
+            return reserved.error();
+    std::vector<Platform> found;
+    const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    const bool devices = lists(extensions, "EGL_EXT_platform_device") &&
+                         (lists(extensions, "EGL_EXT_device_enumeration") ||
+                          lists(extensions, "EGL_EXT_device_base"));
+    if (devices) {
+        std::array<EGLDeviceEXT, 64> handles{};
+        EGLint count = 0;
+        if (eglQueryDevicesEXT(EGLint(handles.size()), handles.data(), &count))
+            for (EGLint i = 0; i < count; ++i)
+                found.push_back(
+                    {fmt::format("EGL device {}", i), EGL_PLATFORM_DEVICE_EXT, handles[i]});
+    }
+    if (found.empty() && lists(extensions, "EGL_MESA_platform_surfaceless"))
+        found.push_back({"Mesa's surfaceless platform", EGL_PLATFORM_SURFACELESS_MESA,
+                         reinterpret_cast<void*>(EGL_DEFAULT_DISPLAY)});
+    if (found.empty())
+        return Error{fmt::format("EGL offers no headless device: tried EGL_EXT_platform_device and "
+                                 "EGL_MESA_platform_surfaceless, EGL lists "
+                                 "'{}'; install libegl-mesa0 and libgl1-mesa-dri for the software "
+                                 "renderer, or your GPU's EGL driver",
+                                 extensions ? extensions : egl_error())};
+    return found;
+}
+
+Result<EglContext> EglContext::open(const Platform& platform) {
+    EglContext context;
+    const EGLDisplay display =
+        eglGetPlatformDisplayEXT(platform.platform, platform.native, nullptr);
+    if (display == EGL_NO_DISPLAY)
+        return Error{
+            fmt::format("{}: eglGetPlatformDisplay failed: {}", platform.name, egl_error())};
+    EGLint major = 0, minor = 0;
+    if (!eglInitialize(display, &major, &minor))
+        return Error{fmt::format("{}: eglInitialize failed: {}{}", platform.name, egl_error(),
+                                 likely_cause())};
+    context.display_ = display;
+    const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
+    for (const char* needed : {"EGL_KHR_surfaceless_context", "EGL_KHR_no_config_context"})
+        if (!lists(extensions, needed))
+            return Error{
+                fmt::format("{}: no {}, which headless rendering needs", platform.name, needed)};
+    if (!eglBindAPI(EGL_OPENGL_API))
+        return Error{fmt::format("{}: no desktop OpenGL: {}", platform.name, egl_error())};
+    const std::array<EGLint, 11> attributes{EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                            EGL_LOSE_CONTEXT_ON_RESET,
+                                            EGL_CONTEXT_MAJOR_VERSION,
+                                            4,
+                                            EGL_CONTEXT_MINOR_VERSION,
+                                            5,
+                                            EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+#ifdef NDEBUG
+                                            EGL_NONE,
+                                            EGL_NONE,
+#else
+                                            EGL_CONTEXT_OPENGL_DEBUG,
+                                            EGL_TRUE,
+#endif
+                                            EGL_NONE};
+    // With word of resets where the driver can give it: else it ends the process, or says nothing.
+    context.context_ =
+        eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+    if (context.context_ == EGL_NO_CONTEXT)
+        context.context_ =
+            eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data() + 2);
+    if (context.context_ == EGL_NO_CONTEXT)
+        return Error{fmt::format("{}: no OpenGL 4.5 core context: {}", platform.name, egl_error())};
+    if (!context.make_current())
+        return Error{fmt::format("{}: eglMakeCurrent failed: {}", platform.name, egl_error())};
+    context.info_ = describe();
+    if (const char* symptom = known_fault(context.info_.renderer, context.info_.version))
+        return Error{fmt::format("{}: '{}' is passed over: {}", platform.name,
+                                 context.info_.renderer, symptom)};
+    return context;
+}
+
+Result<std::vector<DeviceInfo>> EglContext::list() {
+    Result<std::vector<Platform>> found = platforms();
+    if (!found)
+        return found.error();
+    std::vector<DeviceInfo> infos;
+    std::string failures;
+    for (const Platform& platform : *found) {
+        Result<EglContext> context = open(platform);
+        if (context)
+            infos.push_back(context->info());
+        else
+            failures += (failures.empty() ? "" : "; ") + context.error().message;
+    }
+    if (infos.empty())
+        return Error{"no EGL device works: " + failures};
+    return infos;
+}
+
+Result<EglContext> EglContext::create(const std::string& name, const LogSink& log) {
+    Result<std::vector<Platform>> found = platforms();
+    if (!found)
+        return found.error();
+    const bool by_number =
+        !name.empty() &&
+        std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isdigit(c); });
+    std::vector<EglContext> working;
+    std::string failures;
+    for (const Platform& platform : *found) {
+        Result<EglContext> context = open(platform);
+        if (!context) {
+            failures += (failures.empty() ? "" : "; ") + context.error().message;
+            continue;
+        }
+        const DeviceInfo& info = context->info();
+        const bool fits = name.empty() ? !info.is_software
+                          : by_number  ? std::to_string(working.size()) == name
+                                      : lower(info.renderer).find(lower(name)) != std::string::npos;
+        if (fits) {
+            if (!failures.empty())
+                say(log, LogLevel::Warning, "passed over: " + failures);
+            return std::move(*context);
+        }
+        working.push_back(std::move(*context));
+    }
+    if (working.empty())
+        return Error{"no EGL device works: " + failures};
+    if (name.empty()) {
+        say(log, LogLevel::Info, // answers are the same
+            fmt::format("no GPU found{}; using the software renderer {}",
+                        failures.empty() ? "" : " (" + failures + ")", working[0].info().renderer));
+        if (!working[0].make_current())
+            return Error{"eglMakeCurrent failed: " + egl_error()};
+        return std::move(working[0]);
+    }
+    std::string names;
+    for (size_t i = 0; i < working.size(); ++i)
+        names += fmt::format("{}{} '{}'", i ? ", " : "", i, working[i].info().renderer);
+    return Error{fmt::format("no device is called '{}'; there is {}{}", name, names,
+                             failures.empty() ? "" : "; failed: " + failures)};
+}
+
+EglContext::EglContext(EglContext&& other) noexcept
+    : display_(std::exchange(other.display_, nullptr)),
+      context_(std::exchange(other.context_, nullptr)),
+      info_(std::move(other.info_)) {}
+
+EglContext& EglContext::operator=(EglContext&& other) noexcept {
+    std::swap(display_, other.display_);
+    std::swap(context_, other.context_);
+    std::swap(info_, other.info_);
+    return *this;
+}
+
+EglContext::~EglContext() {
+    // The display stays initialised: EGL shares it with everybody who asked for the same device,
+    // the host among them.
+    if (!context_)
+        return;
+    if (eglGetCurrentContext() == context_)
+        eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display_, context_);
+}
+
+bool EglContext::alive() const {
+    // Whoever shares the display may have ended it: eglTerminate(). EGL is asked before GL, whose
+    // functions libepoxy may have to look up, which ends the process where there is no context.
+    EGLint type = 0;
+    return context_ && eglGetCurrentContext() == context_ &&
+           eglQueryContext(display_, context_, EGL_CONTEXT_CLIENT_TYPE, &type) &&
+           glGetGraphicsResetStatus() == GL_NO_ERROR;
+}
+
+void EglContext::lose() {
+    if (!context_)
+        return;
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display_, std::exchange(context_, nullptr));
+}
+
+bool EglContext::make_current() const {
+    return eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
+}
+
+} // namespace ovc

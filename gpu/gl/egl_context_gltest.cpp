@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Devices are found by number and by name; each way to fail has its sentence.
+#include "gpu/gl/egl_context.h"
+
+#include "gpu/gl/driver_faults.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <thread>
+
+namespace ovc {
+namespace {
+
+TEST(EglContextGl, ListedDevicesOpenByNumberAndByName) {
+    const Result<std::vector<DeviceInfo>> devices = EglContext::list();
+    if (!devices)
+        GTEST_SKIP() << devices.error().message;
+    for (size_t i = 0; i < devices->size(); ++i) {
+        const DeviceInfo& info = (*devices)[i];
+        EXPECT_FALSE(info.renderer.empty());
+        EXPECT_GT(info.memory_bytes, info.default_budget_bytes());
+        const Result<EglContext> by_number = EglContext::create(std::to_string(i), {});
+        ASSERT_TRUE(by_number) << by_number.error().message;
+        EXPECT_EQ(by_number->info().renderer, info.renderer);
+        EXPECT_TRUE(EglContext::create(info.renderer, {}));
+    }
+}
+
+TEST(EglContextGl, AnUnknownNameListsWhatThereIs) {
+    const Result<std::vector<DeviceInfo>> devices = EglContext::list();
+    if (!devices)
+        GTEST_SKIP() << devices.error().message;
+    const Result<EglContext> context = EglContext::create("no such card", {});
+    ASSERT_FALSE(context);
+    EXPECT_THAT(
+        context.error().message,
+        testing::AllOf(testing::StartsWith("no device is called 'no such card'; there is 0 '"),
+                       testing::HasSubstr((*devices)[0].renderer)));
+}
+
+TEST(EglContextGl, ANonsensePlatformSaysWhatWasTried) {
+    setenv("EGL_PLATFORM", "nonsense", 1);
+    const Result<EglContext> context = EglContext::create("", {});
+    unsetenv("EGL_PLATFORM");
+    ASSERT_FALSE(context);
+    EXPECT_EQ(context.error().message,
+              "EGL cannot start: EGL_PLATFORM is set to 'nonsense', which is no EGL platform; "
+              "Overcast tried 'device' "
+              "and 'surfaceless'; unset EGL_PLATFORM or set it to one of these");
+}
+
+TEST(EglContextGl, DriversThatEndTheProcessArePassedOver) {
+    EXPECT_TRUE(
+        known_fault("zink (llvmpipe (LLVM 15.0.6, 256 bits))", "4.5 (Core Profile) Mesa 22.3.6"));
+    EXPECT_FALSE(known_fault("llvmpipe (LLVM 15.0.6, 256 bits)", "4.5 (Core Profile) Mesa 22.3.6"));
+    EXPECT_FALSE(known_fault("zink (NVIDIA H200)", "4.6 (Core Profile) Mesa 25.0.1"));
+}
+
+TEST(EglContextGl, FallingBackToSoftwareIsSaid) {
+    std::string said;
+    const Result<EglContext> context =
+        EglContext::create("", [&](LogLevel level, const std::string& message) {
+            EXPECT_EQ(level, LogLevel::Info) << "the answers are those of a GPU";
+            said = message;
+        });
+    if (!context)
+        GTEST_SKIP() << context.error().message;
+    if (context->info().is_software) {
+        EXPECT_EQ(said, "no GPU found; using the software renderer " + context->info().renderer);
+    } else {
+        EXPECT_EQ(said, "");
+    }
+}
+
+} // namespace
+} // namespace ovc

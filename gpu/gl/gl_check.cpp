@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// GL's error flag as a sentence.
+#include "gpu/gl/gl_check.h"
+
+#include "gpu/gl/gl.h"
+
+#include <fmt/format.h>
+
+namespace ovc {
+
+Result<Done> check_gl(const char* doing) {
+    const GLenum error = glGetError();
+    if (error == GL_NO_ERROR)
+        return Done{};
+    while (glGetError() != GL_NO_ERROR) {
+    }
+    if (error == GL_OUT_OF_MEMORY)
+        return Error{
+            fmt::format("the GPU is out of memory while {}; a smaller budget may work", doing),
+            ErrorKind::OutOfGpuMemory};
+    return Error{fmt::format("OpenGL error 0x{:04x} while {}", error, doing)};
+}
+
+} // namespace ovc

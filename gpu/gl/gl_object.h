@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// GL objects as move-only values: the constructor creates, the destructor deletes, moved-from is id
+// 0. All need the context current.
+#pragma once
+
+#include "core/system/system_pages.h"
+#include "gpu/gl/gl.h"
+#include "gpu/gl/ledger.h"
+
+#include <cstdint>
+#include <new>
+#include <string_view>
+#include <utility>
+
+namespace ovc::gl {
+
+/// How many contexts this thread has had (GlThread counts): names of an earlier one mean nothing
+/// now.
+inline thread_local uint32_t context_generation = 0;
+
+/// Owns one GL name. Delete: void(GLuint). A name that went with its context is forgotten.
+template <auto Delete>
+class Handle {
+public:
+    explicit Handle(GLuint id) : id_(id), generation_(context_generation) {}
+    Handle(Handle&& other) noexcept
+        : id_(std::exchange(other.id_, 0)), generation_(other.generation_) {}
+    Handle& operator=(Handle&& other) noexcept {
+        std::swap(id_, other.id_);
+        std::swap(generation_, other.generation_);
+        return *this;
+    }
+    ~Handle() {
+        if (id_ != 0 && generation_ == context_generation)
+            Delete(id_);
+    }
+
+    GLuint id() const { return id_; }
+
+private:
+    GLuint id_;
+    uint32_t generation_;
+};
+
+/// Bytes entered in a ledger for as long as this lives.
+class Entry {
+public:
+    Entry(Ledger& ledger, uint64_t bytes) : ledger_(&ledger), bytes_(bytes) { ledger.add(bytes); }
+    Entry(Entry&& other) noexcept
+        : ledger_(other.ledger_), bytes_(std::exchange(other.bytes_, 0)) {}
+    Entry& operator=(Entry&& other) noexcept {
+        std::swap(ledger_, other.ledger_);
+        std::swap(bytes_, other.bytes_);
+        return *this;
+    }
+    ~Entry() { ledger_->remove(bytes_); }
+
+    uint64_t bytes() const { return bytes_; }
+
+private:
+    Ledger* ledger_;
+    uint64_t bytes_;
+};
+
+inline void delete_buffer(GLuint id) {
+    glDeleteBuffers(1, &id);
+}
+inline void delete_texture(GLuint id) {
+    glDeleteTextures(1, &id);
+}
+inline void delete_framebuffer(GLuint id) {
+    glDeleteFramebuffers(1, &id);
+}
+inline void delete_vertex_array(GLuint id) {
+    glDeleteVertexArrays(1, &id);
+}
+inline void delete_query(GLuint id) {
+    glDeleteQueries(1, &id);
+}
+inline void delete_shader(GLuint id) {
+    glDeleteShader(id);
+}
+inline void delete_program(GLuint id) {
+    glDeleteProgram(id);
+}
+
+using Shader = Handle<delete_shader>;
+using Program = Handle<delete_program>;
+
+/// Storage of a fixed size, filled by sub-buffer updates or through a map. Where the ledger says so
+/// it is the process's own pages, which the driver reads and writes where they are: none is touched
+/// before it is used. They go with the buffer, so that no pass may be under way then.
+class Buffer {
+public:
+    Buffer(Ledger& ledger, uint64_t bytes, std::string_view label)
+        : handle_(create()), entry_(ledger, bytes) {
+        if (!ledger.driver_has_room())
+            return;
+        if (!ledger.takes_host_pages)
+            allocate();
+        else if (!show_host_pages())
+            ledger.refused = true;
+        glObjectLabel(GL_BUFFER, id(), GLsizei(label.size()), label.data());
+    }
+    GLuint id() const { return handle_.id(); }
+    uint64_t bytes() const { return entry_.bytes(); }
+
+private:
+    static GLuint create() {
+        GLuint id = 0;
+        glCreateBuffers(1, &id);
+        return id;
+    }
+    void allocate() {
+        glNamedBufferStorage(id(), GLsizeiptr(bytes()), nullptr,
+                             GL_DYNAMIC_STORAGE_BIT | GL_MAP_WRITE_BIT);
+    }
+    /// False: the system has none.
+    bool show_host_pages() {
+        try {
+            host_pages_ = map_pages(bytes());
+        } catch (const std::bad_alloc&) {
+            return false;
+        }
+        glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, id());
+        glBufferData(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, GLsizeiptr(bytes()), host_pages_.get(),
+                     GL_DYNAMIC_DRAW);
+        glBindBuffer(GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD, 0);
+        return true;
+    }
+
+    SystemPages host_pages_; // outlive the name
+    Handle<delete_buffer> handle_;
+    Entry entry_;
+};
+
+/// A two-dimensional texture of one level, unfiltered.
+class Texture2D {
+public:
+    Texture2D(Ledger& ledger, GLenum format, uint32_t texel_bytes, uint32_t width, uint32_t height,
+              std::string_view label)
+        : handle_(create(GL_TEXTURE_2D)), entry_(ledger, uint64_t(texel_bytes) * width * height) {
+        glTextureStorage2D(id(), 1, format, GLsizei(width), GLsizei(height));
+        glTextureParameteri(id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTextureParameteri(id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        glObjectLabel(GL_TEXTURE, id(), GLsizei(label.size()), label.data());
+    }
+    GLuint id() const { return handle_.id(); }
+    static GLuint create(GLenum target) {
+        GLuint id = 0;
+        glCreateTextures(target, 1, &id);
+        return id;
+    }
+
+private:
+    Handle<delete_texture> handle_;
+    Entry entry_;
+};
+
+/// A window of a buffer, read as texels. Owns no storage.
+class BufferTexture {
+public:
+    BufferTexture() : handle_(Texture2D::create(GL_TEXTURE_BUFFER)) {}
+    GLuint id() const { return handle_.id(); }
+    /// offset: a multiple of GL_TEXTURE_BUFFER_OFFSET_ALIGNMENT.
+    void show(const Buffer& buffer, GLenum format, uint64_t offset, uint64_t bytes) {
+        glTextureBufferRange(id(), format, buffer.id(), GLintptr(offset), GLsizeiptr(bytes));
+    }
+    /// RGBA32UI texels, for a kernel to read.
+    void bind(GLuint unit, bool as_image) const {
+        if (as_image)
+            glBindImageTexture(unit, id(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
+        else
+            glBindTextureUnit(unit, id());
+    }
+
+private:
+    Handle<delete_texture> handle_;
+};
+
+class Framebuffer {
+public:
+    Framebuffer() : handle_(create()) {}
+    explicit Framebuffer(const Texture2D& color) : Framebuffer() { show(color); }
+    void show(const Texture2D& color) {
+        glNamedFramebufferTexture(id(), GL_COLOR_ATTACHMENT0, color.id(), 0);
+    }
+    GLuint id() const { return handle_.id(); }
+    bool complete() const {
+        return glCheckNamedFramebufferStatus(id(), GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    }
+
+private:
+    static GLuint create() {
+        GLuint id = 0;
+        glCreateFramebuffers(1, &id);
+        return id;
+    }
+    Handle<delete_framebuffer> handle_;
+};
+
+class VertexArray {
+public:
+    VertexArray() : handle_(create()) {}
+    GLuint id() const { return handle_.id(); }
+
+private:
+    static GLuint create() {
+        GLuint id = 0;
+        glCreateVertexArrays(1, &id);
+        return id;
+    }
+    Handle<delete_vertex_array> handle_;
+};
+
+/// Counts the samples that pass the depth test.
+class OcclusionQuery {
+public:
+    OcclusionQuery() : handle_(create()) {}
+    GLuint id() const { return handle_.id(); }
+
+private:
+    static GLuint create() {
+        GLuint id = 0;
+        glCreateQueries(GL_SAMPLES_PASSED, 1, &id);
+        return id;
+    }
+    Handle<delete_query> handle_;
+};
+
+/// Measures how long the device works on commands, without what they wait for.
+class TimeQuery {
+public:
+    TimeQuery() : handle_(create()) {}
+    GLuint id() const { return handle_.id(); }
+    /// Of the commands between glBeginQuery and glEndQuery; waits until they are done.
+    double seconds() const {
+        GLuint64 nanoseconds = 0;
+        glGetQueryObjectui64v(id(), GL_QUERY_RESULT, &nanoseconds);
+        return 1e-9 * double(nanoseconds);
+    }
+
+private:
+    static GLuint create() {
+        GLuint id = 0;
+        glCreateQueries(GL_TIME_ELAPSED, 1, &id);
+        return id;
+    }
+    Handle<delete_query> handle_;
+};
+
+} // namespace ovc::gl

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// GlThread: hand-over of one piece of work at a time.
+#include "gpu/gl/gl_thread.h"
+
+#include "gpu/gl/driver_threads.h"
+
+#include <chrono>
+#include <utility>
+
+namespace ovc {
+
+/// What it throws, for want of memory, would end the process on a thread of its own.
+static Result<EglContext> create_context(const std::string& device, const LogSink& log) {
+    try {
+        return EglContext::create(device, log);
+    } catch (const std::exception& e) {
+        return Error{std::string("out of memory while opening a device: ") + e.what(),
+                     ErrorKind::OutOfMemory};
+    }
+}
+
+Result<std::unique_ptr<GlThread>> GlThread::start(const std::string& device, LogSink log) {
+    std::unique_ptr<GlThread> self(new GlThread(device, std::move(log)));
+    self->thread_ = std::thread([&self = *self] { self.serve(); });
+    std::unique_lock lock(self->mutex_);
+    self->changed_.wait(lock, [&] { return self->started_.has_value(); });
+    const Result<Done> started = *self->started_;
+    lock.unlock();
+    if (!started)
+        return started.error();
+    return self;
+}
+
+GlThread::~GlThread() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    changed_.notify_all();
+    if (thread_.joinable()) // the system may have refused it
+        thread_.join();
+}
+
+void GlThread::execute(const std::function<void(GlState&)>& work) {
+    Job job{&work};
+    post(job, [] {});
+    wait_for(job, [] {});
+    rethrow(job);
+}
+
+/// Until ready(), calling idle() without the lock now and then.
+template <class Ready>
+void GlThread::wait_until(std::unique_lock<std::mutex>& lock, const std::function<void()>& idle,
+                          Ready&& ready) {
+    constexpr std::chrono::milliseconds kBetweenCalls(10);
+    while (!changed_.wait_for(lock, kBetweenCalls, ready)) {
+        lock.unlock();
+        idle();
+        lock.lock();
+    }
+}
+
+void GlThread::post(Job& job, const std::function<void()>& idle) {
+    std::unique_lock lock(mutex_);
+    wait_until(lock, idle, [&] { return !job_; });
+    job_ = &job;
+    changed_.notify_all();
+}
+
+void GlThread::wait_for(const Job& job, const std::function<void()>& idle) {
+    std::unique_lock lock(mutex_);
+    wait_until(lock, idle, [&] { return job.done; });
+}
+
+void GlThread::rethrow(const Job& job) {
+    if (job.thrown)
+        std::rethrow_exception(job.thrown);
+}
+
+Result<Done> GlThread::reopen(uint32_t generation) {
+    Result<Done> done = Done{};
+    execute([&](GlState& state) {
+        if (state.generation != generation)
+            return;
+        generation_ = state.generation = ++gl::context_generation;
+        state.kernels = {};
+        state.context.lose();
+        Result<EglContext> context = EglContext::create(device_, {});
+        if (!context) {
+            done = Error{context.error().message, ErrorKind::DeviceLost};
+            return;
+        }
+        if (context->info().renderer != info_.renderer) {
+            done = Error{"'" + info_.renderer + "' is gone; there is '" + context->info().renderer +
+                             "', for which a new device must be created",
+                         ErrorKind::DeviceLost};
+            return;
+        }
+        state.context = std::move(*context);
+        state.debug = DebugOutput(log_);
+    });
+    return done;
+}
+
+/// Names in a context that is dead are not deleted: GL would be called without one.
+void GlThread::forget_if_dead(GlState& state) {
+    if (gl::context_generation != state.generation || state.context.alive())
+        return;
+    ++gl::context_generation;
+    state.context.lose();
+}
+
+void GlThread::serve() {
+    name_device_thread();
+    Result<EglContext> context = create_context(device_, log_);
+    std::unique_lock lock(mutex_);
+    if (!context) {
+        started_ = context.error();
+        changed_.notify_all();
+        return;
+    }
+    GlState state{std::move(*context), DebugOutput(log_), {}, gl::context_generation};
+    info_ = state.context.info();
+    started_ = Done{};
+    changed_.notify_all();
+    while (true) {
+        changed_.wait(lock, [&] { return job_ || stop_; });
+        if (!job_)
+            break;
+        lock.unlock();
+        std::exception_ptr thrown;
+        forget_if_dead(state);
+        try {
+            (*job_->work)(state);
+        } catch (...) {
+            thrown = std::current_exception();
+        }
+        lock.lock();
+        job_->thrown = thrown;
+        std::exchange(job_, nullptr)->done = true;
+        changed_.notify_all();
+    }
+}
+
+} // namespace ovc

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// GlThread: the one thread on which a device's context is current. The host's own context and
+// threads are left alone.
+#pragma once
+
+#include "gpu/gl/debug_output.h"
+#include "gpu/gl/egl_context.h"
+#include "gpu/gl/kernel.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace ovc {
+
+/// What lives on the thread: the context, and the programs compiled in it, which go first.
+struct GlState {
+    EglContext context;
+    DebugOutput debug;
+    KernelCache kernels;
+    uint32_t generation; // of the context: GlThread::generation()
+};
+
+class GlThread {
+public:
+    /// Starts the thread and opens the device there.
+    static Result<std::unique_ptr<GlThread>> start(const std::string& device, LogSink log);
+    ~GlThread();
+    GlThread(const GlThread&) = delete;
+
+    /// Runs work(GlState&) there and waits for it; what it throws is thrown here. Callers take
+    /// turns.
+    template <class Work>
+    auto run(Work&& work) {
+        using Value = std::invoke_result_t<Work, GlState&>;
+        if constexpr (std::is_void_v<Value>) {
+            execute([&](GlState& state) { work(state); });
+        } else {
+            std::optional<Value> value;
+            execute([&](GlState& state) { value.emplace(work(state)); });
+            return std::move(*value);
+        }
+    }
+
+    /// Runs work(GlState&) there and meanwhile() here, which may call run() too; waits for both,
+    /// and calls idle() here again and again as it waits.
+    template <class Work, class Meanwhile>
+    void run_beside(Work&& work, Meanwhile&& meanwhile, const std::function<void()>& idle) {
+        const std::function<void(GlState&)> function = [&](GlState& state) { work(state); };
+        Job job{&function};
+        post(job, idle);
+        try {
+            meanwhile();
+            wait_for(job, idle);
+        } catch (...) {
+            wait_for(job, [] {}); // it refers to what is here
+            throw;
+        }
+        rethrow(job);
+    }
+
+    const DeviceInfo& info() const { return info_; }
+
+    /// How often the device has been opened. What was made in an earlier context is gone.
+    uint32_t generation() const { return generation_; }
+
+    /// After work found the context dead: opens the device again, unless somebody has done so since
+    /// `generation`. Error: it cannot be opened.
+    Result<Done> reopen(uint32_t generation);
+
+private:
+    GlThread(std::string device, LogSink log) : device_(std::move(device)), log_(std::move(log)) {}
+    struct Job {
+        const std::function<void(GlState&)>* work;
+        bool done = false;
+        std::exception_ptr thrown{};
+    };
+
+    void execute(const std::function<void(GlState&)>& work);
+    void post(Job& job, const std::function<void()>& idle);
+    void wait_for(const Job& job, const std::function<void()>& idle);
+    template <class Ready>
+    void wait_until(std::unique_lock<std::mutex>& lock, const std::function<void()>& idle,
+                    Ready&& ready);
+    static void rethrow(const Job& job);
+    void serve();
+    static void forget_if_dead(GlState& state);
+
+    const std::string device_;
+    const LogSink log_;
+    std::mutex mutex_; // of what is below
+    std::condition_variable changed_;
+    Job* job_ = nullptr; // to be done, or being done; others wait until it is
+    std::optional<Result<Done>> started_;
+    bool stop_ = false;
+    std::atomic<uint32_t> generation_{0};
+    DeviceInfo info_;
+    std::thread thread_;
+};
+
+} // namespace ovc

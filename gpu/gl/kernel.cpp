@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kernel: include expansion, compilation, logs that name the file.
+#include "gpu/gl/kernel.h"
+
+#include "gpu/gl/program_store.h"
+#include "shaders/sources.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <regex>
+
+namespace ovc {
+namespace {
+
+const ShaderSource* find_source(std::string_view name) {
+    for (const ShaderSource& source : shader_sources())
+        if (source.name == name)
+            return &source;
+    return nullptr;
+}
+
+/// Appends the file line by line; returns the name of a file that is missing, or nothing.
+std::string append_expanded(std::string_view name, const std::string& defines,
+                            std::vector<std::string>& files, std::string& out) {
+    const ShaderSource* source = find_source(name);
+    if (!source)
+        return std::string(name);
+    const size_t number = files.size();
+    files.emplace_back(name);
+    int line = 0;
+    for (size_t at = 0; at < source->text.size();) {
+        const size_t end = std::min(source->text.find('\n', at), source->text.size());
+        const std::string_view text = source->text.substr(at, end - at);
+        at = end + 1;
+        ++line;
+        constexpr std::string_view include = "#include \"";
+        if (text.starts_with(include)) {
+            const std::string_view rest = text.substr(include.size());
+            out += fmt::format("#line 1 {}\n", files.size());
+            if (std::string missing =
+                    append_expanded(rest.substr(0, rest.find('"')), {}, files, out);
+                !missing.empty())
+                return missing;
+            out += fmt::format("#line {} {}\n", line + 1, number);
+            continue;
+        }
+        out += text;
+        out += '\n';
+        if (text.starts_with("#version"))
+            out += fmt::format("{}#line {} {}\n", defines, line + 1, number);
+    }
+    return {};
+}
+
+std::string info_log(GLuint id, bool program) {
+    GLint length = 0;
+    (program ? glGetProgramiv : glGetShaderiv)(id, GL_INFO_LOG_LENGTH, &length);
+    std::string log(size_t(std::max(length, 1)), '\0');
+    (program ? glGetProgramInfoLog : glGetShaderInfoLog)(id, length, nullptr, log.data());
+    log.resize(std::min(log.find('\0'), log.size()));
+    return log;
+}
+
+struct ExpandedStage {
+    ShaderStage stage;
+    std::string source;
+    std::vector<std::string> files;
+};
+
+Result<gl::Shader> compile(const ExpandedStage& expanded) {
+    gl::Shader shader(glCreateShader(expanded.stage.stage));
+    const char* text = expanded.source.c_str();
+    glShaderSource(shader.id(), 1, &text, nullptr);
+    glCompileShader(shader.id());
+    GLint ok = GL_FALSE;
+    glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &ok);
+    if (!ok)
+        return Error{
+            fmt::format("the driver does not compile {}: {}", expanded.stage.source,
+                        rewrite_log(info_log(shader.id(), /* program= */ false), expanded.files))};
+    return shader;
+}
+
+Result<gl::Program> compile_and_link(std::span<const ExpandedStage> stages) {
+    gl::Program program(glCreateProgram());
+    for (const ExpandedStage& stage : stages) {
+        const Result<gl::Shader> shader = compile(stage);
+        if (!shader)
+            return shader.error();
+        glAttachShader(program.id(), shader->id());
+    }
+    glProgramParameteri(program.id(), GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
+    glLinkProgram(program.id());
+    GLint ok = GL_FALSE;
+    glGetProgramiv(program.id(), GL_LINK_STATUS, &ok);
+    if (!ok)
+        return Error{"the driver does not link the kernel: " + info_log(program.id(), true)};
+    return program;
+}
+
+Result<gl::Program> link(const ShaderConfig& config) {
+    const std::vector<ShaderStage> stages =
+        config.compute ? std::vector<ShaderStage>{{GL_COMPUTE_SHADER, "trace.comp.glsl"}}
+                       : std::vector<ShaderStage>{{GL_VERTEX_SHADER, "fullscreen.vert.glsl"},
+                                                  {GL_FRAGMENT_SHADER, "trace.frag.glsl"}};
+    return link_program(stages, config.defines());
+}
+
+/// Who compiles, as a comment. Mesa's own cache of programs goes by their sources, and overlooks
+/// how wide llvmpipe's vectors are, though gl_SubGroupSizeARB is a constant of the program: one of
+/// eight lanes would be taken for sixteen, and every other ray would have no answer.
+std::string driver_line() {
+    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    return fmt::format("// {}\n", renderer ? renderer : "");
+}
+
+/// llvmpipe (Mesa 22.3, LLVM 15) crashes when it compiles any fragment shader for vectors of 512
+/// bits, which its user has to ask for.
+bool compiles_fragment_shaders() {
+    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    const std::string_view name = renderer ? renderer : "";
+    return name.find("llvmpipe") == name.npos || name.find("512 bits") == name.npos;
+}
+
+} // namespace
+
+std::string ShaderConfig::defines() const {
+    return fmt::format("#define OVC_ANY_HIT {:d}\n"
+                       "#define OVC_CERTIFY {:d}\n"
+                       "#define OVC_PORTALS {:d}\n"
+                       "#define OVC_MAY_WAIT {:d}\n"
+                       "#define OVC_TELL_ACTIVE {:d}\n"
+                       "#define OVC_LOOSE_PAIRS {:d}\n"
+                       "#define OVC_POOL_BUFFERS {}\n"
+                       "#define OVC_BUFFER_BITS {}\n"
+                       "#define OVC_STACK_DEPTH {}\n"
+                       "#define OVC_STACK_REGISTERS {:d}\n"
+                       "#define OVC_PACKET {}\n"
+                       "#define OVC_TURNS {:d}\n"
+                       "#define OVC_BRANCHES {:d}\n"
+                       "#define OVC_DEAL_GROUPS {:d}\n"
+                       "#define OVC_BUFFER_IMAGES {:d}\n"
+                       "#define OVC_MOST_ROUNDS {}\n",
+                       any_hit, certify, portals, may_wait, tell_active, loose_pairs, pool_buffers,
+                       buffer_bits, stack_depth, stack_registers, packet, turns, branches,
+                       deal_groups, buffer_images, most_rounds);
+}
+
+Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines) {
+    const auto is_fragment = [](const ShaderStage& s) { return s.stage == GL_FRAGMENT_SHADER; };
+    if (std::any_of(stages.begin(), stages.end(), is_fragment) && !compiles_fragment_shaders())
+        return Error{
+            "llvmpipe crashes on fragment shaders where LP_NATIVE_VECTOR_WIDTH is 512: take the "
+            "compute kernel, or unset LP_NATIVE_VECTOR_WIDTH"};
+    std::vector<ExpandedStage> expanded;
+    std::vector<std::string> sources;
+    for (const ShaderStage& stage : stages) {
+        ExpandedStage next{stage, {}, {}};
+        Result<std::string> source =
+            expand_shader(stage.source, driver_line() + defines, next.files);
+        if (!source)
+            return source.error();
+        next.source = std::move(*source);
+        sources.push_back(next.source);
+        expanded.push_back(std::move(next));
+    }
+    const ProgramStore store(ProgramStore::default_folder());
+    gl::Program kept(glCreateProgram());
+    if (store.load(sources, kept.id()))
+        return kept;
+    Result<gl::Program> program = compile_and_link(expanded);
+    if (program)
+        store.keep(sources, program->id());
+    return program;
+}
+
+Result<std::string> expand_shader(std::string_view name, const std::string& defines,
+                                  std::vector<std::string>& files) {
+    std::string out;
+    const std::string missing = append_expanded(name, defines, files, out);
+    if (!missing.empty())
+        return Error{fmt::format("no shader source is called '{}'", missing)};
+    return out;
+}
+
+std::string rewrite_log(const std::string& log, const std::vector<std::string>& files) {
+    static const std::regex place(R"((\d+)[:(](\d+)\)?)", std::regex::optimize);
+    std::string out;
+    for (size_t at = 0; at < log.size();) {
+        const size_t end = std::min(log.find('\n', at), log.size());
+        const std::string line = log.substr(at, end - at);
+        at = end + 1;
+        std::smatch match;
+        const bool named = std::regex_search(line, match, place) && match.position() == 0 &&
+                           match[1].length() < 6 && size_t(std::stoi(match[1])) < files.size();
+        out +=
+            named ? files[size_t(std::stoi(match[1]))] + ":" + match[2].str() + match.suffix().str()
+                  : line;
+        out += '\n';
+    }
+    return out;
+}
+
+Result<GLuint> KernelCache::program(const ShaderConfig& config) {
+    for (const Compiled& compiled : programs_)
+        if (compiled.config == config)
+            return compiled.program.id();
+    Result<gl::Program> program = link(config);
+    if (!program)
+        return program.error();
+    programs_.push_back({config, std::move(*program)});
+    return programs_.back().program.id();
+}
+
+} // namespace ovc

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kernel: a ShaderConfig made into a program. Programs are kept per configuration.
+#pragma once
+
+#include "core/result.h"
+#include "gpu/gl/gl_object.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ovc {
+
+/// Fewer than the 65,535 rounds, of all loops of a pixel, after which llvmpipe ends them without a
+/// word.
+inline constexpr uint32_t kMostRoundsInSoftware = 65000;
+
+/// Which kernel, and every switch of shaders/config.glsl, by value. Derived from what the query and
+/// the pages need, and from the driver.
+struct ShaderConfig {
+    bool compute = false; // which wrapper; no switch of config.glsl
+    bool any_hit = false;
+    bool certify = true;
+    bool portals = false;
+    bool may_wait = false;
+    bool tell_active = false;
+    bool loose_pairs = false;
+    uint32_t pool_buffers = 1;
+    uint32_t buffer_bits = 25;
+    uint32_t stack_depth = 16;
+    bool stack_registers = true;
+    uint32_t packet = 1; // rays that an invocation traces together
+    bool turns = false;  // lanes take packets one after the other
+    bool branches = false;
+    bool deal_groups = true;
+    bool buffer_images = true;
+    uint32_t most_rounds = 0x7fffffff; // of all loops of a ray
+
+    bool operator==(const ShaderConfig&) const = default;
+    /// All defines, one a line, in fixed order.
+    std::string defines() const;
+};
+
+/// A source with its #include lines replaced by the embedded files, and `defines` after the
+/// #version line. Lines keep their numbers by #line, whose second number counts the files in
+/// `files`. Error: a file that is not there.
+Result<std::string> expand_shader(std::string_view name, const std::string& defines,
+                                  std::vector<std::string>& files);
+
+/// A driver's log with "2:57" or "2(57)" at the start of lines turned into "traverse.glsl:57".
+std::string rewrite_log(const std::string& log, const std::vector<std::string>& files);
+
+struct ShaderStage {
+    GLenum stage;
+    std::string_view source; // "trace.frag.glsl"
+};
+
+/// A program of the stages, each expanded with `defines`. The context must be current. Error: the
+/// driver's log.
+Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines);
+
+class KernelCache {
+public:
+    /// The program for `config`, compiled on first use. The context must be current. Error: the
+    /// driver's log.
+    Result<GLuint> program(const ShaderConfig& config);
+
+private:
+    struct Compiled {
+        ShaderConfig config;
+        gl::Program program;
+    };
+    std::vector<Compiled> programs_;
+};
+
+} // namespace ovc

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// ProgramStore: an archive a program (core/file/archive.h), named after the checksum of all that it
+// follows from.
+#include "gpu/gl/program_store.h"
+
+#include "core/file/archive.h"
+#include "core/file/mapped_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+
+namespace ovc {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kKind = "ovc kernel";
+constexpr uint32_t kVersion = 1;
+constexpr std::string_view kSuffix = ".ovck";
+
+/// Who compiles. llvmpipe's renderer names its vector width, which Mesa's own cache overlooks.
+std::string driver() {
+    std::string text;
+    for (const GLenum name : {GL_VENDOR, GL_RENDERER, GL_VERSION})
+        if (const GLubyte* part = glGetString(name))
+            text.append(reinterpret_cast<const char*>(part)).append(1, '\n');
+    return text;
+}
+
+uint64_t key_of(const std::vector<std::string>& sources, const std::string& driver) {
+    Checksum key;
+    key.add_value(driver.size());
+    key.add(std::as_bytes(std::span(driver)));
+    for (const std::string& source : sources) {
+        key.add_value(source.size());
+        key.add(std::as_bytes(std::span(source)));
+    }
+    return key.value();
+}
+
+/// A driver is asked about its own formats only: another is an error of GL's.
+bool has_format(GLenum format) {
+    GLint count = 0;
+    glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &count);
+    std::vector<GLint> formats(size_t(std::max(count, 0)));
+    if (!formats.empty())
+        glGetIntegerv(GL_PROGRAM_BINARY_FORMATS, formats.data());
+    return std::find(formats.begin(), formats.end(), GLint(format)) != formats.end();
+}
+
+/// All of it, or false.
+bool write_file(const fs::path& path, Bytes bytes) {
+    const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (file < 0)
+        return false;
+    while (!bytes.empty()) {
+        const ssize_t written = write(file, bytes.data(), bytes.size());
+        if (written <= 0)
+            break;
+        bytes = bytes.subspan(size_t(written));
+    }
+    return close(file) == 0 && bytes.empty();
+}
+
+} // namespace
+
+fs::path ProgramStore::default_folder() {
+    const auto value = [](const char* name) {
+        const char* text = std::getenv(name);
+        return std::string(text ? text : "");
+    };
+    if (const std::string named = value("OVC_KERNEL_CACHE"); !named.empty())
+        return named == "off" ? fs::path() : fs::path(named);
+    // The XDG base directory specification: a relative path is to be ignored.
+    if (const fs::path cache = value("XDG_CACHE_HOME"); cache.is_absolute())
+        return cache / "overcast/kernels";
+    if (const fs::path home = value("HOME"); home.is_absolute())
+        return home / ".cache/overcast/kernels";
+    return {};
+}
+
+fs::path ProgramStore::file_of(uint64_t key) const {
+    return folder_ / fmt::format("{:016x}{}", key, kSuffix);
+}
+
+bool ProgramStore::load(const std::vector<std::string>& sources, GLuint program) const {
+    if (folder_.empty())
+        return false;
+    const std::string who = driver();
+    const fs::path path = file_of(key_of(sources, who));
+    const Result<MappedFile> file = MappedFile::open(path);
+    if (!file)
+        return false;
+    const Result<Archive> archive = Archive::open(file->bytes(), kKind, kVersion);
+    if (!archive)
+        return false;
+    const Result<Bytes> from = archive->part("driver");
+    const auto format = archive->items<uint32_t>("format", 1);
+    const Result<Bytes> binary = archive->part("binary");
+    if (!from || !format || !binary || !std::ranges::equal(*from, std::as_bytes(std::span(who))) ||
+        !has_format((*format)[0]))
+        return false;
+    glProgramBinary(program, (*format)[0], binary->data(), GLsizei(binary->size()));
+    GLint linked = GL_FALSE;
+    glGetProgramiv(program, GL_LINK_STATUS, &linked);
+    std::error_code ignored;
+    if (linked) // used now: others go first
+        fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
+    return linked;
+}
+
+void ProgramStore::keep(const std::vector<std::string>& sources, GLuint program) const {
+    GLint size = 0;
+    if (!folder_.empty())
+        glGetProgramiv(program, GL_PROGRAM_BINARY_LENGTH, &size);
+    if (size <= 0)
+        return;
+    std::vector<std::byte> binary(size_t(size), std::byte(0));
+    GLenum format = 0;
+    GLsizei length = 0;
+    glGetProgramBinary(program, size, &length, &format, binary.data());
+    binary.resize(size_t(std::clamp<GLsizei>(length, 0, size)));
+    if (binary.empty())
+        return;
+
+    std::vector<std::byte> bytes;
+    ArchiveWriter writer(
+        [&](Bytes more) {
+            bytes.insert(bytes.end(), more.begin(), more.end());
+            return true;
+        },
+        kKind, kVersion);
+    const std::string who = driver();
+    const uint32_t number = format;
+    writer.part("driver", std::span(std::as_const(who)));
+    writer.part("format", std::span(&number, 1));
+    writer.part("binary", std::span(std::as_const(binary)));
+    writer.finish();
+
+    std::error_code failed;
+    fs::create_directories(folder_, failed);
+    static std::atomic<uint32_t> count{0};
+    const fs::path temporary = folder_ / fmt::format(".{}-{}", getpid(), count++);
+    if (write_file(temporary, bytes))
+        fs::rename(temporary, file_of(key_of(sources, who)), failed);
+    fs::remove(temporary, failed); // where that did not work
+    make_room();
+}
+
+void ProgramStore::make_room() const {
+    struct Kept {
+        fs::path path;
+        fs::file_time_type used;
+        uint64_t bytes;
+    };
+    std::vector<Kept> files;
+    uint64_t bytes = 0;
+    std::error_code failed;
+    for (fs::directory_iterator at(folder_, failed), end; !failed && at != end;
+         at.increment(failed)) {
+        if (at->path().extension() != kSuffix)
+            continue;
+        std::error_code gone; // another process made room as well
+        const Kept kept{at->path(), at->last_write_time(gone), at->file_size(gone)};
+        if (gone)
+            continue;
+        files.push_back(kept);
+        bytes += kept.bytes;
+    }
+    std::ranges::sort(files, {}, &Kept::used);
+    for (const Kept& kept : files) {
+        if (bytes <= most_bytes_)
+            break;
+        fs::remove(kept.path, failed);
+        bytes -= kept.bytes;
+    }
+}
+
+} // namespace ovc

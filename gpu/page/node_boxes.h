@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// The boxes of a node's children, as its first three texels hold them (shaders/layout.h).
+#pragma once
+
+#include "gpu/page/page.h"
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace ovc {
+
+/// The grid that boxes count on, as a page's header says it: coordinate c lies at
+/// middle + (c - kGridMiddle) cell.
+struct GridHeader {
+    vec3 middle;
+    vec3 cell;
+};
+
+/// Of the page whose texels these are.
+inline GridHeader header_of(std::span<const uvec4> texels) {
+    const auto vector = [](const uvec4& t) {
+        return vec3(std::bit_cast<float>(t.x), std::bit_cast<float>(t.y),
+                    std::bit_cast<float>(t.z));
+    };
+    return {vector(texels[0]), vector(texels[1])};
+}
+
+constexpr uint32_t kGridLast = 0xffff;
+constexpr uint32_t kGridMiddle = 0x8000;
+
+/// A range of grid coordinates, 0 to kGridLast; empty: that of a child that is missing.
+struct GridRange {
+    uint32_t lo = kGridLast;
+    uint32_t hi = 0;
+
+    bool empty() const { return lo > hi; }
+    bool operator==(const GridRange&) const = default;
+};
+
+namespace node_boxes {
+
+/// The kernel reads the upper half of a word with the lower one as its fraction: less than a cell
+/// more. For an upper bound that is outwards, for a lower one a cell is taken off before.
+inline uint32_t less(size_t child) {
+    return child & 1;
+}
+inline uint32_t shift(size_t child) {
+    return child & 1 ? 16 : 0;
+}
+inline void put(uint32_t& word, size_t child, uint32_t coordinate) {
+    word = (word & ~(kGridLast << shift(child))) | (coordinate ^ kGridMiddle) << shift(child);
+}
+inline uint32_t get(uint32_t word, size_t child) {
+    return (word >> shift(child) & kGridLast) ^ kGridMiddle;
+}
+
+} // namespace node_boxes
+
+/// Along one axis, whose texel `words` is. Of an odd child lo is not 0.
+inline void put_range(uvec4& words, size_t child, GridRange range) {
+    node_boxes::put(words[int(child / 2)], child, range.lo - node_boxes::less(child));
+    node_boxes::put(words[int(2 + child / 2)], child, range.hi);
+}
+
+inline GridRange range_of(const uvec4& words, size_t child) {
+    return {node_boxes::get(words[int(child / 2)], child) + node_boxes::less(child),
+            node_boxes::get(words[int(2 + child / 2)], child)};
+}
+
+} // namespace ovc

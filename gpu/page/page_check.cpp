@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Visits every unit of a page once, as a walk that misses nothing would.
+#include "gpu/page/page_check.h"
+
+#include "gpu/bvh/bvh.h"
+#include "gpu/page/node_boxes.h"
+
+#include <cmath>
+
+namespace ovc {
+namespace {
+
+class PageChecker {
+public:
+    PageChecker(const Page& page, uint32_t triangle_count)
+        : page_(page), texels_(page.view()), triangle_count_(triangle_count) {}
+
+    bool check() {
+        const uint64_t units = page_.units();
+        if (texels_.size() % OVC_UNIT_TEXELS || units <= OVC_ROOT_UNIT ||
+            units >= OVC_MAX_PAGE_UNITS || page_.depth > uint32_t(kMaxBvhDepth))
+            return false;
+        if (texels_[2] != uvec4(OVC_ROOT_UNIT, 0xffffffffu, 0, 0) || !has_sound_grid() ||
+            is_missing(OVC_ROOT_UNIT, 0))
+            return false;
+        seen_.assign(units, 0);
+        if (!reach(OVC_ROOT_UNIT, 1))
+            return false;
+        while (!pending_.empty()) {
+            const Pending next = pending_.back();
+            pending_.pop_back();
+            if (!check_unit(next))
+                return false;
+        }
+        return true;
+    }
+
+private:
+    struct Pending {
+        uint32_t unit;
+        uint32_t depth;
+    };
+
+    /// In a leaf's frame, where the leaf is about as large as 1.
+    bool has_sound_grid() const {
+        constexpr float kFarthest = 16;
+        const GridHeader grid = header_of(texels_);
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(std::abs(grid.middle[axis]) <= kFarthest) || !(grid.cell[axis] > 0) ||
+                !(grid.cell[axis] <= kFarthest / kGridLast))
+                return false;
+        return true;
+    }
+
+    const uvec4& texel(uint32_t unit, uint32_t i) const {
+        return texels_[size_t(unit) * OVC_UNIT_TEXELS + i];
+    }
+
+    /// False where a walk would leave the page, or come to the same unit on two ways.
+    bool reach(uint64_t unit, uint32_t depth) {
+        if (unit >= seen_.size() || seen_[unit])
+            return false;
+        seen_[unit] = 1;
+        pending_.push_back({uint32_t(unit), depth});
+        return true;
+    }
+
+    bool check_unit(const Pending& at) {
+        if ((texel(at.unit, 3).w & OVC_PAIR) && at.unit != OVC_ROOT_UNIT) {
+            if ((texel(at.unit, 3).w & OVC_LOOSE_PAIR) && !page_.has_loose_pairs())
+                return false;
+            const uint32_t b = texel(at.unit, 1).w;
+            return texel(at.unit, 0).w < triangle_count_ &&
+                   (b < triangle_count_ || b == OVC_NO_TRIANGLE);
+        }
+        const uvec4& last = texel(at.unit, 3);
+        if (last.y != 0 || last.z != 0 || last.w != 0 || at.depth > page_.depth)
+            return false;
+        const uint64_t base = last.x;
+        for (uint32_t child = 0; child < 4; ++child)
+            if (!is_missing(at.unit, child) &&
+                (!has_box(at.unit, child) || !reach(base + child, at.depth + 1)))
+                return false;
+        return true;
+    }
+
+    bool is_missing(uint32_t unit, uint32_t child) const {
+        for (uint32_t axis = 0; axis < 3; ++axis)
+            if (range_of(texel(unit, axis), child) != GridRange())
+                return false;
+        return true;
+    }
+
+    bool has_box(uint32_t unit, uint32_t child) const {
+        for (uint32_t axis = 0; axis < 3; ++axis)
+            if (range_of(texel(unit, axis), child).empty())
+                return false;
+        return true;
+    }
+
+    const Page& page_;
+    const std::span<const uvec4> texels_;
+    const uint32_t triangle_count_;
+    std::vector<uint8_t> seen_; // per unit
+    std::vector<Pending> pending_;
+};
+
+} // namespace
+
+bool is_walkable(const Page& page, uint32_t triangle_count) {
+    return PageChecker(page, triangle_count).check();
+}
+
+} // namespace ovc

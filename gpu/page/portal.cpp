@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Portals as texels, and rays through them in double.
+#include "gpu/page/portal.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace ovc {
+
+double Portal::stretch() const {
+    double most = 0;
+    for (const dvec3& row : rows)
+        most = std::max(most, std::abs(row.x) + std::abs(row.y) + std::abs(row.z));
+    return most;
+}
+
+PreparedRay Portal::local_ray(const PreparedRay& p) const {
+    PreparedRay local = p;
+    local.ray.org = to_local(p.ray.org);
+    local.ray.dir = to_local_direction(p.ray.dir);
+    local.inv_dir = 1.0 / local.ray.dir;
+    return local;
+}
+
+Box placed_box(const Box& box, const Placement* placement) {
+    if (!placement)
+        return box;
+    Box placed;
+    for (int corner = 0; corner < 8; ++corner)
+        placed.add((*placement)({corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                                 corner & 4 ? box.hi.z : box.lo.z}));
+    return placed.padded(placed.rounding());
+}
+
+Portal portal_into(const Frame& frame, const Box& box, const Placement* placement) {
+    Portal portal;
+    portal.origin = placement ? (*placement)(frame.origin) : frame.origin;
+    portal.rows = *inverse_matrix(or_unplaced(placement));
+    for (dvec3& row : portal.rows)
+        row *= frame.scale;
+    portal.box = {frame.to_local(box.lo), frame.to_local(box.hi)};
+    portal.bounds = placed_box(box, placement);
+    return portal;
+}
+
+std::vector<uvec4> pack_portals(std::span<const Portal> portals) {
+    std::vector<uvec4> texels;
+    for (const Portal& portal : portals) {
+        std::array<double, 18> numbers{};
+        auto next = numbers.begin();
+        for (const dvec3& v : {portal.origin, portal.rows[0], portal.rows[1], portal.rows[2],
+                               portal.box.lo, portal.box.hi})
+            for (int axis = 0; axis < 3; ++axis)
+                *next++ = v[axis];
+        for (size_t i = 0; i < numbers.size(); i += 2) {
+            const auto a = std::bit_cast<uint64_t>(numbers[i]);
+            const auto b = std::bit_cast<uint64_t>(numbers[i + 1]);
+            texels.emplace_back(uint32_t(a), uint32_t(a >> 32), uint32_t(b), uint32_t(b >> 32));
+        }
+        texels.emplace_back(portal.tree, portal.first_number, 0, 0);
+    }
+    return texels;
+}
+
+} // namespace ovc

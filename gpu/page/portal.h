@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Portal: where a ray changes from the world to the frame of a part of the scene.
+#pragma once
+
+#include "core/box.h"
+#include "core/exact/triangle.h"
+#include "core/placement.h"
+#include "kdtree/partition.h"
+#include "shaders/layout.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+struct Portal {
+    dvec3 origin{0}; // lies at 0 in the frame
+    std::array<dvec3, 3> rows{dvec3(1, 0, 0), dvec3(0, 1, 0),
+                              dvec3(0, 0, 1)}; // local = rows (world - origin)
+    Box box;                                   // of what lies behind it, in the frame
+    Box bounds;                                // the same in the world
+    uint32_t tree = 0;                         // the unit of the header of what lies behind it
+    uint32_t first_number = 0;                 // that numbers of triangles behind it count from
+
+    dvec3 to_local_direction(const dvec3& d) const {
+        return {glm::dot(rows[0], d), glm::dot(rows[1], d), glm::dot(rows[2], d)};
+    }
+    dvec3 to_local(const dvec3& world) const { return to_local_direction(world - origin); }
+    /// The most that the map makes a length longer.
+    double stretch() const;
+    /// The same ray in the frame; t stays what it is.
+    PreparedRay local_ray(const PreparedRay& p) const;
+};
+
+/// The box in the world of what lies in `box` before it is placed. placement: null where it is in
+/// the world.
+Box placed_box(const Box& box, const Placement* placement);
+
+/// Into the frame, with all that lies in `box` behind it. placement: of both, which has an inverse;
+/// null where they are in the world. Error bound: docs/numerics.md, "Frames".
+Portal portal_into(const Frame& frame, const Box& box, const Placement* placement = nullptr);
+
+inline constexpr uint64_t kPortalBytes = OVC_PORTAL_TEXELS * sizeof(uvec4);
+
+/// The table of portals as the kernel reads it (shaders/layout.h).
+std::vector<uvec4> pack_portals(std::span<const Portal> portals);
+
+} // namespace ovc

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Eviction by least recent use among neighbours.
+#include "gpu/page/residency.h"
+
+#include <cassert>
+#include <limits>
+
+namespace ovc {
+namespace {
+
+uint64_t rounded_up(uint64_t bytes, uint64_t alignment) {
+    return (bytes + alignment - 1) / alignment * alignment;
+}
+
+} // namespace
+
+std::vector<Stretch> stretches_of(const PoolLayout& layout, uint64_t begin) {
+    std::vector<Stretch> stretches;
+    for (uint32_t i = 0; i < layout.count(); ++i)
+        stretches.push_back(
+            {layout.begin_of(i) + (i == 0 ? begin : 0), layout.begin_of(i) + layout.bytes_of(i)});
+    return stretches;
+}
+
+size_t fitting_pages(std::span<const Page> pages, const PoolLayout& layout, uint64_t begin) {
+    std::vector<Stretch> free = stretches_of(layout, begin);
+    size_t count = 0;
+    for (; count < pages.size(); ++count) {
+        const uint64_t bytes = pages[count].bytes();
+        const auto room =
+            std::ranges::find_if(free, [&](const Stretch& s) { return s.begin + bytes <= s.end; });
+        if (room == free.end())
+            break;
+        room->begin += bytes;
+    }
+    return count;
+}
+
+Residency::Residency(std::span<const Stretch> stretches, uint64_t alignment, size_t leaves)
+    : alignment_(alignment), slots_(leaves, Slot{0, 0}), last_use_(leaves, 0) {
+    for (const Stretch& stretch : stretches)
+        shelves_.push_back({{rounded_up(stretch.begin, alignment), stretch.end}, {}});
+}
+
+/// A run of neighbouring pages and the gaps around them that is wide enough. Of all such runs the
+/// one whose most recently used page was used longest ago; a gap that is wide enough by itself
+/// evicts nobody. Takes its place in `best` where that is cheaper.
+void Residency::find_cheaper(size_t shelf, uint64_t bytes, Range& best) const {
+    const auto& [room, leaves] = shelves_[shelf];
+    const auto gap_begin = [&](size_t i) {
+        return i == 0 ? room.begin : slots_[leaves[i - 1]].offset + slots_[leaves[i - 1]].bytes;
+    };
+    const auto gap_end = [&](size_t i) {
+        return i == leaves.size() ? room.end : slots_[leaves[i]].offset;
+    };
+    for (size_t first = 0; first <= leaves.size() && best.use > 0; ++first) {
+        const uint64_t begin = gap_begin(first);
+        uint64_t use = 0;
+        for (size_t last = first; last <= leaves.size(); ++last) {
+            if (last > first)
+                use = std::max(use, last_use_[leaves[last - 1]]);
+            if (use >= best.use)
+                break;
+            if (begin + bytes <= gap_end(last)) {
+                best = {shelf, first, last, begin, use};
+                break;
+            }
+        }
+    }
+}
+
+bool Residency::admit(uint32_t leaf, uint64_t bytes, uint64_t keep,
+                      std::vector<uint32_t>& evicted) {
+    assert(!resident(leaf));
+    bytes = rounded_up(bytes, alignment_);
+    Range range{0, 0, 0, 0, std::numeric_limits<uint64_t>::max()};
+    for (size_t shelf = 0; shelf < shelves_.size(); ++shelf)
+        find_cheaper(shelf, bytes, range);
+    if (range.use >= keep)
+        return false;
+    std::vector<uint32_t>& leaves = shelves_[range.shelf].leaves;
+    for (size_t i = range.first; i < range.last; ++i) {
+        slots_[leaves[i]] = {0, 0};
+        evicted.push_back(leaves[i]);
+    }
+    const auto at = leaves.erase(leaves.begin() + ptrdiff_t(range.first),
+                                 leaves.begin() + ptrdiff_t(range.last));
+    leaves.insert(at, leaf);
+    slots_[leaf] = {range.offset, bytes};
+    touch(leaf);
+    return true;
+}
+
+} // namespace ovc

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+// The largest nodes of the pages are opened, and a BVH is built over what they held; and one over
+// the portals to several such trees.
+#include "gpu/page/top_level.h"
+
+#include "gpu/bvh/reinsert.h"
+#include "gpu/page/grid.h"
+#include "gpu/page/node_boxes.h"
+#include "gpu/page/packer.h"
+#include "shaders/layout.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+namespace ovc {
+namespace {
+
+/// A unit of a page, and its box in cells of the grid, each as large as it is in the frame.
+struct Entry {
+    uint32_t page;
+    uint32_t unit;
+    Boxf box;
+};
+
+std::span<const uvec4, OVC_UNIT_TEXELS> unit_of(const Page& page, uint32_t unit) {
+    return page.view().subspan(size_t(unit) * OVC_UNIT_TEXELS).first<OVC_UNIT_TEXELS>();
+}
+
+bool is_pair(const Page& page, uint32_t unit) {
+    return (unit_of(page, unit)[3].w & OVC_PAIR) != 0;
+}
+
+uint32_t first_child(std::span<const Page> pages, const Entry& node) {
+    return unit_of(pages[node.page], node.unit)[3].x;
+}
+
+/// Calls visit(entry) for each child of a node.
+template <class Visit>
+void for_each_child(std::span<const Page> pages, uint32_t page, uint32_t node, Visit&& visit) {
+    const auto words = unit_of(pages[page], node);
+    const vec3 cell = header_of(pages[page].view()).cell;
+    for (uint32_t child = 0; child < 4; ++child) {
+        Entry entry{page, words[3].x + child, {}};
+        for (int axis = 0; axis < 3; ++axis) {
+            const GridRange range = range_of(words[size_t(axis)], child);
+            entry.box.lo[axis] = float(range.lo) * cell[axis];
+            entry.box.hi[axis] = float(range.hi) * cell[axis];
+        }
+        if (!entry.box.empty())
+            visit(entry);
+    }
+}
+
+Entry root_of(std::span<const Page> pages, uint32_t page) {
+    Entry root{page, OVC_ROOT_UNIT, {}};
+    for_each_child(pages, page, OVC_ROOT_UNIT,
+                   [&](const Entry& child) { root.box.add(child.box); });
+    return root;
+}
+
+/// The roots of all pages, or instead of the largest of them their children, and so on, as long
+/// as they are no more than `max`. Based on: Benthin, Woop, Wald and Afra 2017, "Improved Two-Level
+/// BVHs using Partial Re-Braiding".
+std::vector<Entry> opened(std::span<const Page> pages, size_t max) {
+    const auto smaller = [](const Entry& a, const Entry& b) {
+        return a.box.half_area() < b.box.half_area();
+    };
+    std::vector<Entry> nodes, pairs;
+    for (uint32_t page = 0; page < pages.size(); ++page)
+        nodes.push_back(root_of(pages, page));
+    std::ranges::make_heap(nodes, smaller);
+    while (!nodes.empty() && nodes.size() + pairs.size() + 3 <= max) {
+        std::ranges::pop_heap(nodes, smaller);
+        const Entry largest = nodes.back();
+        nodes.pop_back();
+        for_each_child(pages, largest.page, largest.unit, [&](const Entry& child) {
+            if (is_pair(pages[child.page], child.unit)) {
+                pairs.push_back(child);
+                return;
+            }
+            nodes.push_back(child);
+            std::ranges::push_heap(nodes, smaller);
+        });
+    }
+    nodes.insert(nodes.end(), pairs.begin(), pairs.end());
+    std::ranges::sort(nodes, {}, [](const Entry& e) { return std::pair(e.page, e.unit); });
+    return nodes;
+}
+
+/// Where the boxes of entries, and of several together, lie on the grid.
+struct Cells {
+    vec3 size;
+
+    GridRange range(const Boxf& box, int axis) const {
+        return {uint32_t(std::lround(box.lo[axis] / size[axis])),
+                uint32_t(std::lround(box.hi[axis] / size[axis]))};
+    }
+};
+
+/// A BVH whose leaf i has item i, over the entries.
+Page tree_over(std::span<const Page> pages, std::span<const Entry> entries) {
+    std::vector<Boxf> boxes;
+    for (const Entry& entry : entries)
+        boxes.push_back(entry.box);
+    std::vector<BvhNode> nodes = build_bvh(boxes, nullptr);
+    reinsert(nodes, nullptr);
+    const auto put = [&](uint32_t i, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
+        std::ranges::copy(unit_of(pages[entries[i].page], entries[i].unit), unit.begin());
+        if (!is_pair(pages[entries[i].page], entries[i].unit))
+            unit[3] = {i, 1, 0, 0}; // found again by build_top_level()
+    };
+    return Packer(nodes, header_of(pages[0].view()), Cells{header_of(pages[0].view()).cell}, put,
+                  nullptr)
+        .pack();
+}
+
+/// The root of the only page is the tree's.
+Page tree_of_one(const Page& page) {
+    Page tree;
+    tree.depth = 0;
+    const auto units = page.view().first((OVC_ROOT_UNIT + 1) * OVC_UNIT_TEXELS);
+    tree.texels.assign(units.begin(), units.end());
+    tree.texels[OVC_ROOT_UNIT * OVC_UNIT_TEXELS + 3] = {0, 1, 0, 0}; // as in tree_over()
+    return tree;
+}
+
+/// A BVH whose leaf i is a portal with the number i + 1, over their boxes in the world.
+Page tree_over(std::span<const Portal> portals, const Leaf& scene) {
+    std::vector<Boxf> boxes;
+    for (const Portal& portal : portals)
+        boxes.push_back({vec3(scene.frame.to_local(portal.bounds.lo)),
+                         vec3(scene.frame.to_local(portal.bounds.hi))});
+    std::vector<BvhNode> nodes = build_bvh(boxes, nullptr);
+    reinsert(nodes, nullptr);
+    const Grid grid({scene.frame.to_local(scene.grid.lo), scene.frame.to_local(scene.grid.hi)});
+    const auto put = [&](uint32_t i, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
+        for (int axis = 0; axis < 3; ++axis)
+            for (size_t child = 0; child < 4; ++child)
+                put_range(unit[size_t(axis)], child,
+                          child == 0 ? grid.range(boxes[i], axis) : GridRange());
+        unit[3] = {~i, 0, 0, 0}; // -(i + 1)
+    };
+    return Packer(nodes, grid.header(), grid, put, nullptr).pack();
+}
+
+/// Appends the tree of the part whose pages begin with `first_page`; returns where it begins.
+uint32_t append(TopLevel& top, const TopLevel& part, uint32_t first_page) {
+    const auto begin = uint32_t(top.tree.units());
+    top.tree.texels.resize(top.tree.texels.size() + part.tree.texels.size());
+    const auto to = std::span(top.tree.texels).last(part.tree.texels.size());
+    copy_relocated(part.tree, begin, to);
+    for (const Link& link : part.links) {
+        to[size_t(link.unit) * OVC_UNIT_TEXELS + 3].y += first_page;
+        top.links.push_back({begin + link.unit, link.first_child});
+    }
+    for (size_t page = 1; page < part.first_link.size(); ++page)
+        top.first_link.push_back(top.first_link[first_page] + part.first_link[page]);
+    top.depth = std::max(top.depth, part.depth);
+    return begin;
+}
+
+} // namespace
+
+TopLevel build_top_level(std::span<const Page> pages, size_t max_links) {
+    TopLevel top;
+    std::vector<Entry> entries;
+    if (pages.size() == 1) {
+        entries = {root_of(pages, 0)};
+        top.tree = tree_of_one(pages[0]);
+    } else {
+        entries = opened(pages, max_links);
+        top.tree = tree_over(pages, entries);
+    }
+    std::vector<uint32_t> unit_of_entry(entries.size());
+    for (uint32_t unit = OVC_ROOT_UNIT; unit < top.tree.units(); ++unit) {
+        uvec4& words = top.tree.texels[size_t(unit) * OVC_UNIT_TEXELS + 3];
+        if ((words.w & OVC_PAIR) || words.y == 0)
+            continue;
+        const Entry& entry = entries[words.x];
+        unit_of_entry[words.x] = unit;
+        words = {OVC_LEADS_NOWHERE, entry.page + 1, first_child(pages, entry), 0};
+    }
+    top.first_link.resize(pages.size() + 1);
+    for (size_t i = 0; i < entries.size(); ++i)
+        if (!is_pair(pages[entries[i].page], entries[i].unit)) {
+            top.links.push_back({unit_of_entry[i], first_child(pages, entries[i])});
+            top.first_link[entries[i].page + 1] = uint32_t(top.links.size());
+        }
+    for (size_t page = 0; page < pages.size(); ++page) // one may have none left
+        top.first_link[page + 1] = std::max(top.first_link[page + 1], top.first_link[page]);
+    for (const Page& page : pages)
+        top.depth = std::max(top.depth, page.depth);
+    top.depth += top.tree.depth;
+    return top;
+}
+
+TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links) {
+    Parts parts;
+    parts.add(level1, 0, std::array{Place()});
+    if (parts.pages.empty())
+        return {};
+    if (parts.pages.size() == 1)
+        return build_top_level(pages, max_links);
+    return build_top_level(scene_leaf(level1.bounds), std::move(parts), pages, max_links);
+}
+
+void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place> places) {
+    for (const LeafRange& part : parts_of(level1)) {
+        const Leaf& leaf = level1.leaves[part.first];
+        for (const Place& place : places) {
+            portals.push_back(portal_into(leaf.frame, leaf.grid, place.placement));
+            portals.back().tree = uint32_t(pages.size());
+            portals.back().first_number = place.first_number;
+        }
+        pages.push_back({first_page + part.first, part.count});
+    }
+}
+
+TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> pages,
+                         size_t max_links) {
+    TopLevel top;
+    top.tree = tree_over(parts.portals, scene);
+    const uint32_t depth = top.tree.depth;
+    top.first_link = {0};
+    std::vector<uint32_t> begins;
+    for (const auto& [first, count] : parts.pages) {
+        const size_t links = std::max<size_t>(max_links * count / pages.size(), count);
+        begins.push_back(append(top, build_top_level(pages.subspan(first, count), links), first));
+    }
+    for (Portal& portal : parts.portals)
+        portal.tree = begins[portal.tree];
+    top.portals = {portal_into(scene.frame, scene.box)};
+    top.portals.insert(top.portals.end(), parts.portals.begin(), parts.portals.end());
+    top.depth += depth + 1; // and the word by which a ray comes back
+    return top;
+}
+
+bool is_usable(const TopLevel& top, std::span<const Page> pages, const PoolLayout& pool) {
+    const uint64_t tree = top.tree.bytes();
+    if (top.empty() || pool.bytes == 0 || tree > pool.bytes_of(0))
+        return false;
+    const uint64_t beside = pool.bytes_of(0) - tree;
+    const uint64_t room = pool.count() > 1 ? std::max(beside, pool.bytes_of(1)) : beside;
+    return largest_bytes(pages) <= room &&
+           (pages.size() < OVC_KEY_LEAF || all_fit(pages, pool, tree));
+}
+
+void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to) {
+    constexpr size_t kGrain = 4096; // units a task
+    const std::span<const uvec4> from = page.view();
+    assert(to.size() == from.size());
+    parallel_for(page.units(), kGrain, [&](size_t begin, size_t end) {
+        for (size_t unit = begin; unit < end; ++unit) {
+            const uvec4* const source = from.data() + unit * OVC_UNIT_TEXELS;
+            uvec4* const texel = to.data() + unit * OVC_UNIT_TEXELS;
+            texel[0] = source[0];
+            texel[1] = source[1];
+            texel[2] = source[2];
+            uvec4 last = source[3];
+            const bool is_link = last.y != 0; // of the tree of a part
+            last.x += last.w & OVC_PAIR || unit < OVC_ROOT_UNIT || is_link ? 0 : first_unit;
+            texel[3] = last;
+        }
+    });
+    if (!from.empty())
+        to[2].x = from[2].x + first_unit;
+}
+
+} // namespace ovc

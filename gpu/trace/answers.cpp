@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers as pixels, in tiles, and as words, in planes.
+#include "gpu/trace/answers.h"
+
+#include "core/system/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+
+namespace ovc {
+namespace {
+
+constexpr size_t kGrain = 16384; // rays a task that are only copied
+
+/// The pixel of a ray's answer, row by row: the twin of pixel_of() in shaders/ray.glsl.
+size_t pixel_of(size_t ray) {
+    constexpr size_t kTile = OVC_TILE, kTilesInRow = OVC_ROW_RAYS / OVC_TILE;
+    const size_t tile = ray / (kTile * kTile);
+    const size_t x = tile % kTilesInRow * kTile + ray % kTile;
+    const size_t y = tile / kTilesInRow * kTile + ray / kTile % kTile;
+    return y * OVC_ROW_RAYS + x;
+}
+
+} // namespace
+
+AnswerPixels::AnswerPixels(Ledger& ledger, uint32_t rays)
+    : texture_(ledger, GL_RGBA32UI, kAnswerBytes, OVC_ROW_RAYS, rays / OVC_ROW_RAYS, "answers"),
+      framebuffer_(texture_) {}
+
+void AnswerPixels::draw(size_t rays) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+    glBindVertexArray(vertex_array_.id());
+    glViewport(0, 0, OVC_ROW_RAYS, GLsizei(whole_blocks(rays) / OVC_ROW_RAYS));
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void AnswerPixels::read(std::span<Answer> answers) {
+    pixels_.resize(whole_blocks(answers.size()));
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+    glReadPixels(0, 0, OVC_ROW_RAYS, GLsizei(pixels_.size() / OVC_ROW_RAYS), GL_RGBA_INTEGER,
+                 GL_UNSIGNED_INT, pixels_.data());
+    parallel_for(answers.size(), kGrain, [&](size_t first, size_t last) {
+        for (size_t ray = first; ray < last; ++ray) {
+            const uvec4& p = pixels_[pixel_of(ray)];
+            answers[ray] = {{p.x, p.y, p.z}, p.w, p.z};
+        }
+    });
+}
+
+AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays)
+    : rays_(rays), buffer_(ledger, uint64_t(rays) * kAnswerBytes, "answers") {
+    texture_.show(buffer_, GL_R32UI, 0, buffer_.bytes());
+    // Stays like this where all pages are resident: no answer names a leaf.
+    fill_plane(3, rays_, OVC_NO_LEAF);
+}
+
+void AnswerWords::fill_plane(int number, size_t rays, uint32_t word) const {
+    glClearNamedBufferSubData(
+        buffer_.id(), GL_R32UI, GLintptr(uint64_t(number) * rays_ * sizeof(word)),
+        GLsizeiptr(rays * sizeof(word)), GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
+
+void AnswerWords::dispatch(GLuint program, size_t rays, size_t packet, size_t turns) const {
+    assert(kBlockRays % (OVC_GROUP_SIZE * packet) == 0);
+    glProgramUniform1i(program, OVC_LOCATION_PLANE, GLint(rays_));
+    glBindImageTexture(OVC_BINDING_ANSWERS, texture_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+    const size_t all = whole_blocks(rays), group = OVC_GROUP_SIZE * packet * turns;
+    fill_plane(0, all, OVC_MISS);
+    glProgramUniform1i(program, OVC_LOCATION_RAYS, GLint(all));
+    glDispatchCompute(GLuint((all + group - 1) / group), 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+std::span<const uint32_t> AnswerWords::plane(int number, size_t first, size_t rays) {
+    std::vector<uint32_t>& words = planes_[size_t(number)];
+    words.resize(rays);
+    glGetNamedBufferSubData(buffer_.id(),
+                            GLintptr((uint64_t(number) * rays_ + first) * sizeof(uint32_t)),
+                            GLsizeiptr(rays * sizeof(uint32_t)), words.data());
+    return words;
+}
+
+void AnswerWords::read(std::span<Answer> answers, size_t first_ray) {
+    const std::span<const uint32_t> names = plane(0, first_ray, answers.size());
+    std::atomic<uint32_t> seen = 0;
+    parallel_for(answers.size(), kGrain, [&](size_t first, size_t last) {
+        uint32_t all = 0;
+        for (size_t ray = first; ray < last; ++ray) {
+            all |= names[ray];
+            answers[ray] = {{OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, OVC_NO_LEAF},
+                            names[ray] & ~OVC_SAYS_MORE,
+                            OVC_NO_LEAF};
+        }
+        seen |= all;
+    });
+    if ((seen & OVC_SAYS_MORE) == 0)
+        return;
+    const std::array more{plane(1, first_ray, answers.size()), plane(2, first_ray, answers.size()),
+                          plane(3, first_ray, answers.size())};
+    parallel_for(answers.size(), kGrain, [&](size_t first, size_t last) {
+        for (size_t ray = first; ray < last; ++ray)
+            if (names[ray] & OVC_SAYS_MORE) {
+                answers[ray].words = {more[0][ray], more[1][ray], more[2][ray]};
+                answers[ray].where = more[2][ray];
+            }
+    });
+}
+
+} // namespace ovc

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a pass leaves its answers: pixels of a texture (the fragment kernel) or words of a buffer
+// (the compute kernel). The layouts: shaders/layout.h.
+#pragma once
+
+#include "core/vec.h"
+#include "gpu/gl/gl_object.h"
+#include "shaders/layout.h"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+/// What the kernel answers. prim: the number of a triangle, or OVC_MISS, OVC_FLAGGED, OVC_CAPPED.
+struct Answer {
+    std::array<uint32_t, 3> words;
+    uint32_t prim;
+    /// The key of the link that the ray waits for; OVC_NO_LEAF: no page is left.
+    uint32_t where;
+
+    /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
+    std::span<const uint32_t, 2> rivals() const { return std::span(words).first<2>(); }
+    /// Fast precision: where the hit is.
+    double t() const { return std::bit_cast<double>(uint64_t(words[1]) << 32 | words[0]); }
+    /// Fast precision.
+    double u() const { return (words[2] & 0xffffu) / 65535.0; }
+    double v() const { return (words[2] >> 16) / 65535.0; }
+};
+
+/// On the GPU.
+inline constexpr uint64_t kAnswerBytes = 16;
+
+/// The leaf that the key of a link names.
+inline uint32_t leaf_of(uint32_t key) {
+    return (key & OVC_KEY_LEAF) - 1;
+}
+
+/// Rays come in blocks: a row of tiles.
+inline constexpr uint32_t kBlockRays = OVC_ROW_RAYS * OVC_TILE;
+/// The size that a buffer for n rays must have: whole blocks.
+inline size_t whole_blocks(size_t n) {
+    return (n + kBlockRays - 1) / kBlockRays * kBlockRays;
+}
+
+/// Both kinds are for up to `rays` rays, whole blocks. draw() and dispatch() start the pass: the
+/// program is in use and its inputs are bound. read() waits for it.
+class AnswerPixels {
+public:
+    AnswerPixels(Ledger& ledger, uint32_t rays);
+    /// False where the driver cannot draw to such a texture.
+    bool complete() const { return framebuffer_.complete(); }
+    void draw(size_t rays) const;
+    void read(std::span<Answer> answers);
+
+private:
+    gl::Texture2D texture_;
+    gl::Framebuffer framebuffer_;
+    gl::VertexArray vertex_array_;
+    std::vector<uvec4> pixels_;
+};
+
+/// The kernel writes no misses: dispatch() puts them there before.
+class AnswerWords {
+public:
+    AnswerWords(Ledger& ledger, uint32_t rays);
+    /// packet: rays that an invocation takes at a time; turns: how often, at most.
+    void dispatch(GLuint program, size_t rays, size_t packet, size_t turns) const;
+    /// Those of the rays from `first_ray` on.
+    void read(std::span<Answer> answers, size_t first_ray = 0);
+
+private:
+    void fill_plane(int number, size_t rays, uint32_t word) const;
+    std::span<const uint32_t> plane(int number, size_t first, size_t rays);
+
+    uint32_t rays_;
+    gl::Buffer buffer_;
+    gl::BufferTexture texture_;
+    std::array<std::vector<uint32_t>, 4> planes_;
+};
+
+} // namespace ovc

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// A ray in the frame of the top-level tree is where the ray is, to the roundings that
+// docs/numerics.md allows.
+#include "gpu/trace/local_ray.h"
+
+#include "kdtree/test_soups.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ovc {
+namespace {
+
+constexpr double kRounding = 1.125 * OVC_BOUND_UNIT; // of a float in [-1, 1], and of doubles before
+
+Leaf leaf_of(const dvec3& center, double size) {
+    const Box bounds{center - dvec3(size), center + dvec3(size)};
+    return scene_leaf(bounds);
+}
+
+/// A point of the local ray, in the world.
+dvec3 world(const Leaf& leaf, const LocalRay& ray, double t) {
+    return (dvec3(ray.org) + t * dvec3(ray.dir)) / leaf.frame.scale + leaf.frame.origin;
+}
+
+TEST(LocalRay, IsWhereTheRayIs) {
+    test::Random random(7);
+    for (const double size : {1e-9, 0.3, 4e7})
+        for (const double away : {0.0, 1.0, 1e5}) {
+            const dvec3 center = random.point(-1, 1) * size * away;
+            const Leaf leaf = leaf_of(center, size);
+            for (int i = 0; i < 2000; ++i) {
+                const dvec3 target = center + random.point(-0.9, 0.9) * size;
+                const dvec3 org = target + random.point(-5, 5) * size;
+                const double t_target = random(0.1, 10);
+                const Ray ray{org, 0, (target - org) / t_target};
+                LocalTime time;
+                const LocalRay local = local_ray(leaf, ray, 5, i % 2 == 0, time);
+                ASSERT_GE(local.t_end, 0.0f);
+                ASSERT_EQ(local.asks, 5u | (i % 2 == 0 ? OVC_RAY_ANY_HIT : 0u));
+                ASSERT_EQ(
+                    std::max({std::abs(local.dir.x), std::abs(local.dir.y), std::abs(local.dir.z)}),
+                    1.0f);
+                const double t_local = (t_target - time.enter) * time.speed;
+                ASSERT_LE(t_local, double(local.t_end));
+                // The origin's rounding, and that of the direction over the way.
+                const double most = (kRounding + OVC_BOUND_UNIT * (t_local + 1)) / leaf.frame.scale;
+                const dvec3 off = world(leaf, local, t_local) - ray.at(t_target);
+                for (int axis = 0; axis < 3; ++axis)
+                    ASSERT_LE(std::abs(off[axis]), most) << size << " " << away;
+            }
+        }
+}
+
+TEST(LocalRay, ThatMissesTheBoxOrHasNoLengthIsNoRay) {
+    const Leaf leaf = leaf_of(dvec3(0), 1);
+    LocalTime time;
+    const auto t_end = [&](const Ray& ray) { return local_ray(leaf, ray, 0, false, time).t_end; };
+    EXPECT_EQ(t_end({dvec3(5, 0, 0), 0, dvec3(0, 0, 1)}), OVC_NO_RAY);
+    EXPECT_EQ(t_end({dvec3(0, 0, 9), 0, dvec3(0, 0, 1)}), OVC_NO_RAY);
+    EXPECT_EQ(t_end({dvec3(0), 0, dvec3(0, 0, 1), -1}), OVC_NO_RAY);
+    EXPECT_GE(t_end({dvec3(0), 0, dvec3(0, 0, 1), 0}), 0.0f);
+}
+
+TEST(LocalRay, FromTooFarAwayIsForDoublesToDecide) {
+    const Leaf leaf = leaf_of(dvec3(0), 1);
+    LocalTime time;
+    const Ray ray{dvec3(0, 0, -1e9), 0, dvec3(0, 0, 1)};
+    EXPECT_EQ(local_ray(leaf, ray, 0, false, time).t_end, OVC_UNDECIDABLE);
+}
+
+} // namespace
+} // namespace ovc

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/trace/packets.h"
+
+#include "core/system/parallel.h"
+#include "gpu/trace/answers.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace ovc {
+namespace {
+
+constexpr size_t kMostLeftShare = 1024; // one ray in so many may find no room
+
+const LocalRay& local(const LocalRay& ray) {
+    return ray;
+}
+const LocalRay& local(const ResumedRay& ray) {
+    return ray.ray;
+}
+void remove(LocalRay& ray) {
+    ray.t_end = OVC_NO_RAY;
+}
+void remove(ResumedRay& ray) {
+    remove(ray.ray);
+}
+
+bool near(const vec3& a, const vec3& b) {
+    constexpr float kNear = 1.0f / 16;
+    const vec3 apart = abs(a - b);
+    return std::max({apart.x, apart.y, apart.z}) < kNear;
+}
+
+template <class Sent>
+bool most_near(std::span<const Sent> rays) {
+    constexpr size_t kStep = 64;
+    size_t pairs = 0, together = 0;
+    for (size_t i = 0; i + 1 < rays.size(); i += kStep) {
+        const LocalRay &a = local(rays[i]), &b = local(rays[i + 1]);
+        if (a.t_end < 0 || b.t_end < 0)
+            continue;
+        pairs += 1;
+        together += near(a.dir, b.dir) && near(a.org, b.org);
+    }
+    return 2 * together >= pairs;
+}
+
+/// Whether both go into the same octant, and farthest along the same axis, as the kernel sees them
+/// (shaders/triangle.glsl): -0 is not negative, and the largest component is 1 or -1.
+bool go_alike(const LocalRay& a, const LocalRay& b) {
+    const auto other_sign = [&](int axis) { return (a.dir[axis] < 0) ^ (b.dir[axis] < 0); };
+    const auto other_axis = [&](int axis) {
+        return (std::abs(a.dir[axis]) == 1) ^ (std::abs(b.dir[axis]) == 1);
+    };
+    const int differ =
+        other_sign(0) | other_sign(1) | other_sign(2) | other_axis(1) | other_axis(2);
+    return differ == 0; // without branches
+}
+
+/// The second rays of the packets whose two rays do not go alike.
+template <class Sent>
+std::vector<uint32_t> apart(std::span<const Sent> rays) {
+    using Numbers = std::vector<uint32_t>;
+    Numbers numbers = parallel_reduce(
+        rays.size() / kPacketRays, Numbers(),
+        [&](size_t first, size_t last, Numbers found) {
+            for (size_t pair = first; pair < last; ++pair) {
+                const LocalRay &a = local(rays[2 * pair]), &b = local(rays[2 * pair + 1]);
+                if (!go_alike(a, b) && a.t_end >= 0 && b.t_end >= 0)
+                    found.push_back(uint32_t(2 * pair + 1));
+            }
+            return found;
+        },
+        [](Numbers a, const Numbers& b) {
+            a.insert(a.end(), b.begin(), b.end());
+            return a;
+        });
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
+}
+
+template <class Sent>
+std::optional<std::vector<Parted>> part(std::vector<Sent>& slots, size_t rays, size_t most) {
+    static_assert(kPacketRays == 2);
+    assert(rays <= slots.size() && slots.size() <= most);
+    const std::vector<uint32_t> numbers = apart(std::span<const Sent>(slots).first(rays));
+    std::vector<Parted> parted;
+    size_t end = rays + rays % 2;
+    for (const uint32_t number : numbers) {
+        // Beside the one before, where the two go alike.
+        const bool second =
+            end % 2 == 1 && go_alike(local(slots[parted.back().ray]), local(slots[number]));
+        const size_t slot = second ? end : end + end % 2;
+        if (slot >= most)
+            break;
+        parted.push_back({number, uint32_t(slot)});
+        end = slot + 1;
+    }
+    if (numbers.size() - parted.size() > rays / kMostLeftShare)
+        return {};
+    Sent none{};
+    remove(none);
+    slots.resize(std::max(slots.size(), whole_blocks(end)), none);
+    for (const auto& [ray, slot] : parted) {
+        slots[slot] = slots[ray];
+        remove(slots[ray]);
+    }
+    return parted;
+}
+
+} // namespace
+
+bool coherent(std::span<const LocalRay> rays) {
+    return most_near(rays);
+}
+bool coherent(std::span<const ResumedRay> rays) {
+    return most_near(rays);
+}
+
+std::optional<std::vector<Parted>> part_packets(std::vector<LocalRay>& slots, size_t rays,
+                                                size_t most) {
+    return part(slots, rays, most);
+}
+std::optional<std::vector<Parted>> part_packets(std::vector<ResumedRay>& slots, size_t rays,
+                                                size_t most) {
+    return part(slots, rays, most);
+}
+
+} // namespace ovc

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pool: upload.
+#include "gpu/trace/pool.h"
+
+#include "gpu/page/top_level.h"
+
+namespace ovc {
+
+Pool::Pool(Ledger& ledger, const PoolLayout& layout, size_t leaves, uint64_t begin)
+    : layout_(layout), residency_(stretches_of(layout, begin), OVC_UNIT_BYTES, leaves) {
+    for (uint32_t i = 0; i < layout.count(); ++i)
+        buffers_.emplace_back(ledger, layout.bytes_of(i), "page pool");
+}
+
+void Pool::show() {
+    for (const gl::Buffer& buffer : buffers_)
+        texels_.emplace_back().show(buffer, GL_RGBA32UI, 0, buffer.bytes());
+}
+
+void Pool::upload(uint64_t offset, const Page& page, uint32_t first_unit) const {
+    if (page.bytes() == 0)
+        return;
+    const uint32_t buffer = layout_.buffer_of(offset);
+    const uint64_t inside = offset - layout_.begin_of(buffer);
+    void* const to =
+        glMapNamedBufferRange(buffers_[buffer].id(), GLintptr(inside), GLsizeiptr(page.bytes()),
+                              GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT);
+    if (!to)
+        return; // the context is lost, which is asked for after every pass
+    copy_relocated(page, first_unit, {static_cast<uvec4*>(to), page.view().size()});
+    glUnmapNamedBuffer(buffers_[buffer].id());
+}
+
+void Pool::write(uint64_t offset, uint32_t word) const {
+    const uint32_t buffer = layout_.buffer_of(offset);
+    glNamedBufferSubData(buffers_[buffer].id(), GLintptr(offset - layout_.begin_of(buffer)),
+                         sizeof(word), &word);
+}
+
+void Pool::bind(bool as_images) const {
+    for (size_t i = 0; i < texels_.size(); ++i)
+        texels_[i].bind(OVC_BINDING_POOL + GLuint(i), as_images);
+}
+
+} // namespace ovc

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pool: the fixed number of GPU bytes that pages live in. As many buffers as that takes, allocated
+// once, filled by sub-buffer updates. No page lies in two.
+#pragma once
+
+#include "gpu/gl/gl_object.h"
+#include "gpu/page/residency.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace ovc {
+
+/// The buffers and their books. Needs the context current.
+class Pool {
+public:
+    /// Pages come behind the first `begin` bytes.
+    Pool(Ledger& ledger, const PoolLayout& layout, size_t leaves, uint64_t begin = 0);
+
+    Residency& residency() { return residency_; }
+    const Residency& residency() const { return residency_; }
+    const PoolLayout& layout() const { return layout_; }
+
+    /// Once the buffers are allocated.
+    void show();
+
+    /// Writes the page at `offset`, in bytes, its units counted from `first_unit` on.
+    void upload(uint64_t offset, const Page& page, uint32_t first_unit = 0) const;
+
+    /// Writes a word at `offset`, in bytes.
+    void write(uint64_t offset, uint32_t word) const;
+
+    /// Binds all buffers for a kernel to read, as images or as textures.
+    void bind(bool as_images) const;
+
+private:
+    PoolLayout layout_;
+    std::vector<gl::Buffer> buffers_;
+    std::vector<gl::BufferTexture> texels_;
+    Residency residency_;
+};
+
+} // namespace ovc

@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tracer: rays in by a buffer, the kernel over all of them, answers out (gpu/trace/answers.h).
+// Based on: thesis, section 3.1.
+#include "gpu/trace/tracer.h"
+
+#include "core/system/parallel.h"
+#include "core/system/stopwatch.h"
+#include "gpu/gl/gl_check.h"
+#include "shaders/layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <utility>
+
+namespace ovc {
+namespace {
+
+constexpr uint32_t kMostBlocks = 2048; // half a million rays: beyond, a pass gains nothing more
+constexpr uint32_t kMostBlocksInSoftware = 512; // llvmpipe clears what it allocates
+// Each word is a register, and 1 % of the time; of a million rays at the Stanford dragon thirty
+// want more (docs/decisions/0012).
+constexpr uint32_t kMostStackWordsInSoftware = 8;
+/// Mesa unrolls loops of so many rounds, and of a stack in registers that is longer llvmpipe (22.3)
+/// loses words without a trace.
+constexpr uint32_t kMaxWordsInRegisters = 32;
+constexpr size_t kMostLostShare = 256; // of rays, one in so many; else kernels go on longer
+// By turns: the most rays of a lane on average, as long as each thread has some groups.
+constexpr size_t kLaneRays = 128;
+constexpr size_t kGroupsAThread = 4;
+constexpr size_t kGrain = 1024;           // rays a task
+constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
+
+/// How many packets each lane takes, on average.
+size_t turns(size_t rays, size_t packet) {
+    static_assert(kBlockRays % (OVC_GROUP_SIZE * kPacketRays) == 0); // no packet across groups
+    const size_t lanes = kGroupsAThread * thread_count() * OVC_GROUP_SIZE;
+    return std::clamp<size_t>(rays / packet / lanes, 1, kLaneRays / packet);
+}
+
+} // namespace
+
+Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
+                               uint64_t bytes_per_ray, uint64_t buffer_bytes) {
+    MemoryPlan plan;
+    plan.bytes_per_ray = bytes_per_ray;
+    plan.budget_bytes = budget_bytes;
+    plan.batch_rays = kBlockRays;
+    const uint64_t smallest = plan.ray_bytes() + kSmallestPool;
+    if (budget_bytes < smallest)
+        return over_budget(
+            fmt::format("a GPU budget of {} bytes is too small: the smallest that works "
+                        "is {} bytes ({} for rays and answers, {} for a page)",
+                        budget_bytes, smallest, plan.ray_bytes(), kSmallestPool));
+    // An eighth for rays: batches of ten thousand and more already run at full speed, and pages
+    // want the rest. The share is cut off whether whole blocks fill it or not, so that a larger
+    // budget never has a smaller pool.
+    MemoryPlan most = plan;
+    most.batch_rays *= std::min(device.is_software ? kMostBlocksInSoftware : kMostBlocks,
+                                device.max_texture_size / OVC_TILE);
+    const uint64_t ray_share = std::clamp(budget_bytes / 8, plan.ray_bytes(), most.ray_bytes());
+    plan.batch_rays *= uint32_t(ray_share / plan.ray_bytes());
+    while (plan.ray_bytes() > ray_share)
+        plan.batch_rays -= kBlockRays;
+    plan.pool_bytes =
+        (budget_bytes - ray_share) / device.buffer_alignment * device.buffer_alignment;
+    plan.buffer_bytes = device.max_buffer_texels * sizeof(uvec4);
+    if (buffer_bytes > 0)
+        plan.buffer_bytes = std::min(plan.buffer_bytes, buffer_bytes);
+    plan.pool_bytes = std::min(plan.pool_bytes, plan.buffer_bytes * device.max_pool_buffers);
+    return plan;
+}
+
+Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const PassOptions& options,
+               const DeviceInfo& device, KernelCache& kernels, const Box& bounds,
+               std::span<const Page> pages, const TopLevel& top)
+    : ledger_(std::move(ledger)),
+      kernels_(kernels),
+      options_(options),
+      page_data_(pages),
+      software_(device.is_software),
+      top_(top),
+      all_fit_(all_fit(pages, plan.pool(), top.tree.bytes())),
+      scene_(scene_leaf(bounds)),
+      stack_depth_(stack_depth(top.depth)),
+      stack_words_(software_ ? std::min(stack_depth_, kMostStackWordsInSoftware) : stack_depth_),
+      most_slots_(plan.batch_rays + plan.parted_rays()),
+      ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(RayState), "rays"),
+      pool_(*ledger_, plan.pool(), pages.size(), top.tree.bytes()) {
+    takes_turns_ = device.has_ballots && software_ && options.compute;
+    if (options.compute)
+        words_.emplace(*ledger_, most_slots_);
+    else
+        pixels_.emplace(*ledger_, plan.batch_rays);
+    if (has_portals())
+        portal_buffer_.emplace(*ledger_, top.portals.size() * kPortalBytes, "portals");
+    if (plan.active_bytes > 0)
+        active_buffer_.emplace(*ledger_, plan.active_bytes, "active leaves");
+}
+
+/// What needs the memory to be there.
+Result<Done> Tracer::set_up() {
+    const Result<Done> allocated = check_gl("allocating the page pool and the buffers of rays");
+    if (ledger_->refused) // then GL's error only follows from it
+        return Error{"the GPU is out of memory", ErrorKind::OutOfGpuMemory};
+    if (!allocated)
+        return allocated;
+    if (portal_buffer_) {
+        const std::vector<uvec4> table = pack_portals(top_.portals);
+        glNamedBufferSubData(portal_buffer_->id(), 0, GLsizeiptr(table.size() * sizeof(uvec4)),
+                             table.data());
+        portals_.show(*portal_buffer_, GL_RGBA32UI, 0, portal_buffer_->bytes());
+    }
+    rays_.show(ray_buffer_, GL_RGBA32UI, 0, ray_buffer_.bytes());
+    pool_.show();
+    pool_.upload(0, top_.tree);
+    if (active_buffer_) {
+        active_.show(*active_buffer_, GL_R32UI, 0, active_buffer_->bytes());
+        take_active(); // clears it
+    }
+    if (pixels_ && !pixels_->complete())
+        return Error{"the driver cannot render to RGBA32UI textures, which answers come back in"};
+    return check_gl("setting up the tracer");
+}
+
+Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const PassOptions& options,
+                                               const DeviceInfo& device, KernelCache& kernels,
+                                               const Box& bounds, std::span<const Page> pages,
+                                               const TopLevel& top) {
+    assert(is_usable(top, pages, plan.pool()));
+    auto ledger = std::make_unique<Ledger>();
+    ledger->budget = plan.budget_bytes;
+    ledger->driver_bytes = plan.driver_bytes;
+    ledger->takes_host_pages = device.takes_host_pages;
+    std::unique_ptr<Tracer> tracer(
+        new Tracer(std::move(ledger), plan, options, device, kernels, bounds, pages, top));
+    if (Result<Done> ok = tracer->set_up(); !ok)
+        return ok.error();
+    return tracer;
+}
+
+/// Tells the kernel, by the page's links, where a page is now.
+void Tracer::say_where(uint32_t leaf) {
+    const uint32_t page = uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES);
+    for (const Link& link : top_.links_of(leaf)) {
+        const uint32_t unit = resident(leaf) ? page + link.first_child : OVC_LEADS_NOWHERE;
+        const uint64_t texel = uint64_t(link.unit) * OVC_UNIT_TEXELS + 3;
+        pool_.write(texel * sizeof(uvec4), unit);
+    }
+}
+
+Moved Tracer::bring(std::span<const uint32_t> wanted) {
+    if (wanted.empty())
+        return {};
+    Moved moved;
+    std::vector<uint32_t> evicted;
+    const uint64_t keep = pool_.residency().now();
+    for (const uint32_t leaf : wanted) {
+        const Page& page = page_data_[leaf];
+        if (!pool_.residency().admit(leaf, page.bytes(), keep, evicted))
+            break;
+        const uint64_t offset = pool_.residency().slot(leaf).offset;
+        pool_.upload(offset, page, uint32_t(offset / OVC_UNIT_BYTES));
+        say_where(leaf);
+        moved.pages += 1;
+        moved.bytes += page.bytes();
+    }
+    for (const uint32_t leaf : evicted)
+        say_where(leaf);
+    pages_moved_ += moved.pages;
+    return moved;
+}
+
+void Tracer::upload(std::span<const RayState> rays) {
+    if (has_portals())
+        upload_world(rays);
+    else if (may_wait())
+        upload_local(rays, resumed_);
+    else
+        upload_local(rays, local_);
+}
+
+/// As they are, for a kernel that changes frames.
+void Tracer::upload_world(std::span<const RayState> rays) {
+    glNamedBufferSubData(ray_buffer_.id(), 0,
+                         GLsizeiptr(whole_blocks(rays.size()) * sizeof(RayState)), rays.data());
+    if (options_.certify)
+        return;
+    times_.resize(rays.size());
+    parallel_for(rays.size(), kGrain, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            local_ray(scene_, rays[i].ray, OVC_NO_TRIANGLE, false, times_[i]);
+    });
+}
+
+/// In the frame of the top-level tree; and how to come back from there.
+template <class Sent>
+void Tracer::upload_local(std::span<const RayState> rays, std::vector<Sent>& sent) {
+    sent.resize(whole_blocks(rays.size()));
+    times_.resize(options_.certify ? 0 : sent.size());
+    parallel_for(sent.size(), kGrain, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            const RayState& state = rays.data()[i]; // up to the next whole block: see collect()
+            LocalTime time;
+            const LocalRay ray = local_ray(scene_, state.ray, state.skip, state.any_hit(), time);
+            if constexpr (std::is_same_v<Sent, LocalRay>)
+                sent[i] = ray;
+            else
+                sent[i] = {ray, state.key(), {}};
+            if (!options_.certify)
+                times_[i] = time;
+        }
+    });
+    if (takes_packets() && coherent(std::span<const Sent>(sent).first(rays.size())))
+        if (auto parted = part_packets(sent, rays.size(), most_slots_)) {
+            packets_ = true;
+            parted_ = std::move(*parted);
+        }
+    if (!parted_.empty())
+        slots_sent_ = parted_.back().slot + 1;
+    glNamedBufferSubData(ray_buffer_.id(), 0, GLsizeiptr(std::span(sent).size_bytes()),
+                         sent.data());
+}
+
+/// Fast precision: hits as Answer has them, where the kernel told t in the frame of the top-level
+/// tree, then u and v.
+void Tracer::come_back(std::span<Answer> answers) const {
+    for (size_t i = 0; i < answers.size(); ++i) {
+        if (answers[i].prim >= OVC_MAX_TRIANGLES)
+            continue;
+        const double local = std::bit_cast<float>(answers[i].words[0]);
+        const auto t = std::bit_cast<uint64_t>(times_[i].enter + local / times_[i].speed);
+        answers[i].words = {uint32_t(t), uint32_t(t >> 32), answers[i].words[1]};
+    }
+}
+
+/// Which kernel the rays that were uploaded take.
+ShaderConfig Tracer::shader_config() const {
+    ShaderConfig config;
+    config.compute = options_.compute;
+    config.any_hit = any_hit_;
+    config.certify = options_.certify;
+    config.portals = has_portals();
+    config.may_wait = may_wait();
+    config.tell_active = active_buffer_.has_value();
+    config.pool_buffers = pool_.layout().count();
+    config.buffer_bits = pool_.layout().buffer_bits();
+    config.loose_pairs = std::ranges::any_of(page_data_, &Page::has_loose_pairs);
+    config.stack_depth = stack_words_;
+    config.stack_registers = software_ && stack_words_ <= kMaxWordsInRegisters;
+    config.branches = !software_;
+    config.deal_groups = software_;
+    config.buffer_images = software_;
+    if (software_)
+        config.most_rounds = kMostRoundsInSoftware;
+    if (packets_)
+        config.packet = kPacketRays;
+    config.turns = takes_turns_;
+    return config;
+}
+
+Result<Done> Tracer::submit(std::span<const RayState> rays) {
+    assert(!rays.empty());
+    rays_sent_ = rays.size();
+    slots_sent_ = rays.size();
+    any_hit_ = std::ranges::all_of(rays, [](const RayState& state) { return state.any_hit(); });
+    packets_ = false;
+    parted_.clear();
+    upload(rays);
+    kernel_seconds_ = 0;
+    return launch();
+}
+
+Result<Done> Tracer::launch() {
+    const ShaderConfig config = shader_config();
+    const Result<GLuint> program = kernels_.program(config);
+    if (!program)
+        return program.error();
+
+    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "pass");
+    glUseProgram(*program);
+    pool_.bind(config.buffer_images);
+    rays_.bind(OVC_BINDING_RAYS, config.buffer_images);
+    if (has_portals())
+        portals_.bind(OVC_BINDING_PORTALS, config.buffer_images);
+    if (config.tell_active)
+        glBindImageTexture(OVC_BINDING_ACTIVE, active_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY,
+                           GL_R32UI);
+    const Stopwatch watch;
+    if (software_)
+        driver_threads_.start();
+    else
+        glBeginQuery(GL_TIME_ELAPSED, time_.id());
+    if (words_)
+        words_->dispatch(*program, slots_sent_, config.packet,
+                         config.turns ? turns(slots_sent_, config.packet) : 1);
+    else
+        pixels_->draw(rays_sent_);
+    if (!software_)
+        glEndQuery(GL_TIME_ELAPSED);
+    glPopDebugGroup();
+    // llvmpipe (22.3) runs passes on other threads and does not wait for them before it writes to
+    // buffers that they read as images.
+    if (software_) {
+        glFinish();
+        kernel_seconds_ += driver_threads_.seconds_each().value_or(watch.seconds());
+    } else {
+        glFlush();
+    }
+    return check_gl("starting a pass");
+}
+
+std::vector<uint32_t> Tracer::take_active() {
+    if (!active_buffer_)
+        return {};
+    std::vector<uint32_t> active(active_buffer_->bytes() / sizeof(uint32_t));
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetNamedBufferSubData(active_buffer_->id(), 0, GLsizeiptr(active_buffer_->bytes()),
+                            active.data());
+    const uint32_t none = 0;
+    glClearNamedBufferData(active_buffer_->id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+    return active;
+}
+
+void Tracer::read(std::span<Answer> answers) {
+    if (words_)
+        words_->read(answers);
+    else
+        pixels_->read(answers);
+    if (!parted_.empty()) {
+        parted_answers_.resize(slots_sent_ - rays_sent_);
+        words_->read(parted_answers_, rays_sent_);
+        for (const auto& [ray, slot] : parted_)
+            answers[ray] = parted_answers_[slot - rays_sent_];
+    }
+    if (!software_)
+        kernel_seconds_ += time_.seconds();
+}
+
+/// Whether many were given up: doubles decide a ray slower than a pass does.
+bool Tracer::lost_many(std::span<const Answer> answers) {
+    const auto lost = std::count_if(answers.begin(), answers.end(),
+                                    [](const Answer& a) { return a.prim == OVC_CAPPED; });
+    return size_t(lost) > answers.size() / kMostLostShare;
+}
+
+/// Has kernels from now on give up fewer: first by a stack for all words, then by all the rounds
+/// there are for each ray. False: they give up as few as can be.
+bool Tracer::go_on_longer() {
+    if (stack_words_ < stack_depth_) {
+        stack_words_ = stack_depth_;
+        return true;
+    }
+    return std::exchange(takes_turns_, false);
+}
+
+Result<Done> Tracer::collect(std::span<Answer> answers) {
+    read(answers);
+    while (lost_many(answers) && go_on_longer()) {
+        // Where all fit they stay where they are. Others may have been pushed out by now.
+        if (!all_fit_)
+            break;
+        if (Result<Done> ok = launch(); !ok)
+            return ok;
+        read(answers);
+    }
+    if (!options_.certify)
+        come_back(answers);
+    return check_gl("reading the answers of a pass");
+}
+
+} // namespace ovc

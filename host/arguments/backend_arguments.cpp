@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// --backend, --gpu-memory, --leaf-triangles, --leaves, --device, --precision, --kernel, --level1,
+// --level1-build.
+#include "host/arguments/backend_arguments.h"
+#include "core/text/suggestion.h"
+#include "host/arguments/arguments.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace ovc {
+
+static constexpr std::string_view kPrecisions[] = {"certified", "fast"};
+static constexpr std::string_view kKernels[] = {"auto", "fragment", "compute"};
+static constexpr std::string_view kLevels1[] = {"kd", "grid", "bvh"};
+static constexpr std::string_view kLevel1Builds[] = {"top-down", "bottom-up"};
+/// In the order of BackendKind.
+static constexpr std::string_view kBackends[] = {
+    "auto",          "two-level", "cpu-kdtree", "embree",   "single-texture",
+    "multi-texture", "gpu-grid",  "gpu-kdtree", "skip-bvh", "thesis-two-level"};
+
+Result<BackendKind> parse_backend(std::string_view name) {
+    const auto known = std::find(std::begin(kBackends), std::end(kBackends), name);
+    if (known != std::end(kBackends))
+        return BackendKind(known - std::begin(kBackends));
+    return Error{fmt::format("no backend is called '{}'; there are {}{}", name,
+                             fmt::join(kBackends, ", "), did_you_mean(name, kBackends))};
+}
+
+void BackendArguments::add_to(CLI::App& app) {
+    const char* group = "Tracing";
+    app.add_option(
+           "--backend", backend,
+           "auto, two-level (the GPU), cpu-kdtree (the CPU, double precision) or embree (the "
+           "CPU, float32, Embree's robust mode); for comparison, the whole scene in GPU memory: "
+           "single-texture, multi-texture, gpu-grid, gpu-kdtree, skip-bvh; or leaf by leaf from "
+           "the "
+           "CPU: thesis-two-level")
+        ->group(group)
+        ->type_name(choice_names(kBackends));
+    app.add_option("--gpu-memory", gpu_memory,
+                   "The most GPU memory to use: 256M, 1.5GiB, or 50% of what the device has free; "
+                   "default: what the "
+                   "driver reports, less headroom")
+        ->group(group)
+        ->type_name("SIZE");
+    CLI::Option* per_leaf = app.add_option("--leaf-triangles", leaf_triangles,
+                                           "The most triangles of a level-1 leaf; default: "
+                                           "a tenth; all where they fit and rays gain")
+                                ->group(group)
+                                ->type_name("N");
+    app.add_option("--leaves", leaves, "Instead: about so many level-1 leaves")
+        ->group(group)
+        ->type_name("N")
+        ->excludes(per_leaf);
+    app.add_option("--device", device,
+                   "A number or a part of a name from `overcast devices`; default: the first GPU, "
+                   "else the software renderer")
+        ->group(group)
+        ->type_name("NAME");
+    app.add_option(
+           "--precision", precision,
+           "certified (the default: the answer of double precision) or fast (float32's own)")
+        ->group(group)
+        ->type_name(choice_names(kPrecisions));
+    app.add_option("--kernel", kernel, "auto, fragment or compute; they answer alike")
+        ->group(group)
+        ->type_name(choice_names(kKernels));
+    app.add_option("--level1", level1, "Level 1 of thesis-two-level: kd (the default), grid or bvh")
+        ->group(group)
+        ->type_name(choice_names(kLevels1));
+    app.add_option("--level1-build", level1_build,
+                   "Its leaves: cut top-down (the default), or merged bottom-up; not for a grid")
+        ->group(group)
+        ->type_name(choice_names(kLevel1Builds));
+}
+
+Result<BackendOptions> BackendArguments::resolve() const {
+    BackendOptions options;
+    const Result<BackendKind> kind = parse_backend(backend);
+    if (!kind)
+        return kind.error();
+    options.kind = *kind;
+    if (options.kind == BackendKind::CpuKdTree || options.kind == BackendKind::Embree)
+        for (const auto& [option, value] : {std::pair{"--gpu-memory", &gpu_memory},
+                                            {"--leaf-triangles", &leaf_triangles},
+                                            {"--leaves", &leaves},
+                                            {"--device", &device},
+                                            {"--precision", &precision},
+                                            {"--kernel", &kernel}})
+            if (!value->empty())
+                return Error{fmt::format("{} means nothing to the backend {}, which uses no GPU",
+                                         option, backend)};
+    if (options.kind != BackendKind::ThesisTwoLevel)
+        for (const auto& [option, value] :
+             {std::pair{"--level1", &level1}, {"--level1-build", &level1_build}})
+            if (!value->empty())
+                return Error{
+                    fmt::format("{} means nothing to the backend {}; thesis-two-level has it",
+                                option, backend)};
+    if (!gpu_memory.empty()) {
+        const Result<MemorySize> size = parse_memory_size(gpu_memory);
+        if (!size)
+            return Error{"--gpu-memory: " + size.error().message};
+        options.gpu_memory = *size;
+    }
+    if (!leaf_triangles.empty()) {
+        const Result<uint64_t> count =
+            parse_count("--leaf-triangles", leaf_triangles, 1, 0xffffffffu);
+        if (!count)
+            return count.error();
+        options.leaf_triangles = *count;
+    }
+    if (!leaves.empty()) {
+        const Result<uint64_t> count = parse_count("--leaves", leaves, 1, 1000000);
+        if (!count)
+            return count.error();
+        options.leaves = uint32_t(*count);
+    }
+    options.device = device;
+    const Result<size_t> precision_choice = parse_choice("--precision", precision, kPrecisions);
+    if (!precision_choice)
+        return precision_choice.error();
+    options.precision = ovc_precision(*precision_choice);
+    const Result<size_t> kernel_choice = parse_choice("--kernel", kernel, kKernels);
+    if (!kernel_choice)
+        return kernel_choice.error();
+    options.kernel = ovc_kernel(*kernel_choice);
+    const Result<size_t> level1_choice = parse_choice("--level1", level1, kLevels1);
+    if (!level1_choice)
+        return level1_choice.error();
+    options.level1 = ovc_level1(*level1_choice);
+    const Result<size_t> build_choice = parse_choice("--level1-build", level1_build, kLevel1Builds);
+    if (!build_choice)
+        return build_choice.error();
+    options.level1_build = ovc_level1_build(*build_choice);
+    return options;
+}
+
+} // namespace ovc

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options that choose and size a backend, the same for every subcommand that traces.
+#pragma once
+
+#include "core/result.h"
+#include "host/backend/backend.h"
+
+#include <string>
+#include <string_view>
+
+namespace CLI {
+class App;
+}
+
+namespace ovc {
+
+/// Error: which backends there are, and which one was probably meant.
+Result<BackendKind> parse_backend(std::string_view name);
+
+/// The words as given; empty: not given.
+struct BackendArguments {
+    std::string backend = "auto";
+    std::string gpu_memory;
+    std::string leaf_triangles;
+    std::string leaves;
+    std::string device;
+    std::string precision;
+    std::string kernel;
+    std::string level1;
+    std::string level1_build;
+
+    void add_to(CLI::App& app);
+    Result<BackendOptions> resolve() const;
+};
+
+} // namespace ovc

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/arguments/pov_ini.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+namespace ovc {
+
+static std::string lower(std::string_view text) {
+    std::string small(text);
+    std::transform(small.begin(), small.end(), small.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return small;
+}
+
+static std::string_view trimmed(std::string_view text) {
+    const size_t first = text.find_first_not_of(" \t\r");
+    if (first == text.npos)
+        return {};
+    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+static std::string unquoted(std::string_view text) {
+    if (text.size() >= 2 && (text[0] == '"' || text[0] == '\'') && text.back() == text[0])
+        text = text.substr(1, text.size() - 2);
+    return std::string(text);
+}
+
+/// Up to a semicolon that is not quoted.
+static std::string_view without_comment(std::string_view line) {
+    char quote = 0;
+    for (size_t i = 0; i < line.size(); ++i) {
+        if (!quote && line[i] == ';')
+            return line.substr(0, i);
+        if (line[i] == '"' || line[i] == '\'')
+            quote = !quote ? line[i] : quote == line[i] ? '\0' : quote;
+    }
+    return line;
+}
+
+bool names_ini(std::string_view word) {
+    const std::string small = lower(word.substr(0, word.find('[')));
+    return small.size() > 4 && small.ends_with(".ini") &&
+           (word.find('[') == word.npos || word.back() == ']');
+}
+
+std::optional<IniItem> as_setting(std::string_view word) {
+    const size_t equals = word.find('=');
+    if (equals == word.npos)
+        return std::nullopt;
+    const std::string_view key = trimmed(word.substr(0, equals));
+    const bool is_name = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
+        return std::isalnum(c) || c == '_';
+    });
+    if (!is_name)
+        return std::nullopt;
+    return IniItem{lower(key), unquoted(trimmed(word.substr(equals + 1))), {}};
+}
+
+/// Words between blanks; quotes keep them together.
+static std::vector<std::string> words_of(std::string_view line) {
+    std::vector<std::string> words;
+    bool in_word = false;
+    char quote = 0;
+    for (const char c : line) {
+        if (quote == 0 && (c == ' ' || c == '\t')) {
+            in_word = false;
+            continue;
+        }
+        if (!in_word)
+            words.emplace_back();
+        in_word = true;
+        if (quote == 0 && (c == '"' || c == '\''))
+            quote = c;
+        else if (c == quote)
+            quote = 0;
+        else
+            words.back() += c;
+    }
+    return words;
+}
+
+Result<std::vector<IniItem>> read_ini(const std::string& word) {
+    const size_t bracket = std::min(word.find('['), word.size());
+    const std::string path = word.substr(0, bracket);
+    const std::string wanted =
+        bracket < word.size() ? lower(word.substr(bracket + 1, word.size() - bracket - 2)) : "";
+    std::ifstream file(path);
+    if (!file)
+        return Error{fmt::format("{}: cannot be opened", path)};
+    std::vector<IniItem> items;
+    bool counts = true;
+    std::string line;
+    for (int number = 1; std::getline(file, line); ++number) {
+        const std::string_view text = trimmed(without_comment(line));
+        if (text.starts_with('[') && text.ends_with(']')) {
+            counts = lower(trimmed(text.substr(1, text.size() - 2))) == wanted;
+            continue;
+        }
+        if (!counts || text.empty())
+            continue;
+        const std::string place = fmt::format("{}:{}: ", path, number);
+        if (const std::optional<IniItem> setting = as_setting(text))
+            items.push_back({setting->key, setting->value, place});
+        else
+            for (const std::string& each : words_of(text))
+                items.push_back({"", each, place});
+    }
+    return items;
+}
+
+} // namespace ovc

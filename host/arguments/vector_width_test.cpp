@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/arguments/vector_width.h"
+
+#include <gmock/gmock.h>
+
+namespace ovc {
+namespace {
+
+using Variables = std::map<std::string, std::string>;
+
+Variables wide(const Variables& set, bool has_avx512 = true, bool fragment_kernels = false) {
+    return wide_vectors(
+        [&](const char* name) {
+            const auto found = set.find(name);
+            return found == set.end() ? nullptr : found->second.c_str();
+        },
+        has_avx512, fragment_kernels);
+}
+
+TEST(VectorWidth, IsWideWhereTheCpuIs) {
+    EXPECT_EQ(wide({{"HOME", "/home/me"}}),
+              (Variables{{"LP_NATIVE_VECTOR_WIDTH", "512"},
+                         {"MESA_SHADER_CACHE_DIR", "/home/me/.cache/overcast/mesa-512"}}));
+    EXPECT_EQ(wide({{"HOME", "/home/me"}}, /* has_avx512= */ false), Variables{});
+}
+
+TEST(VectorWidth, IsNotForFragmentKernels) {
+    EXPECT_EQ(wide({{"HOME", "/home/me"}}, /* has_avx512= */ true, /* fragment_kernels= */ true),
+              Variables{});
+}
+
+TEST(VectorWidth, StaysAsTheUserSays) {
+    EXPECT_EQ(wide({{"HOME", "/home/me"}, {"LP_NATIVE_VECTOR_WIDTH", "256"}}), Variables{});
+}
+
+/// Mesa would take for one width what it compiled for another.
+TEST(VectorWidth, HasAFolderOfItsOwnForWhatMesaKeeps) {
+    const auto folder = [](const Variables& set) { return wide(set)["MESA_SHADER_CACHE_DIR"]; };
+    EXPECT_EQ(folder({{"HOME", "/home/me"}, {"MESA_SHADER_CACHE_DIR", "/mesa"}}),
+              "/mesa/overcast-512");
+    EXPECT_EQ(folder({{"HOME", "/home/me"}, {"XDG_CACHE_HOME", "/caches"}}),
+              "/caches/overcast/mesa-512");
+    EXPECT_EQ(
+        wide({{"XDG_CACHE_HOME", "relative"}}),
+        (Variables{{"LP_NATIVE_VECTOR_WIDTH", "512"}, {"MESA_SHADER_CACHE_DISABLE", "true"}}));
+}
+
+} // namespace
+} // namespace ovc

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CPU KD-tree as a backend: the baseline, and the reference that certified hits are equal to.
+#include "core/system/stopwatch.h"
+#include "host/backend/backend.h"
+#include "kdtree/build.h"
+#include "kdtree/traverse.h"
+
+#include <cassert>
+
+namespace ovc {
+
+class CpuBackend final : public Backend {
+public:
+    CpuBackend(const Soup& soup, std::shared_ptr<const KdTree> tree, double build_seconds)
+        : soup_(soup), tree_(std::move(tree)) {
+        statistics_.struct_size = sizeof(statistics_);
+        statistics_.triangles = soup.triangle_count();
+        statistics_.seconds_level1 = build_seconds;
+    }
+
+    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                           std::span<Hit> hits) override {
+        assert(hits.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
+        const Stopwatch watch;
+        ovc::intersect(*tree_, soup_, rays, skip, hits);
+        statistics_.nearest_rays += rays.size();
+        statistics_.seconds_trace += watch.seconds();
+        return Done{};
+    }
+
+    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                          std::span<uint8_t> occluded) override {
+        assert(occluded.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
+        const Stopwatch watch;
+        ovc::occluded(*tree_, soup_, rays, skip, occluded);
+        statistics_.occlusion_rays += rays.size();
+        statistics_.seconds_trace += watch.seconds();
+        return Done{};
+    }
+
+    ovc_statistics statistics() const override { return statistics_; }
+    std::string renderer() const override { return "CPU KD-tree in double precision"; }
+
+private:
+    const Soup& soup_;
+    std::shared_ptr<const KdTree> tree_;
+    ovc_statistics statistics_{};
+};
+
+std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, std::shared_ptr<const KdTree> tree,
+                                          double build_seconds) {
+    return std::make_unique<CpuBackend>(soup, std::move(tree), build_seconds);
+}
+
+std::unique_ptr<Backend> make_cpu_backend(const Soup& soup) {
+    const Stopwatch watch;
+    auto tree = std::make_shared<const KdTree>(build_kd_tree(soup));
+    return make_cpu_backend(soup, std::move(tree), watch.seconds());
+}
+
+} // namespace ovc

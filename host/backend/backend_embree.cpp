@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+// Embree 3 as a backend: a peer to compare with. The only file of the host that sees Embree.
+#include "host/backend/backend.h"
+
+#include "core/system/parallel.h"
+#include "core/system/stopwatch.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cassert>
+
+namespace ovc {
+
+namespace {
+
+/// What the filter needs to know of the rays of a call.
+struct Context {
+    RTCIntersectContext base; // first: Embree hands its address to the filter
+    const TriangleId* skip;   // by the rays' ids; null: none skips
+
+    explicit Context(const TriangleId* skipped);
+};
+
+void refuse_skipped(const RTCFilterFunctionNArguments* a) {
+    const TriangleId* skips = reinterpret_cast<const Context*>(a->context)->skip;
+    for (unsigned i = 0; i < a->N; ++i) {
+        const TriangleId skip = skips[RTCRayN_id(a->ray, a->N, i)];
+        if (a->valid[i] && RTCHitN_geomID(a->hit, a->N, i) == skip.mesh &&
+            RTCHitN_primID(a->hit, a->N, i) == skip.prim)
+            a->valid[i] = 0;
+    }
+}
+
+Context::Context(const TriangleId* skipped) : skip(skipped) {
+    rtcInitIntersectContext(&base);
+    if (skip)
+        base.filter = refuse_skipped;
+}
+
+/// False for what Embree asserts that nobody asks: NaN, an empty range, numbers beyond its
+/// FLT_LARGE.
+bool can_ask(const Ray& ray) {
+    constexpr double large = 1.844e18;
+    const auto within = [](const dvec3& v) {
+        return max_component(glm::abs(v)) <= large && is_finite(v);
+    };
+    return ray.valid() && within(ray.org) && within(ray.dir);
+}
+
+/// How Embree is asked for N rays in one call.
+template <unsigned N>
+struct Calls;
+
+template <>
+struct Calls<1> {
+    using Query = RTCRayHit;
+    static constexpr RTCIntersectContextFlags kFlags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    static void nearest(RTCScene scene, Context& context, const int* valid, Query& query) {
+        if (*valid)
+            rtcIntersect1(scene, &context.base, &query);
+    }
+    static void any(RTCScene scene, Context& context, const int* valid, Query& query) {
+        if (*valid)
+            rtcOccluded1(scene, &context.base, &query.ray);
+    }
+};
+
+template <>
+struct Calls<16> {
+    using Query = RTCRayHit16;
+    static constexpr RTCIntersectContextFlags kFlags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    static void nearest(RTCScene scene, Context& context, const int* valid, Query& query) {
+        rtcIntersect16(valid, scene, &context.base, &query);
+    }
+    static void any(RTCScene scene, Context& context, const int* valid, Query& query) {
+        rtcOccluded16(valid, scene, &context.base, &query.ray);
+    }
+};
+
+/// Rays of one task, rounded, as Embree takes them N at a time.
+template <unsigned N>
+class Block {
+public:
+    static constexpr size_t kRays = 256;
+
+    /// skips: null, or one a ray.
+    void load(std::span<const Ray> rays, const TriangleId* skips) {
+        assert(rays.size() <= kRays);
+        count_ = rays.size();
+        skips_ = skips;
+        valid_.fill(0);
+        for (size_t i = 0; i < count_; ++i)
+            put(i, rays[i]);
+    }
+
+    void find_nearest(RTCScene scene) { call(scene, Calls<N>::nearest); }
+    void find_any(RTCScene scene) { call(scene, Calls<N>::any); }
+
+    Hit nearest(size_t i) {
+        RTCHitN* hit = RTCRayHitN_HitN(at(i), N);
+        const unsigned lane = i % N;
+        if (!valid_[i] || RTCHitN_geomID(hit, N, lane) == RTC_INVALID_GEOMETRY_ID)
+            return {};
+        return {RTCRayN_tfar(ray(i), N, lane),
+                RTCHitN_u(hit, N, lane),
+                RTCHitN_v(hit, N, lane),
+                {RTCHitN_geomID(hit, N, lane), RTCHitN_primID(hit, N, lane)}};
+    }
+    bool any(size_t i) { return valid_[i] && RTCRayN_tfar(ray(i), N, i % N) < 0; }
+
+private:
+    RTCRayHitN* at(size_t i) { return reinterpret_cast<RTCRayHitN*>(&queries_[i / N]); }
+    RTCRayN* ray(size_t i) { return RTCRayHitN_RayN(at(i), N); }
+
+    void put(size_t i, const Ray& from) {
+        valid_[i] = can_ask(from) ? -1 : 0;
+        RTCRayN* to = ray(i);
+        const unsigned lane = i % N;
+        RTCRayN_org_x(to, N, lane) = float(from.org.x);
+        RTCRayN_org_y(to, N, lane) = float(from.org.y);
+        RTCRayN_org_z(to, N, lane) = float(from.org.z);
+        RTCRayN_tnear(to, N, lane) = float(from.t_min);
+        RTCRayN_dir_x(to, N, lane) = float(from.dir.x);
+        RTCRayN_dir_y(to, N, lane) = float(from.dir.y);
+        RTCRayN_dir_z(to, N, lane) = float(from.dir.z);
+        RTCRayN_tfar(to, N, lane) = float(from.t_max);
+        RTCRayN_time(to, N, lane) = 0;
+        RTCRayN_mask(to, N, lane) = ~0u;
+        RTCRayN_id(to, N, lane) = lane;
+        RTCRayN_flags(to, N, lane) = 0;
+        RTCHitN_geomID(RTCRayHitN_HitN(at(i), N), N, lane) = RTC_INVALID_GEOMETRY_ID;
+    }
+
+    template <class Call>
+    void call(RTCScene scene, const Call& ask) {
+        for (size_t i = 0; i < count_; i += N) {
+            Context context(skips_ ? skips_ + i : nullptr);
+            context.base.flags = Calls<N>::kFlags;
+            ask(scene, context, &valid_[i], queries_[i / N]);
+        }
+    }
+
+    std::array<typename Calls<N>::Query, kRays / N> queries_;
+    alignas(64) std::array<int, kRays> valid_;
+    const TriangleId* skips_ = nullptr;
+    size_t count_ = 0;
+};
+
+const char* words_of(EmbreeMode mode) {
+    switch (mode) {
+    case EmbreeMode::Medium:
+        return ", medium quality";
+    case EmbreeMode::High:
+        return ", high quality";
+    case EmbreeMode::Robust:
+        return " robust";
+    case EmbreeMode::Packets:
+        break;
+    }
+    return ", high quality, 16 rays a call";
+}
+
+class EmbreeBackend final : public Backend {
+public:
+    EmbreeBackend(const Soup& soup, EmbreeMode mode)
+        : mode_(mode), device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+        const Stopwatch watch;
+        rtcSetSceneBuildQuality(scene_, mode == EmbreeMode::Medium ? RTC_BUILD_QUALITY_MEDIUM
+                                                                   : RTC_BUILD_QUALITY_HIGH);
+        rtcSetSceneFlags(scene_, RTCSceneFlags((mode == EmbreeMode::Robust ? RTC_SCENE_FLAG_ROBUST
+                                                                           : RTC_SCENE_FLAG_NONE) |
+                                               RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+        for (const Chunk& chunk : soup.chunks)
+            add(chunk);
+        rtcCommitScene(scene_);
+        statistics_.struct_size = sizeof(statistics_);
+        statistics_.triangles = soup.triangle_count();
+        statistics_.seconds_level2 = watch.seconds();
+    }
+    ~EmbreeBackend() override {
+        rtcReleaseScene(scene_);
+        rtcReleaseDevice(device_);
+    }
+    EmbreeBackend(const EmbreeBackend&) = delete;
+    EmbreeBackend& operator=(const EmbreeBackend&) = delete;
+
+    /// What went wrong while it was built.
+    Result<Done> built() const {
+        const RTCError code = rtcGetDeviceError(device_);
+        if (code == RTC_ERROR_NONE)
+            return Done{};
+        return Error{fmt::format("Embree cannot build the scene: its error {}{}", int(code),
+                                 code == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : "")};
+    }
+
+    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                           std::span<Hit> hits) override {
+        assert(hits.size() == rays.size());
+        const auto find = [&](auto& block) { block.find_nearest(scene_); };
+        for_each(rays, skip, find,
+                 [&](auto& block, size_t i, size_t at) { hits[i] = block.nearest(at); });
+        statistics_.nearest_rays += rays.size();
+        return Done{};
+    }
+
+    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                          std::span<uint8_t> occluded) override {
+        assert(occluded.size() == rays.size());
+        const auto find = [&](auto& block) { block.find_any(scene_); };
+        for_each(rays, skip, find,
+                 [&](auto& block, size_t i, size_t at) { occluded[i] = block.any(at); });
+        statistics_.occlusion_rays += rays.size();
+        return Done{};
+    }
+
+    ovc_statistics statistics() const override { return statistics_; }
+    std::string renderer() const override {
+        return fmt::format("Embree {}{} on the CPU, float32", RTC_VERSION_STRING, words_of(mode_));
+    }
+
+private:
+    void add(const Chunk& chunk) {
+        RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+        const size_t corners = 3 * size_t(chunk.size());
+        auto* positions = static_cast<vec3*>(rtcSetNewGeometryBuffer(
+            mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3), corners));
+        auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+            mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), corners / 3));
+        for (size_t i = 0; positions && indices && i < corners; ++i) {
+            positions[i] = vec3(chunk.triangle(uint32_t(i / 3))[i % 3]);
+            indices[i] = uint32_t(i);
+        }
+        rtcCommitGeometry(mesh);
+        rtcAttachGeometry(scene_, mesh);
+        rtcReleaseGeometry(mesh);
+    }
+
+    /// find(block) asks Embree; tell(block, i, at) takes the answer of ray i, which is at `at`.
+    template <class Find, class Tell>
+    void for_each(std::span<const Ray> rays, std::span<const TriangleId> skip, const Find& find,
+                  const Tell& tell) {
+        assert(skip.empty() || skip.size() == rays.size());
+        const Stopwatch watch;
+        if (mode_ == EmbreeMode::Packets)
+            for_each_block<16>(rays, skip, find, tell);
+        else
+            for_each_block<1>(rays, skip, find, tell);
+        statistics_.seconds_trace += watch.seconds();
+    }
+
+    template <unsigned N, class Find, class Tell>
+    void for_each_block(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                        const Find& find, const Tell& tell) {
+        constexpr size_t most = Block<N>::kRays;
+        const Stopwatch call;
+        std::atomic<double> inside = 0, all = 0; // seconds of all threads together
+        parallel_for((rays.size() + most - 1) / most, 1, [&](size_t first, size_t last) {
+            const Stopwatch task;
+            Block<N> block;
+            for (size_t b = first; b < last; ++b) {
+                const size_t from = b * most;
+                const size_t count = std::min(most, rays.size() - from);
+                block.load(rays.subspan(from, count), skip.empty() ? nullptr : &skip[from]);
+                const Stopwatch watch;
+                find(block);
+                inside += watch.seconds();
+                for (size_t i = 0; i < count; ++i)
+                    tell(block, from + i, i);
+            }
+            all += task.seconds();
+        });
+        // Its share of the call, however many threads the machine had to give.
+        if (all > 0)
+            statistics_.seconds_kernel += call.seconds() * inside / all;
+    }
+
+    EmbreeMode mode_;
+    RTCDevice device_;
+    RTCScene scene_;
+    ovc_statistics statistics_{};
+};
+
+} // namespace
+
+Result<std::unique_ptr<Backend>> make_embree_backend(const Soup& soup, EmbreeMode mode) {
+    for (const Chunk& chunk : soup.chunks)
+        if (chunk.size() > 0xffffffffu / 3)
+            return Error{"Embree takes meshes of at most 1,431,655,765 triangles"};
+    auto backend = std::make_unique<EmbreeBackend>(soup, mode);
+    if (const Result<Done> built = backend->built(); !built)
+        return built.error();
+    return Result<std::unique_ptr<Backend>>(std::move(backend));
+}
+
+} // namespace ovc

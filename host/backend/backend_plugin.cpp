@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+// The backends behind the C ABI: a soup and its rays, handed through the C ABI without a copy.
+#include "host/backend/backend.h"
+#include "host/backend/plugin_loader.h"
+#include "host/terminal/build_watch.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cassert>
+#include <optional>
+
+namespace ovc {
+
+// The records are the same on both sides, so arrays are handed over as they are.
+static_assert(sizeof(Ray) == sizeof(ovc_ray) && offsetof(Ray, org) == offsetof(ovc_ray, org) &&
+              offsetof(Ray, t_min) == offsetof(ovc_ray, t_min) &&
+              offsetof(Ray, dir) == offsetof(ovc_ray, dir) &&
+              offsetof(Ray, t_max) == offsetof(ovc_ray, t_max));
+static_assert(sizeof(Hit) == sizeof(ovc_hit) && offsetof(Hit, t) == offsetof(ovc_hit, t) &&
+              offsetof(Hit, u) == offsetof(ovc_hit, u) &&
+              offsetof(Hit, v) == offsetof(ovc_hit, v) &&
+              offsetof(Hit, id) == offsetof(ovc_hit, mesh));
+static_assert(sizeof(TriangleId) == sizeof(ovc_triangle) &&
+              offsetof(TriangleId, prim) == offsetof(ovc_triangle, prim) && kNone == OVC_NONE);
+static_assert(sizeof(vec3) == 3 * sizeof(float));
+
+static const ovc_ray* as_abi(std::span<const Ray> rays) {
+    return reinterpret_cast<const ovc_ray*>(rays.data());
+}
+
+static ovc_query query_of(std::span<const TriangleId> skip) {
+    ovc_query query{};
+    query.struct_size = sizeof(query);
+    query.skip = skip.empty() ? nullptr : reinterpret_cast<const ovc_triangle*>(skip.data());
+    return query;
+}
+
+/// A StreamHost as the C ABI calls it, and the stream that it pushes to.
+class CalledBack final : public RayStream {
+public:
+    CalledBack(const ovc_api& api, StreamHost& host) : api_(api), host_(host) {}
+
+    ovc_stream_host as_abi() { return {sizeof(ovc_stream_host), this, more, answered}; }
+
+    void push(const StreamRays& rays) override {
+        const ovc_query query = query_of(rays.skip);
+        refused_ = refused_ || api_.push(stream_, ovc::as_abi(rays.rays), rays.tokens.data(),
+                                         rays.rays.size(), rays.any_hit, &query) != OVC_OK;
+    }
+
+private:
+    static int more(void* user, ovc_stream stream, size_t wanted) {
+        CalledBack& self = *static_cast<CalledBack*>(user);
+        self.stream_ = stream;
+        return self.go_on(self.host_.more(self, wanted));
+    }
+    static int answered(void* user, ovc_stream stream, const ovc_stream_answers* answers) {
+        CalledBack& self = *static_cast<CalledBack*>(user);
+        self.stream_ = stream;
+        const std::span<const uint64_t> tokens(answers->tokens, answers->count);
+        if (answers->hits)
+            return self.go_on(self.host_.hits(
+                self, tokens, {reinterpret_cast<const Hit*>(answers->hits), answers->count}));
+        return self.go_on(self.host_.occlusions(self, tokens, {answers->occluded, answers->count}));
+    }
+    int go_on(bool wanted) const { return wanted && !refused_ ? 0 : 1; }
+
+    const ovc_api& api_;
+    StreamHost& host_;
+    ovc_stream stream_ = nullptr;
+    bool refused_ = false; // a push was
+};
+
+static ovc_mesh mesh_of(const Chunk& chunk) {
+    ovc_mesh mesh{};
+    mesh.struct_size = sizeof(mesh);
+    if (chunk.double_corners().empty())
+        mesh.positions = reinterpret_cast<const float*>(chunk.corners().data());
+    else
+        mesh.positions_double = reinterpret_cast<const double*>(chunk.double_corners().data());
+    mesh.vertex_count = 3 * uint64_t(chunk.size());
+    for (int axis = 0; axis < 3; ++axis)
+        mesh.origin[axis] = chunk.origin()[axis];
+    if (chunk.placement())
+        mesh.transform = chunk.placement()->rows[0].data();
+    mesh.flags = OVC_MESH_SHARED; // instances show the same corners, and share pages
+    return mesh;
+}
+
+class PluginBackend final : public Backend {
+public:
+    PluginBackend(PluginDevice device, std::string renderer, PluginScene scene, bool saves)
+        : device_(std::move(device)),
+          renderer_(std::move(renderer)),
+          scene_(std::move(scene)),
+          saves_(saves) {}
+
+    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                           std::span<Hit> hits) override {
+        return intersect_noted(rays, skip, hits, {});
+    }
+
+    Result<Done> intersect_noted(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                                 std::span<Hit> hits, const RayNotes& notes) override {
+        assert(hits.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
+        ovc_query query = query_of(skip);
+        query.leaf = notes.leaf.empty() ? nullptr : notes.leaf.data();
+        query.passes = notes.passes.empty() ? nullptr : notes.passes.data();
+        query.flagged = notes.flagged.empty() ? nullptr : notes.flagged.data();
+        return device_.checked(api().intersect(scene_.get(), as_abi(rays), rays.size(),
+                                               reinterpret_cast<ovc_hit*>(hits.data()), &query));
+    }
+
+    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+                          std::span<uint8_t> occluded) override {
+        assert(occluded.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
+        const ovc_query query = query_of(skip);
+        return device_.checked(
+            api().occluded(scene_.get(), as_abi(rays), rays.size(), occluded.data(), &query));
+    }
+
+    Result<Done> stream(StreamHost& host) override {
+        CalledBack called(api(), host);
+        const ovc_stream_host callbacks = called.as_abi();
+        return device_.checked(api().stream(scene_.get(), &callbacks));
+    }
+
+    std::optional<ovc_active> take_active() override {
+        ovc_active active{};
+        active.struct_size = sizeof(active);
+        return api().active(scene_.get(), &active) == OVC_OK ? std::optional(active) : std::nullopt;
+    }
+
+    bool saves() const override { return saves_; }
+
+    Result<Done> save(const ByteSink& sink) const override {
+        const auto write = [](void* user, const void* bytes, size_t size) {
+            return (*static_cast<const ByteSink*>(user))(
+                       {static_cast<const std::byte*>(bytes), size})
+                       ? 0
+                       : 1;
+        };
+        return device_.checked(api().save(scene_.get(), write, const_cast<ByteSink*>(&sink)));
+    }
+
+    ovc_statistics statistics() const override {
+        ovc_statistics statistics{};
+        statistics.struct_size = sizeof(statistics);
+        api().statistics(scene_.get(), &statistics);
+        return statistics;
+    }
+
+    std::string renderer() const override { return renderer_; }
+
+private:
+    const ovc_api& api() const { return *device_.api(); }
+
+    PluginDevice device_;
+    std::string renderer_;
+    PluginScene scene_; // after device_: destroyed before it
+    const bool saves_;
+};
+
+static Result<Done> add_meshes(const PluginDevice& device, ovc_scene scene, const Soup& soup) {
+    for (const Chunk& chunk : soup.chunks) {
+        const ovc_mesh mesh = mesh_of(chunk);
+        const Result<Done> added = device.checked(device.api()->add_mesh(scene, &mesh, nullptr));
+        if (!added)
+            return added;
+    }
+    return Done{};
+}
+
+/// Memory that is promised and not there is a warning: a scene may take less than its budget.
+static void check_budget(uint64_t budget_bytes, const ovc_device_info& info, const LogSink& log) {
+    // A software renderer reports a number of its own; what it takes is the machine's.
+    const uint64_t there = info.is_software
+                               ? uint64_t(sysconf(_SC_PHYS_PAGES)) * uint64_t(sysconf(_SC_PAGESIZE))
+                               : info.memory_bytes;
+    if (budget_bytes > there)
+        say(log, LogLevel::Warning,
+            fmt::format("--gpu-memory: {} is more than the {} that {} has{}",
+                        human_bytes(budget_bytes), human_bytes(there), info.renderer,
+                        info.is_software ? "" : " free, as far as its driver tells"));
+}
+
+static Result<ovc_scene_config> config_of(const BackendOptions& options,
+                                          const ovc_device_info& info, const LogSink& log) {
+    ovc_scene_config config{};
+    config.struct_size = sizeof(config);
+    config.gpu_memory_bytes = options.gpu_memory.of(info.memory_bytes);
+    if (options.gpu_memory.share > 0 && config.gpu_memory_bytes == 0)
+        return Error{fmt::format("--gpu-memory: {}% of the device's {} is less than one byte",
+                                 100 * options.gpu_memory.share, human_bytes(info.memory_bytes))};
+    check_budget(config.gpu_memory_bytes, info, log);
+    config.leaf_triangles = options.leaf_triangles;
+    config.leaves = options.leaves;
+    config.precision = options.precision;
+    config.kernel = options.kernel;
+    config.structure = structure_of(options.kind);
+    config.level1 = options.level1;
+    config.level1_build = options.level1_build;
+    config.tell_active = options.tell_active && config.structure == OVC_STRUCTURE_TWO_LEVEL;
+    if (config.structure == OVC_STRUCTURE_TWO_LEVEL) {
+        config.saved = options.saved.data();
+        config.saved_bytes = options.saved.size();
+    }
+    return config;
+}
+
+Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
+                                                     const BackendOptions& options,
+                                                     const LogSink& log) {
+    const Result<ovc_device_info> info = device.describe();
+    if (!info)
+        return info.error();
+    Result<ovc_scene_config> config = config_of(options, *info, log);
+    if (!config)
+        return config.error();
+    std::optional<BuildWatch> watch;
+    if (options.watching != BuildWatching::None)
+        watch.emplace(options.watching == BuildWatching::Shown).watch(*config);
+    Result<PluginScene> scene = device.create_scene(*config);
+    if (!scene)
+        return scene.error();
+    if (const Result<Done> added = add_meshes(device, scene->get(), soup); !added)
+        return added.error();
+    if (const Result<Done> done = device.checked(device.api()->commit(scene->get())); !done)
+        return done.error();
+    return std::unique_ptr<Backend>(
+        std::make_unique<PluginBackend>(std::move(device), info->renderer, std::move(*scene),
+                                        structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL));
+}
+
+Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
+                                  const BackendOptions& options, const LogSink& log) {
+    const Result<ovc_device_info> info = device.describe();
+    if (!info)
+        return info.error();
+    const Result<ovc_scene_config> config = config_of(options, *info, log);
+    if (!config)
+        return config.error();
+    const Result<PluginScene> scene = device.create_scene(*config);
+    if (!scene)
+        return scene.error();
+    if (const Result<Done> added = add_meshes(device, scene->get(), soup); !added)
+        return added.error();
+    ovc_plan plan{};
+    plan.struct_size = sizeof(plan);
+    if (const Result<Done> done = device.checked(device.api()->plan(scene->get(), &plan)); !done)
+        return done.error();
+    return plan;
+}
+
+} // namespace ovc

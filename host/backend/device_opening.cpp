@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// A thread that opens the device, and its messages, held until somebody wants the device: an error
+// of reading the scene is then the only thing said, as if the device had been opened afterwards.
+#include "host/backend/device_opening.h"
+
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace ovc {
+
+struct DeviceOpening::HeldLog {
+    std::mutex mutex;
+    bool released = false;
+    LogSink log;
+    std::vector<std::pair<LogLevel, std::string>> messages;
+
+    void hold(LogLevel level, const std::string& message) {
+        const std::lock_guard lock(mutex);
+        if (released)
+            say(log, level, message);
+        else
+            messages.emplace_back(level, message);
+    }
+
+    void release(const LogSink& to) {
+        const std::lock_guard lock(mutex);
+        released = true;
+        log = to;
+        for (const auto& [level, message] : messages)
+            say(log, level, message);
+        messages.clear();
+    }
+};
+
+DeviceOpening::DeviceOpening(const BackendOptions& options) : held_(std::make_shared<HeldLog>()) {
+    if (options.kind == BackendKind::CpuKdTree || options.kind == BackendKind::Embree)
+        return;
+    const auto open = [held = held_, name = options.device,
+                       structure = structure_of(options.kind)]() -> Opened {
+        const Result<const ovc_api*> api =
+            load_plugin(structure == OVC_STRUCTURE_TWO_LEVEL ? kProduct : kThesis);
+        if (!api)
+            return {api.error(), OVC_OK};
+        const LogSink log = [held](LogLevel level, const std::string& message) {
+            held->hold(level, message);
+        };
+        ovc_result code = OVC_OK;
+        Result<PluginDevice> device = PluginDevice::open(*api, name, log, &code);
+        return {std::move(device), code};
+    };
+    opened_ = std::async(std::launch::async, open);
+}
+
+Result<PluginDevice> DeviceOpening::finish(const LogSink& log, ovc_result& code) {
+    Opened opened = opened_.get();
+    held_->release(log);
+    code = opened.code;
+    return std::move(opened.device);
+}
+
+} // namespace ovc

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plugin from the host's side: finding its library, and owners for its handles. They add
+// nothing to the C calls.
+#pragma once
+
+#include "core/result.h"
+#include "core/system/log.h"
+#include "plugin/overcast.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace ovc {
+
+/// The libraries that speak the ABI: two-level's, and that of the systems it is compared with.
+inline constexpr const char* kProduct = "libovercast.so.1"; // by its soname
+static_assert(OVC_ABI_VERSION == 1);
+inline constexpr const char* kThesis = "libovercast-thesis.so";
+
+/// Where a library is: beside this program, or where it is installed as seen from there, or its
+/// name alone for the system's loader; the product in the file that the environment variable
+/// OVC_PLUGIN names, if there is one.
+std::string find_plugin(const std::string& library = kProduct);
+
+/// Loads the library that find_plugin() finds. It stays loaded until the program ends.
+Result<const ovc_api*> load_plugin(const std::string& library = kProduct);
+
+struct DestroyDevice {
+    const ovc_api* api = nullptr;
+    void operator()(ovc_device device) const { api->destroy_device(device); }
+};
+
+struct DestroyScene {
+    const ovc_api* api = nullptr;
+    void operator()(ovc_scene scene) const { api->destroy_scene(scene); }
+};
+
+using PluginScene = std::unique_ptr<ovc_scene_t, DestroyScene>;
+
+/// An open device. What went wrong, and why the library's last error says so, is one Error.
+class PluginDevice {
+public:
+    /// name: a number as listed or a part of the renderer's name; empty: the plugin chooses. log
+    /// may be called from the device's thread. code: optional, receives the library's result.
+    static Result<PluginDevice> open(const ovc_api* api, const std::string& name, LogSink log,
+                                     ovc_result* code = nullptr);
+
+    const ovc_api* api() const { return api_; }
+    Result<ovc_device_info> describe() const;
+    Result<PluginScene> create_scene(const ovc_scene_config& config) const;
+
+    /// Nothing when `result` is OVC_OK, else the library's sentence.
+    Result<Done> checked(ovc_result result) const;
+
+private:
+    PluginDevice(const ovc_api* api, std::unique_ptr<LogSink> log)
+        : api_(api), log_(std::move(log)) {}
+
+    const ovc_api* api_;
+    std::unique_ptr<LogSink> log_; // the library holds its address
+    std::unique_ptr<ovc_device_t, DestroyDevice> device_;
+};
+
+/// All devices there are.
+Result<std::vector<ovc_device_info>> list_devices(const ovc_api* api);
+
+} // namespace ovc

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lines that pass, fail and are skipped, and that what is measured is divided the right way round.
+#include "host/bench/bars/bars.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace ovc {
+namespace {
+
+Contender contender(std::string_view name, ContenderKind kind) {
+    return {.name = name, .kind = kind};
+}
+
+/// Everyone at everything: certified 1 s a call and half of that in the kernel, the others as told.
+BenchResult example() {
+    BenchResult r;
+    r.complete = true;
+    r.triangles = 1000;
+    r.workloads = {"primary", "shadow", "diffuse", "frame"};
+    r.entrants = {{contender("certified", ContenderKind::TwoLevel), "", {}, {}},
+                  {contender("fast", ContenderKind::TwoLevel), "", {}, {}},
+                  {contender("cpu-float-kdtree", ContenderKind::FloatKdTree), "", {}, {}},
+                  {contender("embree-robust", ContenderKind::Embree), "", {}, {}}};
+    r.entrants[0].built.level2_bytes = 50000;
+    const double call[] = {1, 0.5, 2, 0.9};
+    const double kernel[] = {0.5, 0.4, 0, 0.6};
+    for (size_t w = 0; w < r.workloads.size(); ++w)
+        for (size_t e = 0; e < r.entrants.size(); ++e) {
+            Measurement m{.entrant = e, .workload = w, .rays = 100};
+            m.seconds = m.cpu_seconds = m.pass_seconds = {call[e]};
+            m.kernel_seconds = {kernel[e]};
+            r.measurements.push_back(m);
+        }
+    return r;
+}
+
+TEST(Bars, DivideThePeersKernelByOurs) {
+    const std::vector<Bar> bars = kernel_bars(example());
+    ASSERT_EQ(bars.size(), 7u);
+    EXPECT_EQ(bars[0].what, "kernel against embree-robust, mesh: primary");
+    EXPECT_DOUBLE_EQ(*bars[0].measured, 1.2);
+    EXPECT_EQ(verdict(bars[0]), "passed");
+    EXPECT_DOUBLE_EQ(*bars[3].measured, 4); // a call of 2 s, as it knows no kernel
+    EXPECT_EQ(verdict(bars[3]), "passed");  // of 2.5
+    EXPECT_DOUBLE_EQ(*bars[6].measured, 2); // the frame: 1 s against 0.5
+    EXPECT_EQ(verdict(bars[6]), "failed");
+}
+
+TEST(Bars, AreSkippedWithoutThePeer) {
+    BenchResult r = example();
+    std::erase_if(r.measurements, [](const Measurement& m) { return m.entrant == 3; });
+    const std::vector<Bar> bars = kernel_bars(r);
+    EXPECT_EQ(verdict(bars[0]), "skipped");
+    EXPECT_THAT(bars[0].note, testing::HasSubstr("embree-robust did not take part"));
+}
+
+TEST(Bars, SumTheRaySetsOfEachPlaceInASweep) {
+    BenchResult r = example();
+    for (BenchEntrant& entrant : r.entrants)
+        entrant.contender.leaves = {8, std::string("8")};
+    const std::vector<Bar> bars = leaves_bars(r);
+    ASSERT_EQ(bars.size(), 3u);
+    EXPECT_DOUBLE_EQ(*bars[1].measured, 2); // 8 s of the third against 4 s of the first
+    r.complete = false;
+    EXPECT_EQ(verdict(leaves_bars(r)[0]), "skipped");
+}
+
+TEST(Bars, TellTheWorstKernelOfManyLeaves) {
+    BenchResult r = example();
+    for (BenchEntrant& entrant : r.entrants)
+        entrant.contender = contender("certified", ContenderKind::TwoLevel);
+    r.entrants[1].contender.leaves = {14, std::string("14")};
+    for (Measurement& m : r.measurements)
+        if (m.entrant == 1 && r.workloads[m.workload] == "shadow")
+            m.kernel_seconds = {0.6}; // 0.4 of the others; of one leaf 0.5
+    const std::vector<Bar> bars = leaves_of_scene_bars(r, "city");
+    ASSERT_EQ(bars.size(), 2u);
+    EXPECT_EQ(bars[0].what, "kernel in 14 leaves against one, city");
+    EXPECT_DOUBLE_EQ(bars[0].measured.value(), 1.2);
+    EXPECT_THAT(bars[0].note, testing::HasSubstr("shadow rays"));
+    EXPECT_EQ(verdict(bars[0]), "failed");
+    r.complete = false;
+    EXPECT_EQ(verdict(leaves_of_scene_bars(r, "city")[0]), "skipped");
+}
+
+TEST(Bars, CountBytes) {
+    BenchResult r = example();
+    EXPECT_DOUBLE_EQ(*bytes_bar(r, "mesh", 52, 44).measured, 50);
+    r.entrants[1].after.gpu_peak_bytes = 100;
+    r.entrants[1].after.gpu_budget_bytes = 100;
+    EXPECT_EQ(*peak_bar(std::vector{r}).measured, 0);
+    EXPECT_EQ(verdict(peak_bar(std::vector{r})), "passed");
+    r.entrants[1].after.gpu_budget_bytes = 93;
+    EXPECT_EQ(*peak_bar(std::vector{r}).measured, 7);
+    EXPECT_EQ(verdict(peak_bar(std::vector{r})), "failed");
+}
+
+TEST(Bars, TakeTheWorstPeakOfImportsAndTheSpeedOfTheLast) {
+    const std::vector<std::pair<std::string, ImportCost>> files = {
+        {"OBJ", {100, 1000, 1400, 1}}, {"binary PLY", {400'000'000, 1000, 1100, 2}}};
+    const std::vector<Bar> bars = import_bars(files);
+    EXPECT_DOUBLE_EQ(*bars[0].measured, 1.4);
+    EXPECT_THAT(bars[0].note, testing::HasSubstr("OBJ"));
+    EXPECT_DOUBLE_EQ(*bars[1].measured, 200);
+}
+
+TEST(Bars, AreATableAndJsonOfTheSameLines) {
+    std::vector<Bar> bars = kernel_bars(example());
+    bars.push_back(skipped_bar("leaks", "a test: ctest -R Leaks"));
+    const std::string table = bars_table(bars);
+    const std::vector<BenchResult> results = {example()};
+    const auto document = nlohmann::json::parse(bars_json(bars, results, nullptr));
+    ASSERT_EQ(document["bars"].size(), bars.size());
+    for (const auto& bar : document["bars"])
+        EXPECT_THAT(table, testing::HasSubstr(bar["line"].get<std::string>()));
+    EXPECT_THAT(table, testing::ContainsRegex("certified against fast +\\| +2.00 \\| +at most 1.25 "
+                                              "\\| +1.10 \\| +failed"));
+    EXPECT_THAT(table, testing::HasSubstr("6 lines hold, 1 do not, 1 were not measured here."));
+    EXPECT_EQ(document["bars"].back()["measured"], nullptr);
+    EXPECT_EQ(document["scenes"].size(), 1u);
+    EXPECT_EQ(document["programs"], nullptr);
+}
+
+} // namespace
+} // namespace ovc

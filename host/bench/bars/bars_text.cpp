@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bars as a table for people and as JSON for programs (docs/benchmarks.md).
+#include "host/bench/bars/bars.h"
+#include "host/bench/bench_text.h"
+#include "host/terminal/text_table.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace ovc {
+
+/// As short as the number allows: ratios to a hundredth, bytes and MB/s whole.
+static std::string number(double value) {
+    return fmt::format("{:.{}f}", value, value >= 20 ? 0 : 2);
+}
+
+std::string bars_table(std::span<const Bar> bars) {
+    std::vector<TextRow> rows = {{"line", "measured", "at least", "aim", "", "of"}};
+    for (const Bar& bar : bars) {
+        const bool promised = bar.at_least > 0 || bar.measured;
+        const char* sign = bar.better == Better::Less ? "at most " : "";
+        rows.push_back({bar.what, bar.measured ? number(*bar.measured) : "-",
+                        promised ? sign + number(bar.at_least) : "-",
+                        promised ? number(bar.aim) : "-", std::string(verdict(bar)), bar.note});
+    }
+    const auto count = [&](std::string_view v) {
+        return std::count_if(bars.begin(), bars.end(),
+                             [&](const Bar& bar) { return verdict(bar) == v; });
+    };
+    return fmt::format("{}\n{} lines hold, {} do not, {} were not measured here.\n",
+                       markdown_table(rows), count("passed"), count("failed"), count("skipped"));
+}
+
+std::string bars_json(std::span<const Bar> bars, std::span<const BenchResult> results,
+                      const ProgramsResult* programs) {
+    using Json = nlohmann::ordered_json;
+    Json lines = Json::array();
+    for (const Bar& bar : bars)
+        lines.push_back({{"line", bar.what},
+                         {"measured", bar.measured ? Json(*bar.measured) : Json(nullptr)},
+                         {"at_least", bar.at_least},
+                         {"aim", bar.aim},
+                         {"better", bar.better == Better::More ? "more" : "less"},
+                         {"verdict", verdict(bar)},
+                         {"note", bar.note}});
+    Json document = {{"bars", lines}};
+    document["programs"] = programs ? Json::parse(programs_json(*programs)) : Json(nullptr);
+    document["scenes"] = Json::parse(bench_json(results))["scenes"];
+    return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace ovc

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What pictures cost and how wrong they are, as tables and as JSON (docs/benchmarks.md).
+#pragma once
+
+#include "host/bench/pictures/picture_race.h"
+
+#include <nlohmann/json.hpp>
+
+#include <span>
+#include <string>
+
+namespace ovc {
+
+using Json = nlohmann::ordered_json;
+
+/// A line a choice that ran; with a line end.
+std::string picture_table(const PictureRace& race);
+/// A sentence, with line ends; empty where nothing is missing.
+std::string not_installed_text(std::span<const std::string> programs);
+
+/// An object; numbers are null where the choice did not run.
+Json picture_json(const PictureCost& cost);
+/// The document, with a line end.
+std::string json_text(const Json& document);
+
+} // namespace ovc

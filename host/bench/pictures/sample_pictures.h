@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Time against the error of a picture by samples a pixel: overcast in each precision, povray and
+// tachyon on the same triangles.
+#pragma once
+
+#include "core/scene.h"
+#include "host/bench/pictures/picture_race.h"
+#include "host/bench/scene_bench.h"
+
+#include <string>
+#include <vector>
+
+namespace ovc {
+
+struct SamplePicturesJob {
+    std::string scene;   // its triangles, in one gray material, under one light with shadows
+    uint32_t size = 256; // of the square picture
+    uint32_t most = 64;  // samples a pixel
+    uint32_t runs = 5;   // of each
+};
+
+struct SamplePictures {
+    struct Choice {
+        std::string program; // "certified", "povray"
+        uint32_t samples;
+    };
+    std::string scene;
+    uint64_t triangles = 0;
+    uint32_t size = 0;
+    uint32_t reference_samples = 0; // of cpu-kdtree
+    std::vector<std::string> not_installed;
+    std::vector<Choice> choices;
+    PictureRace race; // as choices
+};
+
+/// 1, 4, 16, ... samples a pixel, up to `most`; what is right is what the CPU's KD-tree in double
+/// precision draws with four times the most. Times are of whole processes, from file to picture.
+/// Error: a scene that cannot be read, a program that fails, a full disk.
+Result<SamplePictures> run_sample_pictures(const SamplePicturesJob& job,
+                                           const BenchSurroundings& around);
+
+std::string sample_pictures_table(const SamplePictures& result);
+std::string sample_pictures_json(const SamplePictures& result);
+
+} // namespace ovc

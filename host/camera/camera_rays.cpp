@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Camera rays: pixels along a curve, the rays of a pixel one after the other.
+#include "host/camera/camera_rays.h"
+
+#include "core/system/parallel.h"
+
+#include <algorithm>
+
+namespace ovc {
+
+static constexpr size_t kGrain = 1024; // rays a task
+
+/// The bits of i behind the point: the first dimension of Sobol's sequence.
+static double mirrored_bits(uint32_t i) {
+    uint32_t bits = 0;
+    for (uint32_t place = 1u << 31; i; i >>= 1, place >>= 1)
+        bits ^= (i & 1) * place;
+    return bits * 0x1p-32;
+}
+
+/// The second: the columns of Pascal's triangle modulo 2.
+static double pascal_bits(uint32_t i) {
+    uint32_t bits = 0;
+    for (uint32_t column = 1u << 31; i; i >>= 1, column ^= column >> 1)
+        bits ^= (i & 1) * column;
+    return bits * 0x1p-32;
+}
+
+dvec2 sample_place(uint32_t i, uint32_t samples) {
+    const double to_the_middle = 0.5 / samples; // of the smallest strata
+    return samples == 1 ? dvec2(0.5)
+                        : dvec2(mirrored_bits(i) + to_the_middle, pascal_bits(i) + to_the_middle);
+}
+
+CameraRays::CameraRays(const Pinhole& pinhole, const Film& film)
+    : pinhole_(pinhole),
+      samples_(film.samples()),
+      order_(pixel_order(film.width(), film.height())) {
+    std::erase_if(order_, [&](uint32_t pixel) { return film.done(pixel); });
+}
+
+CameraRays::CameraRays(const Pinhole& pinhole, std::span<const dvec2> points)
+    : pinhole_(pinhole), samples_(1), points_(points) {}
+
+CameraRays::Place CameraRays::place(uint64_t i) const {
+    if (points_.empty()) {
+        const uint32_t pixel = order_[i / samples_], sample = uint32_t(i % samples_);
+        return {pixel, sample, pixel % pinhole_.width(), pixel / pinhole_.width(),
+                sample_place(sample, samples_)};
+    }
+    const dvec2& at = points_[i];
+    const uint32_t x = std::min(uint32_t(at.x), pinhole_.width() - 1);
+    const uint32_t y = std::min(uint32_t(at.y), pinhole_.height() - 1);
+    return {uint32_t(i), 0, x, y, at - dvec2(x, y)};
+}
+
+void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const {
+    const size_t before = paths.size();
+    paths.resize(before + count);
+    parallel_for(count, kGrain, [&](size_t from, size_t to) {
+        for (size_t i = from; i < to; ++i) {
+            const Place at = place(first + i);
+            paths.rays[before + i] = pinhole_.ray(at.x, at.y, at.within);
+            paths.skip[before + i] = TriangleId();
+            paths.purposes[before + i] = {at.pixel, at.sample, 0, RayKind::Camera, vec3(1), 0};
+        }
+    });
+}
+
+} // namespace ovc

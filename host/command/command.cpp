@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of subcommands, and the program's own help and version.
+#include "host/command/command.h"
+
+#include "core/text/suggestion.h"
+#include "host/arguments/arguments.h"
+#include "host/diff/verdict.h"
+#include "host/terminal/message.h"
+#include "host/terminal/version.h"
+
+#include <fmt/format.h>
+
+namespace ovc {
+
+static constexpr Command kCommands[] = {
+    {"render", "Render a picture of a scene", make_render},
+    {"info", "Say what a scene consists of and needs", make_info},
+    {"trace", "Answer rays from standard input", make_trace},
+    {"convert", "Write a scene as .ply or .obj", make_convert},
+    {"devices", "List the GPUs and software renderers there are", make_devices},
+    {"scenes", "List the generated test scenes", make_scenes},
+    {"report", "Measure what the documents claim", make_report},
+    {"bench", "Time rays, certified and fast, beside peers", make_bench},
+    {"diff", "Compare two pictures", make_diff, int(Verdict::Unreadable)},
+    {"completion", "Print a script that completes these words in a shell", make_completion},
+    {"man", "Print the manual page", make_man},
+};
+
+std::span<const Command> commands() {
+    return kCommands;
+}
+
+std::string exit_codes() {
+    return "Exit codes: 0 done, 1 an error (one sentence on standard error), 2 interrupted. Those "
+           "of diff are others: see overcast diff --help.";
+}
+
+static void print_help() {
+    fmt::print(
+        "Overcast finds where rays hit triangles, in scenes larger than the GPU's memory.\n\n"
+        "Usage: overcast COMMAND [arguments]\n\nCommands:\n");
+    for (const Command& command : kCommands)
+        fmt::print("  {:<11} {}\n", command.name, command.summary);
+    fmt::print(
+        "\n  overcast COMMAND --help   what a command takes, with examples; also: overcast help "
+        "COMMAND\n"
+        "  overcast --version        also: overcast version\n\n"
+        "Examples:\n"
+        "  overcast scenes                                  what there is to render without any "
+        "file\n"
+        "  overcast render dragon.ply -o dragon.png         a picture, framed and lit by itself\n"
+        "  overcast render plants --gpu-memory 64M          with 64 MiB of GPU memory\n"
+        "  overcast info dragon.ply                         triangles, bounds, what it needs\n"
+        "  echo 0 0 9  0 0 -1 | overcast trace dragon.ply   where one ray hits\n\n"
+        "{}\n",
+        exit_codes());
+}
+
+static Error unknown_command(std::string_view name) {
+    std::vector<std::string_view> names;
+    for (const Command& command : kCommands)
+        names.push_back(command.name);
+    const std::string hint = did_you_mean(name, names);
+    return {fmt::format("there is no command '{}'{}", name,
+                        hint.empty() ? "; see overcast --help" : hint)};
+}
+
+static Result<int> run(const Command& command, const Arguments& arguments) {
+    const std::unique_ptr<Subcommand> subcommand = command.make();
+    CLI::App app{"", fmt::format("overcast {}", command.name)};
+    subcommand->add_to(app);
+    const Result<Arguments> ours = subcommand->in_our_words(arguments);
+    if (!ours)
+        return ours.error();
+    const Result<Parsed> parsed = parse_arguments(app, *ours);
+    if (!parsed)
+        return parsed.error();
+    return *parsed == Parsed::HelpShown ? kExitOk : subcommand->run();
+}
+
+static Result<int> run_named(const std::string& name, const Arguments& arguments) {
+    for (const Command& command : kCommands)
+        if (command.name == name) {
+            const Result<int> code = run(command, arguments);
+            if (code || command.exit_on_error == kExitError)
+                return code;
+            print_message(code.error().message);
+            return command.exit_on_error;
+        }
+    return unknown_command(name);
+}
+
+Result<int> run_command(const Arguments& arguments) {
+    if (arguments.empty())
+        return Error{"no command given; see overcast --help"};
+    const std::string& name = arguments.front();
+    if (name == "help" && arguments.size() > 1)
+        return run_named(arguments[1], {"--help"});
+    if (name == "--help" || name == "-h" || name == "help") {
+        print_help();
+        return kExitOk;
+    }
+    if (name == "--version" || name == "-V" || name == "version") {
+        fmt::print("overcast {}\n", version_text());
+        return kExitOk;
+    }
+    return run_named(name, {arguments.begin() + 1, arguments.end()});
+}
+
+} // namespace ovc

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+// overcast bench: how fast rays are answered, by the plugin certified and fast and by its peers, in
+// turn on the same rays; and what that comes to: bars, whole programs, growth.
+#include "host/arguments/log_arguments.h"
+#include "host/arguments/vector_width.h"
+#include "host/bench/bars/run_bars.h"
+#include "host/bench/bench_arguments.h"
+#include "host/bench/bench_text.h"
+#include "host/bench/pictures/sample_pictures.h"
+#include "host/bench/pictures/tessellation.h"
+#include "host/bench/scene_bench.h"
+#include "host/bench/sweep.h"
+#include "host/command/command.h"
+#include "host/output/output.h"
+#include "host/scene/scene_source.h"
+#include "host/terminal/interrupt.h"
+#include "host/terminal/message.h"
+#include "host/terminal/terminal_line.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <mutex>
+#include <set>
+
+namespace ovc {
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  overcast bench dragon.ply
+      camera, shadow and bounced rays, and a frame: all contenders, five times in turn
+  overcast bench knot plants --only certified,embree --size 512x512 --repeats 11
+      two scenes; the plugin certified, by both kernels, and Embree in all its qualities
+  overcast bench --only certified-compute --leaves 1,8,32,128
+      what leaves cost: each row says its time to the first row's
+  overcast bench plants --only certified --resident all,30%
+      what a budget costs that holds 30 % of the pages
+  overcast bench dragon.ply --bars --json bars.json
+      the table of what is promised: kernels, builds, import, memory, whole programs
+  overcast bench dragon.ply --programs --size 512x512
+      overcast render beside povray and tachyon, where they are installed
+  overcast bench plants --sweep budget
+      what a budget of 5 % to 100 % of the pages costs; rays, triangles, leaves likewise
+  overcast bench sphere-5 --pictures samples --most 16
+      time against the error of a picture with 1, 4 and 16 samples a pixel, povray and tachyon too
+  overcast bench --pictures tolerance
+      triangles and time against the distance from exact spheres, cones and tori
+  overcast bench dragon.ply --json - | jq '.scenes[].measurements[] | {contender, call_seconds}'
+
+All contenders answer the same rays with the same number of threads, and are in memory at once.
+Interrupted with Ctrl-C, it prints what it has and exits with 2.)";
+
+/// To standard error, each sentence once: every contender of the plugin opens the same device.
+class QuietLog {
+public:
+    explicit QuietLog(LogLevel most) : log_(standard_error_log(most)) {}
+    LogSink sink() {
+        return [this](LogLevel level, const std::string& message) {
+            const std::lock_guard lock(mutex_); // the device's thread may call
+            if (said_.insert(message).second)
+                log_(level, message);
+        };
+    }
+
+private:
+    LogSink log_;
+    std::mutex mutex_;
+    std::set<std::string> said_;
+};
+
+/// Tables for people, unless JSON goes where they would.
+void show(const BenchJob& job, const std::string& table) {
+    if (job.json == "-")
+        return;
+    print_lines(table);
+    std::fflush(stdout);
+}
+
+Result<Done> save(const BenchJob& job, const std::string& json) {
+    if (job.json.empty())
+        return Done{};
+    if (job.json != "-")
+        return save_text(json, job.json);
+    fmt::print("{}", json);
+    return Done{};
+}
+
+Result<Done> bench_contenders(const BenchJob& job, const BenchSurroundings& around) {
+    std::vector<BenchResult> results;
+    for (const std::string& source : job.scenes) {
+        if (around.stop())
+            break;
+        SceneBench bench;
+        bench.scene = source;
+        bench.asked.size = job.size;
+        bench.asked.only = job.workloads;
+        bench.asked.edges = !job.workloads.empty();
+        bench.repeats = job.repeats;
+        bench.contenders = job.contenders;
+        bench.device = job.device;
+        Result<BenchResult> result = bench_scene(bench, around);
+        if (!result)
+            return result.error();
+        show(job, (results.empty() ? "" : "\n") + bench_table(*result));
+        results.push_back(std::move(*result));
+    }
+    if (const Result<Done> saved = save(job, bench_json(results)); !saved)
+        return saved;
+    for (const BenchResult& result : results)
+        if (const std::string wrong = wrong_answers(result); !wrong.empty())
+            return Error{wrong};
+    return Done{};
+}
+
+Result<Done> bench_bars(const BenchJob& job, const BenchSurroundings& around) {
+    const Result<BarsResult> r =
+        run_bars({job.scenes[0], job.device, job.size.width, job.repeats}, around);
+    if (!r)
+        return r.error();
+    show(job, bars_table(r->bars));
+    if (r->programs)
+        show(job, "\n" + programs_table(*r->programs));
+    for (const BenchResult& scene : r->scenes)
+        show(job, "\n" + bench_table(scene));
+    return save(job, bars_json(r->bars, r->scenes, r->programs ? &*r->programs : nullptr));
+}
+
+Result<Done> bench_programs(const BenchJob& job, const BenchSurroundings& around) {
+    const Result<ProgramsResult> r =
+        run_programs(job.scenes[0], job.size.width, job.repeats, around);
+    if (!r)
+        return r.error();
+    show(job, programs_table(*r));
+    return save(job, programs_json(*r));
+}
+
+Result<Done> bench_sweep(const BenchJob& job, const BenchSurroundings& around) {
+    const Result<Sweep> sweep = run_sweep(job, around);
+    if (!sweep)
+        return sweep.error();
+    show(job, sweep_table(*sweep));
+    return save(job, sweep_json(*sweep));
+}
+
+Result<Done> bench_samples(const BenchJob& job, const BenchSurroundings& around) {
+    const Result<SamplePictures> r = run_sample_pictures(
+        {job.scenes[0], job.size.width, uint32_t(job.most), job.repeats}, around);
+    if (!r)
+        return r.error();
+    show(job, sample_pictures_table(*r));
+    return save(job, sample_pictures_json(*r));
+}
+
+Result<Done> bench_tolerance(const BenchJob& job, const BenchSurroundings& around) {
+    const Result<Tessellation> r =
+        run_tessellation({job.size.width, job.repeats, job.device}, around);
+    if (!r)
+        return r.error();
+    show(job, tessellation_table(*r));
+    return save(job, tessellation_json(*r));
+}
+
+/// Contenders are in one process, and so have one width of vectors.
+bool any_fragment_kernel(const std::vector<Contender>& contenders) {
+    return std::ranges::any_of(contenders, [](const Contender& c) {
+        return c.on_gpu() && (c.kernel == OVC_KERNEL_FRAGMENT || c.kind == ContenderKind::Thesis);
+    });
+}
+
+Result<Done> bench_kind(const BenchJob& job, const BenchSurroundings& around) {
+    use_wide_vectors(job.kind == BenchKind::Contenders && any_fragment_kernel(job.contenders));
+    switch (job.kind) {
+    case BenchKind::Bars:
+        return bench_bars(job, around);
+    case BenchKind::Programs:
+        return bench_programs(job, around);
+    case BenchKind::Sweep:
+        return bench_sweep(job, around);
+    case BenchKind::Pictures:
+        return job.pictures == PicturesBy::Samples ? bench_samples(job, around)
+                                                   : bench_tolerance(job, around);
+    case BenchKind::Contenders:
+        break;
+    }
+    return bench_contenders(job, around);
+}
+
+Result<int> bench(const BenchJob& job, LogLevel level) {
+    const InterruptGuard interrupt;
+    const StopRequest stop = [&] { return interrupt.interrupted(); };
+    TerminalLine progress;
+    QuietLog log(level);
+    const LogSink sink = log.sink();
+    if (const Result<Done> done = bench_kind(job, {stop, sink, progress}); !done)
+        return done.error();
+    if (!stop())
+        return kExitOk;
+    print_message("interrupted; what was measured so far is kept");
+    return kExitInterrupted;
+}
+
+class Bench final : public Subcommand {
+public:
+    void add_to(CLI::App& app) override {
+        app.description("Times how rays are answered: the plugin certified and fast, and its "
+                        "peers.");
+        words_.add_to(app);
+        log_.add_to(app);
+        app.footer(kExamples);
+    }
+
+    Result<int> run() override {
+        const Result<LogLevel> level = log_.resolve();
+        if (!level)
+            return level.error();
+        const Result<BenchJob> job = understand_bench(words_);
+        if (!job)
+            return job.error();
+        return bench(*job, *level);
+    }
+
+private:
+    BenchWords words_;
+    LogArguments log_{LogLevel::Info};
+};
+
+} // namespace
+
+std::unique_ptr<Subcommand> make_bench() {
+    return std::make_unique<Bench>();
+}
+
+} // namespace ovc

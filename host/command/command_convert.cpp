@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// overcast convert: any input to .ply, .obj or .ovc.
+#include "host/arguments/arguments.h"
+#include "host/arguments/backend_arguments.h"
+#include "host/arguments/log_arguments.h"
+#include "host/command/command.h"
+#include "host/output/output.h"
+#include "host/scene/scene_cache.h"
+#include "host/scene/scene_source.h"
+#include "host/terminal/interrupt.h"
+#include "host/terminal/message.h"
+#include "importers/importer.h"
+#include "testscenes/catalog.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+namespace ovc {
+
+static constexpr const char* kExamples = R"(Examples:
+  overcast convert kitchen.obj kitchen.ply
+  overcast convert dragon.ply.gz dragon.ply
+  overcast convert plants plants.ply          a generated scene, for other programs
+  overcast convert plants.pbrt plants.ovc     with materials, lights, camera and what tracing builds:
+  overcast render plants.ovc                  starts at once)";
+
+static std::string extension_of(const std::filesystem::path& path) {
+    std::string extension = path.extension();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return extension;
+}
+
+/// Known before a big file is read for nothing.
+static Result<Done> check_output(const std::filesystem::path& path) {
+    const std::string extension = extension_of(path);
+    if (extension != ".ply" && extension != ".obj" && extension != ".ovc")
+        return Error{
+            fmt::format("the output file '{}' ends in none of .ply, .obj, .ovc", path.string())};
+    return check_writable("output", path);
+}
+
+/// What the scene has and a mesh does not keep, for a person; empty: nothing.
+static std::string left_out(const Scene& scene) {
+    std::vector<std::string> items;
+    const auto add = [&](size_t count, std::string_view what) {
+        if (count > 0)
+            items.push_back(fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"));
+    };
+    // Every scene has the grey that a file without materials gets.
+    add(size_t(std::count_if(scene.materials.begin(), scene.materials.end(),
+                             [](const Material& material) {
+                                 return material.color != Material{}.color ||
+                                        material.mirror != 0 || material.transmission != 0;
+                             })),
+        "material");
+    add(scene.lights.size(), "light");
+    if (scene.camera)
+        items.push_back("the camera");
+    if (std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                    [](const MeshInfo& mesh) { return !mesh.normals.empty(); }))
+        items.push_back("the vertex normals");
+    return fmt::format("{}", fmt::join(items, ", "));
+}
+
+/// All of the scene, and what the plugin builds of it, as .ovc.
+static Result<Done> convert_to_scene_file(const SceneArguments& source,
+                                          const BackendOptions& backend_options, const LogSink& log,
+                                          const std::string& output) {
+    FilesRead files;
+    Provenance from;
+    const LogSink listening = [&](LogLevel level, const std::string& message) {
+        if (level == LogLevel::Warning)
+            from.warnings.push_back(message);
+        say(log, level, message);
+    };
+    const Result<Scene> scene = open_scene(source, listening, std::nullopt, &files);
+    if (!scene)
+        return scene.error();
+    from.files = files.stamps();
+    BackendOptions options = backend_options;
+    options.saved = scene->saved;
+    const Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, options, log);
+    if (!backend)
+        return backend.error();
+    if (!(*backend)->saves())
+        say(log, LogLevel::Warning,
+            fmt::format("{} holds the scene alone: only two-level can be saved", output));
+    return write_scene_file(*scene, from, (*backend)->saves() ? levels_of(**backend) : SaveLevels(),
+                            output);
+}
+
+static Result<Done> convert_to_mesh(const SceneArguments& source, const LogSink& log,
+                                    const std::string& output, bool quiet) {
+    const Result<Scene> scene = open_scene(source, log);
+    if (!scene)
+        return scene.error();
+    if (Result<Done> saved = save(*scene, output); !saved)
+        return saved;
+    if (const std::string items = left_out(*scene); !items.empty() && !quiet)
+        print_message(fmt::format("only triangles are kept; left out of {}: {}", output, items));
+    return Done{};
+}
+
+namespace {
+
+class Convert final : public Subcommand {
+public:
+    void add_to(CLI::App& app) override {
+        app.description("Writes the triangles of a scene as .ply (binary) or .obj, or all of it "
+                        "and what tracing builds as .ovc, which starts at once (docs/cache.md).");
+        source_.add_to(app, "IN");
+        // CLI11 gives IN all names there are: run() takes the last of them for OUT.
+        app.add_option("OUT", output_,
+                       "The file to write, the last that is named; replaced only once the new one "
+                       "is complete");
+        log_.add_to(app, /* with_quiet= */ true);
+        backend_.add_to(app);
+        app.footer(kExamples);
+    }
+
+    Result<int> run() override {
+        if (source_.scenes.size() < 2)
+            return Error{"OUT is required; see overcast convert --help"};
+        output_ = std::move(source_.scenes.back());
+        source_.scenes.pop_back();
+        if (const Result<Done> fine = check_output(output_); !fine)
+            return fine.error();
+        if (const Result<Done> fine = source_.check(); !fine)
+            return fine.error();
+        std::vector<NamedFile> files = source_.files();
+        files.push_back({"output", output_});
+        if (const Result<Done> fine = check_distinct(files); !fine)
+            return fine.error();
+        const Result<BackendOptions> backend_options = backend_.resolve();
+        if (!backend_options)
+            return backend_options.error();
+        const Result<LogLevel> level = log_.resolve();
+        if (!level)
+            return level.error();
+        const LogSink log = standard_error_log(*level);
+        const Result<Done> done =
+            extension_of(output_) == ".ovc"
+                ? convert_to_scene_file(source_, *backend_options, log, output_)
+                : convert_to_mesh(source_, log, output_, log_.quiet());
+        if (!done)
+            return done.error();
+        return kExitOk;
+    }
+
+private:
+    SceneArguments source_;
+    std::string output_;
+    LogArguments log_;
+    BackendArguments backend_; // for .ovc
+};
+
+} // namespace
+
+std::unique_ptr<Subcommand> make_convert() {
+    return std::make_unique<Convert>();
+}
+
+} // namespace ovc

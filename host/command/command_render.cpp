@@ -1,0 +1,524 @@
+// SPDX-License-Identifier: Apache-2.0
+// overcast render: a scene in, pictures and statistics out. The words of the command line, and
+// what they mean.
+#include "host/arguments/backend_arguments.h"
+#include "host/arguments/log_arguments.h"
+#include "host/arguments/pov_words.h"
+#include "host/camera/camera.h"
+#include "host/camera/camera_path_file.h"
+#include "host/command/command.h"
+#include "host/render/frames.h"
+#include "host/render/render_job.h"
+#include "host/terminal/interrupt.h"
+#include "testscenes/catalog.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <functional>
+#include <unistd.h>
+
+namespace ovc {
+
+namespace fs = std::filesystem;
+
+static constexpr const char* kExamples = R"(Examples:
+  overcast render dragon.ply
+      writes out.png, 512x512; camera and light are placed by themselves
+  overcast render scan.ply floor.obj --up z
+      two files as one scene, whose z axis is up
+  overcast render dragon.ply -o d.png -o d.exr --size 1920x1080 --gpu-memory 12M
+      two files, and no more than 12 MiB of GPU memory
+  overcast render kitchen.obj --camera 3,1.6,4,0,1,0,60 --light 0,2.4,0 --light 2,2.4,2
+      from a point of view, 60 degrees wide, with two lights
+  overcast render plants --stats plants.json --quiet
+      a generated scene, with statistics for a program
+  overcast render dragons-10 --frames 0:99 -o dragons-####.png
+      100 frames along the scene's camera path, built once: dragons-0000.png to dragons-0099.png
+  overcast render dragon.ply --camera-path walk.csv --frames 0:90:10 -o walk-###.png
+      every tenth frame of a path of your own (docs/scenes.md)
+  overcast render dragons-5 --model dragon.ply
+      the scene with your model in the place of the generated one
+  overcast render plants.pbrt --cache ~/.cache/overcast -o plants.png
+      the second time it starts at once
+  overcast render cornell-box.pbrt --integrator path --samples 256 -o box.exr
+      all light there is, from surface to surface; more samples, less noise (docs/path.md)
+  overcast render dragon.ply +W640 +H480 +Od.png
+      POV-Ray's words are understood
+
+Interrupted with Ctrl-C, it keeps what it has, the picture so far as NAME.unfinished.png, and exits with 2;
+the same command with --continue goes on from there.)";
+
+/// In the order of RenderMode.
+static constexpr std::string_view kModes[] = {"auto", "batched", "mixed"};
+/// In the order of IntegratorKind.
+static constexpr std::string_view kIntegrators[] = {"whitted", "path"};
+/// In the order of Antialias::Method.
+static constexpr std::string_view kAntialiasMethods[] = {"1", "2"};
+static constexpr std::string_view kAxes[] = {"x", "y", "z"};
+static constexpr std::string_view kPngBits[] = {"8", "16"};
+
+/// The words as given.
+struct RenderWords {
+    SceneArguments scene;
+    std::vector<std::string> outputs;
+    std::string size;
+    std::string crop;
+    std::string camera;
+    std::string up;
+    std::string frames;
+    std::string camera_path;
+    std::vector<std::string> lights;
+    std::string samples;
+    std::string antialias, antialias_method, antialias_depth, jitter;
+    std::string seed;
+    std::string threads;
+    bool go_on = false;
+    std::string max_depth;
+    std::string integrator = "whitted";
+    std::string mode = "auto";
+    std::string aov;
+    std::string png_bits = "8";
+    bool no_shadows = false;
+    bool working_set = false;
+    BackendArguments backend;
+    std::string cache;
+    std::string stats;
+    LogArguments log{LogLevel::Info};
+
+    void add_to(CLI::App& app);
+};
+
+/// Rays a batch while somebody watches: less than a second's work for the slowest device known,
+/// llvmpipe on two cores, so that Ctrl-C is obeyed in time. Elsewhere batches are larger: time is
+/// the same within the noise, but where the budget is tight these move up to 1.6 times the bytes.
+static constexpr size_t kWatchedBatchRays = size_t(1) << 18;
+
+void RenderWords::add_to(CLI::App& app) {
+    scene.add_to(app);
+    app.add_option("-o,--output,--outfile", outputs,
+                   "The picture: .png (sRGB) or .exr (linear); may be repeated; #### becomes the "
+                   "frame's number; default: out.png, of frames out-####.png")
+        ->allow_extra_args(false)
+        ->type_name("FILE");
+    app.add_option("--size", size,
+                   "Pixels, at most 65535 a side; default: what the file asks for, else 512x512")
+        ->type_name("WxH");
+    app.add_option(
+           "--crop", crop,
+           "Only a part of the picture: its size, and how far it is from the left and upper "
+           "edge")
+        ->type_name("WxH+X+Y");
+    app.add_option(
+           "--camera", camera,
+           "Eye, target and angle of view in degrees along the shorter side (40); not with "
+           "--frames or --camera-path; default: the scene's, else the whole scene is framed")
+        ->type_name("EX,EY,EZ,TX,TY,TZ[,FOV]");
+    app.add_option("--up", up,
+                   "The axis that is up, of --camera and of a scene without a camera; default: y; "
+                   "many scans and CAD models have z")
+        ->type_name(choice_names(kAxes));
+    app.add_option("--frames", frames,
+                   "Frames of the camera path, the first and the last included; default: one "
+                   "picture, with --camera-path all frames")
+        ->type_name("A:B[:STEP]");
+    app.add_option("--camera-path", camera_path,
+                   "A path in a file, JSON or CSV, instead of the scene's own (docs/scenes.md)")
+        ->type_name("FILE");
+    app.add_option("--light", lights, "A point light instead of the scene's; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("X,Y,Z");
+    app.add_option(
+           "--samples,--spp", samples,
+           "Rays a pixel, up to 65536: more of them smooth edges; the same ones every time; "
+           "default: 1, through its middle")
+        ->type_name("N");
+    app.add_option(
+           "--antialias", antialias,
+           "One ray a pixel, and more only where colors differ by this, red, green and blue "
+           "together: 0 to 3, POV-Ray's default is 0.3; instead of --samples")
+        ->type_name("X");
+    app.add_option(
+           "--antialias-method", antialias_method,
+           "1: pixels that differ from a neighbour get rays on a grid; 2: pixels that differ "
+           "at their corners are quartered again and again; default: 1")
+        ->type_name(choice_names(kAntialiasMethods));
+    app.add_option(
+           "--antialias-depth", antialias_depth,
+           "Of method 1: N x N rays more; of method 2: 2^(N-1) parts a side at most; 1 to 9, "
+           "default: 3")
+        ->type_name("N");
+    app.add_option("--jitter", jitter,
+                   "How far rays of --antialias may lie off their grid, by chance that is the same "
+                   "every time: 0 to 1; default: 1")
+        ->type_name("X");
+    app.add_option("--seed", seed,
+                   "Of path tracing: other numbers make other noise, the same the same picture; "
+                   "default: 0")
+        ->type_name("N");
+    app.add_option("--integrator", integrator,
+                   "whitted (mirrors, glass, and the light of lamps) or path (path tracing: light "
+                   "from everywhere, with the noise of --samples; docs/path.md)")
+        ->type_name(choice_names(kIntegrators));
+    app.add_option("--max-depth,--max-trace-level", max_depth,
+                   "Reflections and refractions in a row at most, up to 1000; default: what the "
+                   "file asks for, else 5. Path tracing: surfaces in a row, 16")
+        ->type_name("N");
+    app.add_option(
+           "--mode", mode,
+           "auto, batched (a call of the backend for all rays of a kind and depth) or mixed "
+           "(what answers spawn joins the rays under way: fewer passes where memory is "
+           "short); the picture is the same")
+        ->type_name(choice_names(kModes));
+    app.add_option("--aov", aov,
+                   "Layers of the .exr files, of what the camera's rays hit, separated by commas: "
+                   "depth, normal, id (mesh and triangle), leaf (of level 1), passes (that the "
+                   "ray took part in), flagged (1 where the kernel was not certain)")
+        ->type_name("NAMES");
+    app.add_option("--png-bits", png_bits, "Bits a channel of .png files; default: 8")
+        ->type_name(choice_names(kPngBits));
+    app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
+    app.add_option("--cache", cache,
+                   "Keep the scene and what is built of it in this folder, and start from there "
+                   "next time; what is stale or damaged is made anew (docs/cache.md)")
+        ->type_name("DIR");
+    app.add_flag("--continue", go_on,
+                 "Go on from what an interrupted run has left: the pixels in NAME.unfinished.film, "
+                 "the frames that are there");
+    app.add_option("--threads,--nthreads", threads,
+                   "Cores to use at most, of the software renderer too; default: all")
+        ->type_name("N");
+    app.add_option("--stats", stats, "Write statistics as JSON (docs/stats.md)")
+        ->type_name("FILE.json");
+    app.add_flag("--working-set", working_set,
+                 "The statistics tell which pages each frame's rays go through; takes up to half "
+                 "as long again");
+    log.add_to(app, /* with_quiet= */ true);
+    backend.add_to(app);
+}
+
+/// "320x240+100+50"
+static Result<Crop> parse_crop(std::string_view text) {
+    const size_t left = std::min(text.find('+'), text.size());
+    const size_t top = std::min(text.find('+', left + 1), text.size());
+    if (top == text.size())
+        return Error{
+            fmt::format("--crop needs WIDTHxHEIGHT+X+Y, such as 320x240+100+50, not '{}'", text)};
+    const Result<ImageSize> size = parse_size("--crop", text.substr(0, left));
+    if (!size)
+        return size.error();
+    const Result<uint64_t> x =
+        parse_count("X in --crop", text.substr(left + 1, top - left - 1), 0, 65534);
+    if (!x)
+        return x.error();
+    const Result<uint64_t> y = parse_count("Y in --crop", text.substr(top + 1), 0, 65534);
+    if (!y)
+        return y.error();
+    return Crop{uint32_t(*x), uint32_t(*y), *size};
+}
+
+/// The path to take, and what it is called in a sentence.
+struct NamedPath {
+    CameraPath cameras;
+    std::string name;
+};
+
+static Result<NamedPath> choose_path(const RenderWords& words) {
+    const std::string scene = words.scene.name();
+    const bool from_file = !words.camera_path.empty();
+    if (!from_file && !is_test_scene(scene))
+        return Error{
+            fmt::format("--frames: '{}' has no camera path; --camera-path gives it one", scene)};
+    Result<CameraPath> path =
+        from_file ? load_camera_path(words.camera_path) : test_scene_path(scene);
+    if (!path)
+        return path.error();
+    return NamedPath{std::move(*path), from_file ? "'" + words.camera_path + "'" : scene};
+}
+
+/// The shots that --frames and --camera-path ask for; none for a single picture.
+static Result<std::vector<Shot>> understand_frames(const RenderWords& words) {
+    std::vector<Shot> shots;
+    if (words.frames.empty() && words.camera_path.empty())
+        return shots;
+    // Not CLI11's excludes(): help lists two of them in an order that changes from run to run.
+    if (!words.camera.empty())
+        return Error{fmt::format("--camera and {} cannot be given together",
+                                 words.frames.empty() ? "--camera-path" : "--frames")};
+    const Result<NamedPath> path = choose_path(words);
+    if (!path)
+        return path.error();
+    FrameRange range{0, uint32_t(path->cameras.size() - 1), 1};
+    if (!words.frames.empty()) {
+        const Result<FrameRange> asked =
+            parse_frames(words.frames, uint32_t(path->cameras.size()), path->name);
+        if (!asked)
+            return asked.error();
+        range = *asked;
+    }
+    for (uint32_t i = 0; i < range.count(); ++i) {
+        const uint32_t frame = range.first + i * range.step;
+        shots.push_back({frame, path->cameras[frame]});
+    }
+    return shots;
+}
+
+/// No file is written that is read or written besides.
+static Result<Done> check_files(const RenderWords& words, const RenderJob& job,
+                                std::optional<uint32_t> frame) {
+    std::vector<NamedFile> files = job.scene.files();
+    if (!words.camera_path.empty())
+        files.push_back({"camera path", words.camera_path});
+    for (const std::string& output : job.outputs)
+        files.push_back({"output", frame ? frame_file(output, *frame) : output});
+    if (!job.stats.empty())
+        files.push_back({"statistics", job.stats});
+    return check_distinct(files);
+}
+
+static Result<Done> check_outputs(const RenderWords& words, const RenderJob& job) {
+    for (const std::string& output : job.outputs) {
+        if (job.shots.size() > 1 && !has_frame_number(output))
+            return Error{fmt::format("the output file '{}' has no place for the number of each of "
+                                     "{} frames, such as the #### in out-####.png",
+                                     output, job.shots.size())};
+        const std::string first =
+            job.shots.empty() ? output : frame_file(output, job.shots[0].frame);
+        if (const Result<Done> fine = check_image_output(first); !fine)
+            return fine.error();
+    }
+    if (!job.stats.empty())
+        if (const Result<Done> fine = check_writable("statistics", job.stats); !fine)
+            return fine.error();
+    if (job.shots.empty())
+        return check_files(words, job, std::nullopt);
+    for (const Shot& shot : job.shots)
+        if (const Result<Done> fine = check_files(words, job, shot.frame); !fine)
+            return fine.error();
+    return Done{};
+}
+
+static Result<Done> understand_view(const RenderWords& words, RenderJob& job) {
+    if (!words.size.empty()) {
+        const Result<ImageSize> size = parse_size("--size", words.size);
+        if (!size)
+            return size.error();
+        job.size = *size;
+    }
+    if (!words.crop.empty()) {
+        const Result<Crop> crop = parse_crop(words.crop);
+        if (!crop)
+            return crop.error();
+        job.crop = *crop;
+    }
+    if (!words.camera.empty()) {
+        const Result<Camera> camera = parse_camera("--camera", words.camera);
+        if (!camera)
+            return camera.error();
+        job.camera = *camera;
+    }
+    if (!words.up.empty()) {
+        const Result<size_t> axis = parse_choice("--up", words.up, kAxes);
+        if (!axis)
+            return axis.error();
+        if (!job.shots.empty())
+            return Error{"--up and a camera path cannot be given together: its cameras say what is "
+                         "up"};
+        job.up = int(*axis);
+    }
+    for (const std::string& light : words.lights) {
+        const Result<dvec3> position = parse_position("--light", light);
+        if (!position)
+            return position.error();
+        job.lights.push_back({*position, kDefaultLightColor});
+    }
+    return Done{};
+}
+
+static Result<Done> understand_counts(const RenderWords& words, RenderJob& job) {
+    struct Wanted {
+        std::string_view option;
+        const std::string& text; // empty: not given
+        uint64_t least, most;
+        std::function<void(uint64_t)> take;
+    };
+    const Wanted all[] = {
+        {"--threads", words.threads, 1, kMostThreads,
+         [&](uint64_t threads) { job.threads = uint32_t(threads); }},
+        {"--seed", words.seed, 0, ~uint64_t(0), [&](uint64_t seed) { job.render.seed = seed; }},
+        {"--samples", words.samples, 1, kMostSamples,
+         [&](uint64_t samples) { job.samples = uint32_t(samples); }},
+        {"--max-depth", words.max_depth, 0, kMostDepth,
+         [&](uint64_t depth) { job.max_depth = uint32_t(depth); }}};
+    for (const Wanted& wanted : all) {
+        if (wanted.text.empty())
+            continue;
+        const Result<uint64_t> count =
+            parse_count(wanted.option, wanted.text, wanted.least, wanted.most);
+        if (!count)
+            return count.error();
+        wanted.take(*count);
+    }
+    return Done{};
+}
+
+static Result<Done> understand_antialias(const RenderWords& words, RenderJob& job) {
+    if (words.antialias.empty())
+        return Done{};
+    if (!words.samples.empty())
+        return Error{"--samples and --antialias cannot be given together"};
+    Antialias how;
+    const Result<double> threshold = parse_real("--antialias", words.antialias, 0, 3);
+    if (!threshold)
+        return threshold.error();
+    how.threshold = float(*threshold);
+    if (!words.antialias_method.empty()) {
+        const Result<size_t> method =
+            parse_choice("--antialias-method", words.antialias_method, kAntialiasMethods);
+        if (!method)
+            return method.error();
+        how.method = Antialias::Method(*method + 1);
+    }
+    if (!words.antialias_depth.empty()) {
+        const Result<uint64_t> depth =
+            parse_count("--antialias-depth", words.antialias_depth, 1, kMostAntialiasDepth);
+        if (!depth)
+            return depth.error();
+        how.depth = uint32_t(*depth);
+    }
+    if (!words.jitter.empty()) {
+        const Result<double> jitter = parse_real("--jitter", words.jitter, 0, 1);
+        if (!jitter)
+            return jitter.error();
+        how.jitter = float(*jitter);
+    }
+    job.render.antialias = how;
+    return Done{};
+}
+
+static Result<Done> understand_shading(const RenderWords& words, RenderJob& job) {
+    if (const Result<Done> fine = understand_antialias(words, job); !fine)
+        return fine;
+    if (const Result<Done> fine = understand_counts(words, job); !fine)
+        return fine;
+    const Result<size_t> mode = parse_choice("--mode", words.mode, kModes);
+    if (!mode)
+        return mode.error();
+    job.render.mode = RenderMode(*mode);
+    const Result<size_t> integrator = parse_choice("--integrator", words.integrator, kIntegrators);
+    if (!integrator)
+        return integrator.error();
+    job.render.integrator = IntegratorKind(*integrator);
+    job.render.shadows = !words.no_shadows;
+    if (isatty(STDERR_FILENO))
+        job.render.batch_rays = kWatchedBatchRays;
+    return Done{};
+}
+
+static Result<Done> understand_png(const RenderWords& words, RenderJob& job) {
+    const Result<size_t> choice = parse_choice("--png-bits", words.png_bits, kPngBits);
+    if (!choice)
+        return choice.error();
+    job.png_bits = *choice == 0 ? 8 : 16;
+    return Done{};
+}
+
+static Result<Done> understand_aovs(const RenderWords& words, RenderJob& job) {
+    if (words.aov.empty())
+        return Done{};
+    const Result<Aovs> aovs = parse_aovs(words.aov);
+    if (!aovs)
+        return aovs.error();
+    job.aovs = *aovs;
+    for (const std::string& output : job.outputs)
+        if (takes_layers(output))
+            return Done{};
+    return Error{"--aov needs an output that holds layers: -o FILE.exr"};
+}
+
+/// Everything that can be wrong before anything but a camera path is read.
+static Result<RenderJob> understand(const RenderWords& words) {
+    RenderJob job;
+    job.scene = words.scene;
+    job.cache = words.cache;
+    job.stats = words.stats;
+    job.quiet = words.log.quiet();
+    const Result<LogLevel> level = words.log.resolve();
+    if (!level)
+        return level.error();
+    job.log_level = *level;
+    job.go_on = words.go_on;
+    if (const Result<Done> fine = words.scene.check(); !fine)
+        return fine.error();
+    if (std::error_code ec; fs::exists(words.cache, ec) && !fs::is_directory(words.cache, ec))
+        return Error{fmt::format("--cache: '{}' is no folder", words.cache)};
+    Result<std::vector<Shot>> shots = understand_frames(words);
+    if (!shots)
+        return shots.error();
+    job.shots = std::move(*shots);
+    job.outputs = words.outputs;
+    if (job.outputs.empty())
+        job.outputs = {job.shots.empty() ? "out.png" : "out-####.png"};
+    if (const Result<Done> fine = check_outputs(words, job); !fine)
+        return fine.error();
+    if (const Result<Done> fine = understand_view(words, job); !fine)
+        return fine.error();
+    if (const Result<Done> fine = understand_shading(words, job); !fine)
+        return fine.error();
+    if (const Result<Done> fine = understand_png(words, job); !fine)
+        return fine.error();
+    if (const Result<Done> fine = understand_aovs(words, job); !fine)
+        return fine.error();
+    const Result<BackendOptions> backend = words.backend.resolve();
+    if (!backend)
+        return backend.error();
+    job.backend = *backend;
+    if (words.working_set && job.stats.empty())
+        return Error{"--working-set is told in the statistics: --stats FILE.json"};
+    if (words.working_set && structure_of(job.backend.kind) != OVC_STRUCTURE_TWO_LEVEL)
+        return Error{"--working-set can be told by --backend two-level alone"};
+    job.backend.tell_active = words.working_set;
+    return job;
+}
+
+namespace {
+
+class Render final : public Subcommand {
+public:
+    void add_to(CLI::App& app) override {
+        app.description("Renders a picture of a scene: shadows, mirrors and glass, or all light "
+                        "there is by path tracing.");
+        words_.add_to(app);
+        app.footer(kExamples);
+    }
+
+    Result<Arguments> in_our_words(const Arguments& arguments) override {
+        command_line_ = fmt::format("overcast render {}", fmt::join(arguments, " "));
+        const bool quiet = std::any_of(arguments.begin(), arguments.end(), [](const auto& word) {
+            return word == "--quiet" || word == "-q";
+        });
+        return translate_pov_words(arguments,
+                                   standard_error_log(quiet ? LogLevel::Warning : LogLevel::Info));
+    }
+
+    Result<int> run() override {
+        Result<RenderJob> job = understand(words_);
+        if (!job)
+            return job.error();
+        job->command_line = command_line_;
+        return render(*job);
+    }
+
+private:
+    RenderWords words_;
+    std::string command_line_;
+};
+
+} // namespace
+
+std::unique_ptr<Subcommand> make_render() {
+    return std::make_unique<Render>();
+}
+
+} // namespace ovc

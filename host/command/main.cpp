@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The `overcast` command: hands over to a subcommand; an error is one sentence and exit code 1.
+#include "host/command/command.h"
+#include "host/terminal/interrupt.h"
+#include "host/terminal/message.h"
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+static int fail(std::string_view sentence) {
+    ovc::print_message(sentence);
+    return ovc::kExitError;
+}
+
+int main(int argc, char** argv) {
+    try {
+        ovc::exit_on_interrupt();
+        std::signal(SIGXFSZ, SIG_IGN); // a file that may not grow is an error of write()
+        const ovc::Result<int> code = ovc::run_command({argv + 1, argv + argc});
+        if (!code)
+            return fail(code.error().message);
+        if (std::fflush(stdout) != 0)
+            return fail("cannot write to standard output");
+        return *code;
+    } catch (const std::bad_alloc&) {
+        return fail("out of memory");
+    } catch (const std::exception& error) {
+        // fmt throws where standard output takes nothing more.
+        return fail(std::ferror(stdout) ? "cannot write to standard output" : error.what());
+    }
+}

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// One batch of camera rays after another, and what is told of their hits.
+#include "host/output/aov.h"
+
+#include "core/system/parallel.h"
+#include "core/text/suggestion.h"
+#include "host/camera/camera.h"
+#include "host/shade/shade.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace ovc {
+namespace {
+
+constexpr std::string_view kNames[] = {"depth", "normal", "id", "leaf", "passes", "flagged"};
+constexpr size_t kBatchRays = size_t(1) << 20;
+constexpr size_t kGrain = 1024; // pixels a task
+
+Layer layer(std::string name, Layer::Type type, size_t pixels) {
+    return {std::move(name), type, std::vector<uint32_t>(pixels)};
+}
+
+/// The layers, and how a pixel is filled in.
+class Layers {
+public:
+    Layers(const Aovs& aovs, size_t pixels) : aovs_(aovs) {
+        if (aovs.depth)
+            all_.push_back(layer("depth.Z", Layer::Type::Float, pixels));
+        for (const char* name : {"normal.X", "normal.Y", "normal.Z"})
+            if (aovs.normal)
+                all_.push_back(layer(name, Layer::Type::Float, pixels));
+        for (const char* name : {"id.mesh", "id.prim"})
+            if (aovs.id)
+                all_.push_back(layer(name, Layer::Type::Uint, pixels));
+        if (aovs.leaf)
+            all_.push_back(layer("leaf", Layer::Type::Uint, pixels));
+        if (aovs.passes)
+            all_.push_back(layer("passes", Layer::Type::Uint, pixels));
+        if (aovs.flagged)
+            all_.push_back(layer("flagged", Layer::Type::Uint, pixels));
+    }
+
+    /// Where the backend writes its notes of the rays of these pixels.
+    RayNotes notes(size_t first, size_t count) {
+        const auto values = [&](bool wanted, std::string_view name) {
+            const auto found = std::find_if(all_.begin(), all_.end(),
+                                            [&](const Layer& one) { return one.name == name; });
+            return wanted ? std::span(found->values).subspan(first, count) : std::span<uint32_t>();
+        };
+        return {values(aovs_.leaf, "leaf"), values(aovs_.passes, "passes"),
+                values(aovs_.flagged, "flagged")};
+    }
+
+    void set(size_t pixel, const Scene& scene, const Ray& ray, const Hit& hit) {
+        size_t next = 0;
+        const auto put = [&](uint32_t bits) { all_[next++].values[pixel] = bits; };
+        if (aovs_.depth)
+            put(std::bit_cast<uint32_t>(float(hit.t)));
+        if (aovs_.normal) {
+            const dvec3 normal = hit.is_hit() ? surface_point(scene, ray, hit).normal : dvec3(0);
+            for (int axis = 0; axis < 3; ++axis)
+                put(std::bit_cast<uint32_t>(float(normal[axis])));
+        }
+        if (aovs_.id) {
+            put(hit.id.mesh);
+            put(hit.id.prim);
+        }
+    }
+
+    std::vector<Layer> take() { return std::move(all_); }
+
+private:
+    const Aovs aovs_;
+    std::vector<Layer> all_;
+};
+
+} // namespace
+
+Result<Aovs> parse_aovs(std::string_view text) {
+    Aovs aovs;
+    while (true) {
+        const size_t comma = std::min(text.find(','), text.size());
+        const std::string_view name = text.substr(0, comma);
+        bool* const wanted = name == "depth"     ? &aovs.depth
+                             : name == "normal"  ? &aovs.normal
+                             : name == "id"      ? &aovs.id
+                             : name == "leaf"    ? &aovs.leaf
+                             : name == "passes"  ? &aovs.passes
+                             : name == "flagged" ? &aovs.flagged
+                                                 : nullptr;
+        if (!wanted)
+            return Error{fmt::format("--aov: '{}' is none of {}{}", name, fmt::join(kNames, ", "),
+                                     did_you_mean(name, kNames))};
+        if (*wanted)
+            return Error{fmt::format("--aov: {} is given twice", name)};
+        *wanted = true;
+        if (comma == text.size())
+            return aovs;
+        text.remove_prefix(comma + 1);
+    }
+}
+
+Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Pinhole& camera, Backend& backend,
+                                      const Aovs& aovs) {
+    const uint32_t width = camera.width();
+    const size_t pixels = size_t(width) * camera.height();
+    Layers layers(aovs, pixels);
+    std::vector<Ray> rays;
+    std::vector<Hit> hits;
+    for (size_t start = 0; start < pixels; start += kBatchRays) {
+        rays.resize(std::min(kBatchRays, pixels - start));
+        hits.resize(rays.size());
+        parallel_for(rays.size(), kGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i)
+                rays[i] = camera.ray(uint32_t((start + i) % width), uint32_t((start + i) / width));
+        });
+        if (const Result<Done> done =
+                backend.intersect_noted(rays, {}, hits, layers.notes(start, rays.size()));
+            !done)
+            return done.error();
+        parallel_for(rays.size(), kGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i)
+                layers.set(start + i, scene, rays[i], hits[i]);
+        });
+    }
+    return layers.take();
+}
+
+} // namespace ovc

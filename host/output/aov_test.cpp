@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// What --aov takes, and that the layers of a file say what the camera's rays hit.
+#include "host/output/aov.h"
+
+#include "core/exact/triangle.h"
+#include "host/camera/camera.h"
+#include "testscenes/catalog.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <unistd.h>
+
+namespace ovc {
+namespace {
+
+constexpr uint32_t kWidth = 40, kHeight = 30;
+
+std::string error_of(std::string_view text) {
+    const Result<Aovs> aovs = parse_aovs(text);
+    return aovs ? "" : aovs.error().message;
+}
+
+TEST(Aovs, AreNamedInAnyOrderOnceEach) {
+    const Result<Aovs> aovs = parse_aovs("id,depth");
+    ASSERT_TRUE(aovs);
+    EXPECT_TRUE(aovs->id && aovs->depth && !aovs->normal && !aovs->leaf && !aovs->passes);
+    EXPECT_TRUE(parse_aovs("leaf,passes")->leaf);
+    EXPECT_TRUE(parse_aovs("flagged")->flagged);
+    EXPECT_EQ(error_of("depth,depth"), "--aov: depth is given twice");
+    EXPECT_NE(error_of("norml").find("did you mean 'normal'"), std::string::npos)
+        << error_of("norml");
+    EXPECT_NE(error_of(""), "");
+    EXPECT_NE(error_of("depth,"), "");
+}
+
+/// One channel of a file, its words as they are.
+std::vector<uint32_t> channel(const std::string& path, const char* name, Imf::PixelType type) {
+    Imf::InputFile file(path.c_str());
+    const Imf::Channel* found = file.header().channels().findChannel(name);
+    EXPECT_TRUE(found && found->type == type) << name;
+    std::vector<uint32_t> words(size_t(kWidth) * kHeight);
+    Imf::FrameBuffer frame;
+    frame.insert(name, Imf::Slice(type, reinterpret_cast<char*>(words.data()), sizeof(uint32_t),
+                                  sizeof(uint32_t) * kWidth));
+    file.setFrameBuffer(frame);
+    file.readPixels(0, int(kHeight) - 1);
+    return words;
+}
+
+TEST(Aovs, OfAFileAreWhatEachPixelsRayHits) {
+    const Result<Scene> scene = make_test_scene("box");
+    ASSERT_TRUE(scene);
+    const Camera camera = scene->camera.value_or(Camera{dvec3(3, 2, 6), dvec3(0)});
+    const auto backend = make_cpu_backend(scene->soup);
+    Aovs aovs{true, true, true};
+    const auto layers = trace_aovs(*scene, Pinhole(camera, kWidth, kHeight), *backend, aovs);
+    ASSERT_TRUE(layers);
+    ASSERT_EQ(layers->size(), 6u);
+    const std::string path =
+        (std::filesystem::temp_directory_path() / ("aov" + std::to_string(getpid()) + ".exr"))
+            .string();
+    ASSERT_TRUE(save_image(Image(kWidth, kHeight), path, {.layers = *layers}));
+    const auto depth = channel(path, "depth.Z", Imf::FLOAT);
+    const auto mesh = channel(path, "id.mesh", Imf::UINT),
+               prim = channel(path, "id.prim", Imf::UINT);
+    const std::vector<uint32_t> normal[3] = {channel(path, "normal.X", Imf::FLOAT),
+                                             channel(path, "normal.Y", Imf::FLOAT),
+                                             channel(path, "normal.Z", Imf::FLOAT)};
+    std::filesystem::remove(path);
+
+    const Pinhole pinhole(camera, kWidth, kHeight);
+    size_t hit = 0, missed = 0;
+    for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
+        const Ray ray = pinhole.ray(i % kWidth, i / kWidth);
+        // By the triangle that is named, and none is nearer: each of the scene's is asked.
+        const PreparedRay prepared(ray);
+        Nearest offered(prepared);
+        for (uint32_t m = 0; m < scene->soup.chunks.size(); ++m)
+            for (uint32_t p = 0; p < scene->soup.chunks[m].size(); ++p)
+                offered.offer(scene->soup.triangle({m, p}), {m, p});
+        const double nearest = offered.hit().t;
+        const TriangleId id = offered.hit().id;
+        EXPECT_EQ(mesh[i], id.mesh) << i;
+        EXPECT_EQ(prim[i], id.prim) << i;
+        EXPECT_EQ(std::bit_cast<float>(depth[i]), float(nearest)) << i;
+        dvec3 n;
+        for (int axis = 0; axis < 3; ++axis)
+            n[axis] = double(std::bit_cast<float>(normal[axis][i]));
+        if (std::isinf(nearest)) {
+            ++missed;
+            EXPECT_EQ(n, dvec3(0));
+            continue;
+        }
+        ++hit;
+        const Triangle t = scene->soup.triangle(id);
+        EXPECT_NEAR(glm::length(n), 1, 1e-6);
+        EXPECT_LT(glm::dot(n, ray.dir), 0) << "towards the eye";
+        EXPECT_NEAR(glm::dot(n, glm::normalize(t[1] - t[0])), 0, 1e-6);
+        EXPECT_NEAR(glm::dot(n, glm::normalize(t[2] - t[0])), 0, 1e-6);
+    }
+    EXPECT_GT(hit, 100u);
+    EXPECT_GT(missed, 0u);
+}
+
+TEST(Aovs, LeafAndPassesAreRefusedByABackendWithoutLeaves) {
+    const Result<Scene> scene = make_test_scene("box");
+    ASSERT_TRUE(scene);
+    const auto backend = make_cpu_backend(scene->soup);
+    Aovs aovs;
+    aovs.passes = true;
+    const auto layers =
+        trace_aovs(*scene, Pinhole(Camera{dvec3(3, 2, 6), dvec3(0)}, 4, 4), *backend, aovs);
+    ASSERT_FALSE(layers);
+    EXPECT_EQ(layers.error().message,
+              "leaf, passes and flagged can be told by --backend two-level alone");
+}
+
+} // namespace
+} // namespace ovc

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// OpenEXR: out, linear light in float channels R, G, B, A, and layers; in, whatever channels there
+// are. The only file that sees OpenEXR.
+#include "host/diff/channels.h"
+#include "host/output/output.h"
+
+#include "importers/picture.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+
+namespace ovc {
+
+/// A file in memory: OpenEXR goes back to fill in a table, which a pipe could not.
+class MemoryStream final : public Imf::OStream {
+public:
+    explicit MemoryStream(std::string& bytes) : OStream("memory"), bytes_(bytes) {}
+
+    void write(const char* data, int size) override {
+        bytes_.resize(std::max(bytes_.size(), at_ + size_t(size)));
+        std::copy(data, data + size, bytes_.begin() + std::ptrdiff_t(at_));
+        at_ += size_t(size);
+    }
+    uint64_t tellp() override { return at_; }
+    void seekp(uint64_t at) override { at_ = at; }
+
+private:
+    std::string& bytes_;
+    size_t at_ = 0;
+};
+
+Result<std::string> encode_exr(const Image& image, const FileContents& contents) {
+    try {
+        Imf::Header header(int(image.width), int(image.height));
+        header.compression() = Imf::ZIP_COMPRESSION;
+        for (const FileNote& note : contents.notes)
+            header.insert(note.name, Imf::StringAttribute(note.text));
+        Imf::FrameBuffer frame;
+        for (int channel = 0; channel < 4; ++channel) {
+            const char name[] = {"RGBA"[channel], '\0'};
+            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+            // Slices are declared writable for reading and writing alike; writing a file only reads
+            // them.
+            char* first =
+                const_cast<char*>(reinterpret_cast<const char*>(&image.pixels[0][channel]));
+            frame.insert(name,
+                         Imf::Slice(Imf::FLOAT, first, sizeof(vec4), sizeof(vec4) * image.width));
+        }
+        for (const Layer& layer : contents.layers) {
+            const Imf::PixelType type = layer.type == Layer::Type::Float ? Imf::FLOAT : Imf::UINT;
+            header.channels().insert(layer.name, Imf::Channel(type));
+            char* first = const_cast<char*>(reinterpret_cast<const char*>(layer.values.data()));
+            frame.insert(layer.name,
+                         Imf::Slice(type, first, sizeof(uint32_t), sizeof(uint32_t) * image.width));
+        }
+        std::string bytes;
+        MemoryStream stream(bytes);
+        {
+            Imf::OutputFile file(stream, header);
+            file.setFrameBuffer(frame);
+            file.writePixels(int(image.height));
+        } // the table of lines is written now
+        return bytes;
+    } catch (const std::exception& e) {
+        return Error{e.what()};
+    }
+}
+
+/// Halves come as floats.
+static Result<Channels> read_all(Imf::InputFile& file) {
+    const Imath::Box2i window = file.header().dataWindow();
+    const int64_t width = int64_t(window.max.x) - window.min.x + 1;
+    const int64_t height = int64_t(window.max.y) - window.min.y + 1;
+    if (width < 1 || height < 1 || uint64_t(width) * uint64_t(height) > kMostPixels)
+        return Error{fmt::format("found a picture of {} x {}, expected 1 to {} pixels", width,
+                                 height, kMostPixels)};
+    Channels channels{uint32_t(width), uint32_t(height), Coding::Linear, {}};
+    const Imf::ChannelList& list = file.header().channels();
+    for (auto one = list.begin(); one != list.end(); ++one) {
+        if (one.channel().xSampling != 1 || one.channel().ySampling != 1)
+            return Error{fmt::format("the channel {} has fewer samples than the picture has pixels",
+                                     one.name())};
+        const auto type = one.channel().type == Imf::UINT ? Layer::Type::Uint : Layer::Type::Float;
+        channels.all.push_back({one.name(), type, std::vector<uint32_t>(channels.size())});
+    }
+    Imf::FrameBuffer frame;
+    for (Layer& layer : channels.all)
+        frame.insert(layer.name,
+                     Imf::Slice::Make(layer.type == Layer::Type::Float ? Imf::FLOAT : Imf::UINT,
+                                      layer.values.data(), window));
+    file.setFrameBuffer(frame);
+    file.readPixels(window.min.y, window.max.y);
+    return channels;
+}
+
+Result<Channels> read_exr(const std::filesystem::path& path) {
+    try {
+        Imf::InputFile file(path.c_str());
+        return read_all(file);
+    } catch (const std::exception& e) {
+        return Error{fmt::format("found a damaged OpenEXR picture: {}", e.what())};
+    }
+}
+
+} // namespace ovc

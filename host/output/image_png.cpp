@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// PNG out: sRGB, 8 or 16 bits a channel, as a viewer expects.
+#include "host/output/output.h"
+
+#include "core/system/parallel.h"
+#include "host/output/srgb.h"
+#include "host/terminal/version.h"
+#include "importers/png.h"
+
+#include <cmath>
+#include <vector>
+
+namespace ovc {
+
+/// Rounded to what `bits` hold, and scaled up to 65535.
+static uint16_t sample_of(float linear, int bits) {
+    if (bits == 16)
+        return uint16_t(std::lround(srgb_code(linear) * 65535));
+    return uint16_t(std::lround(srgb_code(linear) * 255) * 257);
+}
+
+Result<std::string> encode_png(const Image& image, const FileContents& contents) {
+    std::vector<uint16_t> samples(image.pixels.size() * 3);
+    parallel_for(image.pixels.size(), 4096, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            for (int channel = 0; channel < 3; ++channel)
+                samples[i * 3 + size_t(channel)] =
+                    sample_of(image.pixels[i][channel], contents.png_bits);
+    });
+    // Nothing of how it was made but the program: the same pixels are the same file.
+    return write_png({image.width, image.height, contents.png_bits, samples},
+                     "overcast " + version_text());
+}
+
+} // namespace ovc

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/render/antialias.h"
+
+#include "core/system/parallel.h"
+#include "host/camera/camera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_map>
+
+namespace ovc {
+namespace {
+
+constexpr size_t kMostPoints = size_t(1) << 21; // asked for at once: bounds memory
+constexpr size_t kGrain = 4096;                 // pixels a task
+
+/// In [-0.5, 0.5): the same for the same numbers. Hash: Steele, Lea and Flood 2014, SplitMix64.
+dvec2 chance(uint64_t a, uint64_t b) {
+    uint64_t bits = a * 0x9e3779b97f4a7c15u + b;
+    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
+    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
+    bits ^= bits >> 31;
+    return dvec2(double(bits >> 32), double(bits & 0xffffffffu)) * 0x1p-32 - 0.5;
+}
+
+/// A color, and how bright it looks: after POV-Ray's Antialias_Gamma, 2.5.
+struct Seen {
+    vec3 light{0}, looks{0};
+};
+
+Seen seen(const vec3& light, double gamma) {
+    Seen color{light};
+    for (int i = 0; i < 3; ++i)
+        color.looks[i] = gamma == kSrgbGamma
+                             ? std::pow(linear_light(light[i], gamma), 1 / 2.5f)
+                             : std::pow(std::max(light[i], 0.0f), float(gamma / 2.5));
+    return color;
+}
+
+bool differ(const Seen& a, const Seen& b, float threshold) {
+    const vec3 off = glm::abs(a.looks - b.looks);
+    return off.x + off.y + off.z >= threshold;
+}
+
+class Supersampling {
+public:
+    Supersampling(const ImageSize& size, const Antialias& how, double gamma,
+                  const TracePoints& trace)
+        : size_(size),
+          how_(how),
+          gamma_(gamma),
+          trace_(trace),
+          order_(pixel_order(size.width, size.height)),
+          colors_(order_.size()),
+          refined_(order_.size()) {}
+
+    std::optional<std::vector<vec3>> run() {
+        if (!sample_middles())
+            return std::nullopt;
+        // A refined pixel may still differ from a neighbour that is not: POV-Ray goes on to that
+        // one in the same round, and here it is the next one's.
+        for (std::vector<uint32_t> pixels = rough(); !pixels.empty(); pixels = rough())
+            if (!refine(pixels))
+                return std::nullopt;
+        std::vector<vec3> light(colors_.size());
+        std::transform(colors_.begin(), colors_.end(), light.begin(),
+                       [](const Seen& color) { return color.light; });
+        return light;
+    }
+
+private:
+    dvec2 corner(uint32_t pixel) const { return dvec2(pixel % size_.width, pixel / size_.width); }
+
+    bool sample_middles() {
+        std::vector<dvec2> points;
+        std::vector<vec3> light;
+        for (size_t first = 0; first < order_.size(); first += points.size()) {
+            points.resize(std::min(kMostPoints, order_.size() - first));
+            light.resize(points.size());
+            for (size_t i = 0; i < points.size(); ++i)
+                points[i] = corner(order_[first + i]) + 0.5;
+            if (!trace_(points, light))
+                return false;
+            for (size_t i = 0; i < points.size(); ++i)
+                colors_[order_[first + i]] = seen(light[i], gamma_);
+        }
+        return true;
+    }
+
+    /// Pixels of one sample that differ from a neighbour, in the order to trace them in.
+    std::vector<uint32_t> rough() const {
+        std::vector<uint8_t> is_rough(colors_.size());
+        parallel_for(colors_.size(), kGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i)
+                is_rough[i] = !refined_[i] && differs_from_neighbour(i);
+        });
+        std::vector<uint32_t> pixels;
+        for (const uint32_t pixel : order_)
+            if (is_rough[pixel])
+                pixels.push_back(pixel);
+        return pixels;
+    }
+
+    bool differs_from_neighbour(size_t i) const {
+        const size_t w = size_.width, x = i % w;
+        const auto differs = [&](size_t other) {
+            return differ(colors_[i], colors_[other], how_.threshold);
+        };
+        return (x > 0 && differs(i - 1)) || (x + 1 < w && differs(i + 1)) ||
+               (i >= w && differs(i - w)) || (i + w < colors_.size() && differs(i + w));
+    }
+
+    /// Adds depth x depth samples to each of the pixels.
+    bool refine(const std::vector<uint32_t>& pixels) {
+        const size_t side = how_.depth, samples = side * side;
+        std::vector<dvec2> points;
+        std::vector<vec3> light;
+        const size_t pixels_at_once = std::max<size_t>(kMostPoints / samples, 1);
+        for (size_t first = 0; first < pixels.size(); first += pixels_at_once) {
+            const size_t count = std::min(pixels_at_once, pixels.size() - first);
+            points.resize(count * samples);
+            light.resize(points.size());
+            for (size_t i = 0; i < points.size(); ++i) {
+                const uint32_t pixel = pixels[first + i / samples];
+                const size_t sample = i % samples;
+                const dvec2 off = 0.5 + double(how_.jitter) * chance(pixel, sample);
+                points[i] =
+                    corner(pixel) +
+                    (dvec2(double(sample % side), double(sample / side)) + off) / double(side);
+            }
+            if (!trace_(points, light))
+                return false;
+            for (size_t i = 0; i < count; ++i)
+                add(pixels[first + i], std::span(light).subspan(i * samples, samples));
+        }
+        return true;
+    }
+
+    void add(uint32_t pixel, std::span<const vec3> light) {
+        vec3 sum = colors_[pixel].light;
+        for (const vec3& more : light)
+            sum += more;
+        colors_[pixel] = seen(sum / float(light.size() + 1), gamma_);
+        refined_[pixel] = true;
+    }
+
+    const ImageSize size_;
+    const Antialias how_;
+    const double gamma_; // of the scene
+    const TracePoints& trace_;
+    const std::vector<uint32_t> order_; // of pixels
+    std::vector<Seen> colors_;
+    std::vector<uint8_t> refined_;
+};
+
+/// A square with a sample at each corner, on a grid of 2^(depth - 1) cells a pixel.
+struct Cell {
+    uint64_t x, y;
+    uint32_t size;
+};
+
+class Subdivision {
+public:
+    Subdivision(const ImageSize& size, const Antialias& how, double gamma, const TracePoints& trace)
+        : size_(size),
+          how_(how),
+          gamma_(gamma),
+          trace_(trace),
+          cells_(1u << (how.depth - 1)),
+          columns_(uint64_t(size.width) * cells_ + 1) {}
+
+    std::optional<std::vector<vec3>> run() {
+        std::vector<Cell> cells;
+        for (const uint32_t pixel : pixel_order(size_.width, size_.height))
+            cells.push_back(cell_of(pixel));
+        for (const Cell& cell : cells)
+            want(cell);
+        while (!cells.empty()) {
+            if (!sample_wanted())
+                return std::nullopt;
+            std::vector<Cell> quarters;
+            for (const Cell& cell : cells)
+                if (is_divided(cell))
+                    for_each_quarter(cell,
+                                     [&](const Cell& quarter) { quarters.push_back(quarter); });
+            for (const Cell& quarter : quarters)
+                want(quarter);
+            cells = std::move(quarters);
+        }
+        std::vector<vec3> colors(size_t(size_.width) * size_.height);
+        parallel_for(colors.size(), kGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i)
+                colors[i] = mean(cell_of(uint32_t(i)));
+        });
+        return colors;
+    }
+
+private:
+    Cell cell_of(uint32_t pixel) const {
+        return {uint64_t(pixel % size_.width) * cells_, uint64_t(pixel / size_.width) * cells_,
+                cells_};
+    }
+    uint64_t key(uint64_t x, uint64_t y) const { return y * columns_ + x; }
+
+    /// The corners of a square that have no sample yet.
+    void want(const Cell& cell) {
+        for (const uint64_t y : {cell.y, cell.y + cell.size})
+            for (const uint64_t x : {cell.x, cell.x + cell.size})
+                if (samples_.try_emplace(key(x, y)).second)
+                    wanted_.push_back(key(x, y));
+    }
+
+    bool sample_wanted() {
+        std::vector<dvec2> points;
+        std::vector<vec3> light;
+        for (size_t first = 0; first < wanted_.size(); first += points.size()) {
+            points.resize(std::min(kMostPoints, wanted_.size() - first));
+            light.resize(points.size());
+            for (size_t i = 0; i < points.size(); ++i) {
+                const uint64_t at = wanted_[first + i];
+                const dvec2 off = double(how_.jitter) * chance(at, 0);
+                const dvec2 point =
+                    (dvec2(double(at % columns_), double(at / columns_)) + off) / double(cells_);
+                points[i] = glm::clamp(point, dvec2(0), dvec2(size_.width, size_.height));
+            }
+            if (!trace_(points, light))
+                return false;
+            for (size_t i = 0; i < points.size(); ++i)
+                samples_[wanted_[first + i]] = seen(light[i], gamma_);
+        }
+        wanted_.clear();
+        return true;
+    }
+
+    std::array<Seen, 4> corners(const Cell& cell) const {
+        const auto at = [&](uint64_t x, uint64_t y) { return samples_.at(key(x, y)); };
+        const uint64_t right = cell.x + cell.size, below = cell.y + cell.size;
+        return {at(cell.x, cell.y), at(right, cell.y), at(cell.x, below), at(right, below)};
+    }
+
+    bool is_divided(const Cell& cell) const {
+        if (cell.size == 1)
+            return false;
+        const std::array<Seen, 4> c = corners(cell);
+        const auto apart = [&](int i, int k) {
+            return differ(c[size_t(i)], c[size_t(k)], how_.threshold);
+        };
+        return apart(0, 1) || apart(2, 3) || apart(0, 2) || apart(1, 3) || apart(0, 3) ||
+               apart(1, 2);
+    }
+
+    template <class Use>
+    static void for_each_quarter(const Cell& cell, Use use) {
+        const uint32_t half = cell.size / 2;
+        for (const uint64_t y : {cell.y, cell.y + half})
+            for (const uint64_t x : {cell.x, cell.x + half})
+                use(Cell{x, y, half});
+    }
+
+    vec3 mean(const Cell& cell) const {
+        vec3 sum(0);
+        if (is_divided(cell))
+            for_each_quarter(cell, [&](const Cell& quarter) { sum += mean(quarter); });
+        else
+            for (const Seen& corner : corners(cell))
+                sum += corner.light;
+        return sum / 4.0f;
+    }
+
+    const ImageSize size_;
+    const Antialias how_;
+    const double gamma_; // of the scene
+    const TracePoints& trace_;
+    const uint32_t cells_; // a pixel, along each side
+    const uint64_t columns_;
+    std::unordered_map<uint64_t, Seen> samples_; // by their place on the grid
+    std::vector<uint64_t> wanted_;
+};
+
+} // namespace
+
+std::optional<std::vector<vec3>> antialiased(const ImageSize& size, const Antialias& how,
+                                             double gamma, const TracePoints& trace) {
+    if (how.method == Antialias::Method::Supersample)
+        return Supersampling(size, how, gamma, trace).run();
+    return Subdivision(size, how, gamma, trace).run();
+}
+
+} // namespace ovc

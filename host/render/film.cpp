@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sums in fixed point: adding whole numbers has no order.
+#include "host/render/film.h"
+
+#include "core/system/parallel.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace ovc {
+
+static constexpr double kOne = 0x1p28;
+/// Light brighter than this is as bright as this: a million times as much stays below 2^63.
+static constexpr float kBrightest = 32768;
+
+/// NaN is dark.
+static int64_t fixed(float light) {
+    return light == light ? std::llround(double(std::clamp(light, -kBrightest, kBrightest)) * kOne)
+                          : 0;
+}
+
+Film::Film(uint32_t width, uint32_t height, uint32_t samples)
+    : width_(width),
+      height_(height),
+      samples_(samples),
+      sums_(size_t(width) * height),
+      under_way_(size_t(width) * height) {
+    assert(samples > 0);
+    for (std::atomic<uint32_t>& rays : under_way_)
+        rays.store(samples, std::memory_order_relaxed);
+}
+
+void Film::add(uint32_t pixel, const vec3& light) {
+    for (int channel = 0; channel < 3; ++channel)
+        if (light[channel] != 0)
+            sums_[pixel][size_t(channel)].fetch_add(fixed(light[channel]),
+                                                    std::memory_order_relaxed);
+}
+
+Film::Sums Film::sums(uint32_t pixel) const {
+    const auto& sum = sums_[pixel];
+    return {sum[0].load(), sum[1].load(), sum[2].load()};
+}
+
+void Film::restore(uint32_t pixel, const Sums& sums) {
+    for (size_t channel = 0; channel < 3; ++channel)
+        sums_[pixel][channel].store(sums[channel]);
+    if (under_way_[pixel].exchange(0) != 0)
+        ++done_;
+}
+
+Image Film::image() const {
+    Image image(width_, height_);
+    const double scale = 1 / (kOne * samples_);
+    parallel_for(image.pixels.size(), 4096, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            if (done(uint32_t(i))) {
+                const Sums sum = sums(uint32_t(i));
+                image.pixels[i] =
+                    vec4(vec3(scale * dvec3(double(sum[0]), double(sum[1]), double(sum[2]))), 1);
+            }
+    });
+    return image;
+}
+
+} // namespace ovc

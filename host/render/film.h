@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Film: the picture while it is made. Light arrives in any order and from any thread, and adds up
+// to the same bits; a pixel is done when no ray of it is under way.
+#pragma once
+
+#include "core/file/image.h"
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ovc {
+
+class Film {
+public:
+    /// samples: camera rays a pixel, at least 1.
+    Film(uint32_t width, uint32_t height, uint32_t samples = 1);
+
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    uint32_t samples() const { return samples_; }
+
+    /// Light that one of the pixel's camera rays gets; the picture has the mean of them.
+    void add(uint32_t pixel, const vec3& light);
+
+    /// More rays of the pixel are under way; at first there are its camera rays.
+    void open(uint32_t pixel, uint32_t rays = 1) {
+        under_way_[pixel].fetch_add(rays, std::memory_order_relaxed);
+    }
+    /// One of them has been answered, and what it spawned is open already.
+    void close(uint32_t pixel) {
+        if (under_way_[pixel].fetch_sub(1, std::memory_order_acq_rel) == 1)
+            done_.fetch_add(1, std::memory_order_relaxed);
+    }
+
+    bool done(uint32_t pixel) const {
+        return under_way_[pixel].load(std::memory_order_acquire) == 0;
+    }
+    uint64_t pixels_done() const { return done_.load(std::memory_order_relaxed); }
+
+    /// Exactly what has arrived, in units of 2^-28; for a file that is gone on with later.
+    using Sums = std::array<int64_t, 3>;
+    Sums sums(uint32_t pixel) const;
+    /// The pixel is done, and this is what had arrived. Before any ray of it is answered.
+    void restore(uint32_t pixel, const Sums& sums);
+
+    /// Pixels that are not done are black, with alpha 0.
+    Image image() const;
+
+private:
+    uint32_t width_, height_, samples_;
+    std::vector<std::array<std::atomic<int64_t>, 3>> sums_;
+    std::vector<std::atomic<uint32_t>> under_way_; // rays, per pixel
+    std::atomic<uint64_t> done_{0};                // pixels
+};
+
+} // namespace ovc

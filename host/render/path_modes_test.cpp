@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Path tracing in both modes: the same bits for the same seed, and for others the same mean in each
+// pixel.
+#include "host/render/render.h"
+#include "host/render/test_shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+
+namespace ovc {
+namespace {
+
+constexpr uint32_t kSide = 20;
+
+/// A floor, a glossy one beside it, a mirror behind, a pane in front, a lamp above, a blue sky.
+Scene corner() {
+    using Boundary = Optics::Boundary;
+    Scene scene;
+    const auto add = [&](const Optics& optics, Chunk chunk) {
+        Material material;
+        material.optics = optics;
+        scene.materials.push_back(material);
+        scene.add_mesh("quad", uint32_t(scene.materials.size() - 1), std::move(chunk));
+    };
+    scene.background = {vec3(0.1f), {0.05f, 0.1f, 0.2f}};
+    add({.diffuse = {0.7f, 0.4f, 0.3f}}, quad({-3, 0, -2}, {-3, 0, 2}, {0, 0, 2}, {0, 0, -2}));
+    add({.diffuse = vec3(0.2f), .boundary = Boundary::Dielectric, .width = 0.3f},
+        quad({0, 0, -2}, {0, 0, 2}, {3, 0, 2}, {3, 0, -2}));
+    add({.boundary = Boundary::Mirror, .reflection = vec3(0.8f)},
+        quad({-3, 0, -2}, {3, 0, -2}, {3, 3, -2}, {-3, 3, -2}));
+    add({.boundary = Boundary::Thin, .through = {0.9f, 1, 0.9f}},
+        quad({-1, 0, 1}, {1, 0, 1}, {1, 1, 1}, {-1, 1, 1}));
+    add({.emission = vec3(6)}, quad({-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}));
+    return scene;
+}
+
+Image picture(const Scene& scene, Backend& backend, RenderMode mode, uint64_t seed,
+              uint32_t samples) {
+    Camera camera;
+    camera.eye = {0.5, 2, 6};
+    camera.target = {0, 0.9, 0};
+    camera.fov_degrees = 45;
+    Film film(kSide, kSide, samples);
+    RenderOptions options;
+    options.integrator = IntegratorKind::Path;
+    options.mode = mode;
+    options.max_depth = 8;
+    options.seed = seed;
+    const auto report = render_picture(scene, camera, backend, options, {}, film);
+    EXPECT_TRUE(report && report->complete);
+    EXPECT_TRUE(report && report->rays.bounce > 0 && report->rays.shadow > 0);
+    return film.image();
+}
+
+TEST(PathModes, MakeTheSameBitsOfTheSameSeed) {
+    const Scene scene = corner();
+    const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
+    const Image batched = picture(scene, *backend, RenderMode::Batched, 5, 4);
+    EXPECT_EQ(batched.pixels, picture(scene, *backend, RenderMode::Mixed, 5, 4).pixels);
+    EXPECT_NE(batched.pixels, picture(scene, *backend, RenderMode::Mixed, 6, 4).pixels);
+}
+
+/// Mean and variance of the mean, per pixel, over pictures of different seeds.
+struct Pixels {
+    std::vector<double> mean, variance;
+};
+
+Pixels many(const Scene& scene, Backend& backend, RenderMode mode, uint64_t first_seed) {
+    constexpr uint32_t kPictures = 24;
+    Pixels all{std::vector<double>(kSide * kSide), std::vector<double>(kSide * kSide)};
+    std::vector<double> squares(kSide * kSide);
+    for (uint32_t i = 0; i < kPictures; ++i) {
+        const Image image = picture(scene, backend, mode, first_seed + i, 16);
+        for (size_t p = 0; p < image.pixels.size(); ++p) {
+            all.mean[p] += double(image.pixels[p].g) / kPictures;
+            squares[p] += double(image.pixels[p].g) * double(image.pixels[p].g) / kPictures;
+        }
+    }
+    for (size_t p = 0; p < squares.size(); ++p)
+        all.variance[p] = std::max(squares[p] - all.mean[p] * all.mean[p], 0.0) / (kPictures - 1);
+    return all;
+}
+
+TEST(PathModes, ConvergeToTheSameMean) {
+    const Scene scene = corner();
+    const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
+    const Pixels batched = many(scene, *backend, RenderMode::Batched, 100);
+    const Pixels mixed = many(scene, *backend, RenderMode::Mixed, 200);
+    double squares = 0, sum = 0;
+    int pixels = 0;
+    for (size_t p = 0; p < batched.mean.size(); ++p) {
+        const double sigma = std::sqrt(batched.variance[p] + mixed.variance[p]);
+        if (!(sigma > 0)) { // sees sky or lamp alone
+            EXPECT_EQ(batched.mean[p], mixed.mean[p]);
+            continue;
+        }
+        const double z = (batched.mean[p] - mixed.mean[p]) / sigma;
+        EXPECT_LT(std::abs(z), 5.5) << "pixel " << p; // Student's t of some 40 degrees
+        squares += z * z;
+        sum += z;
+        ++pixels;
+    }
+    EXPECT_GT(pixels, int(kSide * kSide / 2));
+    // Of n values of variance 46/44: five sigma.
+    EXPECT_NEAR(sum / pixels, 0, 5 / std::sqrt(pixels));
+    EXPECT_NEAR(squares / pixels, 46 / 44.0, 5 * std::sqrt(2.2 / pixels));
+}
+
+} // namespace
+} // namespace ovc

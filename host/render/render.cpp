@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture: who shades, who traces, and what it took.
+#include "host/render/render.h"
+
+#include "core/system/stopwatch.h"
+#include "host/camera/camera_rays.h"
+#include "host/render/render_batched.h"
+#include "host/render/render_mixed.h"
+#include "host/shade/path_tracer.h"
+#include "host/shade/whitted.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace ovc {
+
+void RayCounts::count(RayKind kind) {
+    switch (kind) {
+    case RayKind::Camera:
+        ++primary;
+        break;
+    case RayKind::Reflection:
+        ++reflection;
+        break;
+    case RayKind::Refraction:
+        ++refraction;
+        break;
+    case RayKind::Bounce:
+        ++bounce;
+        break;
+    }
+}
+
+RayCounts& RayCounts::operator+=(const RayCounts& other) {
+    primary += other.primary;
+    shadow += other.shadow;
+    reflection += other.reflection;
+    refraction += other.refraction;
+    bounce += other.bounce;
+    return *this;
+}
+
+RenderReport& RenderReport::operator+=(const RenderReport& other) {
+    rays += other.rays;
+    seconds += other.seconds;
+    seconds_trace += other.seconds_trace;
+    seconds_shade += other.seconds_shade;
+    seconds_cpu += other.seconds_cpu;
+    pixels_done += other.pixels_done;
+    return *this;
+}
+
+/// Of all threads, in the program and in the system for it.
+static double cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& time) {
+        return double(time.tv_sec) + 1e-6 * double(time.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Camera& camera,
+                                                   const RenderOptions& options) {
+    const vec3 up(glm::normalize(camera.up));
+    if (options.integrator == IntegratorKind::Path)
+        return std::make_unique<PathTracer>(
+            scene, up, PathTracerOptions{options.max_depth, options.shadows, options.seed});
+    return std::make_unique<Whitted>(scene, up, options.max_depth, options.shadows);
+}
+
+namespace {
+
+/// Passes of adaptive antialiasing: each is a film of its own, with a pixel for each point.
+class AdaptivePasses {
+public:
+    /// trace: renders all rays onto a film of one sample a pixel.
+    using Trace =
+        std::function<Result<RenderReport>(const CameraRays&, const RenderObserver&, Film&)>;
+
+    AdaptivePasses(const Pinhole& pinhole, const RenderObserver& observe, Trace trace)
+        : pinhole_(pinhole), observe_(observe), trace_(std::move(trace)) {}
+
+    /// Fills the film, unless it was stopped.
+    Result<RenderReport> run(const Antialias& how, double gamma, Film& film) {
+        const ImageSize size{film.width(), film.height()};
+        const auto colors = antialiased(
+            size, how, gamma, [&](auto points, auto light) { return pass(points, light); });
+        if (error_)
+            return *error_;
+        for (uint32_t pixel = 0; colors && pixel < colors->size(); ++pixel) {
+            film.add(pixel, (*colors)[pixel]);
+            film.close(pixel);
+        }
+        report_.complete = colors.has_value();
+        return report_;
+    }
+
+private:
+    bool pass(std::span<const dvec2> points, std::span<vec3> light) {
+        Film film(uint32_t(points.size()), 1);
+        const RenderReport before = report_;
+        // Most pictures take little more than a point for each pixel.
+        const RenderObserver observe = [&](const RenderReport& now) {
+            RenderReport all = before;
+            all += now;
+            all.pixels_done = std::min(all.pixels_done, pixels_);
+            return !observe_ || observe_(all);
+        };
+        const Result<RenderReport> done = trace_(CameraRays(pinhole_, points), observe, film);
+        if (!done) {
+            error_ = done.error();
+            return false;
+        }
+        report_ += *done;
+        const Image image = film.image();
+        for (size_t i = 0; i < light.size(); ++i)
+            light[i] = vec3(image.pixels[i]);
+        return done->complete;
+    }
+
+    const Pinhole& pinhole_;
+    const uint64_t pixels_ = uint64_t(pinhole_.width()) * pinhole_.height();
+    const RenderObserver& observe_;
+    const Trace trace_;
+    std::optional<Error> error_;
+    RenderReport report_;
+};
+
+} // namespace
+
+Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Backend& backend,
+                                    const RenderOptions& options, const RenderObserver& observe,
+                                    Film& film) {
+    const Stopwatch watch;
+    const double cpu_before = cpu_seconds();
+    const ImageSize whole{film.width(), film.height()};
+    const Pinhole pinhole(camera, options.part.value_or(PicturePart{whole, 0, 0, whole}));
+    const std::unique_ptr<Integrator> integrator = make_integrator(scene, camera, options);
+    const size_t lights = scene.lights.size();
+    const auto trace = [&](const CameraRays& rays, const RenderObserver& watch_it, Film& to) {
+        return options.mode == RenderMode::Mixed
+                   ? render_mixed(*integrator, lights, rays, backend, watch_it, to)
+                   : render_batched(*integrator, lights, rays, backend, options.batch_rays,
+                                    watch_it, to);
+    };
+    const bool is_adaptive = options.antialias && film.pixels_done() == 0;
+    Result<RenderReport> report =
+        is_adaptive
+            ? AdaptivePasses(pinhole, observe, trace).run(*options.antialias, scene.gamma, film)
+            : trace(CameraRays(pinhole, film), observe, film);
+    if (!report)
+        return report;
+    report->pixels_done = film.pixels_done();
+    report->seconds = watch.seconds();
+    report->seconds_cpu = cpu_seconds() - cpu_before;
+    return report;
+}
+
+} // namespace ovc

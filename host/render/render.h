@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rendering a picture: what the batched and the mixed form share.
+#pragma once
+
+#include "core/result.h"
+#include "core/scene.h"
+#include "host/backend/backend.h"
+#include "host/camera/camera.h"
+#include "host/render/antialias.h"
+#include "host/render/film.h"
+#include "host/shade/integrator.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+namespace ovc {
+
+/// Whitted 1980: mirrors and glass, lights as points. Path: Kajiya 1986, all light there is.
+enum class IntegratorKind { Whitted, Path };
+
+/// Algorithm 5 or 6 of the thesis. Auto is batched, which is faster (docs/benchmarks.md).
+enum class RenderMode { Auto, Batched, Mixed };
+
+struct RenderOptions {
+    IntegratorKind integrator = IntegratorKind::Whitted;
+    RenderMode mode = RenderMode::Auto;
+    uint32_t max_depth = 5; // surfaces that a path leaves at most
+    bool shadows = true;
+    uint64_t seed = 0;                  // of path tracing
+    std::optional<Antialias> antialias; // none: the film's samples, evenly
+    std::optional<PicturePart> part;    // that the film is; none: it is the whole picture
+    /// Batched: the most rays a backend gets at once. Bounds host memory: at most about three times
+    /// as many rays wait.
+    size_t batch_rays = size_t(1) << 20;
+};
+
+struct RayCounts {
+    uint64_t primary = 0;
+    uint64_t shadow = 0;
+    uint64_t reflection = 0;
+    uint64_t refraction = 0;
+    uint64_t bounce = 0;
+
+    uint64_t total() const { return primary + shadow + reflection + refraction + bounce; }
+    void count(RayKind kind);
+    RayCounts& operator+=(const RayCounts& other);
+};
+
+struct RenderReport {
+    RayCounts rays;
+    double seconds = 0;       // from the first ray to the last
+    double seconds_trace = 0; // of them, while the backend was at work
+    double seconds_shade = 0; // making and shading rays, perhaps beside tracing
+    double seconds_cpu = 0;   // of all threads of this process
+    uint64_t pixels_done = 0;
+    bool complete = false; // false: `observe` stopped it; pixels that are done are on the film
+
+    RenderReport& operator+=(const RenderReport& other); // but for `complete`
+};
+
+/// Called after every answer of the backend, with what has been done so far, by one thread at a
+/// time; false stops the rendering.
+using RenderObserver = std::function<bool(const RenderReport&)>;
+
+/// Renders the pixels of the film that are not done. The same scene, camera and options give the
+/// same bits in either mode, in whatever batches and on however many threads.
+Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Backend& backend,
+                                    const RenderOptions& options, const RenderObserver& observe,
+                                    Film& film);
+
+} // namespace ovc

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// The loop of algorithm 5: trace, shade, ask for shadows, until no rays are left; then the next
+// pixels. Two lanes do so beside each other: while one traces, the other shades.
+#include "host/render/render_batched.h"
+
+#include "core/system/parallel.h"
+#include "core/system/stopwatch.h"
+#include "host/shade/shading.h"
+
+#include <algorithm>
+#include <atomic>
+#include <future>
+#include <mutex>
+#include <optional>
+
+namespace ovc {
+namespace {
+
+/// So many rays a batch for each core: what they take stays in caches, and they go through so small
+/// a part of the picture that under a budget most find their pages in the pool (decision 19). A
+/// picture is cut into some batches at least, or a lane has nothing to do while the other traces.
+constexpr uint64_t kRaysACore = 1 << 14;
+constexpr uint64_t kLeastBatches = 8;
+
+/// What the lanes share: the camera's rays, and the backend, which answers one call at a time.
+class Work {
+public:
+    Work(const CameraRays& camera, Backend& backend, const RenderObserver& observe,
+         const Film& film)
+        : camera_(camera), backend_(backend), observe_(observe), film_(film) {}
+
+    /// The next camera rays, at most so many; false: there are none left.
+    bool begin(size_t most, RayList<Path>& paths) {
+        const uint64_t first = begun_.fetch_add(most);
+        if (first >= camera_.size())
+            return false;
+        camera_.make(first, std::min<uint64_t>(most, camera_.size() - first), paths);
+        return true;
+    }
+
+    /// Runs ask(backend), which traces `rays`. False: the rendering has stopped, and what is
+    /// answered does not count.
+    template <class Ask>
+    bool trace(const RayCounts& rays, Ask&& ask) {
+        const std::lock_guard turn(turn_);
+        if (stopped_)
+            return false;
+        const Stopwatch watch;
+        const Result<Done> done = ask(backend_);
+        report_.seconds_trace += watch.seconds();
+        if (!done)
+            error_ = done.error();
+        report_.rays += rays;
+        report_.pixels_done = film_.pixels_done();
+        stopped_ = !done || (observe_ && !observe_(report_));
+        return !stopped_;
+    }
+
+    void shaded_for(double seconds) {
+        const std::lock_guard turn(turn_);
+        report_.seconds_shade += seconds;
+    }
+
+    Result<RenderReport> report() {
+        if (error_)
+            return *error_;
+        report_.complete = !stopped_;
+        return report_;
+    }
+
+private:
+    const CameraRays& camera_;
+    Backend& backend_;
+    const RenderObserver& observe_;
+    const Film& film_;
+    std::atomic<uint64_t> begun_{0}; // camera rays
+    std::mutex turn_;                // of what is below
+    bool stopped_ = false;
+    std::optional<Error> error_;
+    RenderReport report_;
+};
+
+class Lane {
+public:
+    Lane(Work& work, const Integrator& integrator, size_t lights, size_t batch_rays, Film& film)
+        : work_(work),
+          integrator_(integrator),
+          shading_(integrator, lights, film),
+          batch_rays_(batch_rays) {}
+
+    void run() {
+        const Stopwatch watch;
+        while (work_.begin(batch_rays_, spawned_.paths))
+            while (!spawned_.paths.empty()) {
+                take_waiting();
+                if (!trace_paths() || !shade())
+                    return;
+            }
+        work_.shaded_for(watch.seconds() - seconds_tracing_);
+    }
+
+private:
+    bool trace_paths() {
+        RayCounts rays;
+        for (const Path& path : now_.purposes)
+            rays.count(path.kind);
+        hits_.resize(now_.size());
+        return trace(
+            rays, [&](Backend& backend) { return backend.intersect(now_.rays, now_.skip, hits_); });
+    }
+
+    bool shade() {
+        const size_t piece = shading_.most_answers();
+        for (size_t first = 0; first < now_.size(); first += piece) {
+            shading_.shade(now_, hits_, first, std::min(piece, now_.size() - first), spawned_);
+            const bool last = first + piece >= now_.size();
+            if ((last || spawned_.shadows.size() >= batch_rays_) && !trace_shadows())
+                return false;
+        }
+        return true;
+    }
+
+    bool trace_shadows() {
+        while (!spawned_.shadows.empty()) {
+            spawned_.shadows.move_tail(
+                spawned_.shadows.size() - std::min(spawned_.shadows.size(), batch_rays_), shadows_);
+            while (!shadows_.empty())
+                if (!(integrator_.light_may_pass() ? pass() : arrive()))
+                    return false;
+        }
+        return true;
+    }
+
+    bool arrive() {
+        occluded_.resize(shadows_.size());
+        if (!trace({.shadow = shadows_.size()}, [&](Backend& backend) {
+                return backend.occluded(shadows_.rays, shadows_.skip, occluded_);
+            }))
+            return false;
+        shading_.arrive(shadows_.purposes, occluded_);
+        shadows_.resize(0);
+        return true;
+    }
+
+    bool pass() {
+        shadow_hits_.resize(shadows_.size());
+        if (!trace({.shadow = shadows_.size()}, [&](Backend& backend) {
+                return backend.intersect(shadows_.rays, shadows_.skip, shadow_hits_);
+            }))
+            return false;
+        shading_.pass(shadows_, shadow_hits_);
+        return true;
+    }
+
+    template <class Ask>
+    bool trace(const RayCounts& rays, Ask&& ask) {
+        const Stopwatch watch;
+        const bool goes_on = work_.trace(rays, ask);
+        seconds_tracing_ += watch.seconds();
+        return goes_on;
+    }
+
+    /// The rays to trace next: all that wait, while one batch holds them. Where splitting rays have
+    /// made them more, the last few, which are the deepest: n rays leave at most 2 n.
+    void take_waiting() {
+        RayList<Path>& waiting = spawned_.paths;
+        const size_t few =
+            waiting.size() > batch_rays_ ? std::max<size_t>(batch_rays_ / 8, 1) : waiting.size();
+        waiting.move_tail(waiting.size() - few, now_);
+    }
+
+    Work& work_;
+    const Integrator& integrator_;
+    Shading shading_;
+    const size_t batch_rays_;
+    double seconds_tracing_ = 0; // or waiting for it
+    // All are kept between rounds so that they are allocated once.
+    Spawned spawned_;   // waiting, the deepest last
+    RayList<Path> now_; // being traced, as the next
+    RayList<Shadow> shadows_;
+    std::vector<Hit> hits_;
+    std::vector<Hit> shadow_hits_;
+    std::vector<uint8_t> occluded_;
+};
+
+} // namespace
+
+Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
+                                    const CameraRays& camera, Backend& backend, size_t batch_rays,
+                                    const RenderObserver& observe, Film& film) {
+    const uint64_t wanted =
+        std::min(camera.size() / kLeastBatches + 1, kRaysACore * thread_count());
+    const size_t batch = size_t(std::min<uint64_t>(batch_rays, wanted));
+    Work work(camera, backend, observe, film);
+    std::vector<std::future<void>> lanes(thread_count() == 1 ? 1 : 2);
+    for (std::future<void>& lane : lanes)
+        lane = std::async(std::launch::async,
+                          [&] { Lane(work, integrator, lights, batch, film).run(); });
+    for (std::future<void>& lane : lanes)
+        lane.get();
+    return work.report();
+}
+
+} // namespace ovc

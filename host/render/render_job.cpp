@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rendering: the scene and the structure once, then picture after picture.
+#include "host/render/render_job.h"
+
+#include "core/system/parallel.h"
+#include "core/system/stopwatch.h"
+#include "core/text/printable.h"
+#include "host/arguments/vector_width.h"
+#include "host/backend/device_opening.h"
+#include "host/camera/camera.h"
+#include "host/output/stats.h"
+#include "host/render/frames.h"
+#include "host/render/render.h"
+#include "host/render/unfinished.h"
+#include "host/scene/scene_cache.h"
+#include "host/scene/scene_summary.h"
+#include "host/shade/path_tracer.h"
+#include "host/shade/whitted.h"
+#include "host/terminal/interrupt.h"
+#include "host/terminal/message.h"
+#include "host/terminal/progress.h"
+#include "host/terminal/version.h"
+#include "importers/scene_bytes.h"
+#include "importers/scene_fields.h"
+#include "importers/scene_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+namespace ovc {
+
+namespace fs = std::filesystem;
+
+/// The camera of a single picture: the one asked for, the scene's, or one that sees all of it.
+static Camera still_camera(const Scene& scene, const RenderJob& job, const ImageSize& size) {
+    if (job.camera) {
+        Camera camera = *job.camera;
+        if (job.up)
+            camera.up = axis_vector(*job.up);
+        else if (scene.camera)
+            camera.up = scene.camera->up;
+        return camera;
+    }
+    if (scene.camera)
+        return *scene.camera;
+    return framing_camera(hittable_bounds(scene.soup), size.width, size.height, job.up.value_or(1));
+}
+
+static RenderOptions render_options(const RenderJob& job, const PicturePart& part,
+                                    const Scene& scene) {
+    RenderOptions options = job.render;
+    options.part = part;
+    // What a file asks for is about mirrors and glass: light goes on for longer.
+    const uint32_t otherwise = options.integrator == IntegratorKind::Path
+                                   ? PathTracerOptions{}.max_depth
+                                   : scene.max_depth.value_or(options.max_depth);
+    options.max_depth = job.max_depth.value_or(otherwise);
+    options.max_depth = std::min(options.max_depth, kMostDepth);
+    return options;
+}
+
+static std::vector<std::string> outputs_of(const RenderJob& job, uint32_t frame) {
+    std::vector<std::string> outputs = job.outputs;
+    if (!job.shots.empty())
+        for (std::string& output : outputs)
+            output = frame_file(output, frame);
+    return outputs;
+}
+
+/// An earlier run has finished the picture, and this one goes on from there.
+static bool is_there(const RenderJob& job, uint32_t frame) {
+    const std::vector<std::string> outputs = outputs_of(job, frame);
+    return job.go_on && !fs::exists(unfinished_film(outputs[0])) &&
+           std::all_of(outputs.begin(), outputs.end(),
+                       [](const std::string& output) { return fs::exists(output); });
+}
+
+/// A run of pictures over one scene and one backend.
+class Rendering {
+public:
+    Rendering(const RenderJob& job, const PicturePart& part, Scene& scene, Backend& backend,
+              const LogSink& log)
+        : job_(job),
+          log_(log),
+          options_(render_options(job, part, scene)),
+          scene_(scene),
+          lights_(job.lights.empty() ? scene.lights : job.lights),
+          backend_(backend) {}
+
+    /// Every picture in turn until one is interrupted, whose pixels are kept beside its outputs.
+    Result<Done> run(const std::vector<Shot>& shots, RenderStats& stats) {
+        stats.report.complete = true;
+        for (const Shot& shot : shots) {
+            if (is_there(job_, shot.frame)) {
+                ++stats.frames_there;
+                continue;
+            }
+            const Result<FrameStats> frame = render_one(shot);
+            if (!frame)
+                return frame.error();
+            stats.report.complete = frame->report.complete;
+            if (!frame->report.complete && is_sequence())
+                return Done{};
+            stats.add(*frame);
+            if (is_sequence() && !job_.quiet) {
+                fmt::print("{}\n", frame_summary(*frame));
+                std::fflush(stdout);
+            }
+            if (!stats.report.complete)
+                return Done{};
+        }
+        return Done{};
+    }
+
+    bool is_sequence() const { return !job_.shots.empty(); }
+
+private:
+    Result<FrameStats> render_one(const Shot& shot) {
+        const Stopwatch watch;
+        const ovc_statistics before = backend_.statistics();
+        FrameStats frame;
+        frame.frame = shot.frame;
+        scene_.lights = placed_lights(scene_, lights_, shot.camera);
+        Film film(options_.part->size.width, options_.part->size.height, job_.samples);
+        if (const Result<Done> done = go_on_with(shot, film); !done)
+            return done.error();
+        if (const Result<RenderReport> report = trace(shot, film); report)
+            frame.report = *report;
+        else
+            return report.error();
+        frame.tracing = counted_between(before, backend_.statistics());
+        frame.active = backend_.take_active();
+        frame.host_peak_bytes = host_peak_bytes();
+        frame.seconds = watch.seconds(); // as its files tell it
+        const Stopwatch output;
+        const Result<Done> saved = frame.report.complete ? save_finished(shot, film, frame)
+                                                         : save_unfinished(shot, film, frame);
+        if (!saved)
+            return saved.error();
+        frame.seconds_output = output.seconds();
+        frame.seconds = watch.seconds();
+        frame.host_peak_bytes = host_peak_bytes();
+        return frame;
+    }
+
+    std::vector<std::string> outputs_of(const Shot& shot) const {
+        return ovc::outputs_of(job_, shot.frame);
+    }
+    std::string film_of(const Shot& shot) const { return unfinished_film(outputs_of(shot)[0]); }
+
+    Result<Done> go_on_with(const Shot& shot, Film& film) const {
+        if (!job_.go_on || !fs::exists(film_of(shot)))
+            return Done{};
+        const Result<Done> loaded = load_film(film_of(shot), checksum_of_picture(shot), film);
+        if (loaded)
+            say(log_, LogLevel::Info,
+                fmt::format("going on with {}: {} of {} pixels are there", film_of(shot),
+                            film.pixels_done(), uint64_t(film.width()) * film.height()));
+        return loaded;
+    }
+
+    /// Of what the pixels depend on, but for their number.
+    uint64_t checksum_of_picture(const Shot& shot) const {
+        ByteWriter view;
+        view(shot.camera, *options_.part, options_.integrator, options_.max_depth, options_.shadows,
+             options_.seed, job_.backend.precision);
+        if (const std::optional<Antialias>& how = options_.antialias)
+            view(how->method, how->threshold, how->depth, how->jitter);
+        Checksum sum;
+        sum.add(view.bytes());
+        sum.add_value(checksum_of(scene_));
+        return sum.value();
+    }
+
+    /// From the light of a scene with an assumed_gamma to what files hold.
+    void to_linear(Image& image) const {
+        for (vec4& pixel : image.pixels)
+            for (int i = 0; i < 3; ++i)
+                pixel[i] = linear_light(pixel[i], scene_.gamma);
+    }
+
+    Result<RenderReport> trace(const Shot& shot, Film& film) {
+        Progress progress(backend_, is_sequence() ? fmt::format("frame {}: ", shot.frame) : "",
+                          uint64_t(film.width()) * film.height(), film.pixels_done(),
+                          /* shown= */ !job_.quiet);
+        const auto observe = [&](const RenderReport& report) {
+            progress.update(report);
+            return !interrupt_.interrupted();
+        };
+        return render_picture(scene_, shot.camera, backend_, options_, observe, film);
+    }
+
+    Result<Done> save_finished(const Shot& shot, const Film& film, const FrameStats& frame) {
+        const std::vector<std::string> outputs = outputs_of(shot);
+        if (const Result<Done> saved = save_all(outputs, shot, film, frame); !saved)
+            return kept(saved.error(), shot, film);
+        std::error_code ignored; // what is not there need not go
+        fs::remove(film_of(shot), ignored);
+        for (const std::string& output : outputs)
+            fs::remove(unfinished_picture(output), ignored);
+        return Done{};
+    }
+
+    /// Where an output cannot be written, what was rendered is not lost.
+    Error kept(Error error, const Shot& shot, const Film& film) {
+        if (save_film(film, checksum_of_picture(shot), film_of(shot)))
+            error.message += fmt::format("; the picture is kept in {}, and --continue writes it "
+                                         "without rendering it again",
+                                         film_of(shot));
+        return error;
+    }
+
+    /// Beside the outputs: what is there may be finished. Of a sequence no picture, for it would
+    /// only be one of many.
+    Result<Done> save_unfinished(const Shot& shot, const Film& film, const FrameStats& frame) {
+        if (film.pixels_done() == 0)
+            return Done{};
+        std::vector<std::string> outputs = outputs_of(shot);
+        const Result<Done> saved = save_film(film, checksum_of_picture(shot), film_of(shot));
+        if (!saved || is_sequence())
+            return saved;
+        for (std::string& output : outputs)
+            output = unfinished_picture(output);
+        return save_all(outputs, shot, film, frame);
+    }
+
+    /// How the picture was made, for .exr files.
+    std::vector<FileNote> notes_of(const FrameStats& frame) const {
+        return {{"overcast:version", version_text()},
+                {"overcast:scene", job_.scene.name()},
+                {"overcast:options", job_.command_line},
+                {"overcast:renderer", backend_.renderer()},
+                {"overcast:statistics", frame_json(frame)}};
+    }
+
+    Result<Done> save_all(const std::vector<std::string>& outputs, const Shot& shot,
+                          const Film& film, const FrameStats& frame) {
+        Image image = film.image();
+        if (scene_.gamma != 1)
+            to_linear(image);
+        FileContents contents;
+        contents.png_bits = job_.png_bits;
+        contents.notes = notes_of(frame);
+        if (job_.aovs.any()) {
+            Result<std::vector<Layer>> traced =
+                trace_aovs(scene_, Pinhole(shot.camera, *options_.part), backend_, job_.aovs);
+            if (!traced)
+                return traced.error();
+            contents.layers = std::move(*traced);
+        }
+        Result<Done> all = Done{};
+        for (const std::string& output : outputs)
+            if (const Result<Done> saved = save_image(image, output, contents); !saved && all)
+                all = saved;
+        return all;
+    }
+
+    const RenderJob& job_;
+    const LogSink& log_;
+    const RenderOptions options_;
+    Scene& scene_;
+    const std::vector<Light> lights_; // as the scene or the user has them
+    Backend& backend_;
+    const InterruptGuard interrupt_;
+};
+
+static void report(const RenderJob& job, const RenderStats& stats) {
+    if (!job.quiet && stats.frames_there > 0)
+        fmt::print("{} frames were there already\n", stats.frames_there);
+    if (!job.quiet && !stats.frames.empty() && (stats.report.complete || !job.shots.empty()))
+        fmt::print("{}  wrote      {}\n", stats_summary(stats),
+                   printable(fmt::format("{}", fmt::join(job.outputs, ", "))));
+    if (stats.report.complete)
+        return;
+    if (job.shots.empty() && stats.report.pixels_done == 0) {
+        print_message("interrupted; no pixel was done, and nothing is saved");
+        return;
+    }
+    if (job.shots.empty()) {
+        print_message(fmt::format(
+            "interrupted; {:.0f} % of the picture is in {}, and the same command with "
+            "--continue goes on from there",
+            100.0 * double(stats.report.pixels_done) / (double(stats.width) * double(stats.height)),
+            unfinished_picture(job.outputs[0])));
+        return;
+    }
+    const size_t saved = stats.frames_there + stats.frames.size();
+    print_message(fmt::format("interrupted; {} of {} frames are saved, frame {} is the next, and "
+                              "the same command with --continue goes on from there",
+                              saved, job.shots.size(), job.shots[saved].frame));
+}
+
+/// 0: no limit.
+static std::optional<ThreadLimit> limit_threads(uint32_t threads) {
+    if (threads == 0)
+        return {};
+    // Of Mesa's software renderer, which reads it when the device is opened.
+    setenv("LP_NUM_THREADS", fmt::format("{}", threads).c_str(), /* overwrite= */ 1);
+    return std::optional<ThreadLimit>(std::in_place, threads);
+}
+
+static Result<PicturePart> part_of(const ImageSize& picture, const std::optional<Crop>& crop) {
+    if (!crop)
+        return PicturePart{picture, 0, 0, picture};
+    if (uint64_t(crop->left) + crop->size.width > picture.width ||
+        uint64_t(crop->top) + crop->size.height > picture.height)
+        return Error{fmt::format("--crop {}x{}+{}+{} does not lie within the picture of {}x{}",
+                                 crop->size.width, crop->size.height, crop->left, crop->top,
+                                 picture.width, picture.height)};
+    return PicturePart{picture, crop->left, crop->top, crop->size};
+}
+
+/// Of a single picture, frame 0.
+static std::vector<uint32_t> frames_of(const RenderJob& job) {
+    std::vector<uint32_t> frames;
+    for (const Shot& shot : job.shots)
+        frames.push_back(shot.frame);
+    return frames.empty() ? std::vector<uint32_t>{0} : frames;
+}
+
+/// Before anything is read: whether nothing is left to do.
+static bool all_there(const RenderJob& job) {
+    return std::ranges::all_of(frames_of(job),
+                               [&](uint32_t frame) { return is_there(job, frame); });
+}
+
+/// Says so where --continue finds neither pixels nor frames of an earlier run.
+static void tell_of_nothing_to_go_on_with(const RenderJob& job, const LogSink& log) {
+    const auto is_begun = [&](uint32_t frame) {
+        return is_there(job, frame) || fs::exists(unfinished_film(outputs_of(job, frame)[0]));
+    };
+    if (!job.go_on || std::ranges::any_of(frames_of(job), is_begun))
+        return;
+    const std::string& output = job.outputs[0];
+    say(log, LogLevel::Info,
+        job.shots.empty()
+            ? fmt::format("--continue: there is no {} to go on with; the picture is begun",
+                          unfinished_film(output))
+            : fmt::format("--continue: there is no frame {} to go on with; all are rendered",
+                          output));
+}
+
+Result<int> render(const RenderJob& job) {
+    if (all_there(job)) {
+        if (!job.quiet)
+            fmt::print("all is there in {}; without --continue it is rendered anew\n",
+                       printable(fmt::format("{}", fmt::join(job.outputs, ", "))));
+        return kExitOk;
+    }
+    const Stopwatch total;
+    const std::optional<ThreadLimit> threads = limit_threads(job.threads);
+    const LogSink log = standard_error_log(job.log_level);
+    tell_of_nothing_to_go_on_with(job, log);
+    RenderStats stats;
+    use_wide_vectors(job.backend);
+    DeviceOpening opening(job.backend);
+    SceneCache cache(job.cache, job.scene, job.backend, job.size);
+    Result<Scene> scene = cache.open(log);
+    if (!scene)
+        return scene.error();
+    if (job.render.integrator == IntegratorKind::Whitted)
+        tell_simplifications(*scene, job.lights.empty() ? scene->lights : job.lights,
+                             job.scene.name(), log);
+    stats.scene = job.scene.name();
+    const ImageSize size = job.size.value_or(scene->size.value_or(ImageSize{}));
+    const Result<PicturePart> part = part_of(size, job.crop);
+    if (!part)
+        return part.error();
+    stats.width = part->size.width;
+    stats.height = part->size.height;
+    stats.seconds_import = total.seconds();
+    stats.scene_from_cache = cache.found();
+
+    if (job.up && !job.camera && scene->camera)
+        say(log, LogLevel::Warning,
+            fmt::format("--up left out: {} has a camera of its own; --camera replaces it",
+                        job.scene.name()));
+    const std::vector<Shot> shots =
+        job.shots.empty() ? std::vector<Shot>{{0, still_camera(*scene, job, size)}} : job.shots;
+    for (const Shot& shot : shots) // a file's camera is not checked yet
+        if (const Result<Done> fine = check_camera(shot.camera); !fine)
+            return Error{fmt::format("{}: {}", job.scene.name(), fine.error().message)};
+    BackendOptions options = job.backend;
+    options.saved = scene->saved;
+    options.watching = job.quiet ? BuildWatching::Silent : BuildWatching::Shown;
+    const Result<std::unique_ptr<Backend>> backend =
+        make_backend(scene->soup, options, log, opening);
+    if (!backend && backend.error().kind == ErrorKind::Cancelled) {
+        print_message("interrupted while building; nothing was rendered");
+        return kExitInterrupted;
+    }
+    if (!backend)
+        return backend.error();
+
+    cache.keep(*scene, **backend, log);
+    Result<Done> done = Rendering(job, *part, *scene, **backend, log).run(shots, stats);
+    if (!done)
+        return done.error();
+    stats.tracing = (*backend)->statistics();
+    stats.renderer = (*backend)->renderer();
+    stats.left_out =
+        left_out_of(*scene, needs_of(*scene, {job.render.shadows,
+                                              job.backend.precision == OVC_PRECISION_CERTIFIED,
+                                              stats.tracing.leaves}));
+    stats.seconds_total = total.seconds();
+    if (!job.stats.empty())
+        if (done = save_text(stats_json(stats), job.stats); !done)
+            return done.error();
+    report(job, stats);
+    return stats.report.complete ? kExitOk : kExitInterrupted;
+}
+
+} // namespace ovc

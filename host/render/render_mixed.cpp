@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Algorithm 6 from the host's side: every answer is shaded when it comes, and what it spawns joins
+// the stream at once.
+#include "host/render/render_mixed.h"
+
+#include "core/system/parallel.h"
+#include "core/system/stopwatch.h"
+#include "host/render/slots.h"
+#include "host/shade/shading.h"
+
+#include <algorithm>
+
+namespace ovc {
+namespace {
+
+constexpr size_t kGrain = 1024; // rays a task that are only copied
+
+/// A ray in the stream, until its answer comes.
+template <class Purpose>
+struct UnderWay {
+    Ray ray;
+    Purpose purpose;
+};
+
+/// Rays of one kind in the stream. A token is a slot and the kind.
+template <class Purpose>
+class RaysUnderWay {
+public:
+    RaysUnderWay(uint64_t kind, bool any_hit) : kind_(kind << 32), any_hit_(any_hit) {}
+
+    bool has(uint64_t token) const { return (token & kKindBits) == kind_; }
+
+    void push(RayStream& stream, const RayList<Purpose>& rays) {
+        const std::vector<uint32_t> taken = slots_.take(rays.size());
+        tokens_.resize(rays.size());
+        parallel_for(rays.size(), kGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                slots_[taken[i]] = {rays.rays[i], rays.purposes[i]};
+                tokens_[i] = kind_ | taken[i];
+            }
+        });
+        stream.push({any_hit_, rays.rays, rays.skip, tokens_});
+    }
+
+    /// What these answers are of.
+    void take(std::span<const uint64_t> tokens, RayList<Purpose>& rays) {
+        rays.resize(tokens.size());
+        parallel_for(tokens.size(), kGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                const UnderWay<Purpose>& ray = slots_[uint32_t(tokens[i])];
+                rays.rays[i] = ray.ray;
+                rays.purposes[i] = ray.purpose;
+            }
+        });
+        for (const uint64_t token : tokens)
+            slots_.give_back(uint32_t(token));
+    }
+
+private:
+    static constexpr uint64_t kKindBits = ~uint64_t(0) << 32;
+
+    const uint64_t kind_;
+    const bool any_hit_;
+    Slots<UnderWay<Purpose>> slots_;
+    std::vector<uint64_t> tokens_;
+};
+
+class MixedRenderer final : public StreamHost {
+public:
+    MixedRenderer(const Integrator& integrator, size_t lights, const CameraRays& camera,
+                  const RenderObserver& observe, Film& film)
+        : camera_(camera),
+          observe_(observe),
+          film_(film),
+          shading_(integrator, lights, film),
+          shadows_(1, /* any_hit= */ !integrator.light_may_pass()) {}
+
+    Result<RenderReport> render(Backend& backend) {
+        const Stopwatch watch;
+        const double traced_before = backend.statistics().seconds_trace;
+        const Result<Done> done = backend.stream(*this);
+        if (!done && done.error().kind != ErrorKind::Cancelled)
+            return done.error();
+        report_.complete = bool(done);
+        // Some shade beside tracing, and say how long they trace; others do one or the other.
+        const double traced = backend.statistics().seconds_trace - traced_before;
+        report_.seconds_trace = traced > 0 ? traced : watch.seconds() - report_.seconds_shade;
+        return report_;
+    }
+
+    bool more(RayStream& stream, size_t wanted) override {
+        const Stopwatch watch;
+        const size_t count = size_t(std::min<uint64_t>(wanted, camera_.size() - begun_));
+        camera_.make(begun_, count, spawned_.paths);
+        begun_ += count;
+        push_spawned(stream);
+        report_.seconds_shade += watch.seconds();
+        return true;
+    }
+
+    bool hits(RayStream& stream, std::span<const uint64_t> tokens,
+              std::span<const Hit> hits) override {
+        const Stopwatch watch;
+        shade_paths(stream, tokens, hits);
+        pass_shadows(stream, tokens, hits);
+        return go_on(watch);
+    }
+
+    bool occlusions(RayStream&, std::span<const uint64_t> tokens,
+                    std::span<const uint8_t> occluded) override {
+        const Stopwatch watch;
+        shadows_.take(tokens, answered_shadows_);
+        shading_.arrive(answered_shadows_.purposes, occluded);
+        return go_on(watch);
+    }
+
+private:
+    void shade_paths(RayStream& stream, std::span<const uint64_t> tokens,
+                     std::span<const Hit> hits) {
+        select(paths_, tokens, hits);
+        paths_.take(tokens_, answered_paths_);
+        for (size_t first = 0; first < hits_.size(); first += shading_.most_answers()) {
+            shading_.shade(answered_paths_, hits_, first,
+                           std::min(shading_.most_answers(), hits_.size() - first), spawned_);
+            push_spawned(stream);
+        }
+    }
+
+    /// Shadow rays that have met something which light may pass.
+    void pass_shadows(RayStream& stream, std::span<const uint64_t> tokens,
+                      std::span<const Hit> hits) {
+        select(shadows_, tokens, hits);
+        shadows_.take(tokens_, answered_shadows_);
+        shading_.pass(answered_shadows_, hits_);
+        report_.rays.shadow += answered_shadows_.size();
+        shadows_.push(stream, answered_shadows_);
+    }
+
+    /// The answers to rays of this kind.
+    template <class Purpose>
+    void select(const RaysUnderWay<Purpose>& kind, std::span<const uint64_t> tokens,
+                std::span<const Hit> hits) {
+        tokens_.clear();
+        hits_.clear();
+        for (size_t i = 0; i < tokens.size(); ++i)
+            if (kind.has(tokens[i])) {
+                tokens_.push_back(tokens[i]);
+                hits_.push_back(hits[i]);
+            }
+    }
+
+    void push_spawned(RayStream& stream) {
+        for (const Path& path : spawned_.paths.purposes)
+            report_.rays.count(path.kind);
+        report_.rays.shadow += spawned_.shadows.size();
+        paths_.push(stream, spawned_.paths);
+        shadows_.push(stream, spawned_.shadows);
+        spawned_.clear();
+    }
+
+    bool go_on(const Stopwatch& watch) {
+        report_.seconds_shade += watch.seconds();
+        report_.pixels_done = film_.pixels_done();
+        return !observe_ || observe_(report_);
+    }
+
+    const CameraRays& camera_;
+    const RenderObserver& observe_;
+    Film& film_;
+    Shading shading_;
+    uint64_t begun_ = 0; // camera rays
+    RaysUnderWay<Path> paths_{0, /* any_hit= */ false};
+    RaysUnderWay<Shadow> shadows_;
+    RenderReport report_;
+    // Of one call, and kept so that they are allocated once.
+    Spawned spawned_;
+    RayList<Path> answered_paths_;
+    RayList<Shadow> answered_shadows_;
+    std::vector<uint64_t> tokens_;
+    std::vector<Hit> hits_;
+};
+
+} // namespace
+
+Result<RenderReport> render_mixed(const Integrator& integrator, size_t lights,
+                                  const CameraRays& camera, Backend& backend,
+                                  const RenderObserver& observe, Film& film) {
+    return MixedRenderer(integrator, lights, camera, observe, film).render(backend);
+}
+
+} // namespace ovc

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mixed renderer: camera rays, reflections, refractions, bounces and shadow rays are under way
+// together in one stream. Based on: Lee 2006 (thesis), section 3.5, algorithm 6.
+#pragma once
+
+#include "host/camera/camera_rays.h"
+#include "host/render/render.h"
+
+namespace ovc {
+
+/// As render_batched(), and the same film.
+Result<RenderReport> render_mixed(const Integrator& integrator, size_t lights,
+                                  const CameraRays& camera, Backend& backend,
+                                  const RenderObserver& observe, Film& film);
+
+} // namespace ovc

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Spawned rays: follows light into closed shapes and out again, and asks at every step whether it
+// meets the side of the surface that it must.
+#include "host/report/optics/optics_spawned.h"
+
+#include "host/report/optics/optics_shapes.h"
+#include "host/shade/shade.h"
+#include "testscenes/random.h"
+
+#include <algorithm>
+
+namespace ovc {
+
+namespace {
+
+constexpr size_t kBatch = 1 << 16;
+constexpr uint64_t kRaysPerShape = 100; // of the short form, before they spawn
+constexpr uint32_t kDepth = 6;
+
+/// A ray that left shape `shape`, or, at depth 0, is aimed at it.
+struct Flight {
+    Ray ray;
+    TriangleId skip;
+    uint32_t shape;
+    uint32_t depth;
+    bool inside;
+};
+
+/// Towards a vertex, a point of an edge or of the inside of some triangle, from outside all shapes.
+Flight aimed(const ShapeField& field, uint32_t shape, Random& random) {
+    const Chunk& chunk = field.scene.soup.chunks[shape];
+    const Triangle t = field.scene.soup.triangle({shape, random.below(chunk.size())});
+    const uint32_t kind = random.below(3);
+    const double v = kind == 0 ? 0 : random.uniform(), w = kind == 2 ? random.uniform() : 0;
+    const dvec3 target = t[0] + v * (t[1] - t[0]) + (1 - v) * w * (t[2] - t[0]);
+    Flight flight{{}, {}, shape, 0, false};
+    flight.ray.org = chunk.origin() + 2.2 * field.scale * random.direction();
+    flight.ray.dir = target - flight.ray.org;
+    return flight;
+}
+
+class Follower {
+public:
+    Follower(const ShapeField& field, Backend& backend, uint64_t seed)
+        : field_(field), backend_(backend), random_(seed) {}
+
+    /// Follows the light of kBatch rays or less until it is lost or has met kDepth surfaces.
+    Result<Done> follow(std::vector<Flight> flights) {
+        while (!flights.empty()) {
+            rays_.clear();
+            skip_.clear();
+            for (const Flight& flight : flights) {
+                rays_.push_back(flight.ray);
+                skip_.push_back(flight.skip);
+            }
+            hits_.resize(flights.size());
+            if (const Result<Done> done = backend_.intersect(rays_, skip_, hits_); !done)
+                return done;
+            std::vector<Flight> next;
+            for (size_t i = 0; i < flights.size(); ++i)
+                judge(flights[i], hits_[i], next);
+            flights = std::move(next);
+        }
+        return Done{};
+    }
+
+    const OpticsScore& score() const { return score_; }
+
+private:
+    void judge(const Flight& flight, const Hit& hit, std::vector<Flight>& next) {
+        score_.rays += flight.depth > 0;
+        const bool own = hit.is_hit() && hit.id.mesh == flight.shape;
+        if (!own) {
+            score_.leaks += flight.inside;
+            return;
+        }
+        const SurfacePoint surface = surface_point(field_.scene, flight.ray, hit);
+        if (flight.depth > 0) {
+            const bool again = !flight.inside && field_.convex[flight.shape];
+            score_.wrong += again || surface.entering == flight.inside;
+        }
+        // Where an aimed ray grazes a corner, the far side may be what it hits.
+        if (surface.entering != flight.inside && flight.depth < kDepth)
+            spawn(flight, hit, surface, next);
+    }
+
+    void spawn(const Flight& flight, const Hit& hit, const SurfacePoint& surface,
+               std::vector<Flight>& next) {
+        const std::optional<Ray> refraction = refracted_ray(flight.ray, surface);
+        // At first both, then the one or the other, or rays would double at each surface.
+        const bool both = flight.depth == 0, through = random_.chance(0.5);
+        Flight spawned{{}, hit.id, flight.shape, flight.depth + 1, flight.inside};
+        if (both || !through || !refraction) {
+            spawned.ray = mirror_ray(flight.ray, surface);
+            next.push_back(spawned);
+        }
+        if (refraction && (both || through)) {
+            spawned.ray = *refraction;
+            spawned.inside = !flight.inside;
+            next.push_back(spawned);
+        }
+    }
+
+    const ShapeField& field_;
+    Backend& backend_;
+    Random random_;
+    OpticsScore score_;
+    std::vector<Ray> rays_;
+    std::vector<TriangleId> skip_;
+    std::vector<Hit> hits_;
+};
+
+} // namespace
+
+Result<OpticsScore> spawned_rays(const OpticsOptions& options, const LogSink& log, double scale) {
+    const ShapeField field = make_shape_field(options.shapes, scale);
+    const Result<std::unique_ptr<Backend>> backend =
+        make_backend(field.scene.soup, options.backend, log);
+    if (!backend)
+        return backend.error();
+    Random random(/* seed= */ 3);
+    Follower follower(field, **backend, /* seed= */ 4);
+    std::vector<Flight> flights;
+    const uint64_t rounds = kRaysPerShape * options.times;
+    for (uint64_t round = 0; round < rounds; ++round) {
+        for (uint32_t shape = 0; shape < options.shapes; ++shape)
+            flights.push_back(aimed(field, shape, random));
+        if (flights.size() < kBatch && round + 1 < rounds)
+            continue;
+        if (const Result<Done> done = follower.follow(std::exchange(flights, {})); !done)
+            return done.error();
+    }
+    return follower.score();
+}
+
+} // namespace ovc

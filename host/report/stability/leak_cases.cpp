@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes times places.
+#include "host/report/stability/leak_cases.h"
+
+#include "host/report/stability/sound_targets.h"
+#include "host/report/stability/stability_meshes.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+namespace ovc {
+
+namespace {
+
+using Cases = std::vector<StabilityCase>;
+
+std::vector<NamedPlace> all_places() {
+    std::vector<NamedPlace> places = {{"at the origin", dvec3(0), 1}};
+    places.insert(places.end(), unpleasant_places().begin(), unpleasant_places().end());
+    return places;
+}
+
+Soup soup_of(Chunk chunk) {
+    Soup soup;
+    soup.chunks.push_back(std::move(chunk));
+    return soup;
+}
+
+void add_closed(Cases& cases, const NamedMesh& mesh, const NamedPlace& at) {
+    // Only unscaled is the grid one of floats.
+    const double grid = at.scale == 1 ? kStabilityGrid : 0;
+    cases.push_back({fmt::format("{} {}", mesh.name, at.name), true, 0,
+                     [=] { return soup_of(placed(mesh.make(), at.place, at.scale)); },
+                     [=](const Soup& soup, Random& random, size_t count) {
+                         return edge_and_vertex_rays(soup, random, count, grid);
+                     },
+                     ""});
+}
+
+/// What the rays of a dragon are drawn from: of the case that runs now.
+using Targets = std::shared_ptr<std::optional<SoundTargets>>;
+
+void add_dragon(Cases& cases, const std::shared_ptr<const Scene>& dragon, const NamedPlace& at,
+                const Targets& targets) {
+    cases.push_back({fmt::format("dragon {}", at.name), true, 0,
+                     [=] {
+                         targets->reset();
+                         const auto corners = dragon->soup.chunks[0].corners();
+                         return soup_of(
+                             placed(Corners(corners.begin(), corners.end()), at.place, at.scale));
+                     },
+                     [=](const Soup& soup, Random& random, size_t count) {
+                         if (!*targets)
+                             targets->emplace(soup);
+                         return (*targets)->rays(random, count);
+                     },
+                     ""});
+}
+
+} // namespace
+
+Result<std::vector<StabilityCase>> leak_cases(const std::string& data) {
+    Cases cases;
+    for (const NamedMesh& mesh : closed_meshes())
+        for (const NamedPlace& at : all_places())
+            add_closed(cases, mesh, at);
+    if (!data.empty()) {
+        const Result<std::shared_ptr<const Scene>> dragon = load_dragon(data);
+        if (!dragon)
+            return dragon.error();
+        const auto targets = std::make_shared<std::optional<SoundTargets>>();
+        for (const NamedPlace& at : all_places())
+            add_dragon(cases, *dragon, at, targets);
+    }
+    return cases;
+}
+
+void share_rays(std::span<StabilityCase> cases, uint64_t rays) {
+    for (StabilityCase& one : cases)
+        one.rays = (rays + cases.size() - 1) / cases.size();
+}
+
+} // namespace ovc

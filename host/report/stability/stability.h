@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs a case of the stability suite: the plugin, certified and fast, and Embree, against double
+// precision.
+#pragma once
+
+#include "core/result.h"
+#include "core/system/log.h"
+#include "host/backend/backend.h"
+#include "host/report/stability/stability_cases.h"
+
+#include <functional>
+#include <optional>
+
+namespace ovc {
+
+struct StabilityResult;
+
+struct StabilityOptions {
+    BackendOptions backend; // precision is not looked at: both are run
+    uint64_t times = 1;     // how many times the short form's rays
+    bool peers = true;      // fast mode and Embree too
+    /// Called after each batch of a case with what it is so far; false: stop. Empty: go on.
+    std::function<bool(const StabilityResult&)> go_on;
+};
+
+/// What one program answered. wrong: for certified any bit that differs from the reference; for
+/// others another triangle than the reference's, unless double hits that one at the same t (to
+/// 2^-40).
+struct StabilityScore {
+    uint64_t wrong = 0;
+    uint64_t leaks = 0;
+    double t_error = 0; // largest |t - reference t| / |reference t| where both hit
+};
+
+struct StabilityResult {
+    std::string name;
+    std::string renderer;
+    bool closed = false; // see StabilityCase
+    uint64_t triangles = 0;
+    uint64_t rays = 0;
+    uint64_t hits = 0;
+    uint64_t reference_leaks = 0;  // misses of the reference in a closed case
+    uint64_t wrong_occlusions = 0; // certified: occluded() against the reference's nearest hit
+    uint64_t miscounted =
+        0; // invalid rays and dropped triangles that the statistics have too many or too few
+    uint64_t dropped = 0;
+    uint64_t invalid = 0;
+    uint64_t flagged = 0;
+    uint64_t retraced = 0;
+    double microseconds = 0; // per ray, certified nearest hits
+    double time_ratio = 0;   // to the rays of time_as; 0: none
+    std::string time_as;     // see StabilityCase
+    StabilityScore certified;
+    std::optional<StabilityScore> fast, embree_robust, embree_default;
+};
+
+/// Error: the plugin failed. Rays come in batches, each drawn from its own seed.
+Result<StabilityResult> run_stability_case(const StabilityCase& stability_case,
+                                           const StabilityOptions& options, const LogSink& log);
+
+/// All cases in turn, time ratios too; the last one in part where go_on ended it. seen: called
+/// after each.
+Result<std::vector<StabilityResult>>
+run_stability(std::span<const StabilityCase> cases, const StabilityOptions& options,
+              const LogSink& log, const std::function<void(const StabilityResult&)>& seen);
+
+/// The rays of batch `batch`, as run_stability_case draws them.
+RaySet stability_rays(const StabilityCase& stability_case, const Soup& soup, uint64_t batch,
+                      size_t count);
+
+} // namespace ovc

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers of materials and meshes move by how many there are already.
+#include "host/scene/joined_scene.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <utility>
+
+namespace ovc {
+
+namespace {
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T>& from) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+class Joining {
+public:
+    Joining(NamedScene first, const LogSink& log)
+        : log_(log), all_(std::move(first.scene)), triangles_(all_.soup.triangle_count()) {
+        all_.saved = {};
+    }
+
+    void add(NamedScene next) {
+        Scene& scene = next.scene;
+        add_instancing(scene);
+        take_first(all_.camera, scene.camera, next.name, "camera");
+        take_first(all_.size, scene.size, next.name, "picture's size");
+        take_first(all_.max_depth, scene.max_depth, next.name, "depth");
+        take_background(scene, next.name);
+        take_gamma(scene, next.name);
+        const auto materials = uint32_t(all_.materials.size());
+        const auto meshes = uint32_t(all_.meshes.size());
+        for (MeshInfo& mesh : scene.meshes) {
+            mesh.material += materials;
+            if (mesh.normals_from != kNone)
+                mesh.normals_from += meshes;
+        }
+        append(all_.materials, scene.materials);
+        append(all_.meshes, scene.meshes);
+        append(all_.soup.chunks, scene.soup.chunks);
+        append(all_.lights, scene.lights);
+        append(all_.files, scene.files);
+        all_.name += " + " + scene.name;
+    }
+
+    Scene take() { return std::move(all_); }
+
+private:
+    void warn(const std::string& name, std::string_view what) const {
+        say(log_, LogLevel::Warning,
+            fmt::format("{}: its {} left out: a scene of several files has one", name, what));
+    }
+
+    template <class T>
+    void take_first(std::optional<T>& first, std::optional<T>& next, const std::string& name,
+                    std::string_view what) const {
+        if (first && next)
+            warn(name, what);
+        else if (next)
+            first = std::move(next);
+    }
+
+    void take_background(const Scene& scene, const std::string& name) {
+        const Background none;
+        if (scene.background == none || scene.background == all_.background)
+            return;
+        if (all_.background != none)
+            warn(name, "background");
+        else
+            all_.background = scene.background;
+    }
+
+    /// Files without colors of their own have a gamma of 1.
+    void take_gamma(const Scene& scene, const std::string& name) {
+        if (all_.gamma == 1) {
+            all_.gamma = scene.gamma;
+            all_.exposure = scene.exposure;
+        } else if (scene.gamma != 1 && scene.gamma != all_.gamma) {
+            warn(name, "gamma");
+        }
+    }
+
+    void add_instancing(const Scene& scene) {
+        const uint64_t triangles = scene.soup.triangle_count();
+        if (all_.instancing || scene.instancing) {
+            const Instancing more = scene.instancing.value_or(Instancing{triangles, 0});
+            Instancing& sum =
+                all_.instancing ? *all_.instancing : all_.instancing.emplace(triangles_, 0);
+            sum.unique_triangles += more.unique_triangles;
+            sum.instances += more.instances;
+        }
+        triangles_ += triangles;
+    }
+
+    const LogSink& log_;
+    Scene all_;
+    uint64_t triangles_;
+};
+
+} // namespace
+
+Scene join(std::vector<NamedScene> scenes, const LogSink& log) {
+    if (scenes.size() == 1)
+        return std::move(scenes[0].scene);
+    Joining joining(std::move(scenes[0]), log);
+    for (size_t i = 1; i < scenes.size(); ++i)
+        joining.add(std::move(scenes[i]));
+    return joining.take();
+}
+
+} // namespace ovc

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The camera paths of the test scenes: every camera sees something, and none is inside of it.
+#include "host/backend/backend.h"
+#include "host/camera/camera.h"
+#include "testscenes/catalog.h"
+#include "testscenes/sphere.h"
+
+#include <gtest/gtest.h>
+
+namespace ovc {
+namespace {
+
+constexpr uint32_t kSide = 12;
+
+std::vector<Hit> look(Backend& backend, const Camera& camera) {
+    const Pinhole pinhole(camera, kSide, kSide);
+    std::vector<Ray> rays;
+    for (uint32_t pixel = 0; pixel < kSide * kSide; ++pixel)
+        rays.push_back(pinhole.ray(pixel % kSide, pixel / kSide));
+    std::vector<Hit> hits(rays.size());
+    EXPECT_TRUE(backend.intersect(rays, {}, hits));
+    return hits;
+}
+
+struct Case {
+    const char* name;
+    bool with_model;
+    size_t step;           // looks at every step-th frame
+    double least_distance; // to what is seen
+};
+
+TEST(ScenePaths, SeeSomethingAndStandInNothing) {
+    Soup model;
+    model.chunks.push_back(Chunk::owning(dvec3(0), make_sphere(3)));
+    for (const Case& c : {Case{"dragons-1", true, 5, 0.5}, Case{"dragons-21", true, 5, 0.5},
+                          Case{"dragonball", true, 5, 0.5}, Case{"plants-1", false, 5, 0.3},
+                          Case{"powerplant-600000", false, 2, 0.2}}) {
+        const Result<Scene> scene = make_test_scene(c.name, c.with_model ? &model : nullptr);
+        ASSERT_TRUE(scene);
+        const std::unique_ptr<Backend> backend = make_cpu_backend(scene->soup);
+        const CameraPath path = *test_scene_path(c.name);
+        ASSERT_FALSE(path.empty());
+        for (size_t frame = 0; frame < path.size(); frame += c.step) {
+            size_t seen = 0;
+            double nearest = INFINITY;
+            for (const Hit& hit : look(*backend, path[frame]))
+                if (hit.is_hit()) {
+                    ++seen;
+                    nearest = std::min(nearest, hit.t); // depth: rays reach 1 ahead at t = 1
+                }
+            EXPECT_GT(seen, kSide * kSide / 4) << c.name << ", frame " << frame;
+            EXPECT_GT(nearest, c.least_distance) << c.name << ", frame " << frame;
+        }
+    }
+}
+
+} // namespace
+} // namespace ovc

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Test scenes by name, files by path.
+#include "host/scene/scene_source.h"
+
+#include "core/text/suggestion.h"
+#include "host/arguments/arguments.h"
+#include "host/scene/joined_scene.h"
+#include "host/terminal/message.h"
+#include "importers/importer.h"
+#include "testscenes/catalog.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <filesystem>
+#include <system_error>
+
+namespace ovc {
+
+void SceneArguments::add_to(CLI::App& app, const char* name) {
+    app.add_option(name, scenes,
+                   "A file (.ply .obj .pbrt .pov, also .gz; .ovc, or what Assimp reads) or a test "
+                   "scene's name; several make one scene")
+        ->required();
+    app.add_option(
+           "--model", model,
+           "For dragons-N and dragonball: the model they show instead of a generated one, a "
+           "file or a test scene's name")
+        ->type_name("SCENE");
+    app.add_flag("--strict", strict,
+                 "For .pbrt: what is unknown, missing or unusable is an error, not a warning");
+    app.add_option("--world", world,
+                   "For .pbrt: which world of a file that has several; default: 1")
+        ->type_name("N");
+    app.add_option("--max-triangles", max_triangles,
+                   "For .pbrt and .pov: refuse a scene of more, those of instances that share a "
+                   "mesh counted once; default: "
+                   "100000000")
+        ->type_name("N");
+    app.add_option("--tolerance", tolerance,
+                   "For .pbrt and .pov: how far a triangle may lie off the round shape it stands "
+                   "for, in radii, 0.0001 to 0.5; default: of .pbrt 0.00625, of .pov 0.0011, more "
+                   "where that comes to millions of triangles")
+        ->type_name("X");
+    app.add_option(
+           "--pov-version", pov_version,
+           "For .pov: the version of the language, until the scene says #version; POV-Ray's "
+           "+MV")
+        ->type_name("X");
+}
+
+static Result<uint64_t> triangle_limit(const std::string& text) {
+    if (text.empty())
+        return kDefaultMostTriangles;
+    return parse_count("--max-triangles", text, 1, 4294967294);
+}
+
+static Result<std::optional<double>> tolerance_of(const std::string& text) {
+    if (text.empty())
+        return std::optional<double>();
+    const Result<double> value = parse_real("--tolerance", text, kLeastTolerance, kMostTolerance);
+    if (!value)
+        return value.error();
+    return std::optional(*value);
+}
+
+/// Of POV-Ray's language: from its first to whatever may come.
+static Result<std::optional<double>> pov_version_of(const std::string& text) {
+    if (text.empty())
+        return std::optional<double>();
+    const Result<double> value = parse_real("--pov-version", text, 1, 9);
+    if (!value)
+        return value.error();
+    return std::optional(*value);
+}
+
+static Result<uint64_t> world_of(const std::string& text) {
+    return text.empty() ? 1 : parse_count("--world", text, 1, 1'000'000'000);
+}
+
+Result<Done> SceneArguments::check() const {
+    if (const Result<uint64_t> number = world_of(world); !number)
+        return number.error();
+    if (const Result<uint64_t> limit = triangle_limit(max_triangles); !limit)
+        return limit.error();
+    if (const Result<std::optional<double>> fine = tolerance_of(tolerance); !fine)
+        return fine.error();
+    if (const Result<std::optional<double>> fine = pov_version_of(pov_version); !fine)
+        return fine.error();
+    for (const std::string& scene : scenes)
+        if (!model.empty() && !(is_test_scene(scene) && test_scene_entry(scene).takes_model))
+            return Error{fmt::format("--model goes with the test scenes that show one (dragons-N, "
+                                     "dragonball), not with '{}'",
+                                     scene)};
+    return Done{};
+}
+
+std::string SceneArguments::name() const {
+    return fmt::format("{}", fmt::join(scenes, " + "));
+}
+
+std::vector<NamedFile> SceneArguments::files() const {
+    std::vector<NamedFile> files;
+    for (const std::string& scene : scenes)
+        if (!is_test_scene(scene))
+            files.push_back({"input", scene});
+    if (!model.empty() && !is_test_scene(model))
+        files.push_back({"model", model});
+    return files;
+}
+
+static Result<Scene> make_with_model(const std::string& name, const ImportOptions& options,
+                                     const std::string& model) {
+    const Result<Scene> loaded =
+        is_test_scene(model) ? make_test_scene(model) : load(model, options);
+    if (!loaded)
+        return loaded.error();
+    Result<Scene> scene = make_test_scene(name, &loaded->soup);
+    return scene ? std::move(scene) : Error{fmt::format("{}: {}", model, scene.error().message)};
+}
+
+Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
+                         std::optional<ImageSize> size, FilesRead* files) {
+    ImportOptions options{log, arguments.strict};
+    options.size = size;
+    options.files = files;
+    options.max_triangles = *triangle_limit(arguments.max_triangles);
+    options.tolerance = *tolerance_of(arguments.tolerance);
+    options.pov_version = *pov_version_of(arguments.pov_version);
+    options.world = *world_of(arguments.world);
+    std::vector<NamedScene> scenes;
+    for (const std::string& name : arguments.scenes) {
+        Result<Scene> scene = open_scene(name, options, arguments.model);
+        if (!scene)
+            return scene.error();
+        scenes.push_back({name, std::move(*scene)});
+    }
+    return join(std::move(scenes), log);
+}
+
+Result<Scene> open_scene(const std::string& source, const ImportOptions& options,
+                         const std::string& model) {
+    if (is_test_scene(source))
+        return model.empty() ? make_test_scene(source) : make_with_model(source, options, model);
+    std::error_code ignored;
+    if (std::filesystem::is_directory(source, ignored))
+        return Error{fmt::format("'{}' is a directory, expected a file or a test scene", source)};
+    const bool looks_like_a_name = source.find_first_of("./") == std::string::npos;
+    if (looks_like_a_name && !source.empty() && !std::filesystem::exists(source, ignored)) {
+        // The catalog knows the nearest name; a file of this name is not there either.
+        const Result<Scene> none = make_test_scene(source);
+        const std::string near = did_you_mean_file(source);
+        return none || !near.empty() ? Error{fmt::format("there is no file '{}'{}", source, near)}
+                                     : Error{fmt::format("there is no file '{}', and {}", source,
+                                                         none.error().message)};
+    }
+    return load(source, options);
+}
+
+LogSink standard_error_log(LogLevel most) {
+    return [most](LogLevel level, const std::string& message) {
+        if (level > most)
+            return;
+        print_message((level == LogLevel::Warning ? "warning: " : "") + message);
+    };
+}
+
+} // namespace ovc

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// One look at every triangle.
+#include "host/scene/scene_summary.h"
+
+#include "core/system/parallel.h"
+#include "host/arguments/memory_size.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace ovc {
+
+struct Census {
+    Dropped dropped;
+    Box bounds;
+};
+
+static Census join(Census a, const Census& b) {
+    a.dropped.not_finite += b.dropped.not_finite;
+    a.dropped.degenerate += b.dropped.degenerate;
+    a.bounds.add(b.bounds);
+    return a;
+}
+
+static Census count(const Chunk& chunk) {
+    return parallel_reduce(
+        chunk.size(), Census{},
+        [&](size_t first, size_t last, Census census) {
+            for (size_t prim = first; prim < last; ++prim) {
+                const Triangle triangle = chunk.triangle(uint32_t(prim));
+                switch (triangle_fault(triangle)) {
+                case TriangleFault::NotFinite:
+                    ++census.dropped.not_finite;
+                    break;
+                case TriangleFault::Degenerate:
+                    ++census.dropped.degenerate;
+                    break;
+                case TriangleFault::None:
+                    census.bounds.add(bounds_of(triangle));
+                    break;
+                }
+            }
+            return census;
+        },
+        join);
+}
+
+static uint64_t triangles_without_normals(const Scene& scene) {
+    uint64_t triangles = 0;
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+        if (scene.normals_of(scene.meshes[m]).empty())
+            triangles += scene.soup.chunks[m].size();
+    return triangles;
+}
+
+/// True when the material of some mesh has it.
+template <class Has>
+static bool any_material(const Scene& scene, Has&& has) {
+    return std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const MeshInfo& mesh) {
+        return mesh.material < scene.materials.size() && has(scene.materials[mesh.material]);
+    });
+}
+
+SceneSummary summarize(const Scene& scene) {
+    SceneSummary summary;
+    summary.triangles = scene.soup.triangle_count();
+    summary.meshes = scene.soup.chunks.size();
+    Census census;
+    for (const Chunk& chunk : scene.soup.chunks)
+        census = join(census, count(chunk));
+    summary.dropped = census.dropped;
+    summary.bounds = census.bounds;
+
+    summary.needs = needs_of(scene);
+    summary.left_out = left_out_of(scene, summary.needs);
+    return summary;
+}
+
+Needs needs_of(const Scene& scene, const Query& query) {
+    Needs needs;
+    needs.vertex_normals = triangles_without_normals(scene) < scene.soup.triangle_count();
+    needs.refraction = any_material(scene, [](const Material& m) { return m.transmission > 0; });
+    // Where light is let through it may be reflected totally.
+    needs.reflection =
+        needs.refraction || any_material(scene, [](const Material& m) { return m.mirror > 0; });
+    needs.shadows = query.shadows;
+    needs.certified = query.certified;
+    needs.several_leaves = query.leaves > 1;
+    return needs;
+}
+
+std::vector<LeftOut> left_out_of(const Scene& scene, const Needs& needs) {
+    std::vector<LeftOut> left_out;
+    const auto unless = [&](bool needed, const char* what, uint64_t bytes) {
+        if (!needed)
+            left_out.push_back({what, bytes});
+    };
+    uint64_t normals = 0, texture_coordinates = 0;
+    for (const MeshInfo& mesh : scene.meshes) {
+        normals += mesh.normals_left_out;
+        texture_coordinates += mesh.texture_coordinates_left_out;
+    }
+    unless(normals == 0, "vertex normals", normals * sizeof(vec3));
+    unless(texture_coordinates == 0, "texture coordinates", texture_coordinates * sizeof(vec2));
+    unless(needs.reflection, "reflection rays", 0);
+    unless(needs.refraction, "refraction rays", 0);
+    unless(needs.shadows, "shadow rays", 0);
+    unless(needs.several_leaves, "queues of rays", 0);
+    unless(needs.certified, "proofs of answers", 0);
+    return left_out;
+}
+
+std::string left_out_text(const std::vector<LeftOut>& left_out) {
+    std::vector<std::string> items;
+    for (const LeftOut& item : left_out)
+        items.push_back(item.bytes ? fmt::format("{} ({})", item.what, human_bytes(item.bytes))
+                                   : item.what);
+    return fmt::format("{}", fmt::join(items, ", "));
+}
+
+Box hittable_bounds(const Soup& soup) {
+    Box bounds;
+    for (const Chunk& chunk : soup.chunks)
+        bounds.add(count(chunk).bounds);
+    return bounds;
+}
+
+} // namespace ovc

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scene consists of.
+#include "host/scene/scene_summary.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ovc {
+
+TEST(SceneSummary, CountsWhatCannotBeHitAndLeavesItOutOfTheBounds) {
+    Scene scene;
+    scene.add_mesh("good", 0, Chunk::owning({10, 0, 0}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 2}}));
+    scene.add_mesh(
+        "bad", 0,
+        Chunk::owning(dvec3(0),
+                      {{0, 0, 0}, {NAN, 0, 0}, {0, 1, 0}, {99, 0, 0}, {99, 1, 0}, {99, 2, 0}}));
+    const SceneSummary s = summarize(scene);
+    EXPECT_EQ(s.triangles, 3u);
+    EXPECT_EQ(s.meshes, 2u);
+    EXPECT_EQ(s.dropped.not_finite, 1u);
+    EXPECT_EQ(s.dropped.degenerate, 1u);
+    EXPECT_EQ(s.bounds.lo, dvec3(10, 0, 0));
+    EXPECT_EQ(s.bounds.hi, dvec3(11, 1, 2));
+    EXPECT_EQ(hittable_bounds(scene.soup).hi, s.bounds.hi);
+}
+
+TEST(SceneSummary, KnowsWhatIsNeeded) {
+    Scene scene;
+    scene.materials = {{"dull"}, {"mirror", vec3(1), 0.5f}};
+    const std::vector<vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    scene.add_mesh("plain", 0, Chunk::owning(dvec3(0), corners));
+    EXPECT_FALSE(summarize(scene).needs.vertex_normals);
+    EXPECT_FALSE(summarize(scene).needs.reflection); // the mirror is not used
+    scene.add_mesh("smooth", 1, Chunk::owning(dvec3(0), corners),
+                   std::vector<vec3>(3, vec3(0, 0, 1)));
+    EXPECT_TRUE(summarize(scene).needs.vertex_normals);
+    EXPECT_TRUE(summarize(scene).needs.reflection);
+    EXPECT_FALSE(summarize(scene).needs.refraction);
+}
+
+TEST(SceneSummary, GlassNeedsReflectionTooAsItMayReflectTotally) {
+    Scene scene;
+    scene.materials = {{"glass", vec3(1), 0, 0.5f}};
+    EXPECT_FALSE(summarize(scene).needs.refraction);
+    scene.add_mesh("pane", 0, Chunk::owning(dvec3(0), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_TRUE(summarize(scene).needs.refraction);
+    EXPECT_TRUE(summarize(scene).needs.reflection);
+    for (const LeftOut& item : summarize(scene).left_out)
+        EXPECT_EQ(item.what.find("rays"), std::string::npos) << item.what;
+}
+
+TEST(SceneSummary, ListsAllThatIsLeftOutAndNothingThatIsNeeded) {
+    Scene scene;
+    scene.materials = {{"dull"}, {"glass", vec3(1), 0, 0.5f}};
+    const std::vector<vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    scene.add_mesh("flat", 0, Chunk::owning(dvec3(0), corners));
+    const auto text = [&](const Query& query) {
+        return left_out_text(left_out_of(scene, needs_of(scene, query)));
+    };
+    EXPECT_EQ(text({}), "reflection rays, refraction rays");
+    EXPECT_EQ(text({false, false, 1}),
+              "reflection rays, refraction rays, shadow rays, queues of rays, proofs of answers");
+    scene.meshes[0].normals_left_out = 2;
+    scene.meshes[0].texture_coordinates_left_out = 3;
+    EXPECT_EQ(text({}), "vertex normals (24 bytes), texture coordinates (24 bytes), reflection "
+                        "rays, refraction rays");
+    // The others need their normals; glass needs both rays.
+    scene.add_mesh("smooth", 1, Chunk::owning(dvec3(0), corners),
+                   std::vector<vec3>(3, vec3(0, 0, 1)));
+    EXPECT_EQ(text({}), "vertex normals (24 bytes), texture coordinates (24 bytes)");
+    const Needs needs = needs_of(scene);
+    EXPECT_TRUE(needs.vertex_normals && needs.reflection && needs.refraction && needs.shadows &&
+                needs.several_leaves && needs.certified);
+    EXPECT_FALSE(needs.texture_coordinates);
+}
+
+TEST(SceneSummary, OfNothingHasNoBounds) {
+    EXPECT_TRUE(summarize(Scene{}).bounds.empty());
+}
+
+} // namespace ovc

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lambert below a coat, GGX, mirror and glass.
+#include "host/shade/bsdf.h"
+
+#include "core/fresnel.h"
+#include "host/shade/microfacet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace ovc {
+
+/// Narrower highlights are mirrors: they are narrower than a pixel, and pbrt draws the line here.
+static constexpr double kSmooth = 1e-3;
+
+static float average(const vec3& c) {
+    return (c.x + c.y + c.z) / 3;
+}
+
+vec3 Reflectance::at(double cosine) const {
+    switch (curve) {
+    case Curve::Constant:
+        return head_on;
+    case Curve::Schlick: {
+        const double x = std::clamp(1 - cosine, 0.0, 1.0);
+        return glm::mix(head_on, vec3(1), float(x * x * x * x * x));
+    }
+    case Curve::Fresnel:
+        return head_on * float(fresnel(cosine, ior));
+    }
+    return vec3(0);
+}
+
+vec3 Reflectance::mean() const {
+    switch (curve) {
+    case Curve::Constant:
+        return head_on;
+    case Curve::Schlick:
+        return glm::mix(head_on, vec3(1), 1 / 21.0f);
+    case Curve::Fresnel:
+        return head_on * float(fresnel_mean(ior));
+    }
+    return vec3(0);
+}
+
+/// A right-handed frame about a normal. Duff et al. 2017, "Building an Orthonormal Basis,
+/// Revisited".
+static void frame(const dvec3& n, dvec3& tangent, dvec3& bitangent) {
+    const double sign = std::copysign(1.0, n.z);
+    const double a = -1 / (sign + n.z);
+    const double b = n.x * n.y * a;
+    tangent = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+    bitangent = {b, sign + n.y * n.y * a, -n.y};
+}
+
+Bsdf::Bsdf(const SurfacePoint& surface) : geometric_(surface.geometric_normal) {
+    // Seen from behind its interpolated normal, a facet is what it is.
+    const double facing = -glm::dot(surface.view, surface.normal);
+    normal_ = facing > 1e-6 ? surface.normal : surface.geometric_normal;
+    frame(normal_, tangent_, bitangent_);
+    view_ = local(-surface.view);
+    view_.z = std::max(view_.z, 1e-9); // seen edge-on but for a rounding
+    const Material& material = *surface.material;
+    if (material.optics)
+        take_optics(surface, *material.optics);
+    else if (material.finish)
+        take_finish(surface, *material.finish);
+    else
+        take_shares(surface);
+    choose_probabilities();
+}
+
+static Reflectance reflectance_of(const Optics& optics, bool from_outside) {
+    using Boundary = Optics::Boundary;
+    switch (optics.boundary) {
+    case Boundary::None:
+        return {};
+    case Boundary::Mirror:
+        return {Reflectance::Curve::Constant, optics.reflection, 1};
+    case Boundary::Metal:
+        return {Reflectance::Curve::Schlick, optics.reflection, 1};
+    case Boundary::Dielectric:
+        return {Reflectance::Curve::Fresnel, optics.reflection,
+                from_outside ? optics.ior : 1 / optics.ior};
+    case Boundary::Thin:
+        return {Reflectance::Curve::Fresnel, optics.reflection, optics.ior};
+    }
+    return {};
+}
+
+void Bsdf::take_optics(const SurfacePoint& surface, const Optics& optics) {
+    const bool clear = optics.through != vec3(0);
+    // The back of what is not clear is as its front: there is no inside to look out of.
+    Reflectance boundary = reflectance_of(optics, surface.entering || !clear);
+    if (surface.entering || optics.two_sided)
+        emission_ = optics.emission;
+    diffuse_ = optics.diffuse;
+    if (optics.boundary != Optics::Boundary::None && diffuse_ != vec3(0)) {
+        coat_ = boundary;
+        coat_scale_ = 1.0f / glm::max(vec3(1) - boundary.mean(), vec3(1e-6f));
+    }
+    if (clear) {
+        const bool total =
+            optics.boundary == Optics::Boundary::Dielectric && fresnel(view_.z, boundary.ior) >= 1;
+        double share =
+            optics.boundary == Optics::Boundary::None ? 0 : fresnel(view_.z, boundary.ior);
+        if (optics.boundary == Optics::Boundary::Thin)
+            share = 2 * share / (1 + share); // and from side to side within
+        mirror_ = optics.reflection * float(share);
+        through_ = total ? vec3(0) : optics.through * float(1 - share);
+        if (optics.boundary == Optics::Boundary::Dielectric) {
+            is_straight_ = false;
+            bent_ = float(1 / (boundary.ior * boundary.ior));
+        }
+    } else if (optics.boundary != Optics::Boundary::None && optics.width < kSmooth) {
+        mirror_ = boundary.at(view_.z);
+    } else if (optics.boundary != Optics::Boundary::None) {
+        is_glossy_ = true;
+        gloss_ = boundary;
+        width_ = std::min(double(optics.width), 1.0);
+    }
+}
+
+/// What Whitted's shares say; radiance changes at a boundary of glass as it does for Optics.
+void Bsdf::take_shares(const SurfacePoint& surface) {
+    const Material& material = *surface.material;
+    const bool total = material.transmission > 0 && material.ior != 1 &&
+                       fresnel(view_.z, surface.entering ? material.ior : 1 / material.ior) >= 1;
+    const Branches parts = branches(surface, total);
+    mirror_ = parts.mirror;
+    through_ = parts.through;
+    is_straight_ = material.ior == 1;
+    bent_ =
+        float(surface.entering ? 1 / (material.ior * material.ior) : material.ior * material.ior);
+    diffuse_ = surface.color * std::max(1 - parts.taken_by_mirror - parts.taken_by_through, 0.0f);
+}
+
+/// POV-Ray's terms add up to whatever they add up to: where that is more than arrives, all are
+/// dimmed alike.
+void Bsdf::take_finish(const SurfacePoint& surface, const Finish& finish) {
+    take_shares(surface);
+    // Elsewhere ambient light stands for what comes from other surfaces, which path tracing finds;
+    // POV-Ray 3.7 drops it so where there is radiosity.
+    emission_ = finish.diffuse > 0 ? vec3(0) : surface.color * finish.ambient;
+    diffuse_ = surface.color * finish.diffuse;
+    // Blinn's exponent n is as wide as alpha^2 = 2 / (n + 2), and (n + 2) / 8 high over pi where
+    // all is reflected; Phong's of m is as wide as Blinn's of 4 m.
+    const bool blinn = finish.specular > 0 && finish.roughness > 0;
+    const double exponent = blinn ? 1 / double(finish.roughness) : 4 * double(finish.phong_size);
+    const float height = blinn ? finish.specular : finish.phong;
+    const float share = std::min(float(8 * height / (exponent + 2)), 1.0f);
+    if (share > 0) {
+        is_glossy_ = true;
+        width_ = std::clamp(std::sqrt(2 / (exponent + 2)), kSmooth, 1.0);
+        gloss_.head_on = share * glm::mix(vec3(1), surface.color, finish.metallic);
+    }
+    const float sum = max_component(diffuse_ + gloss_.head_on + mirror_ + through_);
+    if (sum > 1)
+        for (vec3* part : {&diffuse_, &gloss_.head_on, &mirror_, &through_})
+            *part /= sum;
+}
+
+/// As much as each is about to send on.
+void Bsdf::choose_probabilities() {
+    const vec3 below = coat_ ? vec3(1) - coat_->at(view_.z) : vec3(1);
+    chance_ = {double(average(diffuse_ * below)),
+               is_glossy_ ? double(average(gloss_.at(view_.z))) : 0, double(average(mirror_)),
+               double(average(through_))};
+    const double sum = chance_[0] + chance_[1] + chance_[2] + chance_[3];
+    for (double& chance : chance_)
+        chance = sum > 0 ? std::max(chance, 0.0) / sum : 0;
+}
+
+dvec3 Bsdf::local(const dvec3& d) const {
+    return {glm::dot(d, tangent_), glm::dot(d, bitangent_), glm::dot(d, normal_)};
+}
+
+dvec3 Bsdf::world(const dvec3& d) const {
+    return d.x * tangent_ + d.y * bitangent_ + d.z * normal_;
+}
+
+bool Bsdf::is_above(const dvec3& towards) const {
+    return glm::dot(towards, normal_) > 0 && glm::dot(towards, geometric_) > 0;
+}
+
+/// towards: in the frame, above the surface.
+vec3 Bsdf::scattered(const dvec3& towards) const {
+    vec3 sum = diffuse_ * float(towards.z * std::numbers::inv_pi);
+    // Once through the coat on the way in, once on the way out, and what it throws back below finds
+    // its way out too: reciprocal, and 1 - coat at the viewer's angle in all for a white ground.
+    // Shirley et al. 1997, "A Practitioners' Assessment of Light Reflection Models", section 3.
+    if (coat_)
+        sum *= (vec3(1) - coat_->at(view_.z)) * (vec3(1) - coat_->at(towards.z)) * coat_scale_;
+    if (is_glossy_) {
+        const dvec3 half = glm::normalize(view_ + towards);
+        sum +=
+            gloss_.at(glm::dot(view_, half)) * float(Microfacets{width_}.reflected(view_, towards));
+    }
+    return sum;
+}
+
+double Bsdf::scattered_density(const dvec3& towards) const {
+    double sum = chance_[0] * towards.z * std::numbers::inv_pi;
+    if (is_glossy_)
+        sum += chance_[1] * Microfacets{width_}.density(view_, towards);
+    return sum;
+}
+
+vec3 Bsdf::evaluate(const dvec3& towards) const {
+    return scatters() && is_above(towards) ? scattered(local(towards)) : vec3(0);
+}
+
+double Bsdf::density(const dvec3& towards) const {
+    return scatters() && is_above(towards) ? scattered_density(local(towards)) : 0;
+}
+
+/// By the cosine. Malley's: a disk, lifted.
+static dvec3 cosine_way(const dvec2& u) {
+    const double r = std::sqrt(u.x), phi = 2 * std::numbers::pi * u.y;
+    return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(1 - u.x, 0.0))};
+}
+
+std::optional<Scattered> Bsdf::sample(double choice, const dvec2& u) const {
+    size_t way = 0;
+    while (way < 3 && choice >= chance_[way])
+        choice -= chance_[way++];
+    while (way > 0 && !(chance_[way] > 0)) // by a rounding, beyond the last
+        --way;
+    if (!(chance_[way] > 0))
+        return std::nullopt;
+    const auto chosen = Scattering(way);
+    if (chosen == Scattering::Mirror)
+        return Scattered{chosen, {}, mirror_ / float(chance_[way]), 0};
+    if (chosen == Scattering::Through)
+        return Scattered{chosen, {}, through_ * float(bent_ / chance_[way]), 0};
+    const dvec3 towards =
+        chosen == Scattering::Diffuse ? cosine_way(u) : Microfacets{width_}.reflected_way(view_, u);
+    const dvec3 direction = world(towards);
+    if (!(towards.z > 0) || !is_above(direction))
+        return std::nullopt;
+    const double density = scattered_density(towards);
+    return Scattered{chosen, direction, scattered(towards) / float(density), density};
+}
+
+} // namespace ovc

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bsdf: sends on no more than arrives, both ways alike, and chooses directions as it says it does;
+// Fresnel's equations by their values.
+#include "host/shade/bsdf.h"
+
+#include "core/fresnel.h"
+#include "host/shade/path_sampler.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace ovc {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+using Boundary = Optics::Boundary;
+
+struct Case {
+    std::string name;
+    Material material;
+};
+
+Material with_optics(Boundary boundary, const vec3& diffuse, const vec3& reflection, float width,
+                     const vec3& through = vec3(0), double ior = 1.5) {
+    Material m;
+    Optics optics;
+    optics.diffuse = diffuse;
+    optics.boundary = boundary;
+    optics.reflection = reflection;
+    optics.width = width;
+    optics.through = through;
+    optics.ior = ior;
+    m.ior = boundary == Boundary::Dielectric ? ior : 1;
+    m.optics = optics;
+    return m;
+}
+
+Material with_finish(const Finish& finish, const vec3& color = vec3(1)) {
+    Material m;
+    m.color = color;
+    m.finish = finish;
+    return m;
+}
+
+std::vector<Case> scattering() {
+    Finish phong;
+    phong.diffuse = 0.6f;
+    phong.phong = 0.8f;
+    Finish metal;
+    metal.diffuse = 0.3f;
+    metal.specular = 3;
+    metal.roughness = 0.02f;
+    metal.metallic = 1;
+    return {{"matte", with_optics(Boundary::None, vec3(1), vec3(0), 0)},
+            {"plastic", with_optics(Boundary::Dielectric, {1, 0.5f, 0}, vec3(1), 0.3f)},
+            {"sharp plastic", with_optics(Boundary::Dielectric, vec3(1), vec3(1), 0.02f)},
+            {"smooth plastic", with_optics(Boundary::Dielectric, vec3(1), vec3(1), 0)},
+            {"dull plastic", with_optics(Boundary::Dielectric, vec3(0.4f), vec3(0.25f), 1)},
+            {"metal", with_optics(Boundary::Metal, vec3(0), {1, 0.7f, 0.3f}, 0.2f)},
+            {"rough metal", with_optics(Boundary::Metal, vec3(0), vec3(1), 0.9f)},
+            {"phong", with_finish(phong)},
+            {"POV-Ray's metal", with_finish(metal, {1, 0.8f, 0.2f})}};
+}
+
+SurfacePoint seen_from(const Material& material, const dvec3& towards_viewer,
+                       bool entering = true) {
+    SurfacePoint s;
+    s.position = s.beyond = dvec3(0);
+    s.geometric_normal = s.normal = glm::normalize(dvec3(1, 2, -3));
+    s.view = -towards_viewer;
+    s.material = &material;
+    s.color = material.color;
+    s.entering = entering;
+    return s;
+}
+
+/// A direction by its cosine to the normal of seen_from(), and round that.
+dvec3 way(double cosine, double phi) {
+    const dvec3 n = glm::normalize(dvec3(1, 2, -3));
+    const dvec3 x = glm::normalize(glm::cross(n, dvec3(0, 0, 1))), y = glm::cross(n, x);
+    const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
+    return glm::normalize(cosine * n + sine * (std::cos(phi) * x + std::sin(phi) * y));
+}
+
+constexpr double kCosines[] = {0.02, 0.3, 0.7, 0.999};
+
+/// All directions above a surface in cells of one size.
+constexpr int kRings = 600, kSectors = 900;
+template <class Function>
+auto integral(Function&& of) {
+    decltype(of(dvec3())) sum(0);
+    for (int i = 0; i < kRings; ++i)
+        for (int j = 0; j < kSectors; ++j)
+            sum += of(way((i + 0.5) / kRings, 2 * kPi * (j + 0.5) / kSectors));
+    return sum * decltype(sum)(2 * kPi / (kRings * kSectors));
+}
+
+TEST(Fresnel, HasItsKnownValues) {
+    EXPECT_NEAR(fresnel(1, 1.5), 0.04, 1e-15);
+    EXPECT_NEAR(fresnel(1, 1 / 1.5), 0.04, 1e-15);
+    EXPECT_NEAR(fresnel(1, 2.4), 1.96 / 11.56, 1e-15);
+    EXPECT_EQ(fresnel(0, 1.5), 1);
+    EXPECT_EQ(fresnel(0.5, 1), 0) << "no boundary";
+    // At Brewster's angle one polarisation is let through, of the other the sine of the angles'
+    // difference counts.
+    const double angle = std::atan(1.5);
+    const double s = std::sin(2 * angle - kPi / 2);
+    EXPECT_NEAR(fresnel(std::cos(angle), 1.5), 0.5 * s * s, 1e-15);
+    const double critical = std::asin(1 / 1.5);
+    EXPECT_EQ(fresnel(std::cos(critical + 1e-6), 1 / 1.5), 1);
+    EXPECT_LT(fresnel(std::cos(critical - 1e-6), 1 / 1.5), 1);
+    // Light takes the way back alike.
+    for (const double cosine : kCosines) {
+        const double below = std::sqrt(1 - (1 - cosine * cosine) / (1.5 * 1.5));
+        EXPECT_NEAR(fresnel(cosine, 1.5), fresnel(below, 1 / 1.5), 1e-12);
+    }
+}
+
+TEST(Fresnel, MeanIsThatOverAllDirections) {
+    for (const double ior : {1.00001, 1.001, 1.1, 1.33, 1.5, 2.4, 10.0, 1 / 1.33, 1 / 2.4}) {
+        constexpr int kSteps = 200000;
+        double sum = 0;
+        for (int i = 0; i < kSteps; ++i) {
+            const double cosine = (i + 0.5) / kSteps;
+            sum += 2 * cosine * fresnel(cosine, ior) / kSteps;
+        }
+        EXPECT_NEAR(fresnel_mean(ior), sum, 1e-5) << ior;
+    }
+    EXPECT_EQ(fresnel_mean(1), 0);
+}
+
+/// What a white sky is reflected of: all of it by matte white, never more.
+TEST(Bsdf, SendsOnNoMoreThanArrives) {
+    for (const Case& test : scattering())
+        for (const double cosine : kCosines) {
+            const Bsdf bsdf(seen_from(test.material, way(cosine, 1)));
+            constexpr uint32_t kCount = 1 << 14;
+            dvec3 sum(0);
+            for (uint32_t i = 0; i < kCount; ++i) {
+                const PathSampler random(1, 2, i);
+                if (const auto s = bsdf.sample(random.pair(0).x, random.pair(1)))
+                    sum += dvec3(s->weight) / double(kCount);
+            }
+            SCOPED_TRACE(test.name + fmt::format(" at {}", cosine));
+            EXPECT_LT(max_component(sum), 1.005);
+            if (test.name == "matte" || test.name == "smooth plastic") {
+                EXPECT_NEAR(sum.x, 1, 0.005) << "white keeps all";
+            }
+            if (test.name == "sharp plastic" && cosine > 0.2) {
+                EXPECT_NEAR(sum.x, 1, 0.02);
+            }
+        }
+}
+
+TEST(Bsdf, IsTheSameBothWays) {
+    for (const Case& test : scattering()) {
+        if (test.material.finish)
+            continue; // POV-Ray's mirror, highlight and tint depend on the viewer's angle alone
+        for (const double a : kCosines)
+            for (const double b : kCosines)
+                for (const double phi : {0.1, 1.0, 3.0}) {
+                    const dvec3 from = way(a, 0), to = way(b, phi);
+                    const vec3 there = Bsdf(seen_from(test.material, from)).evaluate(to);
+                    const vec3 back = Bsdf(seen_from(test.material, to)).evaluate(from);
+                    for (int c = 0; c < 3; ++c)
+                        EXPECT_NEAR(there[c] * a, back[c] * b, 1e-4 * (1e-3 + back[c] * b))
+                            << test.name << " " << a << " " << b;
+                }
+    }
+}
+
+/// The density adds up to the share of samples that are not mirrored and do not end below the
+/// surface; and the samples, cell by cell, are as many as it says: chi-square.
+TEST(Bsdf, ChoosesDirectionsAsItsDensitySays) {
+    constexpr int kCells = 8, kTurns = 12;
+    constexpr uint32_t kCount = 1 << 16;
+    for (const Case& test : scattering())
+        for (const double cosine : {0.3, 0.7, 0.999}) {
+            const Bsdf bsdf(seen_from(test.material, way(cosine, 1)));
+            const dvec3 n = glm::normalize(dvec3(1, 2, -3));
+            const dvec3 x = glm::normalize(glm::cross(n, dvec3(0, 0, 1))), y = glm::cross(n, x);
+            const auto cell = [&](const dvec3& d) {
+                const double phi = std::atan2(glm::dot(d, y), glm::dot(d, x)) / (2 * kPi) + 0.5;
+                const int ring = std::min(int(glm::dot(d, n) * kCells), kCells - 1);
+                return ring * kTurns + std::min(int(phi * kTurns), kTurns - 1);
+            };
+            std::vector<double> expected(kCells * kTurns), found(kCells * kTurns);
+            const double total = integral([&](const dvec3& d) {
+                const double density = bsdf.density(d);
+                expected[size_t(cell(d))] += density * 2 * kPi / (kRings * kSectors);
+                return density;
+            });
+            double above = 0;
+            for (uint32_t i = 0; i < kCount; ++i) {
+                const PathSampler random(i, 5, 0); // independent ones: chi-square is about those
+                const auto s = bsdf.sample(random.pair(0).x, random.pair(1));
+                if (!s || s->way == Scattering::Mirror)
+                    continue;
+                above += 1.0 / kCount;
+                found[size_t(cell(s->direction))] += 1;
+                EXPECT_NEAR(s->density, bsdf.density(s->direction), 1e-6 * s->density);
+            }
+            SCOPED_TRACE(test.name + fmt::format(" at {}", cosine));
+            const bool is_sharp = test.name == "sharp plastic"; // narrower than the cells
+            EXPECT_NEAR(total, above, is_sharp ? 0.02 : 0.01);
+            double chi_square = 0;
+            int cells = 0;
+            for (size_t i = 0; i < expected.size(); ++i)
+                if (const double e = expected[i] * kCount; e > 20) {
+                    chi_square += (found[i] - e) * (found[i] - e) / e;
+                    ++cells;
+                }
+            // Five sigma of a chi-square of so many degrees, which has variance 2 n.
+            if (!is_sharp) {
+                EXPECT_LT(chi_square, cells + 5 * std::sqrt(2.0 * cells)) << cells << " cells";
+            }
+        }
+}
+
+/// The mean of a sample's weight is what evaluate() adds up to.
+TEST(Bsdf, WeighsWhatItChooses) {
+    for (const Case& test : scattering()) {
+        if (test.name == "sharp plastic")
+            continue;
+        const Bsdf bsdf(seen_from(test.material, way(0.6, 1)));
+        const vec3 whole = integral([&](const dvec3& d) { return bsdf.evaluate(d); });
+        constexpr uint32_t kCount = 1 << 14;
+        dvec3 sum(0);
+        for (uint32_t i = 0; i < kCount; ++i) {
+            const PathSampler random(3, 4, i);
+            const auto s = bsdf.sample(random.pair(0).x, random.pair(1));
+            if (s && s->density > 0)
+                sum += dvec3(s->weight) / double(kCount);
+        }
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(sum[c], whole[c], 0.01) << test.name;
+    }
+}
+
+TEST(Bsdf, GlassSharesOutAsFresnelSays) {
+    const Material glass =
+        with_optics(Boundary::Dielectric, vec3(0), vec3(1), 0, {1, 0.5f, 0.25f}, 1.5);
+    for (const double cosine : kCosines) {
+        const double share = fresnel(cosine, 1.5);
+        double mirrored = 0;
+        vec3 through(0);
+        constexpr uint32_t kCount = 1 << 12;
+        const Bsdf bsdf(seen_from(glass, way(cosine, 1)));
+        for (uint32_t i = 0; i < kCount; ++i) {
+            const auto s = bsdf.sample((i + 0.5) / kCount, dvec2(0.5));
+            ASSERT_TRUE(s);
+            EXPECT_EQ(s->density, 0);
+            if (s->way == Scattering::Mirror)
+                mirrored += double(s->weight.x) / kCount;
+            else
+                through += s->weight / float(kCount);
+        }
+        EXPECT_NEAR(mirrored, share, 1e-3);
+        // Radiance in glass is denser by the square of the index.
+        EXPECT_NEAR(through.x, (1 - share) / 2.25, 1e-3);
+        EXPECT_NEAR(through.z, (1 - share) / 2.25 / 4, 1e-3);
+    }
+    const Bsdf inside(seen_from(glass, way(0.3, 1), /* entering= */ false));
+    EXPECT_EQ(inside.through(), vec3(0)) << "reflected totally";
+    EXPECT_EQ(inside.sample(0.9, dvec2(0.5))->weight, vec3(1));
+    const Bsdf leaving(seen_from(glass, way(1, 1), /* entering= */ false));
+    EXPECT_EQ(leaving.sample(0.99, dvec2(0.5))->way, Scattering::Through);
+    EXPECT_NEAR(leaving.through().x, 0.96f, 1e-6f);
+}
+
+TEST(Bsdf, APaneReflectsWithBothItsSides) {
+    const Material pane = with_optics(Boundary::Thin, vec3(0), vec3(1), 0, vec3(1), 1.5);
+    const Bsdf bsdf(seen_from(pane, way(1, 0)));
+    // R + T R T + T R R R T + ...: 2 R / (1 + R).
+    EXPECT_NEAR(bsdf.through().x, 1 - 0.08 / 1.04, 1e-6);
+    EXPECT_TRUE(bsdf.is_straight());
+}
+
+TEST(Bsdf, EmitsFromItsFrontUnlessItHasTwo) {
+    Material lamp = with_optics(Boundary::None, vec3(0), vec3(0), 0);
+    lamp.optics->emission = vec3(3);
+    EXPECT_EQ(Bsdf(seen_from(lamp, way(1, 0))).emission(), vec3(3));
+    EXPECT_EQ(Bsdf(seen_from(lamp, way(1, 0), false)).emission(), vec3(0));
+    lamp.optics->two_sided = true;
+    EXPECT_EQ(Bsdf(seen_from(lamp, way(1, 0), false)).emission(), vec3(3));
+    EXPECT_FALSE(Bsdf(seen_from(lamp, way(1, 0))).sample(0.5, dvec2(0.5)));
+
+    Finish finish;
+    finish.ambient = vec3(0.5f);
+    const Material matte = with_finish(finish, {1, 0.5f, 0});
+    EXPECT_EQ(Bsdf(seen_from(matte, way(1, 0))).emission(), vec3(0)) << "stands for other light";
+    finish.diffuse = 0;
+    const Material glowing = with_finish(finish, {1, 0.5f, 0});
+    EXPECT_EQ(Bsdf(seen_from(glowing, way(1, 0))).emission(), vec3(0.5f, 0.25f, 0));
+}
+
+} // namespace
+} // namespace ovc

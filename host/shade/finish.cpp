@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Phong 1975, Blinn 1977, Fresnel's equations, and POV-Ray's ways with them.
+#include "host/shade/finish.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace ovc {
+
+/// White turning into the surface's color the more metallic it is, but for grazing angles. POV-Ray
+/// approximates Fresnel's curve of a metal so; angle_cosine: to the normal.
+static vec3 metallic_tint(const SurfacePoint& surface, float metallic, double angle_cosine) {
+    if (!(metallic > 0))
+        return vec3(1);
+    const double x = std::acos(std::clamp(std::abs(angle_cosine), 0.0, 1.0)) * 2 / std::numbers::pi;
+    const double grazing =
+        std::clamp(0.014567225 / ((x - 1.12) * (x - 1.12)) - 0.011612903, 0.0, 1.0);
+    return vec3(1) + metallic * float(1 - grazing) * (surface.color - vec3(1));
+}
+
+/// The share of light that a boundary reflects, the mean of both polarisations.
+static double fresnel_share(double cosine, double ior) {
+    const double g_square = ior * ior + cosine * cosine - 1;
+    if (!(g_square > 0))
+        return 1;
+    const double g = std::sqrt(g_square);
+    const double a = (g - cosine) / (g + cosine);
+    const double b = (cosine * (g + cosine) - 1) / (cosine * (g - cosine) + 1);
+    return 0.5 * a * a * (1 + b * b);
+}
+
+static vec3 reflected_share(const SurfacePoint& surface) {
+    const Finish& finish = *surface.material->finish;
+    if (finish.reflection == vec3(0) && finish.grazing_reflection == vec3(0))
+        return vec3(0);
+    const double cosine = std::abs(glm::dot(surface.view, surface.normal));
+    const double inside = surface.material->ior;
+    const double grazing = finish.fresnel
+                               ? fresnel_share(cosine, surface.entering ? inside : 1 / inside)
+                               : std::pow(1 - cosine, double(finish.reflection_falloff));
+    return glm::mix(finish.reflection, finish.grazing_reflection, float(grazing)) *
+           metallic_tint(surface, finish.metallic_reflection, cosine);
+}
+
+static double highlight(const SurfacePoint& surface, const dvec3& towards) {
+    const Finish& finish = *surface.material->finish;
+    double sum = 0;
+    if (finish.phong > 0) {
+        const dvec3 mirrored =
+            surface.view - 2 * glm::dot(surface.view, surface.normal) * surface.normal;
+        const double cosine = glm::dot(mirrored, towards);
+        sum += cosine > 0 ? finish.phong * std::pow(cosine, double(finish.phong_size)) : 0;
+    }
+    if (finish.specular > 0) {
+        const dvec3 half_way = towards - surface.view;
+        const double cosine = glm::dot(half_way, surface.normal) / glm::length(half_way);
+        sum += cosine > 0 ? finish.specular * std::pow(cosine, 1 / double(finish.roughness)) : 0;
+    }
+    return sum;
+}
+
+vec3 finish_light(const SurfacePoint& surface, const dvec3& towards, const vec3& arriving,
+                  bool highlights) {
+    const Finish& finish = *surface.material->finish;
+    const double cosine = glm::dot(surface.normal, towards);
+    vec3 light =
+        surface.color * (finish.diffuse * float(std::pow(cosine, double(finish.brilliance))));
+    if (highlights)
+        light +=
+            metallic_tint(surface, finish.metallic, cosine) * float(highlight(surface, towards));
+    return light * arriving;
+}
+
+Branches finish_branches(const SurfacePoint& surface, bool total) {
+    if (total) // POV-Ray's glass then dims nothing, whatever it reflects and lets through otherwise
+        return {vec3(1), vec3(0)};
+    Branches parts;
+    parts.mirror = reflected_share(surface);
+    parts.through = surface.material->transmission * surface.material->filter;
+    if (surface.material->finish->conserve_energy)
+        parts.through *= glm::clamp(vec3(1) - parts.mirror, vec3(0), vec3(1));
+    return parts;
+}
+
+} // namespace ovc

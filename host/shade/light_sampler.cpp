@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lights by their power: sums of chances, searched by halves.
+#include "host/shade/light_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ovc {
+
+/// Where a shadow ray ends, so that its emitter is not in its way: for doubles 2^-48 less than 1
+/// would do, but rays go to backends in float too.
+static constexpr double kBeforeEmitter = 1 - 0x1p-16;
+/// How many triangles tell how large a scene is, about.
+static constexpr uint64_t kMeasured = 4096;
+
+static double luminance(const vec3& c) {
+    return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
+}
+
+static dvec3 area_normal(const Triangle& t) {
+    return 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]);
+}
+
+/// About the box of the scene.
+static Box measured(const Soup& soup) {
+    Box box;
+    const uint64_t step = soup.triangle_count() / kMeasured + 1;
+    uint64_t number = 0;
+    for (const Chunk& chunk : soup.chunks) {
+        for (uint64_t p = (step - number % step) % step; p < chunk.size(); p += step)
+            if (const Triangle t = chunk.triangle(uint32_t(p)); is_finite(t[0]))
+                box.add(t[0]);
+        number += chunk.size();
+    }
+    return box;
+}
+
+LightSampler::LightSampler(const Scene& scene) : scene_(scene) {
+    const Box box = measured(scene.soup);
+    const dvec3 middle = box.empty() ? dvec3(0) : box.center();
+    const double reach = box.empty() ? 1 : std::max(0.5 * glm::length(box.extent()), 1e-30);
+    add_lights(middle, reach);
+    add_emitters(reach);
+    share_with_the_weak();
+}
+
+/// By what they bring to the middle of the scene, from no nearer than its reach.
+void LightSampler::add_lights(const dvec3& middle, double reach) {
+    for (const Light& light : scene_.lights) {
+        Light bare = light;
+        bare.cone.reset();
+        const dvec3 there = middle - light.position;
+        const double distance = glm::length(there);
+        const dvec3 at = distance > reach ? middle : light.position + dvec3(0, 0, reach);
+        const double power =
+            light.stand_in ? 0 : std::max(luminance(light_at(bare, at).color), 0.0);
+        has_lights_ |= power > 0;
+        sums_.push_back(sums_.back() + (std::isfinite(power) ? power : 0));
+    }
+}
+
+/// By what they bring over the scene's reach, from the front.
+void LightSampler::add_emitters(double reach) {
+    emitters_of_.assign(scene_.meshes.size(), kNone);
+    for (uint32_t m = 0; m < scene_.meshes.size(); ++m) {
+        const uint32_t material = scene_.meshes[m].material;
+        if (material >= scene_.materials.size() || !scene_.materials[material].optics)
+            continue;
+        const Optics& optics = *scene_.materials[material].optics;
+        const double power = luminance(optics.emission) / (reach * reach);
+        if (!(power > 0) || !std::isfinite(power))
+            continue;
+        emitters_of_[m] = uint32_t(emitters_.size());
+        emitters_.push_back({m, sums_.size() - 1, optics.two_sided, optics.emission});
+        const Chunk& chunk = scene_.soup.chunks[m];
+        for (uint32_t p = 0; p < chunk.size(); ++p) {
+            const double area = glm::length(area_normal(chunk.triangle(p)));
+            sums_.push_back(sums_.back() + (std::isfinite(area) ? power * area : 0));
+        }
+    }
+}
+
+/// Half of the choices go by power, the others to all lights and emitting meshes alike: what a
+/// strong one does not reach may be lit by a weak one nearby.
+void LightSampler::share_with_the_weak() {
+    std::vector<size_t> first(scene_.lights.size());
+    std::iota(first.begin(), first.end(), size_t(0));
+    for (const Emitters& emitters : emitters_)
+        first.push_back(emitters.first);
+    first.push_back(sums_.size() - 1);
+    const std::vector<double> powers = sums_;
+    const auto power = [&](size_t group) {
+        return powers[first[group + 1]] - powers[first[group]];
+    };
+    double shining = 0;
+    for (size_t group = 0; group + 1 < first.size(); ++group)
+        shining += power(group) > 0;
+    for (size_t group = 0; group + 1 < first.size(); ++group) {
+        const double scale =
+            power(group) > 0 ? 1 / powers.back() + 1 / (shining * power(group)) : 0;
+        for (size_t i = first[group]; i < first[group + 1]; ++i)
+            sums_[i + 1] = sums_[i] + scale * (powers[i + 1] - powers[i]);
+    }
+}
+
+std::optional<Arriving> LightSampler::sample(const SurfacePoint& surface, double choice,
+                                             const dvec2& u) const {
+    if (!(sums_.back() > 0))
+        return std::nullopt;
+    // The last whose sum before it is at most this: never one without power.
+    const double at = std::min(choice * sums_.back(), std::nextafter(sums_.back(), 0.0));
+    const size_t i = size_t(std::upper_bound(sums_.begin(), sums_.end(), at) - sums_.begin()) - 1;
+    if (i < scene_.lights.size())
+        return from_light(uint32_t(i), surface);
+    const auto next = std::upper_bound(emitters_.begin(), emitters_.end(), i,
+                                       [](size_t n, const Emitters& e) { return n < e.first; });
+    return from_emitter(next[-1], i, surface, u);
+}
+
+std::optional<Arriving> LightSampler::from_light(uint32_t number,
+                                                 const SurfacePoint& surface) const {
+    const FromLight from = light_at(scene_.lights[number], surface.position);
+    if (from.towards == dvec3(0) || from.color == vec3(0))
+        return std::nullopt;
+    return Arriving{shadow_ray(scene_.lights[number], surface.position), from.towards,
+                    from.color / float(chance(number)), 0, number};
+}
+
+/// Uniform in the triangle: Turk 1990, "Generating Random Points in Triangles".
+std::optional<Arriving> LightSampler::from_emitter(const Emitters& emitters, size_t i,
+                                                   const SurfacePoint& surface,
+                                                   const dvec2& u) const {
+    const Triangle t = scene_.soup.chunks[emitters.mesh].triangle(uint32_t(i - emitters.first));
+    const dvec3 across = area_normal(t);
+    const double area = glm::length(across);
+    const double root = std::sqrt(u.x);
+    const dvec3 place = (1 - root) * t[0] + root * (1 - u.y) * t[1] + root * u.y * t[2];
+    const dvec3 there = place - surface.position;
+    const double distance = glm::length(there);
+    if (!(distance > 0))
+        return std::nullopt;
+    const dvec3 towards = there / distance;
+    const double cosine = -glm::dot(towards, across) / area; // to the front
+    if (!(cosine > 0 || (emitters.two_sided && cosine < 0)))
+        return std::nullopt;
+    const double density = chance(i) / area * distance * distance / std::abs(cosine);
+    return Arriving{{surface.position, 0, there, kBeforeEmitter},
+                    towards,
+                    emitters.radiance / float(density),
+                    density,
+                    kNone};
+}
+
+double LightSampler::density(TriangleId id, double distance, double cosine) const {
+    const uint32_t number = emitters_of_[id.mesh];
+    if (number == kNone || !(std::abs(cosine) > 0))
+        return 0;
+    const double area = glm::length(area_normal(scene_.soup.triangle(id)));
+    return chance(emitters_[number].first + id.prim) / area * distance * distance /
+           std::abs(cosine);
+}
+
+} // namespace ovc

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// What becomes of a path at a surface: it sees what that emits, asks one light, and goes on one
+// way.
+#include "host/shade/path_tracer.h"
+
+#include "host/shade/path_sampler.h"
+
+#include <algorithm>
+
+namespace ovc {
+
+/// From this depth on, paths that carry little end by chance, and the others carry more.
+static constexpr uint32_t kRouletteFrom = 3;
+static constexpr float kLeastSurvival = 0.05f;
+
+/// What the random numbers of a surface are for.
+enum Purpose : uint32_t { kChoices, kLightPlace, kDirection, kRoulette, kPurposes };
+
+/// A surface that a path has met.
+struct PathTracer::Met {
+    const Ray& ray;
+    const Path& path;
+    const Hit& hit;
+    double distance; // to where the direction was chosen
+    SurfacePoint surface;
+    Bsdf bsdf;
+};
+
+/// The rays that go on, by how: neighbours go the same way.
+struct PathTracer::Sides {
+    RayList<Path> mirrored, through, bounced;
+};
+
+/// The share of light that is found with `density` and might have been with `other`. Veach's power
+/// heuristic.
+static double share_of(double density, double other) {
+    if (!(other > 0))
+        return 1;
+    const double ratio = other / density;
+    return 1 / (1 + ratio * ratio);
+}
+
+/// Whether light passes it straight, as far as `light` says it may be bent.
+static bool passes(const Material& material, bool may_be_bent) {
+    if (material.optics)
+        return material.optics->through != vec3(0) &&
+               (may_be_bent || material.optics->boundary != Optics::Boundary::Dielectric);
+    return material.transmission > 0 && (may_be_bent || material.ior == 1);
+}
+
+static bool light_passes(const Scene& scene, bool has_lights) {
+    return std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [&](const Material& m) { return passes(m, has_lights); }) ||
+           (has_lights && std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                                      [](const MeshInfo& m) { return m.no_shadow; }));
+}
+
+PathTracer::PathTracer(const Scene& scene, const vec3& up, const PathTracerOptions& options)
+    : scene_(scene),
+      up_(up),
+      options_(options),
+      lights_(scene),
+      unexposed_(1 / scene.exposure),
+      light_may_pass_(light_passes(scene, lights_.has_lights())) {}
+
+void PathTracer::shade(std::span<const Ray> rays, std::span<const Path> paths,
+                       std::span<const Hit> hits, Film& film, Spawned& spawned) const {
+    Sides sides;
+    for (size_t i = 0; i < rays.size(); ++i)
+        if (hits[i].is_hit())
+            meet(rays[i], paths[i], hits[i], film, sides, spawned);
+        else
+            film.add(paths[i].pixel, paths[i].weight * unexposed_ *
+                                         background_color(scene_.background, up_, rays[i].dir));
+    for (const RayList<Path>* side : {&sides.mirrored, &sides.through, &sides.bounced})
+        spawned.paths.append(*side);
+}
+
+void PathTracer::meet(const Ray& ray, const Path& path, const Hit& hit, Film& film, Sides& sides,
+                      Spawned& spawned) const {
+    const SurfacePoint surface = surface_point(scene_, ray, hit);
+    const double distance = double(path.behind) + hit.t * glm::length(ray.dir);
+    const Met met{ray, path, hit, distance, surface, Bsdf(surface)};
+    film.add(path.pixel, path.weight * unexposed_ * seen_emission(met));
+    if (path.depth >= options_.max_depth)
+        return;
+    const PathSampler random(options_.seed, path.pixel, path.sample);
+    const uint32_t first = path.depth * uint32_t(kPurposes);
+    const dvec2 choices = random.pair(first + kChoices);
+    if (met.bsdf.scatters())
+        light_up(met, choices.x, random.pair(first + kLightPlace), film, spawned);
+    const auto scattered = met.bsdf.sample(choices.y, random.pair(first + kDirection));
+    if (!scattered)
+        return;
+    vec3 weight = path.weight * scattered->weight;
+    // Not in glass, where weights fall by the square of the index and rise again.
+    if (path.depth >= kRouletteFrom && scattered->density > 0) {
+        const float survival = std::clamp(max_component(weight), kLeastSurvival, 1.0f);
+        if (random.pair(first + kRoulette).x >= survival)
+            return;
+        weight /= survival;
+    }
+    if (weight != vec3(0))
+        go_on(met, *scattered, weight, sides);
+}
+
+vec3 PathTracer::seen_emission(const Met& met) const {
+    const vec3 emission = met.bsdf.emission();
+    if (emission == vec3(0) || !(met.path.density > 0))
+        return emission;
+    const double cosine = glm::dot(met.surface.view, met.surface.geometric_normal);
+    const double by_light = lights_.density(met.hit.id, met.distance, cosine);
+    if (!(by_light > 0) || options_.search == LightSearch::Paths)
+        return emission;
+    if (options_.search == LightSearch::ShadowRays)
+        return vec3(0);
+    return emission * float(share_of(double(met.path.density), by_light));
+}
+
+void PathTracer::light_up(const Met& met, double choice, const dvec2& u, Film& film,
+                          Spawned& spawned) const {
+    const std::optional<Arriving> from = lights_.sample(met.surface, choice, u);
+    if (!from || (from->density > 0 && options_.search == LightSearch::Paths))
+        return;
+    const vec3 reflected = met.bsdf.evaluate(from->towards);
+    if (reflected == vec3(0))
+        return;
+    const double share = from->density > 0 && options_.search == LightSearch::Both
+                             ? share_of(from->density, met.bsdf.density(from->towards))
+                             : 1;
+    const vec3 arriving = met.path.weight * reflected * from->light * float(share) * unexposed_;
+    const bool is_shadowless = from->number != kNone && scene_.lights[from->number].shadowless;
+    if (options_.shadows && !is_shadowless)
+        spawned.shadows.push(from->ray, met.hit.id, {met.path.pixel, from->number, 0, arriving});
+    else
+        film.add(met.path.pixel, arriving);
+}
+
+void PathTracer::go_on(const Met& met, const Scattered& scattered, const vec3& weight,
+                       Sides& sides) const {
+    const Path& from = met.path;
+    Path path{from.pixel,      from.sample, uint16_t(from.depth + 1),
+              RayKind::Bounce, weight,      float(scattered.density)};
+    if (scattered.density > 0) {
+        Ray ray;
+        ray.org = met.surface.position;
+        ray.dir = scattered.direction;
+        sides.bounced.push(ray, met.hit.id, path);
+        return;
+    }
+    const std::optional<Ray> through =
+        scattered.way == Scattering::Through ? refracted_ray(met.ray, met.surface) : std::nullopt;
+    path.kind = through ? RayKind::Refraction : RayKind::Reflection;
+    if (!through) { // or reflected totally, but for a rounding
+        sides.mirrored.push(mirror_ray(met.ray, met.surface), met.hit.id, path);
+        return;
+    }
+    if (met.bsdf.is_straight()) { // the direction is still what it was
+        path.density = from.density;
+        path.behind = float(met.distance);
+    }
+    sides.through.push(*through, met.hit.id, path);
+}
+
+/// Light of emitters passes what does not bend it; through glass paths find it. Light of points is
+/// found by shadow rays alone, so it passes glass straight, as Whitted has it.
+bool PathTracer::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
+    const SurfacePoint surface = surface_point(scene_, ray, hit);
+    const bool is_light = shadow.light != kNone;
+    if (!is_light || !scene_.meshes[hit.id.mesh].no_shadow) {
+        const bool ends =
+            !passes(*surface.material, is_light) || shadow.passed >= options_.max_depth;
+        shadow.arriving *= ends ? vec3(0) : Bsdf(surface).through();
+    }
+    ++shadow.passed;
+    const dvec3 there = ray.dir;
+    ray = is_light ? shadow_ray(scene_.lights[shadow.light], surface.beyond)
+                   : Ray{surface.beyond, 0, ray.at(1) - surface.beyond, ray.t_max};
+    // A light that lies in the surface has been reached; going back to it might never end.
+    return shadow.arriving != vec3(0) && glm::dot(ray.dir, there) > 0;
+}
+
+} // namespace ovc

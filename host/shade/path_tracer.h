@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// PathTracer: all light there is, by chance; a picture's mean is the truth, and its noise falls
+// with the root of the samples.
+// Based on: Kajiya 1986, "The Rendering Equation"; Veach and Guibas 1995, "Optimally Combining
+// Sampling Techniques for Monte Carlo Rendering" (multiple importance sampling); Arvo and Kirk
+// 1990, "Particle Transport and Image Synthesis" (Russian roulette).
+#pragma once
+
+#include "core/scene.h"
+#include "host/shade/bsdf.h"
+#include "host/shade/integrator.h"
+#include "host/shade/light_sampler.h"
+
+#include <cstdint>
+
+namespace ovc {
+
+/// How light of emitters is found: by shadow rays, by paths that happen to hit them, or by both,
+/// each where it is the better. All have the same mean, but that shadow rays see nothing in
+/// mirrors.
+enum class LightSearch { Both, ShadowRays, Paths };
+
+struct PathTracerOptions {
+    uint32_t max_depth = 16; // surfaces that a path leaves at most
+    bool shadows = true;
+    uint64_t seed = 0;
+    LightSearch search = LightSearch::Both;
+};
+
+class PathTracer final : public Integrator {
+public:
+    /// up: of the background, unit length. The scene outlives it, and its lights are placed.
+    PathTracer(const Scene& scene, const vec3& up, const PathTracerOptions& options);
+
+    void shade(std::span<const Ray> rays, std::span<const Path> paths, std::span<const Hit> hits,
+               Film& film, Spawned& spawned) const override;
+    bool light_may_pass() const override { return light_may_pass_; }
+    bool pass(const Hit& hit, Ray& ray, Shadow& shadow) const override;
+
+private:
+    struct Met;
+    struct Sides;
+    void meet(const Ray& ray, const Path& path, const Hit& hit, Film& film, Sides& sides,
+              Spawned& spawned) const;
+    vec3 seen_emission(const Met& met) const;
+    void light_up(const Met& met, double choice, const dvec2& u, Film& film,
+                  Spawned& spawned) const;
+    void go_on(const Met& met, const Scattered& scattered, const vec3& weight, Sides& sides) const;
+
+    const Scene& scene_;
+    const vec3 up_;
+    const PathTracerOptions options_;
+    const LightSampler lights_;
+    const float unexposed_; // the file's light for that of the scene
+    const bool light_may_pass_;
+};
+
+} // namespace ovc

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// Based on: Whitted 1980, "An Improved Illumination Model for Shaded Display", with a hemisphere of
+// sky for ambient light.
+#include "host/shade/shade.h"
+
+#include "host/shade/finish.h"
+#include "host/shade/refract.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace ovc {
+
+/// The share of the background's light that arrives as ambient light; the rest is the lamps'.
+static constexpr float kSkyShare = 0.32f;
+/// Light from nowhere in particular, so that shadows in a room without a sky are not black.
+static constexpr float kAmbient = 0.04f;
+/// How much darker than the horizon the ground below it is taken to be.
+static constexpr float kGround = 0.35f;
+
+/// How far a position lies off its triangle, in units of the largest coordinate of the corners.
+/// docs/numerics.md, "Spawned rays": computed from the corners a position errs by less than half of
+/// this.
+static constexpr double kOffset = 0x1p-48;
+/// How many offsets it keeps away from the edges, or its neighbour there would be crossed: at
+/// least, for any angle of more than 1/64 rad between the two; and at most, for 1e-4 rad, as long
+/// as that is not above this share of the triangle's height.
+static constexpr double kLeastEdgeOffsets = 64, kMostEdgeOffsets = 16384;
+static constexpr double kEdgeShare = 0x1p-20;
+
+/// How far off whole numbers a checker changes: a plane through them keeps to one side, as
+/// POV-Ray's 1e-10 has it for coordinates near 0.
+static constexpr double kCheckerOffset = 1e-9;
+
+/// a b - c d to two units in the last place, however much cancels. Kahan's; Jeannerod, Louvet and
+/// Muller 2013.
+static double difference_of_products(double a, double b, double c, double d) {
+    const double cd = c * d;
+    return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
+
+/// Also of slivers: a rounded product would turn it by their aspect times a rounding.
+static dvec3 cross(const dvec3& a, const dvec3& b) {
+    return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
+            difference_of_products(a.x, b.y, a.y, b.x)};
+}
+
+/// Of unit length: an instance may be stretched.
+static dvec3 turned(const dmat3& turn, const vec3& normal) {
+    const dvec3 n = turn * dvec3(normal);
+    const double length = glm::length(n);
+    return length > 0 ? n / length : n;
+}
+
+static dvec3 interpolated_normal(const Scene& scene, const MeshInfo& mesh, const Hit& hit,
+                                 const dvec3& fallback) {
+    const std::vector<vec3>& normals = scene.normals_of(mesh);
+    if (normals.empty())
+        return fallback;
+    const vec3* corner = normals.data() + size_t(hit.id.prim) * 3;
+    dvec3 corners[3] = {dvec3(corner[0]), dvec3(corner[1]), dvec3(corner[2])};
+    if (mesh.turn != dmat3(1))
+        for (int i = 0; i < 3; ++i)
+            corners[i] = turned(mesh.turn, corner[i]);
+    const dvec3 n = (1 - hit.u - hit.v) * corners[0] + hit.u * corners[1] + hit.v * corners[2];
+    const double length = glm::length(n);
+    // Opposite or missing normals cancel out; then the plane's own has to do.
+    return length > 1e-6 && std::isfinite(length) ? n / length : fallback;
+}
+
+static vec3 material_color(const Material& material, const dvec3& position) {
+    if (!material.checker)
+        return material.color;
+    double sum = 0;
+    for (const dvec4& row : material.checker->to_cubes)
+        sum += std::floor(glm::dot(dvec3(row), position) + row.w + kCheckerOffset);
+    return std::fmod(sum, 2) == 0 ? material.color : material.checker->other;
+}
+
+static dvec3 facing(const dvec3& normal, const dvec3& towards) {
+    return glm::dot(normal, towards) < 0 ? -normal : normal;
+}
+
+/// The hit's weights of the corners; those of a hit too close to an edge moved in. doubled_area: of
+/// the triangle, above 0.
+static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled_area,
+                               double offset) {
+    const dvec3 weights{1 - hit.u - hit.v, hit.u, hit.v};
+    const dvec3 edges{glm::length(t[2] - t[1]), glm::length(t[0] - t[2]), glm::length(t[1] - t[0])};
+    const dvec3 heights = doubled_area / edges;
+    const dvec3 wanted = glm::clamp(dvec3(kEdgeShare), kLeastEdgeOffsets * offset / heights,
+                                    kMostEdgeOffsets * offset / heights);
+    const dvec3 least = glm::min(wanted, dvec3(0.25));
+    if (glm::all(glm::greaterThanEqual(weights, least)))
+        return weights;
+    return least + (1 - least.x - least.y - least.z) * glm::clamp(weights, 0.0, 1.0);
+}
+
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
+    static const Material kPlain;
+    const MeshInfo& mesh = scene.meshes[hit.id.mesh];
+    const Triangle t = scene.soup.triangle(hit.id);
+    const dvec3 outwards = cross(t[1] - t[0], t[2] - t[0]);
+    const double doubled_area = glm::length(outwards); // a hit triangle has an area
+
+    SurfacePoint s;
+    s.material = mesh.material < scene.materials.size() ? &scene.materials[mesh.material] : &kPlain;
+    s.entering = glm::dot(outwards, ray.dir) <= 0;
+    s.view = glm::normalize(ray.dir);
+    s.geometric_normal = (s.entering ? 1.0 : -1.0) * (outwards / doubled_area);
+    s.normal =
+        facing(interpolated_normal(scene, mesh, hit, s.geometric_normal), s.geometric_normal);
+
+    // From the corners the position errs by a few ulp of their coordinates, however far away the
+    // ray began.
+    const double reach = std::max({max_component(glm::abs(t[0])), max_component(glm::abs(t[1])),
+                                   max_component(glm::abs(t[2]))});
+    const double offset = kOffset * reach;
+    const dvec3 w = weights_off_edges(hit, t, doubled_area, offset);
+    const dvec3 on_plane = w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
+    s.position = on_plane + offset * s.geometric_normal;
+    s.beyond = on_plane - offset * s.geometric_normal;
+    s.color = material_color(*s.material, on_plane);
+    return s;
+}
+
+vec3 background_color(const Background& background, const vec3& up, const dvec3& dir) {
+    const float height = float(glm::dot(glm::normalize(dir), dvec3(up)));
+    return glm::mix(background.horizon, background.zenith, std::clamp(height, 0.0f, 1.0f));
+}
+
+vec3 ambient_light(const Background& background, const vec3& up, const SurfacePoint& surface) {
+    if (surface.material->finish)
+        return surface.color * surface.material->finish->ambient;
+    const vec3 ground = kGround * background.horizon;
+    const vec3 sky = 0.5f * (background.horizon + background.zenith);
+    const float openness = 0.5f + 0.5f * float(glm::dot(surface.normal, dvec3(up)));
+    return surface.color * (kAmbient + kSkyShare * glm::mix(ground, sky, openness));
+}
+
+/// From the position towards the light, not of unit length: t = 1 is the light.
+static dvec3 towards_light(const Light& light, const dvec3& position) {
+    const dvec3 there = light.position - position;
+    return light.parallel ? std::abs(glm::dot(there, light.direction)) * -light.direction : there;
+}
+
+/// What of the light's color goes this way: the cone and the fall-off. As POV-Ray 3.7's.
+static double attenuation(const Light& light, const dvec3& towards, double distance) {
+    double share = 1;
+    if (light.cone) {
+        const SpotCone& cone = *light.cone;
+        const double cosine = -glm::dot(towards, light.direction);
+        if (!(cosine > 0))
+            return 0;
+        const double x =
+            (cosine - cone.falloff_cosine) / (cone.radius_cosine - cone.falloff_cosine);
+        const double edge = cosine >= cone.radius_cosine ? 1 : std::clamp(x, 0.0, 1.0);
+        share = std::pow(cosine, cone.tightness) * edge * edge * (3 - 2 * edge);
+    }
+    if (light.fade_distance > 0 && light.fade_power > 0)
+        share *= 2 / (1 + std::pow(distance / light.fade_distance, light.fade_power));
+    return share;
+}
+
+FromLight light_at(const Light& light, const dvec3& position) {
+    const dvec3 there = towards_light(light, position);
+    const double distance = glm::length(there);
+    const dvec3 towards = distance > 0 ? there / distance : dvec3(0);
+    return {towards, light.color * float(attenuation(light, towards, distance))};
+}
+
+vec3 direct_light(const Light& light, const SurfacePoint& surface) {
+    const FromLight from = light_at(light, surface.position);
+    const dvec3 towards = from.towards != dvec3(0) ? from.towards : surface.normal;
+    const double cosine = glm::dot(surface.normal, towards);
+    if (!(cosine > 0) || !(glm::dot(surface.geometric_normal, towards) > 0))
+        return vec3(0);
+    const vec3 arriving = from.color * std::numbers::inv_pi_v<float>;
+    if (!surface.material->finish)
+        return surface.color * arriving * float(cosine);
+    return finish_light(surface, towards, arriving, /* highlights= */ !light.shadowless);
+}
+
+Ray shadow_ray(const Light& light, const dvec3& position) {
+    return {position, 0, towards_light(light, position), 1};
+}
+
+Branches branches(const SurfacePoint& surface, bool total) {
+    const Material& material = *surface.material;
+    if (material.finish)
+        return finish_branches(surface, total);
+    const float through = std::min(material.transmission, 1 - material.mirror);
+    if (total)
+        return {vec3(material.mirror + through), vec3(0), material.mirror + through, 0};
+    return {vec3(material.mirror), through * material.filter, material.mirror, through};
+}
+
+Ray mirror_ray(const Ray& ray, const SurfacePoint& surface) {
+    const auto mirrored = [&](const dvec3& normal) {
+        return ray.dir - 2 * glm::dot(ray.dir, normal) * normal;
+    };
+    Ray out;
+    out.org = surface.position;
+    out.dir = mirrored(surface.normal);
+    if (glm::dot(out.dir, surface.geometric_normal) <= 0)
+        out.dir = mirrored(surface.geometric_normal);
+    return out;
+}
+
+std::optional<Ray> refracted_ray(const Ray& ray, const SurfacePoint& surface) {
+    const double inside = surface.material->ior;
+    const double from = surface.entering ? 1 : inside, to = surface.entering ? inside : 1;
+    const bool seen = glm::dot(ray.dir, surface.normal) < 0;
+    const auto below = [&](const dvec3& dir) {
+        return glm::dot(dir, surface.geometric_normal) < 0;
+    };
+    std::optional<dvec3> dir =
+        refracted(ray.dir, seen ? surface.normal : surface.geometric_normal, from, to);
+    if (dir && !below(*dir))
+        dir = refracted(ray.dir, surface.geometric_normal, from, to);
+    // Within a rounding of the critical angle the ray might still run along the plane.
+    if (!dir || !below(*dir))
+        return std::nullopt;
+    Ray out;
+    out.org = surface.beyond;
+    out.dir = *dir;
+    return out;
+}
+
+} // namespace ovc

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shading: positions, normals and the light that arrives, on single triangles.
+#include "host/shade/shade.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace ovc {
+
+/// One triangle in the plane y = 0 around the origin, seen from above or below.
+static Scene floor_scene(std::vector<vec3> normals = {}, dvec3 origin = dvec3(0)) {
+    Scene scene;
+    scene.materials = {{"", vec3(0.5f), 0.25f}};
+    scene.add_mesh("floor", 0, Chunk::owning(origin, {{-1, 0, 1}, {1, 0, 1}, {0, 0, -2}}),
+                   std::move(normals));
+    return scene;
+}
+
+static const Hit kHit{1, 0.3, 0.3, {0, 0}};
+static const Ray kFromAbove{{0, 1, 0}, 0, {0, -1, 0}};
+static const Ray kFromBelow{{0, -1, 0}, 0, {0, 1, 0}};
+
+TEST(SurfacePoint, NormalsFaceTheRayOnBothSides) {
+    const Scene scene = floor_scene();
+    EXPECT_EQ(surface_point(scene, kFromAbove, kHit).normal, dvec3(0, 1, 0));
+    EXPECT_EQ(surface_point(scene, kFromBelow, kHit).normal, dvec3(0, -1, 0));
+}
+
+TEST(SurfacePoint, InterpolatesNormalsAndIgnoresThoseThatCancel) {
+    const vec3 tilted = glm::normalize(vec3(1, 1, 0));
+    EXPECT_LT(
+        glm::length(surface_point(floor_scene({tilted, tilted, tilted}), kFromAbove, kHit).normal -
+                    dvec3(tilted)),
+        1e-6);
+    const vec3 nothing(0);
+    EXPECT_EQ(surface_point(floor_scene({nothing, nothing, nothing}), kFromAbove, kHit).normal,
+              dvec3(0, 1, 0));
+}
+
+TEST(SurfacePoint, LiesJustOnTheRaysSideOfTheTriangle) {
+    for (const dvec3 origin : {dvec3(0), dvec3(0, 1e6, 0)}) {
+        const Scene scene = floor_scene({}, origin);
+        const double above = surface_point(scene, kFromAbove, kHit).position.y - origin.y;
+        const double below = surface_point(scene, kFromBelow, kHit).position.y - origin.y;
+        EXPECT_EQ(surface_point(scene, kFromAbove, kHit).beyond.y - origin.y, below);
+        EXPECT_GT(above, 0);
+        EXPECT_LT(above, 1e-7);
+        EXPECT_LT(below, 0);
+        EXPECT_GT(below, -1e-7);
+    }
+}
+
+TEST(SurfacePoint, HasANormalHoweverSmallTheTriangle) {
+    Scene scene;
+    scene.add_mesh("speck", 0,
+                   Chunk::owning(dvec3(0), {{0, 0, 0}, {1e-30f, 0, 0}, {0, 1e-30f, 0}}));
+    EXPECT_EQ(surface_point(scene, {{0, 0, 1}, 0, {0, 0, -1}}, kHit).normal, dvec3(0, 0, 1));
+}
+
+TEST(SurfacePoint, KeepsClearOfTheEdgesOfItsTriangle) {
+    for (const dvec3 origin : {dvec3(0), dvec3(0, 1e6, 0)}) {
+        const Scene scene = floor_scene({}, origin);
+        const Triangle t = scene.soup.triangle(kHit.id);
+        const SurfacePoint at_corner = surface_point(scene, kFromAbove, {1, 0, 0, {0, 0}});
+        const double away = glm::length(at_corner.position - t[0]);
+        const double above = at_corner.position.y - origin.y;
+        EXPECT_GT(away, 32 * above) << "a neighbour at a sharp angle to this one would be crossed";
+        EXPECT_LT(away, 0x1p-30 * max_component(glm::abs(t[1]))) << "float cannot tell";
+        // Elsewhere the hit is where it is.
+        EXPECT_NEAR(surface_point(scene, kFromAbove, kHit).position.x, -1 + 0.3 * 2 + 0.3, 1e-15);
+    }
+}
+
+TEST(SurfacePoint, KnowsWhetherTheRayEnters) {
+    EXPECT_TRUE(surface_point(floor_scene(), kFromAbove, kHit).entering);
+    EXPECT_FALSE(surface_point(floor_scene(), kFromBelow, kHit).entering);
+}
+
+TEST(SurfacePoint, TheNormalOfASliverIsThatOfExactArithmetic) {
+    // Its corners are on one line but for one unit in the last place.
+    const float step = 0x1p-23f;
+    Scene scene;
+    scene.add_mesh("sliver", 0,
+                   Chunk::owning(dvec3(0), {{0, 0, 0}, {1, 1, 1}, {3, 3 + 2 * step, 3}}));
+    const dvec3 exact = glm::normalize(dvec3(-1, 0, 1));
+    const Ray ray{{0, 0, 5}, 0, {0.1, 0, -1}};
+    EXPECT_LT(glm::length(surface_point(scene, ray, kHit).normal - exact), 1e-15);
+}
+
+TEST(DirectLight, FollowsTheCosineAndStopsBehindTheSurface) {
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    const Light overhead{{s.position.x, 5, s.position.z}, vec3(std::numbers::pi_v<float>)};
+    EXPECT_NEAR(direct_light(overhead, s).x, 0.5, 1e-6);
+    const Light slanting{s.position + dvec3(1, 1, 0), vec3(std::numbers::pi_v<float>)};
+    EXPECT_NEAR(direct_light(slanting, s).x, 0.5 * std::sqrt(0.5), 1e-6);
+    EXPECT_EQ(direct_light({{0, -5, 0}, vec3(1)}, s), vec3(0));
+}
+
+TEST(DirectLight, DoesNotShineThroughTheTriangleOntoATiltedNormal) {
+    const vec3 tilted = glm::normalize(vec3(1, 0.1f, 0));
+    const SurfacePoint s = surface_point(floor_scene({tilted, tilted, tilted}), kFromAbove, kHit);
+    EXPECT_EQ(direct_light({s.position + dvec3(5, -0.2, 0), vec3(1)}, s), vec3(0));
+}
+
+TEST(DirectLight, OfASpotlightStaysInItsCone) {
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    Light light{s.position + dvec3(0, 4, 0), vec3(std::numbers::pi_v<float>)};
+    light.cone = SpotCone{std::cos(0.2), std::cos(0.4), 2};
+    const auto at_angle = [&](double angle) {
+        light.direction = {std::sin(angle), -std::cos(angle), 0};
+        return direct_light(light, s).x;
+    };
+    EXPECT_NEAR(at_angle(0), 0.5, 1e-6);
+    EXPECT_NEAR(at_angle(0.15), 0.5 * std::pow(std::cos(0.15), 2), 1e-6);
+    EXPECT_GT(at_angle(0.3), 0.05);
+    EXPECT_LT(at_angle(0.3), 0.4);
+    EXPECT_EQ(at_angle(0.41), 0);
+    EXPECT_EQ(at_angle(std::numbers::pi), 0) << "the cone does not open backwards";
+}
+
+TEST(DirectLight, FadesWithDistanceToHalfOfWhatItWouldBeTwiceAsNear) {
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    Light light{s.position + dvec3(0, 3, 0), vec3(std::numbers::pi_v<float>)};
+    light.fade_distance = 3;
+    light.fade_power = 2;
+    EXPECT_NEAR(direct_light(light, s).x, 0.5, 1e-6) << "as it is at fade_distance";
+    light.position.y = s.position.y + 6;
+    EXPECT_NEAR(direct_light(light, s).x, 0.5 * 2 / 5, 1e-6);
+    // The square law, as docs/scenes.md tells an importer to write it: color 12 at distance 6.
+    light.fade_distance = 1e-6;
+    light.color *= 12 / (2 * 1e-12f);
+    EXPECT_NEAR(direct_light(light, s).x, 0.5 * 12 / 36, 1e-5);
+}
+
+TEST(DirectLight, ParallelLightComesFromOneSideEverywhere) {
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    Light light{dvec3(100, 2, 0), vec3(std::numbers::pi_v<float>)};
+    light.parallel = true;
+    light.direction = glm::normalize(dvec3(0, -1, 1));
+    EXPECT_NEAR(direct_light(light, s).x, 0.5 * std::sqrt(0.5), 1e-6);
+    const Ray ray = shadow_ray(light, s.position);
+    EXPECT_LT(glm::length(glm::normalize(ray.dir) + light.direction), 1e-12);
+    EXPECT_NEAR(glm::dot(ray.at(1) - light.position, light.direction), 0, 1e-12);
+}
+
+TEST(ShadowRay, EndsAtTheLight) {
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    const Light light{{3, 4, 5}, vec3(1)};
+    const Ray ray = shadow_ray(light, s.position);
+    EXPECT_EQ(ray.t_max, 1);
+    EXPECT_LT(glm::length(ray.at(1) - light.position), 1e-12);
+}
+
+TEST(MirrorRay, LeavesAtTheAngleItCame) {
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    EXPECT_EQ(mirror_ray({{-1, 1, 0}, 0, {1, -1, 0}}, s).dir, dvec3(1, 1, 0));
+}
+
+TEST(MirrorRay, NeverGoesBelowThePlane) {
+    const vec3 tilted = glm::normalize(vec3(1, 0.2f, 0));
+    const SurfacePoint s = surface_point(floor_scene({tilted, tilted, tilted}), kFromAbove, kHit);
+    EXPECT_GT(mirror_ray({{1, 0.3, 0}, 0, {-1, -0.3, 0}}, s).dir.y, 0);
+}
+
+/// The floor of glass whose index of refraction is below the plane; seen from above and from below.
+static Scene glass_scene(double ior, std::vector<vec3> normals = {}) {
+    Scene scene = floor_scene(std::move(normals));
+    scene.materials = {{"glass", vec3(0), 0, 1, vec3(1), ior}};
+    return scene;
+}
+
+TEST(RefractedRay, BendsTowardsTheNormalGoingInAndAwayGoingOut) {
+    const Scene scene = glass_scene(1.5);
+    const Ray in{{-1, 1, 0}, 0, {1, -1, 0}};
+    const auto inside = refracted_ray(in, surface_point(scene, in, kHit));
+    ASSERT_TRUE(inside);
+    EXPECT_NEAR(inside->dir.x / glm::length(inside->dir), std::sqrt(0.5) / 1.5, 1e-15);
+    EXPECT_LT(inside->org.y, 0);
+    const Ray out{{0, -1, 0}, 0, {0.5, 1, 0}};
+    const auto outside = refracted_ray(out, surface_point(scene, out, kHit));
+    ASSERT_TRUE(outside);
+    EXPECT_NEAR(outside->dir.x / glm::length(outside->dir), 1.5 * std::sqrt(0.2), 1e-15);
+    EXPECT_GT(outside->org.y, 0);
+}
+
+TEST(RefractedRay, BeyondTheCriticalAngleThereIsNone) {
+    const Scene scene = glass_scene(1.5);
+    const Ray flat{{-1, -1, 0}, 0, {1, 1, 0}}; // 45 degrees, the critical angle is 41.8
+    EXPECT_FALSE(refracted_ray(flat, surface_point(scene, flat, kHit)));
+}
+
+TEST(RefractedRay, StaysOnItsSideOfThePlaneWhateverTheVertexNormals) {
+    for (double tilt = -3; tilt <= 3; tilt += 0.01) {
+        const vec3 tilted(float(std::sin(tilt)), float(std::cos(tilt)), 0);
+        const Scene scene = glass_scene(1.5, {tilted, tilted, tilted});
+        for (const double slope : {-20.0, -1.0, 0.0, 3.0, 1e6}) {
+            const Ray down{{0, 1, 0}, 0, {slope, -1, 0}}, up{{0, -1, 0}, 0, {slope, 1, 0}};
+            for (const Ray& ray : {down, up}) {
+                const SurfacePoint s = surface_point(scene, ray, kHit);
+                EXPECT_GT(mirror_ray(ray, s).dir.y * -ray.dir.y, 0) << tilt << " " << slope;
+                const auto beyond = refracted_ray(ray, s);
+                EXPECT_TRUE(!beyond || beyond->dir.y * ray.dir.y > 0) << tilt << " " << slope;
+            }
+        }
+    }
+}
+
+TEST(BackgroundColor, RunsFromHorizonToZenithAndStaysBelow) {
+    const Background b{vec3(1, 0, 0), vec3(0, 0, 1)};
+    const vec3 up(0, 1, 0);
+    EXPECT_EQ(background_color(b, up, {1, 0, 0}), b.horizon);
+    EXPECT_EQ(background_color(b, up, {0, 7, 0}), b.zenith);
+    EXPECT_EQ(background_color(b, up, {0, -7, 0}), b.horizon);
+}
+
+TEST(AmbientLight, IsStrongerFromAbove) {
+    const Scene scene = floor_scene();
+    const vec3 up(0, 1, 0);
+    EXPECT_GT(ambient_light({}, up, surface_point(scene, kFromAbove, kHit)).x,
+              ambient_light({}, up, surface_point(scene, kFromBelow, kHit)).x);
+}
+
+} // namespace ovc

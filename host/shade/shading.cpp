@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Blocks of answers, each shaded by one thread, and their rays joined.
+#include "host/shade/shading.h"
+
+#include "core/system/parallel.h"
+
+#include <algorithm>
+
+namespace ovc {
+
+static constexpr size_t kBlock = 256;  // answers a task: what it makes fits a cache
+static constexpr size_t kGrain = 1024; // rays a task that are only copied or added up
+static constexpr size_t kMostAnswers = size_t(1) << 16;
+static constexpr size_t kMostSpawned = size_t(1) << 18;
+
+Shading::Shading(const Integrator& integrator, size_t lights, Film& film)
+    : integrator_(integrator),
+      most_answers_(std::clamp(kMostSpawned / (lights + 2), kBlock, kMostAnswers)),
+      film_(film) {}
+
+/// Appends the lists in their order.
+template <class Purpose>
+static void append(std::span<const Spawned> blocks, RayList<Purpose> Spawned::*list,
+                   RayList<Purpose>& to) {
+    std::vector<size_t> places(blocks.size());
+    size_t size = to.size();
+    for (size_t b = 0; b < blocks.size(); ++b) {
+        places[b] = size;
+        size += (blocks[b].*list).size();
+    }
+    to.resize(size);
+    parallel_for(blocks.size(), kGrain / kBlock, [&](size_t first, size_t last) {
+        for (size_t b = first; b < last; ++b)
+            to.put(places[b], blocks[b].*list);
+    });
+}
+
+void Shading::shade(const RayList<Path>& paths, std::span<const Hit> hits, size_t first,
+                    size_t count, Spawned& spawned) {
+    const size_t block_count = (count + kBlock - 1) / kBlock;
+    blocks_.resize(std::max(blocks_.size(), block_count));
+    parallel_for(block_count, 1, [&](size_t from, size_t to) {
+        for (size_t b = from; b < to; ++b)
+            shade_block(paths, hits, first + b * kBlock, std::min(kBlock, count - b * kBlock),
+                        blocks_[b]);
+    });
+    const std::span<const Spawned> blocks = std::span(blocks_).first(block_count);
+    append(blocks, &Spawned::paths, spawned.paths);
+    append(blocks, &Spawned::shadows, spawned.shadows);
+}
+
+void Shading::shade_block(const RayList<Path>& paths, std::span<const Hit> hits, size_t first,
+                          size_t count, Spawned& spawned) {
+    const auto part = [&](const auto& all) { return std::span(all).subspan(first, count); };
+    spawned.clear();
+    integrator_.shade(part(paths.rays), part(paths.purposes), hits.subspan(first, count), film_,
+                      spawned);
+    for (const Path& path : spawned.paths.purposes)
+        film_.open(path.pixel);
+    for (const Shadow& shadow : spawned.shadows.purposes)
+        film_.open(shadow.pixel);
+    for (const Path& path : part(paths.purposes))
+        film_.close(path.pixel);
+}
+
+void Shading::arrive(std::span<const Shadow> purposes, std::span<const uint8_t> occluded) {
+    parallel_for(purposes.size(), kGrain, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            if (!occluded[i])
+                film_.add(purposes[i].pixel, purposes[i].arriving);
+            film_.close(purposes[i].pixel);
+        }
+    });
+}
+
+void Shading::pass(RayList<Shadow>& shadows, std::span<const Hit> hits) {
+    goes_on_.resize(shadows.size());
+    parallel_for(shadows.size(), kBlock, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+            Shadow& shadow = shadows.purposes[i];
+            goes_on_[i] = hits[i].is_hit() && integrator_.pass(hits[i], shadows.rays[i], shadow);
+            if (goes_on_[i]) {
+                shadows.skip[i] = hits[i].id;
+                continue;
+            }
+            film_.add(shadow.pixel, shadow.arriving);
+            film_.close(shadow.pixel);
+        }
+    });
+    size_t kept = 0;
+    for (size_t i = 0; i < shadows.size(); ++i)
+        if (goes_on_[i]) {
+            shadows.rays[kept] = shadows.rays[i];
+            shadows.skip[kept] = shadows.skip[i];
+            shadows.purposes[kept++] = shadows.purposes[i];
+        }
+    shadows.resize(kept);
+}
+
+} // namespace ovc

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// What becomes of a path at a surface.
+#include "host/shade/whitted.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace ovc {
+
+/// A surface that a path has met, and what its own color is worth to the pixel.
+struct Whitted::Met {
+    SurfacePoint surface;
+    TriangleId id;
+    uint32_t pixel;
+    vec3 weight;
+};
+
+/// What is left of a light behind many panes, as a pixel would get it: not worth another one.
+static constexpr float kLeastShadow = 1 / 4096.0f;
+
+/// What a surface leaves of the light of a shadow ray. What POV-Ray's glass reflects, with
+/// conserve_energy, is missing behind it, but does not darken its shadow.
+static vec3 light_through(const SurfacePoint& surface) {
+    const Material& material = *surface.material;
+    return material.finish ? material.transmission * material.filter
+                           : branches(surface, /* total= */ false).through;
+}
+
+static bool lets_light_through(const Scene& scene) {
+    return std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [](const Material& m) { return m.transmission > 0; }) ||
+           std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                       [](const MeshInfo& m) { return m.no_shadow; });
+}
+
+void tell_simplifications(const Scene& scene, std::span<const Light> lights,
+                          std::string_view source, const LogSink& log) {
+    // The sky's stand-in is parallel light.
+    const auto is_on_emitter = [](const Light& light) { return light.stand_in && !light.parallel; };
+    if (std::any_of(lights.begin(), lights.end(), is_on_emitter))
+        say(log, LogLevel::Warning,
+            fmt::format("{}: area lights shine from a few points on them, and shadows are hard; "
+                        "--integrator path has them as they are",
+                        source));
+    if (scene.exposure != 1)
+        say(log, LogLevel::Info,
+            fmt::format("{}: light times {:.3g}, to fit a picture that ends at white; "
+                        "--integrator path has the light of the file",
+                        source, scene.exposure));
+}
+
+Whitted::Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows)
+    : scene_(scene),
+      up_(up),
+      max_depth_(max_depth),
+      shadows_(shadows),
+      light_may_pass_(lets_light_through(scene)) {}
+
+void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
+                    std::span<const Hit> hits, Film& film, Spawned& spawned) const {
+    std::vector<Met> all;
+    all.reserve(rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (!hits[i].is_hit()) {
+            film.add(paths[i].pixel,
+                     paths[i].weight * background_color(scene_.background, up_, rays[i].dir));
+            continue;
+        }
+        const Met& met = all.emplace_back(meet(rays[i], paths[i], hits[i], spawned));
+        film.add(met.pixel, met.weight * ambient_light(scene_.background, up_, met.surface));
+    }
+    for (uint32_t light = 0; light < scene_.lights.size(); ++light)
+        for (const Met& met : all)
+            light_up(scene_.lights[light], light, met, film, spawned);
+}
+
+/// Divides the path's weight among the surface's own color, which keeps what is not followed, and
+/// the two rays that may leave it.
+Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
+                           Spawned& spawned) const {
+    Met met{surface_point(scene_, ray, hit), hit.id, path.pixel, path.weight};
+    const std::optional<Ray> refracted =
+        met.surface.material->transmission > 0 ? refracted_ray(ray, met.surface) : std::nullopt;
+    const bool total = met.surface.material->transmission > 0 && !refracted;
+    const Branches parts = branches(met.surface, total);
+    const auto follow = [&](const vec3& share, float taken, RayKind kind, int deeper,
+                            auto&& child) {
+        const vec3 weight = path.weight * share;
+        if (path.depth >= max_depth_ || max_component(weight) < kLeastWeight)
+            return;
+        met.weight -= path.weight * taken;
+        spawned.paths.push(
+            child(), hit.id,
+            {path.pixel, path.sample, uint16_t(path.depth + deeper), kind, weight, path.density});
+    };
+    follow(parts.mirror, parts.taken_by_mirror, RayKind::Reflection, 1,
+           [&] { return mirror_ray(ray, met.surface); });
+    // Straight on is no step deeper, as in POV-Ray: there are only so many surfaces along a line.
+    follow(parts.through, parts.taken_by_through, RayKind::Refraction,
+           met.surface.material->ior == 1 ? 0 : 1, [&] { return *refracted; });
+    return met;
+}
+
+void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film& film,
+                       Spawned& spawned) const {
+    const vec3 arriving = met.weight * direct_light(light, met.surface);
+    if (arriving == vec3(0))
+        return;
+    if (shadows_ && !light.shadowless)
+        spawned.shadows.push(shadow_ray(light, met.surface.position), met.id,
+                             {met.pixel, number, 0, arriving});
+    else
+        film.add(met.pixel, arriving);
+}
+
+bool Whitted::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
+    const SurfacePoint glass = surface_point(scene_, ray, hit);
+    if (!scene_.meshes[hit.id.mesh].no_shadow) {
+        shadow.arriving *= light_through(glass);
+        if (max_component(shadow.arriving) < kLeastShadow)
+            shadow.arriving = vec3(0);
+    }
+    ++shadow.passed;
+    const dvec3 there = ray.dir;
+    ray = shadow_ray(scene_.lights[shadow.light], glass.beyond);
+    // A light that lies in the surface has been reached; going back to it might never end.
+    return shadow.arriving != vec3(0) && glm::dot(ray.dir, there) > 0;
+}
+
+} // namespace ovc

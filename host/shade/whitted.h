@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whitted's integrator: lights with shadows, mirrors and glass.
+// Based on: Whitted 1980, "An Improved Illumination Model for Shaded Display".
+#pragma once
+
+#include "core/scene.h"
+#include "core/system/log.h"
+#include "host/shade/integrator.h"
+#include "host/shade/shade.h"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace ovc {
+
+/// A reflection or refraction that adds less than this to its pixel is not followed; an 8-bit image
+/// would hardly show it, and POV-Ray does not follow it either (adc_bailout). The shares of a
+/// camera ray's paths add up to at most 1, so it never has more than 255 of them at a time.
+inline constexpr float kLeastWeight = 1 / 255.0f;
+
+/// Says what this integrator simplifies of the scene's light where path tracing does not. lights:
+/// those of the picture. source: what the scene is called on the command line.
+void tell_simplifications(const Scene& scene, std::span<const Light> lights,
+                          std::string_view source, const LogSink& log);
+
+class Whitted final : public Integrator {
+public:
+    /// max_depth: reflections and refractions in a row; the last surface shows its own color alone.
+    /// up: of the background, unit length. The scene outlives it, and its lights are placed.
+    Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows);
+
+    void shade(std::span<const Ray> rays, std::span<const Path> paths, std::span<const Hit> hits,
+               Film& film, Spawned& spawned) const override;
+    bool light_may_pass() const override { return light_may_pass_; }
+    bool pass(const Hit& hit, Ray& ray, Shadow& shadow) const override;
+
+private:
+    struct Met;
+    Met meet(const Ray& ray, const Path& path, const Hit& hit, Spawned& spawned) const;
+    void light_up(const Light& light, uint32_t number, const Met& met, Film& film,
+                  Spawned& spawned) const;
+
+    const Scene& scene_;
+    const vec3 up_;
+    const uint32_t max_depth_;
+    const bool shadows_;
+    const bool light_may_pass_;
+};
+
+} // namespace ovc

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The line about a build, and the answer whether to go on.
+#include "host/terminal/build_watch.h"
+
+#include <fmt/format.h>
+
+namespace ovc {
+
+BuildWatch::BuildWatch(bool shown) : line_(shown) {}
+
+void BuildWatch::watch(ovc_scene_config& config) {
+    config.progress = told;
+    config.progress_user = this;
+}
+
+int BuildWatch::told(void* self, double done, const char* stage) {
+    auto& watch = *static_cast<BuildWatch*>(self);
+    watch.line_.show(fmt::format("building: {:3.0f} %, {}", 100 * done, stage));
+    return watch.interrupt_.interrupted();
+}
+
+} // namespace ovc

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two signal handlers. A signal has no other way to reach the program than a flag of static
+// lifetime.
+#include "host/terminal/interrupt.h"
+
+#include "importers/file/output_file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <string_view>
+
+namespace ovc {
+
+static volatile std::sig_atomic_t interrupt_seen = 0;
+
+/// Whether a progress line or the terminal's ^C may stand before the message.
+static volatile std::sig_atomic_t on_terminal = 0;
+
+static void say_on(std::string_view text) {
+    // Nothing can be done about a failed write here.
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+}
+
+static void say(std::string_view line) {
+    if (on_terminal)
+        say_on("\n");
+    say_on(line);
+}
+
+static void leave(int) {
+    remove_unfinished_output();
+    say("overcast: interrupted\n");
+    _exit(kExitInterrupted);
+}
+
+/// What is said to be done about it; set before the handler is.
+static const char* doing_now = "";
+
+static void remember(int) {
+    const int errno_before = errno;
+    interrupt_seen = 1;
+    std::signal(SIGINT, leave);
+    say("overcast: interrupted; ");
+    say_on(doing_now);
+    say_on(" (press again to give up)\n");
+    errno = errno_before;
+}
+
+void exit_on_interrupt() {
+    on_terminal = isatty(STDERR_FILENO);
+    std::signal(SIGINT, leave);
+}
+
+InterruptGuard::InterruptGuard(const char* doing) {
+    interrupt_seen = 0;
+    doing_now = doing;
+    on_terminal = isatty(STDERR_FILENO);
+    std::signal(SIGINT, remember);
+}
+
+InterruptGuard::~InterruptGuard() {
+    exit_on_interrupt();
+}
+
+bool InterruptGuard::interrupted() const {
+    return interrupt_seen != 0;
+}
+
+} // namespace ovc

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Carriage return, the text, and "erase to the end of the line" (ECMA-48, EL) after it: what is
+// erased first is seen to go.
+#include "host/terminal/terminal_line.h"
+#include "core/text/printable.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace ovc {
+
+/// Columns of the terminal; one that does not say has as many as terminals had.
+static size_t terminal_width() {
+    winsize size{};
+    const bool told = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    return told ? size.ws_col : 80;
+}
+
+TerminalLine::TerminalLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO)) {}
+
+void TerminalLine::show(const std::string& text) {
+    if (!shown_)
+        return;
+    // One less: a cursor behind the last column may stand on the next line.
+    const std::string fitting = printable(text).substr(0, terminal_width() - 1);
+    if (fitting == there_)
+        return;
+    there_ = fitting;
+    fmt::print(stderr, "\r{}\033[K", fitting);
+    std::fflush(stderr);
+}
+
+std::string time_left(double seconds) {
+    if (seconds < 10)
+        return fmt::format("{:.0f} s left", std::ceil(seconds));
+    if (seconds < 100)
+        return fmt::format("{:.0f} s left", 5 * std::ceil(seconds / 5));
+    if (seconds < 100 * 60)
+        return fmt::format("{:.0f} min left", std::ceil(seconds / 60));
+    return fmt::format("{:.0f} h left", std::ceil(seconds / 3600));
+}
+
+} // namespace ovc

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// OutputFile: a name nobody else takes, then one rename.
+#include "importers/file/output_file.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <csignal>
+#include <cstring>
+
+namespace ovc {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr size_t kBufferBytes = size_t(1) << 18;
+constexpr int kNamesTried = 100; // left behind by processes that were killed
+constexpr int kMostLinks = 40;   // as the kernel follows
+
+/// What remove_unfinished_output() removes; read by a signal handler. The flag is false while the
+/// name changes.
+char unfinished_name[PATH_MAX];
+volatile std::sig_atomic_t is_unfinished = 0;
+
+void forget_unfinished() {
+    is_unfinished = 0;
+    std::atomic_signal_fence(std::memory_order_seq_cst);
+}
+
+void remember_unfinished(const fs::path& path) {
+    forget_unfinished();
+    // From the root, for the folder may be changed; too long a name is only not removed.
+    std::error_code ec;
+    const std::string name = fs::absolute(path, ec).string();
+    if (ec || name.size() >= sizeof(unfinished_name))
+        return;
+    std::copy(name.c_str(), name.c_str() + name.size() + 1, unfinished_name);
+    std::atomic_signal_fence(std::memory_order_seq_cst);
+    is_unfinished = 1;
+}
+
+fs::path folder_of(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+/// What a path leads to when its last component is a symbolic link, which may dangle.
+fs::path followed(fs::path path) {
+    std::error_code ec;
+    for (int i = 0; i < kMostLinks && fs::is_symlink(path, ec); ++i) {
+        const fs::path next = fs::read_symlink(path, ec);
+        if (ec)
+            break;
+        path = next.is_absolute() ? next : folder_of(path) / next;
+    }
+    return path;
+}
+
+/// The descriptor of standard output or error when it goes to the file of `info`; else -1.
+int standard_descriptor(const struct stat& info) {
+    for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) {
+        struct stat other;
+        if (fstat(descriptor, &other) == 0 && other.st_dev == info.st_dev &&
+            other.st_ino == info.st_ino)
+            return descriptor;
+    }
+    return -1;
+}
+
+bool is_written_through(const struct stat& info) {
+    return S_ISCHR(info.st_mode) || S_ISFIFO(info.st_mode) || standard_descriptor(info) >= 0;
+}
+
+struct Temporary {
+    fs::path path;
+    std::FILE* file = nullptr; // null: errno says why
+};
+
+/// A new file in the target's folder, for a rename across file systems is none; its name is short,
+/// so that it fits wherever the target's does.
+Temporary create_beside(const fs::path& final_path) {
+    for (int i = 0; i < kNamesTried; ++i) {
+        fs::path path = folder_of(final_path) / fmt::format(".ovc{}-{}", getpid(), i);
+        std::FILE* file = std::fopen(path.c_str(), "wbx");
+        if (file || errno != EEXIST)
+            return {std::move(path), file};
+    }
+    return {};
+}
+
+const char* unfit_kind(const struct stat& info) {
+    if (S_ISDIR(info.st_mode))
+        return "a directory";
+    if (S_ISBLK(info.st_mode))
+        return "a block device";
+    return S_ISSOCK(info.st_mode) && standard_descriptor(info) < 0 ? "a socket" : nullptr;
+}
+
+} // namespace
+
+Result<Done> OutputFile::check(const fs::path& target) {
+    if (const Result<Done> fine = check_place(target); !fine)
+        return fine;
+    struct stat info;
+    if (stat(target.c_str(), &info) == 0 && is_written_through(info))
+        return Done{};
+    // Permissions do not tell it all: root may write to /proc, which takes no files.
+    const Temporary probe = create_beside(followed(target));
+    if (!probe.file)
+        return folder_refused(target, errno);
+    std::fclose(probe.file);
+    unlink(probe.path.c_str());
+    return Done{};
+}
+
+Result<Done> OutputFile::check_place(const fs::path& target) {
+    struct stat info;
+    if (stat(target.c_str(), &info) == 0) {
+        if (const char* kind = unfit_kind(info))
+            return Error{
+                fmt::format("{}: found {}, expected a file to write", target.string(), kind)};
+        if (standard_descriptor(info) >= 0)
+            return Done{};
+        if (is_written_through(info))
+            return access(target.c_str(), W_OK) == 0 ? Result<Done>(Done{}) : failed(target, errno);
+    } else if (errno != ENOENT && errno != ENOTDIR) {
+        return failed(target, errno);
+    }
+    const fs::path folder = folder_of(followed(target));
+    if (stat(folder.c_str(), &info) != 0)
+        return Error{fmt::format("{}: the folder does not exist", target.string())};
+    if (!S_ISDIR(info.st_mode))
+        return Error{fmt::format("{}: {} is no folder", target.string(), folder.string())};
+    if (access(folder.c_str(), W_OK | X_OK) != 0)
+        return folder_refused(target, errno);
+    return Done{};
+}
+
+Result<OutputFile> OutputFile::create(const fs::path& target) {
+    if (const Result<Done> fine = check_place(target); !fine)
+        return fine.error();
+    struct stat info;
+    if (stat(target.c_str(), &info) == 0 && is_written_through(info))
+        return write_through(target);
+    const fs::path final_path = followed(target);
+    Temporary temporary = create_beside(final_path);
+    if (!temporary.file)
+        return folder_refused(target, errno);
+    remember_unfinished(temporary.path);
+    std::setvbuf(temporary.file, nullptr, _IOFBF, kBufferBytes);
+    return OutputFile(target, final_path, std::move(temporary.path), temporary.file);
+}
+
+/// Standard output and error keep their place: opened anew, the file would be emptied.
+Result<OutputFile> OutputFile::write_through(const fs::path& target) {
+    struct stat info;
+    std::FILE* file = nullptr;
+    const int standard = stat(target.c_str(), &info) == 0 ? standard_descriptor(info) : -1;
+    if (standard >= 0) {
+        std::fflush(standard == STDOUT_FILENO ? stdout : stderr);
+        if (const int copy = dup(standard); copy >= 0 && !(file = fdopen(copy, "wb")))
+            close(copy);
+    } else {
+        file = std::fopen(target.c_str(), "wb");
+    }
+    if (!file)
+        return failed(target, errno);
+    return OutputFile(target, target, {}, file);
+}
+
+OutputFile::~OutputFile() {
+    if (!file_)
+        return;
+    file_.reset();
+    if (temporary_.empty())
+        return;
+    std::error_code ec;
+    fs::remove(temporary_, ec);
+    forget_unfinished();
+}
+
+void OutputFile::write(const void* data, size_t bytes) {
+    if (error_number_ == 0 && std::fwrite(data, 1, bytes, file_.get()) != bytes)
+        error_number_ = errno;
+}
+
+Result<Done> OutputFile::commit() {
+    if (error_number_ == 0 && std::fflush(file_.get()) != 0)
+        error_number_ = errno;
+    if (!temporary_.empty()) {
+        // Before the rename: a crash must not leave an empty file in the good one's place.
+        if (error_number_ == 0 && fsync(fileno(file_.get())) != 0 && errno != EINVAL)
+            error_number_ = errno;
+        if (error_number_ == 0 && std::rename(temporary_.c_str(), final_path_.c_str()) != 0)
+            error_number_ = errno;
+    }
+    if (error_number_ != 0)
+        return failed(target_, error_number_);
+    forget_unfinished();
+    file_.reset();
+    return Done{};
+}
+
+Error OutputFile::failed(const fs::path& target, int error_number) {
+    return {fmt::format("{}: cannot be written: {}", target.string(), std::strerror(error_number))};
+}
+
+Error OutputFile::folder_refused(const fs::path& target, int error_number) {
+    return {fmt::format("{}: the folder cannot be written to: {}", target.string(),
+                        std::strerror(error_number))};
+}
+
+bool is_same_output(const fs::path& a, const fs::path& b) {
+    std::error_code ec;
+    const fs::file_status status = fs::status(a, ec);
+    if (fs::exists(status) && !fs::is_regular_file(status))
+        return false;
+    if (fs::equivalent(a, b, ec) && !ec)
+        return true;
+    const auto plain = [&](const fs::path& path) {
+        return fs::weakly_canonical(fs::absolute(followed(path), ec), ec);
+    };
+    return plain(a) == plain(b);
+}
+
+void remove_unfinished_output() noexcept {
+    if (is_unfinished)
+        unlink(unfinished_name);
+}
+
+} // namespace ovc

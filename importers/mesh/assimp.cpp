@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every other format, by Assimp; the only file that sees it. Never for .ply and .obj: there it
+// takes many times the memory of the file, and hangs or crashes on some that are damaged.
+#include "importers/file/source.h"
+#include "importers/file/text.h"
+#include "importers/readers.h"
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <exception>
+#include <numbers>
+
+namespace ovc {
+
+namespace {
+
+// Not JoinIdenticalVertices: it merges by distance. After reading, for these steps throw away what
+// the messages tell of.
+constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_PreTransformVertices;
+
+vec3 from(const aiVector3D& v) {
+    return {v.x, v.y, v.z};
+}
+
+/// glTF's transmission is tinted by the base color; other formats know opacity, which is not.
+void let_light_through(const aiMaterial& source, Material& material) {
+    ai_real share = 0, opacity = 1, ior = 1;
+    source.Get(AI_MATKEY_TRANSMISSION_FACTOR, share);
+    source.Get(AI_MATKEY_OPACITY, opacity);
+    source.Get(AI_MATKEY_REFRACTI, ior);
+    const bool tinted = share > 0;
+    share = tinted ? share : 1 - opacity;
+    if (!(share > 0))
+        return;
+    material.transmission = std::min(float(share), 1.0f);
+    material.filter = tinted ? material.color : vec3(1);
+    if (is_usable_ior(ior))
+        material.ior = ior;
+}
+
+Material material_from(const aiMaterial& source) {
+    Material material;
+    material.name = source.GetName().C_Str();
+    aiColor3D color;
+    if (source.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS) {
+        const vec3 rgb(color.r, color.g, color.b);
+        if (is_finite(rgb))
+            material.color = glm::clamp(rgb, vec3(0), vec3(1));
+    }
+    let_light_through(source, material);
+    return material;
+}
+
+bool is_triangle(const aiFace& face, const aiMesh& mesh) {
+    return face.mNumIndices == 3 && face.mIndices[0] < mesh.mNumVertices &&
+           face.mIndices[1] < mesh.mNumVertices && face.mIndices[2] < mesh.mNumVertices;
+}
+
+/// Empty where one is missing or not finite, and where all triangles are flat: those say nothing
+/// new.
+std::vector<vec3> normals_from(const aiMesh& mesh) {
+    std::vector<vec3> normals;
+    bool smooth = false;
+    for (unsigned f = 0; mesh.HasNormals() && f < mesh.mNumFaces; ++f) {
+        if (!is_triangle(mesh.mFaces[f], mesh))
+            continue;
+        for (int i = 0; i < 3; ++i) {
+            const vec3 normal = from(mesh.mNormals[mesh.mFaces[f].mIndices[i]]);
+            const float length = glm::length(normal);
+            if (!(length > 0) || !std::isfinite(length))
+                return {};
+            normals.push_back(normal / length);
+        }
+        smooth = smooth || normals.end()[-1] != normals.end()[-2] ||
+                 normals.end()[-2] != normals.end()[-3];
+    }
+    return smooth ? normals : std::vector<vec3>();
+}
+
+void add_mesh(Scene& scene, const aiMesh& mesh) {
+    std::vector<vec3> corners;
+    corners.reserve(size_t(mesh.mNumFaces) * 3);
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f)
+        if (is_triangle(mesh.mFaces[f], mesh))
+            for (int i = 0; i < 3; ++i)
+                corners.push_back(from(mesh.mVertices[mesh.mFaces[f].mIndices[i]]));
+    if (corners.empty())
+        return;
+    const uint32_t material =
+        mesh.mMaterialIndex < scene.materials.size() ? mesh.mMaterialIndex : 0;
+    const uint64_t count = corners.size();
+    scene.add_mesh(mesh.mName.length > 0 ? mesh.mName.C_Str() : scene.name, material,
+                   Chunk::owning(dvec3(0), std::move(corners)), normals_from(mesh));
+    MeshInfo& info = scene.meshes.back();
+    info.normals_left_out = mesh.HasNormals() && info.normals.empty() ? count : 0;
+    info.texture_coordinates_left_out = mesh.HasTextureCoords(0) ? count : 0;
+}
+
+dvec3 through(const aiMatrix4x4& place, const aiVector3D& point) {
+    const aiVector3D moved = place * point;
+    return {moved.x, moved.y, moved.z};
+}
+
+/// Along the shorter side of the picture. Of glTF Assimp 5 tells the upright angle x the shape, of
+/// other formats the whole angle across, whatever its header says.
+double angle_of_view(const aiCamera& source, bool is_gltf) {
+    const double shape = source.mAspect > 1 ? source.mAspect : 1;
+    if (is_gltf)
+        return source.mHorizontalFOV / shape;
+    return 2 * std::atan(std::tan(double(source.mHorizontalFOV) / 2) / shape);
+}
+
+/// Where its node stands. Nothing of an orthographic one, whose extent not all formats tell, and of
+/// one that sees nothing.
+std::optional<Camera> camera_from(const aiCamera& source, const aiNode& root, bool is_gltf) {
+    aiMatrix4x4 place;
+    for (const aiNode* node = root.FindNode(source.mName); node; node = node->mParent)
+        place = node->mTransformation * place;
+    // Of glTF Assimp 5 gives the node's own translation once more.
+    const aiVector3D at = is_gltf ? aiVector3D() : source.mPosition;
+    Camera camera;
+    camera.eye = through(place, at);
+    camera.target = through(place, at + source.mLookAt);
+    camera.up = through(place, at + source.mUp) - camera.eye;
+    camera.fov_degrees = angle_of_view(source, is_gltf) * 180 / std::numbers::pi;
+    const bool sees = camera.fov_degrees > 0 && camera.fov_degrees < 180 && is_finite(camera.eye) &&
+                      is_finite(camera.target) && camera.eye != camera.target &&
+                      is_finite(camera.up);
+    return sees ? std::optional(camera) : std::nullopt;
+}
+
+/// The first that can be used.
+std::optional<Camera> camera_of(const aiScene& scene, bool is_gltf) {
+    for (unsigned c = 0; c < scene.mNumCameras; ++c)
+        if (auto camera = camera_from(*scene.mCameras[c], *scene.mRootNode, is_gltf))
+            return camera;
+    return std::nullopt;
+}
+
+/// Each picture once, in the order of the materials; "*0" is the first of those in the file itself.
+std::vector<std::string> textures_of(const aiScene& scene) {
+    std::vector<std::string> names;
+    for (unsigned m = 0; m < scene.mNumMaterials; ++m)
+        for (unsigned type = 1; type <= AI_TEXTURE_TYPE_MAX; ++type)
+            for (unsigned i = 0; i < scene.mMaterials[m]->GetTextureCount(aiTextureType(type));
+                 ++i) {
+                aiString path;
+                if (scene.mMaterials[m]->GetTexture(aiTextureType(type), i, &path) != AI_SUCCESS)
+                    continue;
+                std::string name = ovc::quoted(path.C_Str());
+                if (std::find(names.begin(), names.end(), name) == names.end())
+                    names.push_back(std::move(name));
+            }
+    return names;
+}
+
+/// Points and lines.
+uint64_t other_faces(const aiScene& scene) {
+    uint64_t others = 0;
+    for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+        for (unsigned f = 0; f < scene.mMeshes[m]->mNumFaces; ++f)
+            others += scene.mMeshes[m]->mFaces[f].mNumIndices < 3;
+    return others;
+}
+
+/// What the file has and the scene will not.
+std::vector<std::string> left_out_of(const aiScene& found, bool has_camera) {
+    std::vector<std::string> sentences;
+    const auto leave_out = [&](uint64_t count, const char* what, const std::string& more = {}) {
+        if (count > 0)
+            sentences.push_back(fmt::format("{} left out{}", counted(count, what), more));
+    };
+    const std::vector<std::string> textures = textures_of(found);
+    leave_out(textures.size(), "texture", ": " + listed(textures));
+    leave_out(found.mNumCameras - (has_camera ? 1 : 0), has_camera ? "more camera" : "camera");
+    leave_out(found.mNumLights, "light");
+    leave_out(found.mNumAnimations, "animation", ": what moves is shown at rest");
+    leave_out(other_faces(found), "face", ": they have fewer than three corners");
+    return sentences;
+}
+
+/// Opens files for Assimp, and takes down which.
+class NotingFiles final : public Assimp::DefaultIOSystem {
+public:
+    explicit NotingFiles(FilesRead& files) : files_(files) {}
+
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        files_.note(file);
+        return DefaultIOSystem::Open(file, mode);
+    }
+
+private:
+    FilesRead& files_;
+};
+
+/// The whole file, uncompressed.
+std::vector<unsigned char> contents(Source& source) {
+    constexpr size_t kBlock = size_t(1) << 16;
+    std::vector<unsigned char> all;
+    while (const unsigned char* block = source.bytes(kBlock))
+        all.insert(all.end(), block, block + kBlock);
+    while (const unsigned char* byte = source.bytes(1))
+        all.push_back(*byte);
+    return all;
+}
+
+std::filesystem::path plain_name(const std::filesystem::path& path) {
+    return path.extension() == ".gz" ? path.stem() : path;
+}
+
+bool is_gltf(const std::filesystem::path& path) {
+    std::string extension = plain_name(path).extension().string();
+    for (char& c : extension)
+        c = char(std::tolower(static_cast<unsigned char>(c)));
+    return extension == ".gltf" || extension == ".glb";
+}
+
+/// Assimp opens a plain file itself, as that may name others beside it; a compressed one it gets
+/// from memory.
+const aiScene* read(Assimp::Importer& importer, Source& source, const std::filesystem::path& path) {
+    if (!source.is_compressed())
+        return importer.ReadFile(path.string(), 0);
+    const std::string extension = plain_name(path).extension().string();
+    const std::vector<unsigned char> all = contents(source);
+    return importer.ReadFileFromMemory(all.data(), all.size(), 0,
+                                       extension.empty() ? "" : extension.c_str() + 1);
+}
+
+} // namespace
+
+bool assimp_reads(std::string_view extension) {
+    return Assimp::Importer().IsExtensionSupported(fmt::format(".{}", extension));
+}
+
+Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions& options) try {
+    Result<Source> source = Source::open(path, options.files);
+    if (!source)
+        return source.error();
+    Assimp::Importer importer;
+    if (options.files)
+        importer.SetIOHandler(new NotingFiles(*options.files)); // which it deletes
+    const aiScene* found = read(importer, *source, path);
+    Scene scene;
+    scene.name = path.stem().string();
+    std::vector<std::string> left_out;
+    if (found) {
+        scene.camera = camera_of(*found, is_gltf(path));
+        left_out = left_out_of(*found, scene.camera.has_value());
+        found = importer.ApplyPostProcessing(kSteps);
+    }
+    if (!found || source->is_damaged())
+        return source->error(fmt::format("Assimp found: {}", importer.GetErrorString()));
+    for (const std::string& sentence : left_out)
+        say(options.log, LogLevel::Warning, source->error(sentence).message);
+    for (unsigned m = 0; m < found->mNumMaterials; ++m)
+        scene.materials.push_back(material_from(*found->mMaterials[m]));
+    if (scene.materials.empty())
+        scene.materials.emplace_back();
+    for (unsigned m = 0; m < found->mNumMeshes; ++m)
+        add_mesh(scene, *found->mMeshes[m]);
+    if (scene.soup.triangle_count() == 0)
+        say(options.log, LogLevel::Warning, source->error("it has no triangles").message);
+    return scene;
+} catch (const std::exception& e) {
+    return Error{fmt::format("{}: Assimp failed: {}", path.string(), e.what())};
+}
+
+} // namespace ovc

@@ -1,0 +1,443 @@
+// SPDX-License-Identifier: Apache-2.0
+// OBJ: polygons, normals and materials, streamed; one mesh per object, group and material.
+// Source: Wavefront, "Advanced Visualizer" manual, appendix B1 (the Object files format).
+#include "importers/file/source.h"
+#include "importers/file/text.h"
+#include "importers/mesh/blocks.h"
+#include "importers/mesh/mtl.h"
+#include "importers/mesh/polygon.h"
+#include "importers/origin.h"
+#include "importers/readers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace ovc {
+
+namespace {
+
+/// Beyond this many extents from 0, single precision would cost more than the last digit that files
+/// carry.
+constexpr double kFar = 16;
+
+struct Corner {
+    uint32_t vertex = 0;
+    int64_t normal = -1;     // index, or -1
+    bool has_normal = false; // or states one that is not there
+    bool has_texture = false;
+};
+
+struct Mesh {
+    std::string name;
+    uint32_t material = 0;
+    Blocks<vec3> corners;
+    Blocks<vec3> normals; // as many as corners, while has_normals
+    bool has_normals = true;
+    uint64_t normals_stated = 0, texture_coordinates = 0; // corners with them
+};
+
+class ObjReader {
+public:
+    ObjReader(Source& source, const std::filesystem::path& path, const ImportOptions& options)
+        : source_(source), path_(path), log_(options.log), files_read_(options.files) {}
+
+    bool read() {
+        while (const auto line = source_.line()) {
+            if (source_.line_number() == 1 && !check_encoding(*line))
+                return false;
+            if (!read_line(joined(*line)))
+                return false;
+        }
+        return !source_.is_damaged() || fail("");
+    }
+
+    const Error& error() const { return error_; }
+    Result<Scene> take();
+
+private:
+    bool fail(std::string_view sentence) {
+        error_ = source_.error_at_line(sentence);
+        return false;
+    }
+
+    /// Once per kind.
+    void warn(const std::string& kind, const std::string& sentence) {
+        if (warned_.insert(kind).second)
+            say(log_, LogLevel::Warning, source_.error_at_line(sentence).message);
+    }
+
+    bool check_encoding(std::string_view line) {
+        if (line.starts_with("\xfe\xff") || line.starts_with("\xff\xfe"))
+            return fail("found UTF-16 text, expected ASCII or UTF-8");
+        return true;
+    }
+
+    /// The line and those it goes on in, where it ends in a backslash.
+    std::string_view joined(std::string_view line);
+    bool read_line(std::string_view line);
+    bool read_other(std::string_view keyword, std::string_view rest);
+    bool read_vertex(std::string_view rest);
+    bool read_normal(std::string_view rest);
+    bool read_face(std::string_view rest);
+    bool read_corner(std::string_view word);
+    bool read_index(std::string_view word, std::string_view text, size_t count, uint32_t& index);
+    bool fail_index(int64_t index, size_t count);
+    void read_libraries(std::string_view rest);
+    bool read_library(std::string_view name);
+    void use_material(std::string_view name);
+    Mesh& mesh();
+    void add_polygon();
+    void add_corner(Mesh& mesh, const Corner& corner);
+    void say_left_out() const;
+
+    Source& source_;
+    const std::filesystem::path& path_;
+    const LogSink& log_;
+    FilesRead* const files_read_;
+    Error error_;
+    std::unordered_set<std::string> warned_;
+    std::string joined_;
+
+    std::vector<dvec3> vertices_;
+    std::vector<vec3> normals_;
+    bool has_texture_coordinates_ = false;
+    Box bounds_;
+    std::optional<dvec3> origin_; // from the vertices that precede the first face
+    std::vector<Corner> polygon_;
+    std::vector<dvec3> outline_;
+    std::vector<std::array<uint32_t, 3>> cut_;
+
+    std::vector<LibraryMaterial> materials_{LibraryMaterial{}}; // first, of faces before any usemtl
+    std::unordered_map<std::string, uint32_t> material_ids_;
+    std::unordered_set<std::string> libraries_; // that were read
+    uint32_t material_ = 0;
+    std::string object_;
+    std::string group_;
+    std::vector<Mesh> meshes_;
+    std::unordered_map<std::string, size_t> mesh_ids_;
+    size_t mesh_ = 0;
+    bool mesh_known_ = false; // false once object, group or material changed
+};
+
+std::string_view ObjReader::joined(std::string_view line) {
+    if (line.empty() || line.back() != '\\')
+        return line;
+    joined_.clear();
+    std::optional<std::string_view> next = line;
+    while (next && !next->empty() && next->back() == '\\') {
+        joined_.append(next->substr(0, next->size() - 1));
+        joined_ += ' ';
+        next = source_.line();
+    }
+    if (next)
+        joined_.append(*next);
+    return joined_;
+}
+
+bool ObjReader::read_line(std::string_view line) {
+    if (line.starts_with("\xef\xbb\xbf")) // the mark some editors put before UTF-8
+        line.remove_prefix(3);
+    const std::string_view keyword = next_word(line);
+    if (keyword == "v")
+        return read_vertex(line);
+    if (keyword == "f" || keyword == "fo")
+        return read_face(line);
+    if (keyword == "vn")
+        return read_normal(line);
+    if (keyword == "vt")
+        has_texture_coordinates_ = true;
+    else if (!keyword.empty() && keyword[0] != '#' && keyword != "s")
+        return read_other(keyword, line);
+    return true;
+}
+
+bool ObjReader::read_other(std::string_view keyword, std::string_view rest) {
+    if (keyword == "o" || keyword == "g") {
+        const std::string_view name = trimmed(without_comment(rest));
+        if (keyword == "o")
+            object_ = name;
+        group_ = keyword == "g" ? name : "";
+        mesh_known_ = false;
+    } else if (keyword == "usemtl") {
+        use_material(trimmed(rest));
+    } else if (keyword == "mtllib") {
+        read_libraries(trimmed(rest));
+    } else {
+        for (const char c : keyword)
+            if (c < ' ' || c > '~')
+                return fail(fmt::format("found {}, expected v, vn, vt, f, o, g, usemtl, mtllib or "
+                                        "another statement of the OBJ format",
+                                        quoted(keyword)));
+        warn(std::string(keyword), fmt::format("statements {} left out", quoted(keyword)));
+    }
+    return true;
+}
+
+bool ObjReader::read_vertex(std::string_view rest) {
+    dvec3 position(0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string_view word = next_word(rest);
+        const auto value = parse_double(word);
+        if (!value)
+            return fail(fmt::format("found {}, expected a coordinate", found(word)));
+        position[axis] = *value;
+    }
+    if (is_finite(position))
+        bounds_.add(position);
+    vertices_.push_back(position);
+    return true;
+}
+
+bool ObjReader::read_normal(std::string_view rest) {
+    vec3 normal(0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string_view word = next_word(rest);
+        const auto value = parse_float(word);
+        if (!value)
+            return fail(fmt::format("found {}, expected a coordinate", found(word)));
+        normal[axis] = *value;
+    }
+    const float length = glm::length(normal);
+    // Zero marks one that cannot be used.
+    if (!(length > 0) || !std::isfinite(length))
+        normal = vec3(0);
+    else if (std::abs(length - 1) > 1e-6f)
+        normal /= length;
+    normals_.push_back(normal);
+    return true;
+}
+
+bool ObjReader::read_face(std::string_view rest) {
+    polygon_.clear();
+    for (std::string_view word = next_word(rest); !word.empty() && word[0] != '#';
+         word = next_word(rest))
+        if (!read_corner(word))
+            return false;
+    if (polygon_.size() < 3)
+        warn("f", "faces with fewer than three corners left out");
+    else
+        add_polygon();
+    return true;
+}
+
+/// v, v/vt, v//vn or v/vt/vn.
+bool ObjReader::read_corner(std::string_view word) {
+    Corner corner;
+    const size_t slash = word.find('/');
+    if (!read_index(word, word.substr(0, slash), vertices_.size(), corner.vertex))
+        return false;
+    const size_t second = slash == word.npos ? word.npos : word.find('/', slash + 1);
+    if (second != word.npos && second + 1 < word.size()) {
+        const auto normal = parse_number<int64_t>(word.substr(second + 1));
+        if (!normal)
+            return fail(
+                fmt::format("found corner {}, expected v, v/vt, v//vn or v/vt/vn", quoted(word)));
+        corner.normal = *normal > 0 ? *normal - 1 : int64_t(normals_.size()) + *normal;
+        corner.has_normal = true;
+    }
+    corner.has_texture =
+        has_texture_coordinates_ && slash != word.npos && slash + 1 < std::min(second, word.size());
+    polygon_.push_back(corner);
+    return true;
+}
+
+bool ObjReader::fail_index(int64_t index, size_t count) {
+    return fail(fmt::format("found vertex {}, expected {}", index,
+                            count == 0   ? "none, for none is above this line"
+                            : count == 1 ? "the one above this line"
+                                         : fmt::format("one of the {} above this line", count)));
+}
+
+/// From 1, or from the last backwards from -1.
+bool ObjReader::read_index(std::string_view word, std::string_view text, size_t count,
+                           uint32_t& index) {
+    const auto value = parse_number<int64_t>(text);
+    if (!value)
+        return fail(
+            fmt::format("found corner {}, expected v, v/vt, v//vn or v/vt/vn", quoted(word)));
+    const int64_t from_zero = *value > 0 ? *value - 1 : int64_t(count) + *value;
+    if (*value == 0 || from_zero < 0 || from_zero >= int64_t(count))
+        return fail_index(*value, count);
+    index = uint32_t(from_zero);
+    return true;
+}
+
+/// One name with blanks in it, or several names; a blank may be written '\ '.
+void ObjReader::read_libraries(std::string_view rest) {
+    for (const std::string_view name : {rest, trimmed(without_comment(rest))})
+        if (name.find('\\') == name.npos && read_library(name))
+            return;
+    rest = trimmed(without_comment(rest));
+    std::string name;
+    bool any = false;
+    for (size_t i = 0; i <= rest.size(); ++i) {
+        if (i < rest.size() && rest[i] == '\\' && i + 1 < rest.size() && rest[i + 1] == ' ') {
+            name += rest[++i];
+        } else if (i < rest.size() && !is_blank(rest[i])) {
+            name += rest[i] == '\\' ? '/' : rest[i];
+        } else if (!name.empty()) {
+            any = read_library(name) || any;
+            name.clear();
+        }
+    }
+    if (!any)
+        warn("mtllib",
+             fmt::format("no material library {}: its materials become grey", quoted(rest)));
+}
+
+bool ObjReader::read_library(std::string_view name) {
+    const std::filesystem::path path = path_.parent_path() / std::string(name);
+    if (libraries_.contains(path.string()))
+        return true;
+    auto materials = read_mtl(path, files_read_);
+    if (!materials)
+        return false;
+    libraries_.insert(path.string());
+    for (LibraryMaterial& read : *materials) {
+        const std::string& called = read.material.name;
+        const auto [at, is_new] = material_ids_.try_emplace(called, uint32_t(materials_.size()));
+        if (is_new)
+            materials_.emplace_back();
+        else if (materials_[at->second].material != Material{called})
+            continue; // else usemtl came before its mtllib
+        materials_[at->second] = std::move(read);
+    }
+    return true;
+}
+
+void ObjReader::use_material(std::string_view name) {
+    if (!material_ids_.contains(std::string(name)))
+        name = trimmed(without_comment(name));
+    const auto [at, is_new] =
+        material_ids_.try_emplace(std::string(name), uint32_t(materials_.size()));
+    if (is_new) {
+        materials_.push_back({Material{std::string(name)}});
+        warn("usemtl",
+             fmt::format("no material {}: it becomes grey, and so do others that are missing",
+                         quoted(name)));
+    }
+    material_ = at->second;
+    mesh_known_ = false;
+}
+
+Mesh& ObjReader::mesh() {
+    if (!mesh_known_) {
+        std::string name = object_;
+        if (!name.empty() && !group_.empty())
+            name += '/';
+        name += group_;
+        const auto [at, is_new] =
+            mesh_ids_.try_emplace(fmt::format("{}\n{}", material_, name), meshes_.size());
+        if (is_new) {
+            meshes_.emplace_back();
+            meshes_.back().name = std::move(name);
+            meshes_.back().material = material_;
+        }
+        mesh_ = at->second;
+        mesh_known_ = true;
+    }
+    return meshes_[mesh_];
+}
+
+void ObjReader::add_polygon() {
+    if (!origin_)
+        origin_ = chunk_origin(bounds_, kFar);
+    Mesh& to = mesh();
+    if (polygon_.size() == 3) {
+        for (const Corner& corner : polygon_)
+            add_corner(to, corner);
+        return;
+    }
+    outline_.clear();
+    for (const Corner& corner : polygon_)
+        outline_.push_back(vertices_[corner.vertex]);
+    cut_.clear();
+    triangulate(outline_, cut_);
+    for (const auto& triangle : cut_)
+        for (const uint32_t i : triangle)
+            add_corner(to, polygon_[i]);
+}
+
+void ObjReader::add_corner(Mesh& to, const Corner& corner) {
+    to.corners.push_back(vec3(vertices_[corner.vertex] - *origin_));
+    to.normals_stated += corner.has_normal;
+    to.texture_coordinates += corner.has_texture;
+    if (!to.has_normals)
+        return;
+    const bool usable = corner.normal >= 0 && corner.normal < int64_t(normals_.size()) &&
+                        normals_[size_t(corner.normal)] != vec3(0);
+    if (usable) {
+        to.normals.push_back(normals_[size_t(corner.normal)]);
+        return;
+    }
+    if (corner.normal != -1 || to.normals.size() > 0)
+        warn("vn", "normals left out where a corner of the mesh has none that can be used");
+    to.has_normals = false;
+    to.normals = {};
+}
+
+/// Of the materials that some mesh has: a library may serve many files.
+void ObjReader::say_left_out() const {
+    std::set<uint32_t> used;
+    for (const Mesh& mesh : meshes_)
+        used.insert(mesh.material);
+    std::vector<std::string> textures, emitters;
+    for (const uint32_t m : used) {
+        for (const std::string& texture : materials_[m].textures)
+            if (std::find(textures.begin(), textures.end(), texture) == textures.end())
+                textures.push_back(texture);
+        if (materials_[m].emits)
+            emitters.push_back(ovc::quoted(materials_[m].material.name));
+    }
+    const auto warn_of = [&](const std::string& sentence) {
+        say(log_, LogLevel::Warning, source_.error(sentence).message);
+    };
+    if (!textures.empty())
+        warn_of(fmt::format("{} of its materials left out: {}", counted(textures.size(), "texture"),
+                            listed(textures)));
+    if (!emitters.empty())
+        warn_of(fmt::format("light from {} (Ke) left out: {}", counted(emitters.size(), "material"),
+                            listed(emitters)));
+}
+
+Result<Scene> ObjReader::take() {
+    std::vector<dvec3>().swap(vertices_);
+    std::vector<vec3>().swap(normals_);
+    Scene scene;
+    scene.name = path_.stem().string();
+    for (Mesh& m : meshes_) {
+        if (m.corners.size() / 3 > kMostTriangles)
+            return source_.error(fmt::format("found {} triangles in one mesh, expected at most {}",
+                                             m.corners.size() / 3, kMostTriangles));
+        scene.add_mesh(m.name.empty() ? scene.name : std::move(m.name), m.material,
+                       Chunk::owning(origin_.value_or(dvec3(0)), m.corners.take()),
+                       m.normals.take());
+        MeshInfo& mesh = scene.meshes.back();
+        mesh.normals_left_out = mesh.normals.empty() ? m.normals_stated : 0;
+        mesh.texture_coordinates_left_out = m.texture_coordinates;
+    }
+    say_left_out();
+    for (LibraryMaterial& read : materials_)
+        scene.materials.push_back(std::move(read.material));
+    if (scene.soup.triangle_count() == 0)
+        say(log_, LogLevel::Warning, source_.error("it has no triangles").message);
+    return scene;
+}
+
+} // namespace
+
+Result<Scene> read_obj(const std::filesystem::path& path, const ImportOptions& options) {
+    Result<Source> source = Source::open(path, options.files);
+    if (!source)
+        return source.error();
+    ObjReader reader(*source, path, options);
+    if (!reader.read())
+        return reader.error();
+    return reader.take();
+}
+
+} // namespace ovc

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Diagnostics: once per kind; strict turns what is missing into the error.
+#include "importers/pbrt/interpret/diagnostics.h"
+
+#include <fmt/format.h>
+
+namespace ovc::pbrt {
+
+/// Kinds that are told apart, such as the names of missing files: more are only noise.
+static constexpr size_t kMostWarnings = 1000;
+
+Error error_at(const Place& place, std::string_view sentence) {
+    return {fmt::format("{}:{}: {}", place.file ? *place.file : "", place.line, sentence)};
+}
+
+void Diagnostics::warn(Gravity gravity, const std::string& kind, const Place& place,
+                       std::string_view sentence) {
+    if (strict_ && gravity == Gravity::Missing)
+        fail(error_at(place, sentence));
+    else if (said_.size() < kMostWarnings && said_.insert(kind).second)
+        say(log_, LogLevel::Warning, error_at(place, sentence).message);
+}
+
+bool Diagnostics::fail(Error error) {
+    if (!error_)
+        error_ = std::move(error);
+    return false;
+}
+
+} // namespace ovc::pbrt

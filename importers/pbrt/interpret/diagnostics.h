@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Diagnostics: what a PBRT file asks for and does not get, said once per kind, with its place.
+#pragma once
+
+#include "core/result.h"
+#include "core/system/log.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+
+namespace ovc::pbrt {
+
+/// A line of a file. The name is the tokens' and outlives them.
+struct Place {
+    const std::string* file = nullptr;
+    uint64_t line = 0;
+};
+
+/// "FILE:7: sentence".
+Error error_at(const Place& place, std::string_view sentence);
+
+/// How much a warning matters under --strict.
+enum class Gravity {
+    Missing,    // unknown words, missing files, unusable data: an error when strict
+    Approximate // understood, and shown as nearly as we can: never an error
+};
+
+class Diagnostics {
+public:
+    Diagnostics(const LogSink& log, bool strict) : log_(log), strict_(strict) {}
+
+    /// Said at the first call with this kind only.
+    void warn(Gravity gravity, const std::string& kind, const Place& place,
+              std::string_view sentence);
+    void missing(const std::string& kind, const Place& place, std::string_view sentence) {
+        warn(Gravity::Missing, kind, place, sentence);
+    }
+    void approximate(const std::string& kind, const Place& place, std::string_view sentence) {
+        warn(Gravity::Approximate, kind, place, sentence);
+    }
+
+    /// The first error wins. Returns false, for `return fail(…)`.
+    bool fail(Error error);
+    bool fail(const Place& place, std::string_view sentence) {
+        return fail(error_at(place, sentence));
+    }
+
+    bool failed() const { return error_.has_value(); }
+    const Error& error() const { return *error_; }
+    const LogSink& log() const { return log_; }
+    bool strict() const { return strict_; }
+
+private:
+    const LogSink& log_;
+    const bool strict_;
+    std::unordered_set<std::string> said_;
+    std::optional<Error> error_;
+};
+
+} // namespace ovc::pbrt

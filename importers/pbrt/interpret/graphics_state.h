@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// GraphicsState: what the attribute and transform stacks hold.
+#pragma once
+
+#include "importers/pbrt/interpret/transform.h"
+#include "importers/pbrt/look/lights.h"
+
+#include <array>
+#include <vector>
+
+namespace ovc::pbrt {
+
+/// The transforms at the start and at the end of the exposure; we show the start.
+struct Transforms {
+    std::array<dmat4, 2> at{dmat4(1), dmat4(1)};
+    std::array<bool, 2> active{true, true};
+
+    const dmat4& start() const { return at[0]; }
+    void multiply(const dmat4& by) {
+        for (size_t i = 0; i < 2; ++i)
+            if (active[i])
+                at[i] = at[i] * by;
+    }
+    void set(const dmat4& to) {
+        for (size_t i = 0; i < 2; ++i)
+            if (active[i])
+                at[i] = to;
+    }
+};
+
+struct GraphicsState {
+    Transforms transforms;
+    uint32_t material = 0;
+    std::optional<Emission> emission;
+    bool reversed = false;
+};
+
+/// What opened a level, and so closes it.
+enum class Scope { Attribute, Transform, Object, Import };
+
+class StateStack {
+public:
+    GraphicsState now;
+
+    void push(Scope scope) { saved_.push_back({scope, now}); }
+    /// Back to where `scope` was opened; what was opened since is closed too, but never an object
+    /// or an import. False: none is open.
+    bool pop(Scope scope) {
+        size_t i = saved_.size();
+        while (i > 0 && saved_[i - 1].scope != scope) {
+            const bool is_wall =
+                saved_[i - 1].scope == Scope::Object || saved_[i - 1].scope == Scope::Import;
+            if (is_wall && scope != Scope::Object && scope != Scope::Import)
+                return false;
+            --i;
+        }
+        if (i == 0)
+            return false;
+        if (scope == Scope::Transform)
+            now.transforms = saved_[i - 1].state.transforms;
+        else
+            now = saved_[i - 1].state;
+        saved_.resize(i - 1, {scope, {}});
+        return true;
+    }
+    size_t depth() const { return saved_.size(); }
+    void clear() { saved_.clear(); }
+
+private:
+    struct Saved {
+        Scope scope;
+        GraphicsState state;
+    };
+    std::vector<Saved> saved_;
+};
+
+} // namespace ovc::pbrt

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Camera and film: a window in the camera's own space, which may be of either handedness, or
+// stretched.
+#include "importers/pbrt/look/camera.h"
+
+#include "importers/file/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+namespace ovc::pbrt {
+
+Film read_film(const Parameters& parameters) {
+    Film film;
+    const auto side = [&](std::string_view name, uint32_t otherwise) {
+        const double value = parameters.number(name, otherwise);
+        return value >= 1 && value <= 65535 ? uint32_t(value) : otherwise;
+    };
+    film.has_size = parameters.find("xresolution") && parameters.find("yresolution");
+    film.size = {side("xresolution", 640), side("yresolution", 480)};
+    // v3 scales what it writes; v4 exposes for some time at some sensitivity.
+    const double scale = parameters.number("scale", 1);
+    const double exposed =
+        parameters.number("exposuretime", 1) * parameters.number("iso", 100) / 100;
+    const double exposure = scale * exposed;
+    film.exposure = exposure > 0 && exposure < 1e30 ? float(exposure) : 1;
+    return film;
+}
+
+namespace {
+
+/// The part of the plane z = 1 that the image shows, before the angle of view; x to the right.
+struct Screen {
+    double left, right, bottom, top;
+};
+
+Screen screen_of(const Parameters& p, const Film& film) {
+    const double aspect =
+        p.number("frameaspectratio", double(film.size.width) / double(film.size.height));
+    Screen screen =
+        aspect > 1 ? Screen{-aspect, aspect, -1, 1} : Screen{-1, 1, -1 / aspect, 1 / aspect};
+    if (const auto window = p.numbers("screenwindow", {Kind::Float, Kind::Integer});
+        window.size() == 4)
+        screen = {window[0], window[1], window[2], window[3]};
+    return screen;
+}
+
+double angle_of_view(const CameraRequest& request) {
+    const Parameters& p = request.parameters;
+    const double angle = p.find("halffov") ? 2 * p.number("halffov", 45) : p.number("fov", 90);
+    return angle > 0 && angle < 180 ? angle : 90;
+}
+
+bool is_usable(const Camera& camera) {
+    const ImageWindow& w = *camera.window;
+    return ovc::is_finite(camera.eye) && ovc::is_finite(w.direction) && ovc::is_finite(w.right) &&
+           ovc::is_finite(w.up) && glm::length(glm::cross(w.right, w.up)) > 0 &&
+           std::abs(glm::dot(glm::cross(w.right, w.up), w.direction)) > 0;
+}
+
+} // namespace
+
+std::optional<Camera> make_camera(const CameraRequest& request, const Film& film,
+                                  Diagnostics& diagnostics) {
+    const bool orthographic = request.type == "orthographic";
+    if (!orthographic && request.type != "perspective")
+        diagnostics.approximate(
+            "camera", request.place,
+            fmt::format("a camera {} becomes a perspective one", ovc::quoted(request.type)));
+    const double angle = angle_of_view(request);
+    const Screen screen = screen_of(request.parameters, film);
+    const double tangent = orthographic ? 1 : std::tan(angle * (std::numbers::pi / 360));
+
+    const dmat4 to_world = glm::inverse(request.world_to_camera);
+    const dvec3 eye = point_through(to_world, dvec3(0));
+    const double x = tangent * (screen.left + screen.right) / 2;
+    const double y = tangent * (screen.bottom + screen.top) / 2;
+    Camera camera;
+    camera.window = ImageWindow{
+        vector_through(to_world, {orthographic ? 0 : x, orthographic ? 0 : y, 1}),
+        vector_through(to_world, {tangent * (screen.right - screen.left), 0, 0}),
+        vector_through(to_world, {0, tangent * (screen.top - screen.bottom), 0}), orthographic};
+    camera.eye = orthographic ? point_through(to_world, {x, y, 0}) : eye;
+    camera.target = camera.eye + camera.window->direction;
+    camera.up = camera.window->up;
+    camera.fov_degrees = angle;
+    if (is_usable(camera))
+        return camera;
+    diagnostics.missing("view", request.place, "the camera left out: its transform makes no view");
+    return std::nullopt;
+}
+
+} // namespace ovc::pbrt

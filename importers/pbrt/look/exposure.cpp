@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exposure: a sample of the triangles in view, weighed by how large they are in the picture.
+#include "importers/pbrt/look/exposure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace ovc::pbrt {
+
+namespace {
+
+constexpr uint64_t kSamples = 20000;
+
+/// Of the mean radiance: what is let be, and what it is brought to outside of that. A picture of
+/// mean 0.2 looks like most photographs do.
+constexpr double kDarkest = 0.02, kBrightest = 0.6, kWanted = 0.25;
+
+double luminance(const vec3& c) {
+    return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
+}
+
+/// How large the triangle is in the picture, in units of its window; 0 where it is out of view.
+double weight_in(const Camera& camera, const Triangle& t, const dvec3& middle) {
+    const ImageWindow& w = *camera.window;
+    const dvec3 there = middle - camera.eye;
+    const dvec3 forward = glm::normalize(w.direction);
+    const double depth = glm::dot(there, forward);
+    if (!(depth > 0))
+        return 0;
+    const double scale = w.orthographic ? 1 : glm::length(w.direction) / depth;
+    const dvec3 seen = w.orthographic ? there : there * scale - w.direction;
+    const double x = glm::dot(seen, w.right) / glm::dot(w.right, w.right);
+    const double y = glm::dot(seen, w.up) / glm::dot(w.up, w.up);
+    if (std::abs(x) > 0.5 || std::abs(y) > 0.5)
+        return 0;
+    const dvec3 normal = 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]);
+    const double facing =
+        std::abs(glm::dot(normal, w.orthographic ? forward : glm::normalize(there)));
+    return std::min(facing * scale * scale, glm::length(glm::cross(w.right, w.up)));
+}
+
+/// As the host shades it: docs of Light.
+vec3 arriving(const Light& light, const dvec3& at, const dvec3& normal) {
+    const dvec3 there = light.parallel ? -light.direction : light.position - at;
+    const double distance = glm::length(there);
+    if (!(distance > 0))
+        return vec3(0);
+    const dvec3 towards = there / distance;
+    double share = std::abs(glm::dot(towards, normal));
+    if (light.cone) {
+        const double cosine = -glm::dot(towards, light.direction);
+        if (cosine <= light.cone->falloff_cosine)
+            return vec3(0);
+        share *= std::pow(cosine, light.cone->tightness);
+    }
+    if (light.fade_distance > 0)
+        share *= 2 / (1 + std::pow(distance / light.fade_distance, light.fade_power));
+    return light.color * float(share * std::numbers::inv_pi);
+}
+
+/// One side of it is lit: the one a camera would choose is not known, so half of them are.
+double radiance_of(const Scene& scene, const Material& material, const Triangle& t,
+                   const dvec3& middle) {
+    const dvec3 across = glm::cross(t[1] - t[0], t[2] - t[0]);
+    const dvec3 normal = across / glm::length(across);
+    vec3 light(0);
+    for (const Light& source : scene.lights)
+        light += 0.5f * arriving(source, middle, normal);
+    const float diffuse = material.finish ? material.finish->diffuse : 1;
+    const vec3 ambient = material.finish ? material.finish->ambient : vec3(0);
+    return luminance(material.color * (diffuse * light + ambient));
+}
+
+} // namespace
+
+float fitting_exposure(const Scene& scene) {
+    if (!scene.camera || !scene.camera->window || scene.lights.empty())
+        return 1;
+    const uint64_t step = scene.soup.triangle_count() / kSamples + 1;
+    double weights = 0, sum = 0;
+    uint64_t number = 0;
+    for (size_t m = 0; m < scene.soup.chunks.size(); ++m) {
+        const Chunk& chunk = scene.soup.chunks[m];
+        const Material& material = scene.materials[scene.meshes[m].material];
+        const bool is_lit =
+            !scene.meshes[m].no_shadow && (!material.finish || material.finish->diffuse > 0);
+        for (uint64_t p = (step - number % step) % step; is_lit && p < chunk.size(); p += step) {
+            const Triangle t = chunk.triangle(uint32_t(p));
+            const dvec3 middle = (t[0] + t[1] + t[2]) / 3.0;
+            const double weight =
+                triangle_fault(t) == TriangleFault::None ? weight_in(*scene.camera, t, middle) : 0;
+            if (!(weight > 0))
+                continue;
+            sum += weight * radiance_of(scene, material, t, middle);
+            weights += weight;
+        }
+        number += chunk.size();
+    }
+    const double mean = weights > 0 ? sum / weights : 0;
+    if (!(mean > 0) || (mean >= kDarkest && mean <= kBrightest))
+        return 1;
+    return float(kWanted / mean);
+}
+
+void expose(Scene& scene, float exposure) {
+    for (Light& light : scene.lights)
+        light.color *= exposure;
+    scene.background.horizon *= exposure;
+    scene.background.zenith *= exposure;
+    for (Material& material : scene.materials) {
+        if (material.finish && material.finish->diffuse == 0)
+            material.finish->ambient *= exposure;
+        if (material.optics)
+            material.optics->emission *= exposure;
+    }
+}
+
+} // namespace ovc::pbrt

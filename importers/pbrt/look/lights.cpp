@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lights: point, spot, distant; the sky as a background and some light from above.
+#include "importers/pbrt/look/lights.h"
+
+#include "importers/file/text.h"
+#include "importers/pbrt/look/area_lights.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+namespace ovc::pbrt {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Each costs a shadow ray for every hit.
+constexpr size_t kMostAreaLights = 32;
+
+/// Of a constant sky: what a surface reflects of it without shadows, and what comes from above and
+/// casts some. An open surface would reflect all; rooms see little of it.
+constexpr float kSkyAmbient = 0.25f, kSkyFromAbove = 0.35f;
+
+float mean(const vec3& c) {
+    return (c.x + c.y + c.z) / 3;
+}
+
+double cosine(double degrees) {
+    return std::cos(degrees * (kPi / 180));
+}
+
+/// v4's "power" of a light that shines all ways; nothing where it is not given.
+std::optional<float> intensity_of_power(const Parameters& p) {
+    const double power = p.number("power", -1);
+    return power >= 0 ? std::optional(float(power / (4 * kPi))) : std::nullopt;
+}
+
+} // namespace
+
+vec3 Lights::scaled(const Parameters& p, std::string_view color, const vec3& otherwise) const {
+    // v2 and v3 scale by a colour, v4 by a number.
+    return textures_.color(p, color, otherwise) * textures_.color(p, "scale", vec3(1));
+}
+
+void Lights::add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
+                 const Place& place) {
+    any_ = true;
+    if (type == "point")
+        return add_point(parameters, to_world);
+    if (type == "spot")
+        return add_spot(parameters, to_world);
+    if (type == "distant")
+        return add_distant(parameters, to_world);
+    if (type == "infinite" || type == "exinfinite")
+        return add_infinite(parameters, place);
+    if (type == "goniometric") {
+        diagnostics_.approximate("goniometric", place, "goniometric lights shine evenly all ways");
+        return add_point(parameters, to_world);
+    }
+    if (type == "projection") {
+        diagnostics_.approximate("projection", place,
+                                 "what projection lights project is left out: they are spots");
+        return add_spot(parameters, to_world);
+    }
+    diagnostics_.missing("light " + type, place,
+                         fmt::format("lights {} left out", ovc::quoted(type)));
+}
+
+void Lights::add_point(const Parameters& p, const dmat4& to_world) {
+    Light light;
+    light.position = point_through(to_world, p.point("from", dvec3(0)));
+    vec3 intensity = scaled(p, "I", vec3(1));
+    if (const auto power = intensity_of_power(p); power && mean(intensity) > 0)
+        intensity *= *power / mean(intensity);
+    set_falloff(light, intensity);
+    lights_.push_back(light);
+}
+
+void Lights::add_spot(const Parameters& p, const dmat4& to_world) {
+    Light light;
+    const dvec3 from = p.point("from", dvec3(0)), to = p.point("to", dvec3(0, 0, 1));
+    light.position = point_through(to_world, from);
+    const dvec3 direction = point_through(to_world, to) - light.position;
+    if (!(glm::length(direction) > 0))
+        return;
+    light.direction = glm::normalize(direction);
+    const double angle = p.number("coneangle", p.number("fov", 30));
+    const double soft = p.number("conedeltaangle", 5);
+    light.cone = SpotCone{cosine(std::max(angle - soft, 0.0)), cosine(std::min(angle, 180.0)), 0};
+    set_falloff(light, scaled(p, "I", vec3(1)));
+    lights_.push_back(light);
+}
+
+void Lights::add_distant(const Parameters& p, const dmat4& to_world) {
+    const dvec3 from = p.point("from", dvec3(0, 0, 0)), to = p.point("to", dvec3(0, 0, 1));
+    const dvec3 direction = vector_through(to_world, to - from);
+    if (!(glm::length(direction) > 0))
+        return;
+    Light light;
+    light.parallel = true;
+    light.direction = glm::normalize(direction);
+    vec3 irradiance = scaled(p, "L", vec3(1));
+    if (const double lux = p.number("illuminance", -1); lux >= 0 && mean(irradiance) > 0)
+        irradiance *= float(lux) / mean(irradiance);
+    light.color = irradiance; // which arrives over pi, as the BRDF of a matte surface has it
+    lights_.push_back(light);
+}
+
+void Lights::add_infinite(const Parameters& p, const Place& place) {
+    const vec3 radiance = scaled(p, "L", vec3(1));
+    const bool has_map = p.find("mapname") || p.find("filename");
+    if (has_map)
+        diagnostics_.approximate("environment map", place,
+                                 "environment maps are shown as a sky of even colours");
+    const Background colors; // the default sky, of luminance about 1/2 to 1
+    if (!sky_)
+        sky_ = Background{vec3(0), vec3(0)};
+    sky_->horizon += radiance * (has_map ? colors.horizon : vec3(1));
+    sky_->zenith += radiance * (has_map ? colors.zenith : vec3(1));
+}
+
+std::optional<Emission> Lights::emission(const Parameters& p) const {
+    Emission emission;
+    emission.radiance = scaled(p, "L", vec3(1));
+    emission.two_sided = p.flag("twosided", false);
+    return emission;
+}
+
+void Lights::add_area(const Shape& shape, const Emission& emission) {
+    any_ = true;
+    for (Light light : lights_on(shape, emission.radiance, emission.two_sided)) {
+        light.stand_in = true;
+        area_lights_.push_back(light);
+    }
+}
+
+void Lights::finish(const dvec3& view_up, Scene& scene) {
+    if (!any_)
+        return;
+    if (area_lights_.size() > kMostAreaLights) {
+        // The strongest stay, and take over the light of the others.
+        const auto weight = [](const Light& light) { return mean(light.color); };
+        std::stable_sort(area_lights_.begin(), area_lights_.end(),
+                         [&](const Light& a, const Light& b) { return weight(a) > weight(b); });
+        float kept = 0, all = 0;
+        for (size_t i = 0; i < area_lights_.size(); ++i) {
+            all += weight(area_lights_[i]);
+            kept += i < kMostAreaLights ? weight(area_lights_[i]) : 0;
+        }
+        area_lights_.resize(kMostAreaLights);
+        for (Light& light : area_lights_)
+            light.color *= kept > 0 ? all / kept : 1;
+    }
+    scene.lights = std::move(lights_);
+    scene.lights.insert(scene.lights.end(), area_lights_.begin(), area_lights_.end());
+    scene.background = sky_.value_or(Background{vec3(0), vec3(0)});
+    sky_mean_ = 0.5f * (scene.background.horizon + scene.background.zenith);
+    if (sky_) {
+        Light above;
+        above.parallel = true;
+        above.direction = glm::length(view_up) > 0 ? -glm::normalize(view_up) : dvec3(0, -1, 0);
+        above.stand_in = true;
+        above.color = sky_mean_ * float(kPi) * kSkyFromAbove;
+        scene.lights.push_back(above);
+        for (Material& material : scene.materials)
+            if (material.finish && material.finish->diffuse > 0)
+                material.finish->ambient += kSkyAmbient * sky_mean_;
+    }
+}
+
+} // namespace ovc::pbrt

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+// Material families: one function each; a table of the names that v1 to v4 use for it.
+// Based on: pbrt's materials; Blinn 1977 (a lobe of exponent n); Schlick 1994 (metals).
+#include "importers/pbrt/look/material_families.h"
+
+#include "core/fresnel.h"
+
+namespace ovc::pbrt {
+
+namespace {
+
+/// Surfaces rougher than this show a highlight instead of mirror images.
+constexpr double kMirrorRoughness = 0.1;
+
+/// Of plastic, paint and whatever else does not say.
+constexpr double kPlasticIor = 1.5;
+
+/// The width of the microfacets' slopes, 0 to 1: the root of pbrt's roughness, unless the file says
+/// that it is the width itself.
+double roughness_of(const MaterialContext& c, double otherwise) {
+    double r = c.number("roughness", otherwise);
+    if (c.p.find("uroughness") || c.p.find("vroughness"))
+        r = 0.5 * (c.number("uroughness", r) + c.number("vroughness", r));
+    r = std::clamp(r, 0.0, 1.0);
+    return c.p.flag("remaproughness", true) ? std::sqrt(r) : r;
+}
+
+/// A highlight as strong as that of microfacets which reflect `share`.
+void add_highlight(Finish& finish, float share, double width) {
+    const double exponent = std::clamp(2 / (width * width + 1e-6) - 2, 1.0, 2000.0);
+    finish.specular = share * float((exponent + 2) / 8);
+    finish.roughness = float(1 / exponent);
+}
+
+Finish plain_finish() {
+    Finish finish;
+    finish.ambient = vec3(kAmbient);
+    return finish;
+}
+
+std::optional<double> stated_ior(const MaterialContext& c) {
+    for (const std::string_view name : {"eta", "index", "ior"}) {
+        const Parameter* p = c.p.find(name);
+        if (!p)
+            continue;
+        if (const auto glass = p->strings.empty() ? std::nullopt : glass_ior(p->strings[0]))
+            return glass;
+        const double ior = c.number(name, 1.5);
+        return is_usable_ior(ior) ? std::optional(ior) : std::nullopt;
+    }
+    return std::nullopt;
+}
+
+/// Mirror images by Fresnel's equations.
+void add_coat(Material& m, const vec3& color) {
+    m.mirror = 1;
+    m.finish->fresnel = true;
+    m.finish->grazing_reflection = color;
+}
+
+/// reflectance: its name in the version at hand.
+Material matte(const MaterialContext& c, std::string_view reflectance) {
+    Material m;
+    m.color = c.color(reflectance, 0.5f);
+    m.finish = plain_finish();
+    m.optics = Optics{.diffuse = m.color};
+    return m;
+}
+
+/// Paint of this color below clear varnish which reflects `coat` of Fresnel's share.
+Optics varnished(const vec3& color, const vec3& coat, double ior, double width) {
+    return {.diffuse = color,
+            .boundary = Optics::Boundary::Dielectric,
+            .reflection = coat,
+            .ior = ior,
+            .width = float(width)};
+}
+
+/// The color that paint has from above where varnish throws part of its light back onto it.
+vec3 below_varnish(const vec3& color, double ior) {
+    const float back = float(1 - (1 - fresnel_mean(ior)) / (ior * ior));
+    return color * (1 - back) / (vec3(1) - back * color);
+}
+
+} // namespace
+
+Material make_matte(const MaterialContext& c) {
+    return matte(c, c.p.find("reflectance") ? "reflectance" : "Kd");
+}
+
+namespace {
+
+/// Paint below a coat: plastic, substrate, coateddiffuse.
+Material make_plastic(const MaterialContext& c) {
+    const bool v4 = c.p.find("reflectance") != nullptr;
+    Material m;
+    m.color = v4 ? c.color("reflectance", 0.5f) : c.color("Kd", 0.25f);
+    m.finish = plain_finish();
+    const vec3 coat = c.color("Ks", 0.25f);
+    const double width = roughness_of(c, 0.1);
+    add_highlight(*m.finish, mean(coat), width);
+    m.optics = varnished(m.color, coat, kPlasticIor, width);
+    return m;
+}
+
+Material make_coated_diffuse(const MaterialContext& c) {
+    Material m = matte(c, "reflectance");
+    const double width = roughness_of(c, 0);
+    m.ior = stated_ior(c).value_or(1.5);
+    const double f0 = (m.ior - 1) * (m.ior - 1) / ((m.ior + 1) * (m.ior + 1));
+    add_highlight(*m.finish, float(f0), width);
+    if (width <= kMirrorRoughness)
+        add_coat(m, vec3(1));
+    m.optics = varnished(below_varnish(m.color, std::max(m.ior, 1.0)), vec3(1), m.ior, width);
+    return m;
+}
+
+Material make_mirror(const MaterialContext& c) {
+    Material m;
+    m.color = vec3(0);
+    m.mirror = 1;
+    m.finish = Finish{};
+    m.finish->diffuse = 0;
+    m.finish->reflection = m.finish->grazing_reflection = c.color("Kr", 0.9f);
+    m.optics = Optics{.boundary = Optics::Boundary::Mirror, .reflection = m.finish->reflection};
+    return m;
+}
+
+/// Without thickness: light goes straight on.
+Material make_glass(const MaterialContext& c, bool is_thin) {
+    Material m;
+    m.color = vec3(0);
+    m.mirror = 1;
+    m.transmission = 1;
+    m.filter = c.color("Kt", 1);
+    m.finish = Finish{};
+    m.finish->diffuse = 0;
+    m.finish->conserve_energy = true;
+    const double ior = stated_ior(c).value_or(1.5);
+    m.optics = Optics{.boundary = is_thin ? Optics::Boundary::Thin : Optics::Boundary::Dielectric,
+                      .reflection = c.color("Kr", 1),
+                      .through = m.filter,
+                      .ior = ior};
+    if (is_thin) {
+        const double r = (ior - 1) * (ior - 1) / ((ior + 1) * (ior + 1));
+        m.finish->reflection = vec3(float(2 * r / (1 + r))) * c.color("Kr", 1);
+        m.finish->grazing_reflection = c.color("Kr", 1);
+        m.finish->reflection_falloff = 5;
+    } else {
+        m.ior = ior;
+        add_coat(m, c.color("Kr", 1));
+    }
+    return m;
+}
+
+Material make_thick_glass(const MaterialContext& c) {
+    return make_glass(c, c.p.flag("thin", false));
+}
+
+Material make_thin_glass(const MaterialContext& c) {
+    return make_glass(c, true);
+}
+
+vec3 metal_of(const MaterialContext& c) {
+    if (c.p.find("reflectance"))
+        return c.color("reflectance", 0.9f);
+    // v4 gives the metal below a coat names of its own.
+    const bool coated = c.p.find("conductor.eta") || c.p.find("conductor.k");
+    const std::string eta = coated ? "conductor.eta" : "eta", k = coated ? "conductor.k" : "k";
+    for (const std::string& name : {eta, k})
+        if (const Parameter* p = c.p.find(name); p && !p->strings.empty())
+            if (const auto color = metal_color(p->strings[0]))
+                return *color;
+    if (!c.p.find(eta) && !c.p.find(k))
+        return *metal_color("Cu");
+    return glm::clamp(metal_color(c.textures.color(c.p, eta, vec3(0.2f, 0.9f, 1.1f)),
+                                  c.textures.color(c.p, k, vec3(3.9f, 2.5f, 2.3f))),
+                      vec3(0), vec3(1));
+}
+
+/// The rougher, the less it mirrors and the more it looks like matte paint.
+Material metal(const vec3& color, double width) {
+    Material m;
+    m.color = color;
+    m.mirror = 1;
+    m.finish = plain_finish();
+    const float sharp = float((1 - width) * (1 - width));
+    m.finish->diffuse = 0.7f * (1 - sharp);
+    m.finish->metallic = 1;
+    m.finish->reflection = color * sharp;
+    m.finish->grazing_reflection = vec3(sharp);
+    m.finish->reflection_falloff = 5;
+    add_highlight(*m.finish, 1, width);
+    m.optics =
+        Optics{.boundary = Optics::Boundary::Metal, .reflection = color, .width = float(width)};
+    return m;
+}
+
+Material make_metal(const MaterialContext& c) {
+    return metal(metal_of(c), roughness_of(c, 0.01));
+}
+
+Material make_conductor(const MaterialContext& c) {
+    const bool coated = c.p.find("conductor.roughness") != nullptr;
+    return metal(metal_of(c),
+                 coated ? std::sqrt(c.number("conductor.roughness", 0)) : roughness_of(c, 0));
+}
+
+Material make_shiny_metal(const MaterialContext& c) {
+    return metal(c.color("Kr", 1) * c.color("Ks", 1), roughness_of(c, 0.1));
+}
+
+Material make_uber(const MaterialContext& c) {
+    const bool is_masked = c.textures.is_pattern(c.p, "opacity");
+    const vec3 opacity = is_masked ? vec3(1) : c.color("opacity", 1);
+    Material m;
+    m.color = c.color("Kd", 0.25f) * opacity;
+    m.finish = plain_finish();
+    const vec3 ks = c.color("Ks", 0.25f) * opacity;
+    const double width = roughness_of(c, 0.1);
+    add_highlight(*m.finish, mean(ks), width);
+    const vec3 kr = c.color("Kr", 0) * opacity;
+    if (mean(kr) > 0)
+        add_coat(m, kr);
+    const vec3 kt = c.color("Kt", 0) * opacity;
+    m.ior = stated_ior(c).value_or(1.5);
+    m.optics =
+        mean(kr) > 0 ? varnished(m.color, kr, m.ior, 0) : varnished(m.color, ks, m.ior, width);
+    const vec3 through = mean(kt) > 0 ? kt : vec3(1) - opacity;
+    if (mean(through) > 0) {
+        m.transmission = 1;
+        m.filter = through;
+        m.finish->conserve_energy = true;
+        if (mean(kt) == 0) { // seen through holes, not through glass
+            m.ior = 1;
+            m.optics->boundary = Optics::Boundary::None;
+        }
+        m.optics->through = through;
+        m.optics->diffuse *= vec3(1) - through;
+    }
+    return m;
+}
+
+Material make_translucent(const MaterialContext& c) {
+    Material m = c.p.find("reflectance") ? matte(c, "reflectance") : matte(c, "Kd");
+    c.diagnostics.approximate("translucent", c.place,
+                              "light that surfaces let through in all directions is left out");
+    return m;
+}
+
+/// Disney's: its metallic share decides between metal and paint, spectrans between that and glass.
+Material make_disney(const MaterialContext& c) {
+    if (c.number("spectrans", 0) > 0.5)
+        return make_glass(c, c.p.flag("thin", false));
+    if (c.number("metallic", 0) > 0.5)
+        return metal(c.color("color", 0.5f), roughness_of(c, 0.5));
+    Material m = matte(c, "color");
+    const double width = roughness_of(c, 0.5);
+    add_highlight(*m.finish, 0.04f, width);
+    m.optics = varnished(m.color, vec3(1), kPlasticIor, width);
+    return m;
+}
+
+/// Tables in files of their own.
+Material make_tabulated(const MaterialContext& c) {
+    c.diagnostics.approximate("tabulated", c.place,
+                              "materials from tables and models of hair become matte grey");
+    return matte(c, "reflectance");
+}
+
+Material make_invisible(const MaterialContext&) {
+    Material m;
+    m.color = vec3(0);
+    m.transmission = 1;
+    return m;
+}
+
+/// What v1 measured: Lafortune's model, of which the diffuse part stays.
+template <int kRed, int kGreen, int kBlue> // in thousandths
+Material make_measured(const MaterialContext&) {
+    Material m;
+    m.color = vec3(kRed, kGreen, kBlue) * 0.001f;
+    m.finish = plain_finish();
+    m.optics = Optics{.diffuse = m.color};
+    return m;
+}
+
+struct Family {
+    std::string_view name;
+    Material (*make)(const MaterialContext&);
+};
+
+constexpr Family kFamilies[] = {{"matte", make_matte},
+                                {"diffuse", make_matte},
+                                {"plastic", make_plastic},
+                                {"substrate", make_plastic},
+                                {"coateddiffuse", make_coated_diffuse},
+                                {"mirror", make_mirror},
+                                {"glass", make_thick_glass},
+                                {"roughglass", make_thick_glass},
+                                {"dielectric", make_thick_glass},
+                                {"thindielectric", make_thin_glass},
+                                {"metal", make_metal},
+                                {"conductor", make_conductor},
+                                {"coatedconductor", make_conductor},
+                                {"shinymetal", make_shiny_metal},
+                                {"uber", make_uber},
+                                {"translucent", make_translucent},
+                                {"diffusetransmission", make_translucent},
+                                {"subsurface", make_translucent},
+                                {"kdsubsurface", make_translucent},
+                                {"disney", make_disney},
+                                {"fourier", make_tabulated},
+                                {"measured", make_tabulated},
+                                {"hair", make_tabulated},
+                                {"none", make_invisible},
+                                {"interface", make_invisible},
+                                {"", make_invisible},
+                                {"bluepaint", make_measured<309, 397, 708>},
+                                {"clay", make_measured<384, 371, 372>},
+                                {"felt", make_measured<26, 26, 26>},
+                                {"primer", make_measured<118, 122, 135>},
+                                {"skin", make_measured<428, 301, 331>}};
+
+} // namespace
+
+std::optional<Material> material_of(std::string_view type, const MaterialContext& context) {
+    for (const Family& family : kFamilies)
+        if (family.name == type)
+            return family.make(context);
+    return std::nullopt;
+}
+
+} // namespace ovc::pbrt

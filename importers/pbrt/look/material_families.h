@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Material families: pbrt's kinds of surface, each as a Whitted material.
+#pragma once
+
+#include "core/scene.h"
+#include "importers/pbrt/look/textures.h"
+
+#include <algorithm>
+
+namespace ovc::pbrt {
+
+/// What a Material directive says.
+struct MaterialContext {
+    const Textures& textures;
+    const Parameters& p;
+    Diagnostics& diagnostics;
+    Place place;
+
+    vec3 color(std::string_view name, float otherwise) const {
+        return glm::clamp(textures.color(p, name, vec3(otherwise)), vec3(0), vec3(1));
+    }
+    double number(std::string_view name, double otherwise) const {
+        return textures.number(p, name, otherwise);
+    }
+};
+
+/// Nothing where the type is unknown; "mix" is not among them.
+std::optional<Material> material_of(std::string_view type, const MaterialContext& context);
+Material make_matte(const MaterialContext& context);
+
+/// The share of a constant light from everywhere that a surface is taken to see.
+inline constexpr float kAmbient = 0.04f;
+
+inline float mean(const vec3& c) {
+    return (c.x + c.y + c.z) / 3;
+}
+
+} // namespace ovc::pbrt

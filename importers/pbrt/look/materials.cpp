@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Materials: by name, mixed, and each only once.
+#include "importers/pbrt/look/materials.h"
+
+#include "importers/file/text.h"
+#include "importers/pbrt/look/material_families.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ovc::pbrt {
+
+static float blend(float a, float b, float share) {
+    return a + (b - a) * share;
+}
+
+bool is_invisible(const Material& m) {
+    return !m.finish && m.transmission == 1 && m.mirror == 0 && m.ior == 1 && m.filter == vec3(1);
+}
+
+bool is_emitter(const Material& m) {
+    return m.finish && mean(m.finish->ambient) > kAmbient && m.finish->diffuse == 0;
+}
+
+/// Equal materials have equal keys, and others hardly ever do.
+static std::string key_of(const Material& m) {
+    const Finish finish = m.finish.value_or(Finish{});
+    return fmt::format("{} {} {} {} {} {} {} {} {} {}", m.name, m.color.x, m.color.y, m.color.z,
+                       m.filter.x, m.ior, finish.specular, finish.roughness, finish.reflection.x,
+                       finish.ambient.x);
+}
+
+uint32_t Materials::add(Material material) {
+    std::string key = key_of(material);
+    const auto [first, last] = by_key_.equal_range(key);
+    for (auto at = first; at != last; ++at)
+        if (all_[at->second] == material)
+            return at->second;
+    by_key_.emplace(std::move(key), uint32_t(all_.size()));
+    all_.push_back(std::move(material));
+    return uint32_t(all_.size() - 1);
+}
+
+Material Materials::mapped(const std::string& type, const Parameters& parameters,
+                           const Place& place) {
+    if (type == "mix")
+        return mix(parameters, place);
+    const MaterialContext context{textures_, parameters, diagnostics_, place};
+    if (std::optional<Material> material = material_of(type, context))
+        return std::move(*material);
+    diagnostics_.missing("material " + type, place,
+                         fmt::format("materials {} become matte", ovc::quoted(type)));
+    return make_matte(context);
+}
+
+/// Part by part; the metal, glass or coat of the larger share decides what cannot be mixed.
+Material Materials::mix(const Parameters& parameters, const Place& place) {
+    std::string names[2] = {parameters.text("namedmaterial1"), parameters.text("namedmaterial2")};
+    if (const Parameter* p = parameters.find("materials", {Kind::String});
+        p && p->strings.size() >= 2)
+        std::copy_n(p->strings.begin(), 2, names);
+    const Material a = all_[named(names[0], place)], b = all_[named(names[1], place)];
+    // v3 counts from the second to the first, v4 the other way round.
+    const double amount = textures_.number(parameters, "amount", 0.5);
+    const bool v4 = parameters.find("materials") != nullptr;
+    const float share = float(std::clamp(v4 ? amount : 1 - amount, 0.0, 1.0));
+    Material m = share < 0.5f ? a : b;
+    m.color = glm::mix(a.color, b.color, share);
+    m.transmission = blend(a.transmission, b.transmission, share);
+    m.filter = glm::mix(a.filter, b.filter, share);
+    if (a.finish && b.finish) {
+        m.finish->diffuse = blend(a.finish->diffuse, b.finish->diffuse, share);
+        m.finish->specular = blend(a.finish->specular, b.finish->specular, share);
+        m.finish->reflection = glm::mix(a.finish->reflection, b.finish->reflection, share);
+        m.finish->grazing_reflection =
+            glm::mix(a.finish->grazing_reflection, b.finish->grazing_reflection, share);
+    }
+    if (a.optics && b.optics) {
+        m.optics->diffuse = glm::mix(a.optics->diffuse, b.optics->diffuse, share);
+        m.optics->through = glm::mix(a.optics->through, b.optics->through, share);
+        m.optics->reflection = (share < 0.5f ? 1 - share : share) * m.optics->reflection;
+    }
+    return m;
+}
+
+uint32_t Materials::make(const std::string& type, const Parameters& parameters,
+                         const Place& place) {
+    Material material = mapped(type, parameters, place);
+    material.name = type;
+    return add(std::move(material));
+}
+
+void Materials::define(const std::string& name, const Parameters& parameters, const Place& place) {
+    const std::string type = parameters.text("type", "matte");
+    Material material = mapped(type, parameters, place);
+    material.name = name;
+    named_[name] = add(std::move(material));
+}
+
+uint32_t Materials::named(const std::string& name, const Place& place) {
+    const auto at = named_.find(name);
+    if (at != named_.end())
+        return at->second;
+    diagnostics_.missing("named material " + name, place,
+                         fmt::format("there is no material {}", ovc::quoted(name)));
+    return 0;
+}
+
+uint32_t Materials::emitter(uint32_t surface, const vec3& radiance, bool two_sided) {
+    Material m;
+    m.optics = all_[surface].optics.value_or(Optics{.diffuse = all_[surface].color});
+    m.optics->emission = radiance;
+    m.optics->two_sided = two_sided;
+    m.name = "emitter";
+    m.color = vec3(1);
+    m.finish = Finish{};
+    m.finish->diffuse = 0;
+    m.finish->ambient = radiance;
+    return add(std::move(m));
+}
+
+} // namespace ovc::pbrt

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures: means of constants; a middle grey where the pattern is not known.
+#include "importers/pbrt/look/textures.h"
+
+#include "importers/file/text.h"
+
+#include <fmt/format.h>
+
+namespace ovc::pbrt {
+
+void Textures::define(const std::string& name, const std::string& type,
+                      const Parameters& parameters, const Place& place) {
+    const bool is_plain = type == "constant" || type == "scale" || type == "mix";
+    bool is_made_of_patterns = false;
+    for (const Parameter& p : parameters.all())
+        is_made_of_patterns = is_made_of_patterns || is_pattern(parameters, p.name);
+    means_[name] = {mean(type, parameters, place), !is_plain || is_made_of_patterns};
+}
+
+bool Textures::is_pattern(const Parameters& parameters, std::string_view name) const {
+    const Parameter* p = parameters.find(name);
+    if (!p || (p->kind != Kind::Texture && p->kind != Kind::String) || p->strings.empty())
+        return false;
+    const auto at = means_.find(p->strings[0]);
+    return at != means_.end() && at->second.is_pattern;
+}
+
+vec3 Textures::mean(const std::string& type, const Parameters& p, const Place& place) const {
+    if (type == "constant")
+        return color(p, "value", vec3(1));
+    if (type == "scale") // v4 calls its factors tex and scale
+        return p.find("tex") || p.find("scale")
+                   ? color(p, "tex", vec3(1)) * color(p, "scale", vec3(1))
+                   : color(p, "tex1", vec3(1)) * color(p, "tex2", vec3(1));
+    if (type == "mix")
+        return glm::mix(color(p, "tex1", vec3(0)), color(p, "tex2", vec3(1)),
+                        float(number(p, "amount", 0.5)));
+    diagnostics_.approximate("texture " + type, place,
+                             fmt::format("textures {} are shown by their mean", ovc::quoted(type)));
+    if (type == "checkerboard" || type == "directionmix")
+        return 0.5f * (color(p, "tex1", vec3(1)) + color(p, "tex2", vec3(0)));
+    if (type == "dots")
+        return 0.5f * (color(p, "inside", vec3(1)) + color(p, "outside", vec3(0)));
+    if (type == "bilerp")
+        return 0.25f * (color(p, "v00", vec3(0)) + color(p, "v01", vec3(1)) +
+                        color(p, "v10", vec3(0)) + color(p, "v11", vec3(1)));
+    return vec3(0.5f * float(p.number("scale", 1)));
+}
+
+vec3 Textures::color(const Parameters& parameters, std::string_view name,
+                     const vec3& otherwise) const {
+    const Parameter* p = parameters.find(name);
+    if (!p)
+        return otherwise;
+    // v1 names a texture where it wants a float or a colour.
+    if (p->kind == Kind::Texture || p->kind == Kind::String) {
+        const auto at = p->strings.empty() ? means_.end() : means_.find(p->strings[0]);
+        if (at != means_.end())
+            return at->second.color;
+        diagnostics_.missing("texture of that name", p->place,
+                             fmt::format("there is no texture {}",
+                                         ovc::quoted(p->strings.empty() ? "" : p->strings[0])));
+        return otherwise;
+    }
+    const auto found = color_of(*p);
+    if (!found && p->kind == Kind::Spectrum)
+        diagnostics_.approximate(
+            "spectrum by name", p->place,
+            fmt::format("the spectrum {} is not known; a default takes its place",
+                        ovc::quoted(p->strings.empty() ? "" : p->strings[0])));
+    return found.value_or(otherwise);
+}
+
+double Textures::number(const Parameters& parameters, std::string_view name,
+                        double otherwise) const {
+    const vec3 c = color(parameters, name, vec3(float(otherwise)));
+    return (double(c.x) + double(c.y) + double(c.z)) / 3;
+}
+
+} // namespace ovc::pbrt

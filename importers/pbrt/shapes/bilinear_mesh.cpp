@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bilinear patches: two triangles each where they are flat, a grid where they are not.
+#include "importers/pbrt/shapes/shapes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ovc::pbrt {
+
+namespace {
+
+/// Corners at (u, v) = (0,0), (1,0), (0,1), (1,1).
+struct Patch {
+    dvec3 p[4];
+
+    dvec3 at(double u, double v) const {
+        return glm::mix(glm::mix(p[0], p[1], u), glm::mix(p[2], p[3], u), v);
+    }
+    double size() const {
+        Box box;
+        for (const dvec3& corner : p)
+            box.add(corner);
+        return glm::length(box.extent());
+    }
+    /// How far the middle lies off either diagonal.
+    double bulge() const { return glm::length(p[0] + p[3] - p[1] - p[2]) / 4; }
+};
+
+constexpr double kMostSteps = 16;
+
+/// Divided into n x n, a patch lies 1/n^2 of its bulge off its triangles. All are divided alike,
+/// or neighbours would not meet.
+uint32_t steps_for(const std::vector<Patch>& patches, double tolerance) {
+    double steps = 1;
+    for (const Patch& patch : patches) {
+        const double allowed = tolerance * patch.size();
+        if (allowed > 0 && allowed < 1e300 && patch.bulge() > 1e-9 * patch.size())
+            steps = std::max(steps, std::ceil(std::sqrt(patch.bulge() / allowed)));
+    }
+    return uint32_t(std::min(steps, kMostSteps));
+}
+
+void add_patch(const Patch& patch, uint32_t steps, Mesh& mesh) {
+    const auto first = uint32_t(mesh.positions.size() / 3);
+    const uint32_t row = steps + 1;
+    for (uint32_t v = 0; v <= steps; ++v)
+        for (uint32_t u = 0; u <= steps; ++u)
+            mesh.add_vertex(patch.at(double(u) / steps, double(v) / steps));
+    for (uint32_t v = 0; v < steps; ++v)
+        for (uint32_t u = 0; u < steps; ++u) {
+            const uint32_t a = first + v * row + u;
+            mesh.add_triangle(a, a + 1, a + row + 1);
+            mesh.add_triangle(a, a + row + 1, a + row);
+        }
+}
+
+} // namespace
+
+std::optional<Mesh> make_bilinear_mesh(ShapeRequest& request) {
+    const std::vector<double> points = take_points(request);
+    if (points.empty())
+        return std::nullopt;
+    auto indices = take_indices(request, points.size() / 3, 4);
+    if (!indices)
+        return std::nullopt;
+    if (indices->empty() && points.size() == 12)
+        *indices = {0, 1, 2, 3};
+    if (indices->empty())
+        return left_out(request, "it has no indices");
+    std::vector<Patch> patches(indices->size() / 4);
+    for (size_t i = 0; i < indices->size(); ++i) {
+        const double* p = points.data() + size_t((*indices)[i]) * 3;
+        patches[i / 4].p[i % 4] = {p[0], p[1], p[2]};
+    }
+    const uint32_t steps = steps_for(patches, request.tolerance);
+    if (patches.size() * 2 * steps * steps > request.most_triangles) {
+        request.diagnostics.fail(
+            request.place,
+            fmt::format("found a bilinearmesh of {} triangles, expected at most {} more; "
+                        "--max-triangles allows more",
+                        patches.size() * 2 * steps * steps, request.most_triangles));
+        return std::nullopt;
+    }
+    Mesh mesh;
+    for (const Patch& patch : patches)
+        add_patch(patch, steps, mesh);
+    return mesh;
+}
+
+} // namespace ovc::pbrt

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// light_source: points, spots, parallel light.
+#include "importers/pov/parse/parse_object.h"
+#include "importers/pov/parse/texture.h"
+#include "importers/pov/values/transform.h"
+#include "importers/pov/words/block.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace ovc::pov {
+
+namespace {
+
+double cosine_of_degrees(double degrees) {
+    return std::cos(degrees * std::numbers::pi / 180);
+}
+
+/// What decides about the light once all of it is read.
+struct Words {
+    dvec3 point_at{0, 0, 1};
+    double radius = 30, falloff = 45, tightness = 0;
+    bool spot = false, cylinder = false;
+    ObjectPtr looks_like;
+};
+
+bool parse_light_part(Reader& reader, Words& words, Light& light) {
+    const Token token = reader.peek();
+    if (reader.take("spotlight"))
+        words.spot = true;
+    else if (reader.take("cylinder")) {
+        words.cylinder = true;
+        reader.warn("cylinder light", token.place,
+                    "a cylinder of light is taken for parallel light");
+    } else if (reader.take("parallel"))
+        light.parallel = true;
+    else if (reader.take("point_at"))
+        words.point_at = parse_vector(reader);
+    else if (reader.take("radius"))
+        words.radius = parse_float(reader);
+    else if (reader.take("falloff"))
+        words.falloff = parse_float(reader);
+    else if (reader.take("tightness"))
+        words.tightness = parse_float(reader);
+    else if (reader.take("fade_distance"))
+        light.fade_distance = parse_float(reader);
+    else if (reader.take("fade_power"))
+        light.fade_power = parse_float(reader);
+    else if (reader.take("shadowless"))
+        light.shadowless = true;
+    else
+        return false;
+    return true;
+}
+
+bool parse_other_part(Reader& reader, Words& words) {
+    const Token token = reader.peek();
+    if (reader.take("area_light")) {
+        reader.warn("area_light", token.place, "an area light is taken for a point light");
+        for (int i = 0; i < 2; ++i) {
+            parse_vector(reader);
+            reader.take_comma();
+        }
+        for (int i = 0; i < 2; ++i) {
+            parse_float(reader);
+            reader.take_comma();
+        }
+    } else if (reader.take("looks_like")) {
+        reader.expect('{', "looks_like");
+        if (starts_object(reader.peek()))
+            words.looks_like = parse_object(reader);
+        else if (const auto object = take_named_if<ObjectPtr>(reader))
+            words.looks_like = *object;
+        else
+            reader.fail_here("an object");
+        auto changed = std::make_shared<Object>(*words.looks_like);
+        parse_modifiers(reader, *changed);
+        words.looks_like = changed;
+    } else if (reader.take("projected_through")) {
+        reader.warn("projected_through", token.place, "projected_through of a light is left out");
+        skip_braces(reader, "projected_through");
+    } else if (reader.take("photons"))
+        skip_braces(reader, "photons");
+    else if (reader.take("circular") || reader.take("orient"))
+        ;
+    else if (reader.take("jitter") || reader.take("area_illumination") ||
+             reader.take("media_interaction") || reader.take("media_attenuation"))
+        parse_flag(reader);
+    else if (reader.take("adaptive"))
+        parse_float(reader);
+    else
+        return false;
+    return true;
+}
+
+} // namespace
+
+void parse_light_source(Reader& reader, Object& object) {
+    LightSource source;
+    Light& light = source.light;
+    light.position = parse_vector(reader);
+    reader.take_comma();
+    light.color = parse_color(reader).rgb * std::numbers::pi_v<float>;
+    Words words;
+    dmat4 placed(1);
+    while (!reader.take('}')) {
+        if (parse_light_part(reader, words, light) || parse_other_part(reader, words))
+            continue;
+        if (const auto m = take_transform(reader))
+            placed = *m * placed;
+        else if (!reader.take(','))
+            reader.fail_here("'}' or a part of light_source");
+    }
+    const dvec3 way = words.point_at - light.position;
+    if (glm::length(way) > 0)
+        light.direction = glm::normalize(way);
+    light.parallel = light.parallel || words.cylinder;
+    if (words.spot)
+        light.cone = SpotCone{cosine_of_degrees(words.radius), cosine_of_degrees(words.falloff),
+                              words.tightness};
+    if (words.looks_like) {
+        auto lamp = std::make_shared<Object>(*words.looks_like);
+        place(*lamp, translation(light.position));
+        lamp->no_shadow = true;
+        object.children.push_back(lamp);
+    }
+    object.shape = source;
+    place(object, placed);
+}
+
+} // namespace ovc::pov

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+// mesh and mesh2: triangles grouped by their textures, a child each.
+#include "importers/pov/parse/parse_object.h"
+#include "importers/pov/parse/texture.h"
+#include "importers/pov/shapes/shape.h"
+#include "importers/pov/words/block.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ovc::pov {
+
+namespace {
+
+bool same_look(const Texture& a, const Texture& b) {
+    const auto color = [](const Color& c) {
+        return std::array<float, 5>{c.rgb.x, c.rgb.y, c.rgb.z, c.filter, c.transmit};
+    };
+    return color(a.pigment.color) == color(b.pigment.color) &&
+           a.pigment.other.has_value() == b.pigment.other.has_value() &&
+           a.surface.finish == b.surface.finish && a.surface.ambient == b.surface.ambient &&
+           a.surface.emission == b.surface.emission;
+}
+
+/// Triangles by texture, in the order of their first use.
+class Groups {
+public:
+    Facets& of(const std::optional<Texture>& texture) {
+        const auto same = [&](const Group& g) {
+            return g.texture.has_value() == texture.has_value() &&
+                   (!texture || same_look(*g.texture, *texture));
+        };
+        // Neighbours are mostly alike.
+        if (!groups_.empty() && same(groups_[last_]))
+            return groups_[last_].facets;
+        const auto at = std::find_if(groups_.begin(), groups_.end(), same);
+        last_ = size_t(at - groups_.begin());
+        if (at == groups_.end())
+            groups_.push_back({texture, {}});
+        return groups_[last_].facets;
+    }
+
+    void give_to(Object& object) {
+        object.has_inside = false; // unless an inside_vector follows
+        for (Group& group : groups_) {
+            auto child = std::make_shared<Object>();
+            child->kind = object.kind;
+            child->place = object.place;
+            child->texture = std::move(group.texture);
+            Shape shape;
+            shape.fixed = double(group.facets.corners.size() / 3);
+            const auto shared = std::make_shared<const Facets>(std::move(group.facets));
+            shape.cut = [shared](int, bool, Facets& out) {
+                out.corners.insert(out.corners.end(), shared->corners.begin(),
+                                   shared->corners.end());
+                out.smooth = out.smooth || shared->smooth;
+            };
+            child->shape = std::move(shape);
+            object.children.push_back(std::move(child));
+        }
+    }
+
+private:
+    struct Group {
+        std::optional<Texture> texture;
+        Facets facets;
+    };
+    std::vector<Group> groups_;
+    size_t last_ = 0;
+};
+
+/// `{ a, na, b, nb, c, nc texture { … } }` of a mesh's triangle.
+void parse_mesh_triangle(Reader& reader, bool smooth, Groups& groups) {
+    reader.expect('{', "triangle");
+    Corner c[3];
+    for (Corner& corner : c) {
+        corner = {parse_vector(reader), dvec3(0)};
+        reader.take_comma();
+        if (smooth) {
+            corner.normal = parse_vector(reader);
+            reader.take_comma();
+        }
+    }
+    std::optional<Texture> texture;
+    while (!reader.take('}')) {
+        if (reader.take("texture"))
+            texture = parse_texture(reader);
+        else if (reader.take("uv_vectors"))
+            for (int i = 0; i < 3; ++i) {
+                parse_vector2(reader);
+                reader.take_comma();
+            }
+        else
+            reader.fail_here("'}' or a texture of a triangle");
+    }
+    reader.grow(3 * sizeof(Corner));
+    Facets& facets = groups.of(texture);
+    if (smooth)
+        facets.add(c[0], c[1], c[2]);
+    else
+        facets.add(c[0].position, c[1].position, c[2].position);
+}
+
+std::vector<dvec3> parse_vectors(Reader& reader, std::string_view what) {
+    reader.expect('{', what);
+    const int count = parse_count(reader, 0);
+    std::vector<dvec3> vectors;
+    for (int i = 0; i < count; ++i) {
+        reader.take_comma();
+        vectors.push_back(parse_vector(reader));
+    }
+    reader.take_comma();
+    reader.expect('}', what);
+    return vectors;
+}
+
+struct Face {
+    std::array<uint32_t, 3> corner{}, normal{};
+    int texture = -1;
+};
+
+std::array<uint32_t, 3> parse_indices(Reader& reader) {
+    const Place at = reader.peek().place;
+    const dvec3 v = parse_vector(reader);
+    std::array<uint32_t, 3> indices;
+    for (int i = 0; i < 3; ++i) {
+        if (!(v[i] >= 0 && v[i] < 4e9))
+            reader.fail(at, fmt::format("found the index {}, expected one from 0 on", v[i]));
+        indices[size_t(i)] = uint32_t(v[i]);
+    }
+    return indices;
+}
+
+std::vector<Face> parse_faces(Reader& reader) {
+    reader.expect('{', "face_indices");
+    const int count = parse_count(reader, 0);
+    std::vector<Face> faces;
+    for (int i = 0; i < count; ++i) {
+        reader.take_comma();
+        Face face;
+        face.corner = face.normal = parse_indices(reader);
+        // One texture for a face, or one for each corner.
+        for (int t = 0; t < 3; ++t) {
+            reader.take_comma();
+            if (reader.peek().is('<') || reader.peek().is('}'))
+                break;
+            const int texture = parse_int(reader, 0, 1 << 30, "the number of a texture");
+            face.texture = t == 0 ? texture : face.texture;
+        }
+        faces.push_back(face);
+    }
+    reader.take_comma();
+    reader.expect('}', "face_indices");
+    return faces;
+}
+
+std::vector<Texture> parse_textures(Reader& reader) {
+    reader.expect('{', "texture_list");
+    parse_count(reader, 0);
+    std::vector<Texture> textures;
+    while (!reader.take('}')) {
+        if (reader.take("texture"))
+            textures.push_back(parse_texture(reader));
+        else if (const auto texture = take_named_if<Texture>(reader))
+            textures.push_back(*texture);
+        else if (!reader.take(','))
+            reader.fail_here("'}' or a texture of the list");
+    }
+    return textures;
+}
+
+struct Mesh2 {
+    std::vector<dvec3> vertices, normals;
+    std::vector<Face> faces;
+    std::vector<Texture> textures;
+};
+
+void parse_normal_indices(Reader& reader, Mesh2& mesh) {
+    reader.expect('{', "normal_indices");
+    const int count = parse_int(reader, 0, int(mesh.faces.size()), "the number of normal indices");
+    for (int i = 0; i < count; ++i) {
+        reader.take_comma();
+        mesh.faces[size_t(i)].normal = parse_indices(reader);
+    }
+    reader.take_comma();
+    reader.expect('}', "normal_indices");
+}
+
+void add_faces(Reader& reader, const Mesh2& mesh, Groups& groups) {
+    reader.grow(mesh.faces.size() * 3 * sizeof(Corner));
+    for (const Face& face : mesh.faces) {
+        std::optional<Texture> texture;
+        if (face.texture >= 0 && face.texture < int(mesh.textures.size()))
+            texture = mesh.textures[size_t(face.texture)];
+        Corner c[3];
+        bool smooth = !mesh.normals.empty();
+        for (size_t i = 0; i < 3; ++i) {
+            if (face.corner[i] >= mesh.vertices.size())
+                reader.fail(reader.place(), fmt::format("found the index {} of {} vertices",
+                                                        face.corner[i], mesh.vertices.size()));
+            smooth = smooth && face.normal[i] < mesh.normals.size();
+            c[i] = {mesh.vertices[face.corner[i]],
+                    smooth ? mesh.normals[face.normal[i]] : dvec3(0)};
+        }
+        if (smooth)
+            groups.of(texture).add(c[0], c[1], c[2]);
+        else
+            groups.of(texture).add(c[0].position, c[1].position, c[2].position);
+    }
+}
+
+} // namespace
+
+void parse_mesh(Reader& reader, Object& object) {
+    Groups groups;
+    for (;;) {
+        if (reader.take("triangle"))
+            parse_mesh_triangle(reader, false, groups);
+        else if (reader.take("smooth_triangle"))
+            parse_mesh_triangle(reader, true, groups);
+        else
+            break;
+    }
+    groups.give_to(object);
+    parse_modifiers(reader, object);
+}
+
+void parse_mesh2(Reader& reader, Object& object) {
+    Mesh2 mesh;
+    for (;;) {
+        if (reader.take("vertex_vectors"))
+            mesh.vertices = parse_vectors(reader, "vertex_vectors");
+        else if (reader.take("normal_vectors"))
+            mesh.normals = parse_vectors(reader, "normal_vectors");
+        else if (reader.take("uv_vectors") || reader.take("uv_indices"))
+            skip_braces(reader, "uv_vectors");
+        else if (reader.take("texture_list"))
+            mesh.textures = parse_textures(reader);
+        else if (reader.take("face_indices"))
+            mesh.faces = parse_faces(reader);
+        else if (reader.take("normal_indices"))
+            parse_normal_indices(reader, mesh);
+        else
+            break;
+    }
+    Groups groups;
+    add_faces(reader, mesh, groups);
+    groups.give_to(object);
+    parse_modifiers(reader, object);
+}
+
+} // namespace ovc::pov

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/pov/parse/parse_object.h"
+
+#include "importers/file/text.h"
+#include "importers/pov/parse/texture.h"
+#include "importers/pov/shapes/shape.h"
+#include "importers/pov/values/transform.h"
+#include "importers/pov/words/block.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace ovc::pov {
+
+namespace {
+
+/// An object and its shape, less what grows with how it is stated.
+constexpr uint64_t kObjectBytes = 1000;
+
+using ParseShape = Shape (*)(Reader&);
+const std::unordered_map<std::string_view, ParseShape> kShapes = {
+    {"sphere", parse_sphere},
+    {"box", parse_box},
+    {"cylinder", parse_cylinder},
+    {"cone", parse_cone},
+    {"torus", parse_torus},
+    {"disc", parse_disc},
+    {"triangle", parse_triangle},
+    {"smooth_triangle", parse_smooth_triangle},
+    {"polygon", parse_polygon},
+    {"prism", parse_prism},
+    {"lathe", parse_lathe},
+    {"sor", parse_sor},
+    {"superellipsoid", parse_superellipsoid},
+    {"bicubic_patch", parse_bicubic_patch},
+    {"text", parse_text_shape},
+    {"height_field", parse_height_field}};
+
+/// Shapes that nothing is inside of.
+const std::unordered_set<std::string_view> kSheets = {"disc", "triangle", "smooth_triangle",
+                                                      "polygon", "bicubic_patch"};
+
+using ParseWhole = void (*)(Reader&, Object&);
+void parse_plane(Reader& reader, Object& object);
+void parse_group(Reader& reader, Object& object);
+void parse_wrapped(Reader& reader, Object& object);
+void parse_refused(Reader& reader, Object& object);
+
+const std::unordered_map<std::string_view, ParseWhole> kWholes = {
+    {"plane", parse_plane},
+    {"mesh", parse_mesh},
+    {"mesh2", parse_mesh2},
+    {"light_source", parse_light_source},
+    {"object", parse_wrapped},
+    {"union", parse_group},
+    {"merge", parse_group},
+    {"difference", parse_group},
+    {"intersection", parse_group},
+    {"light_group", parse_group},
+    {"blob", parse_blob},
+    {"cubic", parse_polynomial},
+    {"isosurface", parse_isosurface},
+    {"julia_fractal", parse_refused},
+    {"parametric", parse_refused},
+    {"poly", parse_polynomial},
+    {"polynomial", parse_refused},
+    {"quadric", parse_quadric},
+    {"quartic", parse_polynomial},
+    {"sphere_sweep", parse_refused}};
+
+void parse_plane(Reader& reader, Object& object) {
+    PlaneShape plane;
+    plane.normal = parse_vector(reader);
+    reader.take_comma();
+    const double length = glm::length(plane.normal);
+    if (!(length > 0))
+        reader.fail(reader.place(), "found a plane whose normal is 0");
+    plane.normal /= length;
+    plane.distance = parse_float(reader);
+    object.shape = plane;
+    parse_modifiers(reader, object);
+}
+
+void parse_children(Reader& reader, Object& object) {
+    for (;;) {
+        const Token token = reader.peek();
+        if (starts_object(token))
+            object.children.push_back(parse_object(reader));
+        else if (auto named_object = take_named_if<ObjectPtr>(reader))
+            object.children.push_back(std::move(*named_object));
+        else if (!reader.take(';'))
+            return;
+    }
+}
+
+void parse_group(Reader& reader, Object& object) {
+    parse_children(reader, object);
+    if (object.kind == "light_group")
+        object.notes.push_back(make_note("light_group", object.place,
+                                         "the lights of a light_group shine on everything"));
+    parse_modifiers(reader, object);
+}
+
+/// object { NAME … } or object { sphere { … } … }.
+void parse_wrapped(Reader& reader, Object& object) {
+    if (!starts_object(reader.peek()))
+        reader.fail_here("an object or the name of one");
+    const ObjectPtr inside = parse_object(reader);
+    const Place at = object.place;
+    const Caller caller = object.caller;
+    object = *inside;
+    object.place = at;
+    object.caller = caller;
+    parse_modifiers(reader, object);
+}
+
+/// clipped_by { objects } or clipped_by { bounded_by }, and the other way round.
+void parse_bounds(Reader& reader, Object& object, std::string_view what) {
+    std::vector<ObjectPtr>& list = what == "clipped_by" ? object.clips : object.bounds;
+    reader.expect('{', what);
+    Object holder;
+    if (reader.take("bounded_by"))
+        list = object.bounds;
+    else if (reader.take("clipped_by"))
+        list = object.clips;
+    else
+        parse_children(reader, holder);
+    list.insert(list.end(), holder.children.begin(), holder.children.end());
+    reader.expect('}', what);
+}
+
+void parse_refused(Reader& reader, Object& object) {
+    object.refused = fmt::format("{} is not supported", object.kind);
+    skip_block(reader);
+}
+
+void add_texture(Object& object, const Texture& texture, const Place& at) {
+    object.texture = object.texture ? layered(texture, *object.texture, at) : texture;
+}
+
+/// The texture that a pigment or finish of its own changes.
+Texture& own_texture(Reader& reader, Object& object) {
+    if (!object.texture)
+        object.texture = reader.defaults;
+    return *object.texture;
+}
+
+bool parse_look(Reader& reader, Object& object) {
+    const Token token = reader.peek();
+    if (reader.take("texture"))
+        add_texture(object, parse_texture(reader), token.place);
+    else if (reader.take("pigment")) {
+        Texture& texture = own_texture(reader, object);
+        texture.pigment = parse_pigment(reader, texture.pigment);
+    } else if (reader.take("finish")) {
+        Texture& texture = own_texture(reader, object);
+        texture.surface = parse_finish(reader, texture.surface);
+    } else if (reader.take("normal")) {
+        own_texture(reader, object).notes.push_back(normal_note(token));
+        skip_braces(reader, "normal");
+    } else if (reader.take("material")) {
+        const Material material = parse_material(reader);
+        if (material.texture)
+            add_texture(object, *material.texture, token.place);
+        if (material.interior)
+            object.interior = material.interior;
+    } else if (reader.take("interior"))
+        object.interior = parse_interior(reader, object.interior.value_or(Interior{}));
+    else
+        return false;
+    return true;
+}
+
+bool parse_switch(Reader& reader, Object& object) {
+    const Token token = reader.peek();
+    if (reader.take("no_shadow"))
+        object.no_shadow = parse_flag(reader);
+    else if (reader.take("no_image")) {
+        object.no_image = parse_flag(reader);
+        object.notes.push_back(make_note("no_image", token.place, "what has no_image is left out"));
+    } else if (reader.take("no_reflection") || reader.take("double_illuminate")) {
+        if (parse_flag(reader))
+            object.notes.push_back(left_out("an object", token));
+    } else if (reader.take("inverse"))
+        object.inverse = !object.inverse;
+    else if (reader.take("open"))
+        object.open = parse_flag(reader);
+    else if (reader.take("hollow") || reader.take("sturm") || reader.take("hierarchy") ||
+             reader.take("split_union") || reader.take("no_radiosity"))
+        parse_flag(reader);
+    else
+        return false;
+    return true;
+}
+
+} // namespace
+
+bool starts_object(const Token& token) {
+    return token.kind == TokenKind::Name && token.name->is_keyword &&
+           (kShapes.contains(token.name->text) || kWholes.contains(token.name->text));
+}
+
+void place(Object& object, const dmat4& by) {
+    object.placed = by * object.placed;
+    if (object.texture)
+        object.texture->pigment.placed = by * object.texture->pigment.placed;
+    for (std::vector<ObjectPtr>* list : {&object.clips, &object.bounds})
+        for (ObjectPtr& other : *list) {
+            auto moved = std::make_shared<Object>(*other); // others may hold it as well
+            place(*moved, by);
+            other = std::move(moved);
+        }
+}
+
+ObjectPtr parse_object(Reader& reader) {
+    const Deeper deeper(reader);
+    const Token keyword = reader.next();
+    if (++reader.objects > reader.limits.objects)
+        reader.fail(keyword.place, fmt::format("stopped after {} objects: a loop or a macro does "
+                                               "not end",
+                                               reader.limits.objects));
+    reader.grow(kObjectBytes);
+    auto object = std::make_shared<Object>();
+    object->kind = keyword.name->text; // names live as long as the reader
+    object->place = keyword.place;
+    object->caller = reader.caller();
+    reader.expect('{', object->kind);
+    // Any kind may begin with the name of an object.
+    const bool is_group = kWholes.contains(object->kind) && object->kind != "object" &&
+                          object->kind != "light_source" && object->kind != "mesh" &&
+                          object->kind != "mesh2";
+    if (!is_group) {
+        if (const auto other = take_named_if<ObjectPtr>(reader)) {
+            *object = **other;
+            object->place = keyword.place;
+            object->caller = reader.caller();
+            parse_modifiers(reader, *object);
+            return object;
+        }
+    }
+    if (const auto shape = kShapes.find(object->kind); shape != kShapes.end()) {
+        object->shape = shape->second(reader);
+        object->has_inside = !kSheets.contains(object->kind);
+        parse_modifiers(reader, *object);
+    } else
+        kWholes.at(object->kind)(reader, *object);
+    for (const ObjectPtr& child : object->children)
+        object->depth = std::max(object->depth, child->depth + 1);
+    if (object->depth > reader.limits.chain)
+        reader.fail(object->place, fmt::format("found groups more than {} deep in each other",
+                                               reader.limits.chain));
+    return object;
+}
+
+void parse_modifiers(Reader& reader, Object& object) {
+    while (!reader.take('}')) {
+        const Token token = reader.peek();
+        if (parse_look(reader, object) || parse_switch(reader, object))
+            continue;
+        if (const auto m = take_transform(reader))
+            place(object, *m);
+        else if (reader.take("clipped_by"))
+            parse_bounds(reader, object, "clipped_by");
+        else if (reader.take("bounded_by"))
+            parse_bounds(reader, object, "bounded_by");
+        else if (reader.take("inside_vector")) {
+            parse_vector(reader);
+            object.has_inside = true;
+        } else if (const auto texture = take_named_if<Texture>(reader))
+            add_texture(object, *texture, token.place); // as old scenes have it
+        else if (token.kind == TokenKind::Name && token.name->is_keyword && !starts_object(token)) {
+            reader.next(); // photons, uv_mapping and the like
+            if (token.is("interior_texture") || token.is("cutaway_textures"))
+                object.notes.push_back(left_out("an object", token));
+            skip_arguments(reader);
+        } else if (!reader.take(',') && !reader.take(';'))
+            reader.fail_here(fmt::format("'}}' or a modifier of {}", object.kind));
+    }
+}
+
+} // namespace ovc::pov

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/pov/shapes/installed_font.h"
+
+#include "importers/pov/words/files.h"
+
+#include <algorithm>
+#include <map>
+
+namespace ovc::pov {
+
+namespace fs = std::filesystem;
+
+/// Where fonts are installed, by the Filesystem Hierarchy Standard.
+static constexpr const char* kFolders[] = {"/usr/share/fonts", "/usr/local/share/fonts"};
+
+/// Plain letters, with and without serifs. POV-Ray's own come first, which are made for its scenes.
+static constexpr const char* kSans[] = {"cyrvetic.ttf", "DejaVuSans.ttf",
+                                        "LiberationSans-Regular.ttf"};
+static constexpr const char* kSerif[] = {"timrom.ttf", "DejaVuSerif.ttf",
+                                         "LiberationSerif-Regular.ttf"};
+
+static std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    return text;
+}
+
+/// All font files by their names in small letters.
+static const std::map<std::string, fs::path>& installed() {
+    static const std::map<std::string, fs::path> fonts = [] {
+        std::map<std::string, fs::path> found;
+        for (const char* folder : kFolders) {
+            std::error_code ec;
+            const auto skip = fs::directory_options::skip_permission_denied;
+            for (fs::recursive_directory_iterator at(folder, skip, ec), end; !ec && at != end;
+                 at.increment(ec)) {
+                const std::string extension = lower(at->path().extension().string());
+                if (extension == ".ttf" || extension == ".otf")
+                    found.try_emplace(lower(at->path().filename().string()), at->path());
+            }
+        }
+        return found;
+    }();
+    return fonts;
+}
+
+static bool has_serifs(const std::string& name) {
+    return name.starts_with("tim") || name.find("serif") != name.npos ||
+           name.find("roman") != name.npos;
+}
+
+fs::path installed_font(const std::string& name) {
+    const std::string wanted = lower(fs::path(name).filename().string());
+    const std::map<std::string, fs::path>& fonts = installed();
+    if (const auto same = fonts.find(wanted); same != fonts.end())
+        return same->second;
+    for (const char* substitute : has_serifs(wanted) ? kSerif : kSans) {
+        if (const fs::path povs = find_file(substitute, "", {}); !povs.empty())
+            return povs;
+        if (const auto at = fonts.find(lower(substitute)); at != fonts.end())
+            return at->second;
+    }
+    return fonts.empty() ? fs::path() : fonts.begin()->second;
+}
+
+} // namespace ovc::pov

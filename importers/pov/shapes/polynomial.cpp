@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/pov/shapes/polynomial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+namespace ovc::pov {
+
+double Polynomial::operator()(const dvec3& p) const {
+    double sum = 0;
+    for (const Term& term : terms) {
+        double product = term.factor;
+        for (int i = 0; i < 3; ++i)
+            for (int k = 0; k < term.powers[i]; ++k)
+                product *= p[i];
+        sum += product;
+    }
+    return sum;
+}
+
+namespace {
+
+struct Range {
+    double lo, hi;
+};
+
+Range power(double lo, double hi, int exponent) {
+    if (exponent == 0)
+        return {1, 1};
+    double a = lo, b = hi;
+    for (int i = 1; i < exponent; ++i) {
+        a *= lo;
+        b *= hi;
+    }
+    if (exponent % 2 == 0 && lo < 0 && hi > 0)
+        return {0, std::max(a, b)};
+    return {std::min(a, b), std::max(a, b)};
+}
+
+} // namespace
+
+double Polynomial::least(const Box& box) const {
+    double sum = 0;
+    for (const Term& term : terms) {
+        Range product{term.factor, term.factor};
+        for (int i = 0; i < 3; ++i) {
+            const Range r = power(box.lo[i], box.hi[i], term.powers[i]);
+            const double all[4] = {product.lo * r.lo, product.lo * r.hi, product.hi * r.lo,
+                                   product.hi * r.hi};
+            product = {*std::min_element(all, all + 4), *std::max_element(all, all + 4)};
+        }
+        sum += product.lo;
+    }
+    return sum;
+}
+
+size_t factors_of(int order) {
+    return size_t(order + 1) * size_t(order + 2) * size_t(order + 3) / 6;
+}
+
+Polynomial polynomial_of(int order, const std::vector<double>& factors) {
+    Polynomial polynomial;
+    size_t next = 0;
+    for (int x = order; x >= 0; --x)
+        for (int y = order - x; y >= 0; --y)
+            for (int z = order - x - y; z >= 0; --z)
+                if (const double factor = factors[next++]; factor != 0)
+                    polynomial.terms.push_back({factor, {x, y, z}});
+    return polynomial;
+}
+
+namespace {
+
+/// How far the set below 0 reaches along an axis, at most: boxes are halved, the farthest first,
+/// until that one is small.
+double farthest(const Polynomial& polynomial, const Box& whole, int axis, int way) {
+    constexpr int kMostBoxes = 400; // of flat surfaces many reach equally far
+    const auto reach = [&](const Box& box) { return way > 0 ? box.hi[axis] : -box.lo[axis]; };
+    const auto nearer = [&](const Box& a, const Box& b) { return reach(a) < reach(b); };
+    std::priority_queue<Box, std::vector<Box>, decltype(nearer)> open(nearer);
+    open.push(whole);
+    const dvec3 enough = whole.extent() / 64.0;
+    for (int i = 0; i < kMostBoxes && !open.empty(); ++i) {
+        const Box box = open.top();
+        const dvec3 sizes = box.extent() / enough;
+        const int longest = major_axis(sizes);
+        if (sizes[longest] <= 1)
+            return reach(box);
+        open.pop();
+        for (const int half : {0, 1}) {
+            Box part = box;
+            (half ? part.lo : part.hi)[longest] = box.center()[longest];
+            if (!(polynomial.least(part) > 0))
+                open.push(part);
+        }
+    }
+    return open.empty() ? -std::numeric_limits<double>::infinity() : reach(open.top());
+}
+
+} // namespace
+
+Box tightened(const Polynomial& polynomial, const Box& box) {
+    Box now = box;
+    for (int round = 0; round < 12; ++round) {
+        Box next = now;
+        for (int axis = 0; axis < 3; ++axis) {
+            next.hi[axis] = farthest(polynomial, next, axis, 1);
+            next.lo[axis] = -farthest(polynomial, next, axis, -1);
+            if (!(next.lo[axis] <= next.hi[axis]))
+                return Box();
+        }
+        const bool is_settled = glm::all(glm::greaterThanEqual(next.extent(), 0.8 * now.extent()));
+        now = next;
+        if (is_settled)
+            break;
+    }
+    return now;
+}
+
+} // namespace ovc::pov

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shapes: what stands between the braces before the modifiers, read and made ready for cutting. One
+// function a kind, from behind the { on.
+#pragma once
+
+#include "importers/pov/object.h"
+#include "importers/pov/values/expression.h"
+
+namespace ovc::pov {
+
+// shape_round.cpp
+Shape parse_sphere(Reader& reader);
+Shape parse_cylinder(Reader& reader);
+Shape parse_cone(Reader& reader);
+Shape parse_torus(Reader& reader);
+Shape parse_disc(Reader& reader);
+Shape parse_superellipsoid(Reader& reader);
+
+// shape_flat.cpp
+Shape parse_box(Reader& reader);
+Shape parse_triangle(Reader& reader);
+Shape parse_smooth_triangle(Reader& reader);
+Shape parse_polygon(Reader& reader);
+
+// shape_sweep.cpp
+Shape parse_prism(Reader& reader);
+Shape parse_lathe(Reader& reader);
+Shape parse_sor(Reader& reader);
+
+// shape_height_field.cpp
+Shape parse_height_field(Reader& reader);
+
+// shape_text.cpp
+Shape parse_text_shape(Reader& reader);
+
+// shape_patch.cpp
+Shape parse_bicubic_patch(Reader& reader);
+
+/// How many points a shape says it has; at most what memory is worth.
+int parse_count(Reader& reader, int least);
+
+} // namespace ovc::pov

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// height_field: a grid of heights over the square from 0 to 1 in x and z, from a picture or a
+// function. The first row lies at z = 1.
+#include "importers/file/text.h"
+#include "importers/pov/pictures/picture.h"
+#include "importers/pov/shapes/shape.h"
+#include "importers/pov/values/function.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ovc::pov {
+
+namespace {
+
+struct Grid {
+    size_t width = 0, height = 0; // points, each at least 2
+    std::vector<float> heights;   // rows as the picture has them
+    bool smooth = false;
+    double water_level = 0;
+
+    /// The corner in column i and row j counted from z = 0.
+    Corner corner(size_t i, size_t j) const {
+        const double x = double(i) / double(width - 1), z = double(j) / double(height - 1);
+        return {{x, at(i, j), z}, smooth ? normal(i, j) : dvec3(0)};
+    }
+
+private:
+    double at(size_t i, size_t j) const { return heights[(height - 1 - j) * width + i]; }
+
+    /// By the heights of the neighbors, or of the point itself at the rim.
+    dvec3 normal(size_t i, size_t j) const {
+        const size_t i0 = i > 0 ? i - 1 : i, i1 = std::min(i + 1, width - 1);
+        const size_t j0 = j > 0 ? j - 1 : j, j1 = std::min(j + 1, height - 1);
+        return {(at(i0, j) - at(i1, j)) * double(width - 1) / double(i1 - i0), 1,
+                (at(i, j0) - at(i, j1)) * double(height - 1) / double(j1 - j0)};
+    }
+};
+
+/// Behind the word `function`: WIDTH, HEIGHT { FORMULA }, of x and y from 0 to 1.
+Grid grid_of_function(Reader& reader, const Token& word) {
+    const std::shared_ptr<const Function> function = parse_function(reader);
+    const double width = function->grid.x, height = function->grid.y;
+    if (!(width >= 2 && height >= 2 && width * height <= double(kMostPixels)))
+        reader.fail(word.place,
+                    fmt::format("found a height_field of {} x {} points, expected 2 x 2 to {}",
+                                width, height, kMostPixels));
+    Grid grid;
+    grid.width = size_t(width);
+    grid.height = size_t(height);
+    reader.spend(grid.width * grid.height);
+    reader.grow(grid.width * grid.height * sizeof(float));
+    grid.heights.reserve(grid.width * grid.height);
+    for (size_t row = 0; row < grid.height; ++row)
+        for (size_t i = 0; i < grid.width; ++i) {
+            const double at[3] = {double(i) / double(grid.width - 1),
+                                  double(row) / double(grid.height - 1), 0};
+            const double y = call(reader, word, *function, at).v[0];
+            grid.heights.push_back(float(y > 0 ? std::min(y, 1.0) : 0.0)); // NaN: 0
+        }
+    return grid;
+}
+
+Grid grid_of_picture(Reader& reader) {
+    const Place at = reader.peek().place;
+    const std::string name = parse_text(reader);
+    const std::filesystem::path path = reader.find_file(name, ".png");
+    if (path.empty())
+        reader.fail(at, fmt::format("found no file {}, expected a picture", ovc::quoted(name)));
+    const Result<Picture> picture = read_picture(path);
+    if (!picture)
+        reader.fail(at, picture.error().message);
+    if (picture->width < 2 || picture->height < 2)
+        reader.fail(at, fmt::format("found a height_field of {} x {} points, expected 2 x 2",
+                                    picture->width, picture->height));
+    Grid grid;
+    grid.width = picture->width;
+    grid.height = picture->height;
+    reader.spend(picture->size() / 16);
+    reader.grow(picture->size() * sizeof(float));
+    for (size_t i = 0; i < picture->size(); ++i)
+        grid.heights.push_back(float(height_of(*picture, i)));
+    return grid;
+}
+
+Grid parse_grid(Reader& reader) {
+    static constexpr std::string_view kFormats[] = {"gif", "tga", "pot",  "png", "pgm",
+                                                    "ppm", "sys", "jpeg", "iff", "tiff",
+                                                    "bmp", "exr", "hdr"};
+    const Token token = reader.peek();
+    if (reader.take("function"))
+        return grid_of_function(reader, token);
+    // The file itself tells what it is.
+    if (std::any_of(std::begin(kFormats), std::end(kFormats),
+                    [&](std::string_view word) { return token.is(word); }))
+        reader.next();
+    return grid_of_picture(reader);
+}
+
+/// The triangle's part from the level up.
+void add_above(const std::array<Corner, 3>& triangle, double level, Facets& out) {
+    std::vector<Corner> kept;
+    for (size_t i = 0; i < 3; ++i) {
+        const Corner &a = triangle[i], &b = triangle[(i + 1) % 3];
+        if (a.position.y >= level)
+            kept.push_back(a);
+        if ((a.position.y >= level) != (b.position.y >= level)) {
+            const double t = (level - a.position.y) / (b.position.y - a.position.y);
+            kept.push_back({glm::mix(a.position, b.position, t), glm::mix(a.normal, b.normal, t)});
+        }
+    }
+    for (size_t i = 1; i + 1 < kept.size(); ++i)
+        out.add(kept[0], kept[i], kept[i + 1]);
+}
+
+/// Two triangles a cell, cut apart from (x + 1, z) to (x, z + 1), as POV-Ray does.
+void cut_grid(const Grid& grid, Facets& out) {
+    const bool is_smooth = out.smooth || grid.smooth; // add() of corners says it is
+    for (size_t j = 0; j + 1 < grid.height; ++j)
+        for (size_t i = 0; i + 1 < grid.width; ++i) {
+            const Corner right = grid.corner(i + 1, j), back = grid.corner(i, j + 1);
+            add_above({grid.corner(i, j), back, right}, grid.water_level, out);
+            add_above({grid.corner(i + 1, j + 1), right, back}, grid.water_level, out);
+        }
+    out.smooth = is_smooth;
+}
+
+} // namespace
+
+Shape parse_height_field(Reader& reader) {
+    Grid grid = parse_grid(reader);
+    for (bool more = true; more;) {
+        if (reader.take("smooth"))
+            grid.smooth = parse_flag(reader);
+        else if (reader.take("water_level"))
+            grid.water_level = parse_float(reader);
+        else if (reader.take("gamma")) // heights are taken as the file has them
+            parse_float(reader);
+        else
+            more = reader.take(',');
+    }
+    Shape shape;
+    shape.fixed = 2 * double(grid.width - 1) * double(grid.height - 1);
+    const auto kept = std::make_shared<const Grid>(std::move(grid));
+    shape.cut = [kept](int, bool, Facets& out) { cut_grid(*kept, out); };
+    return shape;
+}
+
+} // namespace ovc::pov

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: Apache-2.0
+// Implicit shapes: blob, quadric, cubic, quartic, poly, isosurface.
+#include "importers/csg/csg.h"
+#include "importers/pov/parse/parse_object.h"
+#include "importers/pov/shapes/implicit.h"
+#include "importers/pov/shapes/polynomial.h"
+#include "importers/pov/shapes/shape.h"
+#include "importers/pov/values/function.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+namespace ovc::pov {
+
+namespace {
+
+/// Triangles of a surface net: about two for each of the cells that it runs through.
+constexpr double kPerSquare = 4;
+
+/// A field's triangles, kept: a shape is cut once to be measured and once to be drawn.
+Shape kept(const Box& box, std::function<void(int segments, bool open, Facets& out)> cut) {
+    struct Kept {
+        std::mutex mutex;
+        int segments = 0;
+        bool open = false;
+        Facets facets;
+    };
+    Shape shape;
+    shape.per_square = kPerSquare;
+    shape.box = box;
+    shape.cut = [store = std::make_shared<Kept>(), cut = std::move(cut)](int segments, bool open,
+                                                                         Facets& out) {
+        const std::lock_guard lock(store->mutex);
+        if (store->segments != segments || store->open != open) {
+            store->facets = {};
+            cut(segments, open, store->facets);
+            store->segments = segments;
+            store->open = open;
+        }
+        out.corners.insert(out.corners.end(), store->facets.corners.begin(),
+                           store->facets.corners.end());
+        out.smooth = true;
+    };
+    return shape;
+}
+
+/// A part of a blob: strength (1 - (d / radius)^2)^2, d the distance from the line a b.
+struct Component {
+    dvec3 a, b;
+    double radius, strength;
+    dmat4 to_own{1};
+    Box box;
+
+    double operator()(const dvec3& world) const {
+        const dvec3 p(to_own * dvec4(world, 1));
+        const dvec3 way = b - a;
+        const double square = glm::dot(way, way);
+        const double along = square > 0 ? std::clamp(glm::dot(p - a, way) / square, 0.0, 1.0) : 0.0;
+        const dvec3 off = p - a - along * way;
+        const double rest = 1 - glm::dot(off, off) / (radius * radius);
+        return rest > 0 ? strength * rest * rest : 0;
+    }
+};
+
+using Components = std::vector<Component>;
+
+std::function<double(const dvec3&)> blob_value(Components parts, double threshold) {
+    return [parts = std::move(parts), threshold](const dvec3& p) {
+        double sum = 0;
+        for (const Component& part : parts)
+            sum += part(p);
+        return threshold - sum;
+    };
+}
+
+/// From behind the word: `{ place, radius, strength … }`.
+Component parse_component(Reader& reader, std::string_view kind, Object& holder) {
+    reader.expect('{', kind);
+    Component part;
+    part.a = part.b = parse_vector(reader);
+    reader.take_comma();
+    if (kind == "cylinder") {
+        part.b = parse_vector(reader);
+        reader.take_comma();
+    }
+    part.radius = std::abs(parse_float(reader));
+    reader.take_comma();
+    reader.take("strength");
+    part.strength = parse_float(reader);
+    parse_modifiers(reader, holder);
+    return part;
+}
+
+void place_component(Component& part, const dmat4& placed) {
+    part.to_own = glm::inverse(placed);
+    for (const dvec3& end : {part.a, part.b})
+        for (int i = 0; i < 8; ++i)
+            part.box.add(dvec3(
+                placed *
+                dvec4(end + part.radius * dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1),
+                      1)));
+}
+
+/// As many cells as make small parts round, and as memory is worth.
+int cells_of(const Components& parts, const Box& box, int segments) {
+    double smallest = max_component(box.extent());
+    for (const Component& part : parts)
+        if (part.strength > 0)
+            smallest = std::min(smallest, max_component(part.box.extent()));
+    const double wanted = 0.25 * segments * max_component(box.extent()) / smallest;
+    return std::clamp(int(wanted), field_cells(segments), 256);
+}
+
+std::vector<double> parse_factors(Reader& reader, int order) {
+    reader.expect('<', "poly");
+    std::vector<double> factors;
+    do
+        factors.push_back(parse_float(reader));
+    while (reader.take(',') || !reader.peek().is('>'));
+    reader.expect('>', "poly");
+    if (factors.size() != factors_of(order))
+        reader.fail(reader.place(), fmt::format("found {} factors, expected {} for the order {}",
+                                                factors.size(), factors_of(order), order));
+    return factors;
+}
+
+void finish_polynomial(Reader& reader, Object& object, Polynomial polynomial) {
+    const auto shared = std::make_shared<const Polynomial>(std::move(polynomial));
+    EndlessShape shape;
+    shape.bounds = [shared](const Box& box) { return tightened(*shared, box); };
+    shape.cut = [shared](const Box& box, int cells, Facets& out) {
+        const Box tight = tightened(*shared, box);
+        if (tight.empty())
+            return size_t(0);
+        out.smooth = true;
+        const double margin = 0.02 * max_component(tight.extent());
+        return cut_field({[shared](const dvec3& p) { return (*shared)(p); }, {}},
+                         tight.padded(margin), cells, out);
+    };
+    object.shape = std::move(shape);
+    parse_modifiers(reader, object);
+}
+
+/// What an isosurface is looked for in.
+struct Container {
+    Shape shape;
+    Box box;
+};
+
+Container parse_container(Reader& reader) {
+    reader.expect('{', "contained_by");
+    Container container;
+    const bool is_box = reader.take("box");
+    if (!is_box && !reader.take("sphere"))
+        reader.fail_here("a box or a sphere");
+    reader.expect('{', is_box ? "box" : "sphere");
+    container.shape = is_box ? parse_box(reader) : parse_sphere(reader);
+    reader.expect('}', "contained_by");
+    reader.expect('}', "contained_by");
+    return container;
+}
+
+csg::Operand operand_of(const Facets& facets) {
+    csg::Operand operand;
+    for (size_t t = 0; t + 2 < facets.corners.size(); t += 3)
+        operand.triangles.push_back({facets.corners[t].position, facets.corners[t + 1].position,
+                                     facets.corners[t + 2].position});
+    return operand;
+}
+
+/// The part of the field's surface in the container, and of the container's in the field.
+void cut_contained(const Field& field, const Container& container, int segments, bool open,
+                   Facets& out) {
+    Facets inside, around;
+    const double margin = 0.01 * max_component(container.box.extent());
+    cut_field(field, container.box.padded(margin), segments, inside);
+    container.shape.cut(segments, false, around);
+    csg::Tree tree;
+    tree.operands = {operand_of(inside), operand_of(around)};
+    tree.nodes = {{csg::Kind::Operand, 0, {}},
+                  {csg::Kind::Operand, 1, {}},
+                  {csg::Kind::Intersection, 0, {0, 1}}};
+    for (const csg::Part& part : csg::evaluate(tree)) {
+        if (open && part.operand == 1)
+            continue;
+        const Facets& source = part.operand == 0 ? inside : around;
+        const Corner* whole = &source.corners[3 * size_t(part.triangle)];
+        const dvec3 flat = glm::cross(whole[1].position - whole[0].position,
+                                      whole[2].position - whole[0].position);
+        for (const dvec3& p : part.corners) {
+            dvec3 normal(0);
+            for (size_t i = 0; i < 3; ++i) {
+                const dvec3 &a = whole[(i + 1) % 3].position, &b = whole[(i + 2) % 3].position;
+                normal +=
+                    std::clamp(glm::dot(glm::cross(a - p, b - p), flat) / glm::dot(flat, flat), 0.0,
+                               1.0) *
+                    whole[i].normal;
+            }
+            out.corners.push_back({p, normal});
+        }
+    }
+    out.smooth = true;
+}
+
+} // namespace
+
+void parse_blob(Reader& reader, Object& object) {
+    auto parts = std::make_shared<Components>();
+    double threshold = 1;
+    Box box;
+    for (;;) {
+        Object holder;
+        Component part;
+        if (reader.take("threshold")) {
+            threshold = parse_float(reader);
+            continue;
+        }
+        if (reader.take("sphere"))
+            part = parse_component(reader, "sphere", holder);
+        else if (reader.take("cylinder"))
+            part = parse_component(reader, "cylinder", holder);
+        else if (reader.take("component")) {
+            part.strength = parse_float(reader);
+            reader.take_comma();
+            part.radius = std::abs(parse_float(reader));
+            reader.take_comma();
+            part.a = part.b = parse_vector(reader);
+        } else if (!reader.take(','))
+            break;
+        else
+            continue;
+        if (holder.texture && !object.texture) {
+            object.texture = holder.texture;
+            reader.warn("blob texture", object.place,
+                        "a blob has the texture of its first part throughout");
+        }
+        if (!(part.radius > 0))
+            continue;
+        place_component(part, holder.placed);
+        if (part.strength > 0)
+            box.add(part.box);
+        parts->push_back(part);
+    }
+    Field field;
+    field.value = blob_value(*parts, threshold);
+    field.within = [parts, threshold](const Box& asked) {
+        Components near;
+        std::copy_if(parts->begin(), parts->end(), std::back_inserter(near),
+                     [&](const Component& part) { return part.box.touches(asked); });
+        return blob_value(std::move(near), threshold);
+    };
+    object.shape = kept(box, [=](int segments, bool, Facets& out) {
+        if (!box.empty())
+            cut_field(field, box, cells_of(*parts, box, segments), out);
+    });
+    parse_modifiers(reader, object);
+}
+
+void parse_quadric(Reader& reader, Object& object) {
+    dvec3 rows[3];
+    for (dvec3& row : rows) {
+        row = parse_vector(reader);
+        reader.take_comma();
+    }
+    const double rest = parse_float(reader);
+    Polynomial polynomial;
+    const int powers[10][3] = {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 1, 0}, {1, 0, 1},
+                               {0, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
+    for (int i = 0; i < 10; ++i)
+        if (const double factor = i < 9 ? rows[i / 3][i % 3] : rest; factor != 0)
+            polynomial.terms.push_back({factor, {powers[i][0], powers[i][1], powers[i][2]}});
+    finish_polynomial(reader, object, std::move(polynomial));
+}
+
+/// cubic { <…> }, quartic { <…> } and poly { order, <…> }.
+void parse_polynomial(Reader& reader, Object& object) {
+    int order = object.kind == "cubic" ? 3 : 4;
+    if (object.kind == "poly") {
+        order = parse_int(reader, 2, 35, "the order of a poly");
+        reader.take_comma();
+    }
+    finish_polynomial(reader, object, polynomial_of(order, parse_factors(reader, order)));
+}
+
+void parse_isosurface(Reader& reader, Object& object) {
+    std::shared_ptr<const Function> function;
+    std::optional<Container> container;
+    double threshold = 0;
+    const Token name = reader.peek();
+    for (;;) {
+        if (reader.take("function"))
+            function = parse_function(reader);
+        else if (reader.take("contained_by"))
+            container = parse_container(reader);
+        else if (reader.take("threshold"))
+            threshold = parse_float(reader);
+        else if (reader.take("accuracy") || reader.take("max_gradient") || reader.take("max_trace"))
+            parse_float(reader);
+        else if (reader.take("evaluate"))
+            for (int i = 0; i < 3; ++i) {
+                parse_float(reader);
+                reader.take_comma();
+            }
+        else if (!reader.take("all_intersections") && !reader.take(','))
+            break;
+    }
+    if (!function)
+        reader.fail(object.place, "found an isosurface without a function");
+    if (!container) {
+        Facets cube;
+        container.emplace();
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double side : {-1.0, 1.0}) {
+                dvec3 u(0), v(0), n(0);
+                n[axis] = side;
+                u[(axis + 1) % 3] = side;
+                v[(axis + 2) % 3] = 1;
+                cube.add_quad(n - u - v, n + u - v, n + u + v, n - u + v);
+            }
+        container->shape.cut = [cube](int, bool, Facets& out) { out = cube; };
+    }
+    Facets measured;
+    container->shape.cut(8, false, measured);
+    for (const Corner& corner : measured.corners)
+        container->box.add(corner.position);
+    if (!function->refused.empty())
+        object.refused = function->refused;
+    const Field field{[&reader, function, threshold, name](const dvec3& p) {
+                          const double at[3] = {p.x, p.y, p.z};
+                          return call(reader, name, *function, at).v[0] - threshold;
+                      },
+                      {}};
+    object.shape =
+        kept(container->box, [=, around = *container](int segments, bool open, Facets& out) {
+            cut_contained(field, around, segments, open, out);
+        });
+    parse_modifiers(reader, object);
+}
+
+} // namespace ovc::pov

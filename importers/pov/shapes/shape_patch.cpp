@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// bicubic_patch: Bezier's patch of 16 points.
+#include "importers/pov/shapes/shape.h"
+
+#include <algorithm>
+
+namespace ovc::pov {
+
+/// A point of the curve through four, and its derivative.
+static dvec3 bezier(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d, double t,
+                    dvec3* slope) {
+    const double s = 1 - t;
+    *slope = 3.0 * (s * s * (b - a) + 2 * s * t * (c - b) + t * t * (d - c));
+    return s * s * s * a + 3 * s * s * t * b + 3 * s * t * t * c + t * t * t * d;
+}
+
+static Corner patch_corner(const std::array<dvec3, 16>& p, double u, double v) {
+    dvec3 row[4], along[4], du, dv, ignored;
+    for (size_t i = 0; i < 4; ++i)
+        row[i] = bezier(p[4 * i], p[4 * i + 1], p[4 * i + 2], p[4 * i + 3], u, &along[i]);
+    const dvec3 at = bezier(row[0], row[1], row[2], row[3], v, &dv);
+    du = bezier(along[0], along[1], along[2], along[3], v, &ignored);
+    return {at, glm::cross(du, dv)};
+}
+
+Shape parse_bicubic_patch(Reader& reader) {
+    for (;;) {
+        if (reader.take("type") || reader.take("flatness") || reader.take("u_steps") ||
+            reader.take("v_steps"))
+            parse_float(reader);
+        else if (reader.take("uv_vectors"))
+            for (int i = 0; i < 4; ++i) {
+                parse_vector2(reader);
+                reader.take_comma();
+            }
+        else if (!reader.take(','))
+            break;
+    }
+    std::array<dvec3, 16> points;
+    for (dvec3& p : points) {
+        p = parse_vector(reader);
+        reader.take_comma();
+    }
+    Shape shape;
+    shape.per_square = 2 / 16.0;
+    shape.cut = [points](int segments, bool, Facets& out) {
+        const int steps = segments / 4;
+        for (int j = 0; j < steps; ++j)
+            for (int i = 0; i < steps; ++i) {
+                const auto at = [&](int a, int b) {
+                    return patch_corner(points, double(a) / steps, double(b) / steps);
+                };
+                out.add_quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            }
+    };
+    return shape;
+}
+
+} // namespace ovc::pov

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces of revolution and their kin. Vertices lie on the true surface.
+#include "importers/pov/shapes/shape.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace ovc::pov {
+
+namespace {
+
+/// A grid of corners, `columns` wide and closed around, cut into quads; the first row is the lowest
+/// as seen from outside, columns run counterclockwise seen from above.
+template <class At>
+void add_grid(int columns, int rows, At&& at, Facets& out) {
+    std::vector<Corner> below, above;
+    for (int row = 0; row <= rows; ++row) {
+        above.clear();
+        for (int column = 0; column < columns; ++column)
+            above.push_back(at(column, row));
+        for (int column = 0; row > 0 && column < columns; ++column) {
+            const size_t a = size_t(column), b = size_t((column + 1) % columns);
+            out.add_quad(below[a], below[b], above[b], above[a]);
+        }
+        std::swap(below, above);
+    }
+}
+
+Shape curved(double per_square, double per_segment, std::function<void(int, bool, Facets&)> cut) {
+    Shape shape;
+    shape.cut = std::move(cut);
+    shape.per_square = per_square;
+    shape.per_segment = per_segment;
+    return shape;
+}
+
+/// Two unit vectors across `axis`, u x v along it; axes of the world where it is one.
+void across(const dvec3& axis, dvec3& u, dvec3& v) {
+    const int major = major_axis(axis);
+    dvec3 other(0);
+    other[(major + 1) % 3] = 1;
+    u = glm::normalize(other - glm::dot(other, axis) / glm::dot(axis, axis) * axis);
+    v = glm::normalize(glm::cross(axis, u));
+}
+
+Shape frustum(Reader& reader, const dvec3& base, double base_radius, const dvec3& cap,
+              double cap_radius) {
+    const dvec3 axis = cap - base;
+    if (!(glm::length(axis) > 0))
+        reader.fail(reader.place(), "found a cone or cylinder whose ends are one point");
+    return curved(0, 4, [=](int segments, bool open, Facets& out) {
+        dvec3 u, v;
+        across(axis, u, v);
+        const double slant = (base_radius - cap_radius) / glm::dot(axis, axis);
+        const auto corner = [&](int column, int row) -> Corner {
+            const dvec2 p = on_circle(column, segments);
+            const dvec3 outward = p.x * u + p.y * v;
+            return {row ? cap + cap_radius * outward : base + base_radius * outward,
+                    outward + slant * axis};
+        };
+        add_grid(segments, 1, corner, out);
+        for (int i = 1; !open && i + 1 < segments; ++i) {
+            const auto at = [&](int column, int row) { return corner(column, row).position; };
+            out.add(at(0, 1), at(i, 1), at(i + 1, 1));
+            out.add(at(0, 0), at(i + 1, 0), at(i, 0));
+        }
+    });
+}
+
+double signed_power(double base, double exponent) {
+    return std::copysign(std::pow(std::abs(base), exponent), base);
+}
+
+} // namespace
+
+int parse_count(Reader& reader, int least) {
+    return parse_int(reader, least, 10'000'000, "the number of points");
+}
+
+Shape parse_sphere(Reader& reader) {
+    const dvec3 center = parse_vector(reader);
+    reader.take_comma();
+    const double radius = std::abs(parse_float(reader));
+    return curved(1, 0, [=](int segments, bool, Facets& out) {
+        add_grid(
+            segments, segments / 2,
+            [&](int column, int row) -> Corner {
+                const dvec2 around = on_circle(column, segments);
+                const dvec2 up = on_circle(row + 3 * segments / 4, segments);
+                const dvec3 n(up.x * around.x, up.y, -up.x * around.y);
+                return {center + radius * n, n};
+            },
+            out);
+    });
+}
+
+Shape parse_cylinder(Reader& reader) {
+    const dvec3 base = parse_vector(reader);
+    reader.take_comma();
+    const dvec3 cap = parse_vector(reader);
+    reader.take_comma();
+    const double radius = std::abs(parse_float(reader));
+    return frustum(reader, base, radius, cap, radius);
+}
+
+Shape parse_cone(Reader& reader) {
+    const dvec3 base = parse_vector(reader);
+    reader.take_comma();
+    const double base_radius = std::abs(parse_float(reader));
+    reader.take_comma();
+    const dvec3 cap = parse_vector(reader);
+    reader.take_comma();
+    return frustum(reader, base, base_radius, cap, std::abs(parse_float(reader)));
+}
+
+Shape parse_torus(Reader& reader) {
+    const double major = parse_float(reader);
+    reader.take_comma();
+    const double minor = std::abs(parse_float(reader));
+    return curved(2, 0, [=](int segments, bool, Facets& out) {
+        add_grid(
+            segments, segments,
+            [&](int column, int row) -> Corner {
+                const dvec2 around = on_circle(column, segments);
+                const dvec2 tube = on_circle(row, segments);
+                const dvec3 outward(around.x, 0, -around.y);
+                const dvec3 n = tube.x * outward + dvec3(0, tube.y, 0);
+                return {major * outward + minor * n, n};
+            },
+            out);
+    });
+}
+
+Shape parse_disc(Reader& reader) {
+    const dvec3 center = parse_vector(reader);
+    reader.take_comma();
+    const dvec3 normal = parse_vector(reader);
+    reader.take_comma();
+    const double radius = std::abs(parse_float(reader));
+    const double hole = reader.take(',') ? std::abs(parse_float(reader)) : 0;
+    if (!(glm::length(normal) > 0))
+        reader.fail(reader.place(), "found a disc whose normal is 0");
+    return curved(0, 2, [=](int segments, bool, Facets& out) {
+        dvec3 u, v;
+        across(normal, u, v);
+        for (int i = 0; i < segments; ++i) {
+            const dvec2 p = on_circle(i, segments), q = on_circle(i + 1, segments);
+            const dvec3 a = p.x * u + p.y * v, b = q.x * u + q.y * v;
+            out.add_quad(center + hole * a, center + radius * a, center + radius * b,
+                         center + hole * b);
+        }
+    });
+}
+
+Shape parse_superellipsoid(Reader& reader) {
+    const dvec2 exponents = parse_vector2(reader);
+    if (!(exponents.x > 0 && exponents.y > 0))
+        reader.fail(reader.place(), "found a superellipsoid whose exponents are not above 0");
+    return curved(1, 0, [=](int segments, bool, Facets& out) {
+        const double east = exponents.x, north = exponents.y;
+        add_grid(
+            segments, segments / 2,
+            [&](int column, int row) -> Corner {
+                const dvec2 around = on_circle(column, segments);
+                const dvec2 up = on_circle(row + 3 * segments / 4, segments);
+                const auto point = [&](double e, double n) {
+                    const double wide = signed_power(up.x, n);
+                    return dvec3(wide * signed_power(around.x, e), wide * signed_power(around.y, e),
+                                 signed_power(up.y, n));
+                };
+                // Where an exponent is above 2 the gradient's formula runs to infinity at a ridge.
+                const bool ridged = east >= 2 || north >= 2;
+                return {point(east, north), ridged ? dvec3(0) : point(2 - east, 2 - north)};
+            },
+            out);
+    });
+}
+
+} // namespace ovc::pov

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// A curve swept along y (prism) or around it (lathe, sor).
+#include "importers/pov/shapes/contour.h"
+#include "importers/pov/shapes/shape.h"
+#include "importers/pov/shapes/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace ovc::pov {
+
+namespace {
+
+std::optional<Curve> take_curve(Reader& reader) {
+    if (reader.take("linear_spline"))
+        return Curve::Linear;
+    if (reader.take("quadratic_spline"))
+        return Curve::Quadratic;
+    if (reader.take("cubic_spline"))
+        return Curve::Cubic;
+    if (reader.take("bezier_spline"))
+        return Curve::Bezier;
+    return std::nullopt;
+}
+
+std::vector<dvec2> parse_points(Reader& reader, int count) {
+    std::vector<dvec2> points;
+    for (int i = 0; i < count; ++i) {
+        reader.take_comma();
+        points.push_back(parse_vector2(reader));
+    }
+    return points;
+}
+
+/// Straight pieces of one piece of a curve.
+int steps_of(Curve curve, int segments) {
+    return curve == Curve::Linear ? 1 : std::max(4, segments / 8);
+}
+
+bool same(const dvec2& a, const dvec2& b) {
+    return glm::length(a - b) < 1e-9;
+}
+
+/// The closed curves of a prism, each cut into straight pieces.
+std::vector<Contour> prism_contours(Curve curve, const std::vector<dvec2>& points, int segments) {
+    std::vector<Contour> contours;
+    const size_t stride = curve == Curve::Bezier ? 4 : 1;
+    const size_t lead = curve == Curve::Quadratic || curve == Curve::Cubic ? 1 : 0;
+    const size_t trail = curve == Curve::Cubic ? 1 : 0;
+    const int steps = steps_of(curve, segments);
+    for (size_t start = 0; start + points_of_a_piece(curve) <= points.size();) {
+        Contour contour;
+        const dvec2 first = points[start + lead];
+        size_t piece = start;
+        bool closed = false;
+        for (; !closed && piece + points_of_a_piece(curve) <= points.size(); piece += stride) {
+            for (int i = 0; i < steps; ++i)
+                contour.push_back(curve_point(curve, &points[piece], double(i) / steps, nullptr));
+            closed = same(curve_point(curve, &points[piece], 1, nullptr), first);
+        }
+        if (contour.size() >= 3)
+            contours.push_back(std::move(contour));
+        start = piece + (curve == Curve::Bezier ? 0 : lead + trail + 1);
+    }
+    return contours;
+}
+
+/// One point of a profile that is turned around y: (radius, height), and its direction.
+struct ProfilePoint {
+    dvec2 at, direction;
+};
+
+void revolve(const std::vector<ProfilePoint>& profile, int segments, Facets& out) {
+    const auto corner = [&](const ProfilePoint& p, int step) -> Corner {
+        const dvec2 c = on_circle(step, segments);
+        const dvec3 outward(c.x, 0, -c.y);
+        return {p.at.x * outward + dvec3(0, p.at.y, 0),
+                p.direction.y * outward - dvec3(0, p.direction.x, 0)};
+    };
+    for (size_t i = 0; i + 1 < profile.size(); ++i)
+        for (int step = 0; step < segments; ++step)
+            out.add_quad(corner(profile[i], step), corner(profile[i], step + 1),
+                         corner(profile[i + 1], step + 1), corner(profile[i + 1], step));
+}
+
+} // namespace
+
+Shape parse_prism(Reader& reader) {
+    bool conic = false;
+    Curve curve = Curve::Linear;
+    for (;;) {
+        if (reader.take("conic_sweep"))
+            conic = true;
+        else if (const std::optional<Curve> c = take_curve(reader))
+            curve = *c;
+        else if (!reader.take("linear_sweep"))
+            break;
+    }
+    double low = parse_float(reader);
+    reader.take_comma();
+    double high = parse_float(reader);
+    reader.take_comma();
+    const std::vector<dvec2> points = parse_points(reader, parse_count(reader, 3));
+    if (low > high)
+        std::swap(low, high);
+    Shape shape;
+    shape.fixed = 4 * double(points.size());
+    shape.per_segment = curve == Curve::Linear ? 0 : double(points.size()) / 2;
+    shape.cut = [=](int segments, bool open, Facets& out) {
+        const auto place = [&](const dvec2& p, bool end) {
+            const double y = end ? high : low;
+            const double scale = conic ? y : 1;
+            return dvec3(p.x * scale, y, p.y * scale);
+        };
+        sweep(prism_contours(curve, points, segments), /* lids= */ !open, place, out);
+    };
+    return shape;
+}
+
+Shape parse_lathe(Reader& reader) {
+    const Curve curve = take_curve(reader).value_or(Curve::Linear);
+    reader.take_comma();
+    const std::vector<dvec2> points = parse_points(reader, parse_count(reader, 2));
+    Shape shape;
+    shape.per_segment = curve == Curve::Linear ? 2 * double(points.size()) : 0;
+    shape.per_square = curve == Curve::Linear ? 0 : double(points.size()) / 4;
+    shape.cut = [=](int segments, bool, Facets& out) {
+        const size_t stride = curve == Curve::Bezier ? 4 : 1;
+        const int steps = steps_of(curve, segments);
+        for (size_t piece = 0; piece + points_of_a_piece(curve) <= points.size(); piece += stride) {
+            std::vector<ProfilePoint> profile;
+            for (int i = 0; i <= steps; ++i) {
+                ProfilePoint p;
+                p.at = curve_point(curve, &points[piece], double(i) / steps, &p.direction);
+                profile.push_back(p);
+            }
+            revolve(profile, segments, out);
+        }
+    };
+    return shape;
+}
+
+Shape parse_sor(Reader& reader) {
+    const std::vector<dvec2> points = parse_points(reader, parse_count(reader, 4));
+    for (size_t i = 0; i + 1 < points.size(); ++i)
+        if (!(points[i + 1].y - points[i].y > 0) && i > 0 && i + 2 < points.size())
+            reader.fail(reader.place(), "found a sor whose heights do not rise");
+    Shape shape;
+    shape.per_square = double(points.size()) / 4;
+    shape.per_segment = 2;
+    shape.cut = [points](int segments, bool open, Facets& out) {
+        std::vector<ProfilePoint> profile;
+        const int steps = steps_of(Curve::Cubic, segments);
+        for (size_t i = 0; i + 3 < points.size(); ++i) {
+            // The square of the radius is a cubic of the height.
+            const dvec2 *p = &points[i], &a = p[1], &b = p[2];
+            const double h = b.y - a.y;
+            const double m0 = 2 * a.x * (b.x - p[0].x) / (b.y - p[0].y) * h;
+            const double m1 = 2 * b.x * (p[3].x - a.x) / (p[3].y - a.y) * h;
+            const double r0 = a.x * a.x, r1 = b.x * b.x;
+            for (int s = i == 0 ? 0 : 1; s <= steps; ++s) {
+                const double t = double(s) / steps;
+                const double c2 = 3 * (r1 - r0) - 2 * m0 - m1, c3 = 2 * (r0 - r1) + m0 + m1;
+                const double square = std::max(0.0, r0 + t * (m0 + t * (c2 + t * c3)));
+                const double slope = (m0 + t * (2 * c2 + t * 3 * c3)) / h;
+                profile.push_back(
+                    {{std::sqrt(square), a.y + t * h}, {slope / 2, std::sqrt(square)}});
+            }
+        }
+        revolve(profile, segments, out);
+        for (int step = 1; !open && step + 1 < segments; ++step)
+            for (const bool top : {false, true}) {
+                const dvec2 at = (top ? profile.back() : profile.front()).at;
+                const auto corner = [&](int s) {
+                    const dvec2 c = on_circle(s, segments);
+                    return dvec3(at.x * c.x, at.y, -at.x * c.y);
+                };
+                out.add(corner(0), corner(top ? step : step + 1), corner(top ? step + 1 : step));
+            }
+    };
+    return shape;
+}
+
+} // namespace ovc::pov

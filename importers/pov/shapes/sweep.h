@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// What contours sweep over.
+#pragma once
+
+#include "importers/pov/shapes/contour.h"
+#include "importers/pov/shapes/facets.h"
+
+#include <algorithm>
+
+namespace ovc::pov {
+
+/// The sides between contours and their copies, and lids on both ends; closed, and facing outside.
+/// place: where a point stands at the beginning (false) and at the end (true) of the sweep, which
+/// goes against the cross product of the plane's first axis with its second.
+template <class Placing>
+void sweep(const std::vector<Contour>& contours, bool lids, Placing place, Facets& out) {
+    std::vector<dvec2> all;
+    for (const Contour& c : contours) {
+        all.insert(all.end(), c.begin(), c.end());
+        // Outside is to the right of a counterclockwise curve; a hole's outside is its inside.
+        const auto depth = std::count_if(contours.begin(), contours.end(), [&](const Contour& o) {
+            return &o != &c && is_inside(c[0], o);
+        });
+        const bool forwards = (doubled_area(c) > 0) == (depth % 2 == 0);
+        for (size_t i = 0; i < c.size(); ++i) {
+            const dvec2& p = c[forwards ? i : (i + 1) % c.size()];
+            const dvec2& q = c[forwards ? (i + 1) % c.size() : i];
+            out.add_quad(place(p, false), place(p, true), place(q, true), place(q, false));
+        }
+    }
+    if (!lids)
+        return;
+    for (const auto& t : cut_contours(contours)) {
+        out.add(place(all[t[2]], true), place(all[t[1]], true), place(all[t[0]], true));
+        out.add(place(all[t[0]], false), place(all[t[1]], false), place(all[t[2]], false));
+    }
+}
+
+} // namespace ovc::pov

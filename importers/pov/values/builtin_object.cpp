@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/pov/values/builtin_object.h"
+
+#include "importers/pov/shapes/bounds.h"
+#include "importers/pov/trace.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ovc::pov {
+
+namespace {
+
+/// So many triangles of objects that were asked about are kept, for the next question.
+constexpr uint64_t kMostKept = 10'000'000;
+constexpr size_t kMostTargets = 1000; // that many small objects
+/// Cutting so many takes about as long as running over a word.
+constexpr uint64_t kTrianglesAWord = 16;
+
+/// Finding the box around a shape or two takes about as long as running over so many.
+constexpr uint64_t kWordsABox = 200;
+
+ObjectPtr parse_object_name(Reader& reader) {
+    const Token name = reader.peek();
+    const auto object = take_named<ObjectPtr>(reader);
+    if (!object)
+        reader.fail(name.place,
+                    fmt::format("found {}, expected the name of an object", found(name)));
+    return *object;
+}
+
+std::shared_ptr<const TraceTarget> target_of(Reader& reader, const ObjectPtr& object) {
+    if (const auto at = reader.targets.find(object); at != reader.targets.end())
+        return at->second;
+    const auto target = std::make_shared<const TraceTarget>(
+        cut_object(*object, std::min(kMostKept, reader.limits.triangles)));
+    reader.spend(target->triangle_count() / kTrianglesAWord);
+    reader.grow(3 * target->triangle_count() * sizeof(Corner));
+    uint64_t kept = target->triangle_count();
+    for (const auto& [other, cut] : reader.targets)
+        kept += cut->triangle_count();
+    if (kept > kMostKept || reader.targets.size() >= kMostTargets)
+        reader.targets.clear();
+    reader.targets[object] = target;
+    return target;
+}
+
+} // namespace
+
+Number parse_extent(Reader& reader, const Token& token) {
+    reader.expect('(', token.name->text);
+    const ObjectPtr object = parse_object_name(reader);
+    reader.expect(')', token.name->text);
+    reader.spend(kWordsABox);
+    const Box box = bounds_of(*object, reader.limits.triangles);
+    return Number::of(token.is("min_extent") ? box.lo : box.hi);
+}
+
+Number parse_trace(Reader& reader, const Token& token) {
+    reader.expect('(', token.name->text);
+    const ObjectPtr object = parse_object_name(reader);
+    reader.take_comma();
+    const dvec3 from = parse_vector(reader);
+    reader.take_comma();
+    const dvec3 way = parse_vector(reader);
+    Name* normal = nullptr;
+    if (reader.take(',')) {
+        const Token variable = reader.next();
+        if (variable.kind != TokenKind::Name || variable.name->is_keyword)
+            reader.fail(variable.place, fmt::format("found {}, expected a variable for the normal",
+                                                    found(variable)));
+        normal = variable.name;
+    }
+    reader.expect(')', token.name->text);
+
+    Meeting meeting;
+    const double length = glm::length(way);
+    if (length > 0 && std::isfinite(length))
+        meeting = target_of(reader, object)->first_meeting(from, way / length);
+    const bool any = std::isfinite(meeting.distance);
+    if (normal) {
+        Slot* slot = reader.find(normal);
+        slot = slot ? slot : &reader.declare(normal, /* local= */ true);
+        const double size = glm::length(meeting.normal);
+        slot->value = Number::of(any && size > 0 ? meeting.normal / size : dvec3(0));
+    }
+    return Number::of(any ? from + meeting.distance / length * way : dvec3(0));
+}
+
+} // namespace ovc::pov

@@ -1,0 +1,515 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recursive descent over POV-Ray's expressions.
+#include "importers/pov/values/expression.h"
+
+#include "importers/file/text.h"
+#include "importers/pov/values/builtin.h"
+#include "importers/pov/values/function.h"
+#include "importers/pov/values/spline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace ovc::pov {
+
+namespace {
+
+/// Both of one size: a float stands for all components, a shorter vector is filled with zeros.
+void make_alike(Number& a, Number& b) {
+    const int size = std::max(a.size, b.size);
+    for (Number* n : {&a, &b}) {
+        if (n->size == 1)
+            n->v.fill(n->v[0]);
+        for (int i = n->size == 1 ? size : n->size; i < 5; ++i)
+            n->v[size_t(i)] = 0;
+        n->size = size;
+    }
+    a.is_color = b.is_color = a.is_color || b.is_color;
+}
+
+template <class Op>
+Number combined(Number a, Number b, Op op) {
+    make_alike(a, b);
+    for (size_t i = 0; i < size_t(a.size); ++i)
+        a.v[i] = op(a.v[i], b.v[i]);
+    return a;
+}
+
+double as_float(Reader& reader, const Number& n) {
+    if (n.size != 1)
+        reader.fail(reader.place(), fmt::format("found a vector of {}, expected a float", n.size));
+    return n.v[0];
+}
+
+int component(std::string_view name) {
+    static constexpr std::string_view kNames[][3] = {{"x", "u", "red"},
+                                                     {"y", "v", "green"},
+                                                     {"z", "blue", ""},
+                                                     {"t", "filter", ""},
+                                                     {"transmit", "", ""}};
+    for (int i = 0; i < 5; ++i)
+        for (const std::string_view n : kNames[i])
+            if (!n.empty() && n == name)
+                return i;
+    return -1;
+}
+
+Number parse_member(Reader& reader, const Number& whole) {
+    const Token name = reader.next();
+    const double* v = whole.v.data();
+    if (name.is("gray") || name.is("grey"))
+        return Number::of(0.297 * v[0] + 0.589 * v[1] + 0.114 * v[2]);
+    const int i = name.kind == TokenKind::Name ? component(name.name->text) : -1;
+    if (i < 0)
+        reader.fail(name.place,
+                    fmt::format("found {} after '.', expected a component such as x", found(name)));
+    // The filter of a plain vector is 0; a float is as long as one likes.
+    if (whole.size == 1)
+        return Number::of(v[0]);
+    return Number::of(i < whole.size ? v[i] : 0);
+}
+
+Number parse_literal_vector(Reader& reader) {
+    const InVector in_vector(reader);
+    Number vector;
+    vector.size = 0;
+    do {
+        if (vector.size == 5)
+            reader.fail_here("'>', for a vector has five components at most");
+        vector.v[size_t(vector.size++)] = as_float(reader, parse_number(reader));
+        reader.take_comma();
+    } while (!reader.peek().is('>'));
+    reader.next();
+    return vector;
+}
+
+Number parse_color_number(Reader& reader);
+
+Number call_function(Reader& reader, const Token& name, const Function& function) {
+    std::vector<double> arguments;
+    reader.expect('(', name.name->text);
+    while (!reader.peek().is(')')) {
+        const Number n = parse_number(reader);
+        arguments.insert(arguments.end(), n.v.begin(), n.v.begin() + n.size);
+        reader.take_comma();
+    }
+    reader.next();
+    return call(reader, name, function, arguments);
+}
+
+Number parse_variable(Reader& reader, const Token& name) {
+    const Slot* slot = reader.find(name.name);
+    const Value* value = slot ? &slot->value : nullptr;
+    if (!value || std::holds_alternative<std::monostate>(*value))
+        reader.fail(name.place, fmt::format("found {}, which is not declared", found(name)));
+    std::shared_ptr<Array> array;
+    if (const auto* a = std::get_if<std::shared_ptr<Array>>(value)) {
+        array = *a;
+        value = parse_item(reader, *array);
+    }
+    if (const Number* number = std::get_if<Number>(value))
+        return *number;
+    if (const auto* function = std::get_if<std::shared_ptr<const Function>>(value)) {
+        const std::shared_ptr<const Function> kept = *function;
+        return call_function(reader, name, *kept);
+    }
+    if (const auto* spline = std::get_if<std::shared_ptr<const Spline>>(value)) {
+        const std::shared_ptr<const Spline> kept = *spline;
+        reader.expect('(', name.name->text);
+        const double clock = parse_float(reader);
+        if (reader.take(','))
+            reader.next(); // the kind of spline to take it for
+        reader.expect(')', "the clock of a spline");
+        return at(*kept, clock);
+    }
+    reader.fail(name.place, fmt::format("found {} {}, expected a number", kind_of(*value),
+                                        ovc::quoted(name.name->text)));
+}
+
+Number parse_operand(Reader& reader) {
+    const Deeper deeper(reader);
+    const Token token = reader.next();
+    switch (token.kind) {
+    case TokenKind::Number:
+        return Number::of(token.number);
+    case TokenKind::Sign: {
+        if (token.is('(')) {
+            const Number inside = parse_logical(reader);
+            reader.expect(')', "an expression");
+            return inside;
+        }
+        if (token.is('<'))
+            return parse_literal_vector(reader);
+        if (token.is('+'))
+            return parse_operand(reader);
+        if (token.is('-')) {
+            const Number n = parse_operand(reader);
+            return combined(Number::of(-1), n, [](double a, double b) { return a * b; });
+        }
+        if (token.is('!')) {
+            return Number::of(as_float(reader, parse_operand(reader)) == 0 ? 1.0 : 0.0);
+        }
+        break;
+    }
+    case TokenKind::Name:
+        if (starts_color(token)) {
+            reader.put_back(token);
+            return parse_color_number(reader);
+        }
+        if (const Builtin builtin = find_builtin(token.name->text))
+            return builtin(reader, token);
+        if (!token.name->is_keyword)
+            return parse_variable(reader, token);
+        break;
+    default:
+        break;
+    }
+    reader.fail(token.place, fmt::format("found {}, expected a number", found(token)));
+}
+
+Number parse_factor(Reader& reader) {
+    Number n = parse_operand(reader);
+    while (reader.peek_operator().is('.')) {
+        reader.next();
+        n = parse_member(reader, n);
+    }
+    return n;
+}
+
+Number parse_product(Reader& reader) {
+    Number n = parse_factor(reader);
+    for (;;) {
+        const Token op = reader.peek_operator();
+        if (!op.is('*') && !op.is('/'))
+            return n;
+        reader.next();
+        const Number right = parse_factor(reader);
+        if (op.is('*'))
+            n = combined(n, right, [](double a, double b) { return a * b; });
+        else {
+            // POV-Ray stops at a division by 0, but not where a component is 0 / 0 of a fill.
+            if (right.size == 1 && right.v[0] == 0)
+                reader.fail(op.place, "found a division by zero");
+            n = combined(n, right, [](double a, double b) { return b == 0 ? 0 : a / b; });
+        }
+    }
+}
+
+bool is_comparison(const Token& token) {
+    return token.kind == TokenKind::Sign &&
+           std::string_view("<>=lgn").find(token.sign) != std::string_view::npos;
+}
+
+bool holds(char op, double a, double b) {
+    // POV-Ray's equality has a little room; its < and > have none.
+    constexpr double kRoom = 1e-10;
+    switch (op) {
+    case '<':
+        return a < b;
+    case '>':
+        return a > b;
+    case 'l':
+        return a - b <= kRoom;
+    case 'g':
+        return b - a <= kRoom;
+    case '=':
+        return std::abs(a - b) <= kRoom;
+    default:
+        return std::abs(a - b) > kRoom;
+    }
+}
+
+Number parse_comparison(Reader& reader) {
+    // Texts can be compared too, for being equal.
+    if (starts_text(reader, reader.peek())) {
+        const std::string left = parse_text(reader);
+        const Token op = reader.next();
+        const std::string right = parse_text(reader);
+        return Number::of((left == right) == op.is('=') ? 1.0 : 0.0);
+    }
+    Number left = parse_number(reader);
+    for (Token op = reader.peek_operator(); is_comparison(op); op = reader.peek_operator()) {
+        reader.next();
+        const double right = as_float(reader, parse_number(reader));
+        left = Number::of(holds(op.sign, as_float(reader, left), right) ? 1.0 : 0.0);
+    }
+    return left;
+}
+
+/// Both sides are always read.
+Number parse_choice_of(Reader& reader) {
+    Number left = parse_comparison(reader);
+    for (Token op = reader.peek_operator(); op.is('&') || op.is('|'); op = reader.peek_operator()) {
+        reader.next();
+        const bool b = as_float(reader, parse_comparison(reader)) != 0;
+        const bool a = as_float(reader, left) != 0;
+        left = Number::of((op.is('&') ? a && b : a || b) ? 1.0 : 0.0);
+    }
+    return left;
+}
+
+/// After rgb, rgbf, rgbt, rgbft or their srgb kin.
+void parse_rgb(Reader& reader, std::string_view word, Number& color) {
+    const bool is_srgb = word[0] == 's';
+    const std::string_view kind = word.substr(is_srgb ? 4 : 3);
+    const int size = 3 + int(kind.size());
+    const Number n = resized(reader, parse_number(reader), size);
+    for (size_t i = 0; i < 3; ++i)
+        color.v[i] = is_srgb ? from_srgb(n.v[i], reader.gamma) : n.v[i];
+    color.v[3] = kind == "f" || kind == "ft" ? n.v[3] : 0;
+    color.v[4] = kind == "t" ? n.v[3] : kind == "ft" ? n.v[4] : 0;
+}
+
+/// The place of `red 0.5` and the like; -1: none.
+int channel(const Token& token) {
+    static constexpr std::string_view kChannels[] = {"red", "green", "blue", "filter", "transmit"};
+    for (int i = 0; i < 5; ++i)
+        if (token.is(kChannels[i]))
+            return i;
+    return -1;
+}
+
+bool is_rgb(std::string_view word) {
+    return word == "rgb" || word == "rgbf" || word == "rgbt" || word == "rgbft" || word == "srgb" ||
+           word == "srgbf" || word == "srgbt" || word == "srgbft";
+}
+
+Number parse_color_number(Reader& reader) {
+    Number color{{}, 5, true};
+    bool any = false;
+    for (;;) {
+        const Token token = any ? reader.peek_operator() : reader.peek();
+        if (const int i = channel(token); i >= 0) {
+            reader.next();
+            color.v[size_t(i)] = parse_float(reader);
+        } else if (token.is("color") || token.is("colour")) {
+            if (any)
+                return color;
+            reader.next();
+            continue;
+        } else if (token.kind == TokenKind::Name && is_rgb(token.name->text)) {
+            if (any)
+                return color;
+            reader.next();
+            parse_rgb(reader, token.name->text, color);
+        } else if (!any) {
+            color = parse_number(reader);
+            color = resized(reader, color, 5);
+        } else
+            return color;
+        any = true;
+    }
+}
+
+} // namespace
+
+Number parse_number(Reader& reader) {
+    Number n = parse_product(reader);
+    for (;;) {
+        const Token op = reader.peek_operator();
+        if (!op.is('+') && !op.is('-'))
+            return n;
+        reader.next();
+        const Number right = parse_product(reader);
+        if (op.is('+'))
+            n = combined(n, right, [](double a, double b) { return a + b; });
+        else
+            n = combined(n, right, [](double a, double b) { return a - b; });
+    }
+}
+
+Number parse_logical(Reader& reader) {
+    const Number n = parse_choice_of(reader);
+    if (!reader.peek_operator().is('?'))
+        return n;
+    reader.next();
+    const Number yes = parse_logical(reader);
+    reader.expect(':', "the first choice of ?");
+    const Number no = parse_logical(reader);
+    return as_float(reader, n) != 0 ? yes : no;
+}
+
+double parse_float(Reader& reader) {
+    return as_float(reader, parse_number(reader));
+}
+
+int parse_int(Reader& reader, int least, int most, std::string_view what) {
+    const Place at = reader.peek().place;
+    const double value = parse_float(reader);
+    if (!(value >= least && value < double(most) + 1))
+        reader.fail(at, fmt::format("found {} as {}, expected {} to {}", value, what, least, most));
+    return int(value);
+}
+
+Number resized(Reader& reader, const Number& number, int size) {
+    Number n = number;
+    if (n.size == 1)
+        n.v.fill(n.v[0]);
+    else if (n.size < size)
+        std::fill(n.v.begin() + n.size, n.v.end(), 0.0);
+    else if (n.size > size && !(n.is_color || size >= 3))
+        reader.fail(reader.place(),
+                    fmt::format("found a vector of {}, expected one of {}", n.size, size));
+    n.size = size;
+    n.is_color = size == 5;
+    return n;
+}
+
+dvec3 vector_of(const Number& n) {
+    return n.size == 1 ? dvec3(n.v[0]) : dvec3(n.v[0], n.v[1], n.size > 2 ? n.v[2] : 0);
+}
+
+Color color_of(const Number& n) {
+    Color color;
+    color.rgb = vec3(vector_of(n));
+    if (n.size > 3)
+        color.filter = float(n.v[3]);
+    if (n.size > 4)
+        color.transmit = float(n.v[4]);
+    return color;
+}
+
+dvec3 parse_vector(Reader& reader) {
+    return vector_of(resized(reader, parse_number(reader), 3));
+}
+
+dvec2 parse_vector2(Reader& reader) {
+    const Number n = parse_number(reader);
+    return n.size == 1 ? dvec2(n.v[0]) : dvec2(n.v[0], n.v[1]);
+}
+
+Color parse_color(Reader& reader) {
+    return color_of(resized(reader, parse_color_number(reader), 5));
+}
+
+double parse_condition(Reader& reader) {
+    reader.expect('(', "a condition's word");
+    const Number n = parse_logical(reader);
+    reader.expect(')', "a condition");
+    return as_float(reader, n);
+}
+
+bool parse_flag(Reader& reader) {
+    const Token token = reader.peek();
+    if (token.is("on") || token.is("off") || token.is("true") || token.is("false") ||
+        token.is("yes") || token.is("no") || token.kind == TokenKind::Number || token.is('('))
+        return parse_float(reader) != 0;
+    return true;
+}
+
+double from_srgb(double c, double gamma) {
+    if (gamma == kSrgbGamma)
+        return c;
+    const double linear = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+    return gamma == 1 ? linear : std::pow(linear, 1 / gamma);
+}
+
+bool starts_color(const Token& token) {
+    return token.kind == TokenKind::Name && (token.is("color") || token.is("colour") ||
+                                             is_rgb(token.name->text) || channel(token) >= 0);
+}
+
+bool starts_text(const Reader& reader, const Token& token) {
+    return token.kind == TokenKind::Text || named<std::string>(reader, token) ||
+           (token.kind == TokenKind::Name && find_text_function(token.name->text));
+}
+
+bool starts_number(const Reader& reader, const Token& token) {
+    switch (token.kind) {
+    case TokenKind::Number:
+        return true;
+    case TokenKind::Sign:
+        return token.is('<') || token.is('(') || token.is('-') || token.is('+') || token.is('!');
+    case TokenKind::Name:
+        if (const auto* array = named<std::shared_ptr<Array>>(reader, token))
+            return !(*array)->items.empty() && std::holds_alternative<Number>((*array)->items[0]);
+        return starts_color(token) || find_builtin(token.name->text) ||
+               named<Number>(reader, token) ||
+               named<std::shared_ptr<const Function>>(reader, token) ||
+               named<std::shared_ptr<const Spline>>(reader, token);
+    default:
+        return false;
+    }
+}
+
+Value* parse_item(Reader& reader, Array& array) {
+    size_t index = 0;
+    for (const size_t size : array.sizes) {
+        reader.expect('[', "an array");
+        const Place at = reader.peek().place;
+        const double i = std::floor(parse_float(reader) + 1e-8);
+        if (!(i >= 0 && i < double(size)))
+            reader.fail(at, fmt::format("found the index {} of an array of {}", i, size));
+        index = index * size + size_t(i);
+        reader.expect(']', "an index");
+    }
+    return &array.items[index];
+}
+
+/// 0 where these are no digits of base 16.
+static uint32_t code_of(std::string_view digits) {
+    uint32_t code = 0;
+    const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), code, 16);
+    return end.ptr == digits.data() + digits.size() ? code : 0;
+}
+
+/// Of a code below 2^16.
+static std::string utf8(uint32_t code) {
+    if (code < 0x80)
+        return {char(code)};
+    if (code < 0x800)
+        return {char(0xc0 | code >> 6), char(0x80 | (code & 0x3f))};
+    return {char(0xe0 | code >> 12), char(0x80 | (code >> 6 & 0x3f)), char(0x80 | (code & 0x3f))};
+}
+
+static std::string unescaped(std::string_view raw) {
+    std::string text;
+    for (size_t i = 0; i < raw.size(); ++i) {
+        if (raw[i] != '\\' || i + 1 == raw.size()) {
+            text += raw[i];
+            continue;
+        }
+        const char c = raw[++i];
+        switch (c) {
+        case 'n':
+            text += '\n';
+            break;
+        case 't':
+            text += '\t';
+            break;
+        case 'u': // four digits of base 16
+            text += utf8(code_of(raw.substr(i + 1, 4)));
+            i += std::min<size_t>(4, raw.size() - i - 1);
+            break;
+        case 'a':
+        case 'b':
+        case 'f':
+        case 'r':
+        case 'v':
+            text += ' ';
+            break;
+        default:
+            text += c;
+        }
+    }
+    return text;
+}
+
+std::string parse_text(Reader& reader) {
+    const Deeper deeper(reader);
+    const Token token = reader.next();
+    if (token.kind == TokenKind::Text)
+        return unescaped(token.text);
+    if (token.kind == TokenKind::Name)
+        if (const TextFunction function = find_text_function(token.name->text))
+            return function(reader);
+    reader.put_back(token);
+    if (std::optional<std::string> text = take_named<std::string>(reader))
+        return *text;
+    reader.fail(token.place, fmt::format("found {}, expected a text", found(token)));
+}
+
+} // namespace ovc::pov

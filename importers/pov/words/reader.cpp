@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stream of tokens: frames of files and macros, scopes of variables. directives.cpp obeys.
+#include "importers/pov/words/reader.h"
+
+#include "importers/file/available_memory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ovc::pov {
+
+Deeper::Deeper(Reader& reader) : reader_(reader) {
+    if (++reader_.depth_ > reader_.limits.depth) {
+        --reader_.depth_;
+        reader_.fail(reader_.place(), fmt::format("found blocks more than {} deep in each other",
+                                                  reader_.limits.depth));
+    }
+}
+
+Deeper::~Deeper() {
+    --reader_.depth_;
+}
+
+InVector::InVector(Reader& reader) : reader_(reader) {
+    ++reader_.brackets_;
+}
+
+InVector::~InVector() {
+    --reader_.brackets_;
+}
+
+Reader::Reader(Hooks hooks, LogSink log, std::string main_folder, FilesRead* files_read)
+    : limits{},
+      hooks_(std::move(hooks)),
+      log_(std::move(log)),
+      folder_(std::move(main_folder)),
+      files_read_(files_read),
+      available_(available_memory()) {
+    push_scope(); // of the scene: what #declare makes
+}
+
+void Reader::open(std::unique_ptr<SourceFile> file) {
+    files_.push_back(std::move(file));
+    SourceFile* opened = files_.back().get();
+    tokenize(*opened, names_);
+    const uint32_t scope = push_scope();
+    frames_.push_back({opened, 0, opened->tokens.size() - 1, false, scope, {}, last_});
+}
+
+Token Reader::next() {
+    if (back_.empty())
+        return step(/* hold_directives= */ false);
+    const Token token = back_.back();
+    back_.pop_back();
+    return token;
+}
+
+const Token& Reader::peek() {
+    if (back_.empty())
+        back_.push_back(step(/* hold_directives= */ false));
+    return back_.back();
+}
+
+Token Reader::peek_operator() {
+    if (!back_.empty())
+        return back_.back();
+    const Token token = step(/* hold_directives= */ true);
+    if (token.kind != TokenKind::Directive)
+        back_.push_back(token);
+    return token;
+}
+
+void Reader::put_back(const Token& token) {
+    back_.push_back(token);
+}
+
+bool Reader::ends_value() const {
+    if (!obeys_ || brackets_ > obeys_->brackets || frames_.size() > obeys_->frames)
+        return false;
+    return frames_.size() < obeys_->frames || frames_.back().open.size() <= obeys_->blocks;
+}
+
+Token Reader::step(bool hold_directives) {
+    for (;;) {
+        Token token = raw();
+        last_ = token.place;
+        if (token.kind == TokenKind::Directive) {
+            if (hold_directives && ends_value()) {
+                --frame().at;
+                return token;
+            }
+            obey(token);
+            if (!back_.empty()) // what ended the directive's expression
+                return next();
+            continue;
+        }
+        if (token.kind == TokenKind::Name && !token.name->is_keyword)
+            if (const Slot* slot = find(token.name))
+                if (const auto* macro = std::get_if<std::shared_ptr<const Macro>>(&slot->value)) {
+                    call(token, *macro);
+                    continue;
+                }
+        return token;
+    }
+}
+
+void Reader::spend(uint64_t words) {
+    run_over_ += words;
+    if (run_over_ > limits.tokens)
+        fail(last_,
+             fmt::format("stopped after {} words: a loop or a macro does not end", limits.tokens));
+}
+
+void Reader::grow(uint64_t bytes) {
+    constexpr uint64_t kBetweenChecks = uint64_t(64) << 20; // asking the system takes a while
+    grown_ += bytes;
+    unchecked_ += bytes;
+    if (unchecked_ < kBetweenChecks)
+        return;
+    if (available_memory() < available_ / 2 + bytes)
+        fail(last_, fmt::format("stopped after half of the {} MB of memory were taken: a loop or a "
+                                "macro does not end, or the scene is too large",
+                                available_ >> 20));
+    unchecked_ = 0;
+}
+
+void Reader::count_depth(Array& array, const Value& item) const {
+    const auto* inner = std::get_if<std::shared_ptr<Array>>(&item);
+    if (!inner)
+        return;
+    array.depth = std::max(array.depth, (*inner)->depth + 1);
+    if (array.depth > limits.chain)
+        fail(last_, fmt::format("found arrays more than {} deep in each other", limits.chain));
+}
+
+Token Reader::raw() {
+    spend(1);
+    while (!frames_.empty() && frame().at >= frame().end) {
+        if (!frame().open.empty())
+            fail(frame().open.back().place, "found no #end to this");
+        if (frames_.size() == 1)
+            return frame().file->tokens.back();
+        pop_frame();
+    }
+    const Token& token = frame().file->tokens[frame().at++];
+    if (token.is('(') || token.is('[') || token.is('{'))
+        ++brackets_;
+    else if (token.is(')') || token.is(']') || token.is('}'))
+        --brackets_;
+    return token;
+}
+
+const Token& Reader::peek_raw() const {
+    const Frame& now = frames_.back();
+    return now.at < now.end ? now.file->tokens[now.at] : now.file->tokens.back();
+}
+
+void Reader::pop_frame() {
+    frames_.pop_back();
+    pop_scope();
+}
+
+uint32_t Reader::push_scope() {
+    scopes_.emplace_back();
+    return uint32_t(scopes_.size() - 1);
+}
+
+void Reader::pop_scope() {
+    for (Name* name : scopes_.back().names)
+        if (!name->bound.empty() && name->bound.back().scope + 1 == scopes_.size())
+            name->bound.pop_back();
+    scopes_.pop_back();
+}
+
+Slot* Reader::find(const Name* name) const {
+    return name->bound.empty() ? nullptr : name->bound.back().slot;
+}
+
+void Reader::bind(Name* name, uint32_t scope, Slot* slot) {
+    auto at = name->bound.end();
+    while (at != name->bound.begin() && (at - 1)->scope > scope)
+        --at;
+    if (at != name->bound.begin() && (at - 1)->scope == scope)
+        (at - 1)->slot = slot;
+    else {
+        name->bound.insert(at, {scope, slot});
+        scopes_[scope].names.push_back(name);
+    }
+}
+
+uint32_t Reader::scope_of(const Name* name, bool local) const {
+    if (local)
+        return uint32_t(scopes_.size() - 1);
+    return name->bound.empty() ? 0 : name->bound.back().scope;
+}
+
+Slot& Reader::declare(Name* name, bool local) {
+    return declare_in(scope_of(name, local), name);
+}
+
+Slot& Reader::declare_in(uint32_t scope, Name* name) {
+    changed();
+    for (const Name::Bound& bound : name->bound)
+        if (bound.scope == scope)
+            return *bound.slot;
+    scopes_[scope].slots.push_back(std::make_unique<Slot>());
+    Slot* slot = scopes_[scope].slots.back().get();
+    bind(name, scope, slot);
+    return *slot;
+}
+
+void Reader::undefine(Name* name) {
+    changed();
+    if (!name->bound.empty())
+        name->bound.pop_back();
+}
+
+void Reader::expect(char c, std::string_view after) {
+    const Token token = next();
+    if (!token.is(c))
+        fail(token.place, fmt::format("found {} after {}, expected '{}'", found(token), after, c));
+}
+
+bool Reader::take(char c) {
+    if (!peek().is(c))
+        return false;
+    back_.pop_back();
+    return true;
+}
+
+bool Reader::take(std::string_view word) {
+    if (!peek().is(word))
+        return false;
+    back_.pop_back();
+    return true;
+}
+
+void Reader::fail(const Place& at, const std::string& sentence) const {
+    throw ParseError(at, sentence, caller());
+}
+
+Caller Reader::caller() const {
+    return frames_.size() > 1 ? Caller{frames_[1].called, frames_[1].is_macro} : Caller{};
+}
+
+void Reader::fail_here(const std::string& expected) {
+    const Token token = next();
+    fail(token.place, fmt::format("found {}, expected {}", found(token), expected));
+}
+
+void Reader::warn(const std::string& kind, const Place& at, const std::string& sentence) {
+    if (!warned_.insert(kind).second)
+        return;
+    const std::string shown = excerpt(at);
+    say(log_, LogLevel::Warning,
+        fmt::format("{}:{}:{}: {}{}{}", at.file ? at.file->name : "", at.line, at.column, sentence,
+                    shown.empty() ? "" : "\n", shown));
+}
+
+void Reader::call(const Token& at, const std::shared_ptr<const Macro>& macro) {
+    const Deeper deeper(*this);
+    if (frames_.size() >= limits.nesting)
+        fail(at.place, fmt::format("found macros and includes more than {} deep in each other: "
+                                   "{} does not end",
+                                   limits.nesting, macro->name->text));
+    const std::shared_ptr<const Macro> kept = macro; // an argument may declare it anew
+    const size_t scopes = scopes_.size();
+    std::vector<std::pair<Slot*, Value>> arguments;
+    expect('(', macro->name->text);
+    for (size_t i = 0; i < kept->parameters.size(); ++i) {
+        if (i > 0)
+            take_comma();
+        if (peek().is(')'))
+            fail(at.place, fmt::format("found {} arguments to {}, expected {}", i, kept->name->text,
+                                       kept->parameters.size()));
+        arguments.push_back(argument(scopes));
+    }
+    expect(')', "the arguments of " + kept->name->text);
+    const uint32_t scope = push_scope();
+    for (size_t i = 0; i < arguments.size(); ++i) {
+        Slot* slot = arguments[i].first;
+        if (!slot) {
+            scopes_[scope].slots.push_back(
+                std::make_unique<Slot>(Slot{std::move(arguments[i].second)}));
+            slot = scopes_[scope].slots.back().get();
+        }
+        bind(kept->parameters[i], scope, slot);
+    }
+    frames_.push_back({kept->file, kept->first, kept->last, true, scope, {}, at.place});
+}
+
+std::pair<Slot*, Value> Reader::argument(size_t scopes) {
+    const Token first = next();
+    // Where a macro gives the argument, its own variables are gone behind it: their value counts.
+    const bool is_passing =
+        !first.name || (!first.name->bound.empty() && first.name->bound.back().scope >= scopes);
+    if (first.kind == TokenKind::Name && !first.name->is_keyword && !is_passing) {
+        const Token after = next();
+        put_back(after);
+        if (after.is(',') || after.is(')')) {
+            if (Slot* slot = find(first.name))
+                return {slot, {}};
+            return {&declare(first.name, /* local= */ true), {}};
+        }
+    }
+    put_back(first);
+    return {nullptr, hooks_.value(*this)};
+}
+
+} // namespace ovc::pov

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every function of the table that works on a device begins and ends with.
+#pragma once
+
+#include "plugin/abi/device.h"
+#include "plugin/abi/handles.h"
+
+#include <fmt/format.h>
+
+namespace ovc {
+
+/// body() while the device cannot go away.
+template <class Body>
+ovc_result on_device(ovc_device device, const char* call, Body&& body) {
+    if (!is_device(device, call))
+        return OVC_ERROR_INVALID_ARGUMENT;
+    const CallsInside::Call inside(device->calls);
+    if (device->magic != kDeviceMagic)
+        return fail_without_device(OVC_ERROR_INVALID_STATE,
+                                   fmt::format("{}: the device is being destroyed", call));
+    return guard(device->messages, std::forward<Body>(body));
+}
+
+} // namespace ovc

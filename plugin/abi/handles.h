@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the opaque handles of overcast.h point to, and how failures become result codes.
+#pragma once
+
+#include "core/soup.h"
+#include "core/system/log.h"
+#include "core/text/printable.h"
+#include "gpu/gl/fork_mark.h"
+#include "gpu/gl/gl_thread.h"
+#include "plugin/abi/calls_inside.h"
+#include "plugin/abi/float_mode.h"
+#include "plugin/abi/host_function.h"
+#include "plugin/abi/submissions.h"
+#include "plugin/overcast.h"
+#include "plugin/structure/failure.h"
+#include "plugin/structure/single_rays.h"
+#include "plugin/structure/structure.h"
+#include "plugin/structure/turn.h"
+
+#include <atomic>
+#include <deque>
+#include <exception>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <string>
+#include <system_error>
+#include <thread>
+
+namespace ovc {
+
+/// The last message per thread, and who is told of each.
+class Messages {
+public:
+    /// Before any call fails. The function is the host's: it may ask for the message, on any
+    /// thread.
+    void tell(ovc_error_function function, void* user) {
+        function_ = function;
+        user_ = user;
+    }
+    void set(ovc_result code, const std::string& message) {
+        {
+            const std::lock_guard lock(mutex_);
+            messages_[std::this_thread::get_id()] = printable(message);
+        }
+        if (!function_ || in_host_function)
+            return;
+        const HostFunction mark;
+        function_(user_, code, get());
+    }
+    const char* get() {
+        const std::lock_guard lock(mutex_);
+        return messages_[std::this_thread::get_id()].c_str();
+    }
+
+private:
+    std::mutex mutex_;
+    std::map<std::thread::id, std::string> messages_;
+    ovc_error_function function_ = nullptr;
+    void* user_ = nullptr;
+};
+
+inline constexpr uint32_t kDeviceMagic = 0x6f766344;
+inline constexpr uint32_t kSceneMagic = 0x6f766353;
+inline constexpr uint32_t kStreamMagic = 0x6f766354;
+inline constexpr uint32_t kTicketMagic = 0x6f766355;
+inline constexpr uint32_t kDestroyed = 0x6f766300;
+
+class RayStream;
+
+} // namespace ovc
+
+/// What push() is called with: part of its scene, so that a handle kept too long is still an error.
+struct ovc_stream_t {
+    std::atomic<uint32_t> magic{0}; // kStreamMagic while stream() runs
+    ovc_scene scene = nullptr;
+    ovc::RayStream* rays = nullptr; // set while a function of the host runs
+};
+
+struct ovc_ticket_t {
+    std::atomic<uint32_t> magic{ovc::kTicketMagic};
+    ovc::CallsInside calls;
+    ovc_device device = nullptr;
+    ovc_scene scene = nullptr; // alive until the submission is done
+    std::shared_ptr<ovc::Submission> submission;
+};
+
+struct ovc_scene_t {
+    std::atomic<uint32_t> magic{ovc::kSceneMagic};
+    ovc::CallsInside calls;
+    ovc_device device = nullptr;
+    ovc::Turn turn; // calls on one scene wait here
+    ovc_scene_config config{sizeof(ovc_scene_config)};
+    ovc::Soup soup;
+    std::map<uint32_t, ovc::Chunk> templates;  // by number; each an empty chunk of the soup
+    std::unique_ptr<ovc::Structure> structure; // set by commit
+    ovc::Submissions submissions;
+    ovc::SingleRays single_rays{turn, streaming};
+    std::atomic<std::thread::id> streaming; // the thread that is inside stream(), if any
+    ovc_stream_t stream;
+};
+
+namespace ovc {
+
+/// The handles that a device had last, empty: they are still told from others, so that a thread
+/// that comes too late gets an error.
+template <class Handle>
+class DestroyedHandles {
+public:
+    void add(std::unique_ptr<Handle> handle) {
+        const std::lock_guard lock(mutex_);
+        handles_.push_back(std::move(handle));
+        if (handles_.size() > kMost && handles_.front()->calls.none())
+            handles_.pop_front();
+    }
+
+private:
+    static constexpr size_t kMost = 1000;
+
+    std::mutex mutex_;
+    std::deque<std::unique_ptr<Handle>> handles_;
+};
+
+} // namespace ovc
+
+struct ovc_device_t {
+    std::atomic<uint32_t> magic{ovc::kDeviceMagic};
+    ovc::CallsInside calls;
+    ovc::ForkMark mark;
+    ovc::Messages messages;
+    ovc::LogSink log;
+    std::unique_ptr<ovc::GlThread> gl;
+    std::atomic<int> scenes{0};
+    std::atomic<int> tickets{0};
+    ovc::DestroyedHandles<ovc_scene_t> destroyed;
+    ovc::DestroyedHandles<ovc_ticket_t> released;
+};
+
+namespace ovc {
+
+/// Runs body; whatever it throws becomes a code, and a message in `messages`: something with set(),
+/// which is called in the host's floating-point mode.
+template <class Keeper, class Body>
+ovc_result guard(Keeper& messages, Body&& body) {
+    const auto fail = [&](ovc_result code, const std::string& message) {
+        messages.set(code, message);
+        return code;
+    };
+    try {
+        const DefaultFloatMode mode;
+        if (in_host_function)
+            throw Failure{
+                OVC_ERROR_INVALID_STATE,
+                "called from within a function for errors, logs, progress or what is saved, where "
+                "last_error is the only call"};
+        body();
+        return OVC_OK;
+    } catch (const Failure& failure) {
+        return fail(failure.code, failure.message);
+    } catch (const std::bad_alloc&) {
+        return fail(OVC_ERROR_OUT_OF_MEMORY, "out of host memory");
+    } catch (const std::system_error& e) {
+        // What the system refuses us is a thread, for want of memory or by a limit.
+        if (e.code() == std::errc::resource_unavailable_try_again ||
+            e.code() == std::errc::not_enough_memory)
+            return fail(OVC_ERROR_OUT_OF_MEMORY,
+                        std::string("the system refuses a thread: out of memory, or a limit "
+                                    "(ulimit -u, a container's pids) is reached: ") +
+                            e.what());
+        return fail(OVC_ERROR_INTERNAL, std::string("internal error: ") + e.what());
+    } catch (const std::exception& e) {
+        return fail(OVC_ERROR_INTERNAL, std::string("internal error: ") + e.what());
+    } catch (...) {
+        return fail(OVC_ERROR_INTERNAL, "internal error");
+    }
+}
+
+} // namespace ovc

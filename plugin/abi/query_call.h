@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// What calls with rays take besides: ovc_query of this header or of an earlier one, and the rays as
+// it says that they are.
+#pragma once
+
+#include "core/ray_span.h"
+#include "plugin/abi/scene_call.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+namespace ovc {
+
+static_assert(sizeof(ovc_ray_float) == sizeof(FloatRay) &&
+              offsetof(ovc_ray_float, t_min) == offsetof(FloatRay, t_min) &&
+              offsetof(ovc_ray_float, dir) == offsetof(FloatRay, dir) &&
+              offsetof(ovc_ray_float, t_max) == offsetof(FloatRay, t_max));
+
+/// The caller's query, whole: what it lacks, or all of it, is the default.
+inline ovc_query complete(const ovc_query* query) {
+    ovc_query all{};
+    all.struct_size = sizeof(all);
+    if (!query)
+        return all;
+    constexpr size_t sizes[] = {offsetof(ovc_query, leaf), offsetof(ovc_query, flagged),
+                                offsetof(ovc_query, ray_format), sizeof(ovc_query)};
+    if (std::find(std::begin(sizes), std::end(sizes), query->struct_size) == std::end(sizes))
+        invalid(fmt::format("ovc_query.struct_size is {}, expected sizeof(ovc_query) = {}",
+                            query->struct_size, sizeof(ovc_query)));
+    std::memcpy(&all, query, query->struct_size);
+    if (all.ray_format > OVC_RAY_FLOAT)
+        invalid(fmt::format("ovc_query.ray_format is {}, expected 0 or 1", all.ray_format));
+    if (all.reserved)
+        invalid(fmt::format("ovc_query.reserved is {}, expected 0", all.reserved));
+    return all;
+}
+
+inline RaySpan rays_of(const ovc_query& query, const ovc_ray* rays, size_t ray_count) {
+    if (query.ray_format == OVC_RAY_FLOAT)
+        return RaySpan(std::span(reinterpret_cast<const FloatRay*>(rays), ray_count));
+    return RaySpan(std::span(reinterpret_cast<const Ray*>(rays), ray_count));
+}
+
+/// The triangles that rays do not see; empty for none.
+inline std::span<const TriangleId> skip_of(const ovc_query& query, size_t ray_count) {
+    if (!query.skip)
+        return {};
+    return {reinterpret_cast<const TriangleId*>(query.skip), ray_count};
+}
+
+/// What else is to be told of rays.
+inline RayNotes notes_of(const ovc_query& query, size_t ray_count) {
+    const auto span = [&](uint32_t* notes) {
+        return notes ? std::span(notes, ray_count) : std::span<uint32_t>();
+    };
+    return {span(query.leaf), span(query.passes), span(query.flagged)};
+}
+
+inline void refuse_notes(const char* call, const ovc_query& query) {
+    if (query.leaf || query.passes || query.flagged)
+        invalid(fmt::format("{}: ovc_query.leaf, passes and flagged are for intersect", call));
+}
+
+inline void refuse_progress(const char* call, const ovc_query& query) {
+    if (query.progress)
+        invalid(fmt::format(
+            "{}: ovc_query.progress is for intersect and occluded and their submitted forms",
+            call));
+}
+
+} // namespace ovc

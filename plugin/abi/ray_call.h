@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// A call of intersect or occluded, whether it is waited for or submitted: its arguments checked,
+// then traced.
+#pragma once
+
+#include "plugin/abi/query_call.h"
+
+#include <cstdint>
+
+namespace ovc {
+
+struct RayCall {
+    const char* name = ""; // as in messages
+    bool any_hit = false;
+    ovc_query query{};
+    RaySpan rays;
+    std::span<Hit> hits;         // where not any_hit
+    std::span<uint8_t> occluded; // where any_hit
+};
+
+inline void check_buffers(const char* name, const void* rays, const void* answers, size_t count) {
+    if (count && (!rays || !answers))
+        invalid(fmt::format("{}: rays or the answers' buffer is NULL", name));
+}
+
+/// One of the caller's buffers.
+struct BufferRange {
+    const char* name;
+    const void* begin; // NULL: there is none
+    size_t bytes;
+    bool is_written;
+
+    bool overlaps(const BufferRange& other) const {
+        const auto mine = reinterpret_cast<uintptr_t>(begin);
+        const auto theirs = reinterpret_cast<uintptr_t>(other.begin);
+        return begin && other.begin && mine < theirs + other.bytes && theirs < mine + bytes;
+    }
+};
+
+/// Refuses an answer that would be written over rays that are still to be read, or over another
+/// answer.
+inline void check_apart(const char* name, const void* rays, const void* answers,
+                        size_t answer_bytes, size_t count, const ovc_query& query) {
+    const size_t ray_bytes =
+        query.ray_format == OVC_RAY_FLOAT ? sizeof(ovc_ray_float) : sizeof(ovc_ray);
+    const size_t notes_bytes = count * sizeof(uint32_t);
+    const BufferRange buffers[] = {
+        {"rays", rays, count * ray_bytes, false},
+        {"ovc_query.skip", query.skip, count * sizeof(ovc_triangle), false},
+        {"the answers' buffer", answers, count * answer_bytes, true},
+        {"ovc_query.leaf", query.leaf, notes_bytes, true},
+        {"ovc_query.passes", query.passes, notes_bytes, true},
+        {"ovc_query.flagged", query.flagged, notes_bytes, true},
+    };
+    for (const BufferRange& a : buffers)
+        for (const BufferRange& b : buffers)
+            if (&a < &b && b.is_written && a.overlaps(b))
+                invalid(fmt::format("{}: {} and {} overlap, expected buffers apart", name, a.name,
+                                    b.name));
+}
+
+/// Throws a Failure for arguments that make no sense.
+inline RayCall nearest_call(const char* name, const ovc_ray* rays, size_t count, ovc_hit* hits,
+                            const ovc_query* query) {
+    check_buffers(name, rays, hits, count);
+    const ovc_query asked = complete(query);
+    check_apart(name, rays, hits, sizeof(ovc_hit), count, asked);
+    return {.name = name,
+            .query = asked,
+            .rays = rays_of(asked, rays, count),
+            .hits = {reinterpret_cast<Hit*>(hits), count}};
+}
+
+inline RayCall occlusion_call(const char* name, const ovc_ray* rays, size_t count,
+                              uint8_t* occluded, const ovc_query* query) {
+    check_buffers(name, rays, occluded, count);
+    const ovc_query asked = complete(query);
+    refuse_notes(name, asked);
+    check_apart(name, rays, occluded, 1, count, asked);
+    return {.name = name,
+            .any_hit = true,
+            .query = asked,
+            .rays = rays_of(asked, rays, count),
+            .occluded = {occluded, count}};
+}
+
+inline void check_notes(const RayCall& call, const Structure& structure) {
+    if (notes_of(call.query, call.rays.size()).any() && !structure.takes_notes())
+        invalid(fmt::format("{}: this structure cannot tell ovc_query.leaf, passes or flagged",
+                            call.name));
+}
+
+/// With the scene's turn. watch: nullptr, or asked between passes. Throws a Failure.
+inline void trace(const RayCall& call, Structure& structure, TraceWatch* watch) {
+    check_notes(call, structure);
+    const auto skip = skip_of(call.query, call.rays.size());
+    const CallWatch::Scope watched(structure.call_watch(), watch);
+    if (watch && !watch->goes_on(0))
+        cancelled(call.name);
+    const Result<Done> done =
+        call.any_hit ? structure.occluded(call.rays, skip, call.occluded)
+                     : structure.intersect_noted(call.rays, skip, call.hits,
+                                                 notes_of(call.query, call.rays.size()));
+    if (!done && done.error().kind == ErrorKind::Cancelled)
+        cancelled(call.name);
+    check(done);
+}
+
+} // namespace ovc

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes: commit, statistics. Arguments are checked here; what is below trusts
+// them.
+#include "plugin/abi/scene.h"
+
+#include "core/build_progress.h"
+#include "core/system/stopwatch.h"
+#include "plugin/abi/device_call.h"
+#include "plugin/abi/scene_call.h"
+#include "plugin/abi/struct_size.h"
+
+#include <cstddef>
+#include <cstring>
+
+namespace ovc {
+namespace {
+
+void check_choice(const char* field, uint32_t value, uint32_t last) {
+    if (value > last)
+        invalid(fmt::format("ovc_scene_config.{} is {}, expected {}{}", field, value,
+                            last ? "0 to " : "", last));
+}
+
+/// body(progress), told to the config's function; body's Cancelled becomes a code.
+template <class Body>
+void with_progress(const ovc_scene_config& config, const char* call, Body&& body) {
+    if (!config.progress) {
+        body(nullptr);
+        return;
+    }
+    BuildProgress progress([&](double done, const char* stage) {
+        const HostFunction mark;
+        return config.progress(config.progress_user, done, stage) == 0;
+    });
+    try {
+        body(&progress);
+    } catch (const Cancelled&) {
+        throw Failure{OVC_ERROR_CANCELLED,
+                      fmt::format("{}: cancelled by ovc_scene_config.progress", call)};
+    }
+}
+
+uint64_t soup_bytes(const ovc_scene_t& scene) {
+    uint64_t bytes = 0;
+    for (const Chunk& chunk : scene.soup.chunks)
+        bytes += chunk.owned_bytes();
+    for (const auto& [number, chunk] : scene.templates)
+        bytes += chunk.owned_bytes();
+    return bytes;
+}
+
+} // namespace
+
+ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_scene* scene) {
+    return on_device(device, "create_scene", [&] {
+        if (!scene)
+            invalid("create_scene: scene is NULL");
+        *scene = nullptr;
+        auto created = std::make_unique<ovc_scene_t>();
+        created->device = device;
+        if (config) {
+            check_size<ovc_scene_config>("ovc_scene_config", config->struct_size,
+                                         offsetof(ovc_scene_config, progress));
+            if (config->leaf_triangles && config->leaves)
+                invalid(
+                    "ovc_scene_config: leaf_triangles and leaves are both set; one says it all");
+            check_choice("precision", config->precision, OVC_PRECISION_FAST);
+            check_choice("kernel", config->kernel, OVC_KERNEL_COMPUTE);
+            check_choice("structure", config->structure, OVC_STRUCTURE_THESIS_TWO_LEVEL);
+            check_choice("level1", config->level1, OVC_LEVEL1_BVH);
+            check_choice("level1_build", config->level1_build, OVC_LEVEL1_BUILD_BOTTOM_UP);
+            std::memcpy(&created->config, config, config->struct_size);
+            created->config.struct_size = sizeof(ovc_scene_config);
+            check_choice("tell_active", created->config.tell_active, 1);
+            check_choice("reserved", created->config.reserved, 0);
+            if (!created->config.saved && created->config.saved_bytes)
+                invalid("ovc_scene_config.saved is NULL, but saved_bytes is not 0");
+        }
+        // Known to be impossible before anything is added: say so now.
+        check_config(created->config, device->gl->info());
+        ++device->scenes;
+        *scene = created.release();
+    });
+}
+
+ovc_result commit(ovc_scene scene) {
+    return on_scene(scene, "commit", [&] {
+        if (scene->structure)
+            throw Failure{OVC_ERROR_INVALID_STATE, "commit: the scene is committed already"};
+        with_progress(scene->config, "commit", [&](BuildProgress* progress) {
+            Result<std::unique_ptr<Structure>> built = make_structure(
+                scene->soup, *scene->device->gl, scene->config, scene->device->log, progress);
+            if (!built)
+                throw Failure{code_of(built.error().kind, OVC_ERROR_INTERNAL),
+                              built.error().message};
+            if (progress)
+                progress->finish(); // the last chance to be cancelled
+            scene->structure = std::move(*built);
+            scene->single_rays.serve(scene->structure.get());
+        });
+    });
+}
+
+ovc_result statistics(ovc_scene scene, ovc_statistics* statistics) {
+    return on_scene(scene, "statistics", [&] {
+        if (!statistics)
+            invalid("statistics: statistics is NULL");
+        const size_t size = statistics->struct_size;
+        check_size<ovc_statistics>("ovc_statistics", size, offsetof(ovc_statistics, host_bytes));
+        ovc_statistics all = committed(scene, "statistics").report();
+        scene->single_rays.add_to(all);
+        all.struct_size = size;
+        all.soup_bytes = soup_bytes(*scene);
+        std::memcpy(statistics, &all, size);
+    });
+}
+
+ovc_result plan(ovc_scene scene, ovc_plan* plan) {
+    return on_scene(scene, "plan", [&] {
+        if (!plan)
+            invalid("plan: plan is NULL");
+        check_size<ovc_plan>("ovc_plan", plan->struct_size, sizeof(ovc_plan));
+        const Stopwatch watch;
+        with_progress(scene->config, "plan", [&](BuildProgress* progress) {
+            const Result<ovc_plan> told =
+                plan_structure(scene->soup, scene->device->gl->info(), scene->config, progress);
+            if (!told)
+                throw Failure{code_of(told.error().kind, OVC_ERROR_INTERNAL), told.error().message};
+            *plan = *told;
+        });
+        plan->seconds = watch.seconds();
+    });
+}
+
+ovc_result active(ovc_scene scene, ovc_active* active) {
+    return on_scene(scene, "active", [&] {
+        if (!active)
+            invalid("active: active is NULL");
+        check_size<ovc_active>("ovc_active", active->struct_size, sizeof(ovc_active));
+        const Result<ovc_active> told = committed(scene, "active").take_active();
+        if (!told)
+            throw Failure{code_of(told.error().kind, OVC_ERROR_INVALID_ARGUMENT),
+                          "active: " + told.error().message};
+        *active = *told;
+        active->struct_size = sizeof(ovc_active);
+    });
+}
+
+ovc_result purge(ovc_scene scene) {
+    return on_scene(scene, "purge", [&] {
+        if (!scene->structure)
+            return;
+        if (const Result<Done> purged = scene->structure->purge(); !purged)
+            throw Failure{code_of(purged.error().kind, OVC_ERROR_INVALID_ARGUMENT),
+                          "purge: " + purged.error().message};
+    });
+}
+
+ovc_result save(ovc_scene scene, ovc_write_function write, void* user) {
+    return on_scene(scene, "save", [&] {
+        if (!write)
+            invalid("save: write is NULL");
+        const Result<Done> saved = committed(scene, "save").save([&](Bytes bytes) {
+            const HostFunction mark;
+            return write(user, bytes.data(), bytes.size()) == 0;
+        });
+        if (!saved)
+            throw Failure{code_of(saved.error().kind, OVC_ERROR_INVALID_ARGUMENT),
+                          "save: " + saved.error().message};
+    });
+}
+
+void destroy_scene(ovc_scene scene) {
+    if (!is_scene(scene, "destroy_scene") || in_host_function)
+        return;
+    ovc_device device = scene->device;
+    if (scene->streaming == std::this_thread::get_id()) {
+        say(device->log, LogLevel::Error,
+            "destroy_scene: called from within the scene's own stream; the scene stays");
+        return;
+    }
+    uint32_t alive = kSceneMagic;
+    if (!scene->magic.compare_exchange_strong(alive, kDestroyed))
+        return; // another thread destroys it
+    scene->submissions.stop();
+    {
+        const std::lock_guard turn(scene->turn); // a call that is still running ends first
+        scene->single_rays.serve(nullptr);
+        scene->structure.reset();
+        scene->soup = {};
+        scene->templates.clear();
+    }
+    scene->calls.wait_until_none(); // those who waited for their turn use the device yet
+    device->destroyed.add(std::unique_ptr<ovc_scene_t>(scene));
+    --device->scenes;
+}
+
+} // namespace ovc

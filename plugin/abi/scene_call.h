@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every function of the table that works on a scene begins and ends with.
+#pragma once
+
+#include "plugin/abi/device.h"
+#include "plugin/abi/handles.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+
+namespace ovc {
+
+// The records of the ABI are the records of core, byte for byte: batches cross without a copy.
+static_assert(sizeof(ovc_ray) == sizeof(Ray) && offsetof(ovc_ray, t_min) == offsetof(Ray, t_min) &&
+              offsetof(ovc_ray, dir) == offsetof(Ray, dir) &&
+              offsetof(ovc_ray, t_max) == offsetof(Ray, t_max));
+static_assert(sizeof(ovc_hit) == sizeof(Hit) && offsetof(ovc_hit, u) == offsetof(Hit, u) &&
+              offsetof(ovc_hit, mesh) == offsetof(Hit, id));
+static_assert(sizeof(ovc_triangle) == sizeof(TriangleId) && OVC_NONE == kNone);
+
+[[noreturn]] inline void invalid(std::string message) {
+    throw Failure{OVC_ERROR_INVALID_ARGUMENT, std::move(message)};
+}
+
+/// Not null, a scene that lives, and not of the process that this one was forked from; else there
+/// is a message for last_error(NULL).
+inline bool is_scene(ovc_scene scene, const char* call) {
+    if (scene && scene->magic == kSceneMagic)
+        return is_device(scene->device, call);
+    const bool destroyed = scene && scene->magic == kDestroyed;
+    const std::string message = fmt::format(
+        "{}: {}", call, destroyed ? "the scene is destroyed" : "scene is NULL or not a scene");
+    if (destroyed && is_device(scene->device, call))
+        scene->device->messages.set(OVC_ERROR_INVALID_ARGUMENT, message);
+    fail_without_device(OVC_ERROR_INVALID_ARGUMENT, message);
+    return false;
+}
+
+/// body() beside all other calls on the handle, of a scene or a ticket, which stays until it ends.
+/// lives(handle, call): whether it is one; else there is a message.
+template <class Handle, class Lives, class Body>
+ovc_result beside_calls(Handle* handle, const char* call, Lives&& lives, Body&& body) {
+    if (!lives(handle, call))
+        return OVC_ERROR_INVALID_ARGUMENT;
+    const CallsInside::Call inside(handle->calls);
+    if (!lives(handle, call)) // it was not counted yet when whoever ends the handle looked
+        return OVC_ERROR_INVALID_ARGUMENT;
+    return guard(handle->device->messages, std::forward<Body>(body));
+}
+
+/// body() beside all other calls on the scene, without its turn.
+template <class Body>
+ovc_result beside_scene(ovc_scene scene, const char* call, Body&& body) {
+    return beside_calls(scene, call, is_scene, std::forward<Body>(body));
+}
+
+[[noreturn]] inline void cancelled(const char* call) {
+    throw Failure{OVC_ERROR_CANCELLED, fmt::format("{}: cancelled", call)};
+}
+
+/// body() with the scene's turn taken, within beside_scene(). goes_on() is asked while other calls
+/// have it; false: this one is cancelled.
+template <class GoesOn, class Body>
+void in_turn(ovc_scene scene, const char* call, GoesOn&& goes_on, Body&& body) {
+    if (scene->streaming == std::this_thread::get_id())
+        throw Failure{OVC_ERROR_INVALID_STATE,
+                      fmt::format("{}: called from within the scene's own stream, where push "
+                                  "is the only call on it",
+                                  call)};
+    if (!scene->turn.lock_while(goes_on))
+        cancelled(call);
+    const std::lock_guard turn(scene->turn, std::adopt_lock);
+    if (scene->magic != kSceneMagic)
+        throw Failure{OVC_ERROR_INVALID_STATE,
+                      fmt::format("{}: the scene was destroyed before its turn came", call)};
+    body();
+}
+
+/// body() with the scene's turn taken.
+template <class Body>
+ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
+    return beside_scene(scene, call, [&] {
+        in_turn(
+            scene, call, [] { return true; }, body);
+    });
+}
+
+[[noreturn]] inline void not_committed(const char* call) {
+    throw Failure{OVC_ERROR_INVALID_STATE, fmt::format("{}: the scene is not committed yet", call)};
+}
+
+inline Structure& committed(ovc_scene scene, const char* call) {
+    if (!scene->structure)
+        not_committed(call);
+    return *scene->structure;
+}
+
+inline ovc_result code_of(ErrorKind kind, ovc_result otherwise) {
+    switch (kind) {
+    case ErrorKind::InvalidArgument:
+        return OVC_ERROR_INVALID_ARGUMENT;
+    case ErrorKind::OutOfGpuMemory:
+    case ErrorKind::OutOfMemory:
+        return OVC_ERROR_OUT_OF_MEMORY;
+    case ErrorKind::OverBudget:
+        return OVC_ERROR_OUT_OF_BUDGET;
+    case ErrorKind::DeviceLost:
+        return OVC_ERROR_DEVICE_LOST;
+    case ErrorKind::Cancelled:
+        return OVC_ERROR_CANCELLED;
+    case ErrorKind::Other:
+        break;
+    }
+    return otherwise;
+}
+
+inline void check(const Result<Done>& result) {
+    if (!result)
+        throw Failure{code_of(result.error().kind, OVC_ERROR_INTERNAL), result.error().message};
+}
+
+} // namespace ovc

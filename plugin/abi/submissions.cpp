@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// One after another, in their order.
+#include "plugin/abi/submissions.h"
+
+#include "plugin/abi/submission.h"
+
+namespace ovc {
+
+bool Submissions::submit(std::shared_ptr<Submission> submission, const Work& work) {
+    const std::lock_guard lock(mutex_);
+    if (stopped_)
+        return false;
+    waiting_.push_back(std::move(submission));
+    try {
+        if (!thread_.joinable())
+            thread_ = std::thread([this, work] { serve(work); });
+    } catch (...) {
+        waiting_.pop_back();
+        throw;
+    }
+    changed_.notify_all();
+    return true;
+}
+
+void Submissions::stop() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopped_ = true;
+        for (const auto& submission : waiting_)
+            submission->cancel();
+        changed_.notify_all();
+    }
+    if (thread_.joinable())
+        thread_.join();
+}
+
+void Submissions::serve(const Work& work) {
+    std::unique_lock lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [&] { return !waiting_.empty() || stopped_; });
+        if (waiting_.empty())
+            return;
+        const std::shared_ptr<Submission> next = waiting_.front();
+        lock.unlock();
+        work(*next);
+        lock.lock();
+        waiting_.pop_front();
+    }
+}
+
+} // namespace ovc

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tickets: what the host holds of calls that it has submitted.
+#include "plugin/abi/ticket_call.h"
+
+#include "plugin/abi/submission.h"
+
+namespace ovc {
+namespace {
+
+/// On the scene's thread: the submission in its turn.
+void do_in_turn(ovc_scene scene, Submission& submission) {
+    const std::lock_guard turn(scene->turn);
+    if (!submission.begin())
+        return;
+    Submission::Outcome outcome;
+    outcome.result =
+        guard(outcome, [&] { trace(submission.call(), *scene->structure, &submission); });
+    submission.end(std::move(outcome));
+}
+
+/// The call that check() makes of the arguments, submitted.
+template <class Check>
+ovc_result submit(ovc_scene scene, const char* name, ovc_ticket* ticket, Check&& check) {
+    if (ticket)
+        *ticket = nullptr;
+    return beside_scene(scene, name, [&] {
+        if (!ticket)
+            invalid(fmt::format("{}: ticket is NULL", name));
+        const RayCall call = check();
+        Structure* structure = SingleRays::Call(scene->single_rays).structure();
+        if (!structure)
+            not_committed(name);
+        check_notes(call, *structure);
+        auto made = std::make_unique<ovc_ticket_t>();
+        made->device = scene->device;
+        made->scene = scene;
+        made->submission = std::make_shared<Submission>(call);
+        if (!scene->submissions.submit(made->submission, [scene](Submission& submission) {
+                do_in_turn(scene, submission);
+            }))
+            throw Failure{OVC_ERROR_INVALID_STATE,
+                          fmt::format("{}: the scene is being destroyed", name)};
+        ++scene->device->tickets;
+        *ticket = made.release();
+    });
+}
+
+/// Not null, not released, and not of the process that this one was forked from; else there is a
+/// message for last_error(NULL).
+bool is_ticket(ovc_ticket ticket, const char* call) {
+    if (ticket && ticket->magic == kTicketMagic)
+        return is_device(ticket->device, call);
+    fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
+                        fmt::format("{}: ticket is NULL, released, or not a ticket", call));
+    return false;
+}
+
+/// body(submission) for a ticket that is one.
+template <class Body>
+ovc_result on_ticket(ovc_ticket ticket, const char* call, Body&& body) {
+    return beside_calls(ticket, call, is_ticket, [&] { body(*ticket->submission); });
+}
+
+} // namespace
+
+ovc_result submit_intersect(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits,
+                            const ovc_query* query, ovc_ticket* ticket) {
+    return submit(scene, "submit_intersect", ticket,
+                  [&] { return nearest_call("submit_intersect", rays, ray_count, hits, query); });
+}
+
+ovc_result submit_occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count,
+                           uint8_t* occluded, const ovc_query* query, ovc_ticket* ticket) {
+    return submit(scene, "submit_occluded", ticket, [&] {
+        return occlusion_call("submit_occluded", rays, ray_count, occluded, query);
+    });
+}
+
+ovc_result wait(ovc_ticket ticket) {
+    return on_ticket(ticket, "wait", [&](Submission& submission) {
+        const Submission::Outcome outcome = submission.wait([&] {
+            if (ticket->scene->streaming == std::this_thread::get_id())
+                throw Failure{OVC_ERROR_INVALID_STATE,
+                              "wait: called from within the stream of the ticket's scene, which it "
+                              "would wait for"};
+        });
+        if (outcome.result != OVC_OK)
+            throw Failure{outcome.result, outcome.message};
+    });
+}
+
+ovc_result poll(ovc_ticket ticket, uint32_t* done, double* progress) {
+    return on_ticket(ticket, "poll", [&](Submission& submission) {
+        if (!done)
+            invalid("poll: done is NULL");
+        *done = submission.done();
+        if (progress)
+            *progress = submission.progress();
+    });
+}
+
+ovc_result cancel(ovc_ticket ticket) {
+    return on_ticket(ticket, "cancel", [](Submission& submission) { submission.cancel(); });
+}
+
+void release(ovc_ticket ticket) {
+    uint32_t alive = kTicketMagic;
+    if (!is_ticket(ticket, "release") || in_host_function ||
+        !ticket->magic.compare_exchange_strong(alive, kDestroyed))
+        return;
+    ticket->submission->cancel();
+    ticket->submission->wait([] {});
+    ticket->calls.wait_until_none();
+    ovc_device device = ticket->device;
+    device->released.add(std::unique_ptr<ovc_ticket_t>(ticket));
+    --device->tickets;
+}
+
+} // namespace ovc

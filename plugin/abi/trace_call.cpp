@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Batches of rays, and single ones, in calls that return with the answers.
+#include "plugin/abi/trace_call.h"
+
+#include "plugin/abi/asked_progress.h"
+#include "plugin/abi/ray_call.h"
+
+namespace ovc {
+namespace {
+
+/// make_call() checks the arguments, which needs no turn.
+template <class MakeCall>
+ovc_result batch_of_rays(ovc_scene scene, const char* name, MakeCall&& make_call) {
+    HostFloatMode mode;
+    return beside_scene(scene, name, [&] {
+        const RayCall call = make_call();
+        AskedProgress progress(call.query, mode);
+        TraceWatch* const watch = call.query.progress ? &progress : nullptr;
+        in_turn(
+            scene, name, [&] { return progress.goes_on(0); },
+            [&] { trace(call, committed(scene, name), watch); });
+    });
+}
+
+/// Answers one ray beside other calls; batch() does where the structure has no tree on the CPU.
+template <class Batch>
+ovc_result single(ovc_scene scene, const char* name, const ovc_ray* ray, const void* result,
+                  const ovc_query* query, SingleRay& single, Batch&& batch) {
+    bool on_cpu = true;
+    const ovc_result done = beside_scene(scene, name, [&] {
+        check_buffers(name, ray, result, 1);
+        const ovc_query asked = complete(query);
+        refuse_notes(name, asked);
+        refuse_progress(name, asked);
+        SingleRays::Call call(scene->single_rays);
+        if (!call.structure())
+            not_committed(name);
+        on_cpu = call.structure()->has_cpu_tree();
+        if (!on_cpu)
+            return;
+        single.ray = rays_of(asked, ray, 1)[0];
+        if (asked.skip)
+            single.skip = skip_of(asked, 1)[0];
+        call.answer(single);
+    });
+    return on_cpu ? done : batch();
+}
+
+} // namespace
+
+ovc_result intersect(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits,
+                     const ovc_query* query) {
+    return batch_of_rays(scene, "intersect",
+                         [&] { return nearest_call("intersect", rays, ray_count, hits, query); });
+}
+
+ovc_result occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded,
+                    const ovc_query* query) {
+    return batch_of_rays(scene, "occluded", [&] {
+        return occlusion_call("occluded", rays, ray_count, occluded, query);
+    });
+}
+
+ovc_result intersect1(ovc_scene scene, const ovc_ray* ray, ovc_hit* hit, const ovc_query* query) {
+    SingleRay asked;
+    const ovc_result done = single(scene, "intersect1", ray, hit, query, asked, [&] {
+        return intersect(scene, ray, 1, reinterpret_cast<ovc_hit*>(&asked.hit), query);
+    });
+    if (done == OVC_OK)
+        *reinterpret_cast<Hit*>(hit) = asked.hit;
+    return done;
+}
+
+ovc_result occluded1(ovc_scene scene, const ovc_ray* ray, uint8_t* occluded,
+                     const ovc_query* query) {
+    SingleRay asked{.any_hit = true};
+    const ovc_result done = single(scene, "occluded1", ray, occluded, query, asked, [&] {
+        uint8_t answer = 0;
+        const ovc_result traced = ovc::occluded(scene, ray, 1, &answer, query);
+        asked.occluded = answer != 0;
+        return traced;
+    });
+    if (done == OVC_OK)
+        *occluded = asked.occluded;
+    return done;
+}
+
+} // namespace ovc

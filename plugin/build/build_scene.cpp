@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene is restored or built, and cut as small as can be where the budget has no room for it.
+#include "plugin/build/build_scene.h"
+
+#include "plugin/build/level2.h"
+#include "plugin/build/saved_levels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace ovc {
+
+uint64_t room_for_pool(const BuiltScene& scene, const TwoLevelOptions& options,
+                       const MemoryPlan& plan) {
+    const uint64_t active_bytes = options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
+    const uint64_t table_bytes = scene.top.portals.size() * kPortalBytes + active_bytes;
+    return plan.pool_bytes - std::min(plan.pool_bytes, table_bytes);
+}
+
+void set_limits(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan) {
+    uint64_t unique = scene.triangles;
+    for (const SharedMesh& mesh : scene.shared)
+        unique += mesh.scene.triangles;
+    scene.limits = limits_of(options, plan, scene.triangles, unique);
+    for (SharedMesh& mesh : scene.shared)
+        mesh.scene.limits = limits_of(options, plan, mesh.scene.triangles, unique);
+}
+
+namespace {
+
+/// Puts the tree over the scene's pages, smaller where the pool has not room for all of them; false
+/// where it has no room for the tree and the largest page.
+bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan) {
+    const size_t pages = scene.pages.size();
+    if (pages == 0)
+        return true; // every ray misses
+    const size_t links = max_links(pages, scene.level2_bytes(), plan.pool_bytes);
+    for (const size_t some : {links, pages}) {
+        scene.top = top_level_of(scene, some);
+        if (is_usable(scene.top, scene.pages,
+                      {room_for_pool(scene, options, plan), plan.buffer_bytes}))
+            return true;
+    }
+    return false;
+}
+
+/// The scene from what was saved; none where that will not do, and the scene is to be built.
+std::optional<BuiltScene> restored(const Soup& soup, const TwoLevelOptions& options,
+                                   const MemoryPlan& plan, const LogSink& log) {
+    if (options.saved.empty())
+        return std::nullopt;
+    Result<std::optional<BuiltScene>> found =
+        restore_levels(options.saved, soup, [&](uint64_t triangles, uint64_t unique) {
+            return limits_of(options, plan, triangles, unique);
+        });
+    if (!found) {
+        say(log, LogLevel::Warning,
+            fmt::format("building anew: what was saved {}", found.error().message));
+        return std::nullopt;
+    }
+    if (!*found)
+        say(log, LogLevel::Info,
+            "building anew: what was saved is of other meshes or other options");
+    else if (!add_tree(**found, options, plan))
+        return std::nullopt;
+    return std::move(*found);
+}
+
+void warn_of_dropped(const Dropped& dropped, const LogSink& log) {
+    if (dropped.not_finite)
+        say(log, LogLevel::Warning,
+            fmt::format("left out {} triangles with a NaN or infinite corner", dropped.not_finite));
+    if (dropped.degenerate)
+        say(log, LogLevel::Warning,
+            fmt::format("left out {} triangles without area", dropped.degenerate));
+}
+
+Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
+                         BuildProgress* progress) {
+    BuiltScene scene(soup);
+    Placed placed = placed_chunks(soup);
+    const uint64_t unique = unique_triangles(soup, placed);
+    begin(progress, "triangles", 0.1, 2 * unique);
+    HittableParts hittable = take_hittable_parts(scene, std::move(placed), progress);
+    set_limits(scene, options, plan);
+    const auto build = [&](BuiltScene& part, const Hittable& of) {
+        return build_levels(part, of, progress, double(of.triangles.size()) / double(unique));
+    };
+    if (const Result<Done> done = build(scene, hittable.once); !done)
+        return done.error();
+    for (size_t i = 0; i < scene.shared.size(); ++i)
+        if (const Result<Done> done = build(scene.shared[i].scene, hittable.shared[i]); !done)
+            return done.error();
+    gather_pages(scene);
+    if (add_tree(scene, options, plan))
+        return scene;
+    const SmallestCut cut = smallest_cut(soup, options);
+    build_smallest_levels(scene, std::move(hittable.once), cut.leaf_triangles,
+                          /* in_one_frame= */ false, progress);
+    for (size_t i = 0; i < scene.shared.size(); ++i)
+        build_smallest_levels(scene.shared[i].scene, std::move(hittable.shared[i]),
+                              cut.leaf_triangles, /* in_one_frame= */ true, progress);
+    gather_pages(scene);
+    if (add_tree(scene, options, plan))
+        return scene;
+    // check_budget() told that bytes suffice.
+    return over_budget(fmt::format("{} pages under a budget are too many: at most {}; let leaves "
+                                   "hold more triangles",
+                                   scene.pages.size(), OVC_KEY_LEAF - 1));
+}
+
+} // namespace
+
+Result<BuiltScene> build_scene(const Soup& soup, const TwoLevelOptions& options,
+                               const MemoryPlan& plan, const LogSink& log,
+                               BuildProgress* progress) {
+    std::optional<BuiltScene> found = restored(soup, options, plan, log);
+    Result<BuiltScene> scene =
+        found ? Result<BuiltScene>(std::move(*found)) : built(soup, options, plan, progress);
+    if (scene)
+        warn_of_dropped(scene->dropped, log);
+    return scene;
+}
+
+} // namespace ovc

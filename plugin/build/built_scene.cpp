@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// What of a soup is packed, and in how many places it lies.
+#include "plugin/build/built_scene.h"
+
+#include <algorithm>
+#include <array>
+
+namespace ovc {
+
+BuiltScene::BuiltScene(const Soup& soup_) : soup(soup_), numbers(soup_) {}
+BuiltScene::~BuiltScene() = default;
+BuiltScene::BuiltScene(BuiltScene&&) = default;
+
+SharedMesh& BuiltScene::share(const Placed::Instances& instances) {
+    mesh_of_chunk.resize(soup.chunks.size(), kNone);
+    for (const uint32_t chunk : instances)
+        mesh_of_chunk[chunk] = uint32_t(shared.size());
+    auto local = std::make_unique<Soup>();
+    local->chunks.push_back(soup.chunks[instances.front()].unplaced());
+    BuiltScene cut(*local);
+    shared.push_back({std::move(local), std::move(cut), instances, 0});
+    return shared.back();
+}
+
+const SharedMesh* BuiltScene::shared_mesh_of(uint32_t chunk) const {
+    const uint32_t mesh = mesh_of_chunk.empty() ? kNone : mesh_of_chunk[chunk];
+    return mesh == kNone ? nullptr : &shared[mesh];
+}
+
+TriangleId BuiltScene::second(TriangleId id) const {
+    TriangleId next = id;
+    const auto offer = [&](TriangleId other) { next = next == id ? other : std::min(next, other); };
+    if (const SharedMesh* mesh = shared_mesh_of(id.mesh)) {
+        if (const TriangleId twin = mesh->scene.twins.second({0, id.prim}); twin.prim != id.prim)
+            offer({id.mesh, twin.prim});
+    } else if (const TriangleId twin = twins.second(id); twin != id) {
+        offer(twin);
+    }
+    const auto copy = std::ranges::lower_bound(copies, id.mesh, {}, &Placed::Copies::first);
+    if (copy != copies.end() && copy->first == id.mesh)
+        offer({copy->second, id.prim});
+    return next;
+}
+
+uint32_t BuiltScene::page_at(const dvec3& point, TriangleId id) const {
+    const SharedMesh* mesh = shared_mesh_of(id.mesh);
+    if (!mesh)
+        return leaf_at(level1, point, id);
+    const std::vector<Leaf>& leaves = mesh->scene.level1.leaves;
+    for (uint32_t i = 0; i < leaves.size(); ++i)
+        if (std::ranges::binary_search(leaves[i].triangles, TriangleId{0, id.prim}))
+            return mesh->first_page + i;
+    return kNone;
+}
+
+uint64_t BuiltScene::reference_count() const {
+    uint64_t count = level1.reference_count();
+    for (const SharedMesh& mesh : shared)
+        count += mesh.scene.level1.reference_count();
+    return count;
+}
+
+uint64_t BuiltScene::unique_triangles() const {
+    uint64_t count = soup.triangle_count();
+    for (const SharedMesh& mesh : shared)
+        count -= (mesh.instances.size() - 1) * mesh.soup->triangle_count();
+    for (const Placed::Copies& there : copies)
+        count -= uint64_t(there.count - 1) * soup.chunks[there.first].size();
+    return count;
+}
+
+uint64_t BuiltScene::twin_count() const {
+    uint64_t count = twins.count();
+    for (const SharedMesh& mesh : shared)
+        count += mesh.scene.twins.count() * mesh.instances.size();
+    for (const Placed::Copies& there : copies)
+        count += uint64_t(there.count - 1) * soup.chunks[there.first].size();
+    return count;
+}
+
+uint64_t BuiltScene::host_bytes() const {
+    uint64_t bytes = top.tree.bytes() + top.portals.size() * sizeof(Portal);
+    const auto add = [&](const BuiltScene& scene) {
+        bytes += scene.level1.reference_count() * sizeof(TriangleId) +
+                 scene.level1.leaves.size() * sizeof(Leaf) +
+                 scene.level1.nodes.size() * sizeof(KdNode);
+    };
+    add(*this);
+    for (const SharedMesh& mesh : shared)
+        add(mesh.scene);
+    return bytes + level2_bytes();
+}
+
+namespace {
+
+/// Of a mesh: triangles on a line, though no two of their corners are the same. Where they are
+/// placed rounding may give them an area.
+std::vector<uint32_t> on_a_line(const Chunk& mesh) {
+    std::vector<uint32_t> prims;
+    for (uint32_t prim = 0; prim < mesh.size(); ++prim) {
+        const Triangle t = mesh.triangle(prim);
+        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0] &&
+            triangle_fault(t) == TriangleFault::Degenerate)
+            prims.push_back(prim);
+    }
+    return prims;
+}
+
+/// What the instances of shared meshes are made of, and what of them is cut with the others.
+class SharedParts {
+public:
+    explicit SharedParts(BuiltScene& scene) : scene_(scene) {}
+
+    void take(const std::vector<Placed::Instances>& shared, std::vector<Hittable>& hittable,
+              BuildProgress* progress) {
+        for (const Placed::Instances& instances : shared) {
+            BuiltScene& mesh = scene_.share(instances).scene;
+            hittable.push_back(take_hittable(mesh, progress));
+            mesh.seconds_level1 = 0; // it is part of what the whole took
+            note(mesh, instances, hittable.back().bounds);
+        }
+    }
+
+    const std::vector<TriangleId>& by_themselves() const { return by_themselves_; }
+    const Box& bounds() const { return bounds_; }
+
+private:
+    void note(const BuiltScene& local, const Placed::Instances& instances, const Box& box) {
+        const Chunk& mesh = local.soup.chunks.front();
+        std::vector<uint32_t> lines;
+        if (local.dropped.degenerate > 0)
+            lines = on_a_line(mesh);
+        for (const uint32_t chunk : instances) {
+            scene_.dropped.not_finite += local.dropped.not_finite;
+            scene_.dropped.degenerate += local.dropped.degenerate;
+            if (!box.empty())
+                bounds_.add(placed_box(box, scene_.soup.chunks[chunk].placement()));
+            for (const uint32_t prim : lines) {
+                const Triangle triangle = scene_.soup.triangle({chunk, prim});
+                if (triangle_fault(triangle) != TriangleFault::None)
+                    continue;
+                by_themselves_.push_back({chunk, prim});
+                bounds_.add(bounds_of(triangle));
+                scene_.dropped.degenerate -= 1;
+            }
+        }
+    }
+
+    BuiltScene& scene_;
+    std::vector<TriangleId> by_themselves_;
+    Box bounds_;
+};
+
+void take_twins_out(BuiltScene& scene, Hittable& hittable, BuildProgress* progress) {
+    scene.twins = Twins::take_out(scene.soup, hittable.triangles, progress);
+    scene.triangles = hittable.triangles.size();
+}
+
+} // namespace
+
+Hittable take_hittable(BuiltScene& scene, BuildProgress* progress) {
+    const Stopwatch watch;
+    Hittable hittable;
+    hittable.triangles = hittable_triangles(scene.soup, &scene.dropped, &hittable.bounds, progress);
+    take_twins_out(scene, hittable, progress);
+    scene.seconds_level1 = watch.seconds();
+    return hittable;
+}
+
+HittableParts take_hittable_parts(BuiltScene& scene, Placed placed, BuildProgress* progress) {
+    const Stopwatch watch;
+    scene.copies = std::move(placed.copies);
+    HittableParts parts;
+    parts.once.triangles =
+        hittable_triangles(scene.soup, placed.once, &scene.dropped, &parts.once.bounds, progress);
+    SharedParts shared(scene);
+    shared.take(placed.shared, parts.shared, progress);
+    std::vector<TriangleId>& triangles = parts.once.triangles;
+    triangles.insert(triangles.end(), shared.by_themselves().begin(), shared.by_themselves().end());
+    std::ranges::sort(triangles);
+    parts.once.bounds.add(shared.bounds());
+    take_twins_out(scene, parts.once, progress);
+    scene.seconds_level1 = watch.seconds();
+    return parts;
+}
+
+void gather_pages(BuiltScene& scene) {
+    for (SharedMesh& mesh : scene.shared) {
+        mesh.first_page = uint32_t(scene.pages.size());
+        for (const Page& page : mesh.scene.pages)
+            scene.pages.push_back({.texels = {}, .borrowed = page.view(), .depth = page.depth});
+    }
+}
+
+TopLevel top_level_of(const BuiltScene& scene, size_t max_links) {
+    if (scene.shared.empty())
+        return build_top_level(scene.level1, scene.pages, max_links);
+    Parts parts;
+    parts.add(scene.level1, 0, std::array{Place()});
+    for (const SharedMesh& mesh : scene.shared) {
+        std::vector<Place> places;
+        for (const uint32_t chunk : mesh.instances)
+            places.push_back({scene.soup.chunks[chunk].placement(), scene.numbers.of({chunk, 0})});
+        parts.add(mesh.scene.level1, mesh.first_page, places);
+    }
+    return build_top_level(scene_leaf(scene.level1.bounds), std::move(parts), scene.pages,
+                           max_links);
+}
+
+} // namespace ovc

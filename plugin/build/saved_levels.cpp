@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: Apache-2.0
+// Saving is writing arrays as they lie; restoring is checking everything that a walk relies on.
+#include "plugin/build/saved_levels.h"
+
+#include "core/system/parallel.h"
+#include "core/system/stopwatch.h"
+#include "gpu/page/page_check.h"
+#include "plugin/plan/page_rate.h"
+#include "shaders/layout.h"
+#include "shaders/sources.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace ovc {
+namespace {
+
+constexpr std::string_view kKind = "ovc levels";
+/// To be raised when a build makes other leaves or pages of the same soup; a change of layout.h is
+/// noticed without.
+constexpr uint32_t kVersion = 6;
+
+/// Where all of it is the same, a build makes the same levels.
+struct Key {
+    uint64_t layout = 0;         // checksum of shaders/layout.h
+    uint64_t soup = 0;           // checksum of origins and corners
+    uint64_t leaf_triangles = 0; // limits
+    uint64_t page_bytes = 0;     // 0 where no page could come near it
+    uint64_t whole_bytes = 0;
+
+    bool operator==(const Key&) const = default;
+};
+
+/// What is cut together: first all that is placed once, then each mesh that is shared.
+struct SavedCut {
+    uint64_t not_finite = 0;
+    uint64_t degenerate = 0;
+    uint64_t twins = 0;
+    uint64_t twin_pairs = 0; // so many of the part "twins", behind those of the cuts before; as are
+    uint64_t nodes = 0;      // the next two
+    uint64_t leaves = 0;
+    uint64_t triangles = 0;
+    uint64_t shares_frame = 0;
+    uint64_t far_leaves = 0;
+    Box bounds;
+    double padding = 0;
+};
+static_assert(sizeof(SavedCut) == 16 * 8);
+
+struct SavedLeaf {
+    Box cell;
+    Box box;
+    Box grid;
+    dvec3 origin{0};
+    double scale = 1;
+    uint64_t triangles = 0; // so many of the part "lists", behind those of the leaves before
+};
+static_assert(sizeof(SavedLeaf) == 23 * 8);
+
+struct SavedPage {
+    uint64_t texels = 0;
+    uint64_t depth = 0;
+};
+
+uint64_t checksum_of_layout() {
+    for (const ShaderSource& source : shader_sources())
+        if (source.name == "layout.h")
+            return checksum_of(bytes_of(std::span<const char>(source.text)));
+    return 0;
+}
+
+uint64_t checksum_of_soup(const Soup& soup) {
+    Checksum sum;
+    for (const Chunk& chunk : soup.chunks) {
+        sum.add(bytes_of(std::span<const dvec3>(&chunk.origin(), 1)));
+        sum.add_value(uint64_t(chunk.size()));
+        sum.add(bytes_of(chunk.corners()));
+        sum.add(bytes_of(chunk.double_corners()));
+        if (chunk.placement())
+            sum.add(bytes_of(std::span<const Placement>(chunk.placement(), 1)));
+    }
+    return sum.value();
+}
+
+void put_limits(Key& key, const LeafLimits& limits) {
+    key.leaf_triangles = limits.triangles;
+    key.page_bytes = limits.pages_matter() ? limits.page_bytes : 0;
+    key.whole_bytes = limits.whole_bytes;
+}
+
+bool is_sound(const Box& box) {
+    return is_finite(box.lo) && is_finite(box.hi) && !box.empty();
+}
+
+/// Whether a walk from the root ends, stays within the nodes and names leaves there are.
+bool is_walkable(std::span<const KdNode> nodes, size_t leaves) {
+    constexpr uint32_t kDeepest = 120; // what kdtree/walk.h has a stack for, and some
+    std::vector<uint8_t> depth(nodes.size(), 0);
+    if (!nodes.empty())
+        depth[0] = 1;
+    for (size_t i = 0; i < nodes.size(); ++i) {
+        const KdNode& node = nodes[i];
+        if (depth[i] == 0 || depth[i] > kDeepest)
+            return false;
+        if (node.is_leaf()) {
+            if (uint64_t(node.first()) + node.count() > leaves)
+                return false;
+            continue;
+        }
+        // Both children lie behind their parent, and have no other.
+        for (const size_t child : {i + 1, size_t(node.above())}) {
+            if (child <= i || child >= nodes.size() || depth[child] || !std::isfinite(node.split()))
+                return false;
+            depth[child] = uint8_t(depth[i] + 1);
+        }
+    }
+    return true;
+}
+
+bool is_sound(const SavedLeaf& leaf) {
+    return is_sound(leaf.cell) && is_sound(leaf.box) && is_sound(leaf.grid) &&
+           is_finite(leaf.origin) && std::isfinite(leaf.scale) && leaf.scale > 0;
+}
+
+bool share_frame(const SavedLeaf& a, const SavedLeaf& b) {
+    return a.origin == b.origin && a.scale == b.scale && a.grid.lo == b.grid.lo &&
+           a.grid.hi == b.grid.hi;
+}
+
+/// The first `count` of what is left, and less is left; nothing where there are not so many.
+template <class T>
+std::optional<std::span<const T>> take(std::span<const T>& left, uint64_t count) {
+    if (count > left.size())
+        return std::nullopt;
+    const auto taken = left.first(count);
+    left = left.subspan(count);
+    return taken;
+}
+
+bool are_sound(std::span<const Twins::Pair> pairs, const Soup& soup) {
+    const auto exists = [&](TriangleId id) {
+        return id.mesh < soup.chunks.size() && id.prim < soup.chunks[id.mesh].size();
+    };
+    for (size_t i = 0; i < pairs.size(); ++i)
+        if (!exists(pairs[i].smallest) || !exists(pairs[i].second) ||
+            (i > 0 && !(pairs[i - 1].smallest < pairs[i].smallest)))
+            return false;
+    return true;
+}
+
+const Error kUnsound{"is damaged: what it holds are no levels"};
+
+/// The arrays of all cuts, one behind the other; what is not yet read.
+struct Arrays {
+    std::span<const Twins::Pair> twins;
+    std::span<const KdNode> nodes;
+    std::span<const SavedLeaf> leaves;
+    std::span<const TriangleId> lists;
+    std::span<const SavedPage> pages; // one a leaf
+    std::span<const uvec4> texels;
+
+    bool all_read() const {
+        return twins.empty() && nodes.empty() && leaves.empty() && lists.empty() && pages.empty() &&
+               texels.empty();
+    }
+};
+
+/// A cut, from the beginning of the arrays. False where it is none.
+class CutReader {
+public:
+    CutReader(const SavedCut& cut, Arrays& arrays, BuiltScene& scene)
+        : cut_(cut), arrays_(arrays), scene_(scene) {}
+
+    bool read() {
+        scene_.dropped = {cut_.not_finite, cut_.degenerate};
+        scene_.triangles = cut_.triangles;
+        return read_twins() && read_level1() && read_pages();
+    }
+
+private:
+    bool read_twins() {
+        const auto pairs = take(arrays_.twins, cut_.twin_pairs);
+        if (!pairs || !are_sound(*pairs, scene_.soup))
+            return false;
+        scene_.twins = Twins::restored(*pairs, cut_.twins);
+        return true;
+    }
+
+    bool read_level1() {
+        const auto nodes = take(arrays_.nodes, cut_.nodes);
+        const auto leaves = take(arrays_.leaves, cut_.leaves);
+        if (!nodes || !leaves)
+            return false;
+        Level1& level1 = scene_.level1;
+        level1.bounds = cut_.bounds;
+        level1.padding = cut_.padding;
+        level1.shares_frame = cut_.shares_frame == 1;
+        level1.far_leaves = uint32_t(std::min<uint64_t>(cut_.far_leaves, kNone));
+        if (!is_walkable(*nodes, leaves->size()) || nodes->empty() != leaves->empty() ||
+            level1.far_leaves > leaves->size() || !(level1.padding >= 0) ||
+            (!nodes->empty() && !is_sound(level1.bounds)))
+            return false;
+        level1.nodes.assign(nodes->begin(), nodes->end());
+        for (const SavedLeaf& leaf : *leaves) {
+            const auto list = take(arrays_.lists, leaf.triangles);
+            if (!is_sound(leaf) || !list ||
+                (level1.shares_frame && !share_frame(leaf, leaves->front())))
+                return false;
+            level1.leaves.push_back({leaf.cell,
+                                     leaf.box,
+                                     {leaf.origin, leaf.scale},
+                                     leaf.grid,
+                                     {list->begin(), list->end()}});
+        }
+        return true;
+    }
+
+    /// Each page its part of the texels.
+    bool read_pages() {
+        const auto pages = take(arrays_.pages, cut_.leaves);
+        if (!pages)
+            return false;
+        for (const SavedPage& saved : *pages) {
+            const auto texels = take(arrays_.texels, saved.texels);
+            if (!texels || texels->empty() || saved.depth > kNone)
+                return false;
+            scene_.pages.push_back(
+                {.texels = {}, .borrowed = *texels, .depth = uint32_t(saved.depth)});
+        }
+        const auto triangle_count = uint32_t(scene_.soup.triangle_count());
+        std::atomic<bool> walkable{true};
+        parallel_for(scene_.pages.size(), 1, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last && walkable; ++i)
+                if (!is_walkable(scene_.pages[i], triangle_count))
+                    walkable = false;
+        });
+        return walkable;
+    }
+
+    const SavedCut& cut_;
+    Arrays& arrays_;
+    BuiltScene& scene_;
+};
+
+Result<Arrays> arrays_of(const Archive& archive) {
+    const auto twins = archive.items<Twins::Pair>("twins");
+    if (!twins)
+        return twins.error();
+    const auto nodes = archive.items<KdNode>("nodes");
+    if (!nodes)
+        return nodes.error();
+    const auto leaves = archive.items<SavedLeaf>("leaves");
+    if (!leaves)
+        return leaves.error();
+    const auto lists = archive.items<TriangleId>("lists");
+    if (!lists)
+        return lists.error();
+    const auto pages = archive.items<SavedPage>("pages", leaves->size());
+    if (!pages)
+        return pages.error();
+    const auto texels = archive.items<uvec4>("texels");
+    if (!texels)
+        return texels.error();
+    return Arrays{*twins, *nodes, *leaves, *lists, *pages, *texels};
+}
+
+Result<BuiltScene> restored(const Archive& archive, std::span<const SavedCut> cuts,
+                            const Soup& soup) {
+    Result<Arrays> arrays = arrays_of(archive);
+    if (!arrays)
+        return arrays.error();
+    BuiltScene scene(soup);
+    if (!CutReader(cuts.front(), *arrays, scene).read())
+        return kUnsound;
+    Placed placed = placed_chunks(soup); // which meshes are shared is told by the soup
+    scene.copies = std::move(placed.copies);
+    if (cuts.size() != 1 + placed.shared.size())
+        return kUnsound;
+    for (size_t i = 0; i < placed.shared.size(); ++i) {
+        SharedMesh& mesh = scene.share(placed.shared[i]);
+        if (!CutReader(cuts[i + 1], *arrays, mesh.scene).read())
+            return kUnsound;
+    }
+    if (!arrays->all_read())
+        return kUnsound;
+    gather_pages(scene);
+    return scene;
+}
+
+/// All that is cut by itself.
+std::vector<const BuiltScene*> cuts_of(const BuiltScene& scene) {
+    std::vector<const BuiltScene*> cuts{&scene};
+    for (const SharedMesh& mesh : scene.shared)
+        cuts.push_back(&mesh.scene);
+    return cuts;
+}
+
+SavedCut saved_cut(const BuiltScene& scene) {
+    SavedCut cut;
+    cut.not_finite = scene.dropped.not_finite;
+    cut.degenerate = scene.dropped.degenerate;
+    cut.twins = scene.twins.count();
+    cut.twin_pairs = scene.twins.pairs().size();
+    cut.nodes = scene.level1.nodes.size();
+    cut.leaves = scene.level1.leaves.size();
+    cut.triangles = scene.triangles;
+    cut.shares_frame = scene.level1.shares_frame;
+    cut.far_leaves = scene.level1.far_leaves;
+    cut.bounds = scene.level1.bounds;
+    cut.padding = scene.level1.padding;
+    return cut;
+}
+
+} // namespace
+
+bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
+    Key key;
+    key.layout = checksum_of_layout();
+    key.soup = checksum_of_soup(scene.soup);
+    put_limits(key, scene.limits);
+    const std::vector<const BuiltScene*> scenes = cuts_of(scene);
+    std::vector<SavedCut> cuts;
+    std::vector<SavedLeaf> leaves;
+    for (const BuiltScene* cut : scenes) {
+        cuts.push_back(saved_cut(*cut));
+        for (const Leaf& leaf : cut->level1.leaves)
+            leaves.push_back({leaf.cell, leaf.box, leaf.grid, leaf.frame.origin, leaf.frame.scale,
+                              leaf.triangles.size()});
+    }
+    std::vector<SavedPage> pages; // scene.pages has all of them, in the same order
+    for (const Page& page : scene.pages)
+        pages.push_back({page.view().size(), page.depth});
+
+    ArchiveWriter writer(sink, kKind, kVersion);
+    writer.part<Key>("key", std::span(&key, 1));
+    writer.part<SavedCut>("cuts", cuts);
+    writer.begin("twins");
+    for (const BuiltScene* cut : scenes)
+        writer.write(bytes_of(cut->twins.pairs()));
+    writer.begin("nodes");
+    for (const BuiltScene* cut : scenes)
+        writer.write(bytes_of(std::span<const KdNode>(cut->level1.nodes)));
+    writer.part<SavedLeaf>("leaves", leaves);
+    writer.begin("lists");
+    for (const BuiltScene* cut : scenes)
+        for (const Leaf& leaf : cut->level1.leaves)
+            writer.write(bytes_of(std::span<const TriangleId>(leaf.triangles)));
+    writer.part<SavedPage>("pages", pages);
+    writer.begin("texels");
+    for (const Page& page : scene.pages)
+        writer.write(bytes_of(page.view()));
+    return writer.finish();
+}
+
+Result<std::optional<BuiltScene>>
+restore_levels(Bytes saved, const Soup& soup,
+               const std::function<LeafLimits(uint64_t, uint64_t)>& limits_for) {
+    const Stopwatch watch;
+    if (reinterpret_cast<uintptr_t>(saved.data()) % kPartAlignment)
+        return Error{"is not aligned to 64 bytes"};
+    const Result<Archive> archive = Archive::open(saved, kKind, kVersion);
+    if (!archive)
+        return archive.error();
+    const auto keys = archive->items<Key>("key", 1);
+    if (!keys)
+        return keys.error();
+    const auto cuts = archive->items<SavedCut>("cuts");
+    if (!cuts)
+        return cuts.error();
+    if (cuts->empty())
+        return kUnsound;
+    uint64_t unique = 0;
+    for (const SavedCut& cut : *cuts)
+        unique += cut.triangles;
+    const LeafLimits limits = limits_for(cuts->front().triangles, unique);
+    Key key;
+    key.layout = checksum_of_layout();
+    put_limits(key, limits);
+    key.soup = keys->front().soup; // the rest first: this takes a while
+    if (key != keys->front() || checksum_of_soup(soup) != key.soup)
+        return std::optional<BuiltScene>();
+    Result<BuiltScene> scene = restored(*archive, *cuts, soup);
+    if (!scene)
+        return scene.error();
+    scene->limits = limits;
+    scene->from_saved = true;
+    scene->seconds_level1 = watch.seconds();
+    return std::optional(std::move(*scene));
+}
+
+} // namespace ovc

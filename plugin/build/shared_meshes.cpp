@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Chunks by the corners that they borrow, and what a placement does to them.
+#include "plugin/build/shared_meshes.h"
+
+#include "core/placement.h"
+#include "gpu/page/top_level.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace ovc {
+namespace {
+
+/// A page's bytes for a triangle, about.
+constexpr uint64_t kBytesPerTriangle = 46;
+/// Bytes are worth a portal's time if there are so many times more of them.
+constexpr uint64_t kWorthAPortal = 4;
+
+/// The box of a mesh before it is placed; empty where a corner is not finite.
+Box bounds_of(const Chunk& mesh) {
+    Box box;
+    for (uint32_t prim = 0; prim < mesh.size(); ++prim)
+        for (const dvec3& corner : mesh.triangle(prim)) {
+            if (!is_finite(corner))
+                return {};
+            box.add(corner);
+        }
+    return box;
+}
+
+/// Whether what doubles round of corners that are placed, and of rays that are brought to the mesh,
+/// is less than 2^-30 of it: 1/64 of what float32 rounds there. With one more bit to spare.
+bool is_well_placed(const Box& box, const Placement* placement) {
+    constexpr double kFarthest = 0x1p19;    // in sizes of the mesh
+    constexpr double kWithinRange = 0x1p80; // no product of three is out of range
+    const auto& m = or_unplaced(placement).rows;
+    const auto inverted = inverse_matrix(or_unplaced(placement));
+    const double size = max_component(box.extent()) / 2;
+    if (!inverted || box.empty() || !(size >= 1 / kWithinRange))
+        return false;
+    const dvec3 farthest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
+    dvec3 reach; // of placed corners, and of what their sums are made of
+    for (int i = 0; i < 3; ++i) {
+        const auto& r = m[size_t(i)];
+        reach[i] = std::abs(r[0]) * farthest.x + std::abs(r[1]) * farthest.y +
+                   std::abs(r[2]) * farthest.z + std::abs(r[3]);
+    }
+    double most = 0;
+    for (const dvec3& row : *inverted)
+        most = std::max(most, glm::dot(glm::abs(row), reach));
+    return most <= kFarthest * size && max_component(reach) <= kWithinRange;
+}
+
+/// Chunks of the same mesh, in the order of their numbers, by their first.
+std::vector<std::vector<uint32_t>> by_mesh(const Soup& soup) {
+    std::map<Chunk::MeshKey, size_t> found;
+    std::vector<std::vector<uint32_t>> meshes;
+    for (uint32_t i = 0; i < soup.chunks.size(); ++i) {
+        const Chunk& chunk = soup.chunks[i];
+        if (chunk.size() == 0)
+            continue;
+        const auto [place, is_new] = found.try_emplace(chunk.mesh_key(), meshes.size());
+        if (is_new)
+            meshes.emplace_back();
+        meshes[place->second].push_back(i);
+    }
+    return meshes;
+}
+
+/// Takes out those that lie where one before does.
+void take_copies_out(const Soup& soup, std::vector<uint32_t>& chunks, Placed& placed) {
+    std::map<decltype(Placement::rows), Placed::Copies> places;
+    std::vector<uint32_t> apart;
+    for (const uint32_t chunk : chunks) {
+        const auto [place, is_new] = places.try_emplace(
+            or_unplaced(soup.chunks[chunk].placement()).rows, Placed::Copies{chunk, chunk, 0});
+        Placed::Copies& copies = place->second;
+        if (is_new)
+            apart.push_back(chunk);
+        if (++copies.count == 2)
+            copies.second = chunk;
+    }
+    for (const auto& [rows, copies] : places)
+        if (copies.count > 1)
+            placed.copies.push_back(copies);
+    chunks = std::move(apart);
+}
+
+} // namespace
+
+Placed placed_chunks(const Soup& soup) {
+    Placed placed;
+    for (std::vector<uint32_t>& chunks : by_mesh(soup)) {
+        if (chunks.size() > 1)
+            take_copies_out(soup, chunks, placed);
+        const Chunk& mesh = soup.chunks[chunks.front()];
+        const uint64_t saved = (chunks.size() - 1) * kBytesPerTriangle * mesh.size();
+        std::vector<uint32_t> shared;
+        if (saved > kWorthAPortal * kMaxBytesPerPart * chunks.size()) {
+            const Box box = bounds_of(mesh.unplaced());
+            for (const uint32_t chunk : chunks)
+                (is_well_placed(box, soup.chunks[chunk].placement()) ? shared : placed.once)
+                    .push_back(chunk);
+        } else {
+            placed.once.insert(placed.once.end(), chunks.begin(), chunks.end());
+        }
+        if (shared.size() > 1)
+            placed.shared.push_back(std::move(shared));
+        else
+            placed.once.insert(placed.once.end(), shared.begin(), shared.end());
+    }
+    std::ranges::sort(placed.once);
+    std::ranges::sort(placed.copies, {}, &Placed::Copies::first);
+    return placed;
+}
+
+uint64_t unique_triangles(const Soup& soup, const Placed& placed) {
+    uint64_t count = 0;
+    for (const uint32_t chunk : placed.once)
+        count += soup.chunks[chunk].size();
+    for (const Placed::Instances& instances : placed.shared)
+        count += soup.chunks[instances.front()].size();
+    return count;
+}
+
+} // namespace ovc

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a budget limits leaves, and which budgets are too small.
+#include "plugin/plan/two_level_options.h"
+
+#include "gpu/page/top_level.h"
+#include "plugin/build/shared_meshes.h"
+#include "plugin/plan/page_rate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ovc {
+namespace {
+
+// A page takes at most this share of the pool, so that some stay resident; and where leaves are
+// ours to choose, this one, so that rays bring in little that they do not go through: but it is
+// worth a move.
+constexpr uint64_t kPagesAtOnce = 3;
+constexpr uint64_t kPagesByDefault = 32;
+constexpr uint64_t kPagesABuffer =
+    8; // at least, where there are several: what is left over is less
+constexpr uint64_t kWorthMoving = 512 << 10; // bytes
+constexpr uint64_t kDefaultLeaves = 10;      // thesis, section 4
+
+} // namespace
+
+Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
+                               const DeviceInfo& device) {
+    Result<MemoryPlan> plan =
+        plan_memory(options.budget_bytes ? options.budget_bytes : device.default_budget_bytes(),
+                    device, sizeof(RayState) + kAnswerBytes, options.buffer_bytes);
+    if (!plan)
+        return plan;
+    if (soup.triangle_count() > OVC_MAX_TRIANGLES)
+        return Error{fmt::format("{} triangles are too many: a scene takes {}",
+                                 soup.triangle_count(), OVC_MAX_TRIANGLES),
+                     ErrorKind::InvalidArgument};
+    plan->driver_bytes = options.driver_bytes;
+    return plan;
+}
+
+SmallestCut smallest_cut(const Soup& soup, const TwoLevelOptions& options) {
+    const Placed placed = placed_chunks(soup);
+    const uint64_t triangles = unique_triangles(soup, placed); // whether they can be hit or not
+    const uint64_t active_bytes = options.tell_active ? sizeof(uint32_t) : 0;
+    if (triangles == 0)
+        return {};
+    const uint64_t first_bytes = kPortalBytes + max_top_level_bytes(1);
+    const uint64_t leaf_bytes = kMaxBytesPerPart + active_bytes;
+    const double balanced =
+        std::sqrt(double(triangles) * double(leaf_bytes) / double(kMaxUncutBytesPerTriangle));
+    uint64_t most =
+        std::clamp<uint64_t>(uint64_t(balanced), 1, std::min(triangles, uint64_t(kNone - 1)));
+    if (options.leaf_triangles)
+        most = std::min(most, options.leaf_triangles);
+    // Each mesh has a leaf that is not full, and is one part, with a portal an instance.
+    const uint64_t leaves = (triangles + most - 1) / most + placed.shared.size();
+    uint64_t portals = 0;
+    for (const Placed::Instances& chunks : placed.shared)
+        portals += chunks.size();
+    const uint64_t table =
+        first_bytes + leaves * leaf_bytes + portals * (kPortalBytes + 2 * OVC_UNIT_BYTES);
+    return {uint32_t(most), table + kPageStart + most * kMaxUncutBytesPerTriangle};
+}
+
+uint64_t smallest_budget(uint64_t pool_bytes, const DeviceInfo& device) {
+    const auto holds = [&](uint64_t budget) {
+        const Result<MemoryPlan> plan = plan_memory(budget, device);
+        return plan && plan->pool_bytes >= pool_bytes;
+    };
+    uint64_t low = 0, high = 2 * pool_bytes + (1 << 20); // a pool is never less than half of that
+    while (high - low > 1) {
+        const uint64_t middle = low + (high - low) / 2;
+        (holds(middle) ? high : low) = middle;
+    }
+    return high;
+}
+
+Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
+                          const DeviceInfo& device) {
+    const SmallestCut cut = smallest_cut(soup, options);
+    if (plan.pool_bytes >= cut.pool_bytes)
+        return Done{};
+    return over_budget(fmt::format(
+        "a GPU budget of {} bytes is too small for this scene: the smallest that works is {} "
+        "bytes ({} triangles in leaves of {}, whose tree and largest page take {}; an eighth is "
+        "for rays)",
+        plan.budget_bytes, smallest_budget(cut.pool_bytes, device),
+        unique_triangles(soup, placed_chunks(soup)), cut.leaf_triangles, cut.pool_bytes));
+}
+
+/// The most that a page may take of the pool: a third, so that some stay resident; half of it where
+/// what leads to as many leaves might not find room beside that.
+static uint64_t share_of_page(const MemoryPlan& plan, uint64_t triangles) {
+    uint64_t page_bytes = std::max<uint64_t>(plan.pool_bytes / kPagesAtOnce, 1);
+    if (plan.pool().count() > 1)
+        page_bytes = std::min(page_bytes, plan.buffer_bytes / kPagesABuffer);
+    const uint64_t leaves = triangles * kMostBytesPerTriangle / page_bytes;
+    const uint64_t table = leaves * kMaxBytesPerPart;
+    return table + page_bytes <= plan.pool_bytes ? page_bytes : plan.pool_bytes / 2;
+}
+
+LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles,
+                     uint64_t unique) {
+    // Halving ends between half full and full: this much on average gives about so many leaves.
+    constexpr double kFull = 0.7;
+    const uint64_t page_bytes = std::min(share_of_page(plan, unique), plan.buffer_bytes);
+    if (options.leaf_triangles)
+        return {options.leaf_triangles, page_bytes};
+    double most = double(triangles) / double(kDefaultLeaves);
+    if (options.leaves)
+        most = double(triangles) / (options.leaves == 1 ? 1 : kFull * options.leaves);
+    LeafLimits limits{std::max<uint64_t>(uint64_t(std::ceil(most)), 1), page_bytes};
+    if (!options.leaves) {
+        limits.page_bytes = std::min(
+            page_bytes, std::max<uint64_t>(plan.pool_bytes / kPagesByDefault, kWorthMoving));
+        const uint64_t table = max_top_level_bytes(1) + sizeof(uint32_t);
+        const uint64_t first_buffer = std::min(plan.pool_bytes, plan.buffer_bytes);
+        const uint64_t room = first_buffer - std::min(first_buffer, table);
+        limits.whole_bytes = unique <= room / kMostBytesPerTriangle ? LeafLimits::kAny
+                             : unique == triangles                  ? room
+                                                                    : 0;
+    }
+    return limits;
+}
+
+} // namespace ovc

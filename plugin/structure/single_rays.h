@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// Single rays: calls of one ray each from many threads at once, beside all else on the scene. Each
+// thread walks the CPU's tree, or what all ask is gathered for the GPU, whichever is faster.
+#pragma once
+
+#include "plugin/structure/faster_way.h"
+#include "plugin/structure/gathering.h"
+#include "plugin/structure/structure.h"
+#include "plugin/structure/turn.h"
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace ovc {
+
+class SingleRays {
+    struct Shard;
+
+public:
+    /// turn: of the scene; streaming: the thread that has it and may call from within, if any.
+    SingleRays(Turn& turn, const std::atomic<std::thread::id>& streaming)
+        : turn_(turn), streaming_(streaming) {}
+
+    /// The structure that calls are answered by, from now on; calls that were made before this
+    /// returns are over. nullptr: none.
+    void serve(Structure* structure) {
+        structure_ = structure;
+        for (const Shard& shard : shards_)
+            while (shard.inside != 0)
+                std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+
+    /// A call under way, while it lives.
+    class Call {
+    public:
+        explicit Call(SingleRays& rays) : rays_(rays), shard_(rays.own_shard()) {
+            ++shard_.inside; // then the structure is read; serve() does both the other way round
+            structure_ = rays_.structure_;
+        }
+        ~Call() { --shard_.inside; }
+        Call(const Call&) = delete;
+
+        /// nullptr: there is none.
+        Structure* structure() const { return structure_; }
+
+        /// Answers a ray. Needs a structure that has_cpu_tree().
+        void answer(SingleRay& asked) {
+            const FasterWay::Use use = rays_.way_.begin();
+            const uint64_t before = use.way == kGathered && rays_.gather(*structure_, asked)
+                                        ? add_one(shard_.gathered)
+                                        : answer_on_cpu(asked);
+            rays_.way_.end(use, /* may_look= */ before % 64 == 0);
+        }
+
+    private:
+        uint64_t answer_on_cpu(SingleRay& asked) {
+            if (!asked.ray.valid())
+                add_one(shard_.invalid);
+            else if (asked.any_hit)
+                asked.occluded = structure_->occluded_on_cpu(asked.ray, asked.skip);
+            else
+                asked.hit = structure_->nearest_on_cpu(asked.ray, asked.skip);
+            return add_one(asked.any_hit ? shard_.occlusion : shard_.nearest);
+        }
+
+        /// Returns the count before.
+        static uint64_t add_one(std::atomic<uint64_t>& count) {
+            return count.fetch_add(1, std::memory_order_relaxed);
+        }
+
+        SingleRays& rays_;
+        Shard& shard_;
+        Structure* structure_;
+    };
+
+    /// Adds what was counted; the structure has counted what was gathered.
+    void add_to(ovc_statistics& statistics) const {
+        for (const Shard& shard : shards_) {
+            statistics.nearest_rays += shard.nearest;
+            statistics.occlusion_rays += shard.occlusion;
+            statistics.invalid_rays += shard.invalid;
+            statistics.single_rays += shard.asked();
+            statistics.gathered_rays += shard.gathered;
+        }
+    }
+
+private:
+    enum { kOnCpu = 0, kGathered = 1 }; // the ways
+
+    /// What some of the threads write; each has one that is always the same.
+    struct alignas(64) Shard {
+        std::atomic<uint32_t> inside{0};  // calls under way
+        std::atomic<uint64_t> nearest{0}; // on the CPU, as the next
+        std::atomic<uint64_t> occlusion{0};
+        std::atomic<uint64_t> invalid{0};
+        std::atomic<uint64_t> gathered{0};
+
+        uint64_t asked() const { return nearest + occlusion + gathered; }
+    };
+
+    Shard& own_shard() {
+        const size_t hash = std::hash<std::thread::id>()(std::this_thread::get_id());
+        return shards_[(hash * 0x9e3779b97f4a7c15u) >> 58];
+    }
+
+    /// false: not now. Never waits for a call of another kind.
+    bool gather(Structure& structure, SingleRay& asked) {
+        return gathering_.answer(asked, [&](std::span<SingleRay* const> batch) {
+            if (streaming_ == std::this_thread::get_id())
+                return false;
+            const std::unique_lock turn(turn_, std::try_to_lock);
+            return turn.owns_lock() && trace(structure, batch, /* any_hit= */ false) &&
+                   trace(structure, batch, /* any_hit= */ true);
+        });
+    }
+
+    /// Those of the batch that ask so.
+    static bool trace(Structure& structure, std::span<SingleRay* const> batch, bool any_hit) {
+        std::vector<SingleRay*> asked;
+        std::vector<Ray> rays;
+        std::vector<TriangleId> skip;
+        for (SingleRay* single : batch)
+            if (single->any_hit == any_hit) {
+                asked.push_back(single);
+                rays.push_back(single->ray);
+                skip.push_back(single->skip);
+            }
+        if (asked.empty())
+            return true;
+        std::vector<Hit> hits(any_hit ? 0 : asked.size());
+        std::vector<uint8_t> occluded(any_hit ? asked.size() : 0);
+        if (!(any_hit ? structure.occluded(rays, skip, occluded)
+                      : structure.intersect(rays, skip, hits)))
+            return false;
+        for (size_t i = 0; i < asked.size(); ++i)
+            if (any_hit)
+                asked[i]->occluded = occluded[i] != 0;
+            else
+                asked[i]->hit = hits[i];
+        return true;
+    }
+
+    Turn& turn_;
+    const std::atomic<std::thread::id>& streaming_;
+    std::atomic<Structure*> structure_{nullptr};
+    FasterWay way_;
+    Gathering gathering_;
+    std::array<Shard, 64> shards_;
+};
+
+} // namespace ovc

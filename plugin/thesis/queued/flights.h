@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Flights: rays under way between level 1 on the CPU and the queues of its leaves; the steps that
+// algorithms 3, 4 and 6 of the thesis are made of.
+#pragma once
+
+#include "core/exact/triangle.h"
+#include "core/ray_span.h"
+#include "core/result.h"
+#include "plugin/thesis/queued/queued_scene.h"
+#include "plugin/thesis/queued/queues.h"
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace ovc::thesis {
+
+/// A ray under way, as the host gave it, and how far it has come.
+struct Flight {
+    Ray ray;
+    TriangleId skip;
+    uint64_t token = 0;
+    bool any_hit = false;
+    /// In its last cell: its hit lies there, so only leaves of that cell may hold a nearer one.
+    enum : uint8_t { New, Walking, InLastCell, Answered } state = New;
+    uint32_t leaf = kNone; // whose queue it is in
+    RayPlace place;
+    double t_end = 0; // nothing beyond is of interest
+    Hit hit;          // the nearest so far
+};
+
+class Flights {
+public:
+    explicit Flights(QueuedScene& scene) : s_(scene), queues_(scene.built.level1.leaves.size()) {}
+    ~Flights();
+    Flights(const Flights&) = delete;
+
+    /// Puts rays into the queue of level 1; with those under way, at most kMost. skip: empty, or
+    /// one per ray, as the tokens.
+    void add(bool any_hit, const RaySpan& rays, std::span<const TriangleId> skip,
+             std::span<const uint64_t> tokens);
+    size_t under_way() const { return flights_.size() - free_.size(); }
+    static constexpr size_t kMost = size_t(1) << 20; // some 200 bytes each
+
+    /// Sends every ray in the queue of level 1 to the queue of its next leaf (algorithm 4), or to
+    /// those answered, where there is none.
+    void walk_level1();
+
+    /// Do rays wait for any leaf?
+    bool waiting() const { return !queues_.empty(); }
+
+    /// Chooses a leaf and traces its queue, a pass for each batch; the rays then stand in the queue
+    /// of level 1. waiting() must hold.
+    Result<Done> trace_next_leaf();
+
+    /// Hands each ray that was answered since to hand_over(flight), and forgets it.
+    template <class HandOver>
+    void take_answered(HandOver&& hand_over) {
+        for (const uint32_t i : answered_)
+            hand_over(flights_[i]);
+        free_.insert(free_.end(), answered_.begin(), answered_.end());
+        answered_.clear();
+    }
+
+private:
+    uint32_t slot();
+    void begin(Flight& flight);
+    void find_leaf(Flight& flight);
+    Result<Done> pass(uint32_t leaf, std::span<const uint32_t> batch);
+    void load(uint32_t leaf, std::span<const uint32_t> batch);
+    void resolve(Flight& flight, const FrameAnswer& answer, bool decidable);
+    bool resolve_candidates(Flight& flight, const FrameAnswer& answer);
+    void enter_fast(Flight& flight, const FrameAnswer& answer);
+    void end_at(Flight& flight, const PreparedRay& p, double end, double slack);
+    void fall_back(Flight& flight);
+
+    QueuedScene& s_;
+    Queues queues_; // of leaves; hold indices of flights_, as all below
+    std::vector<Flight> flights_;
+    std::vector<uint32_t> free_;
+    std::vector<uint32_t> level1_queue_;
+    std::vector<uint32_t> answered_;
+    std::vector<FrameRay> rays_; // of a batch, whole rows, as the answers
+    std::vector<FrameAnswer> answers_;
+    std::vector<uint8_t> decidable_;
+    std::atomic<uint64_t> invalid_{0};
+    std::atomic<uint64_t> flagged_{0};
+    std::atomic<uint64_t> retraced_{0};
+    std::atomic<uint64_t> capped_{0};
+};
+
+} // namespace ovc::thesis

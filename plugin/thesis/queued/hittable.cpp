@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is never hit is left out, and counted.
+#include "plugin/thesis/queued/hittable.h"
+
+#include <fmt/format.h>
+
+namespace ovc::thesis {
+
+Hittable take_hittable(BuiltScene& scene, ovc_statistics& statistics, const LogSink& log,
+                       BuildProgress* progress) {
+    Hittable hittable = ovc::take_hittable(scene, progress);
+    const Dropped& dropped = scene.dropped;
+    if (dropped.total())
+        say(log, LogLevel::Warning,
+            fmt::format("left out {} triangles with a NaN or infinite corner, {} without area",
+                        dropped.not_finite, dropped.degenerate));
+    statistics.triangles = scene.soup.triangle_count();
+    statistics.dropped_not_finite = dropped.not_finite;
+    statistics.dropped_degenerate = dropped.degenerate;
+    statistics.twins = scene.twins.count();
+    return hittable;
+}
+
+} // namespace ovc::thesis

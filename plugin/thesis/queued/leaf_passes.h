@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// LeafPasses: the pool of pages, and passes of the kernel over the queue of one leaf, within a
+// budget of GPU bytes.
+#pragma once
+
+#include "core/result.h"
+#include "gpu/gl/egl_context.h"
+#include "gpu/gl/ledger.h"
+#include "gpu/trace/pool.h"
+#include "gpu/trace/tracer.h"
+#include "plugin/thesis/frame_ray.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace ovc::thesis {
+
+struct LeafPass {
+    uint64_t bytes_in = 0; // 0: the page was resident
+    double seconds = 0;    // from the first command until the answers are here
+};
+
+/// All calls need the context current.
+class LeafPasses {
+public:
+    /// pages outlive it. plan: of kBytesPerRay. Its pool holds the largest. certify = false: fast
+    /// precision.
+    static Result<std::unique_ptr<LeafPasses>> create(const ovc::MemoryPlan& plan,
+                                                      const DeviceInfo& device,
+                                                      std::span<const Page> pages, bool certify);
+
+    bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
+
+    /// Traces rays in the leaf's frame (at most plan.batch_rays) through its page, which is moved
+    /// in if need be. Rays from first_occlusion on are occlusion rays. Both spans are whole rows:
+    /// see row_padded().
+    Result<LeafPass> run(uint32_t leaf, std::span<const FrameRay> rays, size_t first_occlusion,
+                         std::span<FrameAnswer> answers);
+
+    const Ledger& ledger() const { return *ledger_; }
+
+    static constexpr uint32_t kRowRays = OVC_QUEUE_ROW_RAYS;
+    static_assert(kBlockRays % kRowRays == 0); // as plan_memory() counts them
+    static size_t row_padded(size_t n) { return (n + kRowRays - 1) / kRowRays * kRowRays; }
+    static constexpr uint64_t kBytesPerRay = sizeof(FrameRay) + sizeof(FrameAnswer);
+
+private:
+    LeafPasses(std::unique_ptr<Ledger> ledger, const ovc::MemoryPlan& plan,
+               const DeviceInfo& device, std::span<const Page> pages, bool certify);
+    Result<GLuint> kernel();
+    uint64_t bring(uint32_t leaf);
+
+    std::unique_ptr<Ledger> ledger_; // the objects below keep its address
+    std::span<const Page> pages_;
+    bool software_;
+    bool certify_;
+    gl::Texture2D rays_;
+    gl::Texture2D answers_;
+    gl::Framebuffer framebuffer_;
+    gl::VertexArray vertex_array_;
+    Pool pool_;
+    std::optional<gl::Program> kernel_;
+};
+
+} // namespace ovc::thesis

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// The loops of the thesis: algorithm 3 for a batch, algorithm 6 for a stream.
+#include "plugin/thesis/queued/queued_two_level.h"
+
+#include "core/backlog.h"
+#include "core/system/stopwatch.h"
+#include "plugin/thesis/queued/flights.h"
+#include "plugin/two_level/query.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ovc::thesis {
+namespace {
+
+/// Algorithm 3: all queues of leaves, then level 1 again.
+Result<Done> trace_in_rounds(Flights& flights) {
+    while (true) {
+        flights.walk_level1();
+        if (!flights.waiting())
+            return Done{};
+        while (flights.waiting())
+            if (Result<Done> done = flights.trace_next_leaf(); !done)
+                return done;
+    }
+}
+
+/// Algorithm 6: level 1 after every leaf, for the rays that come from it and those that the host
+/// spawned meanwhile.
+class MixedStream final : public RayStream {
+public:
+    MixedStream(QueuedScene& scene, StreamHost& host)
+        : statistics_(scene.statistics), host_(host), flights_(scene) {}
+
+    void push(const StreamRays& rays) override { (rays.any_hit ? any_ : nearest_).push(rays); }
+
+    Result<Done> run() {
+        while (true) {
+            do {
+                if (!fill())
+                    return stopped_by_host();
+                start();
+                if (!deliver())
+                    return stopped_by_host();
+            } while (may_start());
+            if (!flights_.waiting())
+                return Done{};
+            const Stopwatch watch;
+            Result<Done> done = flights_.trace_next_leaf();
+            statistics_.seconds_trace += watch.seconds();
+            if (!done)
+                return done;
+        }
+    }
+
+private:
+    size_t backlog() const { return nearest_.size() + any_.size(); }
+
+    /// Asks the host for more where half of what may be under way is missing.
+    bool fill() {
+        const size_t busy = flights_.under_way() + backlog();
+        if (!more_ || busy > Flights::kMost / 2)
+            return true;
+        const size_t before = backlog();
+        if (!host_.more(*this, Flights::kMost - busy))
+            return false;
+        more_ = backlog() > before;
+        return true;
+    }
+
+    /// Is there more to send through level 1 before a leaf is chosen?
+    bool may_start() const {
+        return (backlog() > 0 && flights_.under_way() < Flights::kMost) ||
+               (more_ && !flights_.waiting());
+    }
+
+    /// Sends rays of the backlog, and all that have left their leaves, through level 1.
+    void start() {
+        const Stopwatch watch;
+        start(any_, /* any_hit= */ true);
+        start(nearest_, /* any_hit= */ false);
+        flights_.walk_level1();
+        statistics_.seconds_trace += watch.seconds();
+    }
+
+    void start(Backlog& backlog, bool any_hit) {
+        const size_t count = std::min(backlog.size(), Flights::kMost - flights_.under_way());
+        const StreamRays rays = backlog.last(count);
+        flights_.add(any_hit, rays.rays, rays.skip, rays.tokens);
+        backlog.drop_last(count);
+    }
+
+    bool deliver() {
+        Answers answers;
+        flights_.take_answered([&](const Flight& flight) {
+            if (flight.any_hit) {
+                answers.shadow_tokens.push_back(flight.token);
+                answers.occluded.push_back(flight.hit.is_hit());
+            } else {
+                answers.hit_tokens.push_back(flight.token);
+                answers.hits.push_back(flight.hit);
+            }
+        });
+        return (answers.occluded.empty() ||
+                host_.occlusions(*this, answers.shadow_tokens, answers.occluded)) &&
+               (answers.hits.empty() || host_.hits(*this, answers.hit_tokens, answers.hits));
+    }
+
+    struct Answers {
+        std::vector<uint64_t> shadow_tokens;
+        std::vector<uint8_t> occluded;
+        std::vector<uint64_t> hit_tokens;
+        std::vector<Hit> hits;
+    };
+
+    ovc_statistics& statistics_;
+    StreamHost& host_;
+    Flights flights_;
+    Backlog nearest_;
+    Backlog any_;
+    bool more_ = true;
+};
+
+} // namespace
+
+template <class Query>
+Result<Done> QueuedTwoLevel::trace(const Query& query) {
+    const Stopwatch watch;
+    std::vector<uint64_t> tokens(query.rays.size());
+    std::iota(tokens.begin(), tokens.end(), uint64_t(0));
+    Flights flights(*scene_);
+    for (size_t first = 0; first < query.rays.size(); first += Flights::kMost) {
+        const size_t count = std::min(Flights::kMost, query.rays.size() - first);
+        const Query part = query.part(first, count);
+        flights.add(Query::kAnyHit, part.rays, part.skip, std::span(tokens).subspan(first, count));
+        if (Result<Done> done = trace_in_rounds(flights); !done)
+            return done;
+        flights.take_answered([&](const Flight& flight) { query.set(flight.token, flight.hit); });
+    }
+    scene_->statistics.seconds_trace += watch.seconds();
+    return Done{};
+}
+
+Result<Done> QueuedTwoLevel::intersect(RaySpan rays, std::span<const TriangleId> skip,
+                                       std::span<Hit> hits) {
+    return trace(NearestQuery{rays, skip, hits});
+}
+
+Result<Done> QueuedTwoLevel::occluded(RaySpan rays, std::span<const TriangleId> skip,
+                                      std::span<uint8_t> occluded) {
+    return trace(OcclusionQuery{rays, skip, occluded});
+}
+
+Result<Done> QueuedTwoLevel::stream(StreamHost& host) {
+    return MixedStream(*scene_, host).run();
+}
+
+} // namespace ovc::thesis

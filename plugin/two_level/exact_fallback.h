@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The exact fallback: a ray that float32 could not decide, traced in double down the top-level
+// tree and through the pages in host memory. Equals the CPU KDT of kdtree/traverse.h bit for bit,
+// because both test with core/exact/triangle.h every triangle that could be hit.
+#pragma once
+
+#include "gpu/page/page_walk.h"
+#include "kdtree/approach.h"
+#include "plugin/build/built_scene.h"
+
+namespace ovc {
+
+/// The nearest hit, or with kAnyHit some hit, of a valid ray.
+template <bool kAnyHit>
+Hit trace_exactly(const BuiltScene& scene, const PreparedRay& p) {
+    Nearest nearest(p);
+    Approach approach(p, scene.level1.bounds);
+    const auto limit = [&] { return approach.limit(nearest); };
+    const auto test = [&](uint32_t number) {
+        const TriangleId id = scene.seen(number, p.skip);
+        const Triangle triangle = scene.soup.triangle(id);
+        const bool hit = nearest.offer(triangle, id);
+        if (hit)
+            approach.note_hit(triangle);
+        return hit && kAnyHit;
+    };
+    if (!scene.pages.empty())
+        walk_tree(scene.top, scene.pages, scene_leaf(scene.level1.bounds), approach.ray(),
+                  approach.ray().ray.t_min, test, limit);
+    return kAnyHit ? nearest.unrounded_hit() : nearest.hit();
+}
+
+} // namespace ovc

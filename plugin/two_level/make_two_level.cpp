@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The structure of libovercast.so: two-level, and what it counts in the words of the ABI.
+#include "plugin/plan/forecast.h"
+#include "plugin/structure/failure.h"
+#include "plugin/structure/structure.h"
+#include "plugin/two_level/two_level.h"
+
+#include <fmt/format.h>
+
+namespace ovc {
+
+void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
+    if (config.structure != OVC_STRUCTURE_TWO_LEVEL)
+        throw Failure{
+            OVC_ERROR_INVALID_ARGUMENT,
+            fmt::format("ovc_scene_config.structure is {}; this library has two-level (0) "
+                        "alone, libovercast-thesis.so has the others",
+                        config.structure)};
+    if (config.level1 || config.level1_build)
+        throw Failure{OVC_ERROR_INVALID_ARGUMENT,
+                      "ovc_scene_config.level1 and level1_build mean nothing to two-level, whose "
+                      "level 1 is a KD-tree: expected 0"};
+    if (config.gpu_memory_bytes)
+        if (const auto plan = plan_memory(config.gpu_memory_bytes, device); !plan)
+            throw Failure{OVC_ERROR_OUT_OF_BUDGET, plan.error().message};
+}
+
+static TwoLevelOptions options_of(const ovc_scene_config& config) {
+    return {config.gpu_memory_bytes,
+            config.leaf_triangles,
+            config.leaves,
+            config.precision != OVC_PRECISION_FAST,
+            config.kernel != OVC_KERNEL_FRAGMENT,
+            config.tell_active == 1};
+}
+
+static Bytes saved_in(const ovc_scene_config& config) {
+    return {static_cast<const std::byte*>(config.saved), size_t(config.saved_bytes)};
+}
+
+Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
+                                                  const ovc_scene_config& config,
+                                                  const LogSink& log, BuildProgress* progress) {
+    TwoLevelOptions options = options_of(config);
+    options.saved = saved_in(config);
+    Result<std::unique_ptr<TwoLevel>> built = TwoLevel::build(soup, gl, options, log, progress);
+    if (!built)
+        return built.error();
+    return std::unique_ptr<Structure>(std::move(*built));
+}
+
+Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
+                                const ovc_scene_config& config, BuildProgress* progress) {
+    return forecast(soup, options_of(config), device, progress);
+}
+
+ovc_statistics TwoLevel::report() const {
+    ovc_statistics told = statistics_;
+    told.triangles = scene_.soup.triangle_count();
+    told.dropped_not_finite = scene_.dropped.not_finite;
+    told.dropped_degenerate = scene_.dropped.degenerate;
+    told.twins = scene_.twin_count();
+    told.leaves = scene_.pages.size();
+    told.leaf_references = scene_.reference_count();
+    told.level2_bytes = scene_.level2_bytes();
+    told.largest_page_bytes = scene_.largest_page_bytes();
+    told.gpu_budget_bytes = plan().budget_bytes;
+    told.seconds_level1 = scene_.seconds_level1;
+    told.seconds_level2 = scene_.seconds_level2;
+    for (const SharedMesh& mesh : scene_.shared) {
+        told.seconds_level1 += mesh.scene.seconds_level1;
+        told.seconds_level2 += mesh.scene.seconds_level2;
+    }
+    told.host_bytes = scene_.host_bytes();
+    told.unique_triangles = scene_.unique_triangles();
+    for (const SharedMesh& mesh : scene_.shared)
+        told.instances += mesh.instances.size();
+    told.top_level_bytes = scene_.top.tree.bytes() + scene_.top.portals.size() * kPortalBytes;
+    told.from_saved = scene_.from_saved;
+    told.gpu_bytes = passes_.gpu_bytes();
+    return told;
+}
+
+} // namespace ovc

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mixed form over two-level: rays of both kinds are under way together, and what the host
+// spawns joins them before pages are moved. Based on: thesis, section 3.5 (algorithm 6).
+#include "plugin/two_level/mixed_stream.h"
+
+#include "core/backlog.h"
+#include "core/system/stopwatch.h"
+#include "plugin/two_level/wave_round.h"
+
+namespace ovc {
+namespace {
+
+/// Rays of one kind under way in a stream: each has a slot, from when it starts until its answer is
+/// handed over.
+template <class Query>
+class Lane {
+    using Result = std::remove_reference_t<decltype(Query{}.results[0])>;
+
+public:
+    Lane(const Tracing& tracing, PassRunner& passes) : wave_(tracing, passes, Query{}) {}
+
+    Wave<Query>& wave() { return wave_; }
+    void push(const StreamRays& rays) { backlog_.push(rays); }
+    size_t backlog() const { return backlog_.size(); }
+    size_t under_way() const { return rays_.size() - free_.size(); }
+    bool empty() const { return backlog() + under_way() == 0; }
+    bool can_start() const { return backlog() > 0 && under_way() < kSlots; }
+
+    /// Starts rays of the backlog, as many as there may be at once; returns how many.
+    size_t start() {
+        const size_t count = std::min(backlog_.size(), kSlots - under_way());
+        if (count == 0)
+            return 0;
+        grow(under_way() + count);
+        const StreamRays rays = backlog_.last(count);
+        const std::vector<uint32_t> slots(free_.end() - ptrdiff_t(count), free_.end());
+        free_.resize(free_.size() - count);
+        parallel_for(count, kGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                rays_[slots[i]] = rays.rays[i];
+                skip_[slots[i]] = rays.skip[i];
+                tokens_[slots[i]] = rays.tokens[i];
+            }
+        });
+        backlog_.drop_last(count);
+        wave_.start(slots);
+        return count;
+    }
+
+    /// Hands the answers to hand_over(tokens, results), if there are any; false when that says so.
+    template <class HandOver>
+    bool deliver(HandOver&& hand_over) {
+        const std::vector<uint32_t> finished = wave_.take_finished();
+        if (finished.empty())
+            return true;
+        std::vector<uint64_t> tokens(finished.size());
+        std::vector<Result> results(finished.size());
+        parallel_for(finished.size(), kGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                tokens[i] = tokens_[finished[i]];
+                results[i] = results_[finished[i]];
+            }
+        });
+        free_.insert(free_.end(), finished.begin(), finished.end());
+        return hand_over(tokens, results);
+    }
+
+    static constexpr size_t kSlots = size_t(1) << 20; // some 150 bytes each
+
+private:
+    static constexpr size_t kGrain = 1024; // rays a task that are only copied
+
+    /// At least `slots` of them, and twice as many as before where they do not do.
+    void grow(size_t slots) {
+        const size_t before = rays_.size();
+        if (slots <= before)
+            return;
+        const size_t now = std::min(std::max(slots, 2 * before), kSlots);
+        rays_.resize(now);
+        skip_.resize(now);
+        tokens_.resize(now);
+        results_.resize(now);
+        for (size_t slot = now; slot-- > before;)
+            free_.push_back(uint32_t(slot));
+        Query query{};
+        query.rays = rays_;
+        query.skip = skip_;
+        query.results = results_;
+        wave_.show(query);
+    }
+
+    Backlog backlog_;
+    std::vector<Ray> rays_; // per slot, as the next three
+    std::vector<TriangleId> skip_;
+    std::vector<uint64_t> tokens_;
+    std::vector<Result> results_;
+    std::vector<uint32_t> free_;
+    Wave<Query> wave_;
+};
+
+class MixedStream final : public RayStream {
+public:
+    MixedStream(const Tracing& tracing, PassRunner& passes, StreamHost& host)
+        : statistics_(tracing.statistics),
+          host_(host),
+          nearest_(tracing, passes),
+          any_(tracing, passes),
+          round_(tracing, passes, any_.wave(), nearest_.wave()) {}
+
+    void push(const StreamRays& rays) override {
+        rays.any_hit ? any_.push(rays) : nearest_.push(rays);
+    }
+
+    /// The host gets the answers of a pass while the next one runs. Where pages are to be moved
+    /// before the next one, the host gets them first, so that the rays that it spawns join that
+    /// pass.
+    ovc::Result<Done> run() {
+        bool goes_on = true;
+        while (goes_on && fill()) {
+            start();
+            if (nearest_.empty() && any_.empty())
+                return Done{};
+            const size_t ready = any_.wave().ready() + nearest_.wave().ready();
+            const bool beside = any_.wave().waiting() + nearest_.wave().waiting() == 0;
+            if (ready == 0 || !beside) {
+                goes_on = deliver();
+                if (!goes_on || nearest_.can_start() || any_.can_start())
+                    continue;
+            }
+            if (ready == 0 && beside)
+                continue;
+            const Stopwatch watch;
+            const ovc::Result<Done> done = round_.run(beside ? kPassRays : ~size_t(0), [&] {
+                goes_on = !beside || deliver();
+                return goes_on;
+            });
+            statistics_.seconds_trace += watch.seconds();
+            if (!done)
+                return done;
+        }
+        return stopped_by_host();
+    }
+
+private:
+    /// Asks the host for more where half of what may be under way is missing.
+    bool fill() {
+        const size_t under_way = nearest_.under_way() + nearest_.backlog();
+        if (!more_ || under_way > Lane<NearestQuery>::kSlots / 2)
+            return true;
+        const size_t before = nearest_.backlog() + any_.backlog();
+        if (!host_.more(*this, Lane<NearestQuery>::kSlots - under_way))
+            return false;
+        more_ = nearest_.backlog() + any_.backlog() > before;
+        return true;
+    }
+
+    void start() {
+        const Stopwatch watch;
+        const size_t nearest = nearest_.start();
+        const size_t any = any_.start();
+        statistics_.nearest_rays += nearest;
+        statistics_.occlusion_rays += any;
+        statistics_.seconds_trace += watch.seconds();
+    }
+
+    /// Rays a pass where no page need be moved: enough to keep a device busy, and few enough that
+    /// passes and the host's work on what they answered go on beside each other.
+    static constexpr size_t kPassRays = size_t(1) << 17;
+
+    bool deliver() {
+        return any_.deliver([&](std::span<const uint64_t> tokens,
+                                std::span<const uint8_t> occluded) {
+            return host_.occlusions(*this, tokens, occluded);
+        }) && nearest_.deliver([&](std::span<const uint64_t> tokens, std::span<const Hit> hits) {
+            return host_.hits(*this, tokens, hits);
+        });
+    }
+
+    ovc_statistics& statistics_;
+    StreamHost& host_;
+    Lane<NearestQuery> nearest_;
+    Lane<OcclusionQuery> any_;
+    WaveRound<OcclusionQuery, NearestQuery> round_;
+    bool more_ = true;
+};
+
+} // namespace
+
+Result<Done> trace_stream(const Tracing& tracing, PassRunner& passes, StreamHost& host) {
+    return MixedStream(tracing, passes, host).run();
+}
+
+} // namespace ovc

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mixed form over two-level: a stream of rays of both kinds.
+#pragma once
+
+#include "core/stream.h"
+#include "plugin/two_level/pass_runner.h"
+
+namespace ovc {
+
+/// Traces what the host pushes until there is no more. Error of the kind Cancelled: the host
+/// stopped it; those of passes.
+Result<Done> trace_stream(const Tracing& tracing, PassRunner& passes, StreamHost& host);
+
+} // namespace ovc

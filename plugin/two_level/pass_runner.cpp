@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// PassRunner: the tracer on the thread of its context, and passes beside the caller's own work.
+#include "plugin/two_level/pass_runner.h"
+
+#include "core/system/stopwatch.h"
+#include "plugin/build/build_scene.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace ovc {
+
+PassRunner::PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& plan, LogSink log)
+    : tracing_(tracing), gl_(gl), log_(std::move(log)), plan_(plan) {
+    const BuiltScene& scene = tracing.scene;
+    if (scene.pages.empty())
+        return;
+    plan_.active_bytes = tracing.options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
+    plan_.pool_bytes = std::min(room_for_pool(scene, tracing.options, plan),
+                                scene.level2_bytes() + scene.top.tree.bytes());
+}
+
+Result<Done> PassRunner::open(BuildProgress* progress) {
+    const PassOptions options{tracing_.options.certify, tracing_.options.compute};
+    while (true) {
+        Result<std::unique_ptr<Tracer>> made = Error{};
+        gl_.run([&](GlState& state) {
+            tracer_.reset();
+            tracer_generation_ = state.generation;
+            if (state.context.alive())
+                made = Tracer::create(plan_, options, gl_.info(), state.kernels,
+                                      tracing_.scene.level1.bounds, tracing_.scene.pages,
+                                      tracing_.scene.top);
+            else
+                made = Error{"the GPU's context is lost", ErrorKind::DeviceLost};
+        });
+        if (made) {
+            tracer_ = std::move(*made);
+            break;
+        }
+        if (made.error().kind == ErrorKind::DeviceLost)
+            return lost();
+        if (made.error().kind != ErrorKind::OutOfGpuMemory)
+            return made.error();
+        const BuiltScene& scene = tracing_.scene;
+        const uint64_t smaller =
+            std::max(plan_.pool_bytes / 2, scene.largest_page_bytes() + scene.top.tree.bytes());
+        if (smaller == plan_.pool_bytes ||
+            !is_usable(scene.top, scene.pages, {smaller, plan_.buffer_bytes}))
+            return Error{fmt::format("{}: it has no room for the largest page, {} bytes",
+                                     made.error().message, smaller),
+                         ErrorKind::OutOfGpuMemory};
+        say(log_, LogLevel::Warning,
+            fmt::format("the GPU has no room for a pool of {} bytes; going on with {}",
+                        plan_.pool_bytes, smaller));
+        plan_.pool_bytes = smaller;
+    }
+    bring_first(progress);
+    tracing_.statistics.gpu_peak_bytes =
+        std::max(tracing_.statistics.gpu_peak_bytes, tracer_->ledger().peak);
+    return Done{};
+}
+
+Result<Done> PassRunner::ready() {
+    if (tracing_.scene.pages.empty() || (tracer_ && tracer_generation_ == gl_.generation()))
+        return Done{};
+    return open();
+}
+
+void PassRunner::purge() {
+    if (tracer_)
+        gl_.run([&](GlState&) { tracer_.reset(); });
+    batches_ = {};
+}
+
+Error PassRunner::lost() {
+    const Result<Done> again = gl_.reopen(tracer_generation_);
+    return {fmt::format("the GPU's context was lost{}",
+                        again ? "; the device is open again, and the next call will work"
+                              : ", and the device does not open again: " + again.error().message),
+            ErrorKind::DeviceLost};
+}
+
+void PassRunner::bring_first(BuildProgress* progress) {
+    constexpr uint64_t kBytesAtOnce = 32 << 20; // between two looks whether to stop
+    const std::vector<Page>& pages = tracing_.scene.pages;
+    begin(progress, "moving pages to the GPU", 0.05, plan_.pool_bytes);
+    const size_t fitting = fitting_pages(pages, plan_.pool(), tracing_.scene.top.tree.bytes());
+    for (size_t next = 0; next < fitting;) {
+        std::vector<uint32_t> some;
+        uint64_t bytes = 0;
+        for (; next < fitting && bytes < kBytesAtOnce; ++next) {
+            some.push_back(uint32_t(next));
+            bytes += pages[next].bytes();
+        }
+        bring(some);
+        add(progress, bytes);
+    }
+}
+
+size_t PassRunner::bring(std::span<const uint32_t> wanted) {
+    Moved moved;
+    gl_.run([&](GlState& state) {
+        if (is_ours(state))
+            moved = tracer_->bring(wanted);
+    });
+    tracing_.statistics.pages_in += moved.pages;
+    tracing_.statistics.bytes_in += moved.bytes;
+    return moved.pages;
+}
+
+Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
+                                const std::function<void()>& meanwhile) {
+    const size_t count = batch.rays.size();
+    std::fill_n(batch.states.begin() + ptrdiff_t(count), whole_blocks(count) - count, RayState());
+    Result<Done> done = Done{};
+    bool alive = false;
+    Moved moved;
+    double seconds = 0;
+    const auto work = [&](GlState& state) {
+        const Stopwatch watch;
+        alive = is_ours(state);
+        if (!alive)
+            return;
+        done = tracer_->submit(std::span(batch.states).first(count));
+        if (done)
+            moved = tracer_->bring(wanted);
+        if (done)
+            done = tracer_->collect(std::span(batch.answers).first(count));
+        alive = state.context.alive(); // a dead context leaves anything in the answers
+        seconds = watch.seconds();
+    };
+    gl_.run_beside(work, meanwhile, [this] { tracing_.watch.keeps_on(); });
+    if (!alive)
+        return lost();
+    if (!done)
+        return done.error();
+    ovc_statistics& statistics = tracing_.statistics;
+    statistics.passes += 1;
+    statistics.ray_visits += count;
+    statistics.seconds_pass += seconds;
+    seconds_a_ray_ = seconds / double(count);
+    statistics.seconds_kernel += tracer_->kernel_seconds();
+    statistics.pages_in += moved.pages;
+    statistics.bytes_in += moved.bytes;
+    return size_t(moved.pages);
+}
+
+std::vector<uint32_t> PassRunner::take_active() {
+    std::vector<uint32_t> active(tracing_.scene.pages.size());
+    gl_.run([&](GlState& state) {
+        if (tracer_ && is_ours(state))
+            active = tracer_->take_active();
+    });
+    return active;
+}
+
+size_t PassRunner::part_rays(size_t rays) const {
+    constexpr size_t kMin = size_t(1) << 15, kMax = size_t(1) << 17, kMinWatched = 1024;
+    constexpr double kSeconds = 0.03;
+    const size_t part = std::min<size_t>(std::clamp(rays / 4, kMin, kMax), plan_.batch_rays);
+    if (!tracing_.watch.is_watched())
+        return part;
+    // Somebody may cancel the call, so a pass takes some hundredths of a second, as far as the pass
+    // before tells.
+    const double fitting = kSeconds / std::max(seconds_a_ray_, 1e-9);
+    return std::min(part, std::max(kMinWatched, size_t(fitting)));
+}
+
+} // namespace ovc

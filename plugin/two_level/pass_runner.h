@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// PassRunner: what a scene has on the device. It owns the tracer, moves pages into the pool and
+// runs passes of the kernel; it makes the tracer anew after purge() and where a context was lost.
+#pragma once
+
+#include "core/system/log.h"
+#include "gpu/gl/gl_thread.h"
+#include "gpu/trace/tracer.h"
+#include "plugin/two_level/tracing.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+/// The rays of a pass, and their answers.
+struct Batch {
+    std::vector<uint32_t> rays;       // their numbers in the query
+    std::array<size_t, 2> of_waves{}; // so many of each wave, one behind the other
+    std::vector<RayState> states;     // as the next, at least one per ray, to a whole block
+    std::vector<Answer> answers;
+
+    void make_room() {
+        const size_t room = std::max(whole_blocks(rays.size()), states.size());
+        states.resize(room);
+        answers.resize(room);
+    }
+};
+
+class PassRunner {
+public:
+    /// plan: portals are not yet taken off. The thread must outlive the runner.
+    PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& plan, LogSink log);
+    ~PassRunner() { purge(); }
+    PassRunner(const PassRunner&) = delete;
+
+    /// Makes the tracer, with a smaller pool where the driver has no room for the plan's, and moves
+    /// the first pages in, so that rays need not come and wait first.
+    Result<Done> open(BuildProgress* progress = nullptr);
+    /// Makes anew what went with an earlier context, or with purge().
+    Result<Done> ready();
+    /// Gives back all GPU memory.
+    void purge();
+
+    /// Whether a pass answers its rays for good, because all pages are resident.
+    bool all_resident() const { return tracer_ && tracer_->all_resident(); }
+
+    /// Moves the first pages of `wanted` in, as many as fit; returns how many.
+    size_t bring(std::span<const uint32_t> wanted);
+
+    /// Sends the rays of the batch on their way; their answers go into it. Pages of `wanted` are
+    /// moved in and meanwhile() runs beside them; returns how many pages were moved.
+    Result<size_t> pass(Batch& batch, std::span<const uint32_t> wanted,
+                        const std::function<void()>& meanwhile);
+
+    /// Opens a new context for the calls to come. The error that the call under way returns.
+    Error lost();
+
+    /// Per leaf, whether rays were traced through its page since this was asked last.
+    std::vector<uint32_t> take_active();
+
+    /// Whether pages are to move in beside a pass.
+    bool moves_beside() const { return tracing_.options.beside.value_or(!gl_.info().is_software); }
+    /// Fewer rays are not worth a pass while others wait.
+    size_t few_rays() const { return std::min<size_t>(4096, plan_.batch_rays / 4); }
+    /// So many rays of `rays` a pass keep a device busy, and leave something to do beside it.
+    size_t part_rays(size_t rays) const;
+    /// Two batches, kept between calls, take turns: one is with the kernel, while the answers of
+    /// the other are resolved and it is filled again.
+    std::array<Batch, 2>& batches() { return batches_; }
+
+    const MemoryPlan& plan() const { return plan_; }
+    uint64_t gpu_bytes() const { return tracer_ ? tracer_->ledger().in_use : 0; }
+
+private:
+    void bring_first(BuildProgress* progress);
+    /// Whether the context that the tracer lives in is there. On its thread.
+    bool is_ours(const GlState& state) const {
+        return state.generation == tracer_generation_ && state.context.alive();
+    }
+
+    const Tracing tracing_;
+    GlThread& gl_;
+    const LogSink log_;
+    MemoryPlan plan_;
+    std::unique_ptr<Tracer> tracer_; // made and destroyed on the thread of gl_; none after purge()
+    uint32_t tracer_generation_ = 0; // of the context that it was made in
+    std::array<Batch, 2> batches_;
+    double seconds_a_ray_ = 1e-5; // of the pass before
+};
+
+} // namespace ovc

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// Resolver: which rays the kernel is asked about, and what exact arithmetic makes of its answers.
+#pragma once
+
+#include "core/exact/hit_batch.h"
+#include "core/system/parallel.h"
+#include "gpu/trace/tracer.h"
+#include "kdtree/restart.h"
+#include "plugin/two_level/candidates.h"
+#include "plugin/two_level/exact_fallback.h"
+#include "plugin/two_level/query.h"
+#include "plugin/two_level/tracing.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace ovc {
+
+inline constexpr size_t kRaysPerTask = 256; // of parallel loops over rays that are traced
+
+/// Of an answer in certified precision that names triangles or OVC_MISS.
+inline Candidates candidates_of(const Answer& answer) {
+    return {answer.prim, {answer.rivals()[0], answer.rivals()[1]}};
+}
+
+/// The hit with t, u and v of where the ray meets the triangle's plane, as doubles have it; as it
+/// is where they cannot tell. Based on: Moller and Trumbore 1997.
+inline Hit in_doubles(const Hit& hit, const Ray& ray, const Triangle& triangle) {
+    const dvec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
+    const dvec3 p = glm::cross(ray.dir, ac), from = ray.org - triangle[0];
+    const dvec3 q = glm::cross(from, ab);
+    const double determinant = glm::dot(ab, p);
+    const double t = glm::dot(ac, q) / determinant;
+    if (!(t >= ray.t_min && t <= ray.t_max))
+        return hit;
+    return {t, std::clamp(glm::dot(from, p) / determinant, 0.0, 1.0),
+            std::clamp(glm::dot(ray.dir, q) / determinant, 0.0, 1.0), hit.id};
+}
+
+/// The part that is the same however rays come to their leaves. Its members may be called for
+/// different rays at once; its counts go to the statistics when it is destroyed.
+template <class Query>
+class Resolver {
+public:
+    Resolver(const Tracing& tracing, const Query& query)
+        : tracing_(tracing),
+          scene_(tracing.scene),
+          query_(query),
+          box_(scene_.level1.bounds.padded(scene_.level1.padding)) {}
+    ~Resolver() {
+        ovc_statistics& statistics = tracing_.statistics;
+        statistics.invalid_rays += invalid_;
+        statistics.flagged += flagged_;
+        statistics.retraced += retraced_;
+        statistics.capped += capped_;
+    }
+    Resolver(const Resolver&) = delete;
+
+    const Query& query() const { return query_; }
+    /// The query's arrays have moved, or have more rays than before.
+    void show(const Query& query) { query_ = query; }
+
+    /// Whether the kernel is to be asked about ray i. Else the ray is answered now.
+    bool begins(uint32_t i) {
+        query_.set_miss(i);
+        if (!query_.rays[i].valid()) {
+            ++invalid_;
+            return false;
+        }
+        const PreparedRay p = prepare(query_, i);
+        // First: from where double cannot walk, rounding may carry a ray past the whole scene.
+        if (!can_walk(scene_.level1, p)) {
+            fall_back(i);
+            return false;
+        }
+        return !clip(p, box_, p.ray.t_min, p.ray.t_max).empty();
+    }
+
+    /// Ray i on its way: of interest up to t_end; key: as RayState::key().
+    RayState ray_state(uint32_t i, double t_end, uint32_t key) const {
+        query_.count_pass(i);
+        Ray rest = query_.rays[i];
+        rest.t_max = t_end;
+        return {rest,
+                {},
+                scene_.number_to_skip(query_.skipped(i)),
+                key | (Query::kAnyHit ? OVC_RAY_ANY_HIT : 0)};
+    }
+
+    /// Enters the kernel's answers for these rays, as far as they are certain or exact arithmetic
+    /// decides them. takes(i, answer) is asked before; false: the answer is to be left alone.
+    /// go_on(i, key, limit) is told where a page that is not resident may hold a hit before
+    /// `limit`; key: of the link that leads there.
+    template <class Takes, class GoOn>
+    void resolve(std::span<const uint32_t> rays, std::span<const Answer> answers, Takes&& takes,
+                 GoOn&& go_on) {
+        if (!tracing_.watch.keeps_on())
+            return;
+        HitBatch<size_t> certain; // of `answers`
+        std::vector<uint32_t> in_doubt;
+        const auto enter = [&](const Hit& hit, size_t j) {
+            enter_certain(rays[j], answers[j], hit, go_on);
+        };
+        const auto look = [&](size_t j) {
+            if (!resolve_one(rays[j], answers[j], go_on))
+                in_doubt.push_back(rays[j]);
+        };
+        for (size_t j = 0; j < rays.size(); ++j) {
+            fetch_ahead(answers, j);
+            if (!takes(rays[j], answers[j]))
+                continue;
+            if (!is_certain_hit(rays[j], answers[j])) {
+                look(j);
+                continue;
+            }
+            const TriangleId id = scene_.seen(answers[j].prim, query_.skipped(rays[j]));
+            certain.add(query_.rays[rays[j]], scene_.soup.triangle(id), id, j);
+            if (certain.full())
+                certain.finish(enter, look);
+        }
+        certain.finish(enter, look);
+        fall_back(in_doubt);
+    }
+
+    /// Answers ray i for good, whatever it has met. Asks before whether that is in vain, because
+    /// some rays take a hundred times as long as most.
+    void answer_exactly(uint32_t i) {
+        if (tracing_.watch.keeps_on())
+            query_.set(i, trace_exactly<Query::kAnyHit>(scene_, prepare(query_, i)));
+    }
+
+private:
+    /// Fetches the triangle of one of the answers behind the j-th, which is soon to be resolved.
+    void fetch_ahead(std::span<const Answer> answers, size_t j) const {
+        constexpr size_t kAhead = 8;
+        if (j + kAhead >= answers.size())
+            return;
+        const uint32_t prim = answers[j + kAhead].prim;
+        if (prim >= OVC_MAX_TRIANGLES || Query::kAnyHit || !tracing_.options.certify)
+            return; // nobody looks at its corners
+        const TriangleId id = scene_.numbers.id(prim);
+        __builtin_prefetch(scene_.soup.chunks[id.mesh].address_of(id.prim));
+    }
+
+    /// Whether the answer names the nearest hit, and nothing is left to decide but t, u and v.
+    bool is_certain_hit(uint32_t i, const Answer& answer) const {
+        return !Query::kAnyHit && tracing_.options.certify && answer.prim < OVC_MAX_TRIANGLES &&
+               !candidates_of(answer).has_further() && !query_.was_hit(i);
+    }
+
+    template <class GoOn>
+    void enter_certain(uint32_t i, const Answer& answer, const Hit& hit, GoOn&& go_on) {
+        query_.set(i, hit);
+        if (answer.where != OVC_NO_LEAF)
+            go_on(i, answer.where, std::nextafter(hit.t, std::numeric_limits<double>::max()));
+    }
+
+    /// False: the ray goes to the exact fallback.
+    template <class GoOn>
+    bool resolve_one(uint32_t i, const Answer& answer, GoOn&& go_on) {
+        capped_ += answer.prim == OVC_CAPPED;
+        if (answer.prim == OVC_FLAGGED || answer.prim == OVC_CAPPED)
+            return false;
+        if (tracing_.options.certify)
+            return resolve_candidates(i, answer, go_on);
+        enter_fast(i, answer, go_on);
+        return true;
+    }
+
+    /// False where exact arithmetic does not confirm the certain hit.
+    template <class GoOn>
+    bool resolve_candidates(uint32_t i, const Answer& answer, GoOn&& go_on) {
+        const Candidates found = candidates_of(answer);
+        if (found.is_miss())
+            return true;
+        if (Query::kAnyHit && found.is_certain_hit()) {
+            query_.set(i, Hit{0, 0, 0, scene_.numbers.id(found.certain)});
+            return true;
+        }
+        const PreparedRay p = prepare(query_, i);
+        Nearest nearest(p);
+        if (query_.was_hit(i))
+            scene_.offer(nearest, query_.hit(i).id);
+        if (!found.offer_to(nearest, scene_, p.skip))
+            return false;
+        if (nearest.is_hit())
+            query_.set(i, nearest);
+        if (answer.where != OVC_NO_LEAF && !(Query::kAnyHit && nearest.is_hit()))
+            go_on(i, answer.where, nearest.limit());
+        if (found.has_further()) // fall_back() counts the others
+            count_flagged(i);
+        return true;
+    }
+
+    /// The ray was asked about up to the hit before, if there was one, so that this one is nearer.
+    template <class GoOn>
+    void enter_fast(uint32_t i, const Answer& answer, GoOn&& go_on) {
+        if (answer.prim == OVC_MISS)
+            return;
+        Hit hit{answer.t(), answer.u(), answer.v(), scene_.numbers.id(answer.prim)};
+        if (!scene_.top.portals.empty()) // its t was told in the frame of the scene
+            hit = in_doubles(hit, query_.rays[i], scene_.soup.triangle(hit.id));
+        query_.set(i, scene_.seen(hit, query_.skipped(i)));
+        if (!Query::kAnyHit && answer.where != OVC_NO_LEAF)
+            go_on(i, answer.where, hit.t);
+    }
+
+    /// In parallel where the rays are many, because each may take as long as thousands of others.
+    void fall_back(std::span<const uint32_t> rays) {
+        const auto each = [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j)
+                fall_back(rays[j]);
+        };
+        if (rays.size() < 8)
+            each(0, rays.size());
+        else
+            parallel_for(rays.size(), 1, each);
+    }
+
+    void fall_back(uint32_t i) {
+        answer_exactly(i);
+        count_flagged(i);
+        ++retraced_;
+    }
+
+    void count_flagged(uint32_t i) {
+        query_.flag(i);
+        ++flagged_;
+    }
+
+    const Tracing tracing_;
+    const BuiltScene& scene_;
+    Query query_;
+    const Box box_; // of the scene; empty: no triangles
+    std::atomic<uint64_t> invalid_{0};
+    std::atomic<uint64_t> flagged_{0};
+    std::atomic<uint64_t> retraced_{0};
+    std::atomic<uint64_t> capped_{0};
+};
+
+} // namespace ovc

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tracing: what waves, resolving and passes are handed.
+#pragma once
+
+#include "plugin/build/built_scene.h"
+#include "plugin/overcast.h"
+#include "plugin/plan/two_level_options.h"
+#include "plugin/structure/call_watch.h"
+
+namespace ovc {
+
+/// What is referred to outlives everything that is handed a Tracing.
+struct Tracing {
+    const BuiltScene& scene;
+    const TwoLevelOptions& options;
+    ovc_statistics& statistics; // tracing counts here; report() adds what the scene tells
+    CallWatch& watch;
+};
+
+} // namespace ovc

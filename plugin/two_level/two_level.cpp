@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two-level: what a call does before and after its rays are traced.
+#include "plugin/two_level/two_level.h"
+
+#include "core/system/stopwatch.h"
+#include "plugin/build/build_scene.h"
+#include "plugin/build/saved_levels.h"
+#include "plugin/two_level/mixed_stream.h"
+#include "plugin/two_level/one_pass.h"
+#include "plugin/two_level/wave_round.h"
+
+#include <algorithm>
+
+namespace ovc {
+
+Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl,
+                                                  const TwoLevelOptions& options,
+                                                  const LogSink& log, BuildProgress* progress) {
+    const Result<MemoryPlan> plan = plan_memory(soup, options, gl.info());
+    if (!plan)
+        return plan.error();
+    if (const Result<Done> enough = check_budget(soup, options, *plan, gl.info()); !enough)
+        return enough.error();
+    Result<BuiltScene> scene = build_scene(soup, options, *plan, log, progress);
+    if (!scene)
+        return scene.error();
+    std::unique_ptr<TwoLevel> self(new TwoLevel(std::move(*scene), gl, options, *plan, log));
+    const size_t leaves = self->scene_.pages.size();
+    if (leaves == 0)
+        return self; // every ray misses, no GPU needed
+    const Result<Done> opened = self->passes_.open(progress);
+    if (opened)
+        return self;
+    if (opened.error().kind != ErrorKind::OutOfGpuMemory || leaves > 1 || options.leaf_triangles ||
+        options.leaves)
+        return opened.error();
+    say(log, LogLevel::Warning, "cutting the scene into leaves, of which the GPU holds some");
+    TwoLevelOptions cut = options;
+    cut.leaf_triangles = self->scene_.limits.triangles;
+    self.reset();
+    return build(soup, gl, cut, log, progress);
+}
+
+template <class Query>
+Result<Done> TwoLevel::trace(const Query& query) {
+    const Stopwatch watch;
+    if (Result<Done> ready = passes_.ready(); !ready)
+        return ready;
+    const Result<Done> done = passes_.all_resident() ? OnePass(tracing_, passes_, query).run()
+                                                     : trace_in_waves(tracing_, passes_, query);
+    if (!done)
+        return done;
+    (Query::kAnyHit ? statistics_.occlusion_rays : statistics_.nearest_rays) += query.rays.size();
+    statistics_.seconds_trace += watch.seconds();
+    return watch_.unless_cancelled();
+}
+
+Result<Done> TwoLevel::intersect(RaySpan rays, std::span<const TriangleId> skip,
+                                 std::span<Hit> hits) {
+    return trace(NearestQuery{rays, skip, hits, {}, {}});
+}
+
+Result<Done> TwoLevel::occluded(RaySpan rays, std::span<const TriangleId> skip,
+                                std::span<uint8_t> occluded) {
+    return trace(OcclusionQuery{rays, skip, occluded});
+}
+
+Result<Done> TwoLevel::intersect_noted(RaySpan rays, std::span<const TriangleId> skip,
+                                       std::span<Hit> hits, const RayNotes& notes) {
+    std::fill(notes.passes.begin(), notes.passes.end(), 0);
+    std::fill(notes.flagged.begin(), notes.flagged.end(), 0);
+    if (Result<Done> done = trace(NearestQuery{rays, skip, hits, notes.passes, notes.flagged});
+        !done)
+        return done;
+    parallel_for(notes.leaf.size(), 1024, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            notes.leaf[i] =
+                hits[i].is_hit() ? scene_.page_at(rays[i].at(hits[i].t), hits[i].id) : kNone;
+    });
+    return Done{};
+}
+
+Hit TwoLevel::nearest_on_cpu(const Ray& ray, TriangleId skip) const {
+    return trace_exactly</* kAnyHit= */ false>(scene_, PreparedRay(ray, skip));
+}
+
+bool TwoLevel::occluded_on_cpu(const Ray& ray, TriangleId skip) const {
+    return trace_exactly</* kAnyHit= */ true>(scene_, PreparedRay(ray, skip)).is_hit();
+}
+
+Result<Done> TwoLevel::stream(StreamHost& host) {
+    if (Result<Done> ready = passes_.ready(); !ready)
+        return ready;
+    return trace_stream(tracing_, passes_, host);
+}
+
+Result<ovc_active> TwoLevel::take_active() {
+    if (!options_.tell_active)
+        return Error{"which pages are active is told where ovc_scene_config.tell_active is 1"};
+    if (Result<Done> ready = passes_.ready(); !ready)
+        return ready.error();
+    const std::vector<uint32_t> now = passes_.take_active();
+    ovc_active active{};
+    was_active_.resize(now.size());
+    for (size_t leaf = 0; leaf < now.size(); ++leaf) {
+        if (now[leaf]) {
+            const uint64_t bytes = scene_.pages[leaf].bytes();
+            active.pages += 1;
+            active.bytes += bytes;
+            active.new_pages += !was_active_[leaf];
+            active.new_bytes += was_active_[leaf] ? 0 : bytes;
+        }
+        was_active_[leaf] = now[leaf] != 0;
+    }
+    return active;
+}
+
+Result<Done> TwoLevel::save(const ByteSink& sink) const {
+    if (!save_levels(scene_, sink))
+        return Error{"saving was stopped", ErrorKind::Cancelled};
+    return Done{};
+}
+
+Result<Done> TwoLevel::purge() {
+    passes_.purge();
+    return Done{};
+}
+
+} // namespace ovc

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two-level: level 1, a page per leaf, passes in which rays go from page to page as far as these
+// are in the pool, and wait for the others. Based on: thesis, sections 3.3 and 3.4 (algorithms 2, 3
+// and 4), with the way from page to page found in the kernel.
+#pragma once
+
+#include "core/system/log.h"
+#include "plugin/structure/structure.h"
+#include "plugin/two_level/pass_runner.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace ovc {
+
+/// A scene, what it has on the device, and rays through it. One call at a time.
+class TwoLevel final : public Structure {
+public:
+    /// The soup and the thread must outlive it. Error: a budget too small, with the smallest that
+    /// works; GL's refusals.
+    static Result<std::unique_ptr<TwoLevel>> build(const Soup& soup, GlThread& gl,
+                                                   const TwoLevelOptions& options,
+                                                   const LogSink& log,
+                                                   BuildProgress* progress = nullptr);
+
+    Result<Done> intersect(RaySpan rays, std::span<const TriangleId> skip,
+                           std::span<Hit> hits) override;
+    Result<Done> occluded(RaySpan rays, std::span<const TriangleId> skip,
+                          std::span<uint8_t> occluded) override;
+    Result<Done> intersect_noted(RaySpan rays, std::span<const TriangleId> skip,
+                                 std::span<Hit> hits, const RayNotes& notes) override;
+    bool takes_notes() const override { return true; }
+    bool has_cpu_tree() const override { return true; }
+    Hit nearest_on_cpu(const Ray& ray, TriangleId skip) const override;
+    bool occluded_on_cpu(const Ray& ray, TriangleId skip) const override;
+    Result<Done> stream(StreamHost& host) override;
+    ovc_statistics report() const override; // make_two_level.cpp
+    Result<ovc_active> take_active() override;
+    Result<Done> save(const ByteSink& sink) const override;
+    Result<Done> purge() override;
+
+    const BuiltScene& scene() const { return scene_; }
+    const ovc_statistics& statistics() const { return statistics_; }
+    const MemoryPlan& plan() const { return passes_.plan(); }
+
+private:
+    TwoLevel(BuiltScene scene, GlThread& gl, const TwoLevelOptions& options, const MemoryPlan& plan,
+             const LogSink& log)
+        : scene_(std::move(scene)), options_(options), passes_(tracing_, gl, plan, log) {}
+
+    template <class Query>
+    Result<Done> trace(const Query& query);
+
+    const BuiltScene scene_;
+    const TwoLevelOptions options_;
+    ovc_statistics statistics_{sizeof(ovc_statistics)};
+    const Tracing tracing_{scene_, options_, statistics_, watch_};
+    PassRunner passes_;
+    std::vector<uint8_t> was_active_; // per leaf: when take_active() was asked last
+};
+
+} // namespace ovc

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rays that wait for leaves outside the pool, and which leaves are worth moving in.
+#pragma once
+
+#include "gpu/page/page.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace ovc {
+
+class Waiting {
+public:
+    explicit Waiting(size_t leaves) : queues_(leaves) {}
+
+    void push(uint32_t leaf, uint32_t ray) {
+        queues_[leaf].push_back(ray);
+        ++count_;
+    }
+    std::vector<uint32_t> take(uint32_t leaf) {
+        count_ -= queues_[leaf].size();
+        return std::exchange(queues_[leaf], {});
+    }
+    size_t count() const { return count_; }
+
+    size_t count(uint32_t leaf) const { return queues_[leaf].size(); }
+
+private:
+    std::vector<std::vector<uint32_t>> queues_; // per leaf
+    size_t count_ = 0;
+};
+
+/// Moving so many bytes takes as long as answering a ray in double: 1 us on a core, either of them
+/// (docs/decisions/0013).
+inline constexpr uint64_t kBytesARay = 8192;
+
+/// Of the leaves that rays wait for, counts[leaf] of them: those worth moving in, most rays per
+/// byte first, but none that is worth less than an eighth of the first: its queue may grow until it
+/// is; nor one with less than a ray for `bytes_a_ray`, which doubles answer sooner than it is
+/// moved.
+inline std::vector<uint32_t> worth_moving(std::span<const size_t> counts,
+                                          std::span<const Page> pages, uint64_t bytes_a_ray) {
+    constexpr double kLeastShare = 1.0 / 8;
+    std::vector<std::pair<double, uint32_t>> leaves;
+    for (uint32_t leaf = 0; leaf < counts.size(); ++leaf)
+        if (counts[leaf] > 0 && counts[leaf] >= pages[leaf].bytes() / bytes_a_ray)
+            leaves.emplace_back(-double(counts[leaf]) / double(pages[leaf].bytes()), leaf);
+    std::sort(leaves.begin(), leaves.end());
+    std::vector<uint32_t> wanted;
+    for (const auto& [minus_worth, leaf] : leaves)
+        if (minus_worth <= leaves.front().first * kLeastShare)
+            wanted.push_back(leaf);
+    return wanted;
+}
+
+} // namespace ovc

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wave: rays on their way. Those that need no other page yet are ready for the next pass, the
+// others wait for theirs.
+#pragma once
+
+#include "plugin/two_level/pass_runner.h"
+#include "plugin/two_level/resolve.h"
+#include "plugin/two_level/waiting.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace ovc {
+
+/// The rays of a query, by their numbers in it.
+template <class Query>
+class Wave {
+public:
+    Wave(const Tracing& tracing, PassRunner& passes, const Query& query)
+        : tracing_(tracing),
+          passes_(passes),
+          resolver_(tracing, query),
+          states_(query.rays.size()),
+          waiting_(tracing.scene.pages.size()) {}
+
+    /// The query's arrays have moved, or have more rays than before.
+    void show(const Query& query) {
+        resolver_.show(query);
+        states_.resize(query.rays.size());
+    }
+
+    /// Puts these rays, none of them under way, at the beginning of theirs.
+    void start(std::span<const uint32_t> rays) {
+        parallel_for(rays.size(), kRaysPerTask, [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j)
+                start_one(rays[j]);
+        });
+        send_on(rays);
+    }
+
+    /// Rays that are not answered yet.
+    size_t left() const { return ready() + waiting() + loaded_; }
+    size_t ready() const { return ready_.size(); }
+    size_t waiting() const { return waiting_.count(); }
+    const Waiting& queues() const { return waiting_; }
+
+    /// The leaves are resident now, so that the rays that waited for them are ready.
+    void call_up(std::span<const uint32_t> leaves) {
+        for (const uint32_t leaf : leaves) {
+            const std::vector<uint32_t> queue = waiting_.take(leaf);
+            ready_.insert(ready_.end(), queue.begin(), queue.end());
+            ovc_statistics& statistics = tracing_.statistics;
+            statistics.queues += !queue.empty();
+            statistics.queued_rays += queue.size();
+            statistics.longest_queue = std::max<uint64_t>(statistics.longest_queue, queue.size());
+        }
+    }
+
+    /// Answers all rays that wait by the exact fallback.
+    void answer_waiting() {
+        std::vector<uint32_t> rays;
+        for (uint32_t leaf = 0; leaf < tracing_.scene.pages.size(); ++leaf) {
+            const std::vector<uint32_t> queue = waiting_.take(leaf);
+            rays.insert(rays.end(), queue.begin(), queue.end());
+        }
+        parallel_for(rays.size(), kRaysPerTask, [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j)
+                resolver_.answer_exactly(rays[j]);
+        });
+        tracing_.statistics.stragglers += rays.size();
+        finished_.insert(finished_.end(), rays.begin(), rays.end());
+    }
+
+    /// The rays that were answered since this was asked last.
+    std::vector<uint32_t> take_finished() { return std::exchange(finished_, {}); }
+
+    /// Puts rays that are ready into `states`, as many as there is room for, and their numbers into
+    /// `rays`; returns how many. Beside a pass.
+    size_t load(std::span<uint32_t> rays, std::span<RayState> states) {
+        const size_t count = std::min(ready_.size(), rays.size());
+        std::copy_n(ready_.begin(), count, rays.begin());
+        ready_.erase(ready_.begin(), ready_.begin() + ptrdiff_t(count));
+        loaded_ += count;
+        parallel_for(count, kRaysPerTask, [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j) {
+                const State& at = states_[rays[j]];
+                states[j] = resolver_.ray_state(rays[j], at.t_end, at.key);
+            }
+        });
+        return count;
+    }
+
+    /// Resolves the answers for rays that were loaded, and sends the rays on. Beside a pass.
+    void resolve(std::span<const uint32_t> rays, std::span<const Answer> answers) {
+        parallel_for(rays.size(), kRaysPerTask, [&](size_t from, size_t to) {
+            resolver_.resolve(
+                rays.subspan(from, to - from), answers.subspan(from, to - from),
+                [&](uint32_t i, const Answer& answer) { return takes(i, answer); },
+                [&](uint32_t i, uint32_t key, double end) {
+                    states_[i] = {end, key, State::Waits};
+                });
+        });
+        loaded_ -= rays.size();
+        send_on(rays);
+    }
+
+private:
+    /// How far a ray has come: the resume key, and nothing beyond t_end is of interest.
+    struct State {
+        double t_end = 0;
+        uint32_t key = 0;
+        enum : uint32_t { Done, Ready, Waits } stage = Done;
+    };
+
+    void start_one(uint32_t i) {
+        states_[i] = {};
+        if (resolver_.begins(i))
+            states_[i] = {resolver_.query().rays[i].t_max, 0, State::Ready};
+    }
+
+    void send_on(std::span<const uint32_t> rays) {
+        for (const uint32_t i : rays) {
+            if (states_[i].stage == State::Ready)
+                ready_.push_back(i);
+            else if (states_[i].stage == State::Waits)
+                waiting_.push(leaf_of(states_[i].key), i);
+            else
+                finished_.push_back(i);
+        }
+    }
+
+    /// Says in states_[i] where the ray goes from here, as far as the answer alone tells. False:
+    /// there is nothing in it to resolve.
+    bool takes(uint32_t i, const Answer& answer) {
+        State& at = states_[i];
+        at.stage = State::Done;
+        if (!candidates_of(answer).is_miss())
+            return true;
+        // The answer is that of all pages before the one whose key it has, if any.
+        if (answer.where != OVC_NO_LEAF)
+            at = {at.t_end, answer.where, State::Waits};
+        return false;
+    }
+
+    const Tracing tracing_;
+    PassRunner& passes_;
+    Resolver<Query> resolver_;
+    std::vector<State> states_;   // per ray
+    std::vector<uint32_t> ready_; // rays for the next passes
+    size_t loaded_ = 0;           // rays in batches
+    std::vector<uint32_t> finished_;
+    Waiting waiting_;
+};
+
+} // namespace ovc

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+// Instances through the ABI, and the same triangles moved by hand: a scene, rays at it, and what
+// must be equal.
+#pragma once
+
+#include "kdtree/test_soups.h"
+#include "tests/abi/abi_scene.h"
+#include "tests/exact.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ovc::test {
+
+using Transform = std::array<double, 12>;
+
+/// As overcast.h has it.
+inline dvec3 moved(const Transform& m, const dvec3& p) {
+    dvec3 q;
+    for (int row = 0; row < 3; ++row) {
+        const double* r = &m[size_t(4 * row)];
+        q[row] = ((r[0] * p.x + r[1] * p.y) + r[2] * p.z) + r[3];
+    }
+    return q;
+}
+
+inline Transform product(const Transform& second, const Transform& first) {
+    Transform both{};
+    for (size_t i = 0; i < 3; ++i)
+        for (size_t j = 0; j < 4; ++j) {
+            const double* r = &second[4 * i];
+            both[4 * i + j] = (r[0] * first[j] + r[1] * first[4 + j]) + r[2] * first[8 + j];
+            if (j == 3)
+                both[4 * i + j] += r[3];
+        }
+    return both;
+}
+
+inline Transform shift(const dvec3& by) {
+    return {1, 0, 0, by.x, 0, 1, 0, by.y, 0, 0, 1, by.z};
+}
+
+inline Transform scale(const dvec3& by) {
+    return {by.x, 0, 0, 0, 0, by.y, 0, 0, 0, 0, by.z, 0};
+}
+
+/// Any affine map: rotations, shears, mirrors, whatever comes.
+inline Transform any_transform(Random& random, double reach) {
+    Transform m;
+    for (size_t i = 0; i < 12; ++i)
+        m[i] = random.point(-1, 1).x * (i % 4 == 3 ? reach : 1);
+    return m;
+}
+
+/// A scene behind the ABI, and its triangles where overcast.h says they are, mesh by mesh.
+class World {
+public:
+    World(ovc_device device, const ovc_scene_config& config) : device_(device) {
+        ovc_scene created = nullptr;
+        EXPECT_EQ(api().create_scene(device, &config, &created), OVC_OK);
+        scene.reset(created);
+    }
+
+    uint32_t add(const std::vector<vec3>& positions, const dvec3& origin, const Transform* m,
+                 uint32_t flags = 0) {
+        auto mesh = sized<ovc_mesh>();
+        mesh.positions = &positions[0].x;
+        return add(mesh, {positions.begin(), positions.end()}, origin, m, flags);
+    }
+    uint32_t add(const std::vector<dvec3>& positions, const dvec3& origin, const Transform* m,
+                 uint32_t flags = 0) {
+        auto mesh = sized<ovc_mesh>();
+        mesh.positions_double = &positions[0].x;
+        return add(mesh, positions, origin, m, flags);
+    }
+    uint32_t instance(uint32_t mesh, const Transform* m) {
+        auto given = sized<ovc_instance>();
+        given.mesh = mesh;
+        given.transform = m ? m->data() : nullptr;
+        uint32_t number = OVC_NONE;
+        EXPECT_EQ(api().add_instance(scene.get(), &given, &number), OVC_OK) << error();
+        const Transform first = transforms_.count(mesh) ? transforms_[mesh] : shift(dvec3(0));
+        const bool has_both = m && transforms_.count(mesh);
+        if (m)
+            transforms_[number] = has_both ? product(*m, first) : *m;
+        else if (transforms_.count(mesh))
+            transforms_[number] = first;
+        sources_[number] = sources_[mesh];
+        expect(number, /* is_template= */ false);
+        return number;
+    }
+
+    void commit() { ASSERT_EQ(api().commit(scene.get()), OVC_OK) << error(); }
+
+    std::vector<Hit> intersect(const std::vector<Ray>& rays) const {
+        std::vector<Hit> hits(rays.size());
+        EXPECT_EQ(api().intersect(scene.get(), reinterpret_cast<const ovc_ray*>(rays.data()),
+                                  rays.size(), reinterpret_cast<ovc_hit*>(hits.data()), nullptr),
+                  OVC_OK)
+            << error();
+        return hits;
+    }
+    ovc_statistics statistics() const {
+        auto statistics = sized<ovc_statistics>();
+        EXPECT_EQ(api().statistics(scene.get(), &statistics), OVC_OK) << error();
+        return statistics;
+    }
+    std::string error() const { return api().last_error(device_); }
+
+    AbiScene scene;
+    Soup expected;
+
+private:
+    uint32_t add(ovc_mesh& mesh, std::vector<dvec3> positions, const dvec3& origin,
+                 const Transform* m, uint32_t flags) {
+        mesh.vertex_count = positions.size();
+        mesh.flags = flags;
+        mesh.transform = m ? m->data() : nullptr;
+        for (int axis = 0; axis < 3; ++axis)
+            mesh.origin[axis] = origin[axis];
+        uint32_t number = OVC_NONE;
+        EXPECT_EQ(api().add_mesh(scene.get(), &mesh, &number), OVC_OK) << error();
+        for (dvec3& p : positions)
+            p = origin + p;
+        sources_[number] = std::move(positions);
+        if (m)
+            transforms_[number] = *m;
+        expect(number, flags & OVC_MESH_TEMPLATE);
+        return number;
+    }
+    void expect(uint32_t number, bool is_template) {
+        EXPECT_EQ(number, expected.chunks.size()) << "numbered in the order they are added";
+        std::vector<dvec3> corners;
+        if (!is_template)
+            corners = sources_[number];
+        if (transforms_.count(number))
+            for (dvec3& p : corners)
+                p = moved(transforms_[number], p);
+        expected.chunks.push_back(Chunk::owning_doubles(dvec3(0), std::move(corners)));
+    }
+
+    ovc_device device_;
+    std::map<uint32_t, std::vector<dvec3>> sources_; // as overcast.h has them, without transforms
+    std::map<uint32_t, Transform> transforms_;
+};
+
+template <class Corner>
+std::vector<Corner> random_corners(Random& random, size_t triangles, double size) {
+    std::vector<Corner> corners;
+    for (size_t i = 0; i < triangles; ++i) {
+        const dvec3 middle = random.point(-1, 1);
+        for (int c = 0; c < 3; ++c)
+            corners.push_back(Corner(middle + size * random.point(-1, 1)));
+    }
+    return corners;
+}
+
+/// At corners, at sides, and anywhere within the triangles of a soup, from all around.
+inline std::vector<Ray> rays_at(const Soup& soup, size_t count, uint64_t seed) {
+    Random random(seed);
+    Box bounds;
+    const std::vector<TriangleId> ids = hittable_triangles(soup, nullptr, &bounds);
+    std::vector<Ray> rays;
+    for (size_t i = 0; i < count; ++i) {
+        const Triangle t = soup.triangle(ids[random.below(uint32_t(ids.size()))]);
+        dvec3 weights = random.point(0, 1);
+        weights.x = i % 4 < 1 ? 0 : weights.x;
+        weights.y = i % 8 < 1 ? 0 : weights.y;
+        weights /= weights.x + weights.y + weights.z;
+        const dvec3 target = weights.x * t[0] + weights.y * t[1] + weights.z * t[2];
+        const dvec3 org = bounds.center() + max_component(bounds.extent()) * random.point(-1, 1);
+        rays.push_back({org, 0, target - org});
+    }
+    return rays;
+}
+
+/// Bit for bit what testing every triangle answers; and of some rays what exact rationals say.
+inline void expect_brute_force(const World& world, const std::vector<Ray>& rays, size_t exactly,
+                               bool most_hit = true) {
+    const std::vector<TriangleId> ids = hittable_triangles(world.expected, nullptr, nullptr);
+    const std::vector<Hit> hits = world.intersect(rays);
+    size_t hit_count = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const PreparedRay p(rays[i]);
+        Nearest nearest(p);
+        for (const TriangleId id : ids)
+            nearest.offer(world.expected.triangle(id), id);
+        const Hit expected = nearest.hit();
+        ASSERT_EQ(std::memcmp(&hits[i], &expected, sizeof(Hit)), 0)
+            << "ray " << i << ": (" << hits[i].id.mesh << ", " << hits[i].id.prim << ") at "
+            << hits[i].t << ", expected (" << expected.id.mesh << ", " << expected.id.prim
+            << ") at " << expected.t;
+        hit_count += hits[i].is_hit();
+    }
+    EXPECT_GT(hit_count, most_hit ? rays.size() / 2 : 0);
+    for (size_t i = 0; i < std::min(exactly, rays.size()); ++i) {
+        const auto truth = exact_nearest(world.expected, ids, rays[i]);
+        ASSERT_EQ(truth ? truth->id : TriangleId{}, hits[i].id) << "ray " << i;
+    }
+}
+
+/// The same where each ray does not see one triangle, often the one that it would hit; and whether
+/// anything is hit.
+inline void expect_brute_force_with_skips(const World& world, const std::vector<Ray>& rays,
+                                          uint64_t seed) {
+    Random random(seed);
+    const std::vector<TriangleId> ids = hittable_triangles(world.expected, nullptr, nullptr);
+    const std::vector<Hit> first = world.intersect(rays);
+    std::vector<ovc_triangle> skip;
+    for (const Hit& hit : first) {
+        const TriangleId id =
+            hit.is_hit() && random.below(4) ? hit.id : ids[random.below(uint32_t(ids.size()))];
+        skip.push_back({id.mesh, id.prim});
+    }
+    auto query = sized<ovc_query>();
+    query.skip = skip.data();
+    const auto* const asked = reinterpret_cast<const ovc_ray*>(rays.data());
+    std::vector<Hit> hits(rays.size());
+    std::vector<uint8_t> occluded(rays.size());
+    ASSERT_EQ(api().intersect(world.scene.get(), asked, rays.size(),
+                              reinterpret_cast<ovc_hit*>(hits.data()), &query),
+              OVC_OK);
+    ASSERT_EQ(api().occluded(world.scene.get(), asked, rays.size(), occluded.data(), &query),
+              OVC_OK);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const Hit expected =
+            brute_force(world.expected, ids, rays[i], {skip[i].mesh, skip[i].prim});
+        ASSERT_EQ(std::memcmp(&hits[i], &expected, sizeof(Hit)), 0)
+            << "ray " << i << " does not see (" << skip[i].mesh << ", " << skip[i].prim << "): ("
+            << hits[i].id.mesh << ", " << hits[i].id.prim << ") at " << hits[i].t << ", expected ("
+            << expected.id.mesh << ", " << expected.id.prim << ") at " << expected.t;
+        ASSERT_EQ(occluded[i] != 0, expected.is_hit()) << "ray " << i;
+    }
+}
+
+class Instances : public DeviceTest {
+protected:
+    void SetUp() override {
+        DeviceTest::SetUp();
+        if (IsSkipped())
+            return;
+        config.leaf_triangles = 50;
+    }
+    World world() const { return World(device.get(), config); }
+
+    ovc_scene_config config = sized<ovc_scene_config>();
+};
+
+} // namespace ovc::test

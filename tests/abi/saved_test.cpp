@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Saving through the ABI: a later scene answers with the same bits without building; what is
+// damaged, or of another scene, is noticed, and then it builds.
+#include "core/file/test_archive.h"
+#include "kdtree/test_soups.h"
+#include "tests/abi/abi_scene.h"
+
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+namespace ovc {
+namespace {
+
+using test::api;
+using testing::HasSubstr;
+
+class Saved : public testing::Test {
+protected:
+    void SetUp() override {
+        auto config = test::sized<ovc_device_config>();
+        config.log = [](void* user, ovc_log_level, const char* message) {
+            *static_cast<std::string*>(user) += std::string(message) + "\n";
+        };
+        config.log_user = &log;
+        ovc_device opened = nullptr;
+        api().create_device(&config, &opened);
+        device.reset(opened);
+        if (!device)
+            GTEST_SKIP() << api().last_error(nullptr);
+    }
+
+    static int append(void* user, const void* bytes, size_t size) {
+        static_cast<test::ArchiveMemory*>(user)->append(
+            {static_cast<const std::byte*>(bytes), size});
+        return 0;
+    }
+
+    /// With the bytes to start from, or without.
+    test::AbiScene committed(const Soup& soup, Bytes saved, ovc_scene_config config) {
+        config.saved = saved.data();
+        config.saved_bytes = saved.size();
+        test::AbiScene scene = test::add_soup(device, soup, config);
+        EXPECT_TRUE(scene) << api().last_error(device.get());
+        log.clear();
+        EXPECT_EQ(api().commit(scene.get()), OVC_OK) << api().last_error(device.get());
+        return scene;
+    }
+    test::AbiScene committed(const Soup& soup, Bytes saved) {
+        return committed(soup, saved, leaves_of(200));
+    }
+
+    static ovc_scene_config leaves_of(uint64_t triangles) {
+        auto config = test::sized<ovc_scene_config>();
+        config.leaf_triangles = triangles;
+        return config;
+    }
+
+    test::ArchiveMemory save(const test::AbiScene& scene) {
+        test::ArchiveMemory memory;
+        EXPECT_EQ(api().save(scene.get(), append, &memory), OVC_OK)
+            << api().last_error(device.get());
+        return memory;
+    }
+
+    std::string log;
+    test::Device device;
+};
+
+TEST_F(Saved, AnswersAreTheSameBitsWithoutBuilding) {
+    for (const auto& [name, soup] : test::unpleasant_soups()) {
+        SCOPED_TRACE(name);
+        const auto rays = test::unpleasant_rays(soup, 3, 1500);
+        for (const uint32_t precision : {OVC_PRECISION_CERTIFIED, OVC_PRECISION_FAST}) {
+            ovc_scene_config config = leaves_of(200);
+            config.precision = precision;
+            const auto built = committed(soup, {}, config);
+            const test::ArchiveMemory memory = save(built);
+            const auto restored = committed(soup, memory.bytes(), config);
+            const ovc_statistics before = statistics(built), after = statistics(restored);
+            EXPECT_EQ(before.from_saved, 0u);
+            EXPECT_EQ(after.from_saved, 1u) << log;
+            EXPECT_EQ(after.leaves, before.leaves);
+            EXPECT_EQ(after.leaf_references, before.leaf_references);
+            EXPECT_EQ(after.level2_bytes, before.level2_bytes);
+            EXPECT_EQ(after.dropped_degenerate, before.dropped_degenerate);
+            EXPECT_EQ(after.dropped_not_finite, before.dropped_not_finite);
+            EXPECT_EQ(after.twins, before.twins);
+            const auto expected = answers(built, rays), found = answers(restored, rays);
+            EXPECT_EQ(std::memcmp(expected.data(), found.data(), rays.size() * sizeof(ovc_hit)), 0);
+            const test::ArchiveMemory again = save(restored);
+            ASSERT_EQ(again.size(), memory.size());
+            EXPECT_EQ(std::memcmp(again.bytes().data(), memory.bytes().data(), memory.size()), 0);
+        }
+    }
+}
+
+TEST_F(Saved, OtherMeshesAndOtherOptionsAreBuiltAnew) {
+    const Soup soup = test::random_soup(2, 3000, 0.05), other = test::random_soup(3, 3000, 0.05);
+    const test::ArchiveMemory memory = save(committed(soup, {}));
+    EXPECT_EQ(statistics(committed(other, memory.bytes())).from_saved, 0u);
+    EXPECT_THAT(log, HasSubstr("building anew: what was saved is of other meshes"));
+    EXPECT_EQ(statistics(committed(soup, memory.bytes(), leaves_of(100))).from_saved, 0u);
+    EXPECT_THAT(log, HasSubstr("or other options"));
+    ovc_scene_config smaller = leaves_of(200);
+    smaller.gpu_memory_bytes = 512 << 10;
+    EXPECT_EQ(statistics(committed(soup, memory.bytes(), smaller)).from_saved, 1u)
+        << "here they fit as well, all at once: " << log;
+    smaller.gpu_memory_bytes = 64 << 10;
+    EXPECT_EQ(statistics(committed(soup, memory.bytes(), smaller)).from_saved, 0u)
+        << "here pages might decide";
+}
+
+TEST_F(Saved, DamageIsSaidAndBuiltAnew) {
+    const Soup soup = test::random_soup(2, 3000, 0.05);
+    const auto rays = test::unpleasant_rays(soup, 3, 500);
+    const auto whole = committed(soup, {});
+    const auto expected = answers(whole, rays);
+    test::ArchiveMemory memory = save(whole);
+    memory.data()[memory.size() / 2] ^= std::byte(1);
+    const auto damaged = committed(soup, memory.bytes());
+    EXPECT_EQ(log, "building anew: what was saved is damaged: the checksum of its part 'texels' is "
+                   "wrong\n");
+    EXPECT_EQ(statistics(damaged).from_saved, 0u);
+    const auto found = answers(damaged, rays);
+    EXPECT_EQ(std::memcmp(expected.data(), found.data(), rays.size() * sizeof(ovc_hit)), 0);
+    committed(soup, memory.bytes().first(1000));
+    EXPECT_EQ(log, "building anew: what was saved is cut off\n");
+}
+
+TEST_F(Saved, MisuseIsRefused) {
+    const Soup soup = test::random_soup(2, 30, 0.05);
+    ovc_scene scene = nullptr;
+    ovc_scene_config config = leaves_of(10);
+    config.saved_bytes = 1;
+    EXPECT_EQ(api().create_scene(device.get(), &config, &scene), OVC_ERROR_INVALID_ARGUMENT);
+    const auto uncommitted = test::add_soup(device, soup, leaves_of(10));
+    test::ArchiveMemory memory;
+    EXPECT_EQ(api().save(uncommitted.get(), append, &memory), OVC_ERROR_INVALID_STATE);
+    const auto fine = committed(soup, {});
+    EXPECT_EQ(api().save(fine.get(), nullptr, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(api().save(nullptr, append, &memory), OVC_ERROR_INVALID_ARGUMENT);
+    const auto full = [](void*, const void*, size_t) { return 1; };
+    EXPECT_EQ(api().save(fine.get(), full, nullptr), OVC_ERROR_CANCELLED);
+}
+
+} // namespace
+} // namespace ovc

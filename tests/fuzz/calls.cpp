@@ -1,0 +1,595 @@
+// SPDX-License-Identifier: Apache-2.0
+// fuzz_calls: a player that reads calls from bytes, beside a model that knows what each must
+// return.
+#include "tests/fuzz/calls.h"
+
+#include "kdtree/test_soups.h"
+#include "plugin/overcast.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <memory>
+#include <thread>
+
+namespace ovc {
+namespace {
+
+#define OVC_REQUIRE(condition) ((condition) ? void(0) : failed(#condition, __FILE__, __LINE__))
+
+[[noreturn]] void failed(const char* condition, const char* file, int line) {
+    std::fprintf(stderr, "%s:%d: not so: %s\n", file, line, condition);
+    std::abort();
+}
+
+const ovc_api& api() {
+    return *ovc_get_api(OVC_ABI_VERSION);
+}
+
+template <class T>
+T sized() {
+    T value{};
+    value.struct_size = sizeof(T);
+    return value;
+}
+
+/// Choices from bytes; zeros when they are used up.
+class Choices {
+public:
+    Choices(const uint8_t* data, size_t size) : next_(data), end_(data + size) {}
+
+    bool over() const { return next_ == end_; }
+    uint8_t byte() { return over() ? 0 : *next_++; }
+    uint32_t below(uint32_t count) { return byte() % count; }
+    bool once_in(uint32_t count) { return below(count) == count - 1; }
+    /// Few values, so that rays meet corners, edges and ties.
+    double coordinate() { return (int(byte()) - 128) / 16.0; }
+
+private:
+    const uint8_t* next_;
+    const uint8_t* end_;
+};
+
+/// Where a saved scene's bytes may lie.
+struct alignas(64) Line {
+    std::byte bytes[64];
+};
+
+/// A handle, and what the model knows of it.
+struct Slot {
+    ovc_scene scene = nullptr;
+    enum { Null, Open, Committed, Destroyed } state = Null;
+    bool tells_active = false;
+    Soup soup;
+
+    /// What a call must return that needs a scene which is committed, or one that is not.
+    ovc_result expected(bool committed) const {
+        if (state == Null || state == Destroyed)
+            return OVC_ERROR_INVALID_ARGUMENT;
+        return (state == Committed) == committed ? OVC_OK : OVC_ERROR_INVALID_STATE;
+    }
+};
+
+/// Asked by commits and plans: stops some, and calls back, which must be refused.
+struct Progress {
+    Slot* slot = nullptr;
+    int calls_left = 0;
+
+    static int told(void* user, double done, const char* stage) {
+        auto& self = *static_cast<Progress*>(user);
+        OVC_REQUIRE(done >= 0 && done <= 1 && stage);
+        OVC_REQUIRE(api().commit(self.slot->scene) != OVC_OK);
+        return self.calls_left-- == 0;
+    }
+};
+
+class Player {
+public:
+    Player(ovc_device device, Choices choices) : device_(device), choices_(choices) {}
+    ~Player() {
+        for (Slot& slot : slots_)
+            if (slot.state != Slot::Null)
+                api().destroy_scene(slot.scene);
+    }
+    Player(const Player&) = delete;
+
+    void play() {
+        static constexpr void (Player::*kCalls[])() = {
+            &Player::create_scene,  &Player::create_scene, &Player::add_mesh,
+            &Player::add_mesh,      &Player::commit,       &Player::commit,
+            &Player::intersect,     &Player::intersect,    &Player::occluded,
+            &Player::tell,          &Player::save,         &Player::stream,
+            &Player::destroy_scene, &Player::ask_device,   &Player::race,
+            &Player::add_instance,  &Player::purge,        &Player::ask_one_by_one,
+            &Player::submit};
+        for (int calls = 0; calls < 60 && !choices_.over(); ++calls)
+            (this->*kCalls[choices_.below(std::size(kCalls))])();
+    }
+
+private:
+    Slot& any_slot() { return slots_[choices_.below(uint32_t(slots_.size()))]; }
+
+    /// The expected result, or a failure that says why.
+    void check(ovc_result got, ovc_result expected) {
+        if (got != expected)
+            std::fprintf(stderr, "%d, not %d: %s\n", got, expected, api().last_error(device_));
+        OVC_REQUIRE(got == expected);
+        if (got != OVC_OK)
+            OVC_REQUIRE(std::strlen(api().last_error(device_)) > 10 ||
+                        std::strlen(api().last_error(nullptr)) > 10);
+    }
+
+    void create_scene() {
+        Slot& slot = any_slot();
+        if (slot.state == Slot::Open || slot.state == Slot::Committed)
+            return;
+        auto config = sized<ovc_scene_config>();
+        const uint8_t kind = choices_.byte();
+        config.gpu_memory_bytes = kind & 1 ? 40000 + 400 * choices_.byte() : 0;
+        config.leaf_triangles = kind & 2 ? 1 + choices_.below(16) : 0;
+        config.kernel = kind & 4 ? 1 + choices_.below(2) : 0;
+        config.tell_active = kind & 8 ? 1 : 0;
+        if (kind & 16) {
+            config.progress = Progress::told;
+            config.progress_user = &progress_[size_t(&slot - slots_.data())];
+            progress_[size_t(&slot - slots_.data())] = {&slot, choices_.byte()};
+        }
+        if (kind & 32 && saved_bytes_) {
+            config.saved = saved_.back().data();
+            config.saved_bytes = saved_bytes_;
+        }
+        const bool spoilt = kind >= 240;
+        if (spoilt)
+            spoil(config);
+        ovc_scene scene = nullptr;
+        const ovc_result result = api().create_scene(device_, &config, &scene);
+        OVC_REQUIRE((result == OVC_OK) == (scene != nullptr));
+        if (spoilt || result != OVC_OK)
+            return check(result, config.gpu_memory_bytes && !spoilt ? OVC_ERROR_OUT_OF_BUDGET
+                                                                    : OVC_ERROR_INVALID_ARGUMENT);
+        slot = Slot{};
+        slot.scene = scene;
+        slot.state = Slot::Open;
+        slot.tells_active = config.tell_active;
+    }
+
+    void spoil(ovc_scene_config& config) {
+        switch (choices_.below(6)) {
+        case 0:
+            config.struct_size = choices_.below(40);
+            break;
+        case 1:
+            config.precision = 2 + choices_.byte();
+            break;
+        case 2:
+            config.structure = 1 + choices_.byte();
+            break;
+        case 3:
+            config.level1 = 1 + choices_.byte();
+            break;
+        case 4:
+            config.reserved = 1;
+            break;
+        default:
+            config.leaves = config.leaf_triangles = 1;
+        }
+    }
+
+    void add_mesh() {
+        Slot& slot = any_slot();
+        const uint8_t kind = choices_.byte();
+        std::vector<float>& positions = positions_.emplace_back();
+        const size_t triangles = choices_.below(24);
+        const size_t stride = kind & 1 ? 4 : 3; // floats
+        for (size_t i = 0; i < triangles * 3 * stride; ++i)
+            positions.push_back(float(choices_.coordinate()));
+        if (kind & 2 && !positions.empty())
+            positions[choices_.below(uint32_t(positions.size()))] = NAN;
+        auto mesh = sized<ovc_mesh>();
+        mesh.positions = positions.data();
+        mesh.stride = stride * sizeof(float);
+        mesh.vertex_count = triangles * 3;
+        mesh.origin[0] = kind & 4 ? 1e6 * choices_.coordinate() : 0;
+        mesh.flags = kind & 8 && stride == 3 ? OVC_MESH_SHARED : 0;
+        std::vector<uint32_t> indices;
+        if (kind & 16 && !mesh.flags) {
+            for (size_t i = 0; i < triangles * 3; ++i)
+                indices.push_back(choices_.below(uint32_t(triangles * 3)));
+            mesh.indices = indices.empty() ? nullptr : indices.data();
+            mesh.triangle_count = indices.size() / 3;
+        }
+        const bool spoilt = kind >= 240 && spoil(mesh);
+        uint32_t id = 0;
+        const ovc_result result = api().add_mesh(slot.scene, &mesh, &id);
+        const ovc_result expected = slot.expected(false);
+        check(result, expected == OVC_OK && spoilt ? OVC_ERROR_INVALID_ARGUMENT : expected);
+        if (result != OVC_OK)
+            return;
+        std::vector<vec3> corners;
+        for (size_t i = 0; i < triangles * 3; ++i) {
+            const float* p = &positions[(indices.empty() ? i : indices[i]) * stride];
+            corners.emplace_back(p[0], p[1], p[2]);
+        }
+        slot.soup.chunks.push_back(
+            Chunk::owning({mesh.origin[0], mesh.origin[1], mesh.origin[2]}, std::move(corners)));
+        OVC_REQUIRE(id + 1 == slot.soup.chunks.size());
+    }
+
+    /// Where its mesh is: all its triangles are twins, and the smaller number answers.
+    void add_instance() {
+        Slot& slot = any_slot();
+        auto instance = sized<ovc_instance>();
+        instance.mesh = choices_.below(4);
+        const ovc_result result = api().add_instance(slot.scene, &instance, nullptr);
+        const ovc_result expected = slot.expected(false);
+        const bool there = instance.mesh < slot.soup.chunks.size();
+        check(result, expected == OVC_OK && !there ? OVC_ERROR_INVALID_ARGUMENT : expected);
+        if (result == OVC_OK)
+            slot.soup.chunks.push_back(slot.soup.chunks[instance.mesh].instance());
+    }
+
+    void purge() {
+        Slot& slot = any_slot();
+        const bool alive = slot.state == Slot::Open || slot.state == Slot::Committed;
+        check(api().purge(slot.scene), alive ? OVC_OK : OVC_ERROR_INVALID_ARGUMENT);
+    }
+
+    bool spoil(ovc_mesh& mesh) {
+        switch (choices_.below(5)) {
+        case 0:
+            mesh.struct_size = choices_.below(40);
+            break;
+        case 1:
+            mesh.stride = 1 + choices_.below(11);
+            break;
+        case 2:
+            mesh.vertex_count = mesh.triangle_count = 7;
+            mesh.indices = nullptr;
+            break;
+        case 3:
+            mesh.origin[choices_.below(3)] = HUGE_VAL;
+            break;
+        default:
+            mesh.flags |= 128;
+        }
+        return true;
+    }
+
+    void commit() {
+        Slot& slot = any_slot();
+        const ovc_result result = api().commit(slot.scene);
+        if (result == OVC_OK)
+            slot.state = Slot::Committed;
+        else if (slot.expected(false) != OVC_OK ||
+                 (result != OVC_ERROR_CANCELLED && result != OVC_ERROR_OUT_OF_BUDGET))
+            check(result, slot.expected(false));
+    }
+
+    /// Most of them towards the scene: at corners, sides and insides of its triangles.
+    std::vector<ovc_ray> rays(const Slot& slot) {
+        std::vector<ovc_ray> made(choices_.below(40));
+        for (ovc_ray& ray : made) {
+            const dvec3 target = choices_.once_in(4) ? point() : point_of(slot);
+            const dvec3 org = point();
+            for (int axis = 0; axis < 3; ++axis) {
+                ray.org[axis] = org[axis];
+                ray.dir[axis] = target[axis] - org[axis];
+            }
+            ray.t_max = HUGE_VAL;
+            if (choices_.once_in(16))
+                (&ray.org[0])[choices_.below(8)] = choices_.below(2) ? NAN : -HUGE_VAL;
+        }
+        return made;
+    }
+    dvec3 point() {
+        const double x = choices_.coordinate(), y = choices_.coordinate();
+        return {x, y, choices_.coordinate()};
+    }
+    dvec3 point_of(const Slot& slot) {
+        if (slot.soup.chunks.empty())
+            return point();
+        const uint32_t mesh = choices_.below(uint32_t(slot.soup.chunks.size()));
+        if (slot.soup.chunks[mesh].size() == 0)
+            return point();
+        const uint32_t prim = choices_.below(uint32_t(slot.soup.chunks[mesh].size()));
+        const Triangle triangle = slot.soup.triangle({mesh, prim});
+        const double u = choices_.below(3) / 2.0, v = (1 - u) * choices_.below(3) / 2.0;
+        return (1 - u - v) * triangle[0] + u * triangle[1] + v * triangle[2];
+    }
+
+    /// Skips for some of the rays.
+    std::vector<ovc_triangle> skips(const Slot& slot, size_t count) {
+        std::vector<ovc_triangle> made(count, {OVC_NONE, OVC_NONE});
+        if (!slot.soup.chunks.empty())
+            for (ovc_triangle& skip : made)
+                if (choices_.once_in(4))
+                    skip = {choices_.below(uint32_t(slot.soup.chunks.size())), choices_.below(24)};
+        return made;
+    }
+
+    /// The answer of a loop over all triangles.
+    static Hit truth(const Slot& slot, const ovc_ray& ray, const ovc_triangle& skip) {
+        Ray asked;
+        std::memcpy(static_cast<void*>(&asked), &ray, sizeof asked);
+        if (!asked.valid())
+            return {};
+        const PreparedRay prepared(asked, {skip.mesh, skip.prim});
+        Nearest nearest(prepared);
+        for (uint32_t mesh = 0; mesh < slot.soup.chunks.size(); ++mesh)
+            for (uint32_t prim = 0; prim < slot.soup.chunks[mesh].size(); ++prim) {
+                const Triangle triangle = slot.soup.triangle({mesh, prim});
+                if (is_finite(triangle))
+                    nearest.offer(triangle, {mesh, prim});
+            }
+        return nearest.hit();
+    }
+    static bool is_finite(const Triangle& triangle) {
+        for (int corner = 0; corner < 3; ++corner)
+            for (int axis = 0; axis < 3; ++axis)
+                if (!std::isfinite(triangle[corner][axis]))
+                    return false;
+        return true;
+    }
+    static void check_hit(const Slot& slot, const ovc_ray& ray, const ovc_triangle& skip,
+                          const ovc_hit& hit) {
+        const Hit expected = truth(slot, ray, skip);
+        OVC_REQUIRE(hit.mesh == expected.id.mesh && hit.prim == expected.id.prim);
+        OVC_REQUIRE(std::memcmp(&hit.t, &expected.t, sizeof hit.t) == 0);
+    }
+
+    void intersect() {
+        Slot& slot = any_slot();
+        const std::vector<ovc_ray> asked = rays(slot);
+        const std::vector<ovc_triangle> skip = skips(slot, asked.size());
+        std::vector<ovc_hit> hits(asked.size());
+        std::vector<uint32_t> leaf(asked.size()), passes(asked.size()), flagged(asked.size());
+        auto query = sized<ovc_query>();
+        query.skip = skip.data();
+        if (choices_.below(2)) {
+            query.leaf = leaf.data();
+            query.passes = passes.data();
+            query.flagged = flagged.data();
+        }
+        const bool spoilt = choices_.once_in(8);
+        if (spoilt)
+            query.struct_size = choices_.below(16);
+        const ovc_result result =
+            api().intersect(slot.scene, asked.data(), asked.size(), hits.data(), &query);
+        check(result, spoilt ? OVC_ERROR_INVALID_ARGUMENT : slot.expected(true));
+        for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
+            check_hit(slot, asked[i], skip[i], hits[i]);
+    }
+
+    void occluded() {
+        Slot& slot = any_slot();
+        const std::vector<ovc_ray> asked = rays(slot);
+        const std::vector<ovc_triangle> skip = skips(slot, asked.size());
+        std::vector<uint8_t> answers(asked.size(), 7);
+        auto query = sized<ovc_query>();
+        query.skip = skip.data();
+        const ovc_result result =
+            api().occluded(slot.scene, asked.data(), asked.size(), answers.data(), &query);
+        check(result, slot.expected(true));
+        for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
+            OVC_REQUIRE(answers[i] == truth(slot, asked[i], skip[i]).is_hit());
+    }
+
+    void ask_one_by_one() {
+        Slot& slot = any_slot();
+        for (const ovc_ray& ray : rays(slot)) {
+            ovc_hit hit{};
+            uint8_t shadow = 7;
+            check(api().intersect1(slot.scene, &ray, &hit, nullptr), slot.expected(true));
+            check(api().occluded1(slot.scene, &ray, &shadow, nullptr), slot.expected(true));
+            if (slot.state != Slot::Committed)
+                return;
+            check_hit(slot, ray, {OVC_NONE, OVC_NONE}, hit);
+            OVC_REQUIRE(shadow == (hit.mesh != OVC_NONE));
+        }
+    }
+
+    /// Waits for it, cancels it, or destroys its scene.
+    void submit() {
+        Slot& slot = any_slot();
+        const std::vector<ovc_ray> asked = rays(slot);
+        std::vector<ovc_hit> hits(asked.size());
+        ovc_ticket ticket = nullptr;
+        const ovc_result submitted = api().submit_intersect(slot.scene, asked.data(), asked.size(),
+                                                            hits.data(), nullptr, &ticket);
+        check(submitted, slot.expected(true));
+        OVC_REQUIRE((submitted == OVC_OK) == (ticket != nullptr));
+        const uint32_t end = choices_.below(4);
+        if (ticket && end == 1)
+            check(api().cancel(ticket), OVC_OK);
+        if (ticket && end == 2) {
+            api().destroy_scene(slot.scene);
+            slot.state = Slot::Destroyed;
+        }
+        const ovc_result result = api().wait(ticket);
+        if (!ticket)
+            return check(result, OVC_ERROR_INVALID_ARGUMENT);
+        OVC_REQUIRE(result == OVC_OK || (result == OVC_ERROR_CANCELLED && (end == 1 || end == 2)));
+        for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
+            check_hit(slot, asked[i], {OVC_NONE, OVC_NONE}, hits[i]);
+        uint32_t done = 0;
+        check(api().poll(ticket, &done, nullptr), OVC_OK);
+        OVC_REQUIRE(done == 1);
+        api().release(ticket);
+        check(api().poll(ticket, &done, nullptr), OVC_ERROR_INVALID_ARGUMENT);
+    }
+
+    void tell() {
+        Slot& slot = any_slot();
+        auto statistics = sized<ovc_statistics>();
+        check(api().statistics(slot.scene, &statistics), slot.expected(true));
+        auto active = sized<ovc_active>();
+        const ovc_result committed = slot.expected(true);
+        check(api().active(slot.scene, &active),
+              committed == OVC_OK && !slot.tells_active ? OVC_ERROR_INVALID_ARGUMENT : committed);
+        auto plan = sized<ovc_plan>();
+        const ovc_result planned = api().plan(slot.scene, &plan);
+        if (slot.state == Slot::Null || slot.state == Slot::Destroyed)
+            check(planned, OVC_ERROR_INVALID_ARGUMENT);
+        else
+            OVC_REQUIRE(planned == OVC_OK || planned == OVC_ERROR_OUT_OF_BUDGET ||
+                        planned == OVC_ERROR_CANCELLED);
+    }
+
+    void save() {
+        Slot& slot = any_slot();
+        struct Sink {
+            std::vector<std::byte> bytes;
+            int parts_left;
+        } sink{{}, choices_.once_in(4) ? int(choices_.below(8)) : 1000000};
+        const auto write = [](void* user, const void* bytes, size_t size) {
+            auto& to = *static_cast<Sink*>(user);
+            const std::byte* first = static_cast<const std::byte*>(bytes);
+            to.bytes.insert(to.bytes.end(), first, first + size);
+            return int(to.parts_left-- == 0);
+        };
+        const ovc_result result = api().save(slot.scene, write, &sink);
+        if (result == OVC_ERROR_CANCELLED)
+            return check(slot.expected(true), OVC_OK);
+        check(result, slot.expected(true));
+        if (result != OVC_OK)
+            return;
+        // Kept, perhaps damaged, for scenes of the same meshes or others.
+        if (choices_.below(2) && !sink.bytes.empty())
+            sink.bytes[sink.bytes.size() * choices_.byte() / 256] ^= std::byte(choices_.byte());
+        saved_bytes_ = sink.bytes.size();
+        std::vector<Line>& lines = saved_.emplace_back(saved_bytes_ / sizeof(Line) + 1);
+        std::memcpy(lines.data(), sink.bytes.data(), saved_bytes_);
+    }
+
+    /// A stream's host: pushes some rays, checks each answer, pushes again for some.
+    struct Streamer {
+        Player& player;
+        const Slot& slot;
+        int calls_left; // then it stops
+        std::vector<std::pair<ovc_ray, bool>> pushed{};
+        std::vector<int> answers{};
+
+        int push(ovc_stream stream) {
+            const std::vector<ovc_ray> asked = player.rays(slot);
+            const bool any_hit = player.choices_.below(2);
+            std::vector<uint64_t> tokens;
+            for (const ovc_ray& ray : asked) {
+                tokens.push_back(pushed.size());
+                pushed.emplace_back(ray, any_hit);
+                answers.push_back(0);
+            }
+            OVC_REQUIRE(api().push(stream, asked.data(), tokens.data(), asked.size(), any_hit,
+                                   nullptr) == OVC_OK);
+            OVC_REQUIRE(api().push(stream, asked.data(), tokens.data(), 1, 2, nullptr) != OVC_OK);
+            OVC_REQUIRE(api().commit(slot.scene) == OVC_ERROR_INVALID_STATE);
+            api().destroy_scene(slot.scene); // refused
+            return calls_left-- == 0;
+        }
+        static int more(void* user, ovc_stream stream, size_t) {
+            auto& self = *static_cast<Streamer*>(user);
+            return self.player.choices_.over() ? 0 : self.push(stream);
+        }
+        static int answered(void* user, ovc_stream stream, const ovc_stream_answers* told) {
+            auto& self = *static_cast<Streamer*>(user);
+            for (size_t i = 0; i < told->count; ++i) {
+                const auto& [ray, any_hit] = self.pushed[told->tokens[i]];
+                ++self.answers[told->tokens[i]];
+                OVC_REQUIRE(any_hit == (told->hits == nullptr));
+                if (any_hit)
+                    OVC_REQUIRE(told->occluded[i] ==
+                                truth(self.slot, ray, {OVC_NONE, OVC_NONE}).is_hit());
+                else
+                    check_hit(self.slot, ray, {OVC_NONE, OVC_NONE}, told->hits[i]);
+            }
+            return self.player.choices_.once_in(3) ? self.push(stream) : 0;
+        }
+    };
+
+    void stream() {
+        Slot& slot = any_slot();
+        Streamer streamer{*this, slot, choices_.byte()};
+        auto host = sized<ovc_stream_host>();
+        host.user = &streamer;
+        host.more = Streamer::more;
+        host.answered = Streamer::answered;
+        const ovc_result result = api().stream(slot.scene, &host);
+        if (result == OVC_ERROR_CANCELLED)
+            return check(slot.expected(true), OVC_OK);
+        check(result, slot.expected(true));
+        if (result == OVC_OK)
+            OVC_REQUIRE(std::count(streamer.answers.begin(), streamer.answers.end(), 1) ==
+                        std::ptrdiff_t(streamer.answers.size()));
+    }
+
+    void destroy_scene() {
+        Slot& slot = any_slot();
+        api().destroy_scene(slot.scene);
+        if (slot.state != Slot::Null)
+            slot.state = Slot::Destroyed;
+    }
+
+    void ask_device() {
+        auto info = sized<ovc_device_info>();
+        check(api().describe_device(device_, &info), OVC_OK);
+        check(api().describe_device(nullptr, &info), OVC_ERROR_INVALID_ARGUMENT);
+        info.struct_size = choices_.byte();
+        check(api().describe_device(device_, &info), OVC_ERROR_INVALID_ARGUMENT);
+        const bool has_scenes = std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) {
+            return slot.state == Slot::Open || slot.state == Slot::Committed;
+        });
+        if (has_scenes)
+            api().destroy_device(device_); // refused
+    }
+
+    /// Two threads trace a scene while this one destroys it, or not.
+    void race() {
+        Slot& slot = any_slot();
+        if (slot.state != Slot::Committed)
+            return;
+        const std::vector<ovc_ray> asked = rays(slot);
+        const auto trace = [&] {
+            std::vector<ovc_hit> hits(asked.size());
+            const ovc_result result =
+                api().intersect(slot.scene, asked.data(), asked.size(), hits.data(), nullptr);
+            OVC_REQUIRE(result == OVC_OK || result == OVC_ERROR_INVALID_STATE ||
+                        result == OVC_ERROR_INVALID_ARGUMENT);
+            for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
+                check_hit(slot, asked[i], {OVC_NONE, OVC_NONE}, hits[i]);
+        };
+        const bool destroys = choices_.below(2);
+        std::thread first(trace), second(trace);
+        if (destroys)
+            api().destroy_scene(slot.scene);
+        first.join();
+        second.join();
+        if (destroys)
+            slot.state = Slot::Destroyed;
+    }
+
+    const ovc_device device_;
+    Choices choices_;
+    std::array<Slot, 3> slots_;
+    std::array<Progress, 3> progress_;
+    std::deque<std::vector<float>> positions_; // shared ones are used in place
+    std::deque<std::vector<Line>> saved_;
+    size_t saved_bytes_ = 0;
+};
+
+} // namespace
+
+bool fuzz_calls(const uint8_t* data, size_t size) {
+    static const ovc_device device = [] {
+        ovc_device opened = nullptr;
+        api().create_device(nullptr, &opened);
+        return opened;
+    }();
+    if (!device)
+        return false;
+    Player(device, Choices(data, size)).play();
+    return true;
+}
+
+} // namespace ovc

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Through files in memory, for readers take files.
+#include "tests/fuzz/importers.h"
+
+#include "core/file/test_archive.h"
+#include "importers/readers.h"
+#include "importers/scene_file.h"
+#include "importers/sound_meshes.h"
+
+#include <cstdlib>
+#include <string>
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+namespace ovc {
+namespace {
+
+void require(bool condition) {
+    if (!condition)
+        std::abort();
+}
+
+/// A file without a name on any disk, whose bytes can be set anew.
+class MemoryFile {
+public:
+    explicit MemoryFile(const char* name) : file_(memfd_create(name, MFD_CLOEXEC)) {
+        require(file_ >= 0);
+    }
+    MemoryFile(const MemoryFile&) = delete;
+    ~MemoryFile() { close(file_); }
+
+    std::string holding(const void* data, size_t size) const {
+        require(ftruncate(file_, 0) == 0 && pwrite(file_, data, size, 0) == ssize_t(size));
+        return "/proc/self/fd/" + std::to_string(file_);
+    }
+
+private:
+    const int file_;
+};
+
+void check_scene(const Scene& scene) {
+    require(has_sound_meshes(scene));
+    Box bounds;
+    hittable_triangles(scene.soup, nullptr, &bounds); // touches every corner
+}
+
+void check(const Result<Scene>& scene) {
+    if (scene)
+        check_scene(*scene);
+    else
+        require(!scene.error().message.empty() &&
+                scene.error().message.find('\n') == std::string::npos);
+}
+
+/// A scene of so few bytes cannot have more: a corner takes a byte, and a polygon of n corners has
+/// n - 2 triangles. Packed it can.
+void check_size(const Result<Scene>& scene, const uint8_t* data, size_t size) {
+    const bool packed = size > 1 && data[0] == 0x1f && data[1] == 0x8b;
+    require(!scene || packed || scene->soup.triangle_count() <= size);
+}
+
+} // namespace
+
+void fuzz_ply(const uint8_t* data, size_t size) {
+    static const MemoryFile file("fuzz.ply");
+    const Result<Scene> scene = read_ply(file.holding(data, size), {});
+    check(scene);
+    check_size(scene, data, size);
+}
+
+void fuzz_obj(const uint8_t* data, size_t size) {
+    static const MemoryFile file("fuzz.obj");
+    const Result<Scene> scene = read_obj(file.holding(data, size), {});
+    check(scene);
+    check_size(scene, data, size);
+}
+
+Scene scene_with_everything() {
+    Scene scene;
+    scene.name = "everything";
+    scene.materials.push_back({"plain"});
+    scene.materials.push_back({"shiny", vec3(0.1f, 0.2f, 0.3f), 0.5f, 0.25f, vec3(0.5f), 1.5,
+                               Finish{vec3(0.1f)}, Checker{vec3(1)},
+                               Optics{.diffuse = vec3(0.3f), .boundary = Optics::Boundary::Thin}});
+    const std::vector<vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
+                                       {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+    scene.add_mesh("a", 0, Chunk::owning(dvec3(0), corners), std::vector<vec3>(6, vec3(0, 0, 1)));
+    scene.add_mesh("b", 1, Chunk::owning(dvec3(1e6, 0, 0.125), corners));
+    scene.meshes[1].normals_from = 0;
+    scene.meshes[1].turn = dmat3(2);
+    scene.meshes[1].no_shadow = true;
+    scene.add_mesh("", 0, Chunk::owning(dvec3(0), {}));
+    Light light;
+    light.position = dvec3(1, 2, 3);
+    light.cone = SpotCone{0.9, 0.8, 2};
+    light.fade_power = 2;
+    light.stand_in = true;
+    scene.lights = {light, {}};
+    scene.may_add_light = false;
+    Camera camera;
+    camera.window = ImageWindow{};
+    camera.window->bend = ImageWindow::Bend::Omnimax;
+    scene.camera = camera;
+    scene.size = ImageSize{320, 240};
+    scene.max_depth = 7;
+    scene.background.zenith = vec3(0, 0, 1);
+    scene.exposure = 0.5f;
+    scene.gamma = 2.2;
+    scene.instancing = Instancing{2, 2};
+    return scene;
+}
+
+/// A whole scene file, in memory.
+static test::ArchiveMemory written() {
+    const std::string path = (std::filesystem::temp_directory_path() /
+                              ("overcast-fuzz-" + std::to_string(getpid()) + ".ovc"))
+                                 .string();
+    const Provenance from{"as asked", {{"/none", false, 0, 0}}, {"a warning"}};
+    const auto levels = [](const ByteSink& sink) -> Result<Done> {
+        const std::vector<std::byte> some(100, std::byte(7));
+        sink(some);
+        return Done{};
+    };
+    require(bool(write_scene_file(scene_with_everything(), from, levels, path)));
+    const Result<MappedFile> file = MappedFile::open(path);
+    require(bool(file));
+    test::ArchiveMemory memory(file->bytes());
+    require(unlink(path.c_str()) == 0);
+    return memory;
+}
+
+void fuzz_ovc(const uint8_t* data, size_t size) {
+    static const test::ArchiveMemory whole = written();
+    if (size == 0)
+        return;
+    test::ArchiveMemory memory(whole.bytes());
+    test::damage(memory, {data + 1, size - 1});
+    if (data[0] % 2)
+        test::reseal(memory);
+    const MemoryFile file("fuzz.ovc"); // mapped as long as the scene lives: a new one each time
+    check(read_ovc(file.holding(memory.bytes().data(), memory.size()), {}));
+}
+
+} // namespace ovc

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// fuzz_levels: through the exact fallback, which walks level 1 and pages as the kernel does.
+#include "tests/fuzz/levels.h"
+
+#include "core/file/test_archive.h"
+#include "kdtree/test_soups.h"
+#include "plugin/build/level2.h"
+#include "plugin/two_level/exact_fallback.h"
+
+#include <cstdlib>
+
+namespace ovc {
+
+static void require(bool condition) {
+    if (!condition)
+        std::abort();
+}
+
+BuiltScene build_for_test(const Soup& soup, const LeafLimits& limits) {
+    BuiltScene scene(soup);
+    scene.limits = limits;
+    const Hittable hittable = take_hittable(scene);
+    require(bool(build_levels(scene, hittable)));
+    scene.top = build_top_level(scene.level1, scene.pages, scene.pages.size());
+    return scene;
+}
+
+namespace {
+
+/// A soup with twins, its saved levels, and rays to ask.
+struct Subject {
+    static constexpr LeafLimits kLimits{30, 1 << 20};
+
+    Soup soup = test::random_soup(5, 120, 0.3);
+    test::ArchiveMemory saved;
+    std::vector<Ray> rays;
+
+    Subject() {
+        std::vector<vec3> corners(soup.chunks[0].corners().begin(), soup.chunks[0].corners().end());
+        corners.insert(corners.end(), corners.begin(), corners.begin() + 30);
+        soup.chunks[0] = Chunk::owning(soup.chunks[0].origin(), std::move(corners));
+        require(save_levels(build_for_test(soup, kLimits), saved.sink()));
+        rays = test::unpleasant_rays(soup, 9, 40);
+    }
+};
+
+void trace(const Subject& subject, const BuiltScene& scene) {
+    require(scene.pages.size() == scene.level1.leaves.size());
+    for (const Ray& ray : subject.rays) {
+        if (!ray.valid())
+            continue;
+        const PreparedRay prepared(ray);
+        const Hit hit = trace_exactly</* kAnyHit= */ false>(scene, prepared);
+        require(!hit.is_hit() || hit.id.prim < subject.soup.chunks[0].size());
+        trace_exactly</* kAnyHit= */ true>(scene, prepared);
+    }
+}
+
+} // namespace
+
+void fuzz_levels(const uint8_t* data, size_t size) {
+    static const Subject subject;
+    if (size == 0)
+        return;
+    test::ArchiveMemory memory(subject.saved.bytes());
+    test::damage(memory, {data + 1, size - 1});
+    if (data[0] % 2)
+        test::reseal(memory);
+    auto found = restore_levels(memory.bytes(), subject.soup,
+                                [](uint64_t, uint64_t) { return Subject::kLimits; });
+    if (!found)
+        require(!found.error().message.empty());
+    if (!found || !*found)
+        return;
+    BuiltScene& scene = **found;
+    scene.top = build_top_level(scene.level1, scene.pages, scene.pages.size());
+    trace(subject, scene);
+}
+
+} // namespace ovc

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the fuzzer and the tests of saved levels do with damage: restore, and trace.
+#pragma once
+
+#include "plugin/build/saved_levels.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace ovc {
+
+/// The scene of a soup as TwoLevel builds it, within these limits.
+BuiltScene build_for_test(const Soup& soup, const LeafLimits& limits);
+
+/// Damages saved levels as `data` says (core/file/test_archive.h), makes the checksums right if its
+/// first byte is odd, and traces rays through what comes back. Aborts where that goes wrong.
+void fuzz_levels(const uint8_t* data, size_t size);
+
+} // namespace ovc

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// fuzz_pbrt: through a file in memory, for the reader takes files.
+#include "tests/fuzz/pbrt.h"
+
+#include "importers/readers.h"
+#include "importers/sound_meshes.h"
+
+#include <cstdlib>
+#include <string>
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+namespace ovc {
+
+/// More takes time, and finds nothing.
+static constexpr uint64_t kMostFuzzed = 20000;
+
+static void require(bool condition) {
+    if (!condition)
+        std::abort();
+}
+
+static void check_scene(const Scene& scene) {
+    require(has_sound_meshes(scene));
+    require(scene.soup.triangle_count() <= kMostFuzzed);
+}
+
+void fuzz_pbrt(const uint8_t* data, size_t size) {
+    static const int file = memfd_create("fuzz.pbrt", MFD_CLOEXEC);
+    require(file >= 0 && ftruncate(file, 0) == 0);
+    require(pwrite(file, data, size, 0) == ssize_t(size));
+    const std::string path = "/proc/self/fd/" + std::to_string(file);
+    const struct {
+        bool strict;
+        uint64_t world;
+    } ways[] = {{false, 1}, {true, 1}, {false, 2}};
+    for (const auto& way : ways) {
+        ImportOptions options;
+        options.strict = way.strict;
+        options.world = way.world;
+        options.max_triangles = kMostFuzzed;
+        const Result<Scene> scene = read_pbrt(path, options);
+        if (scene)
+            check_scene(*scene);
+        else
+            require(!scene.error().message.empty());
+    }
+}
+
+} // namespace ovc

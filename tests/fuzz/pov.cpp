@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/fuzz/pov.h"
+
+#include "importers/readers.h"
+#include "importers/sound_meshes.h"
+
+#include <cstdlib>
+
+namespace ovc {
+
+/// More takes time, and finds nothing.
+static constexpr uint64_t kMostTrianglesFuzzed = 200'000;
+static constexpr uint64_t kMostWordsFuzzed = 20'000;
+
+static void require(bool condition) {
+    if (!condition)
+        std::abort();
+}
+
+void fuzz_pov(const uint8_t* data, size_t size) {
+    ImportOptions options;
+    options.max_triangles = kMostTrianglesFuzzed;
+    std::string text(reinterpret_cast<const char*>(data), size);
+    const Result<Scene> scene =
+        parse_pov(std::move(text), "/nowhere/fuzz.pov", options, kMostWordsFuzzed);
+    if (!scene) {
+        require(scene.error().message.starts_with("/"));
+        return;
+    }
+    require(scene->camera.has_value());
+    require(has_sound_meshes(*scene));
+}
+
+} // namespace ovc
