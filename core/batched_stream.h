@@ -21,7 +21,7 @@ public:
         bool more = true;
         while (true) {
             if (more && nearest_.size() + any_.size() == 0) {
-                if (!host_.more(*this, kMostAtOnce))
+                if (!host_.more(*this, kMaxAtOnce))
                     return stopped_by_host();
                 more = nearest_.size() + any_.size() > 0;
             }
@@ -39,7 +39,7 @@ public:
 
 private:
     Result<Done> trace_any() {
-        const size_t count = std::min(any_.size(), kMostAtOnce);
+        const size_t count = std::min(any_.size(), kMaxAtOnce);
         const StreamRays rays = any_.last(count);
         occluded_.resize(count);
         if (Result<Done> done = batches_.occluded(rays.rays, rays.skip, occluded_); !done)
@@ -52,7 +52,7 @@ private:
     }
 
     Result<Done> trace_nearest() {
-        const size_t count = std::min(nearest_.size(), kMostAtOnce);
+        const size_t count = std::min(nearest_.size(), kMaxAtOnce);
         const StreamRays rays = nearest_.last(count);
         hits_.resize(count);
         if (Result<Done> done = batches_.intersect(rays.rays, rays.skip, hits_); !done)
@@ -64,7 +64,7 @@ private:
         return Done{};
     }
 
-    static constexpr size_t kMostAtOnce = size_t(1) << 20; // rays a batch
+    static constexpr size_t kMaxAtOnce = size_t(1) << 20; // rays a batch
 
     Batches& batches_;
     StreamHost& host_;

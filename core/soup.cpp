@@ -72,8 +72,8 @@ Chunk Chunk::instance() const {
     chunk.corners_ = corners_;
     chunk.double_corners_ = double_corners_;
     chunk.plain_ = plain_;
-    if (placement_)
-        chunk.placement_ = std::make_unique<Placement>(*placement_);
+    if (transform_)
+        chunk.transform_ = std::make_unique<Transform>(*transform_);
     return chunk;
 }
 
@@ -88,8 +88,8 @@ Chunk::MeshKey Chunk::mesh_key() const {
             std::bit_cast<uint64_t>(origin_.z)};
 }
 
-void Chunk::place(const Placement& placement) {
-    placement_ = std::make_unique<Placement>(placement_ ? then(*placement_, placement) : placement);
+void Chunk::place(const Transform& transform) {
+    transform_ = std::make_unique<Transform>(transform_ ? then(*transform_, transform) : transform);
     plain_ = false;
 }
 
@@ -103,7 +103,7 @@ Triangle Chunk::placed_triangle(uint32_t prim) const {
     for (size_t i = 0; i < 3; ++i) {
         const size_t at = size_t(prim) * 3 + i;
         const dvec3 offset = corners_.empty() ? double_corners_[at] : dvec3(corners_[at]);
-        const dvec3 p = placement_ ? (*placement_)(origin_ + offset) : origin_ + offset;
+        const dvec3 p = transform_ ? (*transform_)(origin_ + offset) : origin_ + offset;
         triangle[i] = {in_range(p.x), in_range(p.y), in_range(p.z)};
     }
     return triangle;

@@ -4,8 +4,8 @@
 
 #include "core/box.h"
 #include "core/build_progress.h"
-#include "core/placement.h"
 #include "core/ray.h"
+#include "core/transform.h"
 
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace ovc {
 using Triangle = std::array<dvec3, 3>;
 
 /// The triangles of one mesh: corner i of triangle p lies at origin + corners[3 p + i], added in
-/// double; in an instance, where its placement then puts that. Move-only: the corners are owned, or
+/// double; in an instance, where its transform then puts that. Move-only: the corners are owned, or
 /// borrowed from a caller who keeps them alive and unchanged.
 class Chunk {
 public:
@@ -29,13 +29,13 @@ public:
     static Chunk borrowing_doubles(dvec3 origin, std::span<const dvec3> corners);
     /// The same triangles once more. Borrows this chunk's corners.
     Chunk instance() const;
-    /// The same where they are without a placement.
+    /// The same where they are without a transform.
     Chunk unplaced() const;
     /// Chunks of the same triangles, placed or not, have equal keys, and no others have.
     using MeshKey = std::array<uint64_t, 5>;
     MeshKey mesh_key() const;
     /// Moves the triangles from where they are.
-    void place(const Placement& placement);
+    void place(const Transform& transform);
 
     Chunk(Chunk&&) = default;
     Chunk& operator=(Chunk&&) = default;
@@ -46,7 +46,7 @@ public:
     /// 3 x size() offsets, 24 bytes each; none where they are floats.
     std::span<const dvec3> double_corners() const { return double_corners_; }
     /// Null: the corners are where they are.
-    const Placement* placement() const { return placement_.get(); }
+    const Transform* transform() const { return transform_.get(); }
     uint32_t size() const { return uint32_t((corners_.size() + double_corners_.size()) / 3); }
     uint64_t owned_bytes() const {
         return owned_.capacity() * sizeof(vec3) + owned_doubles_.capacity() * sizeof(dvec3);
@@ -80,7 +80,7 @@ private:
     std::vector<dvec3> owned_doubles_;
     std::span<const vec3> corners_; // these or the next
     std::span<const dvec3> double_corners_;
-    std::unique_ptr<const Placement> placement_;
+    std::unique_ptr<const Transform> transform_;
     bool plain_; // floats, not placed, and no origin brings them out of range
 };
 

@@ -17,7 +17,7 @@ namespace ovc {
 inline constexpr uint64_t kDefaultMostTriangles = 100'000'000;
 
 /// What ImportOptions::tolerance may be: from what a sphere of 1e5 triangles has to an octagon's.
-inline constexpr double kLeastTolerance = 1e-4, kMostTolerance = 0.5;
+inline constexpr double kMinTolerance = 1e-4, kMaxTolerance = 0.5;
 
 struct ImportOptions {
     LogSink log; // warnings: what a file asks for and Overcast leaves out, one per kind
@@ -27,7 +27,7 @@ struct ImportOptions {
     /// are made.
     uint64_t max_triangles = kDefaultMostTriangles;
     /// Scene descriptions: how far a triangle may lie off the round shape it stands for, in the
-    /// shape's radii; from kLeastTolerance to kMostTolerance. Nothing: what the reader has found
+    /// shape's radii; from kMinTolerance to kMaxTolerance. Nothing: what the reader has found
     /// good.
     std::optional<double> tolerance = {};
     /// Of a .pbrt file with several worlds: which, from 1.

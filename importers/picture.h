@@ -23,7 +23,7 @@ struct Picture {
 };
 
 /// More pixels than this are refused.
-inline constexpr uint64_t kMostPixels = uint64_t(1) << 26;
+inline constexpr uint64_t kMaxPixels = uint64_t(1) << 26;
 
 /// Of that size, or an Error for one that is empty or too large.
 Result<Picture> make_picture(uint64_t width, uint64_t height);

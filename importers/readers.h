@@ -9,7 +9,7 @@
 namespace ovc {
 
 /// In one mesh: prims are numbered in 32 bits, and kNone is none.
-inline constexpr uint64_t kMostTriangles = 0xfffffffe;
+inline constexpr uint64_t kMaxTriangles = 0xfffffffe;
 
 Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& options);
 Result<Scene> read_obj(const std::filesystem::path& path, const ImportOptions& options);
@@ -19,12 +19,12 @@ Result<Scene> read_pov(const std::filesystem::path& path, const ImportOptions& o
 Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions& options);
 
 /// More than scenes run over: some twenty seconds of work.
-inline constexpr uint64_t kMostPovWords = 500'000'000;
+inline constexpr uint64_t kMaxPovWords = 500'000'000;
 
 /// read_pov() of a text; path: whose it is said to be, and beside which includes are looked for.
-/// most_words: what loops and macros may run over in all.
+/// max_words: what loops and macros may run over in all.
 Result<Scene> parse_pov(std::string text, const std::filesystem::path& path,
-                        const ImportOptions& options, uint64_t most_words = kMostPovWords);
+                        const ImportOptions& options, uint64_t max_words = kMaxPovWords);
 
 /// Whether Assimp names this extension (without the dot, lower case) as one it reads.
 bool assimp_reads(std::string_view extension);

@@ -87,7 +87,7 @@ void write_mesh(OutputFile& out, const std::string& name, const Chunk& chunk,
 
 Result<Done> write_ply(const Scene& scene, const std::filesystem::path& path) {
     // Indices are written as int, which every reader takes.
-    constexpr uint64_t kMostVertices = 0x7fffffff;
+    constexpr uint64_t kMaxVertices = 0x7fffffff;
     Result<OutputFile> out = OutputFile::create(path);
     if (!out)
         return out.error();
@@ -96,9 +96,9 @@ Result<Done> write_ply(const Scene& scene, const std::filesystem::path& path) {
     for (const Chunk& chunk : scene.soup.chunks)
         all.add(chunk);
     const std::vector<dvec3>& vertices = all.unique.vertices();
-    if (vertices.size() > kMostVertices)
+    if (vertices.size() > kMaxVertices)
         return Error{fmt::format("{}: found {} vertices, expected at most {} in a PLY file",
-                                 path.string(), vertices.size(), kMostVertices)};
+                                 path.string(), vertices.size(), kMaxVertices)};
     const bool as_floats =
         std::all_of(vertices.begin(), vertices.end(), [](const dvec3& v) { return is_float(v); });
     const char* type = as_floats ? "float" : "double";

@@ -32,7 +32,7 @@ struct MeshExtent {
     uint64_t normals = 0;
     uint64_t corners_from = kOwnCorners; // else those of this mesh, an earlier one
     uint64_t is_placed = 0;
-    Placement placement{};
+    Transform transform{};
 
     static constexpr uint64_t kOwnCorners = ~uint64_t(0);
 };
@@ -49,9 +49,9 @@ std::vector<MeshExtent> extents_of(const Scene& scene) {
             extent.corners = 0;
             extent.corners_from = first->second;
         }
-        if (chunk.placement()) {
+        if (chunk.transform()) {
             extent.is_placed = 1;
-            extent.placement = *chunk.placement();
+            extent.transform = *chunk.transform();
         }
         extents.push_back(extent);
     }
@@ -62,7 +62,7 @@ std::vector<MeshExtent> extents_of(const Scene& scene) {
 std::optional<Chunk> chunk_of(const MeshExtent& extent, std::span<const vec3> corners,
                               const Soup& before) {
     if (extent.corners > corners.size() || extent.corners % 3 ||
-        extent.corners / 3 > kMostTriangles || !is_finite(extent.origin))
+        extent.corners / 3 > kMaxTriangles || !is_finite(extent.origin))
         return std::nullopt;
     const bool has_own = extent.corners_from == MeshExtent::kOwnCorners;
     if (!has_own && (extent.corners > 0 || extent.corners_from >= before.chunks.size()))
@@ -71,11 +71,11 @@ std::optional<Chunk> chunk_of(const MeshExtent& extent, std::span<const vec3> co
                           : before.chunks[extent.corners_from].unplaced();
     if (extent.is_placed == 0)
         return chunk;
-    for (const auto& row : extent.placement.rows)
+    for (const auto& row : extent.transform.rows)
         for (const double number : row)
             if (!std::isfinite(number))
                 return std::nullopt;
-    chunk.place(extent.placement);
+    chunk.place(extent.transform);
     return chunk;
 }
 
@@ -100,10 +100,10 @@ bool share_out(std::span<const MeshExtent> extents, std::span<const vec3> corner
 
 /// What the host relies on.
 bool is_sound(const Scene& scene) {
-    constexpr uint32_t kMostPixels = 65535; // a side
+    constexpr uint32_t kMaxPixels = 65535; // a side
     if (!has_sound_meshes(scene))
         return false;
-    const auto fits = [](uint32_t side) { return side >= 1 && side <= kMostPixels; };
+    const auto fits = [](uint32_t side) { return side >= 1 && side <= kMaxPixels; };
     if (scene.size && !(fits(scene.size->width) && fits(scene.size->height)))
         return false;
     if (!(scene.exposure > 0))

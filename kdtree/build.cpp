@@ -17,8 +17,8 @@ namespace {
 constexpr int kBins = 32;
 constexpr int kMaxDepth = 96;
 constexpr size_t kWorthIsolating = 64;  // triangles
-constexpr size_t kFewestToIsolate = 16; // of a sample: fewer say nothing of where the others are
-constexpr double kMostReferences = 24;  // a triangle, over the whole tree
+constexpr size_t kMinToIsolate = 16;    // of a sample: fewer say nothing of where the others are
+constexpr double kMaxReferences = 24;   // a triangle, over the whole tree
 constexpr size_t kParallelBuild = 8192; // fragments; below, a task costs more than it saves
 
 /// A triangle within a cell: the box of the part inside. In double, because a float cannot tell the
@@ -125,7 +125,7 @@ private:
         // far-reaching triangles would otherwise stretch its box until the rest is a dot in it.
         const bool stop = options_.max_leaf_triangles != 0;
         const bool enough = stop && count <= options_.max_leaf_triangles;
-        if (enough && (count < kWorthIsolating || fragments.size() < kFewestToIsolate))
+        if (enough && (count < kWorthIsolating || fragments.size() < kMinToIsolate))
             return {};
         const Split split =
             fragments.size() > kBins ? best_binned(fragments, cell) : best_exact(fragments, cell);
@@ -300,7 +300,7 @@ KdTree build_kd_tree(const Soup& soup, std::span<const TriangleId> triangles, co
         }
     });
     std::erase_if(fragments, [](const Fragment& f) { return f.box.empty(); });
-    const double references = kMostReferences * double(fragments.size());
+    const double references = kMaxReferences * double(fragments.size());
     in_forks([&](const Fork& fork) {
         builder.build(std::move(fragments), bounds, 0, references, tree, fork);
     });

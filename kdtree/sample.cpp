@@ -14,15 +14,15 @@ namespace {
 
 // Measured (docs/benchmarks.md, "The plan"): so many keep planes, and with them the number of
 // leaves and the triangles that planes cut, within a few percent of those of all triangles.
-constexpr uint64_t kFewestInAll = 8192;
-constexpr uint64_t kFewestInALeaf = 128;
+constexpr uint64_t kMinInAll = 8192;
+constexpr uint64_t kMinInALeaf = 128;
 constexpr uint64_t kHighestRate = 64; // beyond, a sample costs less than looking for it
 
 } // namespace
 
 uint32_t sample_rate(uint64_t triangles, uint64_t leaf_triangles) {
     const uint64_t rate =
-        std::min({triangles / kFewestInAll, leaf_triangles / kFewestInALeaf, kHighestRate});
+        std::min({triangles / kMinInAll, leaf_triangles / kMinInALeaf, kHighestRate});
     return uint32_t(std::bit_floor(std::max<uint64_t>(rate, 1)));
 }
 

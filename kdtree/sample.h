@@ -16,8 +16,8 @@ namespace ovc {
 uint32_t sample_rate(uint64_t triangles, uint64_t leaf_triangles);
 
 /// About one in `rate` (a power of two) of the triangles, in order: those whose corners hash to it.
-/// So a triangle is in the sample or not whatever else is there, and of twins all are or none. A
-/// triangle is a unit of progress.
+/// So a triangle is in the sample or not whatever else is there, and of duplicates all are or none.
+/// A triangle is a unit of progress.
 std::vector<TriangleId> sample_triangles(const Soup& soup, std::span<const TriangleId> triangles,
                                          uint32_t rate, BuildProgress* progress = nullptr);
 

@@ -31,7 +31,7 @@ TEST(Sample, TakesAllOfAFewAndOneInManyOfMany) {
     }
 }
 
-TEST(Sample, HasAllTwinsOrNone) {
+TEST(Sample, HasAllDuplicatesOrNone) {
     const Soup once = test::random_soup(4, 5000, 0.1);
     std::vector<vec3> corners(once.chunks[0].corners().begin(), once.chunks[0].corners().end());
     for (size_t i = 0; i < 15000; i += 3) // again, turned and wound the other way
@@ -85,12 +85,12 @@ TEST(Sample, IsNotDrawnAgainWhereItIsTheOneToCutBy) {
     const Soup soup = large_soup();
     Box bounds;
     const auto ids = hittable_triangles(soup, nullptr, &bounds);
-    constexpr uint32_t kMost = 20'000;
-    const uint32_t rate = sample_rate(ids.size(), kMost);
+    constexpr uint32_t kMax = 20'000;
+    const uint32_t rate = sample_rate(ids.size(), kMax);
     ASSERT_GT(rate, 1u);
     const auto leaves_by = [&](std::span<const TriangleId> drawn, uint32_t at) {
         std::vector<std::vector<TriangleId>> leaves;
-        for (Leaf& leaf : partition(soup, ids, bounds, kMost, nullptr, {drawn, at}).leaves)
+        for (Leaf& leaf : partition(soup, ids, bounds, kMax, nullptr, {drawn, at}).leaves)
             leaves.push_back(std::move(leaf.triangles));
         return leaves;
     };

@@ -35,15 +35,15 @@
 #ifndef OVC_PACKET
 #define OVC_PACKET 1 // rays that an invocation traces together
 #endif
-#ifndef OVC_TURNS
-#define OVC_TURNS 0 // 1: a subgroup has more rays, or packets, than lanes, which take them in turn (GL_ARB_shader_ballot)
+#ifndef OVC_REFILL
+#define OVC_REFILL 0 // 1: a subgroup has more rays, or packets, than lanes, which take them in turn (GL_ARB_shader_ballot)
 #endif
 #ifndef OVC_BRANCHES
 #define OVC_BRANCHES 0 // 1: a step runs what its unit is for; 0: for drivers that run both sides of a branch (llvmpipe)
 #endif
 #ifndef OVC_DEAL_GROUPS
 #define OVC_DEAL_GROUPS 1 // 1: neighbouring work groups go to different threads of a driver that gives each a contiguous share
-                          // of the dispatch (llvmpipe: 8 % of camera rays); by turns groups are too few for it
+                          // of the dispatch (llvmpipe: 8 % of camera rays); with ray refill groups are too few for it
 #endif
 #ifndef OVC_BUFFER_IMAGES
 #define OVC_BUFFER_IMAGES 1 // pages, portals, rays: 1: imageLoad (inlined on llvmpipe, 5 % faster); 0: texelFetch
@@ -55,6 +55,6 @@
 #define OVC_TEXELS(number) layout(binding = number) uniform usamplerBuffer
 #define OVC_TEXEL(texels, i) texelFetch(texels, i)
 #endif
-#ifndef OVC_MOST_ROUNDS
-#define OVC_MOST_ROUNDS 0x7fffffff // a ray's loops end after so many rounds and say so, before a driver ends them silently
+#ifndef OVC_MAX_ROUNDS
+#define OVC_MAX_ROUNDS 0x7fffffff // a ray's loops end after so many rounds and say so, before a driver ends them silently
 #endif

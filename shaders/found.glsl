@@ -3,14 +3,14 @@
 
 const float OVC_NEVER = 3.0e38;
 
-// A certain hit in [best_lo, best_hi]. Rivals: candidates that may be hit, but not certainly farther than the best; the
+// A certain hit in [best_lo, best_hi]. Candidates: triangles that may be hit, but not certainly farther than the best; the
 // two that may be hit first, by name, and the least t of all others.
 struct Found {
     float best_lo;
     float best_hi;
     uint prim;
-    float rival_lo[2];
-    uint rival[2];
+    float candidates_lo[2];
+    uint candidates[2];
     float others_lo;
     vec2 weights; // fast precision: of the pair's corners that are not v0; with `order` they become u and v
     uint order;
@@ -21,17 +21,17 @@ Found nothing_found(float t_end) {
                  OVC_NEVER, vec2(0.0), 8u);
 }
 
-// Keeps the two least of the rivals and `lo`.
-void add_rival(inout Found found, float lo, uint prim) {
-    bool first = lo < found.rival_lo[0];
-    bool second = lo < found.rival_lo[1];
-    float no_first = greater(lo, found.rival_lo[0]);
-    float no_second = greater(no_first, found.rival_lo[1]);
-    found.rival_lo[0] = lesser(lo, found.rival_lo[0]);
-    found.rival_lo[1] = lesser(no_first, found.rival_lo[1]);
+// Keeps the two least of the candidates and `lo`.
+void add_candidate(inout Found found, float lo, uint prim) {
+    bool first = lo < found.candidates_lo[0];
+    bool second = lo < found.candidates_lo[1];
+    float no_first = greater(lo, found.candidates_lo[0]);
+    float no_second = greater(no_first, found.candidates_lo[1]);
+    found.candidates_lo[0] = lesser(lo, found.candidates_lo[0]);
+    found.candidates_lo[1] = lesser(no_first, found.candidates_lo[1]);
     found.others_lo = lesser(no_second, found.others_lo);
-    found.rival[1] = first ? found.rival[0] : (second ? prim : found.rival[1]);
-    found.rival[0] = first ? prim : found.rival[0];
+    found.candidates[1] = first ? found.candidates[0] : (second ? prim : found.candidates[1]);
+    found.candidates[0] = first ? prim : found.candidates[0];
 }
 
 // Takes a candidate in. Returns true when it is now the best.
@@ -39,13 +39,13 @@ bool take(inout Found found, Candidate c, bool valid, uint prim, uint order) {
     bool possible = valid && c.possible && c.hi >= 0.0;
 #if OVC_PORTALS
     // What lies beyond a part is met in another. And a triangle that parts share may be in doubt in several of them.
-    bool named = (prim == found.rival[0] && found.rival_lo[0] < OVC_NEVER) || (prim == found.rival[1] && found.rival_lo[1] < OVC_NEVER);
+    bool named = (prim == found.candidates[0] && found.candidates_lo[0] < OVC_NEVER) || (prim == found.candidates[1] && found.candidates_lo[1] < OVC_NEVER);
     possible = possible && c.lo <= found.best_hi && (c.certain || !named);
 #endif
     bool better = possible && c.certain && (c.lo > 0.0 || OVC_CERTIFY == 0) && c.hi < found.best_hi;
     if (OVC_CERTIFY != 0) {
         float lo = better ? found.best_lo : c.lo; // the one of the two that is not the best
-        add_rival(found, possible ? lo : OVC_NEVER, better ? found.prim : prim);
+        add_candidate(found, possible ? lo : OVC_NEVER, better ? found.prim : prim);
     }
     found.best_lo = better ? c.lo : found.best_lo;
     found.best_hi = better ? c.hi : found.best_hi;
@@ -60,7 +60,7 @@ bool take(inout Found found, Corner a, Corner b, Corner c, Edges e, Depths depth
     return take(found, candidate(a, b, c, e, depths), valid, prim, order);
 }
 
-// What planes cut comes once for each part, within a page and in others: it is no rival of itself.
+// What planes cut comes once for each part, within a page and in others: it is no candidates of itself.
 bool is_known(Found found, uint prim) { return prim == found.prim; }
 
 // The weights of the pair's corners as u and v of the triangle's own: order says which of its corners v0 and v2 are.
@@ -83,8 +83,8 @@ Found in_times(Found found, Times from, Times to, float t_end) {
     there.best_lo = hit ? earlier(found.best_lo, from, to) : OVC_NEVER;
     there.best_hi = hit ? later(found.best_hi, from, to) : t_end;
     for (int i = 0; i < 2; ++i) {
-        bool counts = found.rival_lo[i] < OVC_NEVER && !(hit && found.rival_lo[i] > found.best_hi);
-        there.rival_lo[i] = counts ? earlier(found.rival_lo[i], from, to) : OVC_NEVER;
+        bool counts = found.candidates_lo[i] < OVC_NEVER && !(hit && found.candidates_lo[i] > found.best_hi);
+        there.candidates_lo[i] = counts ? earlier(found.candidates_lo[i], from, to) : OVC_NEVER;
     }
     bool others = found.others_lo < OVC_NEVER && !(hit && found.others_lo > found.best_hi);
     there.others_lo = others ? earlier(found.others_lo, from, to) : OVC_NEVER;
@@ -96,11 +96,11 @@ Found in_times(Found found, Times from, Times to, float t_end) {
 uvec4 answer_of(Found found, bool any_hit, uint leaf) {
     if (OVC_CERTIFY == 0 || (any_hit && found.prim != OVC_MISS))
         return uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, leaf, found.prim);
-    // A rival counts unless it certainly lies beyond the best; with more than two, none can be named.
-    // Without a hit best_hi is the end of the part that was met last, and rivals are of all.
+    // A candidates counts unless it certainly lies beyond the best; with more than two, none can be named.
+    // Without a hit best_hi is the end of the part that was met last, and candidates are of all.
     float end = OVC_PORTALS != 0 && !has_hit(found) ? 0.5 * OVC_NEVER : found.best_hi;
-    uint first = found.rival_lo[0] <= end ? found.rival[0] : OVC_NO_TRIANGLE;
-    uint second = found.rival_lo[1] <= end ? found.rival[1] : OVC_NO_TRIANGLE;
+    uint first = found.candidates_lo[0] <= end ? found.candidates[0] : OVC_NO_TRIANGLE;
+    uint second = found.candidates_lo[1] <= end ? found.candidates[1] : OVC_NO_TRIANGLE;
 #if OVC_PORTALS
     // In doubt in one part, and certain in another.
     second = second == found.prim ? OVC_NO_TRIANGLE : second;

@@ -77,7 +77,7 @@
 //   OVC_MISS      none
 //   OVC_FLAGGED   the kernel cannot tell
 //   OVC_CAPPED    a loop was ended before it was done, or the stack was full
-// x, y: up to two rivals, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is none; what is
+// x, y: up to two more candidates, triangles that may be hit, and nearer than w, each OVC_NO_TRIANGLE where there is none; what is
 // named neither in w nor here is certainly not the answer.
 // In fast precision x: t of the hit in the tree's frame (float bits); y: u and v in 16 bits each.
 #define OVC_NO_LEAF 0x7fffffffu
@@ -123,6 +123,6 @@
 #define OVC_BOUND_SHARE 2.00001
 
 // Farther than this from a leaf, in leaf sizes, a ray's place of entry is off by more than 1/64 of a float rounding.
-#define OVC_MOST_LEAF_SIZES 2097152.0
+#define OVC_MAX_LEAF_SIZES 2097152.0
 
 #endif

@@ -22,7 +22,7 @@ Unit unit_at(int unit) {
     int own = unit >> OVC_BUFFER_BITS;
     int at = (unit & ((1 << OVC_BUFFER_BITS) - 1)) * OVC_UNIT_TEXELS;
     Unit found = Unit(uvec4(0u), uvec4(0u), uvec4(0u), uvec4(0u));
-#if OVC_TURNS
+#if OVC_REFILL
     bool wants;
     do {
         int first = readFirstInvocationARB(own);

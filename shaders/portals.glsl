@@ -103,7 +103,7 @@ LocalRay local_ray(WorldRay ray, Portal portal) {
     dvec3 sizes[3] = dvec3[3](abs(portal.rows[0]), abs(portal.rows[1]), abs(portal.rows[2]));
     double reach = max(largest(times(sizes, abs(from_origin))), largest(times(sizes, abs(ray.dir))) * abs(inside.x));
     // Written so that a NaN is not decidable either.
-    local.decidable = reach <= double(OVC_MOST_LEAF_SIZES) && length <= 1.0e30 && speed >= 1.0e-300 && speed <= 1.0e300;
+    local.decidable = reach <= double(OVC_MAX_LEAF_SIZES) && length <= 1.0e30 && speed >= 1.0e-300 && speed <= 1.0e300;
     return local;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compute kernel: an invocation takes rays of the pass, OVC_PACKET at a time, once or in turns.
+// The compute kernel: an invocation takes rays of the pass, OVC_PACKET at a time, once or with ray refill.
 #version 450 core
 #include "layout.h"
 #include "config.glsl"
-#if OVC_TURNS
+#if OVC_REFILL
 #extension GL_ARB_gpu_shader_int64 : require // a ballot is one of these
 #extension GL_ARB_shader_ballot : require
 #endif
@@ -59,13 +59,13 @@ void main() {
     int group = int(dealt_group());
     int lane = int(gl_LocalInvocationID.x);
     int ray = (group * OVC_GROUP_SIZE + lane) * OVC_PACKET;
-#if OVC_TURNS
+#if OVC_REFILL
     // Each group has its share of the pass, and of that each subgroup.
     int groups = int(gl_NumWorkGroups.x);
-    int turns = (ray_count / (OVC_GROUP_SIZE * OVC_PACKET) + groups - 1) / groups;
+    int packets_a_lane = (ray_count / (OVC_GROUP_SIZE * OVC_PACKET) + groups - 1) / groups;
     int lanes = int(gl_SubGroupSizeARB);
-    int begin = (group * OVC_GROUP_SIZE + lane / lanes * lanes) * OVC_PACKET * turns;
-    trace_in_turn(begin, min(begin + lanes * OVC_PACKET * turns, ray_count));
+    int begin = (group * OVC_GROUP_SIZE + lane / lanes * lanes) * OVC_PACKET * packets_a_lane;
+    trace_with_refill(begin, min(begin + lanes * OVC_PACKET * packets_a_lane, ray_count));
 #else
     trace_once(ray);
 #endif

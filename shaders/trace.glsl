@@ -82,16 +82,16 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended)
     }
 }
 
-// Traces on for at least a round, until all rays have their answers or as long as `rounds` is less than most_rounds. True: they have.
-bool trace_on(int first, inout Descent d, inout Packet packet, inout Found found[OVC_PACKET], int most_rounds, inout int rounds) {
-    bool ended = run(d, found, packet, 0, most_rounds, rounds);
+// Traces on for at least a round, until all rays have their answers or as long as `rounds` is less than max_rounds. True: they have.
+bool trace_on(int first, inout Descent d, inout Packet packet, inout Found found[OVC_PACKET], int max_rounds, inout int rounds) {
+    bool ended = run(d, found, packet, 0, max_rounds, rounds);
 #if OVC_PORTALS
     ended = ended && !enter_portal(first, d, packet, found[0]);
 #endif
     return ended;
 }
 
-#if !OVC_TURNS
+#if !OVC_REFILL
 void trace_once(int ray) {
     Tree tree = tree_of(0, 0);
     Descent d = descent(tree);
@@ -99,21 +99,21 @@ void trace_once(int ray) {
     Found found[OVC_PACKET];
     int rounds = 0;
     d.done = !take_rays(ray, tree, packet, found);
-    bool ended = trace_on(ray, d, packet, found, OVC_MOST_ROUNDS, rounds);
+    bool ended = trace_on(ray, d, packet, found, OVC_MAX_ROUNDS, rounds);
 #if OVC_PORTALS
-    while (!ended && rounds < OVC_MOST_ROUNDS)
-        ended = trace_on(ray, d, packet, found, OVC_MOST_ROUNDS, rounds);
+    while (!ended && rounds < OVC_MAX_ROUNDS)
+        ended = trace_on(ray, d, packet, found, OVC_MAX_ROUNDS, rounds);
 #endif
     give_answers(ray, packet, found, ended && !d.lost);
 }
 #else
 // Between two looks at which lanes have an answer; more where taking up new rays costs more.
-const int OVC_TURN_ROUNDS = OVC_PACKET > 1 ? 5 : 3;
+const int OVC_REFILL_ROUNDS = OVC_PACKET > 1 ? 5 : 3;
 
 // The rays from `begin` to before `end`, by the lanes of a subgroup: now and then those that have an answer go on to the next that
 // nobody has taken, so that they do not wait for each other.
 // Based on: Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs" (replacing terminated rays).
-void trace_in_turn(int begin, int end) {
+void trace_with_refill(int begin, int end) {
     Tree tree = tree_of(0, 0);
     Descent d = descent(tree);
     Packet packet;
@@ -124,10 +124,10 @@ void trace_in_turn(int begin, int end) {
     int rounds = 0; // of the subgroup: never less than llvmpipe has counted of its loops
     d.done = !take_rays(ray, tree, packet, found);
     while (ray < end) {
-        bool enough = rounds >= OVC_MOST_ROUNDS;
+        bool enough = rounds >= OVC_MAX_ROUNDS;
         int own = 0;
-        bool ended = trace_on(ray, d, packet, found, enough ? 1 : OVC_TURN_ROUNDS, own);
-        rounds += OVC_TURN_ROUNDS + 1;
+        bool ended = trace_on(ray, d, packet, found, enough ? 1 : OVC_REFILL_ROUNDS, own);
+        rounds += OVC_REFILL_ROUNDS + 1;
         bool ready = ended || enough;
         uint ready_lanes = uint(ballotARB(ready));
         if (ready) {

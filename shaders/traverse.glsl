@@ -274,16 +274,16 @@ void go_round(inout Descent d, inout Found found[OVC_PACKET], inout Packet packe
     d.done = d.done || !goes_on(d) || all_have_enough(found);
 }
 
-// Takes into `found` what the rays may hit, for a round at least, until the end or as long as `rounds` is less than most_rounds.
+// Takes into `found` what the rays may hit, for a round at least, until the end or as long as `rounds` is less than max_rounds.
 // True: the end, for good or because something was lost.
-bool run(inout Descent d, inout Found found[OVC_PACKET], inout Packet packet, int first_unit, int most_rounds, inout int rounds) {
+bool run(inout Descent d, inout Found found[OVC_PACKET], inout Packet packet, int first_unit, int max_rounds, inout int rounds) {
     // Tested at the bottom: where it is at the top, llvmpipe (22.3) goes through the body once more when no lane is left. Of a
     // ray that was done before, a round finds nothing.
     bool on;
     do {
         go_round(d, found, packet, first_unit);
         ++rounds;
-        on = !d.done && rounds < most_rounds;
+        on = !d.done && rounds < max_rounds;
     } while (on);
     return d.done;
 }
@@ -301,10 +301,10 @@ bool traverse(inout Found found, int page, vec3 org, Direction direction, uint s
     packet.axes = direction.axes;
     set_ray(packet, 0, tree, org, direction, skip, any_hit);
     Found one[1] = Found[1](found);
-    bool ended = run(d, one, packet, tree.first_unit, OVC_MOST_ROUNDS, rounds);
+    bool ended = run(d, one, packet, tree.first_unit, OVC_MAX_ROUNDS, rounds);
     found = one[0];
     ended = ended && !d.lost;
-    rounds = ended ? rounds : OVC_MOST_ROUNDS;
+    rounds = ended ? rounds : OVC_MAX_ROUNDS;
     return ended;
 }
 #endif

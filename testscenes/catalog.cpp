@@ -41,7 +41,7 @@ Scene alone(uint32_t, const Soup*) {
 constexpr Generator kGenerators[] = {
     {{"dragons-N", "N dragons on a mirror: 204,800 + N x 871,414 triangles", 100, true},
      1,
-     kMostDragons,
+     kMaxDragons,
      make_dragons,
      dragons_path},
     {{"dragonball", "a dragon, a mirror ball, a glass ball, a lens, waves: 7,364,817 triangles",

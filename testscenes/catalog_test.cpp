@@ -169,7 +169,7 @@ TEST(Catalog, TheFractalIsOneMeshInManyPlaces) {
     EXPECT_EQ(scene.soup.chunks.size(), 25'250u);
     EXPECT_EQ(scene.soup.triangle_count(), 753'662'000u);
     for (const Chunk& chunk : scene.soup.chunks)
-        ASSERT_TRUE(chunk.mesh_key() == scene.soup.chunks.front().mesh_key() && chunk.placement());
+        ASSERT_TRUE(chunk.mesh_key() == scene.soup.chunks.front().mesh_key() && chunk.transform());
     for (uint32_t prim = 0; prim < scene.soup.chunks.front().size(); ++prim)
         for (const uint32_t ball : {0u, 7u, 25'249u})
             ASSERT_EQ(triangle_fault(scene.soup.triangle({ball, prim})), TriangleFault::None);

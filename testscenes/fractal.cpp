@@ -45,14 +45,14 @@ struct Ball {
     dmat3 axes{1};
     double size = 1;
 
-    Placement placement() const {
-        Placement placement{};
+    Transform transform() const {
+        Transform transform{};
         for (int row = 0; row < 3; ++row) {
             for (int column = 0; column < 3; ++column)
-                placement.rows[size_t(row)][size_t(column)] = size * axes[column][row];
-            placement.rows[size_t(row)][3] = place[row];
+                transform.rows[size_t(row)][size_t(column)] = size * axes[column][row];
+            transform.rows[size_t(row)][3] = place[row];
         }
-        return placement;
+        return transform;
     }
 
     /// One of the seven that it carries: six around it, one on top.
@@ -79,7 +79,7 @@ Scene make_fractal() {
     for (const Ball& at : balls) {
         Chunk chunk = scene.soup.chunks.empty() ? Chunk::owning(dvec3(0), ball())
                                                 : scene.soup.chunks.front().unplaced();
-        chunk.place(at.placement());
+        chunk.place(at.transform());
         scene.add_mesh("ball", 0, std::move(chunk));
     }
     scene.lights.push_back({dvec3(8, 12, 10), vec3(3)});

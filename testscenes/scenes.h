@@ -24,7 +24,7 @@ Scene make_mirrors();
 Scene make_glass();
 Scene make_box();
 
-inline constexpr uint32_t kMostDragons = 21;
+inline constexpr uint32_t kMaxDragons = 21;
 /// model: shown instead of the generated dragon; null: none. At least one of its triangles can be
 /// hit.
 Scene make_dragons(uint32_t count, const Soup* model);

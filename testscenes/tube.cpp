@@ -115,7 +115,7 @@ private:
 } // namespace
 
 TubeGrid tube_grid(uint64_t triangles, double rings_per_point) {
-    assert(triangles % 2 == 0 && triangles >= kLeastTubeTriangles);
+    assert(triangles % 2 == 0 && triangles >= kMinTubeTriangles);
     const uint64_t points = triangles / 2;
     const auto around = uint64_t(std::sqrt(double(points) / rings_per_point) + 0.5);
     TubeGrid grid;

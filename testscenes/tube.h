@@ -25,9 +25,9 @@ struct TubeGrid {
 };
 
 /// The fewest triangles that tube_grid() takes.
-inline constexpr uint64_t kLeastTubeTriangles = 12;
+inline constexpr uint64_t kMinTubeTriangles = 12;
 
-/// A grid of exactly `triangles`, even and not less than kLeastTubeTriangles, with about
+/// A grid of exactly `triangles`, even and not less than kMinTubeTriangles, with about
 /// `rings_per_point` rings for each point of a ring.
 TubeGrid tube_grid(uint64_t triangles, double rings_per_point);
 

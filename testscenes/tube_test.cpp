@@ -25,7 +25,7 @@ Surface ball(const TubeGrid& grid, bool with_normals) {
 
 TEST(Tube, HasTheTrianglesAskedForAndIsClosed) {
     for (const double ratio : {0.05, 0.5, 1.0, 7.0, 1000.0})
-        for (uint64_t triangles = kLeastTubeTriangles; triangles < 1000; triangles += 14) {
+        for (uint64_t triangles = kMinTubeTriangles; triangles < 1000; triangles += 14) {
             const TubeGrid grid = tube_grid(triangles, ratio);
             ASSERT_EQ(grid.triangles(), triangles) << ratio;
             const Surface surface = ball(grid, false);

@@ -29,9 +29,9 @@ Character first_of(std::string_view text) {
             return {};
         code = code << 6 | (byte(i) & 0x3f);
     }
-    constexpr uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
+    constexpr uint32_t kMin[] = {0, 0, 0x80, 0x800, 0x10000};
     const bool is_surrogate = code >= 0xd800 && code <= 0xdfff;
-    if (code < kLeast[bytes] || code > 0x10ffff || is_surrogate)
+    if (code < kMin[bytes] || code > 0x10ffff || is_surrogate)
         return {};
     return {code, bytes};
 }

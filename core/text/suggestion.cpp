@@ -43,7 +43,7 @@ std::string did_you_mean(std::string_view word, std::span<const std::string_view
 }
 
 /// So that a slow disk with a million files is not read for a hint.
-static constexpr size_t kMostFiles = 10000;
+static constexpr size_t kMaxFiles = 10000;
 
 static std::string in_small_letters(std::string word) {
     for (char& c : word)
@@ -57,7 +57,7 @@ std::string did_you_mean_file(const std::filesystem::path& missing) {
     const fs::path folder = missing.has_parent_path() ? missing.parent_path() : fs::path(".");
     std::vector<std::pair<std::string, std::string>> names; // in small letters, and as it is
     std::error_code ec;
-    for (fs::directory_iterator at(folder, ec), end; !ec && at != end && names.size() < kMostFiles;
+    for (fs::directory_iterator at(folder, ec), end; !ec && at != end && names.size() < kMaxFiles;
          at.increment(ec)) {
         std::error_code unknown;
         if (!at->is_directory(unknown)) {

@@ -19,12 +19,12 @@ constexpr size_t kParallelBuild = 4096;
 constexpr size_t kParallelSum = 32768;
 // A plane is looked for at nodes of so many items, where the best two sides share this much of the
 // node's area, and taken where it leaves less than this of the cost.
-constexpr size_t kFewestToCut = 64;
-constexpr float kLeastOverlap = 0.1f;
+constexpr size_t kMinToCut = 64;
+constexpr float kMinOverlap = 0.1f;
 constexpr float kWorthCutting = 0.95f;
 // Where that many nodes, one below the other, had no such plane, none is looked for further down:
 // the parts of a mesh are as smooth as the whole (docs/decisions/0022).
-constexpr int kMostInVain = 4;
+constexpr int kMaxInVain = 4;
 
 struct Split {
     float cost = std::numeric_limits<float>::infinity();
@@ -190,7 +190,7 @@ private:
                             items_.begin());
         // The room is shared out by count, while there is hope.
         const int in_vain = range.in_vain + may_cut;
-        const size_t spare = in_vain < kMostInVain ? range.spare() : 0;
+        const size_t spare = in_vain < kMaxInVain ? range.spare() : 0;
         const size_t room = spare * (middle - first) / range.count();
         if (room > 0)
             std::move_backward(items_.begin() + ptrdiff_t(middle), items_.begin() + ptrdiff_t(last),
@@ -200,8 +200,8 @@ private:
     }
 
     static bool can_cut(const Range& range, const Bounds& bounds, const Split& split) {
-        return split.axis >= 0 && range.spare() > 0 && range.count() >= kFewestToCut &&
-               split.overlap >= kLeastOverlap * bounds.half_area();
+        return split.axis >= 0 && range.spare() > 0 && range.count() >= kMinToCut &&
+               split.overlap >= kMinOverlap * bounds.half_area();
     }
 
     /// Cuts the items by a plane where that gains enough.
@@ -225,9 +225,9 @@ private:
     }
 
     /// The halves, or none where they cost more, or where one of them is as large as the whole.
-    static Halves checked(Halves halves, float most_cost, size_t whole) {
+    static Halves checked(Halves halves, float max_cost, size_t whole) {
         const bool fine =
-            halves.below.size() < whole && halves.above.size() < whole && halves.cost() < most_cost;
+            halves.below.size() < whole && halves.above.size() < whole && halves.cost() < max_cost;
         return fine ? std::move(halves) : Halves{};
     }
 
@@ -286,12 +286,12 @@ private:
 } // namespace
 
 std::vector<BvhNode> build_split_bvh(std::span<const Boxf> boxes,
-                                     std::span<const TrianglePair> pairs, size_t most_added,
+                                     std::span<const TrianglePair> pairs, size_t max_added,
                                      BuildProgress* progress) {
     std::vector<BvhNode> nodes;
     if (boxes.empty())
         return nodes;
-    const size_t most = boxes.size() + most_added;
+    const size_t most = boxes.size() + max_added;
     std::vector<Item> items(most);
     for (size_t i = 0; i < boxes.size(); ++i)
         items[i] = Item::of(boxes[i], uint32_t(i));

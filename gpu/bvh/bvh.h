@@ -28,11 +28,11 @@ struct BvhNode {
 /// most kMaxBvhDepth deep. A box is a unit of progress.
 std::vector<BvhNode> build_bvh(std::span<const Boxf> boxes, BuildProgress* progress = nullptr);
 
-/// The same over the boxes of `pairs`, of which up to `most_added` are cut in two by planes, where
+/// The same over the boxes of `pairs`, of which up to `max_added` are cut in two by planes, where
 /// the heuristic gains by it: each part is a leaf of its own. Every point of a pair that is in its
 /// box is in one of the parts' boxes (cut_pair.h).
 std::vector<BvhNode> build_split_bvh(std::span<const Boxf> boxes,
-                                     std::span<const TrianglePair> pairs, size_t most_added,
+                                     std::span<const TrianglePair> pairs, size_t max_added,
                                      BuildProgress* progress = nullptr);
 
 /// Inner levels of any tree of build_bvh: where the heuristic would go deeper, halves by count keep

@@ -12,7 +12,7 @@ namespace {
 
 // How much larger than both boxes together the joint box may be. Measured on soup-500: up to here
 // pages shrink and a ray takes no more steps, since a node above two triangles is one the less.
-constexpr float kMostGrowth = 2;
+constexpr float kMaxGrowth = 2;
 // What a coordinate may be for its rounding to fit into 24 bits.
 constexpr float kReach = 1 - 0x1p-20f;
 
@@ -91,7 +91,7 @@ private:
 
     bool worth_joining(uint32_t a, uint32_t b) const {
         const float apart = nodes_[a].box.half_area() + nodes_[b].box.half_area();
-        return box_of(a, b).half_area() <= kMostGrowth * apart;
+        return box_of(a, b).half_area() <= kMaxGrowth * apart;
     }
 
     BvhNode joined(uint32_t a, uint32_t b) {

@@ -58,7 +58,7 @@ public:
         const size_t mask = slots_.size() - 1;
         size_t at = size_t(key) & mask;
         for (int looked = 0; slots_[at] != kEmpty; at = (at + 1) & mask) {
-            if (++looked == kMostLooks)
+            if (++looked == kMaxLooks)
                 return kNone;
             const uint32_t other = uint32_t(slots_[at]);
             if ((slots_[at] & ~uint64_t(kNone)) == tag && other != kTaken && fits(other)) {
@@ -73,7 +73,7 @@ public:
 private:
     static constexpr uint64_t kEmpty = ~uint64_t(0);
     static constexpr uint32_t kTaken = kNone - 1;
-    static constexpr int kMostLooks = 64;
+    static constexpr int kMaxLooks = 64;
 
     std::vector<uint64_t> slots_; // upper half of the key, side below
 };

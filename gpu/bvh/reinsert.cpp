@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTried = 0.05;      // of all subtrees, a round: the most promising
 constexpr double kWorthwhile = 0.01; // of the cost: what a round must gain for another one
-constexpr int kMostRounds = 16;
+constexpr int kMaxRounds = 16;
 constexpr size_t kGrain = 256; // searches a task
 
 /// hope: what the tree would save without the subtree, but for what nodes above then shrink by.
@@ -56,14 +56,14 @@ std::vector<Move> moves(const SiblingTree& tree, BuildProgress* progress) {
 }
 
 /// Makes those that still gain after the ones before them; what they gain together.
-double make(const std::vector<Move>& moves, uint32_t most_height, SiblingTree& tree) {
+double make(const std::vector<Move>& moves, uint32_t max_height, SiblingTree& tree) {
     double gain = 0;
     for (const auto& [from, to, hoped] : moves) {
         if (!tree.can_move(from, to))
             continue;
         const uint32_t parent = tree.parent(from);
         const float change = tree.move(from, to);
-        if (change < 0 && tree.height(0) <= most_height)
+        if (change < 0 && tree.height(0) <= max_height)
             gain -= double(change);
         else
             tree.move(from, parent);
@@ -77,10 +77,10 @@ void reinsert(std::vector<BvhNode>& nodes, BuildProgress* progress) {
     if (nodes.empty())
         return;
     SiblingTree tree(nodes);
-    const uint32_t most_height = tree.height(0);
+    const uint32_t max_height = tree.height(0);
     double cost = tree.cost();
-    for (int round = 0; round < kMostRounds; ++round) {
-        const double gain = make(moves(tree, progress), most_height, tree);
+    for (int round = 0; round < kMaxRounds; ++round) {
+        const double gain = make(moves(tree, progress), max_height, tree);
         cost -= gain;
         if (gain <= kWorthwhile * cost)
             break;

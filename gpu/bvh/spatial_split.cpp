@@ -44,7 +44,7 @@ public:
         bins_[size_t(last)].bounds.add(part);
     }
 
-    void choose(SpatialSplit& best, uint32_t count, size_t most_added) const {
+    void choose(SpatialSplit& best, uint32_t count, size_t max_added) const {
         std::array<Bounds, kBins> above;
         Bounds rest = Bounds::empty();
         for (int i = kBins - 1; i > 0; --i) {
@@ -58,7 +58,7 @@ public:
             below_count += bins_[size_t(i - 1)].begin;
             above_count -= bins_[size_t(i - 1)].end;
             if (below_count == 0 || above_count == 0 || below_count == count ||
-                above_count == count || below_count + above_count - count > most_added)
+                above_count == count || below_count + above_count - count > max_added)
                 continue;
             const float cost = below.half_area() * float(below_count) +
                                above[size_t(i)].half_area() * float(above_count);
@@ -80,7 +80,7 @@ private:
 } // namespace
 
 SpatialSplit best_spatial_split(std::span<const Item> items, const Bounds& bounds,
-                                size_t most_added) {
+                                size_t max_added) {
     const size_t step = items.size() / kSample + 1;
     const size_t looked_at = (items.size() + step - 1) / step;
     SpatialSplit best;
@@ -90,7 +90,7 @@ SpatialSplit best_spatial_split(std::span<const Item> items, const Bounds& bound
             continue;
         for (size_t i = 0; i < items.size(); i += step)
             bins.add(items[i]);
-        bins.choose(best, uint32_t(looked_at), most_added / step);
+        bins.choose(best, uint32_t(looked_at), max_added / step);
     }
     best.cost *= float(step);
     best.below_count *= uint32_t(step);
@@ -99,7 +99,7 @@ SpatialSplit best_spatial_split(std::span<const Item> items, const Bounds& bound
 }
 
 Halves divide_by_plane(std::span<const Item> items, const SpatialSplit& split,
-                       std::span<const TrianglePair> pairs, size_t most_added) {
+                       std::span<const TrianglePair> pairs, size_t max_added) {
     const size_t axis = size_t(split.axis);
     const float below_area = split.below.half_area(), above_area = split.above.half_area();
     const float below_count = float(split.below_count), above_count = float(split.above_count);
@@ -128,10 +128,10 @@ Halves divide_by_plane(std::span<const Item> items, const SpatialSplit& split,
             with_below.half_area() * below_count + above_area * (above_count - 1);
         const float only_above =
             below_area * (below_count - 1) + with_above.half_area() * above_count;
-        if (most_added > 0 && both < only_below && both < only_above) {
+        if (max_added > 0 && both < only_below && both < only_above) {
             halves.below.push_back(Item::of(cut.below, item.index()));
             halves.above.push_back(Item::of(cut.above, item.index()));
-            --most_added;
+            --max_added;
         } else {
             (only_below < only_above ? halves.below : halves.above).push_back(item);
         }

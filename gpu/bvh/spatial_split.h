@@ -23,10 +23,10 @@ struct SpatialSplit {
 };
 
 /// About the cheapest plane through a node's items, of 15 across each axis, that adds at most
-/// `most_added` of them; cost infinite where there is none. A sample of the items decides, and
+/// `max_added` of them; cost infinite where there is none. A sample of the items decides, and
 /// boxes stand for what is in them. bounds: of all the items.
 SpatialSplit best_spatial_split(std::span<const Item> items, const Bounds& bounds,
-                                size_t most_added);
+                                size_t max_added);
 
 struct Halves {
     std::vector<Item> below;
@@ -36,8 +36,8 @@ struct Halves {
 };
 
 /// Hands the items, whose indices name `pairs`, to the sides of the plane. One that the plane cuts
-/// goes to one side whole where that is cheaper, or where `most_added` are added already.
+/// goes to one side whole where that is cheaper, or where `max_added` are added already.
 Halves divide_by_plane(std::span<const Item> items, const SpatialSplit& split,
-                       std::span<const TrianglePair> pairs, size_t most_added);
+                       std::span<const TrianglePair> pairs, size_t max_added);
 
 } // namespace ovc

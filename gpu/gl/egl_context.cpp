@@ -3,10 +3,10 @@
 // EGL_MESA_platform_surfaceless where there is none.
 #include "gpu/gl/egl_context.h"
 
-#include "gpu/gl/driver_faults.h"
 #include "gpu/gl/fork_mark.h"
 #include "gpu/gl/gl.h"
 #include "gpu/gl/gl_libraries.h"
+#include "gpu/gl/workarounds.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>
@@ -31,8 +31,7 @@ struct EglContext::Platform {
 namespace {
 
 constexpr uint64_t kSoftwareMemory = uint64_t(1) << 30;
-// llvmpipe (Mesa 22.3) crashes on larger buffers bound as images.
-constexpr uint64_t kMaxBufferTexels = uint64_t(1) << 27;
+constexpr uint64_t kMaxBufferTexels = uint64_t(OVC_UNIT_TEXELS) << OVC_MAX_BUFFER_BITS;
 
 /// What most often is behind a display that does not start.
 std::string likely_cause() {
@@ -177,7 +176,8 @@ Result<std::vector<EglContext::Platform>> EglContext::platforms() {
         return checked.error();
     if (Result<Done> there = open_gl_libraries(); !there)
         return there.error();
-    if (const auto cache = mesa_shader_cache())
+    if (const auto cache = mesa_shader_cache();
+        cache && !is_switched_off(Workaround::ReservedCacheIndex))
         if (Result<Done> reserved = reserve_shader_cache_index(*cache); !reserved)
             return reserved.error();
     std::vector<Platform> found;
@@ -251,9 +251,11 @@ Result<EglContext> EglContext::open(const Platform& platform) {
     if (!context.make_current())
         return Error{fmt::format("{}: eglMakeCurrent failed: {}", platform.name, egl_error())};
     context.info_ = describe();
-    if (const char* symptom = known_fault(context.info_.renderer, context.info_.version))
-        return Error{fmt::format("{}: '{}' is passed over: {}", platform.name,
-                                 context.info_.renderer, symptom)};
+    if (needs(Workaround::PassedOver)) {
+        const WorkaroundEntry& entry = entry_of(Workaround::PassedOver);
+        return Error{fmt::format("{}: '{}' {}; {}", platform.name, context.info_.renderer,
+                                 entry.symptom, entry.answer)};
+    }
     return context;
 }
 

@@ -2,7 +2,7 @@
 // Devices are found by number and by name; each way to fail has its sentence.
 #include "gpu/gl/egl_context.h"
 
-#include "gpu/gl/driver_faults.h"
+#include "gpu/gl/workarounds.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -52,10 +52,13 @@ TEST(EglContextGl, ANonsensePlatformSaysWhatWasTried) {
 }
 
 TEST(EglContextGl, DriversThatEndTheProcessArePassedOver) {
+    const auto passed_over = [](const char* renderer, const char* version) {
+        return has_defect(Workaround::PassedOver, renderer, version);
+    };
     EXPECT_TRUE(
-        known_fault("zink (llvmpipe (LLVM 15.0.6, 256 bits))", "4.5 (Core Profile) Mesa 22.3.6"));
-    EXPECT_FALSE(known_fault("llvmpipe (LLVM 15.0.6, 256 bits)", "4.5 (Core Profile) Mesa 22.3.6"));
-    EXPECT_FALSE(known_fault("zink (NVIDIA H200)", "4.6 (Core Profile) Mesa 25.0.1"));
+        passed_over("zink (llvmpipe (LLVM 15.0.6, 256 bits))", "4.5 (Core Profile) Mesa 22.3.6"));
+    EXPECT_FALSE(passed_over("llvmpipe (LLVM 15.0.6, 256 bits)", "4.5 (Core Profile) Mesa 22.3.6"));
+    EXPECT_FALSE(passed_over("zink (NVIDIA H200)", "4.6 (Core Profile) Mesa 25.0.1"));
 }
 
 TEST(EglContextGl, FallingBackToSoftwareIsSaid) {

@@ -3,6 +3,7 @@
 #include "gpu/gl/kernel.h"
 
 #include "gpu/gl/program_store.h"
+#include "gpu/gl/workarounds.h"
 #include "shaders/sources.h"
 
 #include <fmt/format.h>
@@ -107,20 +108,18 @@ Result<gl::Program> link(const ShaderConfig& config) {
     return link_program(stages, config.defines());
 }
 
-/// Who compiles, as a comment. Mesa's own cache of programs goes by their sources, and overlooks
-/// how wide llvmpipe's vectors are, though gl_SubGroupSizeARB is a constant of the program: one of
-/// eight lanes would be taken for sixteen, and every other ray would have no answer.
+/// The renderer's name as a comment (Workaround::RendererInSources).
 std::string driver_line() {
+    if (!needs(Workaround::RendererInSources))
+        return {};
     const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     return fmt::format("// {}\n", renderer ? renderer : "");
 }
 
-/// llvmpipe (Mesa 22.3, LLVM 15) crashes when it compiles any fragment shader for vectors of 512
-/// bits, which its user has to ask for.
 bool compiles_fragment_shaders() {
     const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     const std::string_view name = renderer ? renderer : "";
-    return name.find("llvmpipe") == name.npos || name.find("512 bits") == name.npos;
+    return !needs(Workaround::NarrowFragments) || name.find("512 bits") == name.npos;
 }
 
 } // namespace
@@ -137,14 +136,14 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_STACK_DEPTH {}\n"
                        "#define OVC_STACK_REGISTERS {:d}\n"
                        "#define OVC_PACKET {}\n"
-                       "#define OVC_TURNS {:d}\n"
+                       "#define OVC_REFILL {:d}\n"
                        "#define OVC_BRANCHES {:d}\n"
                        "#define OVC_DEAL_GROUPS {:d}\n"
                        "#define OVC_BUFFER_IMAGES {:d}\n"
-                       "#define OVC_MOST_ROUNDS {}\n",
+                       "#define OVC_MAX_ROUNDS {}\n",
                        any_hit, certify, portals, may_wait, tell_active, loose_pairs, pool_buffers,
-                       buffer_bits, stack_depth, stack_registers, packet, turns, branches,
-                       deal_groups, buffer_images, most_rounds);
+                       buffer_bits, stack_depth, stack_registers, packet, refill, branches,
+                       deal_groups, buffer_images, max_rounds);
 }
 
 Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines) {

@@ -13,9 +13,9 @@
 
 namespace ovc {
 
-/// Fewer than the 65,535 rounds, of all loops of a pixel, after which llvmpipe ends them without a
-/// word.
-inline constexpr uint32_t kMostRoundsInSoftware = 65000;
+/// The rounds of an invocation's loops after which it gives its ray up, where the driver would end
+/// them a little later (Workaround::CountedRounds).
+inline constexpr uint32_t kMaxCountedRounds = 65000;
 
 /// Which kernel, and every switch of shaders/config.glsl, by value. Derived from what the query and
 /// the pages need, and from the driver.
@@ -32,11 +32,11 @@ struct ShaderConfig {
     uint32_t stack_depth = 16;
     bool stack_registers = true;
     uint32_t packet = 1; // rays that an invocation traces together
-    bool turns = false;  // lanes take packets one after the other
+    bool refill = false; // a lane takes the next packet when its own is done
     bool branches = false;
     bool deal_groups = true;
     bool buffer_images = true;
-    uint32_t most_rounds = 0x7fffffff; // of all loops of a ray
+    uint32_t max_rounds = 0x7fffffff; // of all loops of a ray
 
     bool operator==(const ShaderConfig&) const = default;
     /// All defines, one a line, in fixed order.

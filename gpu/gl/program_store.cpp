@@ -175,7 +175,7 @@ void ProgramStore::make_room() const {
     }
     std::ranges::sort(files, {}, &Kept::used);
     for (const Kept& kept : files) {
-        if (bytes <= most_bytes_)
+        if (bytes <= max_bytes_)
             break;
         fs::remove(kept.path, failed);
         bytes -= kept.bytes;

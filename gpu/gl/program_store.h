@@ -17,8 +17,8 @@ namespace ovc {
 class ProgramStore {
 public:
     /// folder: made when something is kept; empty: nothing is kept, nothing found.
-    explicit ProgramStore(std::filesystem::path folder, uint64_t most_bytes = kMostBytes)
-        : folder_(std::move(folder)), most_bytes_(most_bytes) {}
+    explicit ProgramStore(std::filesystem::path folder, uint64_t max_bytes = kMaxBytes)
+        : folder_(std::move(folder)), max_bytes_(max_bytes) {}
 
     /// What OVC_KERNEL_CACHE names, "off" for none; else overcast/kernels in XDG_CACHE_HOME or in
     /// ~/.cache; else none.
@@ -31,17 +31,17 @@ public:
 
     /// Keeps a linked program, unless the driver hands out none. Whoever reads meanwhile, in this
     /// process or another, finds the file as it was, or whole. What was used longest ago goes where
-    /// all is more than most_bytes.
+    /// all is more than max_bytes.
     void keep(const std::vector<std::string>& sources, GLuint program) const;
 
-    static constexpr uint64_t kMostBytes = 64 << 20;
+    static constexpr uint64_t kMaxBytes = 64 << 20;
 
 private:
     std::filesystem::path file_of(uint64_t key) const;
     void make_room() const;
 
     std::filesystem::path folder_;
-    uint64_t most_bytes_;
+    uint64_t max_bytes_;
 };
 
 } // namespace ovc

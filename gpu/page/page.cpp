@@ -46,8 +46,8 @@ void put_pair(const TrianglePair& pair, std::span<uvec4, OVC_UNIT_TEXELS> unit) 
 /// How many pairs planes may cut in two. A tenth, so that a page stays within what was planned; and
 /// units of a page are never more than if no two triangles made a pair. Loose pairs leave room for
 /// more, which the plan foresees (plugin/plan/page_rate.h).
-size_t most_cut(size_t pairs, size_t triangles, bool is_loose, const LoosePairs& loose) {
-    return is_loose ? size_t(loose.most_cut() * double(pairs))
+size_t max_cut(size_t pairs, size_t triangles, bool is_loose, const LoosePairs& loose) {
+    return is_loose ? size_t(loose.max_cut() * double(pairs))
                     : std::min(pairs / 10, triangles - pairs);
 }
 
@@ -66,7 +66,7 @@ public:
         }
         const Box box{leaf.frame.to_local(leaf.box.lo), leaf.frame.to_local(leaf.box.hi)};
         nodes_ = build_split_bvh(boxes({vec3(box.lo), vec3(box.hi)}), pairs_,
-                                 most_cut(pairs_.size(), leaf.triangles.size(), is_loose_, loose),
+                                 max_cut(pairs_.size(), leaf.triangles.size(), is_loose_, loose),
                                  progress);
         if (is_loose_)
             loose_ = join_loose(nodes_, pairs_);

@@ -49,7 +49,7 @@ uint32_t stack_depth(uint32_t depth);
 
 /// Of triangles in loose pairs: how many cuts by planes there may be, at most, level 1's and the
 /// page's together.
-inline constexpr double kMostCutOfLoose = 0.8;
+inline constexpr double kMaxCutOfLoose = 0.8;
 
 /// Whether triangles that share no side may lie in one unit (loose_pairs.h): where that is worth
 /// it, and only for kernels with OVC_LOOSE_PAIRS.
@@ -58,7 +58,7 @@ struct LoosePairs {
     double copies = 1; // of a triangle in all leaves, on average: 1 where level 1 cut none
 
     /// Of a page's pairs, how many planes may cut in two.
-    double most_cut() const { return std::max((1 + kMostCutOfLoose) / copies - 1, 0.0); }
+    double max_cut() const { return std::max((1 + kMaxCutOfLoose) / copies - 1, 0.0); }
 };
 
 /// Builds and packs the BVH of a leaf. Its triangles go by their numbers in the soup. Each is about

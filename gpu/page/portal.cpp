@@ -22,24 +22,24 @@ PreparedRay Portal::local_ray(const PreparedRay& p) const {
     return local;
 }
 
-Box placed_box(const Box& box, const Placement* placement) {
-    if (!placement)
+Box placed_box(const Box& box, const Transform* transform) {
+    if (!transform)
         return box;
     Box placed;
     for (int corner = 0; corner < 8; ++corner)
-        placed.add((*placement)({corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+        placed.add((*transform)({corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
                                  corner & 4 ? box.hi.z : box.lo.z}));
     return placed.padded(placed.rounding());
 }
 
-Portal portal_into(const Frame& frame, const Box& box, const Placement* placement) {
+Portal portal_into(const Frame& frame, const Box& box, const Transform* transform) {
     Portal portal;
-    portal.origin = placement ? (*placement)(frame.origin) : frame.origin;
-    portal.rows = *inverse_matrix(or_unplaced(placement));
+    portal.origin = transform ? (*transform)(frame.origin) : frame.origin;
+    portal.rows = *inverse_matrix(or_identity(transform));
     for (dvec3& row : portal.rows)
         row *= frame.scale;
     portal.box = {frame.to_local(box.lo), frame.to_local(box.hi)};
-    portal.bounds = placed_box(box, placement);
+    portal.bounds = placed_box(box, transform);
     return portal;
 }
 

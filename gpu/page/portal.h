@@ -4,7 +4,7 @@
 
 #include "core/box.h"
 #include "core/exact/triangle.h"
-#include "core/placement.h"
+#include "core/transform.h"
 #include "kdtree/partition.h"
 #include "shaders/layout.h"
 
@@ -34,13 +34,13 @@ struct Portal {
     PreparedRay local_ray(const PreparedRay& p) const;
 };
 
-/// The box in the world of what lies in `box` before it is placed. placement: null where it is in
+/// The box in the world of what lies in `box` before it is placed. transform: null where it is in
 /// the world.
-Box placed_box(const Box& box, const Placement* placement);
+Box placed_box(const Box& box, const Transform* transform);
 
-/// Into the frame, with all that lies in `box` behind it. placement: of both, which has an inverse;
+/// Into the frame, with all that lies in `box` behind it. transform: of both, which has an inverse;
 /// null where they are in the world. Error bound: docs/numerics.md, "Frames".
-Portal portal_into(const Frame& frame, const Box& box, const Placement* placement = nullptr);
+Portal portal_into(const Frame& frame, const Box& box, const Transform* transform = nullptr);
 
 inline constexpr uint64_t kPortalBytes = OVC_PORTAL_TEXELS * sizeof(uvec4);
 

@@ -210,7 +210,7 @@ void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place
     for (const LeafRange& part : parts_of(level1)) {
         const Leaf& leaf = level1.leaves[part.first];
         for (const Place& place : places) {
-            portals.push_back(portal_into(leaf.frame, leaf.grid, place.placement));
+            portals.push_back(portal_into(leaf.frame, leaf.grid, place.transform));
             portals.back().tree = uint32_t(pages.size());
             portals.back().first_number = place.first_number;
         }

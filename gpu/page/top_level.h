@@ -68,7 +68,7 @@ TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size
 
 /// Where a mesh lies, and the number that its triangles count from there.
 struct Place {
-    const Placement* placement = nullptr;
+    const Transform* transform = nullptr;
     uint32_t first_number = 0;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t kGrain = 16384; // rays a task that are only copied
 
-/// The pixel of a ray's answer, row by row: the twin of pixel_of() in shaders/ray.glsl.
+/// The pixel of a ray's answer, row by row: the duplicate of pixel_of() in shaders/ray.glsl.
 size_t pixel_of(size_t ray) {
     constexpr size_t kTile = OVC_TILE, kTilesInRow = OVC_ROW_RAYS / OVC_TILE;
     const size_t tile = ray / (kTile * kTile);
@@ -63,11 +63,12 @@ void AnswerWords::fill_plane(int number, size_t rays, uint32_t word) const {
         GLsizeiptr(rays * sizeof(word)), GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
 }
 
-void AnswerWords::dispatch(GLuint program, size_t rays, size_t packet, size_t turns) const {
+void AnswerWords::dispatch(GLuint program, size_t rays, size_t packet,
+                           size_t packets_a_lane) const {
     assert(kBlockRays % (OVC_GROUP_SIZE * packet) == 0);
     glProgramUniform1i(program, OVC_LOCATION_PLANE, GLint(rays_));
     glBindImageTexture(OVC_BINDING_ANSWERS, texture_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
-    const size_t all = whole_blocks(rays), group = OVC_GROUP_SIZE * packet * turns;
+    const size_t all = whole_blocks(rays), group = OVC_GROUP_SIZE * packet * packets_a_lane;
     fill_plane(0, all, OVC_MISS);
     glProgramUniform1i(program, OVC_LOCATION_RAYS, GLint(all));
     glDispatchCompute(GLuint((all + group - 1) / group), 1, 1);

@@ -23,7 +23,7 @@ struct Answer {
     uint32_t where;
 
     /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
-    std::span<const uint32_t, 2> rivals() const { return std::span(words).first<2>(); }
+    std::span<const uint32_t, 2> candidates() const { return std::span(words).first<2>(); }
     /// Fast precision: where the hit is.
     double t() const { return std::bit_cast<double>(uint64_t(words[1]) << 32 | words[0]); }
     /// Fast precision.
@@ -67,8 +67,8 @@ private:
 class AnswerWords {
 public:
     AnswerWords(Ledger& ledger, uint32_t rays);
-    /// packet: rays that an invocation takes at a time; turns: how often, at most.
-    void dispatch(GLuint program, size_t rays, size_t packet, size_t turns) const;
+    /// packet: rays that an invocation takes at a time; packets_a_lane: how many of them, at most.
+    void dispatch(GLuint program, size_t rays, size_t packet, size_t packets_a_lane) const;
     /// Those of the rays from `first_ray` on.
     void read(std::span<Answer> answers, size_t first_ray = 0);
 

@@ -50,7 +50,7 @@ LocalRay local_ray(const Leaf& leaf, const Ray& ray, uint32_t skip, bool any_hit
     local.t_end = std::bit_cast<float>(std::bit_cast<uint32_t>(float(length)) + 2);
     const double reach = std::max(largest(from_origin), largest(travelled)) * scale;
     // Written so that a NaN is not decidable either.
-    const bool decidable = reach <= OVC_MOST_LEAF_SIZES && length <= 1e30 && time.speed >= 1e-300 &&
+    const bool decidable = reach <= OVC_MAX_LEAF_SIZES && length <= 1e30 && time.speed >= 1e-300 &&
                            time.speed <= 1e300;
     if (!decidable)
         local.t_end = OVC_UNDECIDABLE;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A ray in the frame of the top-level tree, as the kernel takes it (docs/numerics.md, "Frames"):
-// the twin in C++ of local_ray() in shaders/portals.glsl, so that a ray goes over as 32 bytes.
+// the duplicate in C++ of local_ray() in shaders/portals.glsl, so that a ray goes over as 32 bytes.
 #pragma once
 
 #include "core/exact/triangle.h"

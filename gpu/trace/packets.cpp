@@ -11,7 +11,7 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kMostLeftShare = 1024; // one ray in so many may find no room
+constexpr size_t kMaxLeftShare = 1024; // one ray in so many may find no room
 
 const LocalRay& local(const LocalRay& ray) {
     return ray;
@@ -33,7 +33,7 @@ bool near(const vec3& a, const vec3& b) {
 }
 
 template <class Sent>
-bool most_near(std::span<const Sent> rays) {
+bool are_mostly_near(std::span<const Sent> rays) {
     constexpr size_t kStep = 64;
     size_t pairs = 0, together = 0;
     for (size_t i = 0; i + 1 < rays.size(); i += kStep) {
@@ -97,7 +97,7 @@ std::optional<std::vector<Parted>> part(std::vector<Sent>& slots, size_t rays, s
         parted.push_back({number, uint32_t(slot)});
         end = slot + 1;
     }
-    if (numbers.size() - parted.size() > rays / kMostLeftShare)
+    if (numbers.size() - parted.size() > rays / kMaxLeftShare)
         return {};
     Sent none{};
     remove(none);
@@ -112,10 +112,10 @@ std::optional<std::vector<Parted>> part(std::vector<Sent>& slots, size_t rays, s
 } // namespace
 
 bool coherent(std::span<const LocalRay> rays) {
-    return most_near(rays);
+    return are_mostly_near(rays);
 }
 bool coherent(std::span<const ResumedRay> rays) {
-    return most_near(rays);
+    return are_mostly_near(rays);
 }
 
 std::optional<std::vector<Parted>> part_packets(std::vector<LocalRay>& slots, size_t rays,

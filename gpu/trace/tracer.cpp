@@ -6,6 +6,7 @@
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 #include "gpu/gl/gl_check.h"
+#include "gpu/gl/workarounds.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>
@@ -18,23 +19,21 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kMostBlocks = 2048; // half a million rays: beyond, a pass gains nothing more
-constexpr uint32_t kMostBlocksInSoftware = 512; // llvmpipe clears what it allocates
+constexpr uint32_t kMaxBlocks = 2048; // half a million rays: beyond, a pass gains nothing more
+constexpr uint32_t kMaxBlocksInSoftware = 512; // llvmpipe clears what it allocates
 // Each word is a register, and 1 % of the time; of a million rays at the Stanford dragon thirty
 // want more (docs/decisions/0012).
-constexpr uint32_t kMostStackWordsInSoftware = 8;
-/// Mesa unrolls loops of so many rounds, and of a stack in registers that is longer llvmpipe (22.3)
-/// loses words without a trace.
-constexpr uint32_t kMaxWordsInRegisters = 32;
-constexpr size_t kMostLostShare = 256; // of rays, one in so many; else kernels go on longer
-// By turns: the most rays of a lane on average, as long as each thread has some groups.
+constexpr uint32_t kMaxStackWordsInSoftware = 8;
+constexpr uint32_t kMaxWordsInRegisters = 32; // Workaround::ShortRegisterStack
+constexpr size_t kMaxLostShare = 256;         // of rays, one in so many; else kernels go on longer
+// With ray refill: the most rays of a lane on average, as long as each thread has some groups.
 constexpr size_t kLaneRays = 128;
 constexpr size_t kGroupsAThread = 4;
 constexpr size_t kGrain = 1024;           // rays a task
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
 /// How many packets each lane takes, on average.
-size_t turns(size_t rays, size_t packet) {
+size_t packets_a_lane(size_t rays, size_t packet) {
     static_assert(kBlockRays % (OVC_GROUP_SIZE * kPacketRays) == 0); // no packet across groups
     const size_t lanes = kGroupsAThread * thread_count() * OVC_GROUP_SIZE;
     return std::clamp<size_t>(rays / packet / lanes, 1, kLaneRays / packet);
@@ -58,7 +57,7 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
     // want the rest. The share is cut off whether whole blocks fill it or not, so that a larger
     // budget never has a smaller pool.
     MemoryPlan most = plan;
-    most.batch_rays *= std::min(device.is_software ? kMostBlocksInSoftware : kMostBlocks,
+    most.batch_rays *= std::min(device.is_software ? kMaxBlocksInSoftware : kMaxBlocks,
                                 device.max_texture_size / OVC_TILE);
     const uint64_t ray_share = std::clamp(budget_bytes / 8, plan.ray_bytes(), most.ray_bytes());
     plan.batch_rays *= uint32_t(ray_share / plan.ray_bytes());
@@ -85,13 +84,13 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       all_fit_(all_fit(pages, plan.pool(), top.tree.bytes())),
       scene_(scene_leaf(bounds)),
       stack_depth_(stack_depth(top.depth)),
-      stack_words_(software_ ? std::min(stack_depth_, kMostStackWordsInSoftware) : stack_depth_),
-      most_slots_(plan.batch_rays + plan.parted_rays()),
+      stack_words_(software_ ? std::min(stack_depth_, kMaxStackWordsInSoftware) : stack_depth_),
+      max_slots_(plan.batch_rays + plan.parted_rays()),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(RayState), "rays"),
       pool_(*ledger_, plan.pool(), pages.size(), top.tree.bytes()) {
-    takes_turns_ = device.has_ballots && software_ && options.compute;
+    refills_ = device.has_ballots && software_ && options.compute;
     if (options.compute)
-        words_.emplace(*ledger_, most_slots_);
+        words_.emplace(*ledger_, max_slots_);
     else
         pixels_.emplace(*ledger_, plan.batch_rays);
     if (has_portals())
@@ -214,7 +213,7 @@ void Tracer::upload_local(std::span<const RayState> rays, std::vector<Sent>& sen
         }
     });
     if (takes_packets() && coherent(std::span<const Sent>(sent).first(rays.size())))
-        if (auto parted = part_packets(sent, rays.size(), most_slots_)) {
+        if (auto parted = part_packets(sent, rays.size(), max_slots_)) {
             packets_ = true;
             parted_ = std::move(*parted);
         }
@@ -249,15 +248,16 @@ ShaderConfig Tracer::shader_config() const {
     config.buffer_bits = pool_.layout().buffer_bits();
     config.loose_pairs = std::ranges::any_of(page_data_, &Page::has_loose_pairs);
     config.stack_depth = stack_words_;
-    config.stack_registers = software_ && stack_words_ <= kMaxWordsInRegisters;
+    config.stack_registers = software_ && (stack_words_ <= kMaxWordsInRegisters ||
+                                           !needs(Workaround::ShortRegisterStack));
     config.branches = !software_;
     config.deal_groups = software_;
     config.buffer_images = software_;
-    if (software_)
-        config.most_rounds = kMostRoundsInSoftware;
+    if (needs(Workaround::CountedRounds))
+        config.max_rounds = kMaxCountedRounds;
     if (packets_)
         config.packet = kPacketRays;
-    config.turns = takes_turns_;
+    config.refill = refills_;
     return config;
 }
 
@@ -295,20 +295,18 @@ Result<Done> Tracer::launch() {
         glBeginQuery(GL_TIME_ELAPSED, time_.id());
     if (words_)
         words_->dispatch(*program, slots_sent_, config.packet,
-                         config.turns ? turns(slots_sent_, config.packet) : 1);
+                         config.refill ? packets_a_lane(slots_sent_, config.packet) : 1);
     else
         pixels_->draw(rays_sent_);
     if (!software_)
         glEndQuery(GL_TIME_ELAPSED);
     glPopDebugGroup();
-    // llvmpipe (22.3) runs passes on other threads and does not wait for them before it writes to
-    // buffers that they read as images.
-    if (software_) {
+    if (needs(Workaround::FinishedPass))
         glFinish();
-        kernel_seconds_ += driver_threads_.seconds_each().value_or(watch.seconds());
-    } else {
+    else
         glFlush();
-    }
+    if (software_)
+        kernel_seconds_ += driver_threads_.seconds_each().value_or(watch.seconds());
     return check_gl("starting a pass");
 }
 
@@ -343,7 +341,7 @@ void Tracer::read(std::span<Answer> answers) {
 bool Tracer::lost_many(std::span<const Answer> answers) {
     const auto lost = std::count_if(answers.begin(), answers.end(),
                                     [](const Answer& a) { return a.prim == OVC_CAPPED; });
-    return size_t(lost) > answers.size() / kMostLostShare;
+    return size_t(lost) > answers.size() / kMaxLostShare;
 }
 
 /// Has kernels from now on give up fewer: first by a stack for all words, then by all the rounds
@@ -353,7 +351,7 @@ bool Tracer::go_on_longer() {
         stack_words_ = stack_depth_;
         return true;
     }
-    return std::exchange(takes_turns_, false);
+    return std::exchange(refills_, false);
 }
 
 Result<Done> Tracer::collect(std::span<Answer> answers) {

@@ -139,7 +139,7 @@ private:
     PassOptions options_;
     std::span<const Page> page_data_;
     bool software_;
-    bool takes_turns_ = false; // lanes go on to a next ray
+    bool refills_ = false; // lanes go on to a next ray
     const TopLevel& top_;
     bool all_fit_;                    // the pool has room for all pages and the tree
     uint64_t pages_moved_ = 0;        // into the pool, all in all
@@ -149,7 +149,7 @@ private:
     std::vector<LocalTime> times_;    // of them, in fast precision
     uint32_t stack_depth_;            // with which no ray is lost
     uint32_t stack_words_;            // of the kernel
-    uint32_t most_slots_;             // of a pass
+    uint32_t max_slots_;              // of a pass
     bool any_hit_ = false;            // all rays of the pass ask whether anything is hit
     size_t rays_sent_ = 0;            // of the pass
     size_t slots_sent_ = 0;           // and with those that were parted

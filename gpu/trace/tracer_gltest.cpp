@@ -80,7 +80,7 @@ Ray random_ray(test::Random& random, const Leaf& leaf) {
 }
 
 bool is_certain(const Answer& answer) {
-    return answer.prim != OVC_FLAGGED && answer.rivals()[0] == OVC_NO_TRIANGLE;
+    return answer.prim != OVC_FLAGGED && answer.candidates()[0] == OVC_NO_TRIANGLE;
 }
 
 /// What is certain of the rays is what brute force finds.
@@ -226,10 +226,11 @@ TEST_F(KernelGl, NamesBothTrianglesAtASharedEdge) {
     }
     const auto answers = trace(rays);
     for (size_t i = 0; i < rays.size(); ++i) {
-        const auto rivals = answers[i].rivals();
+        const auto candidates = answers[i].candidates();
         EXPECT_FALSE(is_certain(answers[i]));
         if (answers[i].prim != OVC_FLAGGED) {
-            EXPECT_TRUE(rivals[0] == i || rivals[1] == i || answers[i].prim == i) << "ray " << i;
+            EXPECT_TRUE(candidates[0] == i || candidates[1] == i || answers[i].prim == i)
+                << "ray " << i;
         }
     }
 }

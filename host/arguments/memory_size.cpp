@@ -11,7 +11,7 @@
 namespace ovc {
 
 /// More than any device has.
-static constexpr uint64_t kMostBytes = uint64_t(1) << 50;
+static constexpr uint64_t kMaxBytes = uint64_t(1) << 50;
 
 /// The factor that a unit stands for; 0 for what is no unit.
 static double unit_factor(std::string unit) {
@@ -53,10 +53,10 @@ Result<MemorySize> parse_memory_size(std::string_view text) {
             return Error{
                 fmt::format("'{}' is more memory than the device has; 100% is the most", text)};
         const MemorySize share{0, number / 100};
-        return share.of(kMostBytes) > 0 ? Result<MemorySize>(share) : too_small;
+        return share.of(kMaxBytes) > 0 ? Result<MemorySize>(share) : too_small;
     }
     const double bytes = number * factor;
-    if (bytes >= double(kMostBytes))
+    if (bytes >= double(kMaxBytes))
         return Error{fmt::format("'{}' is more memory than any device has", text)};
     return bytes >= 1 ? Result<MemorySize>(MemorySize{uint64_t(bytes), 0}) : too_small;
 }

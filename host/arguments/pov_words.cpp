@@ -142,8 +142,8 @@ public:
 
 private:
     Result<Done> take_ini(const std::string& word) {
-        constexpr int kMostDeep = 10; // an .ini file may name others
-        if (ini_depth_ == kMostDeep)
+        constexpr int kMaxDeep = 10; // an .ini file may name others
+        if (ini_depth_ == kMaxDeep)
             return Error{fmt::format("{}: .ini files name each other without an end", word)};
         const Result<std::vector<IniItem>> items = read_ini(word);
         if (!items)

@@ -82,8 +82,8 @@ static ovc_mesh mesh_of(const Chunk& chunk) {
     mesh.vertex_count = 3 * uint64_t(chunk.size());
     for (int axis = 0; axis < 3; ++axis)
         mesh.origin[axis] = chunk.origin()[axis];
-    if (chunk.placement())
-        mesh.transform = chunk.placement()->rows[0].data();
+    if (chunk.transform())
+        mesh.transform = chunk.transform()->rows[0].data();
     mesh.flags = OVC_MESH_SHARED; // instances show the same corners, and share pages
     return mesh;
 }

@@ -26,7 +26,7 @@ static constexpr std::array<std::string_view, 4> kSweeps = {"rays", "triangles",
 /// In the order of PicturesBy.
 static constexpr std::array<std::string_view, 2> kPictures = {"samples", "tolerance"};
 /// Beyond it the reference, four times as many, would take more than a picture may.
-static constexpr uint64_t kMostSamples = 1024, kDefaultSamples = 64;
+static constexpr uint64_t kMaxSamples = 1024, kDefaultSamples = 64;
 
 static constexpr std::array<std::string_view, 5> kWorkloads = {"primary", "shadow", "diffuse",
                                                                "edges", "frame"};
@@ -302,9 +302,8 @@ Result<BenchJob> understand_bench(const BenchWords& words) {
         return repeats.error();
     job.repeats = uint32_t(*repeats);
     if (!words.most.empty()) {
-        const Result<uint64_t> most =
-            parse_count("--most", words.most, 1,
-                        job.kind == BenchKind::Pictures ? kMostSamples : 1'000'000'000);
+        const Result<uint64_t> most = parse_count(
+            "--most", words.most, 1, job.kind == BenchKind::Pictures ? kMaxSamples : 1'000'000'000);
         if (!most)
             return most.error();
         job.most = *most;

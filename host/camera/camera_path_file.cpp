@@ -88,8 +88,8 @@ static Result<CameraPath> parse_json(const std::string& name, const std::string&
             fmt::format("{}: expected a list of cameras, or {{\"cameras\": [...]}}", name)};
     CameraPath path;
     for (const Json& value : cameras) {
-        if (path.size() == kMostFrames)
-            return Error{fmt::format("{}: more than {} cameras", name, kMostFrames)};
+        if (path.size() == kMaxFrames)
+            return Error{fmt::format("{}: more than {} cameras", name, kMaxFrames)};
         const Result<Camera> camera = json_camera(value);
         if (!camera)
             return Error{
@@ -117,9 +117,9 @@ static Result<CameraPath> parse_lines(const std::string& name, std::string_view 
         at = end + 1;
         if (line.empty() || line[0] == '#' || (path.empty() && is_header(line)))
             continue;
-        if (path.size() == kMostFrames)
+        if (path.size() == kMaxFrames)
             return Error{
-                fmt::format("{}, line {}: more than {} cameras", name, number, kMostFrames)};
+                fmt::format("{}, line {}: more than {} cameras", name, number, kMaxFrames)};
         const Result<Camera> camera = parse_camera("a frame", line);
         if (!camera)
             return Error{fmt::format("{}, line {}: {}", name, number, camera.error().message)};
@@ -134,9 +134,9 @@ static Result<std::string> read_text(const std::filesystem::path& file) {
         return source.error();
     std::string text;
     while (const unsigned char* byte = source->bytes(1)) {
-        if (text.size() == kMostPathBytes)
+        if (text.size() == kMaxPathBytes)
             return Error{fmt::format("{}: more than {} MiB, too much for a camera path",
-                                     file.string(), kMostPathBytes >> 20)};
+                                     file.string(), kMaxPathBytes >> 20)};
         text.push_back(char(*byte));
     }
     if (source->is_damaged())

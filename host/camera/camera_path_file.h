@@ -10,8 +10,8 @@
 namespace ovc {
 
 /// The most frames and bytes that are read.
-inline constexpr uint32_t kMostFrames = 1'000'000;
-inline constexpr uint64_t kMostPathBytes = uint64_t(64) << 20;
+inline constexpr uint32_t kMaxFrames = 1'000'000;
+inline constexpr uint64_t kMaxPathBytes = uint64_t(64) << 20;
 
 /// Reads a path of at least one frame; what the file leaves out (up, the angle of view) is the
 /// default Camera's. Error: one sentence with the file, the line or the frame.

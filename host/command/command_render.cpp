@@ -344,12 +344,12 @@ static Result<Done> understand_counts(const RenderWords& words, RenderJob& job) 
         std::function<void(uint64_t)> take;
     };
     const Wanted all[] = {
-        {"--threads", words.threads, 1, kMostThreads,
+        {"--threads", words.threads, 1, kMaxThreads,
          [&](uint64_t threads) { job.threads = uint32_t(threads); }},
         {"--seed", words.seed, 0, ~uint64_t(0), [&](uint64_t seed) { job.render.seed = seed; }},
-        {"--samples", words.samples, 1, kMostSamples,
+        {"--samples", words.samples, 1, kMaxSamples,
          [&](uint64_t samples) { job.samples = uint32_t(samples); }},
-        {"--max-depth", words.max_depth, 0, kMostDepth,
+        {"--max-depth", words.max_depth, 0, kMaxDepth,
          [&](uint64_t depth) { job.max_depth = uint32_t(depth); }}};
     for (const Wanted& wanted : all) {
         if (wanted.text.empty())
@@ -382,7 +382,7 @@ static Result<Done> understand_antialias(const RenderWords& words, RenderJob& jo
     }
     if (!words.antialias_depth.empty()) {
         const Result<uint64_t> depth =
-            parse_count("--antialias-depth", words.antialias_depth, 1, kMostAntialiasDepth);
+            parse_count("--antialias-depth", words.antialias_depth, 1, kMaxAntialiasDepth);
         if (!depth)
             return depth.error();
         how.depth = uint32_t(*depth);

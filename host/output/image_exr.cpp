@@ -81,9 +81,9 @@ static Result<Channels> read_all(Imf::InputFile& file) {
     const Imath::Box2i window = file.header().dataWindow();
     const int64_t width = int64_t(window.max.x) - window.min.x + 1;
     const int64_t height = int64_t(window.max.y) - window.min.y + 1;
-    if (width < 1 || height < 1 || uint64_t(width) * uint64_t(height) > kMostPixels)
+    if (width < 1 || height < 1 || uint64_t(width) * uint64_t(height) > kMaxPixels)
         return Error{fmt::format("found a picture of {} x {}, expected 1 to {} pixels", width,
-                                 height, kMostPixels)};
+                                 height, kMaxPixels)};
     Channels channels{uint32_t(width), uint32_t(height), Coding::Linear, {}};
     const Imf::ChannelList& list = file.header().channels();
     for (auto one = list.begin(); one != list.end(); ++one) {

@@ -12,8 +12,8 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kMostPoints = size_t(1) << 21; // asked for at once: bounds memory
-constexpr size_t kGrain = 4096;                 // pixels a task
+constexpr size_t kMaxPoints = size_t(1) << 21; // asked for at once: bounds memory
+constexpr size_t kGrain = 4096;                // pixels a task
 
 /// In [-0.5, 0.5): the same for the same numbers. Hash: Steele, Lea and Flood 2014, SplitMix64.
 dvec2 chance(uint64_t a, uint64_t b) {
@@ -76,7 +76,7 @@ private:
         std::vector<dvec2> points;
         std::vector<vec3> light;
         for (size_t first = 0; first < order_.size(); first += points.size()) {
-            points.resize(std::min(kMostPoints, order_.size() - first));
+            points.resize(std::min(kMaxPoints, order_.size() - first));
             light.resize(points.size());
             for (size_t i = 0; i < points.size(); ++i)
                 points[i] = corner(order_[first + i]) + 0.5;
@@ -116,7 +116,7 @@ private:
         const size_t side = how_.depth, samples = side * side;
         std::vector<dvec2> points;
         std::vector<vec3> light;
-        const size_t pixels_at_once = std::max<size_t>(kMostPoints / samples, 1);
+        const size_t pixels_at_once = std::max<size_t>(kMaxPoints / samples, 1);
         for (size_t first = 0; first < pixels.size(); first += pixels_at_once) {
             const size_t count = std::min(pixels_at_once, pixels.size() - first);
             points.resize(count * samples);
@@ -215,7 +215,7 @@ private:
         std::vector<dvec2> points;
         std::vector<vec3> light;
         for (size_t first = 0; first < wanted_.size(); first += points.size()) {
-            points.resize(std::min(kMostPoints, wanted_.size() - first));
+            points.resize(std::min(kMaxPoints, wanted_.size() - first));
             light.resize(points.size());
             for (size_t i = 0; i < points.size(); ++i) {
                 const uint64_t at = wanted_[first + i];

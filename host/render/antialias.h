@@ -27,7 +27,7 @@ struct Antialias {
     Method method = Method::Supersample;
     /// Colors differ where the differences of red, green and blue come to this; 0 to 3.
     float threshold = 0.3f;
-    uint32_t depth = 3; // 1 to kMostAntialiasDepth
+    uint32_t depth = 3; // 1 to kMaxAntialiasDepth
     /// How far further samples may lie off their grid, in its cells, by chance that is the same
     /// every time: 0 to 1.
     float jitter = 1;
@@ -35,7 +35,7 @@ struct Antialias {
     bool operator==(const Antialias&) const = default;
 };
 
-inline constexpr uint32_t kMostAntialiasDepth = 9;
+inline constexpr uint32_t kMaxAntialiasDepth = 9;
 
 /// Writes the light at each of the points of the picture: in pixels, from (0, 0), its top left
 /// corner. False: it was stopped.

@@ -20,7 +20,7 @@ namespace {
 /// a part of the picture that under a budget most find their pages in the pool (decision 19). A
 /// picture is cut into some batches at least, or a lane has nothing to do while the other traces.
 constexpr uint64_t kRaysACore = 1 << 14;
-constexpr uint64_t kLeastBatches = 8;
+constexpr uint64_t kMinBatches = 8;
 
 /// What the lanes share: the camera's rays, and the backend, which answers one call at a time.
 class Work {
@@ -110,7 +110,7 @@ private:
     }
 
     bool shade() {
-        const size_t piece = shading_.most_answers();
+        const size_t piece = shading_.max_answers();
         for (size_t first = 0; first < now_.size(); first += piece) {
             shading_.shade(now_, hits_, first, std::min(piece, now_.size() - first), spawned_);
             const bool last = first + piece >= now_.size();
@@ -188,8 +188,7 @@ private:
 Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
                                     const CameraRays& camera, Backend& backend, size_t batch_rays,
                                     const RenderObserver& observe, Film& film) {
-    const uint64_t wanted =
-        std::min(camera.size() / kLeastBatches + 1, kRaysACore * thread_count());
+    const uint64_t wanted = std::min(camera.size() / kMinBatches + 1, kRaysACore * thread_count());
     const size_t batch = size_t(std::min<uint64_t>(batch_rays, wanted));
     Work work(camera, backend, observe, film);
     std::vector<std::future<void>> lanes(thread_count() == 1 ? 1 : 2);

@@ -60,7 +60,7 @@ static RenderOptions render_options(const RenderJob& job, const PicturePart& par
                                    ? PathTracerOptions{}.max_depth
                                    : scene.max_depth.value_or(options.max_depth);
     options.max_depth = job.max_depth.value_or(otherwise);
-    options.max_depth = std::min(options.max_depth, kMostDepth);
+    options.max_depth = std::min(options.max_depth, kMaxDepth);
     return options;
 }
 

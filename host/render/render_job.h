@@ -15,13 +15,13 @@
 namespace ovc {
 
 /// The most that --max-depth may ask for.
-inline constexpr uint32_t kMostDepth = 1000;
+inline constexpr uint32_t kMaxDepth = 1000;
 
 /// The most that --samples may ask for.
-inline constexpr uint32_t kMostSamples = 65536;
+inline constexpr uint32_t kMaxSamples = 65536;
 
 /// The most that --threads may ask for.
-inline constexpr uint32_t kMostThreads = 1024;
+inline constexpr uint32_t kMaxThreads = 1024;
 
 /// What is rendered of the picture.
 struct Crop {

@@ -119,9 +119,9 @@ private:
                      std::span<const Hit> hits) {
         select(paths_, tokens, hits);
         paths_.take(tokens_, answered_paths_);
-        for (size_t first = 0; first < hits_.size(); first += shading_.most_answers()) {
+        for (size_t first = 0; first < hits_.size(); first += shading_.max_answers()) {
             shading_.shade(answered_paths_, hits_, first,
-                           std::min(shading_.most_answers(), hits_.size() - first), spawned_);
+                           std::min(shading_.max_answers(), hits_.size() - first), spawned_);
             push_spawned(stream);
         }
     }

@@ -25,8 +25,8 @@ std::vector<Hit> look(Backend& backend, const Camera& camera) {
 struct Case {
     const char* name;
     bool with_model;
-    size_t step;           // looks at every step-th frame
-    double least_distance; // to what is seen
+    size_t step;         // looks at every step-th frame
+    double min_distance; // to what is seen
 };
 
 TEST(ScenePaths, SeeSomethingAndStandInNothing) {
@@ -49,7 +49,7 @@ TEST(ScenePaths, SeeSomethingAndStandInNothing) {
                     nearest = std::min(nearest, hit.t); // depth: rays reach 1 ahead at t = 1
                 }
             EXPECT_GT(seen, kSide * kSide / 4) << c.name << ", frame " << frame;
-            EXPECT_GT(nearest, c.least_distance) << c.name << ", frame " << frame;
+            EXPECT_GT(nearest, c.min_distance) << c.name << ", frame " << frame;
         }
     }
 }

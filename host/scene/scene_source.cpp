@@ -59,7 +59,7 @@ static Result<uint64_t> triangle_limit(const std::string& text) {
 static Result<std::optional<double>> tolerance_of(const std::string& text) {
     if (text.empty())
         return std::optional<double>();
-    const Result<double> value = parse_real("--tolerance", text, kLeastTolerance, kMostTolerance);
+    const Result<double> value = parse_real("--tolerance", text, kMinTolerance, kMaxTolerance);
     if (!value)
         return value.error();
     return std::optional(*value);

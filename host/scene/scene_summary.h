@@ -19,7 +19,7 @@ struct Needs {
     bool refraction = false;
     bool shadows = true;
     bool several_leaves = true; // rays walk from leaf to leaf, and wait for some
-    bool certified = true;      // answers are proven and settled in double
+    bool certified = true;      // answers are proven, or resolved in double
 };
 
 /// What the scene itself does not say.

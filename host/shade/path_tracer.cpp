@@ -11,7 +11,7 @@ namespace ovc {
 
 /// From this depth on, paths that carry little end by chance, and the others carry more.
 static constexpr uint32_t kRouletteFrom = 3;
-static constexpr float kLeastSurvival = 0.05f;
+static constexpr float kMinSurvival = 0.05f;
 
 /// What the random numbers of a surface are for.
 enum Purpose : uint32_t { kChoices, kLightPlace, kDirection, kRoulette, kPurposes };
@@ -95,7 +95,7 @@ void PathTracer::meet(const Ray& ray, const Path& path, const Hit& hit, Film& fi
     vec3 weight = path.weight * scattered->weight;
     // Not in glass, where weights fall by the square of the index and rise again.
     if (path.depth >= kRouletteFrom && scattered->density > 0) {
-        const float survival = std::clamp(max_component(weight), kLeastSurvival, 1.0f);
+        const float survival = std::clamp(max_component(weight), kMinSurvival, 1.0f);
         if (random.pair(first + kRoulette).x >= survival)
             return;
         weight /= survival;

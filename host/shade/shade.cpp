@@ -25,7 +25,7 @@ static constexpr double kOffset = 0x1p-48;
 /// How many offsets it keeps away from the edges, or its neighbour there would be crossed: at
 /// least, for any angle of more than 1/64 rad between the two; and at most, for 1e-4 rad, as long
 /// as that is not above this share of the triangle's height.
-static constexpr double kLeastEdgeOffsets = 64, kMostEdgeOffsets = 16384;
+static constexpr double kMinEdgeOffsets = 64, kMaxEdgeOffsets = 16384;
 static constexpr double kEdgeShare = 0x1p-20;
 
 /// How far off whole numbers a checker changes: a plane through them keeps to one side, as
@@ -88,8 +88,8 @@ static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled
     const dvec3 weights{1 - hit.u - hit.v, hit.u, hit.v};
     const dvec3 edges{glm::length(t[2] - t[1]), glm::length(t[0] - t[2]), glm::length(t[1] - t[0])};
     const dvec3 heights = doubled_area / edges;
-    const dvec3 wanted = glm::clamp(dvec3(kEdgeShare), kLeastEdgeOffsets * offset / heights,
-                                    kMostEdgeOffsets * offset / heights);
+    const dvec3 wanted = glm::clamp(dvec3(kEdgeShare), kMinEdgeOffsets * offset / heights,
+                                    kMaxEdgeOffsets * offset / heights);
     const dvec3 least = glm::min(wanted, dvec3(0.25));
     if (glm::all(glm::greaterThanEqual(weights, least)))
         return weights;

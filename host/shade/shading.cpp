@@ -10,12 +10,12 @@ namespace ovc {
 
 static constexpr size_t kBlock = 256;  // answers a task: what it makes fits a cache
 static constexpr size_t kGrain = 1024; // rays a task that are only copied or added up
-static constexpr size_t kMostAnswers = size_t(1) << 16;
-static constexpr size_t kMostSpawned = size_t(1) << 18;
+static constexpr size_t kMaxAnswers = size_t(1) << 16;
+static constexpr size_t kMaxSpawned = size_t(1) << 18;
 
 Shading::Shading(const Integrator& integrator, size_t lights, Film& film)
     : integrator_(integrator),
-      most_answers_(std::clamp(kMostSpawned / (lights + 2), kBlock, kMostAnswers)),
+      max_answers_(std::clamp(kMaxSpawned / (lights + 2), kBlock, kMaxAnswers)),
       film_(film) {}
 
 /// Appends the lists in their order.

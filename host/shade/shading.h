@@ -19,7 +19,7 @@ public:
     Shading(const Integrator& integrator, size_t lights, Film& film);
 
     /// So many answers at once spawn a bounded number of rays.
-    size_t most_answers() const { return most_answers_; }
+    size_t max_answers() const { return max_answers_; }
 
     /// Shades the answers of `paths` from `first` on; appends to `spawned`.
     void shade(const RayList<Path>& paths, std::span<const Hit> hits, size_t first, size_t count,
@@ -36,7 +36,7 @@ private:
                      size_t count, Spawned& spawned);
 
     const Integrator& integrator_;
-    const size_t most_answers_;
+    const size_t max_answers_;
     Film& film_;
     std::vector<Spawned> blocks_;
     std::vector<uint8_t> goes_on_;

@@ -18,7 +18,7 @@ struct Whitted::Met {
 };
 
 /// What is left of a light behind many panes, as a pixel would get it: not worth another one.
-static constexpr float kLeastShadow = 1 / 4096.0f;
+static constexpr float kMinShadow = 1 / 4096.0f;
 
 /// What a surface leaves of the light of a shadow ray. What POV-Ray's glass reflects, with
 /// conserve_energy, is missing behind it, but does not darken its shadow.
@@ -88,7 +88,7 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
     const auto follow = [&](const vec3& share, float taken, RayKind kind, int deeper,
                             auto&& child) {
         const vec3 weight = path.weight * share;
-        if (path.depth >= max_depth_ || max_component(weight) < kLeastWeight)
+        if (path.depth >= max_depth_ || max_component(weight) < kMinWeight)
             return;
         met.weight -= path.weight * taken;
         spawned.paths.push(
@@ -119,7 +119,7 @@ bool Whitted::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
     const SurfacePoint glass = surface_point(scene_, ray, hit);
     if (!scene_.meshes[hit.id.mesh].no_shadow) {
         shadow.arriving *= light_through(glass);
-        if (max_component(shadow.arriving) < kLeastShadow)
+        if (max_component(shadow.arriving) < kMinShadow)
             shadow.arriving = vec3(0);
     }
     ++shadow.passed;

@@ -17,7 +17,7 @@ namespace ovc {
 /// A reflection or refraction that adds less than this to its pixel is not followed; an 8-bit image
 /// would hardly show it, and POV-Ray does not follow it either (adc_bailout). The shares of a
 /// camera ray's paths add up to at most 1, so it never has more than 255 of them at a time.
-inline constexpr float kLeastWeight = 1 / 255.0f;
+inline constexpr float kMinWeight = 1 / 255.0f;
 
 /// Says what this integrator simplifies of the scene's light where path tracing does not. lights:
 /// those of the picture. source: what the scene is called on the command line.

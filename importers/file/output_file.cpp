@@ -21,7 +21,7 @@ namespace {
 
 constexpr size_t kBufferBytes = size_t(1) << 18;
 constexpr int kNamesTried = 100; // left behind by processes that were killed
-constexpr int kMostLinks = 40;   // as the kernel follows
+constexpr int kMaxLinks = 40;    // as the kernel follows
 
 /// What remove_unfinished_output() removes; read by a signal handler. The flag is false while the
 /// name changes.
@@ -52,7 +52,7 @@ fs::path folder_of(const fs::path& path) {
 /// What a path leads to when its last component is a symbolic link, which may dangle.
 fs::path followed(fs::path path) {
     std::error_code ec;
-    for (int i = 0; i < kMostLinks && fs::is_symlink(path, ec); ++i) {
+    for (int i = 0; i < kMaxLinks && fs::is_symlink(path, ec); ++i) {
         const fs::path next = fs::read_symlink(path, ec);
         if (ec)
             break;

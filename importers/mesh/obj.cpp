@@ -410,9 +410,9 @@ Result<Scene> ObjReader::take() {
     Scene scene;
     scene.name = path_.stem().string();
     for (Mesh& m : meshes_) {
-        if (m.corners.size() / 3 > kMostTriangles)
+        if (m.corners.size() / 3 > kMaxTriangles)
             return source_.error(fmt::format("found {} triangles in one mesh, expected at most {}",
-                                             m.corners.size() / 3, kMostTriangles));
+                                             m.corners.size() / 3, kMaxTriangles));
         scene.add_mesh(m.name.empty() ? scene.name : std::move(m.name), m.material,
                        Chunk::owning(origin_.value_or(dvec3(0)), m.corners.take()),
                        m.normals.take());

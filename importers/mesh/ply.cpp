@@ -335,9 +335,9 @@ Result<Scene> read_body(Source& source, const PlyHeader& header, const std::file
     const std::optional<Error> left_over = reader.left_over();
     if (source.is_damaged())
         return source.error_at_byte(source.offset(), "");
-    if (reader.triangle_count() > kMostTriangles)
+    if (reader.triangle_count() > kMaxTriangles)
         return source.error(fmt::format("found {} triangles, expected at most {}",
-                                        reader.triangle_count(), kMostTriangles));
+                                        reader.triangle_count(), kMaxTriangles));
     const auto warn = [&](const std::string& sentence) {
         say(log, LogLevel::Warning, source.error(sentence).message);
     };

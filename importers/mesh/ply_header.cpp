@@ -43,11 +43,11 @@ bool is_remark(std::string_view keyword) {
 
 /// What 32 bits can number: vertices but for one value that marks the end of a strip, and
 /// triangles. Rows of other elements are only skipped.
-uint64_t most_rows(std::string_view element) {
+uint64_t max_rows(std::string_view element) {
     if (element == "vertex")
         return 0xffffffff;
     if (element == "face" || element == "tristrips")
-        return kMostTriangles;
+        return kMaxTriangles;
     return std::numeric_limits<uint64_t>::max();
 }
 
@@ -117,7 +117,7 @@ private:
         element.name = next_word(rest);
         const std::string_view count = next_word(rest);
         const auto value = parse_number<uint64_t>(count);
-        const uint64_t most = most_rows(element.name);
+        const uint64_t most = max_rows(element.name);
         if (value ? *value > most : is_whole(count))
             return wrong(found(count, "element count"),
                          fmt::format("at most {} rows of {}", most, element.name));

@@ -114,7 +114,7 @@ public:
     explicit EarClipper(const std::vector<dvec2>& flat)
         : flat_(flat),
           grid_(flat),
-          most_work_(std::max<uint64_t>(kFreeWork, kWorkPerCorner * flat.size())) {
+          max_work_(std::max<uint64_t>(kFreeWork, kWorkPerCorner * flat.size())) {
         const auto n = uint32_t(flat.size());
         next_.resize(n);
         previous_.resize(n);
@@ -139,7 +139,7 @@ public:
                 continue;
             }
             // No corner is an ear: the polygon crosses itself, and any cut is as good.
-            if (tried < left && work_ < most_work_ && (known_[at] || !is_ear(at))) {
+            if (tried < left && work_ < max_work_ && (known_[at] || !is_ear(at))) {
                 skipped = skipped || known_[at];
                 known_[at] = remembers_;
                 at = next_[at];
@@ -200,7 +200,7 @@ private:
     std::vector<char> known_; // to be no ear; forgotten when a neighbour is cut
     bool remembers_ = false;
     uint64_t work_ = 0; // corners and cells looked at
-    uint64_t most_work_;
+    uint64_t max_work_;
 };
 
 } // namespace
@@ -208,7 +208,7 @@ private:
 void triangulate(std::span<const dvec3> corners, std::vector<std::array<uint32_t, 3>>& triangles) {
     if (corners.size() > 3) {
         const std::vector<dvec2> flat = flattened(corners, newell_normal(corners));
-        if (corners.size() <= kMostConcaveCorners && !is_convex(flat))
+        if (corners.size() <= kMaxConcaveCorners && !is_convex(flat))
             return EarClipper(flat).run(triangles);
     }
     for (uint32_t i = 1; i + 1 < corners.size(); ++i)

@@ -145,7 +145,7 @@ TEST(Polygon, DegenerateAndCrossingOnesStillGiveAllTriangles) {
 }
 
 TEST(Polygon, AsManyConcaveCornersAsMayBeAreCutInLittleTime) {
-    constexpr int kHalf = int(kMostConcaveCorners) / 2;
+    constexpr int kHalf = int(kMaxConcaveCorners) / 2;
     std::vector<dvec3> comb{{2 * kHalf, -1, 0}}, spiral, cavity, dented, wild;
     for (int tooth = kHalf - 2; tooth >= 0; --tooth) {
         comb.emplace_back(2 * tooth + 1, 10, 0);

@@ -121,7 +121,7 @@ Frame frame_of(const Box& local, const dmat4& place, const dvec3& common) {
     return {glm::round(middle / lattice) * lattice, lattice};
 }
 
-struct Placement {
+struct PlacedObject {
     uint32_t object;
     dmat4 place;
 };
@@ -132,9 +132,9 @@ bool is_affine(const dmat4& m) {
 }
 
 /// All instances in all instances, outermost first.
-std::vector<Placement> placements_of(const World& world, const Census& census) {
-    std::vector<Placement> found;
-    std::vector<Placement> open;
+std::vector<PlacedObject> placed_objects(const World& world, const Census& census) {
+    std::vector<PlacedObject> found;
+    std::vector<PlacedObject> open;
     const auto add = [&](const Object& object, const dmat4& place) {
         for (auto i = object.instances.rbegin(); i != object.instances.rend(); ++i)
             if (census.within[i->object] > 0)
@@ -142,7 +142,7 @@ std::vector<Placement> placements_of(const World& world, const Census& census) {
     };
     add(world.top, dmat4(1));
     while (!open.empty()) {
-        const Placement next = open.back();
+        const PlacedObject next = open.back();
         open.pop_back();
         if (!world.objects[next.object].shapes.empty())
             found.push_back(next);
@@ -242,25 +242,25 @@ void add_top(Object& top, const Frame& frame, Scene& scene) {
 }
 
 /// The run's corners in the object's own coordinates, then placed.
-Chunk placed_chunk(const Object& object, const Run& run, const Placement& placement,
+Chunk placed_chunk(const Object& object, const Run& run, const PlacedObject& instance,
                    const Frame& frame, bool mirrored, const Scene& scene) {
     const uint32_t from = run.corners_from[mirrored];
     Chunk chunk = from != kNone ? scene.soup.chunks[from].unplaced()
                                 : Chunk::owning(frame.origin,
                                                 corners_of(object, run, dmat4(1), frame, mirrored));
-    ovc::Placement rows{};
+    ovc::Transform rows{};
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 4; ++column)
-            rows.rows[size_t(row)][size_t(column)] = placement.place[column][row];
+            rows.rows[size_t(row)][size_t(column)] = instance.place[column][row];
     chunk.place(rows);
     return chunk;
 }
 
 /// frame: of the corners; of the object where they are shared, else of the world.
-void add_instance(const Object& object, std::vector<Run>& runs, const Placement& placement,
+void add_instance(const Object& object, std::vector<Run>& runs, const PlacedObject& instance,
                   const Frame& frame, bool shares_corners, Scene& scene) {
-    const bool mirrored = swaps_handedness(placement.place);
-    dmat3 turn = normal_matrix(placement.place);
+    const bool mirrored = swaps_handedness(instance.place);
+    dmat3 turn = normal_matrix(instance.place);
     const double largest =
         std::max({max_component(glm::abs(turn[0])), max_component(glm::abs(turn[1])),
                   max_component(glm::abs(turn[2]))});
@@ -269,8 +269,8 @@ void add_instance(const Object& object, std::vector<Run>& runs, const Placement&
         const bool shares = run.has_normals && !mirrored && run.normals_from != kNone;
         Chunk chunk =
             shares_corners
-                ? placed_chunk(object, run, placement, frame, mirrored, scene)
-                : Chunk::owning(frame.origin, corners_of(object, run, placement.place, frame));
+                ? placed_chunk(object, run, instance, frame, mirrored, scene)
+                : Chunk::owning(frame.origin, corners_of(object, run, instance.place, frame));
         const uint32_t mesh =
             scene.add_mesh(name_of(object, run), run.material, std::move(chunk),
                            shares ? std::vector<vec3>() : normals_of(object, run, mirrored));
@@ -290,7 +290,7 @@ void add_instance(const Object& object, std::vector<Run>& runs, const Placement&
 } // namespace
 
 void assemble(World world, const Census& census, Scene& scene) {
-    const std::vector<Placement> placements = placements_of(world, census);
+    const std::vector<PlacedObject> instances = placed_objects(world, census);
     std::vector<Box> boxes;
     std::vector<std::vector<Run>> runs;
     for (const Object& object : world.objects) {
@@ -298,12 +298,12 @@ void assemble(World world, const Census& census, Scene& scene) {
         runs.push_back(runs_of(object));
     }
     Box bounds = bounds_of(world.top);
-    for (const Placement& p : placements)
+    for (const PlacedObject& p : instances)
         bounds.add(moved(boxes[p.object], p.place));
     const Frame common{chunk_origin(bounds, kFar)};
 
     add_top(world.top, common, scene);
-    for (const Placement& p : placements) {
+    for (const PlacedObject& p : instances) {
         const Box& box = boxes[p.object];
         const bool shares_corners = census.shared[p.object] && is_affine(p.place);
         add_instance(world.objects[p.object], runs[p.object], p,

@@ -66,7 +66,7 @@ Census take_census(const World& world) {
     census.shared.resize(world.objects.size());
     for (size_t i = world.objects.size(); i-- > 0;) {
         const uint64_t own = own_triangles(world.objects[i]);
-        census.shared[i] = placed[i] > 1 && own >= kFewestShared;
+        census.shared[i] = placed[i] > 1 && own >= kMinShared;
         census.kept = plus(census.kept, census.shared[i] ? own : times(own, placed[i]));
         census.unique += own;
         if (placed[i] == 0)
@@ -84,8 +84,8 @@ Result<Done> check_census(const Census& census, uint64_t most) {
     if (census.kept > most)
         return Error{
             fmt::format("found {}, expected at most {}; --max-triangles allows more", what, most)};
-    if (census.triangles > kMostTriangles)
-        return Error{fmt::format("found {}, expected at most {}", what, kMostTriangles)};
+    if (census.triangles > kMaxTriangles)
+        return Error{fmt::format("found {}, expected at most {}", what, kMaxTriangles)};
     const uint64_t bytes =
         plus(times(census.kept, kTriangleBytes),
              times(std::min(census.instances, census.triangles), kInstanceBytes));

@@ -19,7 +19,7 @@ struct Census {
 Census take_census(const World& world);
 
 /// Objects of fewer triangles are expanded: tiles that touch keep touching (assembly.h).
-inline constexpr uint64_t kFewestShared = 64;
+inline constexpr uint64_t kMinShared = 64;
 
 /// Refuses more than `most` triangles to keep, and what does not fit into the memory that is free.
 Result<Done> check_census(const Census& census, uint64_t most);

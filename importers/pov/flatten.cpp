@@ -188,11 +188,11 @@ private:
         from.no_shadow = from.no_shadow || object.no_shadow;
         from.inverse = from.inverse != object.inverse;
         // Groups of groups may be more than any memory holds.
-        if (++visited_ > look_.most_triangles / kTrianglesAnObject)
+        if (++visited_ > look_.max_triangles / kTrianglesAnObject)
             throw ParseError(object.place,
                              fmt::format("found more than {} objects in the scene, expected at "
                                          "most that",
-                                         look_.most_triangles / kTrianglesAnObject));
+                                         look_.max_triangles / kTrianglesAnObject));
     }
 
     uint32_t material_of(const Inherited& from) {
@@ -262,7 +262,7 @@ private:
         if (std::holds_alternative<EndlessShape>(object.shape))
             for (const ObjectPtr& bound : object.bounds) {
                 const Box box =
-                    moved(bounds_of(*bound, look_.most_triangles), glm::inverse(object.placed));
+                    moved(bounds_of(*bound, look_.max_triangles), glm::inverse(object.placed));
                 leaf.bounds.add(moved(box, from.in_solid));
             }
         for (const ObjectPtr& child : object.children) { // a mesh's, by their textures
@@ -297,9 +297,9 @@ int segments_within(double tolerance) {
 int choose_segments(const Gatherer& gatherer, std::optional<double> tolerance) {
     if (tolerance)
         return segments_within(*tolerance);
-    int segments = kMostSegments;
+    int segments = kMaxSegments;
     while (segments > 8 &&
-           triangles_at(gatherer, segments) - triangles_at(gatherer, 0) > kMostRoundTriangles)
+           triangles_at(gatherer, segments) - triangles_at(gatherer, 0) > kMaxRoundTriangles)
         segments = std::max(8, segments * 3 / 4 / 4 * 4);
     return segments;
 }
@@ -472,7 +472,7 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
     const std::vector<Placed>& placed = gatherer.placed;
 
     const int segments = choose_segments(gatherer, look.tolerance);
-    require_at_most(look.most_triangles, gatherer, segments, {});
+    require_at_most(look.max_triangles, gatherer, segments, {});
     const Box box = box_of(gatherer, 8);
     const dvec3 origin = chunk_origin(box, 16);
     Batches batches;
@@ -488,10 +488,10 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
     for (auto& [key, batch] : batches) {
         if (batch.corners.empty())
             continue;
-        if (batch.corners.size() / 3 > kMostTriangles)
+        if (batch.corners.size() / 3 > kMaxTriangles)
             throw ParseError({}, fmt::format("found {} triangles of one material, expected at "
                                              "most {}",
-                                             batch.corners.size() / 3, kMostTriangles));
+                                             batch.corners.size() / 3, kMaxTriangles));
         const uint32_t mesh =
             scene.add_mesh(scene.materials[key.first].name, key.first,
                            Chunk::owning(origin, std::move(batch.corners)),
@@ -518,8 +518,8 @@ Box moved(const Box& box, const dmat4& by) {
 
 /// An object gathered by itself, what no_image hides included.
 struct ObjectAlone {
-    ObjectAlone(const Object& object, uint64_t most_triangles) {
-        look.most_triangles = most_triangles;
+    ObjectAlone(const Object& object, uint64_t max_triangles) {
+        look.max_triangles = max_triangles;
         gatherer.gather_unseen = true;
         gatherer.gather(object, {});
     }
@@ -530,11 +530,11 @@ struct ObjectAlone {
     Gatherer gatherer{look, scene};
 };
 
-CutObject cut_object(const Object& object, uint64_t most_triangles) {
-    const ObjectAlone alone(object, most_triangles);
+CutObject cut_object(const Object& object, uint64_t max_triangles) {
+    const ObjectAlone alone(object, max_triangles);
     const Gatherer& gatherer = alone.gatherer;
     const int segments = choose_segments(gatherer, alone.look.tolerance);
-    require_at_most(most_triangles, gatherer, segments, object.place);
+    require_at_most(max_triangles, gatherer, segments, object.place);
     CutObject cut;
     Facets facets;
     for (const Placed& p : gatherer.placed) {
@@ -555,8 +555,8 @@ CutObject cut_object(const Object& object, uint64_t most_triangles) {
     return cut;
 }
 
-Box bounds_of(const Object& object, uint64_t most_triangles) {
-    const ObjectAlone alone(object, most_triangles);
+Box bounds_of(const Object& object, uint64_t max_triangles) {
+    const ObjectAlone alone(object, max_triangles);
     const Gatherer& gatherer = alone.gatherer;
     for (const Placed& p : gatherer.placed)
         if (std::holds_alternative<PlaneShape>(p.object->shape))

@@ -11,7 +11,7 @@ namespace ovc::pov {
 struct Look {
     Texture defaults;
     vec3 ambient_light{1};
-    uint64_t most_triangles = kDefaultMostTriangles;
+    uint64_t max_triangles = kDefaultMostTriangles;
     std::optional<double> tolerance;       // as ImportOptions has it
     std::function<void(const Note&)> tell; // of what is to be seen; none: nobody asks
     std::optional<dvec3> eye;              // planes reach as far as it can see them
@@ -22,9 +22,9 @@ struct Look {
 void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& scene);
 
 /// Where no tolerance is asked for, a circle has at most this many straight pieces, fewer where a
-/// scene would come to more than kMostRoundTriangles triangles; at least 8.
-inline constexpr int kMostSegments = 96;
-inline constexpr double kMostRoundTriangles = 3e6;
+/// scene would come to more than kMaxRoundTriangles triangles; at least 8.
+inline constexpr int kMaxSegments = 96;
+inline constexpr double kMaxRoundTriangles = 3e6;
 
 /// A plane reaches this many times as far as the scene and its distance from it: the horizon is low
 /// by the camera's height over that, in radians.

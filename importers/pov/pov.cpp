@@ -45,11 +45,11 @@ Texture factory_default() {
 
 class SceneParser {
 public:
-    SceneParser(const ImportOptions& options, const std::string& folder, uint64_t most_words)
+    SceneParser(const ImportOptions& options, const std::string& folder, uint64_t max_words)
         : options_(options),
           reader_({parse_value, parse_float, parse_condition, parse_item, parse_defaults},
                   options.log, folder, options.files) {
-        reader_.limits.tokens = most_words;
+        reader_.limits.tokens = max_words;
         reader_.limits.triangles = options.max_triangles;
         reader_.defaults = factory_default();
         reader_.version = options.pov_version.value_or(reader_.version);
@@ -74,7 +74,7 @@ public:
         scene.size = options_.size.value_or(size_of(*camera_));
         look_.eye = camera_->location;
         look_.defaults = reader_.defaults;
-        look_.most_triangles = options_.max_triangles;
+        look_.max_triangles = options_.max_triangles;
         look_.tolerance = options_.tolerance;
         look_.tell = [&](const Note& note) { reader_.warn(note.kind, note.place, note.sentence); };
         flatten(objects_, look_, scene);
@@ -204,12 +204,12 @@ Result<Scene> read_pov(const std::filesystem::path& path, const ImportOptions& o
 }
 
 Result<Scene> parse_pov(std::string text, const std::filesystem::path& path,
-                        const ImportOptions& options, uint64_t most_words) {
+                        const ImportOptions& options, uint64_t max_words) {
     auto file = std::make_unique<pov::SourceFile>();
     file->name = path.string();
     file->folder = path.parent_path().string();
     file->text = std::move(text);
-    pov::SceneParser parser(options, file->folder, most_words);
+    pov::SceneParser parser(options, file->folder, max_words);
     try {
         Scene scene = parser.parse(std::move(file));
         scene.name = path.stem().string();

@@ -168,7 +168,7 @@ TEST(PovShapes, VerticesLieOnTheSphere) {
 }
 
 /// How far the farthest point of a triangle is inside the unit sphere that its corners lie on.
-double most_off_the_ball(const std::vector<Triangle>& triangles) {
+double max_off_the_ball(const std::vector<Triangle>& triangles) {
     double most = 0;
     for (const Triangle& t : triangles) {
         most = std::max(most, 1 - glm::length(t[0] + t[1] + t[2]) / 3);
@@ -184,11 +184,11 @@ TEST(PovShapes, FacetsLieWithinTheTolerance) {
         options.tolerance = tolerance;
         return triangles_of(parse_pov("sphere { 0, 1 }", "x.pov", options));
     };
-    for (const double tolerance : {kMostTolerance, 0.1, 0.01, 0.001, kLeastTolerance}) {
-        EXPECT_LE(most_off_the_ball(cut(tolerance)), tolerance + 1e-7) << tolerance;
-        EXPECT_GE(most_off_the_ball(cut(tolerance)), tolerance / 4) << tolerance;
+    for (const double tolerance : {kMaxTolerance, 0.1, 0.01, 0.001, kMinTolerance}) {
+        EXPECT_LE(max_off_the_ball(cut(tolerance)), tolerance + 1e-7) << tolerance;
+        EXPECT_GE(max_off_the_ball(cut(tolerance)), tolerance / 4) << tolerance;
     }
-    EXPECT_NEAR(most_off_the_ball(cut({})), 0.0011, 0.0001); // as docs/pov.md says
+    EXPECT_NEAR(max_off_the_ball(cut({})), 0.0011, 0.0001); // as docs/pov.md says
 }
 
 TEST(PovShapes, ManyRoundThingsAreCutMoreCoarsely) {

@@ -11,7 +11,7 @@ namespace ovc::pov {
 namespace {
 
 /// A meeting is beyond this: what starts on a surface leaves it.
-constexpr double kLeastDistance = 1e-6;
+constexpr double kMinDistance = 1e-6;
 constexpr uint32_t kLeafTriangles = 4;
 
 void meet_triangle(const Corner* c, const dvec3& from, const dvec3& way, Meeting& nearest) {
@@ -24,7 +24,7 @@ void meet_triangle(const Corner* c, const dvec3& from, const dvec3& way, Meeting
     const dvec3 q = glm::cross(s, ab);
     const double u = glm::dot(s, p) / determinant, v = glm::dot(way, q) / determinant;
     const double t = glm::dot(ac, q) / determinant;
-    if (!(u >= 0 && v >= 0 && u + v <= 1 && t > kLeastDistance && t < nearest.distance))
+    if (!(u >= 0 && v >= 0 && u + v <= 1 && t > kMinDistance && t < nearest.distance))
         return;
     nearest.distance = t;
     nearest.normal = (1 - u - v) * c[0].normal + u * c[1].normal + v * c[2].normal;
@@ -32,7 +32,7 @@ void meet_triangle(const Corner* c, const dvec3& from, const dvec3& way, Meeting
 
 void meet_plane(const PlaneShape& plane, const dvec3& from, const dvec3& way, Meeting& nearest) {
     const double t = (plane.distance - glm::dot(plane.normal, from)) / glm::dot(plane.normal, way);
-    if (t > kLeastDistance && t < nearest.distance)
+    if (t > kMinDistance && t < nearest.distance)
         nearest = {t, plane.normal};
 }
 

@@ -23,8 +23,8 @@ struct CutObject {
 };
 
 /// As finely as a picture of it would be. Throws ParseError where that comes to more than
-/// most_triangles. flatten.cpp has it.
-CutObject cut_object(const Object& object, uint64_t most_triangles);
+/// max_triangles. flatten.cpp has it.
+CutObject cut_object(const Object& object, uint64_t max_triangles);
 
 /// An object's triangles under a tree of boxes, and its planes.
 class TraceTarget {

@@ -111,12 +111,12 @@ public:
     void add(std::unique_ptr<Handle> handle) {
         const std::lock_guard lock(mutex_);
         handles_.push_back(std::move(handle));
-        if (handles_.size() > kMost && handles_.front()->calls.none())
+        if (handles_.size() > kMax && handles_.front()->calls.none())
             handles_.pop_front();
     }
 
 private:
-    static constexpr size_t kMost = 1000;
+    static constexpr size_t kMax = 1000;
 
     std::mutex mutex_;
     std::deque<std::unique_ptr<Handle>> handles_;

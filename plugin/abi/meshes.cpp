@@ -92,16 +92,16 @@ Chunk chunk_of(const ovc_mesh& mesh) {
                   : Chunk::owning(origin, copied_corners<vec3>(mesh, mesh.positions));
 }
 
-std::optional<Placement> placement_of(const char* field, const double* transform) {
-    if (!transform)
+std::optional<Transform> transform_of(const char* field, const double* given) {
+    if (!given)
         return std::nullopt;
-    Placement placement;
+    Transform transform;
     for (size_t i = 0; i < 12; ++i) {
-        if (!std::isfinite(transform[i]))
+        if (!std::isfinite(given[i]))
             invalid(fmt::format("{}[{}] is not finite", field, i));
-        placement.rows[i / 4][i % 4] = transform[i];
+        transform.rows[i / 4][i % 4] = given[i];
     }
-    return placement;
+    return transform;
 }
 
 void check_open(ovc_scene scene, const char* call) {
@@ -124,10 +124,10 @@ ovc_result add_mesh(ovc_scene scene, const ovc_mesh* given, uint32_t* mesh_id) {
             invalid("add_mesh: mesh is NULL");
         check_open(scene, "add_mesh");
         const ovc_mesh mesh = checked(given);
-        const auto placement = placement_of("ovc_mesh.transform", mesh.transform);
+        const auto transform = transform_of("ovc_mesh.transform", mesh.transform);
         Chunk chunk = chunk_of(mesh);
-        if (placement)
-            chunk.place(*placement);
+        if (transform)
+            chunk.place(*transform);
         if (mesh.flags & OVC_MESH_TEMPLATE) {
             scene->templates.emplace(uint32_t(scene->soup.chunks.size()), std::move(chunk));
             chunk = Chunk::owning(dvec3(0), {});
@@ -148,13 +148,13 @@ ovc_result add_instance(ovc_scene scene, const ovc_instance* given, uint32_t* me
                                 instance.mesh, meshes));
         if (instance.reserved)
             invalid("ovc_instance.reserved has bits that this version does not know");
-        const auto placement = placement_of("ovc_instance.transform", instance.transform);
+        const auto transform = transform_of("ovc_instance.transform", instance.transform);
         const auto found = scene->templates.find(instance.mesh);
         const Chunk& source =
             found != scene->templates.end() ? found->second : scene->soup.chunks[instance.mesh];
         Chunk chunk = source.instance();
-        if (placement)
-            chunk.place(*placement);
+        if (transform)
+            chunk.place(*transform);
         add_chunk(scene, std::move(chunk), mesh_id);
     });
 }

@@ -31,10 +31,11 @@ TriangleId BuiltScene::second(TriangleId id) const {
     TriangleId next = id;
     const auto offer = [&](TriangleId other) { next = next == id ? other : std::min(next, other); };
     if (const SharedMesh* mesh = shared_mesh_of(id.mesh)) {
-        if (const TriangleId twin = mesh->scene.twins.second({0, id.prim}); twin.prim != id.prim)
-            offer({id.mesh, twin.prim});
-    } else if (const TriangleId twin = twins.second(id); twin != id) {
-        offer(twin);
+        if (const TriangleId duplicate = mesh->scene.duplicates.second({0, id.prim});
+            duplicate.prim != id.prim)
+            offer({id.mesh, duplicate.prim});
+    } else if (const TriangleId duplicate = duplicates.second(id); duplicate != id) {
+        offer(duplicate);
     }
     const auto copy = std::ranges::lower_bound(copies, id.mesh, {}, &Placed::Copies::first);
     if (copy != copies.end() && copy->first == id.mesh)
@@ -69,10 +70,10 @@ uint64_t BuiltScene::unique_triangles() const {
     return count;
 }
 
-uint64_t BuiltScene::twin_count() const {
-    uint64_t count = twins.count();
+uint64_t BuiltScene::duplicate_count() const {
+    uint64_t count = duplicates.count();
     for (const SharedMesh& mesh : shared)
-        count += mesh.scene.twins.count() * mesh.instances.size();
+        count += mesh.scene.duplicates.count() * mesh.instances.size();
     for (const Placed::Copies& there : copies)
         count += uint64_t(there.count - 1) * soup.chunks[there.first].size();
     return count;
@@ -134,7 +135,7 @@ private:
             scene_.dropped.not_finite += local.dropped.not_finite;
             scene_.dropped.degenerate += local.dropped.degenerate;
             if (!box.empty())
-                bounds_.add(placed_box(box, scene_.soup.chunks[chunk].placement()));
+                bounds_.add(placed_box(box, scene_.soup.chunks[chunk].transform()));
             for (const uint32_t prim : lines) {
                 const Triangle triangle = scene_.soup.triangle({chunk, prim});
                 if (triangle_fault(triangle) != TriangleFault::None)
@@ -151,8 +152,8 @@ private:
     Box bounds_;
 };
 
-void take_twins_out(BuiltScene& scene, Hittable& hittable, BuildProgress* progress) {
-    scene.twins = Twins::take_out(scene.soup, hittable.triangles, progress);
+void take_duplicates_out(BuiltScene& scene, Hittable& hittable, BuildProgress* progress) {
+    scene.duplicates = Duplicates::take_out(scene.soup, hittable.triangles, progress);
     scene.triangles = hittable.triangles.size();
 }
 
@@ -162,7 +163,7 @@ Hittable take_hittable(BuiltScene& scene, BuildProgress* progress) {
     const Stopwatch watch;
     Hittable hittable;
     hittable.triangles = hittable_triangles(scene.soup, &scene.dropped, &hittable.bounds, progress);
-    take_twins_out(scene, hittable, progress);
+    take_duplicates_out(scene, hittable, progress);
     scene.seconds_level1 = watch.seconds();
     return hittable;
 }
@@ -179,7 +180,7 @@ HittableParts take_hittable_parts(BuiltScene& scene, Placed placed, BuildProgres
     triangles.insert(triangles.end(), shared.by_themselves().begin(), shared.by_themselves().end());
     std::ranges::sort(triangles);
     parts.once.bounds.add(shared.bounds());
-    take_twins_out(scene, parts.once, progress);
+    take_duplicates_out(scene, parts.once, progress);
     scene.seconds_level1 = watch.seconds();
     return parts;
 }
@@ -200,7 +201,7 @@ TopLevel top_level_of(const BuiltScene& scene, size_t max_links) {
     for (const SharedMesh& mesh : scene.shared) {
         std::vector<Place> places;
         for (const uint32_t chunk : mesh.instances)
-            places.push_back({scene.soup.chunks[chunk].placement(), scene.numbers.of({chunk, 0})});
+            places.push_back({scene.soup.chunks[chunk].transform(), scene.numbers.of({chunk, 0})});
         parts.add(mesh.scene.level1, mesh.first_page, places);
     }
     return build_top_level(scene_leaf(scene.level1.bounds), std::move(parts), scene.pages,

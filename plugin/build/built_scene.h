@@ -4,11 +4,11 @@
 #pragma once
 
 #include "core/build_progress.h"
+#include "core/duplicates.h"
 #include "core/exact/triangle.h"
 #include "core/numbering.h"
 #include "core/soup.h"
 #include "core/system/stopwatch.h"
-#include "core/twins.h"
 #include "gpu/page/page.h"
 #include "gpu/page/top_level.h"
 #include "kdtree/partition.h"
@@ -39,7 +39,7 @@ struct LeafLimits {
     /// takes, in bytes a triangle (copies: as in LoosePairs); asked only where that matters.
     /// one_leaf(): whether rays gain by one leaf (one_leaf.h), asked only where there may be one.
     template <class Rate, class OneLeaf>
-    uint32_t most_of(uint64_t all, Rate&& rate, OneLeaf&& one_leaf) const {
+    uint32_t max_of(uint64_t all, Rate&& rate, OneLeaf&& one_leaf) const {
         if (whole_bytes > 0 && one_leaf() && (whole_bytes == kAny || fits(all, rate(all, 1))))
             return kNone - 1;
         return pages_matter() ? triangles_at(rate(triangles, kCopiesOfLeaves))
@@ -71,10 +71,10 @@ struct BuiltScene {
     const Soup& soup; // outlives the scene
     Numbering numbers;
     Dropped dropped;
-    Twins twins;
+    Duplicates duplicates;
     uint64_t triangles = 0; // in leaves, each counted once
     LeafLimits limits{};    // that the leaves keep to
-    Level1 level1;          // without twins, and without meshes that are shared
+    Level1 level1;          // without duplicates, and without meshes that are shared
     std::vector<SharedMesh> shared;
     std::vector<uint32_t> mesh_of_chunk; // into `shared`, or kNone; empty where nothing is shared
     std::vector<Placed::Copies> copies;
@@ -127,7 +127,7 @@ struct BuiltScene {
     /// Triangles in leaves, counted in each.
     uint64_t reference_count() const;
     /// Those that lie exactly where a smaller one does.
-    uint64_t twin_count() const;
+    uint64_t duplicate_count() const;
     /// Of level 1, level 2 and what leads to it.
     uint64_t host_bytes() const;
 };
@@ -140,7 +140,7 @@ struct SharedMesh {
     uint32_t first_page; // among those of the whole scene
 };
 
-/// The triangles that leaves are made of: those that can be hit, without twins.
+/// The triangles that leaves are made of: those that can be hit, without duplicates.
 struct Hittable {
     std::vector<TriangleId> triangles; // sorted
     Box bounds;

@@ -17,7 +17,7 @@
 namespace ovc {
 
 bool LeafLimits::pages_matter() const {
-    return triangles > page_bytes / kMostBytesPerTriangle;
+    return triangles > page_bytes / kMaxBytesPerTriangle;
 }
 
 /// In so many bytes, a twentieth less than fits on average: most leaves that are worse than that
@@ -65,7 +65,7 @@ public:
         // Where small triangles are not lost in the scene.
         const bool one_frame = one_frame_suits(soup_, triangles, bounds);
         const Sample sample = drawn(triangles, one_frame);
-        const uint32_t most = first_most(triangles, bounds, one_frame, sample);
+        const uint32_t most = first_max(triangles, bounds, one_frame, sample);
         scene_.level1 = partition(soup_, triangles, bounds, most, progress_, sample,
                                   /* may_have_far_leaves= */ true);
         if (one_frame || scene_.level1.leaves.size() == 1)
@@ -118,17 +118,17 @@ private:
         return {sample_, rate};
     }
 
-    uint32_t first_most(std::span<const TriangleId> triangles, const Box& bounds, bool one_frame,
-                        const Sample& sample) const {
+    uint32_t first_max(std::span<const TriangleId> triangles, const Box& bounds, bool one_frame,
+                       const Sample& sample) const {
         std::optional<PageRates> rates;
         const auto rate_of = [&](uint64_t page, double copies) {
             if (sample.triangles.empty())
-                return double(kMostBytesPerTriangle);
+                return double(kMaxBytesPerTriangle);
             if (!rates)
                 rates.emplace(soup_, triangles, sample.triangles, sample.rate, bounds, progress_);
             return rates->mean_of(double(page), copies);
         };
-        return limits_.most_of(triangles.size(), rate_of, [&] {
+        return limits_.max_of(triangles.size(), rate_of, [&] {
             return maybe_one_leaf(one_frame) && one_leaf_pays(soup_, sample.triangles, sample.rate,
                                                               bounds, uint32_t(limits_.triangles));
         });
@@ -172,16 +172,16 @@ private:
     Result<bool> cut_too_large() {
         const Stopwatch watch;
         std::vector<uint32_t> most(scene_.pages.size(), kNone);
-        const uint64_t most_bytes = limits_.page_bytes_of(most.size());
+        const uint64_t max_bytes = limits_.page_bytes_of(most.size());
         bool any = false;
         for (size_t i = 0; i < most.size(); ++i) {
             const uint64_t bytes = scene_.pages[i].bytes();
             const size_t triangles = scene_.level1.leaves[i].triangles.size();
-            if (bytes <= most_bytes)
+            if (bytes <= max_bytes)
                 continue;
             if (triangles == 1)
                 return over_budget(
-                    fmt::format("a page of one triangle does not fit into {} bytes", most_bytes));
+                    fmt::format("a page of one triangle does not fit into {} bytes", max_bytes));
             most[i] = limits_.triangles_again(triangles, bytes);
             any = true;
         }

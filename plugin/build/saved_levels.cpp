@@ -36,9 +36,10 @@ struct Key {
 struct SavedCut {
     uint64_t not_finite = 0;
     uint64_t degenerate = 0;
-    uint64_t twins = 0;
-    uint64_t twin_pairs = 0; // so many of the part "twins", behind those of the cuts before; as are
-    uint64_t nodes = 0;      // the next two
+    uint64_t duplicates = 0;
+    uint64_t duplicate_pairs =
+        0;              // so many of the part "twins", behind those of the cuts before; as are
+    uint64_t nodes = 0; // the next two
     uint64_t leaves = 0;
     uint64_t triangles = 0;
     uint64_t shares_frame = 0;
@@ -77,8 +78,8 @@ uint64_t checksum_of_soup(const Soup& soup) {
         sum.add_value(uint64_t(chunk.size()));
         sum.add(bytes_of(chunk.corners()));
         sum.add(bytes_of(chunk.double_corners()));
-        if (chunk.placement())
-            sum.add(bytes_of(std::span<const Placement>(chunk.placement(), 1)));
+        if (chunk.transform())
+            sum.add(bytes_of(std::span<const Transform>(chunk.transform(), 1)));
     }
     return sum.value();
 }
@@ -138,7 +139,7 @@ std::optional<std::span<const T>> take(std::span<const T>& left, uint64_t count)
     return taken;
 }
 
-bool are_sound(std::span<const Twins::Pair> pairs, const Soup& soup) {
+bool are_sound(std::span<const Duplicates::Pair> pairs, const Soup& soup) {
     const auto exists = [&](TriangleId id) {
         return id.mesh < soup.chunks.size() && id.prim < soup.chunks[id.mesh].size();
     };
@@ -153,7 +154,7 @@ const Error kUnsound{"is damaged: what it holds are no levels"};
 
 /// The arrays of all cuts, one behind the other; what is not yet read.
 struct Arrays {
-    std::span<const Twins::Pair> twins;
+    std::span<const Duplicates::Pair> duplicates;
     std::span<const KdNode> nodes;
     std::span<const SavedLeaf> leaves;
     std::span<const TriangleId> lists;
@@ -161,8 +162,8 @@ struct Arrays {
     std::span<const uvec4> texels;
 
     bool all_read() const {
-        return twins.empty() && nodes.empty() && leaves.empty() && lists.empty() && pages.empty() &&
-               texels.empty();
+        return duplicates.empty() && nodes.empty() && leaves.empty() && lists.empty() &&
+               pages.empty() && texels.empty();
     }
 };
 
@@ -175,15 +176,15 @@ public:
     bool read() {
         scene_.dropped = {cut_.not_finite, cut_.degenerate};
         scene_.triangles = cut_.triangles;
-        return read_twins() && read_level1() && read_pages();
+        return read_duplicates() && read_level1() && read_pages();
     }
 
 private:
-    bool read_twins() {
-        const auto pairs = take(arrays_.twins, cut_.twin_pairs);
+    bool read_duplicates() {
+        const auto pairs = take(arrays_.duplicates, cut_.duplicate_pairs);
         if (!pairs || !are_sound(*pairs, scene_.soup))
             return false;
-        scene_.twins = Twins::restored(*pairs, cut_.twins);
+        scene_.duplicates = Duplicates::restored(*pairs, cut_.duplicates);
         return true;
     }
 
@@ -244,9 +245,9 @@ private:
 };
 
 Result<Arrays> arrays_of(const Archive& archive) {
-    const auto twins = archive.items<Twins::Pair>("twins");
-    if (!twins)
-        return twins.error();
+    const auto duplicates = archive.items<Duplicates::Pair>("twins");
+    if (!duplicates)
+        return duplicates.error();
     const auto nodes = archive.items<KdNode>("nodes");
     if (!nodes)
         return nodes.error();
@@ -262,7 +263,7 @@ Result<Arrays> arrays_of(const Archive& archive) {
     const auto texels = archive.items<uvec4>("texels");
     if (!texels)
         return texels.error();
-    return Arrays{*twins, *nodes, *leaves, *lists, *pages, *texels};
+    return Arrays{*duplicates, *nodes, *leaves, *lists, *pages, *texels};
 }
 
 Result<BuiltScene> restored(const Archive& archive, std::span<const SavedCut> cuts,
@@ -300,8 +301,8 @@ SavedCut saved_cut(const BuiltScene& scene) {
     SavedCut cut;
     cut.not_finite = scene.dropped.not_finite;
     cut.degenerate = scene.dropped.degenerate;
-    cut.twins = scene.twins.count();
-    cut.twin_pairs = scene.twins.pairs().size();
+    cut.duplicates = scene.duplicates.count();
+    cut.duplicate_pairs = scene.duplicates.pairs().size();
     cut.nodes = scene.level1.nodes.size();
     cut.leaves = scene.level1.leaves.size();
     cut.triangles = scene.triangles;
@@ -337,7 +338,7 @@ bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
     writer.part<SavedCut>("cuts", cuts);
     writer.begin("twins");
     for (const BuiltScene* cut : scenes)
-        writer.write(bytes_of(cut->twins.pairs()));
+        writer.write(bytes_of(cut->duplicates.pairs()));
     writer.begin("nodes");
     for (const BuiltScene* cut : scenes)
         writer.write(bytes_of(std::span<const KdNode>(cut->level1.nodes)));

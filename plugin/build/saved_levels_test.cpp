@@ -32,8 +32,8 @@ bool same(const Box& a, const Box& b) {
 void expect_same(const BuiltScene& a, const BuiltScene& b) {
     EXPECT_EQ(a.dropped.not_finite, b.dropped.not_finite);
     EXPECT_EQ(a.dropped.degenerate, b.dropped.degenerate);
-    EXPECT_EQ(a.twins.count(), b.twins.count());
-    ASSERT_EQ(a.twins.pairs().size(), b.twins.pairs().size());
+    EXPECT_EQ(a.duplicates.count(), b.duplicates.count());
+    ASSERT_EQ(a.duplicates.pairs().size(), b.duplicates.pairs().size());
     EXPECT_EQ(a.triangles, b.triangles);
     EXPECT_EQ(a.level1.shares_frame, b.level1.shares_frame);
     EXPECT_EQ(a.level1.far_leaves, b.level1.far_leaves);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chunks by the corners that they borrow, and what a placement does to them.
+// Chunks by the corners that they borrow, and what a transform does to them.
 #include "plugin/build/shared_meshes.h"
 
-#include "core/placement.h"
+#include "core/transform.h"
 #include "gpu/page/top_level.h"
 
 #include <algorithm>
@@ -31,11 +31,11 @@ Box bounds_of(const Chunk& mesh) {
 
 /// Whether what doubles round of corners that are placed, and of rays that are brought to the mesh,
 /// is less than 2^-30 of it: 1/64 of what float32 rounds there. With one more bit to spare.
-bool is_well_placed(const Box& box, const Placement* placement) {
+bool is_well_placed(const Box& box, const Transform* transform) {
     constexpr double kFarthest = 0x1p19;    // in sizes of the mesh
     constexpr double kWithinRange = 0x1p80; // no product of three is out of range
-    const auto& m = or_unplaced(placement).rows;
-    const auto inverted = inverse_matrix(or_unplaced(placement));
+    const auto& m = or_identity(transform).rows;
+    const auto inverted = inverse_matrix(or_identity(transform));
     const double size = max_component(box.extent()) / 2;
     if (!inverted || box.empty() || !(size >= 1 / kWithinRange))
         return false;
@@ -70,11 +70,11 @@ std::vector<std::vector<uint32_t>> by_mesh(const Soup& soup) {
 
 /// Takes out those that lie where one before does.
 void take_copies_out(const Soup& soup, std::vector<uint32_t>& chunks, Placed& placed) {
-    std::map<decltype(Placement::rows), Placed::Copies> places;
+    std::map<decltype(Transform::rows), Placed::Copies> places;
     std::vector<uint32_t> apart;
     for (const uint32_t chunk : chunks) {
         const auto [place, is_new] = places.try_emplace(
-            or_unplaced(soup.chunks[chunk].placement()).rows, Placed::Copies{chunk, chunk, 0});
+            or_identity(soup.chunks[chunk].transform()).rows, Placed::Copies{chunk, chunk, 0});
         Placed::Copies& copies = place->second;
         if (is_new)
             apart.push_back(chunk);
@@ -100,7 +100,7 @@ Placed placed_chunks(const Soup& soup) {
         if (saved > kWorthAPortal * kMaxBytesPerPart * chunks.size()) {
             const Box box = bounds_of(mesh.unplaced());
             for (const uint32_t chunk : chunks)
-                (is_well_placed(box, soup.chunks[chunk].placement()) ? shared : placed.once)
+                (is_well_placed(box, soup.chunks[chunk].transform()) ? shared : placed.once)
                     .push_back(chunk);
         } else {
             placed.once.insert(placed.once.end(), chunks.begin(), chunks.end());

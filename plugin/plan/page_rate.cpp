@@ -17,10 +17,10 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kMostCubes = 64; // a word has a bit for each
-constexpr uint64_t kFewestTriangles = 4096;
-constexpr uint64_t kMostTriangles = 32768;
-constexpr size_t kMostOverfull = 8; // times the triangles that a cube was made for
+constexpr size_t kMaxCubes = 64; // a word has a bit for each
+constexpr uint64_t kMinTriangles = 4096;
+constexpr uint64_t kMaxTriangles = 32768;
+constexpr size_t kMaxOverfull = 8; // times the triangles that a cube was made for
 constexpr size_t kInASmallCube = 512;
 // Cubes in which planes cut triangles as often as in pages.
 constexpr size_t kLargeCubes = 4;
@@ -167,7 +167,7 @@ public:
             for (size_t c = first; c < last; ++c) {
                 // Where triangles are far larger than what lies between them, very many touch a
                 // cube.
-                members[c].resize(std::min(members[c].size(), kMostOverfull * triangles_each));
+                members[c].resize(std::min(members[c].size(), kMaxOverfull * triangles_each));
                 if (!members[c].empty())
                     made[c] = {chosen[c].center(), members[c].size(),
                                page_of(members[c], chosen[c])};
@@ -219,8 +219,8 @@ PageRates::PageRates(const Soup& soup, std::span<const TriangleId> triangles,
                      BuildProgress* progress) {
     const CubePages pages(soup, triangles, sample, rate, bounds, progress);
     const uint64_t in_all =
-        std::clamp<uint64_t>(triangles.size() / 64, kFewestTriangles, kMostTriangles);
-    const size_t cubes = std::clamp<size_t>(in_all / kInASmallCube, 8, kMostCubes);
+        std::clamp<uint64_t>(triangles.size() / 64, kMinTriangles, kMaxTriangles);
+    const size_t cubes = std::clamp<size_t>(in_all / kInASmallCube, 8, kMaxCubes);
     const auto small = pages.make(cubes, in_all / cubes);
     for (const auto& cube : small)
         clusters_.push_back(
@@ -265,7 +265,7 @@ double PageRates::with_cuts(double triangles, double copies) const {
     const double levels = std::log2(triangles / kInASmallCube);
     const double way = std::clamp(levels / std::log2(kInALargeCube / kInASmallCube), 0.0, 1.0);
     const double cut = cut_in_small_ + way * (cut_in_large_ - cut_in_small_);
-    const double most = kCutOfAllowed * LoosePairs{true, copies}.most_cut();
+    const double most = kCutOfAllowed * LoosePairs{true, copies}.max_cut();
     return (1 + std::min(cut, most)) / (1 + cut_in_small_);
 }
 

@@ -15,7 +15,7 @@ namespace ovc {
 inline constexpr uint64_t kPageStart = 128;
 /// No page takes more a triangle: no two in a pair, a node above every other triangle; and eight
 /// tenths of them cut by planes where pairs were to be loose and hardly any is.
-inline constexpr uint64_t kMostBytesPerTriangle = 232;
+inline constexpr uint64_t kMaxBytesPerTriangle = 232;
 
 /// Pages of some cubes, each with all the triangles that touch it. Cubes lie around triangles of a
 /// sample, so where triangles are many there are many cubes.

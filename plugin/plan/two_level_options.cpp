@@ -97,7 +97,7 @@ static uint64_t share_of_page(const MemoryPlan& plan, uint64_t triangles) {
     uint64_t page_bytes = std::max<uint64_t>(plan.pool_bytes / kPagesAtOnce, 1);
     if (plan.pool().count() > 1)
         page_bytes = std::min(page_bytes, plan.buffer_bytes / kPagesABuffer);
-    const uint64_t leaves = triangles * kMostBytesPerTriangle / page_bytes;
+    const uint64_t leaves = triangles * kMaxBytesPerTriangle / page_bytes;
     const uint64_t table = leaves * kMaxBytesPerPart;
     return table + page_bytes <= plan.pool_bytes ? page_bytes : plan.pool_bytes / 2;
 }
@@ -119,9 +119,9 @@ LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uin
         const uint64_t table = max_top_level_bytes(1) + sizeof(uint32_t);
         const uint64_t first_buffer = std::min(plan.pool_bytes, plan.buffer_bytes);
         const uint64_t room = first_buffer - std::min(first_buffer, table);
-        limits.whole_bytes = unique <= room / kMostBytesPerTriangle ? LeafLimits::kAny
-                             : unique == triangles                  ? room
-                                                                    : 0;
+        limits.whole_bytes = unique <= room / kMaxBytesPerTriangle ? LeafLimits::kAny
+                             : unique == triangles                 ? room
+                                                                   : 0;
     }
     return limits;
 }

@@ -44,7 +44,7 @@ Result<Done> Comparison::build_system(const Hittable& hittable, BuildProgress* p
     scene_.level1.bounds = bounds;
     scene_.level1.leaves = {whole_leaf(scene_.soup, triangles, bounds)};
     // What cannot fit is not built.
-    const uint64_t least = least_bytes(options_.structure, triangles.size()) / sizeof(uvec4);
+    const uint64_t least = min_bytes(options_.structure, triangles.size()) / sizeof(uvec4);
     if (const Result<MemoryPlan> plan = plan_memory(options_, least, "at least "); !plan)
         return plan.error();
     Result<System> system =
@@ -184,7 +184,8 @@ private:
                        ? c_.scene_.numbers.of(c_.whole().triangles[index])
                        : index; // OVC_MISS, OVC_NO_TRIANGLE
         };
-        return {number(answer.prim), {number(answer.rivals()[0]), number(answer.rivals()[1])}};
+        return {number(answer.prim),
+                {number(answer.candidates()[0]), number(answer.candidates()[1])}};
     }
 
     Hit fast_hit(const PreparedRay& p, const FrameAnswer& answer) const {

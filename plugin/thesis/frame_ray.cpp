@@ -38,7 +38,7 @@ FrameRay frame_ray(const Leaf& whole, const PreparedRay& p, bool& decidable) {
     const double longest = std::abs(p.ray.dir[p.kz]);
     const double length = (stretch.exit - stretch.enter) * longest * whole.frame.scale;
     // Written so that a NaN is not decidable either.
-    decidable = reach * whole.frame.scale <= OVC_MOST_LEAF_SIZES && std::isfinite(length) &&
+    decidable = reach * whole.frame.scale <= OVC_MAX_LEAF_SIZES && std::isfinite(length) &&
                 std::isnormal(longest * whole.frame.scale);
     if (!decidable)
         return {};

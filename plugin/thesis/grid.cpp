@@ -12,7 +12,7 @@ namespace ovc::thesis {
 namespace {
 
 constexpr double kCellsPerTriangle = 5;
-constexpr double kMostCells = 1024; // along an axis: cells stay hundreds of times as wide as kWider
+constexpr double kMaxCells = 1024; // along an axis: cells stay hundreds of times as wide as kWider
 
 /// Where the planes are, in the floats and the arithmetic of the kernel.
 struct Planes {
@@ -111,7 +111,7 @@ std::array<uint32_t, 3> grid_resolution(const dvec3& extent, uint64_t triangles)
     const double per_length = std::cbrt(kCellsPerTriangle * double(triangles) / volume);
     std::array<uint32_t, 3> cells;
     for (int axis = 0; axis < 3; ++axis)
-        cells[axis] = uint32_t(std::clamp(std::round(extent[axis] * per_length), 1.0, kMostCells));
+        cells[axis] = uint32_t(std::clamp(std::round(extent[axis] * per_length), 1.0, kMaxCells));
     return cells;
 }
 

@@ -74,7 +74,7 @@ private:
     Box bounds_;
 };
 
-constexpr size_t kMostCounted = size_t(1) << 30;
+constexpr size_t kMaxCounted = size_t(1) << 30;
 
 } // namespace
 
@@ -87,7 +87,7 @@ Result<System> build_kd_texels(const Soup& soup, const Leaf& whole, BuildProgres
     const References references = gather_references(
         triangles.size(), local.size(), progress,
         [&](uint32_t i, std::vector<Reference>& out) { local.find_leaves(triangles[i], i, out); });
-    if (local.size() >= kMostCounted || references.triangles.size() >= kMostCounted)
+    if (local.size() >= kMaxCounted || references.triangles.size() >= kMaxCounted)
         return over_budget("the KD-tree has more nodes or references than 30 bits count");
 
     System system;

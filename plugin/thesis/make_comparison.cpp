@@ -58,9 +58,9 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
                            config.leaf_triangles));
     if (config.leaves && config.structure != OVC_STRUCTURE_MULTI_TEXTURE)
         refuse(fmt::format("{} has no leaves: leaves is {}, expected 0", name, config.leaves));
-    if (config.leaves > thesis::kMostTextures)
+    if (config.leaves > thesis::kMaxTextures)
         refuse(fmt::format("multi-texture: leaves is {}, expected at most {} textures",
-                           config.leaves, thesis::kMostTextures));
+                           config.leaves, thesis::kMaxTextures));
 }
 
 Result<ovc_plan> plan_structure(const Soup&, const DeviceInfo&, const ovc_scene_config& config,

@@ -5,6 +5,7 @@
 
 #include "gpu/gl/gl_check.h"
 #include "gpu/gl/kernel.h"
+#include "gpu/gl/workarounds.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@
 namespace ovc::thesis {
 namespace {
 
-constexpr uint64_t kMostRows = 512; // half a million rays: beyond, a pass gains nothing more
+constexpr uint64_t kMaxRows = 512; // half a million rays: beyond, a pass gains nothing more
 
 uint64_t row_bytes(ovc_structure structure) {
     const uint64_t state = structure == OVC_STRUCTURE_SKIP_BVH ? BoundedPasses::kBytesPerRay : 0;
@@ -32,7 +33,7 @@ Result<MemoryPlan> plan_memory(const RunnerOptions& options, uint64_t texels,
                                const char* at_least) {
     MemoryPlan plan;
     plan.tiles = plan_tiles(texels, options.textures);
-    const uint32_t allowed = options.structure == OVC_STRUCTURE_MULTI_TEXTURE ? kMostTextures : 1;
+    const uint32_t allowed = options.structure == OVC_STRUCTURE_MULTI_TEXTURE ? kMaxTextures : 1;
     if (plan.tiles.count() > allowed)
         return over_budget(fmt::format(
             "{}: the scene takes {}{} bytes; a texture of 4096 x 4096 texels "
@@ -45,7 +46,7 @@ Result<MemoryPlan> plan_memory(const RunnerOptions& options, uint64_t texels,
             "{}: a GPU budget of {} bytes is too small: the smallest that works is {}{} bytes ({} "
             "for the scene, which it holds whole, {} for rays and answers)",
             name_of(options.structure), options.budget_bytes, at_least, scene + row, scene, row));
-    plan.rows = uint32_t(std::min((options.budget_bytes - scene) / row, kMostRows));
+    plan.rows = uint32_t(std::min((options.budget_bytes - scene) / row, kMaxRows));
     return plan;
 }
 
@@ -55,7 +56,7 @@ Runner::Runner(std::unique_ptr<Ledger> ledger, const RunnerOptions& options, con
       options_(options),
       software_(software),
       stack_depth_(system.stack_depth),
-      most_rounds_(system.most_rounds),
+      max_rounds_(system.max_rounds),
       tile_defines_(plan.tiles.defines()),
       tiles_(*ledger_, plan.tiles, std::move(system.texels)),
       rays_(*ledger_, GL_RGBA32UI, sizeof(uvec4), kRowRays * OVC_FRAME_RAY_TEXELS, plan.rows,
@@ -89,8 +90,8 @@ Result<GLuint> Runner::link(std::optional<gl::Program>& program, const char* fra
     config.stack_depth = stack_depth_;
     config.stack_registers = software_;
     config.branches = !software_;
-    if (software_ && most_rounds_ > kMostRoundsInSoftware)
-        config.most_rounds = kMostRoundsInSoftware;
+    if (needs(Workaround::CountedRounds) && max_rounds_ > kMaxCountedRounds)
+        config.max_rounds = kMaxCountedRounds;
     const std::string defines = config.defines() + tile_defines_ +
                                 fmt::format("#define OVC_STRUCTURE {}\n", int(options_.structure));
     const std::array<ShaderStage, 2> stages = {

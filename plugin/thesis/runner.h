@@ -60,7 +60,7 @@ private:
     RunnerOptions options_;
     bool software_;
     uint32_t stack_depth_;
-    uint64_t most_rounds_;
+    uint64_t max_rounds_;
     std::string tile_defines_;
     Tiles tiles_;
     gl::Texture2D rays_;

@@ -58,7 +58,7 @@ uint64_t work_of(ovc_structure structure, uint64_t triangles) {
     }
 }
 
-uint64_t least_bytes(ovc_structure structure, uint64_t triangles) {
+uint64_t min_bytes(ovc_structure structure, uint64_t triangles) {
     const bool pairs =
         structure == OVC_STRUCTURE_SINGLE_TEXTURE || structure == OVC_STRUCTURE_MULTI_TEXTURE;
     // A pair is a unit, and four have a node; else a triangle is three texels.

@@ -24,14 +24,14 @@ struct System {
     Texels texels;
     uint64_t references = 0;  // triangles counted once in each place they are listed
     uint32_t stack_depth = 4; // of the kernel, where it has a stack
-    uint64_t most_rounds = std::numeric_limits<uint64_t>::max(); // of the kernel's loop for any ray
+    uint64_t max_rounds = std::numeric_limits<uint64_t>::max(); // of the kernel's loop for any ray
 };
 
 /// Its name on the command line and in messages.
 const char* name_of(ovc_structure structure);
 
 /// Fewer bytes than this the system's texels cannot take for so many triangles.
-uint64_t least_bytes(ovc_structure structure, uint64_t triangles);
+uint64_t min_bytes(ovc_structure structure, uint64_t triangles);
 
 /// Builds it over the triangles of `whole` (not none). Error: more than its kernel can count.
 Result<System> build_system(ovc_structure structure, const Soup& soup, const Leaf& whole,

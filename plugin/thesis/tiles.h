@@ -30,7 +30,7 @@ struct TilePlan {
 
 inline constexpr uint32_t kTextureBits = 24; // 4096 x 4096 texels, as the thesis has them
 inline constexpr uint64_t kTextureBytes = uint64_t(16) << kTextureBits;
-inline constexpr uint32_t kMostTextures = 8; // of the look-up's branches
+inline constexpr uint32_t kMaxTextures = 8; // of the look-up's branches
 
 /// texels (> 0) in at least `textures` (> 0) textures, each within kTextureBytes.
 TilePlan plan_tiles(uint64_t texels, uint32_t textures);

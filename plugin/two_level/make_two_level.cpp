@@ -59,7 +59,7 @@ ovc_statistics TwoLevel::report() const {
     told.triangles = scene_.soup.triangle_count();
     told.dropped_not_finite = scene_.dropped.not_finite;
     told.dropped_degenerate = scene_.dropped.degenerate;
-    told.twins = scene_.twin_count();
+    told.twins = scene_.duplicate_count();
     told.leaves = scene_.pages.size();
     told.leaf_references = scene_.reference_count();
     told.level2_bytes = scene_.level2_bytes();

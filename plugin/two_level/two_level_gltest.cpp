@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twin rule: whatever the leaf size, the budget and the batch, two-level answers bit for bit
-// what testing every triangle in double answers.
+// The duplicate rule: whatever the leaf size, the budget and the batch, two-level answers bit for
+// bit what testing every triangle in double answers.
 #include "plugin/two_level/test_two_level.h"
 
 #include "kdtree/build.h"
@@ -255,7 +255,7 @@ void rays_that_skip(const Soup& soup, size_t count, std::vector<Ray>& rays,
     }
 }
 
-TEST_F(TwoLevelGl, TwinsAnswerAsBruteForceDoes) {
+TEST_F(TwoLevelGl, DuplicatesAnswerAsBruteForceDoes) {
     const Soup single[] = {test::random_soup(2, 700, 0.05), test::closed_grid(12),
                            test::closed_grid(12, dvec3(4.5e6, 6e6, -6))};
     for (const Soup& once : single) {
@@ -265,18 +265,18 @@ TEST_F(TwoLevelGl, TwinsAnswerAsBruteForceDoes) {
         std::vector<TriangleId> skip(rays.size());
         rays_that_skip(soup, 1600, rays, skip);
         std::vector<Hit> expected;
-        size_t met_a_twin = 0;
+        size_t met_a_duplicate = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
             expected.push_back(test::brute_force(soup, ids, rays[i], skip[i]));
-            met_a_twin += expected[i].is_hit() && skip[i].mesh != kNone &&
-                          same_corners(soup.triangle(expected[i].id), soup.triangle(skip[i]));
+            met_a_duplicate += expected[i].is_hit() && skip[i].mesh != kNone &&
+                               same_corners(soup.triangle(expected[i].id), soup.triangle(skip[i]));
         }
-        EXPECT_GT(met_a_twin, 400u);
+        EXPECT_GT(met_a_duplicate, 400u);
         for (const auto& [name, options] : variants()) {
             SCOPED_TRACE(name);
             const auto structure = build(soup, options);
             ASSERT_TRUE(structure);
-            EXPECT_EQ(structure->scene().twins.count(), ids.size() - once.triangle_count());
+            EXPECT_EQ(structure->scene().duplicates.count(), ids.size() - once.triangle_count());
             // Not the same: which triangles pair up depends on how they are numbered.
             const auto alone = double(build(once, options)->scene().level2_bytes());
             EXPECT_NEAR(double(structure->scene().level2_bytes()), alone, 0.05 * alone);
@@ -294,7 +294,7 @@ TEST_F(TwoLevelGl, TwinsAnswerAsBruteForceDoes) {
     }
 }
 
-TEST_F(TwoLevelGl, TwinsAreNotFlaggedForEachOther) {
+TEST_F(TwoLevelGl, DuplicatesAreNotFlaggedForEachOther) {
     const Soup soup = tripled(test::closed_grid(100));
     const auto structure = build(soup, {});
     ASSERT_TRUE(structure);
@@ -309,7 +309,7 @@ TEST_F(TwoLevelGl, TwinsAreNotFlaggedForEachOther) {
     EXPECT_LE(structure->statistics().flagged, rays.size() / 100);
 }
 
-TEST_F(TwoLevelGl, FastPrecisionSeesTheTwinOfWhatItSkips) {
+TEST_F(TwoLevelGl, FastPrecisionSeesTheDuplicateOfWhatItSkips) {
     const Soup soup = tripled(test::closed_grid(12));
     const auto ids = hittable_triangles(soup, nullptr, nullptr);
     std::vector<Ray> rays;

@@ -43,7 +43,7 @@ inline constexpr uint64_t kBytesARay = 8192;
 /// moved.
 inline std::vector<uint32_t> worth_moving(std::span<const size_t> counts,
                                           std::span<const Page> pages, uint64_t bytes_a_ray) {
-    constexpr double kLeastShare = 1.0 / 8;
+    constexpr double kMinShare = 1.0 / 8;
     std::vector<std::pair<double, uint32_t>> leaves;
     for (uint32_t leaf = 0; leaf < counts.size(); ++leaf)
         if (counts[leaf] > 0 && counts[leaf] >= pages[leaf].bytes() / bytes_a_ray)
@@ -51,7 +51,7 @@ inline std::vector<uint32_t> worth_moving(std::span<const size_t> counts,
     std::sort(leaves.begin(), leaves.end());
     std::vector<uint32_t> wanted;
     for (const auto& [minus_worth, leaf] : leaves)
-        if (minus_worth <= leaves.front().first * kLeastShare)
+        if (minus_worth <= leaves.front().first * kMinShare)
             wanted.push_back(leaf);
     return wanted;
 }

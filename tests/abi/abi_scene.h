@@ -56,8 +56,8 @@ inline AbiScene add_soup(const Device& device, const Soup& soup, const ovc_scene
         for (int axis = 0; axis < 3; ++axis)
             mesh.origin[axis] = chunk.origin()[axis];
         mesh.flags = OVC_MESH_SHARED;
-        if (chunk.placement())
-            mesh.transform = chunk.placement()->rows[0].data();
+        if (chunk.transform())
+            mesh.transform = chunk.transform()->rows[0].data();
         if (api().add_mesh(scene, &mesh, nullptr) != OVC_OK)
             return nullptr;
     }

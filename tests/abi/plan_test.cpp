@@ -128,12 +128,12 @@ TEST_F(Plan, OfAThousandInstances) {
     test::Random random(5);
     for (int i = 0; i < 1000; ++i) {
         Chunk chunk = scene.soup.chunks[size_t(i % 2)].unplaced();
-        Placement placement{};
+        Transform transform{};
         for (size_t row = 0; row < 3; ++row) {
             const dvec3 r = random.point(-1, 1);
-            placement.rows[row] = {r.x, r.y, r.z, 300 * random.point(-1, 1).x};
+            transform.rows[row] = {r.x, r.y, r.z, 300 * random.point(-1, 1).x};
         }
-        chunk.place(placement);
+        chunk.place(transform);
         scene.soup.chunks.push_back(std::move(chunk));
     }
     auto config = sized<ovc_scene_config>();

@@ -218,7 +218,7 @@ private:
         OVC_REQUIRE(id + 1 == slot.soup.chunks.size());
     }
 
-    /// Where its mesh is: all its triangles are twins, and the smaller number answers.
+    /// Where its mesh is: all its triangles are duplicates, and the smaller number answers.
     void add_instance() {
         Slot& slot = any_slot();
         auto instance = sized<ovc_instance>();

@@ -27,7 +27,7 @@ BuiltScene build_for_test(const Soup& soup, const LeafLimits& limits) {
 
 namespace {
 
-/// A soup with twins, its saved levels, and rays to ask.
+/// A soup with duplicates, its saved levels, and rays to ask.
 struct Subject {
     static constexpr LeafLimits kLimits{30, 1 << 20};
 

@@ -14,7 +14,7 @@
 namespace ovc {
 
 /// More takes time, and finds nothing.
-static constexpr uint64_t kMostFuzzed = 20000;
+static constexpr uint64_t kMaxFuzzed = 20000;
 
 static void require(bool condition) {
     if (!condition)
@@ -23,7 +23,7 @@ static void require(bool condition) {
 
 static void check_scene(const Scene& scene) {
     require(has_sound_meshes(scene));
-    require(scene.soup.triangle_count() <= kMostFuzzed);
+    require(scene.soup.triangle_count() <= kMaxFuzzed);
 }
 
 void fuzz_pbrt(const uint8_t* data, size_t size) {
@@ -39,7 +39,7 @@ void fuzz_pbrt(const uint8_t* data, size_t size) {
         ImportOptions options;
         options.strict = way.strict;
         options.world = way.world;
-        options.max_triangles = kMostFuzzed;
+        options.max_triangles = kMaxFuzzed;
         const Result<Scene> scene = read_pbrt(path, options);
         if (scene)
             check_scene(*scene);

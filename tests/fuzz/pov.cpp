@@ -9,8 +9,8 @@
 namespace ovc {
 
 /// More takes time, and finds nothing.
-static constexpr uint64_t kMostTrianglesFuzzed = 200'000;
-static constexpr uint64_t kMostWordsFuzzed = 20'000;
+static constexpr uint64_t kMaxTrianglesFuzzed = 200'000;
+static constexpr uint64_t kMaxWordsFuzzed = 20'000;
 
 static void require(bool condition) {
     if (!condition)
@@ -19,10 +19,10 @@ static void require(bool condition) {
 
 void fuzz_pov(const uint8_t* data, size_t size) {
     ImportOptions options;
-    options.max_triangles = kMostTrianglesFuzzed;
+    options.max_triangles = kMaxTrianglesFuzzed;
     std::string text(reinterpret_cast<const char*>(data), size);
     const Result<Scene> scene =
-        parse_pov(std::move(text), "/nowhere/fuzz.pov", options, kMostWordsFuzzed);
+        parse_pov(std::move(text), "/nowhere/fuzz.pov", options, kMaxWordsFuzzed);
     if (!scene) {
         require(scene.error().message.starts_with("/"));
         return;

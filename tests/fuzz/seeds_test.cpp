@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void survive(const std::string& kind, void (*fuzz)(const uint8_t*, size_t), size_t least_seeds) {
+void survive(const std::string& kind, void (*fuzz)(const uint8_t*, size_t), size_t min_seeds) {
     size_t seeds = 0;
     for (const auto& entry : fs::directory_iterator(OVC_SOURCE_DIR "/tests/fuzz/" + kind)) {
         SCOPED_TRACE(entry.path());
@@ -32,7 +32,7 @@ void survive(const std::string& kind, void (*fuzz)(const uint8_t*, size_t), size
             run(damaged);
         }
     }
-    EXPECT_GE(seeds, least_seeds);
+    EXPECT_GE(seeds, min_seeds);
 }
 
 TEST(FuzzSeeds, DamagedPlyFilesAreScenesOrErrors) {

@@ -31,7 +31,7 @@ void add_tongue(Surface& out, uint64_t triangles, bool with_normals) {
 } // namespace
 
 Surface make_creature(uint64_t triangles, bool with_normals) {
-    assert(triangles >= kLeastCreature);
+    assert(triangles >= kMinCreature);
     const std::vector<Limb> limbs = anatomy();
     std::vector<Extent> extents;
     double area = 0;

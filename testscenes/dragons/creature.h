@@ -8,7 +8,7 @@
 namespace ovc::dragons {
 
 /// The fewest triangles that make_creature() takes.
-inline constexpr uint64_t kLeastCreature = 20'000;
+inline constexpr uint64_t kMinCreature = 20'000;
 
 /// Exactly `triangles`. It stands on y = 0 and looks along +x, about 2.4 long and 1.6 high. Every
 /// part of it is closed, but for the tongue, which an odd number of triangles needs.

@@ -42,7 +42,7 @@ CameraPath dragons_path(uint32_t count) {
 }
 
 Scene make_dragons(uint32_t count, const Soup* model) {
-    static_assert(std::size(kPlaces) == kMostDragons);
+    static_assert(std::size(kPlaces) == kMaxDragons);
     Scene scene;
     scene.materials.push_back({"mirror", vec3(0.30f, 0.31f, 0.33f), 0.45f});
     scene.materials.push_back({"jade", vec3(0.30f, 0.50f, 0.34f), 0});

@@ -46,11 +46,11 @@ struct Tuft {
     double height;
     double bend; // as a share of the height
     double width;
-    uint32_t least_blades;
+    uint32_t min_blades;
 };
 
 void add_tuft(Corners& out, const Tuft& tuft, double detail, Random& random) {
-    const uint32_t count = scaled(tuft.blades, detail, tuft.least_blades);
+    const uint32_t count = scaled(tuft.blades, detail, tuft.min_blades);
     const double width = tuft.width * std::min(4.0, std::sqrt(tuft.blades / count));
     const double radius = detail > 0.2 ? tuft.radius : 2 * tuft.radius; // hides gaps far away
     const int segments = detail > 0.6 ? 3 : detail > 0.2 ? 2 : 1;

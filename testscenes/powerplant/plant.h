@@ -47,8 +47,8 @@ void add_risers(Works& works, const Bay& bay, Random& random);
 void add_machines(Works& works, const Bay& bay, Random& random);
 // yard.cpp: what stands outside
 void add_yard(Works& works, const Plan& plan);
-/// A heap of coal of exactly so many triangles, even and at least kLeastHeap.
-inline constexpr uint64_t kLeastHeap = 2000;
+/// A heap of coal of exactly so many triangles, even and at least kMinHeap.
+inline constexpr uint64_t kMinHeap = 2000;
 void add_coal_heap(Works& works, const Plan& plan, uint64_t triangles);
 
 } // namespace ovc::powerplant

@@ -87,7 +87,7 @@ Works build_all(const Plan& plan, uint64_t triangles) {
     uint64_t used = 0;
     for (const Sizes& size : sizes) {
         const uint64_t more = std::accumulate(size.begin(), size.end(), uint64_t(0)) / 3;
-        if (used + more > triangles - kLeastHeap)
+        if (used + more > triangles - kMinHeap)
             break;
         used += more;
         places.push_back(at);

@@ -124,7 +124,7 @@ void add_yard(Works& works, const Plan& plan) {
 }
 
 void add_coal_heap(Works& works, const Plan& plan, uint64_t triangles) {
-    assert(triangles % 2 == 0 && triangles >= kLeastHeap);
+    assert(triangles % 2 == 0 && triangles >= kMinHeap);
     const double radius = 20, height = 10;
     const dvec3 middle(-58, -0.4, 0.5 * plan.depth());
     const TubeGrid grid = tube_grid(triangles, 0.5);

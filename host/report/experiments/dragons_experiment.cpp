@@ -102,7 +102,7 @@ Json mean_ratio(const Json& rows, const char* mean, const char* a, const char* b
 }
 
 /// The most dragons that the system rendered.
-Json most_with(const Json& rows, const char* system) {
+Json max_with(const Json& rows, const char* system) {
     Json most = nullptr;
     for (const Json& row : rows)
         if (find_system(row["systems"], system))
@@ -140,9 +140,9 @@ Json figures(std::span<const RawResult> results) {
          mean_ratio(rows, cost, "product-mixed", "product-batched")},
         {"bytes a triangle, the most dragons", "64 to 67", bytes_a_triangle(rows, "batched_mb"),
          bytes_a_triangle(rows, "product-batched_mb")},
-        {"dragons in a single texture, at most", "4", most_with(rows, "single"), nullptr},
+        {"dragons in a single texture, at most", "4", max_with(rows, "single"), nullptr},
         {"dragons rendered without a wall, of those asked for here", "18", nullptr,
-         most_with(rows, "product-budget")}};
+         max_with(rows, "product-budget")}};
     return {{"model", model_text(results[0].run)},
             {"renderer", renderer},
             {"budget_mb", budget_megabytes(results)},

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 /// A run may take so many times what is expected, and this at least: machines differ, and are
 /// shared.
 constexpr double kPatience = 20;
-constexpr double kLeastLimit = 300;
+constexpr double kMinLimit = 300;
 
 /// The empty folder of a run; it goes with this.
 class RunFolder {
@@ -119,7 +119,7 @@ public:
                                      own.error().message())};
         const Result<ProgramEnd> end =
             watch_program(words_of(run, around_.program, own.path()),
-                          std::max(kLeastLimit, kPatience * run.seconds), around_.stop);
+                          std::max(kMinLimit, kPatience * run.seconds), around_.stop);
         if (!end)
             return end.error();
         if (end->stopped)

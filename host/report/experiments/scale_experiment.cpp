@@ -124,7 +124,7 @@ constexpr Projected kProjected[] = {{1e9, 1}, {1e9, 100}, {1e11, 1}, {1e11, 1000
 
 /// The power law of a column through its last row, at x. Building is taken to grow in proportion at
 /// least: small scenes take a part of their time whatever their size.
-Json carried_on(const Json& sweep, const char* column, double x, double least_exponent) {
+Json carried_on(const Json& sweep, const char* column, double x, double min_exponent) {
     const auto found = std::ranges::find(sweep["columns"], column);
     if (found == sweep["columns"].end())
         return nullptr;
@@ -133,7 +133,7 @@ Json carried_on(const Json& sweep, const char* column, double x, double least_ex
     if (exponent.is_null() || last["values"][c].is_null())
         return nullptr;
     return last["values"][c].get<double>() *
-           std::pow(x / last["x"].get<double>(), std::max(least_exponent, exponent.get<double>()));
+           std::pow(x / last["x"].get<double>(), std::max(min_exponent, exponent.get<double>()));
 }
 
 /// What each of so many machines would take, each with its share of the triangles.

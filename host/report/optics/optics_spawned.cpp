@@ -18,7 +18,7 @@ constexpr uint64_t kRaysPerShape = 100; // of the short form, before they spawn
 constexpr uint32_t kDepth = 6;
 
 /// A ray that left shape `shape`, or, at depth 0, is aimed at it.
-struct Flight {
+struct SpawnedRay {
     Ray ray;
     TriangleId skip;
     uint32_t shape;
@@ -27,16 +27,16 @@ struct Flight {
 };
 
 /// Towards a vertex, a point of an edge or of the inside of some triangle, from outside all shapes.
-Flight aimed(const ShapeField& field, uint32_t shape, Random& random) {
+SpawnedRay aimed(const ShapeField& field, uint32_t shape, Random& random) {
     const Chunk& chunk = field.scene.soup.chunks[shape];
     const Triangle t = field.scene.soup.triangle({shape, random.below(chunk.size())});
     const uint32_t kind = random.below(3);
     const double v = kind == 0 ? 0 : random.uniform(), w = kind == 2 ? random.uniform() : 0;
     const dvec3 target = t[0] + v * (t[1] - t[0]) + (1 - v) * w * (t[2] - t[0]);
-    Flight flight{{}, {}, shape, 0, false};
-    flight.ray.org = chunk.origin() + 2.2 * field.scale * random.direction();
-    flight.ray.dir = target - flight.ray.org;
-    return flight;
+    SpawnedRay ray{{}, {}, shape, 0, false};
+    ray.ray.org = chunk.origin() + 2.2 * field.scale * random.direction();
+    ray.ray.dir = target - ray.ray.org;
+    return ray;
 }
 
 class Follower {
@@ -45,21 +45,21 @@ public:
         : field_(field), backend_(backend), random_(seed) {}
 
     /// Follows the light of kBatch rays or less until it is lost or has met kDepth surfaces.
-    Result<Done> follow(std::vector<Flight> flights) {
-        while (!flights.empty()) {
+    Result<Done> follow(std::vector<SpawnedRay> spawned) {
+        while (!spawned.empty()) {
             rays_.clear();
             skip_.clear();
-            for (const Flight& flight : flights) {
-                rays_.push_back(flight.ray);
-                skip_.push_back(flight.skip);
+            for (const SpawnedRay& ray : spawned) {
+                rays_.push_back(ray.ray);
+                skip_.push_back(ray.skip);
             }
-            hits_.resize(flights.size());
+            hits_.resize(spawned.size());
             if (const Result<Done> done = backend_.intersect(rays_, skip_, hits_); !done)
                 return done;
-            std::vector<Flight> next;
-            for (size_t i = 0; i < flights.size(); ++i)
-                judge(flights[i], hits_[i], next);
-            flights = std::move(next);
+            std::vector<SpawnedRay> next;
+            for (size_t i = 0; i < spawned.size(); ++i)
+                judge(spawned[i], hits_[i], next);
+            spawned = std::move(next);
         }
         return Done{};
     }
@@ -67,36 +67,36 @@ public:
     const OpticsScore& score() const { return score_; }
 
 private:
-    void judge(const Flight& flight, const Hit& hit, std::vector<Flight>& next) {
-        score_.rays += flight.depth > 0;
-        const bool own = hit.is_hit() && hit.id.mesh == flight.shape;
+    void judge(const SpawnedRay& ray, const Hit& hit, std::vector<SpawnedRay>& next) {
+        score_.rays += ray.depth > 0;
+        const bool own = hit.is_hit() && hit.id.mesh == ray.shape;
         if (!own) {
-            score_.leaks += flight.inside;
+            score_.leaks += ray.inside;
             return;
         }
-        const SurfacePoint surface = surface_point(field_.scene, flight.ray, hit);
-        if (flight.depth > 0) {
-            const bool again = !flight.inside && field_.convex[flight.shape];
-            score_.wrong += again || surface.entering == flight.inside;
+        const SurfacePoint surface = surface_point(field_.scene, ray.ray, hit);
+        if (ray.depth > 0) {
+            const bool again = !ray.inside && field_.convex[ray.shape];
+            score_.wrong += again || surface.entering == ray.inside;
         }
         // Where an aimed ray grazes a corner, the far side may be what it hits.
-        if (surface.entering != flight.inside && flight.depth < kDepth)
-            spawn(flight, hit, surface, next);
+        if (surface.entering != ray.inside && ray.depth < kDepth)
+            spawn(ray, hit, surface, next);
     }
 
-    void spawn(const Flight& flight, const Hit& hit, const SurfacePoint& surface,
-               std::vector<Flight>& next) {
-        const std::optional<Ray> refraction = refracted_ray(flight.ray, surface);
+    void spawn(const SpawnedRay& ray, const Hit& hit, const SurfacePoint& surface,
+               std::vector<SpawnedRay>& next) {
+        const std::optional<Ray> refraction = refracted_ray(ray.ray, surface);
         // At first both, then the one or the other, or rays would double at each surface.
-        const bool both = flight.depth == 0, through = random_.chance(0.5);
-        Flight spawned{{}, hit.id, flight.shape, flight.depth + 1, flight.inside};
+        const bool both = ray.depth == 0, through = random_.chance(0.5);
+        SpawnedRay spawned{{}, hit.id, ray.shape, ray.depth + 1, ray.inside};
         if (both || !through || !refraction) {
-            spawned.ray = mirror_ray(flight.ray, surface);
+            spawned.ray = mirror_ray(ray.ray, surface);
             next.push_back(spawned);
         }
         if (refraction && (both || through)) {
             spawned.ray = *refraction;
-            spawned.inside = !flight.inside;
+            spawned.inside = !ray.inside;
             next.push_back(spawned);
         }
     }
@@ -120,14 +120,14 @@ Result<OpticsScore> spawned_rays(const OpticsOptions& options, const LogSink& lo
         return backend.error();
     Random random(/* seed= */ 3);
     Follower follower(field, **backend, /* seed= */ 4);
-    std::vector<Flight> flights;
+    std::vector<SpawnedRay> spawned;
     const uint64_t rounds = kRaysPerShape * options.times;
     for (uint64_t round = 0; round < rounds; ++round) {
         for (uint32_t shape = 0; shape < options.shapes; ++shape)
-            flights.push_back(aimed(field, shape, random));
-        if (flights.size() < kBatch && round + 1 < rounds)
+            spawned.push_back(aimed(field, shape, random));
+        if (spawned.size() < kBatch && round + 1 < rounds)
             continue;
-        if (const Result<Done> done = follower.follow(std::exchange(flights, {})); !done)
+        if (const Result<Done> done = follower.follow(std::exchange(spawned, {})); !done)
             return done.error();
     }
     return follower.score();

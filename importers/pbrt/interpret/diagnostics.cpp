@@ -7,7 +7,7 @@
 namespace ovc::pbrt {
 
 /// Kinds that are told apart, such as the names of missing files: more are only noise.
-static constexpr size_t kMostWarnings = 1000;
+static constexpr size_t kMaxWarnings = 1000;
 
 Error error_at(const Place& place, std::string_view sentence) {
     return {fmt::format("{}:{}: {}", place.file ? *place.file : "", place.line, sentence)};
@@ -17,7 +17,7 @@ void Diagnostics::warn(Gravity gravity, const std::string& kind, const Place& pl
                        std::string_view sentence) {
     if (strict_ && gravity == Gravity::Missing)
         fail(error_at(place, sentence));
-    else if (said_.size() < kMostWarnings && said_.insert(kind).second)
+    else if (said_.size() < kMaxWarnings && said_.insert(kind).second)
         say(log_, LogLevel::Warning, error_at(place, sentence).message);
 }
 

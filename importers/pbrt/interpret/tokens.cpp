@@ -200,11 +200,11 @@ bool Tokens::include(const std::string& name, const Place& place, bool marks_its
     if (files_.size() >= kDeepest)
         return diagnostics_.fail(place,
                                  fmt::format("found more than {} files in each other", kDeepest));
-    if (files_.back().again && ++again_count_ > most_again_)
+    if (files_.back().again && ++again_count_ > max_again_)
         return diagnostics_.fail(
             place, fmt::format("found more than {} includes in files that are included again and "
                                "again; a larger --max-triangles allows more",
-                               most_again_));
+                               max_again_));
     Result<Source> source = Source::open(*path, files_read_);
     if (!source)
         return missing(source.error().message);

@@ -38,14 +38,14 @@ std::string described(const Token& token);
 class Tokens {
 public:
     /// Nothing is read yet. root: the folder that names are relative to. files_read: receives what
-    /// is looked for and read; or null. most_again: how many includes of files that are read again
+    /// is looked for and read; or null. max_again: how many includes of files that are read again
     /// are followed; those of files that are read once only are followed in any number.
     Tokens(std::filesystem::path root, Diagnostics& diagnostics, FilesRead* files_read,
-           uint64_t most_again)
+           uint64_t max_again)
         : root_(std::move(root)),
           diagnostics_(diagnostics),
           files_read_(files_read),
-          most_again_(most_again) {}
+          max_again_(max_again) {}
 
     FilesRead* files_read() const { return files_read_; }
 
@@ -94,7 +94,7 @@ private:
     std::filesystem::path root_;
     Diagnostics& diagnostics_;
     FilesRead* const files_read_;
-    const uint64_t most_again_;
+    const uint64_t max_again_;
     uint64_t again_count_ = 0;
     std::unordered_set<std::string> read_; // identities
     std::vector<File> files_;              // the innermost last

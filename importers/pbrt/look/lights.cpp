@@ -17,7 +17,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 /// Each costs a shadow ray for every hit.
-constexpr size_t kMostAreaLights = 32;
+constexpr size_t kMaxAreaLights = 32;
 
 /// Of a constant sky: what a surface reflects of it without shadows, and what comes from above and
 /// casts some. An open surface would reflect all; rooms see little of it.
@@ -139,7 +139,7 @@ void Lights::add_area(const Shape& shape, const Emission& emission) {
 void Lights::finish(const dvec3& view_up, Scene& scene) {
     if (!any_)
         return;
-    if (area_lights_.size() > kMostAreaLights) {
+    if (area_lights_.size() > kMaxAreaLights) {
         // The strongest stay, and take over the light of the others.
         const auto weight = [](const Light& light) { return mean(light.color); };
         std::stable_sort(area_lights_.begin(), area_lights_.end(),
@@ -147,9 +147,9 @@ void Lights::finish(const dvec3& view_up, Scene& scene) {
         float kept = 0, all = 0;
         for (size_t i = 0; i < area_lights_.size(); ++i) {
             all += weight(area_lights_[i]);
-            kept += i < kMostAreaLights ? weight(area_lights_[i]) : 0;
+            kept += i < kMaxAreaLights ? weight(area_lights_[i]) : 0;
         }
-        area_lights_.resize(kMostAreaLights);
+        area_lights_.resize(kMaxAreaLights);
         for (Light& light : area_lights_)
             light.color *= kept > 0 ? all / kept : 1;
     }

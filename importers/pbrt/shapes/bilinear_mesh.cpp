@@ -27,7 +27,7 @@ struct Patch {
     double bulge() const { return glm::length(p[0] + p[3] - p[1] - p[2]) / 4; }
 };
 
-constexpr double kMostSteps = 16;
+constexpr double kMaxSteps = 16;
 
 /// Divided into n x n, a patch lies 1/n^2 of its bulge off its triangles. All are divided alike,
 /// or neighbours would not meet.
@@ -38,7 +38,7 @@ uint32_t steps_for(const std::vector<Patch>& patches, double tolerance) {
         if (allowed > 0 && allowed < 1e300 && patch.bulge() > 1e-9 * patch.size())
             steps = std::max(steps, std::ceil(std::sqrt(patch.bulge() / allowed)));
     }
-    return uint32_t(std::min(steps, kMostSteps));
+    return uint32_t(std::min(steps, kMaxSteps));
 }
 
 void add_patch(const Patch& patch, uint32_t steps, Mesh& mesh) {
@@ -74,12 +74,12 @@ std::optional<Mesh> make_bilinear_mesh(ShapeRequest& request) {
         patches[i / 4].p[i % 4] = {p[0], p[1], p[2]};
     }
     const uint32_t steps = steps_for(patches, request.tolerance);
-    if (patches.size() * 2 * steps * steps > request.most_triangles) {
+    if (patches.size() * 2 * steps * steps > request.max_triangles) {
         request.diagnostics.fail(
             request.place,
             fmt::format("found a bilinearmesh of {} triangles, expected at most {} more; "
                         "--max-triangles allows more",
-                        patches.size() * 2 * steps * steps, request.most_triangles));
+                        patches.size() * 2 * steps * steps, request.max_triangles));
         return std::nullopt;
     }
     Mesh mesh;

@@ -168,12 +168,12 @@ std::optional<Mesh> make_loop_subdivision(ShapeRequest& request) {
     if (!(levels >= 0) || levels > 32)
         return left_out(request, fmt::format("found {} levels, expected 0 to 32", levels));
     const double triangles = double(indices->size()) / 3 * std::pow(4, std::floor(levels));
-    if (triangles > double(request.most_triangles) || triangles * 3 > 4294967295.0) {
+    if (triangles > double(request.max_triangles) || triangles * 3 > 4294967295.0) {
         request.diagnostics.fail(
             request.place,
             fmt::format("found a loopsubdiv of {:.0f} triangles, expected at most {} "
                         "more; --max-triangles allows more",
-                        triangles, request.most_triangles));
+                        triangles, request.max_triangles));
         return std::nullopt;
     }
 

@@ -14,7 +14,7 @@ namespace ovc::pbrt {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kMostSteps = 256;
+constexpr double kMaxSteps = 256;
 
 /// Points at phi = 0, in the order of pbrt's v, and the normals there.
 struct Profile {
@@ -38,9 +38,9 @@ struct Steps {
         const double steps = kPi / std::sqrt(is_curved ? tolerance : 2 * tolerance);
         return 4 * std::ceil(steps / 4);
     }
-    /// From 1 to as many as a circle has, or kMostSteps; 1 for what is no number.
+    /// From 1 to as many as a circle has, or kMaxSteps; 1 for what is no number.
     size_t whole(double steps) const {
-        const double most = std::max(kMostSteps, round(true));
+        const double most = std::max(kMaxSteps, round(true));
         return steps > 1 ? size_t(std::ceil(std::min(steps, most))) : 1;
     }
     size_t of(double share_of_circle, bool is_curved) const {

@@ -15,8 +15,8 @@ struct ShapeRequest {
     Place place;
     const Tokens& tokens; // where files are found
     Diagnostics& diagnostics;
-    uint64_t most_triangles; // what the scene still allows
-    double tolerance;        // as kTolerance
+    uint64_t max_triangles; // what the scene still allows
+    double tolerance;       // as kTolerance
 };
 
 /// Nothing where the shape is left out: unknown, without its data, or with data that does not fit

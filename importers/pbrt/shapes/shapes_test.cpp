@@ -100,19 +100,19 @@ TEST(PbrtShapes, QuadricsLieWithinTheToleranceThatIsAskedFor) {
     const auto ball = [](const dvec3& p) { return glm::length(p) - 1; };
     const auto tube = [](const dvec3& p) { return std::hypot(p.x, p.y) - 1; };
     size_t fewer = 0;
-    for (const double tolerance : {kMostTolerance, 0.1, 0.01, 0.001, kLeastTolerance}) {
+    for (const double tolerance : {kMaxTolerance, 0.1, 0.01, 0.001, kMinTolerance}) {
         const auto sphere = shape("\"sphere\"", tolerance);
         EXPECT_GT(sphere.size(), 2 * fewer) << tolerance;
         fewer = sphere.size();
-        double most_round = 0, most_flat = 0;
+        double max_round = 0, max_flat = 0;
         for (const Triangle& t : sphere)
-            most_round = std::max(most_round, -ball((t[0] + t[1] + t[2]) / 3.0));
+            max_round = std::max(max_round, -ball((t[0] + t[1] + t[2]) / 3.0));
         for (const Triangle& t : shape("\"cylinder\"", tolerance))
-            most_flat = std::max(most_flat, -tube((t[0] + t[1] + t[2]) / 3.0));
-        EXPECT_LE(most_round, tolerance);
-        EXPECT_GE(most_round, tolerance / 4);
-        EXPECT_LE(most_flat, tolerance);
-        EXPECT_GE(most_flat, tolerance / 4);
+            max_flat = std::max(max_flat, -tube((t[0] + t[1] + t[2]) / 3.0));
+        EXPECT_LE(max_round, tolerance);
+        EXPECT_GE(max_round, tolerance / 4);
+        EXPECT_LE(max_flat, tolerance);
+        EXPECT_GE(max_flat, tolerance / 4);
     }
 }
 

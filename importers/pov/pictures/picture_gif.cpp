@@ -46,15 +46,15 @@ std::vector<uint8_t> read_blocks(Input& in) {
 
 /// Up to `count` indices; fewer where the data is damaged. Each code stands for a code before it
 /// and one index more.
-std::vector<uint8_t> unpack(const std::vector<uint8_t>& data, uint32_t least_bits, size_t count) {
+std::vector<uint8_t> unpack(const std::vector<uint8_t>& data, uint32_t min_bits, size_t count) {
     constexpr uint32_t kCodes = 4096;
     std::vector<uint8_t> out, backwards;
     std::vector<uint16_t> before(kCodes, 0);
     std::vector<uint8_t> last(kCodes, 0);
-    const uint32_t clear = 1u << least_bits, end = clear + 1;
+    const uint32_t clear = 1u << min_bits, end = clear + 1;
     for (uint32_t i = 0; i < clear; ++i)
         last[i] = uint8_t(i);
-    uint32_t next = end + 1, bits = least_bits + 1, previous = kCodes;
+    uint32_t next = end + 1, bits = min_bits + 1, previous = kCodes;
     uint64_t held = 0;
     uint32_t held_bits = 0;
     for (size_t at = 0; out.size() < count;) {
@@ -69,7 +69,7 @@ std::vector<uint8_t> unpack(const std::vector<uint8_t>& data, uint32_t least_bit
             break;
         if (code == clear) {
             next = end + 1;
-            bits = least_bits + 1;
+            bits = min_bits + 1;
             previous = kCodes;
             continue;
         }
@@ -123,13 +123,13 @@ Result<Picture> read_gif(Bytes file) {
     in.skip(4); // where it stands on the screen
     const uint32_t width = in.word(), height = in.word(), flags = in.byte();
     read_table(in, flags, table);
-    const uint32_t least_bits = in.byte();
+    const uint32_t min_bits = in.byte();
     Result<Picture> picture = make_picture(width, height);
     if (!picture)
         return picture;
-    if (least_bits < 1 || least_bits > 8)
+    if (min_bits < 1 || min_bits > 8)
         return Error{"found a damaged GIF picture"};
-    const std::vector<uint8_t> indices = unpack(read_blocks(in), least_bits, picture->size());
+    const std::vector<uint8_t> indices = unpack(read_blocks(in), min_bits, picture->size());
     if (indices.size() < picture->size())
         return Error{"found a GIF picture that ends too early"};
     std::vector<uint32_t> rows;

@@ -51,7 +51,7 @@ TEST(PovPicture, IsWhatPovRayWroteInEveryFormat) {
     const struct {
         const char* format;
         const char* name;
-        int most_off;
+        int max_off;
     } cases[] = {{"+FP16", "a.ppm", 300}, {"+FN", "b.png", 0}, {"+FN16", "c.png", 300},
                  {"+FT", "d.tga", 0},     {"+FC", "e.tga", 0}, {"+FJ100", "f.jpg", 257 * 60}};
     for (const auto& c : cases) {
@@ -68,7 +68,7 @@ TEST(PovPicture, IsWhatPovRayWroteInEveryFormat) {
                 most = std::max(most, off);
                 sum += off;
             }
-        EXPECT_LE(most, c.most_off) << c.name;
+        EXPECT_LE(most, c.max_off) << c.name;
         EXPECT_LT(sum / double(3 * picture->size()), 800) << c.name;
     }
 }

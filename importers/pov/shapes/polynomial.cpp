@@ -75,13 +75,13 @@ namespace {
 /// How far the set below 0 reaches along an axis, at most: boxes are halved, the farthest first,
 /// until that one is small.
 double farthest(const Polynomial& polynomial, const Box& whole, int axis, int way) {
-    constexpr int kMostBoxes = 400; // of flat surfaces many reach equally far
+    constexpr int kMaxBoxes = 400; // of flat surfaces many reach equally far
     const auto reach = [&](const Box& box) { return way > 0 ? box.hi[axis] : -box.lo[axis]; };
     const auto nearer = [&](const Box& a, const Box& b) { return reach(a) < reach(b); };
     std::priority_queue<Box, std::vector<Box>, decltype(nearer)> open(nearer);
     open.push(whole);
     const dvec3 enough = whole.extent() / 64.0;
-    for (int i = 0; i < kMostBoxes && !open.empty(); ++i) {
+    for (int i = 0; i < kMaxBoxes && !open.empty(); ++i) {
         const Box box = open.top();
         const dvec3 sizes = box.extent() / enough;
         const int longest = major_axis(sizes);
@@ -110,9 +110,9 @@ Box tightened(const Polynomial& polynomial, const Box& box) {
             if (!(next.lo[axis] <= next.hi[axis]))
                 return Box();
         }
-        const bool is_settled = glm::all(glm::greaterThanEqual(next.extent(), 0.8 * now.extent()));
+        const bool is_steady = glm::all(glm::greaterThanEqual(next.extent(), 0.8 * now.extent()));
         now = next;
-        if (is_settled)
+        if (is_steady)
             break;
     }
     return now;

@@ -42,10 +42,10 @@ private:
 Grid grid_of_function(Reader& reader, const Token& word) {
     const std::shared_ptr<const Function> function = parse_function(reader);
     const double width = function->grid.x, height = function->grid.y;
-    if (!(width >= 2 && height >= 2 && width * height <= double(kMostPixels)))
+    if (!(width >= 2 && height >= 2 && width * height <= double(kMaxPixels)))
         reader.fail(word.place,
                     fmt::format("found a height_field of {} x {} points, expected 2 x 2 to {}",
-                                width, height, kMostPixels));
+                                width, height, kMaxPixels));
     Grid grid;
     grid.width = size_t(width);
     grid.height = size_t(height);

@@ -14,8 +14,8 @@ namespace ovc::pov {
 namespace {
 
 /// So many triangles of objects that were asked about are kept, for the next question.
-constexpr uint64_t kMostKept = 10'000'000;
-constexpr size_t kMostTargets = 1000; // that many small objects
+constexpr uint64_t kMaxKept = 10'000'000;
+constexpr size_t kMaxTargets = 1000; // that many small objects
 /// Cutting so many takes about as long as running over a word.
 constexpr uint64_t kTrianglesAWord = 16;
 
@@ -35,13 +35,13 @@ std::shared_ptr<const TraceTarget> target_of(Reader& reader, const ObjectPtr& ob
     if (const auto at = reader.targets.find(object); at != reader.targets.end())
         return at->second;
     const auto target = std::make_shared<const TraceTarget>(
-        cut_object(*object, std::min(kMostKept, reader.limits.triangles)));
+        cut_object(*object, std::min(kMaxKept, reader.limits.triangles)));
     reader.spend(target->triangle_count() / kTrianglesAWord);
     reader.grow(3 * target->triangle_count() * sizeof(Corner));
     uint64_t kept = target->triangle_count();
     for (const auto& [other, cut] : reader.targets)
         kept += cut->triangle_count();
-    if (kept > kMostKept || reader.targets.size() >= kMostTargets)
+    if (kept > kMaxKept || reader.targets.size() >= kMaxTargets)
         reader.targets.clear();
     reader.targets[object] = target;
     return target;

@@ -11,7 +11,7 @@
 namespace ovc::pov {
 
 /// What a scene may write in all.
-static constexpr size_t kMostWritten = size_t(64) << 20;
+static constexpr size_t kMaxWritten = size_t(64) << 20;
 
 std::shared_ptr<DataFile> Reader::raw_file(std::string_view after, bool writes) {
     Name* name = raw_name(after);
@@ -102,8 +102,8 @@ void Reader::do_write() {
         if (!file->write(hooks_.value(*this)))
             fail(at, "found a value that cannot be written, expected a text or numbers");
         written_bytes_ += file->text.size() - before;
-        if (written_bytes_ > kMostWritten)
-            fail(at, fmt::format("stopped after {} bytes written", kMostWritten));
+        if (written_bytes_ > kMaxWritten)
+            fail(at, fmt::format("stopped after {} bytes written", kMaxWritten));
     }
 }
 

@@ -82,7 +82,7 @@ static void say_once(const std::string& sentence) {
 
 OvercastMesh* overcast_take(const OvercastTriangles& triangles) {
     const OvercastSettings settings = overcast_settings();
-    if (triangles.triangle_count < settings.least_triangles)
+    if (triangles.triangle_count < settings.min_triangles)
         return nullptr;
     try {
         return new OvercastMesh(OvercastDevice::open(settings), triangles,

@@ -61,6 +61,6 @@ OvercastSettings overcast_settings() {
     if (const std::string text = variable("OVC_POVRAY_GPU_MEMORY"); !text.empty())
         settings.gpu_memory_bytes = bytes_of("OVC_POVRAY_GPU_MEMORY", text);
     if (const std::string text = variable("OVC_POVRAY_TRIANGLES"); !text.empty())
-        settings.least_triangles = triangles_of("OVC_POVRAY_TRIANGLES", text);
+        settings.min_triangles = triangles_of("OVC_POVRAY_TRIANGLES", text);
     return settings;
 }

@@ -3,7 +3,7 @@
 #include "plugin/hosts/tachyon/taken_triangles.h"
 
 #include "plugin/hosts/tachyon/beside.h"
-#include "plugin/hosts/tachyon/twin_sets.h"
+#include "plugin/hosts/tachyon/duplicate_sets.h"
 
 #include <algorithm>
 #include <array>
@@ -25,7 +25,7 @@ namespace {
 struct Stand {
     RT_OBJECT_HEAD
     std::vector<object*> triangles; // by prim
-    TwinSets twins;
+    DuplicateSets duplicates;
     std::unique_ptr<SingleRays> rays;
 };
 
@@ -38,7 +38,7 @@ bool offer(const object* triangle, ray& r) {
     return r.maxdist < before;
 }
 
-/// The triangles last offered to a ray, of twins the smallest.
+/// The triangles last offered to a ray, of duplicates the smallest.
 class Offered {
 public:
     bool has(uint32_t prim) const { return std::ranges::find(last_, prim) != last_.end(); }
@@ -50,12 +50,12 @@ private:
     size_t count_ = 0;
 };
 
-/// Offers the triangle and its twins, which Overcast does not name beside it.
+/// Offers the triangle and its duplicates, which Overcast does not name beside it.
 bool offer_all(const Stand& stand, uint32_t prim, ray& r, Offered& offered) {
     bool taken = offer(stand.triangles[prim], r);
     offered.add(prim);
-    for (const uint32_t twin : stand.twins.of(prim))
-        taken = offer(stand.triangles[twin], r) || taken;
+    for (const uint32_t duplicate : stand.duplicates.of(prim))
+        taken = offer(stand.triangles[duplicate], r) || taken;
     return taken;
 }
 
@@ -65,13 +65,13 @@ bool offer_found(const Stand& stand, const ovc_ray& asked, const ovc_hit& hit, r
                  Offered& offered) {
     const auto& triangle = *reinterpret_cast<const Triangle*>(stand.triangles[hit.prim]);
     const RaysBeside rays = rays_beside(asked, hit, triangle);
-    const uint32_t found = stand.twins.smallest(hit.prim);
+    const uint32_t found = stand.duplicates.smallest(hit.prim);
     if (rays.count == 0)
         return offer_all(stand, found, r, offered);
     std::set<uint32_t> prims = {found};
     for (const ovc_ray& beside : rays)
         if (const std::optional<ovc_hit> other = stand.rays->nearest(beside, hit.prim))
-            prims.insert(stand.twins.smallest(other->prim));
+            prims.insert(stand.duplicates.smallest(other->prim));
     bool taken = false;
     for (const uint32_t prim : prims)
         if (!offered.has(prim))
@@ -90,9 +90,9 @@ void ask(const Stand& stand, ray& r) {
             return;
         asked.t_min = std::max(asked.t_min, hit->t);
         skip = hit->prim;
-        if (offered.has(stand.twins.smallest(hit->prim))) {
+        if (offered.has(stand.duplicates.smallest(hit->prim))) {
             // At an edge two are equally near, t is rounded, and whoever skips a triangle is
-            // shown its twin: one may come again.
+            // shown its duplicate: one may come again.
             asked.t_min = std::nextafter(asked.t_min, std::numeric_limits<double>::infinity());
             continue;
         }
@@ -192,7 +192,7 @@ const SingleRays* take_triangles(scenedef& scene, Intersect triangle_intersect,
     order_as_tested(scene, stand->triangles, stand->triangles.size() + objects.others.size());
     stand->rays = std::make_unique<SingleRays>(corners_of(stand->triangles), settings);
     if (stand->rays->statistics().twins > 0)
-        stand->twins = TwinSets(stand->rays->corners());
+        stand->duplicates = DuplicateSets(stand->rays->corners());
     const SingleRays* rays = stand->rays.get();
     relink(scene, *stand.release(), objects.others);
     return rays;

@@ -18,7 +18,7 @@ constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 /// Not in the paper: without it triangles in one place all become children of one node, and n of
 /// them take n * n steps.
-constexpr uint32_t kMostChildren = 8;
+constexpr uint32_t kMaxChildren = 8;
 
 Boxf joined(Boxf a, const Boxf& b) {
     a.add(b);
@@ -80,7 +80,7 @@ private:
             const InsertionNode& node = nodes_[n];
             if (node.children > 0)
                 inherited += growth(node, box);
-            if (node.children < kMostChildren)
+            if (node.children < kMaxChildren)
                 consider(inherited + joined(node.box, box).half_area(), {n, false});
             uint32_t next = kNone;
             float least = kInfinite;

@@ -33,11 +33,11 @@ struct Grid {
 
 /// A grid over `triangles` of the soup, which lie in `bounds`, and its cells as leaves of at most
 /// max_leaf_triangles (> 0). The coarsest whose cells all hold so few, counted by their centres;
-/// or, where triangles crowd, of kMostCellsPerLeaf cells for each leaf that would do.
+/// or, where triangles crowd, of kMaxCellsPerLeaf cells for each leaf that would do.
 Level1 cut_into_grid(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                      uint32_t max_leaf_triangles, Grid& grid);
 
-inline constexpr uint64_t kMostCellsPerLeaf = 64;
+inline constexpr uint64_t kMaxCellsPerLeaf = 64;
 
 inline constexpr uint32_t kBeforeGrid = 0xffffffffu; // the ray has not begun
 inline constexpr uint32_t kBehindGrid = 0xfffffffeu; // no cell is left

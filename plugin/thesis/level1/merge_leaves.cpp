@@ -14,7 +14,7 @@ using Members = std::vector<TriangleId>;
 
 class Merger {
 public:
-    Merger(const KdTree& full, uint32_t most) : full_(full), most_(most) {}
+    Merger(const KdTree& full, uint32_t most) : full_(full), max_(most) {}
 
     std::vector<KdNode> run() {
         if (!full_.nodes.empty())
@@ -43,7 +43,7 @@ private:
         both.reserve(below->size() + above->size());
         std::set_union(below->begin(), below->end(), above->begin(), above->end(),
                        std::back_inserter(both));
-        if (both.size() > most_)
+        if (both.size() > max_)
             return std::nullopt;
         nodes_.erase(nodes_.begin() + ptrdiff_t(at), nodes_.end());
         nodes_.push_back(KdNode::leaf(0, 0));
@@ -52,13 +52,13 @@ private:
 
     std::optional<Members> limited(Members members) const {
         std::sort(members.begin(), members.end());
-        if (members.size() > most_)
+        if (members.size() > max_)
             return std::nullopt;
         return members;
     }
 
     const KdTree& full_;
-    const uint32_t most_;
+    const uint32_t max_;
     std::vector<KdNode> nodes_;
 };
 

@@ -17,7 +17,7 @@ Hittable take_hittable(BuiltScene& scene, ovc_statistics& statistics, const LogS
     statistics.triangles = scene.soup.triangle_count();
     statistics.dropped_not_finite = dropped.not_finite;
     statistics.dropped_degenerate = dropped.degenerate;
-    statistics.twins = scene.twins.count();
+    statistics.twins = scene.duplicates.count();
     return hittable;
 }
 

@@ -6,6 +6,7 @@
 #include "core/system/stopwatch.h"
 #include "gpu/gl/gl_check.h"
 #include "gpu/gl/kernel.h"
+#include "gpu/gl/workarounds.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>
@@ -65,8 +66,8 @@ Result<GLuint> LeafPasses::kernel() {
     config.stack_registers = software_;
     config.branches = !software_;
     config.buffer_images = software_;
-    if (software_ && units > kMostRoundsInSoftware)
-        config.most_rounds = kMostRoundsInSoftware;
+    if (needs(Workaround::CountedRounds) && units > kMaxCountedRounds)
+        config.max_rounds = kMaxCountedRounds;
     const std::array<ShaderStage, 2> stages = {
         {{GL_VERTEX_SHADER, "fullscreen.vert.glsl"}, {GL_FRAGMENT_SHADER, "leaf.frag.glsl"}}};
     Result<gl::Program> linked = link_program(stages, config.defines());

@@ -21,7 +21,7 @@ constexpr uint64_t kDefaultLeaves = 10; // thesis, section 4
 /// as much.
 constexpr uint64_t kBytesPerTriangle = 52;
 
-uint64_t most_triangles(const QueuedOptions& options, uint64_t triangles) {
+uint64_t max_triangles(const QueuedOptions& options, uint64_t triangles) {
     if (options.leaf_triangles)
         return options.leaf_triangles;
     const uint64_t leaves = options.leaves ? options.leaves : kDefaultLeaves;
@@ -126,7 +126,7 @@ Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThre
                                 options.build, progress);
     scene->statistics.seconds_level1 = watch.seconds();
     if (Result<Done> built = build_levels(
-            *scene, builder, most_triangles(options, hittable.triangles.size()), progress);
+            *scene, builder, max_triangles(options, hittable.triangles.size()), progress);
         !built)
         return built.error();
     count(*scene);

@@ -4,7 +4,7 @@
 
 #include "core/backlog.h"
 #include "core/system/stopwatch.h"
-#include "plugin/thesis/queued/flights.h"
+#include "plugin/thesis/queued/ray_states.h"
 #include "plugin/two_level/query.h"
 
 #include <algorithm>
@@ -14,13 +14,13 @@ namespace ovc::thesis {
 namespace {
 
 /// Algorithm 3: all queues of leaves, then level 1 again.
-Result<Done> trace_in_rounds(Flights& flights) {
+Result<Done> trace_in_rounds(RayStates& states) {
     while (true) {
-        flights.walk_level1();
-        if (!flights.waiting())
+        states.walk_level1();
+        if (!states.waiting())
             return Done{};
-        while (flights.waiting())
-            if (Result<Done> done = flights.trace_next_leaf(); !done)
+        while (states.waiting())
+            if (Result<Done> done = states.trace_next_leaf(); !done)
                 return done;
     }
 }
@@ -30,7 +30,7 @@ Result<Done> trace_in_rounds(Flights& flights) {
 class MixedStream final : public RayStream {
 public:
     MixedStream(QueuedScene& scene, StreamHost& host)
-        : statistics_(scene.statistics), host_(host), flights_(scene) {}
+        : statistics_(scene.statistics), host_(host), states_(scene) {}
 
     void push(const StreamRays& rays) override { (rays.any_hit ? any_ : nearest_).push(rays); }
 
@@ -43,10 +43,10 @@ public:
                 if (!deliver())
                     return stopped_by_host();
             } while (may_start());
-            if (!flights_.waiting())
+            if (!states_.waiting())
                 return Done{};
             const Stopwatch watch;
-            Result<Done> done = flights_.trace_next_leaf();
+            Result<Done> done = states_.trace_next_leaf();
             statistics_.seconds_trace += watch.seconds();
             if (!done)
                 return done;
@@ -58,11 +58,11 @@ private:
 
     /// Asks the host for more where half of what may be under way is missing.
     bool fill() {
-        const size_t busy = flights_.under_way() + backlog();
-        if (!more_ || busy > Flights::kMost / 2)
+        const size_t busy = states_.under_way() + backlog();
+        if (!more_ || busy > RayStates::kMax / 2)
             return true;
         const size_t before = backlog();
-        if (!host_.more(*this, Flights::kMost - busy))
+        if (!host_.more(*this, RayStates::kMax - busy))
             return false;
         more_ = backlog() > before;
         return true;
@@ -70,8 +70,8 @@ private:
 
     /// Is there more to send through level 1 before a leaf is chosen?
     bool may_start() const {
-        return (backlog() > 0 && flights_.under_way() < Flights::kMost) ||
-               (more_ && !flights_.waiting());
+        return (backlog() > 0 && states_.under_way() < RayStates::kMax) ||
+               (more_ && !states_.waiting());
     }
 
     /// Sends rays of the backlog, and all that have left their leaves, through level 1.
@@ -79,26 +79,26 @@ private:
         const Stopwatch watch;
         start(any_, /* any_hit= */ true);
         start(nearest_, /* any_hit= */ false);
-        flights_.walk_level1();
+        states_.walk_level1();
         statistics_.seconds_trace += watch.seconds();
     }
 
     void start(Backlog& backlog, bool any_hit) {
-        const size_t count = std::min(backlog.size(), Flights::kMost - flights_.under_way());
+        const size_t count = std::min(backlog.size(), RayStates::kMax - states_.under_way());
         const StreamRays rays = backlog.last(count);
-        flights_.add(any_hit, rays.rays, rays.skip, rays.tokens);
+        states_.add(any_hit, rays.rays, rays.skip, rays.tokens);
         backlog.drop_last(count);
     }
 
     bool deliver() {
         Answers answers;
-        flights_.take_answered([&](const Flight& flight) {
-            if (flight.any_hit) {
-                answers.shadow_tokens.push_back(flight.token);
-                answers.occluded.push_back(flight.hit.is_hit());
+        states_.take_answered([&](const RayState& state) {
+            if (state.any_hit) {
+                answers.shadow_tokens.push_back(state.token);
+                answers.occluded.push_back(state.hit.is_hit());
             } else {
-                answers.hit_tokens.push_back(flight.token);
-                answers.hits.push_back(flight.hit);
+                answers.hit_tokens.push_back(state.token);
+                answers.hits.push_back(state.hit);
             }
         });
         return (answers.occluded.empty() ||
@@ -115,7 +115,7 @@ private:
 
     ovc_statistics& statistics_;
     StreamHost& host_;
-    Flights flights_;
+    RayStates states_;
     Backlog nearest_;
     Backlog any_;
     bool more_ = true;
@@ -128,14 +128,14 @@ Result<Done> QueuedTwoLevel::trace(const Query& query) {
     const Stopwatch watch;
     std::vector<uint64_t> tokens(query.rays.size());
     std::iota(tokens.begin(), tokens.end(), uint64_t(0));
-    Flights flights(*scene_);
-    for (size_t first = 0; first < query.rays.size(); first += Flights::kMost) {
-        const size_t count = std::min(Flights::kMost, query.rays.size() - first);
+    RayStates states(*scene_);
+    for (size_t first = 0; first < query.rays.size(); first += RayStates::kMax) {
+        const size_t count = std::min(RayStates::kMax, query.rays.size() - first);
         const Query part = query.part(first, count);
-        flights.add(Query::kAnyHit, part.rays, part.skip, std::span(tokens).subspan(first, count));
-        if (Result<Done> done = trace_in_rounds(flights); !done)
+        states.add(Query::kAnyHit, part.rays, part.skip, std::span(tokens).subspan(first, count));
+        if (Result<Done> done = trace_in_rounds(states); !done)
             return done;
-        flights.take_answered([&](const Flight& flight) { query.set(flight.token, flight.hit); });
+        states.take_answered([&](const RayState& state) { query.set(state.token, state.hit); });
     }
     scene_->statistics.seconds_trace += watch.seconds();
     return Done{};

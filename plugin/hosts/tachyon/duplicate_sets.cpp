@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles sorted by their sorted corners: twins then stand side by side.
-#include "plugin/hosts/tachyon/twin_sets.h"
+// Triangles sorted by their sorted corners: duplicates then stand side by side.
+#include "plugin/hosts/tachyon/duplicate_sets.h"
 
 #include <algorithm>
 #include <array>
@@ -19,9 +19,10 @@ static Sorted<Number> sorted_corners(const std::vector<Number>& corners, size_t 
     return sorted;
 }
 
-/// Calls found(prim, twin) for each triangle that has a smaller twin, the smallest of its set.
+/// Calls found(prim, duplicate) for each triangle that has a smaller duplicate, the smallest of its
+/// set.
 template <class Number, class Found>
-static void find_twins(const std::vector<Number>& corners, Found&& found) {
+static void find_duplicates(const std::vector<Number>& corners, Found&& found) {
     std::vector<std::pair<Sorted<Number>, uint32_t>> all(corners.size() / 9);
     for (size_t prim = 0; prim < all.size(); ++prim)
         all[prim] = {sorted_corners(corners, prim), uint32_t(prim)};
@@ -34,25 +35,25 @@ static void find_twins(const std::vector<Number>& corners, Found&& found) {
     }
 }
 
-TwinSets::TwinSets(const Corners& corners) {
+DuplicateSets::DuplicateSets(const Corners& corners) {
     std::visit(
         [&](const auto& numbers) {
-            find_twins(numbers, [&](uint32_t smallest, uint32_t twin) {
-                others_[smallest].push_back(twin);
-                smallest_[twin] = smallest;
+            find_duplicates(numbers, [&](uint32_t smallest, uint32_t duplicate) {
+                others_[smallest].push_back(duplicate);
+                smallest_[duplicate] = smallest;
             });
         },
         corners);
 }
 
-std::span<const uint32_t> TwinSets::of(uint32_t prim) const {
+std::span<const uint32_t> DuplicateSets::of(uint32_t prim) const {
     if (others_.empty())
         return {};
     const auto found = others_.find(prim);
     return found == others_.end() ? std::span<const uint32_t>() : found->second;
 }
 
-uint32_t TwinSets::smallest(uint32_t prim) const {
+uint32_t DuplicateSets::smallest(uint32_t prim) const {
     if (smallest_.empty())
         return prim;
     const auto found = smallest_.find(prim);

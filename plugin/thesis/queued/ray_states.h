@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flights: rays under way between level 1 on the CPU and the queues of its leaves; the steps that
+// RayStates: rays under way between level 1 on the CPU and the queues of its leaves; the steps that
 // algorithms 3, 4 and 6 of the thesis are made of.
 #pragma once
 
@@ -17,31 +17,31 @@
 namespace ovc::thesis {
 
 /// A ray under way, as the host gave it, and how far it has come.
-struct Flight {
+struct RayState {
     Ray ray;
     TriangleId skip;
     uint64_t token = 0;
     bool any_hit = false;
     /// In its last cell: its hit lies there, so only leaves of that cell may hold a nearer one.
-    enum : uint8_t { New, Walking, InLastCell, Answered } state = New;
+    enum : uint8_t { New, Walking, InLastCell, Answered } step = New;
     uint32_t leaf = kNone; // whose queue it is in
     RayPlace place;
     double t_end = 0; // nothing beyond is of interest
     Hit hit;          // the nearest so far
 };
 
-class Flights {
+class RayStates {
 public:
-    explicit Flights(QueuedScene& scene) : s_(scene), queues_(scene.built.level1.leaves.size()) {}
-    ~Flights();
-    Flights(const Flights&) = delete;
+    explicit RayStates(QueuedScene& scene) : s_(scene), queues_(scene.built.level1.leaves.size()) {}
+    ~RayStates();
+    RayStates(const RayStates&) = delete;
 
-    /// Puts rays into the queue of level 1; with those under way, at most kMost. skip: empty, or
+    /// Puts rays into the queue of level 1; with those under way, at most kMax. skip: empty, or
     /// one per ray, as the tokens.
     void add(bool any_hit, const RaySpan& rays, std::span<const TriangleId> skip,
              std::span<const uint64_t> tokens);
-    size_t under_way() const { return flights_.size() - free_.size(); }
-    static constexpr size_t kMost = size_t(1) << 20; // some 200 bytes each
+    size_t under_way() const { return states_.size() - free_.size(); }
+    static constexpr size_t kMax = size_t(1) << 20; // some 200 bytes each
 
     /// Sends every ray in the queue of level 1 to the queue of its next leaf (algorithm 4), or to
     /// those answered, where there is none.
@@ -54,30 +54,30 @@ public:
     /// of level 1. waiting() must hold.
     Result<Done> trace_next_leaf();
 
-    /// Hands each ray that was answered since to hand_over(flight), and forgets it.
+    /// Hands each ray that was answered since to hand_over(state), and forgets it.
     template <class HandOver>
     void take_answered(HandOver&& hand_over) {
         for (const uint32_t i : answered_)
-            hand_over(flights_[i]);
+            hand_over(states_[i]);
         free_.insert(free_.end(), answered_.begin(), answered_.end());
         answered_.clear();
     }
 
 private:
     uint32_t slot();
-    void begin(Flight& flight);
-    void find_leaf(Flight& flight);
+    void begin(RayState& state);
+    void find_leaf(RayState& state);
     Result<Done> pass(uint32_t leaf, std::span<const uint32_t> batch);
     void load(uint32_t leaf, std::span<const uint32_t> batch);
-    void resolve(Flight& flight, const FrameAnswer& answer, bool decidable);
-    bool resolve_candidates(Flight& flight, const FrameAnswer& answer);
-    void enter_fast(Flight& flight, const FrameAnswer& answer);
-    void end_at(Flight& flight, const PreparedRay& p, double end, double slack);
-    void fall_back(Flight& flight);
+    void resolve(RayState& state, const FrameAnswer& answer, bool decidable);
+    bool resolve_candidates(RayState& state, const FrameAnswer& answer);
+    void enter_fast(RayState& state, const FrameAnswer& answer);
+    void end_at(RayState& state, const PreparedRay& p, double end, double slack);
+    void fall_back(RayState& state);
 
     QueuedScene& s_;
-    Queues queues_; // of leaves; hold indices of flights_, as all below
-    std::vector<Flight> flights_;
+    Queues queues_; // of leaves; hold indices of states_, as all below
+    std::vector<RayState> states_;
     std::vector<uint32_t> free_;
     std::vector<uint32_t> level1_queue_;
     std::vector<uint32_t> answered_;

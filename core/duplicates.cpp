@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Twins are found by a hash of their corners: a table of bits tells the few triangles whose hash
-// may come twice, and only those are sorted and compared. Each thread has its part of the hashes,
-// and a table of its own: shared, its lines would go from core to core for every other triangle.
-#include "core/twins.h"
+// Duplicates are found by a hash of their corners: a table of bits tells the few triangles whose
+// hash may come twice, and only those are sorted and compared. Each thread has its part of the
+// hashes, and a table of its own: shared, its lines would go from core to core for every other
+// triangle.
+#include "core/duplicates.h"
 
 #include "core/corner_hash.h"
 #include "core/system/parallel.h"
@@ -56,8 +57,8 @@ struct Part {
     bool has(uint64_t hash) const { return (hash >> 32) * count >> 32 == number; }
 };
 
-/// Of this part, the triangles that may be one of a set, by hash and then id: all twins, and of
-/// other triangles about one in sixteen. hashes: of `triangles`.
+/// Of this part, the triangles that may be one of a set, by hash and then id: all duplicates, and
+/// of other triangles about one in sixteen. hashes: of `triangles`.
 std::vector<Suspect> suspects(const Part& part, std::span<const TriangleId> triangles,
                               std::span<const uint64_t> hashes) {
     const size_t some = std::max<size_t>(triangles.size() / part.count, 64);
@@ -77,17 +78,17 @@ std::vector<Suspect> suspects(const Part& part, std::span<const TriangleId> tria
     return found;
 }
 
-/// What is known of some twins.
+/// What is known of some duplicates.
 struct Found {
-    std::vector<Twins::Pair> pairs;
+    std::vector<Duplicates::Pair> pairs;
     std::vector<TriangleId> out; // all but the smallest of each set
 };
 
 Found compared(const Soup& soup, std::vector<Suspect> all) {
     Found found;
     for (auto first = all.begin(); first != all.end();) {
-        // The first of what is left stands for its twins, which come next, in the order of ids;
-        // others of the same hash, hardly ever any, follow.
+        // The first of what is left stands for its duplicates, which come next, in the order of
+        // ids; others of the same hash, hardly ever any, follow.
         const auto end =
             std::find_if(first, all.end(), [&](const Suspect& s) { return s.hash != first->hash; });
         if (end == first + 1) {
@@ -95,15 +96,15 @@ Found compared(const Soup& soup, std::vector<Suspect> all) {
             continue;
         }
         const Triangle triangle = soup.triangle(first->id);
-        const auto is_twin = [&](const Suspect& s) {
+        const auto is_duplicate = [&](const Suspect& s) {
             return same_corners(triangle, soup.triangle(s.id));
         };
-        const auto rest =
-            std::stable_partition(std::find_if_not(first + 1, end, is_twin), end, is_twin);
+        const auto rest = std::stable_partition(std::find_if_not(first + 1, end, is_duplicate), end,
+                                                is_duplicate);
         if (rest != first + 1)
             found.pairs.push_back({first->id, (first + 1)->id});
-        for (auto twin = first + 1; twin != rest; ++twin)
-            found.out.push_back(twin->id);
+        for (auto duplicate = first + 1; duplicate != rest; ++duplicate)
+            found.out.push_back(duplicate->id);
         first = rest;
     }
     return found;
@@ -135,8 +136,8 @@ bool same_corners(const Triangle& a, const Triangle& b) {
     return false;
 }
 
-Twins Twins::take_out(const Soup& soup, std::vector<TriangleId>& triangles,
-                      BuildProgress* progress) {
+Duplicates Duplicates::take_out(const Soup& soup, std::vector<TriangleId>& triangles,
+                                BuildProgress* progress) {
     assert(std::is_sorted(triangles.begin(), triangles.end()));
     const std::vector<uint64_t> hashes = hashes_of(soup, triangles, progress);
     std::vector<Found> found(thread_count());
@@ -144,16 +145,16 @@ Twins Twins::take_out(const Soup& soup, std::vector<TriangleId>& triangles,
         for (size_t p = first; p < last; ++p)
             found[p] = compared(soup, suspects({p, found.size()}, triangles, hashes));
     });
-    Twins twins;
+    Duplicates duplicates;
     std::vector<TriangleId> out;
     for (const Found& part : found) {
-        twins.pairs_.insert(twins.pairs_.end(), part.pairs.begin(), part.pairs.end());
+        duplicates.pairs_.insert(duplicates.pairs_.end(), part.pairs.begin(), part.pairs.end());
         out.insert(out.end(), part.out.begin(), part.out.end());
     }
-    twins.count_ = out.size();
+    duplicates.count_ = out.size();
     if (out.empty())
-        return twins;
-    std::sort(twins.pairs_.begin(), twins.pairs_.end(),
+        return duplicates;
+    std::sort(duplicates.pairs_.begin(), duplicates.pairs_.end(),
               [](const Pair& a, const Pair& b) { return a.smallest < b.smallest; });
     parallel_sort(out.begin(), out.end());
     auto next = out.begin();
@@ -162,7 +163,7 @@ Twins Twins::take_out(const Soup& soup, std::vector<TriangleId>& triangles,
         next += is_out;
         return is_out;
     });
-    return twins;
+    return duplicates;
 }
 
 Hit as_hit_of(TriangleId id, const Soup& soup, const Hit& hit) {
@@ -176,7 +177,7 @@ Hit as_hit_of(TriangleId id, const Soup& soup, const Hit& hit) {
     return {hit.t, weight(to[1]), weight(to[2]), id};
 }
 
-TriangleId Twins::second(TriangleId id) const {
+TriangleId Duplicates::second(TriangleId id) const {
     const auto at =
         std::lower_bound(pairs_.begin(), pairs_.end(), id, [](const Pair& pair, TriangleId wanted) {
             return pair.smallest < wanted;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Twins: the smallest of each set stays, and a ray that does not see it meets the second.
-#include "core/twins.h"
+// Duplicates: the smallest of each set stays, and a ray that does not see it meets the second.
+#include "core/duplicates.h"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ Key key_of(const Triangle& triangle) {
     return key;
 }
 
-TEST(Twins, KeepTheSmallestOfEachSetAndNameTheSecond) {
+TEST(Duplicates, KeepTheSmallestOfEachSetAndNameTheSecond) {
     for (uint64_t seed = 0; seed < 20; ++seed) {
         const Soup soup = crowded_soup(seed, 50 << (seed % 5));
         const std::vector<TriangleId> before = all_of(soup);
@@ -52,20 +52,20 @@ TEST(Twins, KeepTheSmallestOfEachSetAndNameTheSecond) {
             sets[key_of(soup.triangle(id))].push_back(id);
 
         std::vector<TriangleId> kept = before;
-        const Twins twins = Twins::take_out(soup, kept);
+        const Duplicates duplicates = Duplicates::take_out(soup, kept);
         std::vector<TriangleId> smallest;
         for (const auto& [key, set] : sets) {
             smallest.push_back(set[0]);
-            EXPECT_EQ(twins.second(set[0]), set.size() > 1 ? set[1] : set[0]);
+            EXPECT_EQ(duplicates.second(set[0]), set.size() > 1 ? set[1] : set[0]);
         }
         std::sort(smallest.begin(), smallest.end());
         EXPECT_EQ(kept, smallest) << "seed " << seed;
-        EXPECT_EQ(twins.count(), before.size() - kept.size());
-        EXPECT_GT(twins.count(), 0u);
+        EXPECT_EQ(duplicates.count(), before.size() - kept.size());
+        EXPECT_GT(duplicates.count(), 0u);
     }
 }
 
-TEST(Twins, LeaveASoupWithoutThemAlone) {
+TEST(Duplicates, LeaveASoupWithoutThemAlone) {
     std::mt19937_64 draw(3);
     std::vector<vec3> corners(30000);
     for (vec3& corner : corners)
@@ -74,13 +74,13 @@ TEST(Twins, LeaveASoupWithoutThemAlone) {
     soup.chunks.push_back(Chunk::owning(dvec3(0), std::move(corners)));
     std::vector<TriangleId> kept = all_of(soup);
     const std::vector<TriangleId> before = kept;
-    const Twins twins = Twins::take_out(soup, kept);
+    const Duplicates duplicates = Duplicates::take_out(soup, kept);
     EXPECT_EQ(kept, before);
-    EXPECT_EQ(twins.count(), 0u);
-    EXPECT_EQ(twins.second(before[0]), before[0]);
+    EXPECT_EQ(duplicates.count(), 0u);
+    EXPECT_EQ(duplicates.second(before[0]), before[0]);
 }
 
-TEST(Twins, CountUAndVFromTheirOwnCorners) {
+TEST(Duplicates, CountUAndVFromTheirOwnCorners) {
     const dvec3 corner[3] = {dvec3(0), dvec3(4, 0, 0), dvec3(0, 4, 0)};
     int order[3] = {0, 1, 2};
     do {
@@ -89,15 +89,15 @@ TEST(Twins, CountUAndVFromTheirOwnCorners) {
             dvec3(0), {vec3(corner[0]), vec3(corner[1]), vec3(corner[2]), vec3(corner[order[0]]),
                        vec3(corner[order[1]]), vec3(corner[order[2]])}));
         std::vector<TriangleId> kept = all_of(soup);
-        const Twins twins = Twins::take_out(soup, kept);
-        const Hit hit = as_hit_of(twins.second({0, 0}), soup, {1, 0.25, 0.125, {0, 0}});
+        const Duplicates duplicates = Duplicates::take_out(soup, kept);
+        const Hit hit = as_hit_of(duplicates.second({0, 0}), soup, {1, 0.25, 0.125, {0, 0}});
         ASSERT_EQ(hit.id, (TriangleId{0, 1}));
         const Triangle t = soup.triangle(hit.id);
         EXPECT_EQ((1 - hit.u - hit.v) * t[0] + hit.u * t[1] + hit.v * t[2], dvec3(1, 0.5, 0));
     } while (std::next_permutation(order, order + 3));
 }
 
-TEST(Twins, HaveAllThreeCornersInCommon) {
+TEST(Duplicates, HaveAllThreeCornersInCommon) {
     const dvec3 a(0), b(1, 0, 0), c(0, 1, 0), d(0, 0, 1);
     EXPECT_TRUE(same_corners({a, b, c}, {c, a, b}));
     EXPECT_TRUE(same_corners({a, b, c}, {b, a, c})) << "wound the other way";

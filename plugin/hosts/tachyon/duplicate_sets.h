@@ -12,16 +12,16 @@
 
 namespace ovc::tachyon {
 
-class TwinSets {
+class DuplicateSets {
 public:
-    TwinSets() = default;
-    /// The corners of two twins may be in any order.
-    explicit TwinSets(const Corners& corners);
+    DuplicateSets() = default;
+    /// The corners of two duplicates may be in any order.
+    explicit DuplicateSets(const Corners& corners);
 
-    /// The others of the set whose smallest is `prim`, ascending; none where it has no twins.
+    /// The others of the set whose smallest is `prim`, ascending; none where it has no duplicates.
     std::span<const uint32_t> of(uint32_t prim) const;
 
-    /// The smallest of the set that `prim` is in; `prim` where it has no twins.
+    /// The smallest of the set that `prim` is in; `prim` where it has no duplicates.
     uint32_t smallest(uint32_t prim) const;
 
 private:

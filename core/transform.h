@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Placement: the affine map that puts a mesh where one of its instances is.
+// Transform: the affine map that puts a mesh where one of its instances is.
 #pragma once
 
 #include "core/vec.h"
@@ -13,7 +13,7 @@ namespace ovc {
 
 /// Three rows of four: p comes to lie at ((r0 x + r1 y) + r2 z) + r3 for each row r. In doubles,
 /// each operation rounded: the formula is part of the ABI, and needs -ffp-contract=off.
-struct Placement {
+struct Transform {
     std::array<std::array<double, 4>, 3> rows;
 
     dvec3 operator()(const dvec3& p) const {
@@ -25,8 +25,8 @@ struct Placement {
 };
 
 /// `first`, then `second`, as one map: their product in doubles.
-inline Placement then(const Placement& first, const Placement& second) {
-    Placement both{};
+inline Transform then(const Transform& first, const Transform& second) {
+    Transform both{};
     for (size_t i = 0; i < 3; ++i)
         for (size_t j = 0; j < 4; ++j) {
             for (size_t k = 0; k < 3; ++k)
@@ -37,17 +37,17 @@ inline Placement then(const Placement& first, const Placement& second) {
     return both;
 }
 
-inline constexpr Placement kUnplaced{{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
+inline constexpr Transform kIdentity{{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
 
 /// null: where a mesh lies by itself.
-inline const Placement& or_unplaced(const Placement* placement) {
-    return placement ? *placement : kUnplaced;
+inline const Transform& or_identity(const Transform* transform) {
+    return transform ? *transform : kIdentity;
 }
 
 /// The rows of the inverse of the matrix, without its shift; none where doubles cannot tell it.
-inline std::optional<std::array<dvec3, 3>> inverse_matrix(const Placement& placement) {
+inline std::optional<std::array<dvec3, 3>> inverse_matrix(const Transform& transform) {
     const auto row = [&](size_t i) {
-        return dvec3(placement.rows[i][0], placement.rows[i][1], placement.rows[i][2]);
+        return dvec3(transform.rows[i][0], transform.rows[i][1], transform.rows[i][2]);
     };
     const dvec3 a = glm::cross(row(1), row(2)), b = glm::cross(row(2), row(0)),
                 c = glm::cross(row(0), row(1));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Twins: triangles with the same three corners, whatever their order. No ray tells them apart, so
-// the smallest id of each such set stands for all in every structure over the soup.
+// Duplicates: triangles with the same three corners, whatever their order. No ray tells them apart,
+// so the smallest id of each such set stands for all in every structure over the soup.
 #pragma once
 
 #include "core/soup.h"
@@ -18,15 +18,15 @@ bool same_corners(const Triangle& a, const Triangle& b);
 /// from its own.
 Hit as_hit_of(TriangleId id, const Soup& soup, const Hit& hit);
 
-/// The sets of twins of a soup. Equal t goes to the smaller id, so the smallest of a set is the
-/// answer wherever one of them is; only a ray that does not see the smallest is answered with
+/// The sets of duplicates of a soup. Equal t goes to the smaller id, so the smallest of a set is
+/// the answer wherever one of them is; only a ray that does not see the smallest is answered with
 /// another one, and then with the second smallest.
-class Twins {
+class Duplicates {
 public:
     /// Takes all but the smallest id of each set out of `triangles`: finite ones, sorted, without
     /// repetition, and so they stay. A triangle is a unit of progress.
-    static Twins take_out(const Soup& soup, std::vector<TriangleId>& triangles,
-                          BuildProgress* progress = nullptr);
+    static Duplicates take_out(const Soup& soup, std::vector<TriangleId>& triangles,
+                               BuildProgress* progress = nullptr);
 
     /// The second smallest of the set whose smallest is `id`; `id` where there is no such set.
     TriangleId second(TriangleId id) const;
@@ -43,11 +43,11 @@ public:
     /// All sets, by smallest.
     std::span<const Pair> pairs() const { return pairs_; }
     /// As pairs() and count() were; sorted.
-    static Twins restored(std::span<const Pair> pairs, uint64_t count) {
-        Twins twins;
-        twins.pairs_.assign(pairs.begin(), pairs.end());
-        twins.count_ = count;
-        return twins;
+    static Duplicates restored(std::span<const Pair> pairs, uint64_t count) {
+        Duplicates duplicates;
+        duplicates.pairs_.assign(pairs.begin(), pairs.end());
+        duplicates.count_ = count;
+        return duplicates;
     }
 
 private:
