@@ -17,4 +17,4 @@ echo "== render: 'plants', 347 MiB of level 2, in 86 MiB of GPU memory"
 mkdir -p out
 build/bin/overcast render plants --size 1280x720 --gpu-memory 86M \
     -o out/demo.png -o out/demo.exr --stats out/demo.json
-echo "== done: look at out/demo.png; out/demo.exr is linear, out/demo.json has the statistics (docs/stats.md)"
+echo "== done: look at out/demo.png; out/demo.exr is linear, out/demo.json has the statistics (docs/reference/stats.md)"

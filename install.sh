@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that packages.txt lists, with sudo when not root. Sourced by demo.sh and test.sh; re-runnable.
+# install_packages [LIST...]: those of further lists as well.
 set -euo pipefail
 
 install_packages() {
@@ -8,7 +9,7 @@ install_packages() {
     while read -r package; do
         [[ -z $package || $package == \#* ]] && continue
         dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
-    done < "$here/packages.txt"
+    done < <(cat "$here/packages.txt" "$@")
     if [[ ${#missing[@]} -eq 0 ]]; then
         echo "== packages: all installed"
         return

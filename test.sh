@@ -24,7 +24,7 @@ if [[ ${1:-} == --asan ]]; then
     werror=OFF # GCC 12 warns of uninitialised parts of its own <regex> there
     export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1:halt_on_error=1}
 fi
-install_packages
+install_packages tests/packages.txt
 echo "== configure and build ($preset) into $build/"
 cmake --preset "$preset" -DOVC_TESTS=ON -DOVC_WERROR="${werror:-OFF}" >/dev/null
 cmake --build "$build"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DOVC_FUZZ=ON with clang: the libFuzzer targets fuzz_NAME; docs/fuzzing.md says how they are run.
+# cmake -DOVC_FUZZ=ON with clang: the libFuzzer targets fuzz_NAME; docs/design/fuzzing.md says how they are run.
 option(OVC_FUZZ "Build the libFuzzer targets; needs clang" OFF)
 if(OVC_FUZZ AND NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     message(FATAL_ERROR "OVC_FUZZ needs clang: -DCMAKE_CXX_COMPILER=clang++")

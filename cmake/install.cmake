@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake --install: the command, the library, its headers, CMake package, pkg-config file, manual, completions, Python module. All find
-# each other by the way from one to the next, so that an installed tree may be moved. docs/install.md.
+# each other by the way from one to the next, so that an installed tree may be moved. docs/guide/install.md.
 #
 # Components: `overcast` goes to the same places everywhere; `local` is what Debian's packages have elsewhere than what is
 # installed by hand; `debian` is what only the package has (cmake/package.cmake).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# cpack --config build/CPackConfig.cmake: overcast_VERSION_ARCHITECTURE.deb, all in one. docs/install.md.
+# cpack --config build/CPackConfig.cmake: overcast_VERSION_ARCHITECTURE.deb, all in one. docs/guide/install.md.
 set(debian ${PROJECT_BINARY_DIR}/debian)
 set(maintainer "Overcast <overcast@example.org>")
 if(DEFINED ENV{DEBEMAIL})

@@ -17,7 +17,7 @@ namespace ovc {
 namespace {
 
 /// Within 2^-256 is 0 and beyond 2^256 infinite: so products of three differences, which decide
-/// hits, neither overflow nor lose a bit to underflow (docs/numerics.md, "What it covers").
+/// hits, neither overflow nor lose a bit to underflow (docs/design/numerics.md, "What it covers").
 double in_range(double x) {
     const double size = std::abs(x);
     if (size < 0x1p-256)

@@ -19,7 +19,7 @@ namespace {
 /// Of the leaf's largest extent. The kernel sees a ray within the leaf's box and cannot prove a hit
 /// that lies within a rounding of either end. This keeps what is hit in the cell clear of the ends,
 /// even on triangles hundreds of times the size of the leaf, whose roundings are as much larger
-/// (docs/numerics.md).
+/// (docs/design/numerics.md).
 constexpr double kMargin = 0x1p-10;
 
 void collect_cells(std::span<const KdNode> nodes, uint32_t node, const Box& box, double padding,

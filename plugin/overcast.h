@@ -6,7 +6,7 @@
  * Every call returns an ovc_result; on anything but OVC_OK, last_error() has one sentence. Nothing throws, exits, or keeps a
  * pointer of the caller's after it returns, except the positions of a mesh added with OVC_MESH_SHARED. The caller owns every
  * buffer. Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero. Structs
- * and the table only ever grow at their end: the struct_size of an earlier header is fine. The manual is docs/abi.md.
+ * and the table only ever grow at their end: the struct_size of an earlier header is fine. The manual is docs/reference/abi.md.
  * Calls may come from any thread, of 256 KiB of stack at least; calls on one scene wait their turn, first come, first served. The caller's GL context, floating-point state and
  * environment are left alone: each device has a thread of its own. The functions that a caller hands in for errors, logs, progress
  * and what is saved may call last_error and nothing else. In a process that is forked, the parent's handles are errors. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a traversal knows so far of the nearest hit: the best certain one, and what else might still be nearer (docs/numerics.md).
+// What a traversal knows so far of the nearest hit: the best certain one, and what else might still be nearer (docs/design/numerics.md).
 
 const float OVC_NEVER = 3.0e38;
 

@@ -114,7 +114,7 @@
 #define OVC_DEALT_GROUPS 4
 #define OVC_DEALT_SLICES 16
 
-// The error bound, in units of u = 2^-24 (docs/numerics.md): a projected corner p is off by at most
+// The error bound, in units of u = 2^-24 (docs/design/numerics.md): a projected corner p is off by at most
 // u (OVC_BOUND_CONSTANT + OVC_BOUND_RELATIVE (|x| + |y| + |z|)).
 #define OVC_BOUND_UNIT 5.9604644775390625e-8
 #define OVC_BOUND_CONSTANT 6.0

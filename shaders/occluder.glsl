@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a traversal knows so far of a ray that asks whether anything is hit: whether something certainly is, else what else might be
-// (docs/numerics.md). In the place of found.glsl, with the same names. No distance is computed, so nothing is divided.
+// (docs/design/numerics.md). In the place of found.glsl, with the same names. No distance is computed, so nothing is divided.
 
 struct Found {
     float best_hi; // the ray's end; OVC_ENOUGH: it certainly hits something

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Portals: where a ray comes to a part in another frame, in doubles, from the world's (docs/numerics.md, "Frames").
+// Portals: where a ray comes to a part in another frame, in doubles, from the world's (docs/design/numerics.md, "Frames").
 
 #if OVC_PORTALS
 OVC_TEXELS(OVC_BINDING_PORTALS) portals;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A ray against triangles in float32, with proof: each candidate is certainly hit, certainly missed, or in doubt.
-// Based on: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection"; the bound: docs/numerics.md.
+// Based on: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection"; the bound: docs/design/numerics.md.
 
 // The axis along which a ray goes farthest becomes z, turned so that it goes up; the others x and y.
 struct Axes {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fails where a document points to what is not there: files, decisions by another number, programs that demo.sh does not build.
+"""Fails where a document points to what is not there: files, headings, decisions by another number, programs that demo.sh does not
+build; where it names a file that is not there; and where a page is on no list of pages, or a call of the ABI not in its reference.
 
 usage: documents.py ROOT
 """
@@ -14,29 +15,79 @@ def documents(root):
     return [root / name for name in listed] or [*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("plugin/**/*.md")]
 
 
+def prose(document):
+    """Without code, whose brackets and number signs are others."""
+    text = re.sub(r"^( *)```.*?^\1```$", "", document.read_text(), flags=re.MULTILINE | re.DOTALL)
+    return re.sub(r"`[^`\n]*`", lambda code: "" if "](" in code.group() else code.group(), text)
+
+
+def anchors(document):
+    """What headings are called in addresses, where that is the same on sites that show a repository's files and by mkdocs."""
+    for heading in re.findall(r"^#+ +(.*)$", prose(document), re.MULTILINE):
+        words = re.sub(r"[`*]|\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
+        name = re.sub(r"[^\w -]", "", words).replace(" ", "-")
+        if name.isascii() and "--" not in name:
+            yield name
+
+
 def wrong_links(document):
-    for words, target in re.findall(r"\[([^\]]*)\]\(([^)#\s]+)[^)]*\)", document.read_text()):
+    for words, target, anchor in re.findall(r"\[([^\]]*)\]\(([^)#\s]*)(?:#([^)\s]*))?\)", prose(document)):
         if re.match(r"\w+:", target):
             continue
-        if not (document.parent / target).exists():
+        leads_to = document.parent / target if target else document
+        if not leads_to.exists():
             yield f"{document}: there is no {target}"
-        decision, number = re.search(r"(\d{4})-[\w-]*\.md$", target), re.fullmatch(r"decision (\d+)", words, re.IGNORECASE)
+        elif anchor and anchor not in anchors(leads_to):
+            yield f"{document}: {target} has no heading #{anchor}"
+        decision, number = re.search(r"(\d{4})-[\w-]*\.md$", target), re.fullmatch(r"decision\s+(\d+)", words, re.IGNORECASE)
         if decision and number and int(decision.group(1)) != int(number.group(1)):
-            yield f"{document}: {words} leads to {target}"
+            yield f"{document}: {' '.join(words.split())} leads to {target}"
+
+
+def wrong_paths(root, document):
+    """Files and folders that the text names. Decisions and the changelog name what was there in their day."""
+    if document.parent.name == "decisions" or document.name == "CHANGELOG.md":
+        return
+    for folder, rest in re.findall(r"`([\w-]+)/([\w./-]+)`", prose(document)):
+        is_source = folder in ("cmake", "docs") or (root / folder / "CMakeLists.txt").exists()
+        if is_source and not (root / folder / rest).exists():
+            yield f"{document}: there is no {folder}/{rest}"
 
 
 def wrong_programs(root):
     built = re.search(r"^cmake --build build(?: --target (.*))?$", (root / "demo.sh").read_text(), re.MULTILINE)
     targets = built.group(1)
     shown = set(re.findall(r"^build/bin/([\w-]+)", (root / "README.md").read_text(), re.MULTILINE))
-    for program in sorted(shown - {"povray-overcast"}):  # which README builds by a line of its own
+    for program in sorted(shown):
         if targets is not None and program not in targets.split():
             yield f"README.md shows {program}, which demo.sh does not build"
 
 
+def left_out_calls(root):
+    """Functions of the ABI's table that its reference does not name."""
+    table = re.search(r"typedef struct ovc_api \{.*?^\} ovc_api;", (root / "plugin/overcast.h").read_text(), re.MULTILINE | re.DOTALL).group()
+    reference = (root / "docs/reference/abi.md").read_text()
+    for call in re.findall(r"\(\*(\w+)\)\(", table):
+        if f"`{call}`" not in reference:
+            yield f"docs/reference/abi.md lacks {call}"
+
+
+def left_out_pages(root):
+    """Decisions that the list of decisions lacks, and other pages that mkdocs.yml lacks."""
+    site, decisions = (root / "mkdocs.yml").read_text(), (root / "docs/decisions/README.md").read_text()
+    for page in sorted((root / "docs").glob("**/*.md")):
+        if re.match(r"\d{4}-", page.name):
+            if f"({page.name})" not in decisions:
+                yield f"docs/decisions/README.md lacks {page.name}"
+        elif not re.search(rf": {re.escape(str(page.relative_to(root / 'docs')))}$", site, re.MULTILINE):
+            yield f"mkdocs.yml lacks {page.relative_to(root)}"
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
-    wrong = [line for document in documents(root) for line in wrong_links(document)] + list(wrong_programs(root))
+    wrong = [line for document in documents(root) for line in wrong_links(document)]
+    wrong += [line for document in documents(root) for line in wrong_paths(root, document)]
+    wrong += [*wrong_programs(root), *left_out_calls(root), *left_out_pages(root)]
     print("\n".join(wrong))
     return 1 if wrong else 0
 

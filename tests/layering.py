@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fails when a file includes what its folder may not know. usage: layering.py ROOT
 
-The graph of docs/architecture.md: core <- importers; core <- kdtree <- gpu <- plugin; core <- testscenes;
+The graph of docs/design/overview.md: core <- importers; core <- kdtree <- gpu <- plugin; core <- testscenes;
 shaders/layout.h is a leaf; host -> plugin/overcast.h only; tests -> anything. Each third-party header has its one place.
 """
 import pathlib

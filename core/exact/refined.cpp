@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bounds are derived in docs/numerics.md, "The reference".
+// The bounds are derived in docs/design/numerics.md, "The reference".
 #include "core/exact/refined.h"
 
 #include "core/exact/exact_solution.h"

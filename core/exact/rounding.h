@@ -42,7 +42,7 @@ OVC_INLINE V total(const Vec3Of<MagnitudeOf<V>>& v) {
     return v.x.value + v.y.value + v.z.value;
 }
 
-/// The bounds are derived in docs/numerics.md, "The reference".
+/// The bounds are derived in docs/design/numerics.md, "The reference".
 template <class V>
 OVC_INLINE BoundedSolution<V> bounded_solution(const Meeting<V>& m) {
     constexpr double kBound = 0x1p-101;      // 32 v^2

@@ -96,8 +96,8 @@ std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangl
         size[i] = std::abs(x[i]) + std::abs(y[i]);
         reach[i] = size[i] + std::abs(z[i]);
     }
-    // docs/numerics.md, "The reference": a projected corner is off by 6u reach, an edge function by
-    // what that and its own roundings make.
+    // docs/design/numerics.md, "The reference": a projected corner is off by 6u reach, an edge
+    // function by what that and its own roundings make.
     const auto edge_error = [&](int i, int j) {
         return 12 * u * (reach[i] * size[j] + reach[j] * size[i] + 12 * u * reach[i] * reach[j]) +
                1e-300;

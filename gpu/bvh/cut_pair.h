@@ -19,7 +19,7 @@ struct CutPair {
 /// The parts of the pair at or below `plane` and at or above it, each within `box`, which holds
 /// what matters of the pair. A point of the pair that is in the box is in one of the two, however
 /// the corners were rounded to floats: parts are larger than they need be by four roundings of the
-/// largest coordinate (docs/numerics.md).
+/// largest coordinate (docs/design/numerics.md).
 inline CutPair cut_pair(const TrianglePair& pair, const Boxf& box, int axis, float plane) {
     static constexpr std::array<std::array<uint8_t, 2>, 5> kSides{
         {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {3, 2}}};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loose pairs: two triangles that share no side, in one unit. Six corners do not fit there as
 // floats; counted in steps of 2^-23, which is as near as the kernel's error bound asks for, they do
-// (shaders/layout.h, docs/numerics.md).
+// (shaders/layout.h, docs/design/numerics.md).
 #pragma once
 
 #include "gpu/bvh/bvh.h"

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
 
 namespace ovc {
 namespace {
@@ -12,6 +15,16 @@ namespace {
 TEST(Workarounds, StandInTheOrderOfTheirNumbers) {
     for (size_t i = 0; i < kWorkarounds.size(); ++i)
         EXPECT_EQ(size_t(kWorkarounds[i].which), i) << kWorkarounds[i].name;
+}
+
+TEST(Workarounds, StandInTheGuide) {
+    std::ifstream file(OVC_SOURCE_DIR "/docs/guide/gpu.md");
+    const std::string guide((std::istreambuf_iterator<char>(file)), {});
+    for (const WorkaroundEntry& entry : kWorkarounds) {
+        std::string row = "| `";
+        row.append(entry.name).append("` |");
+        EXPECT_NE(guide.find(row), guide.npos) << entry.name;
+    }
 }
 
 TEST(Workarounds, AreForTheDriversThatTheyName) {

@@ -12,7 +12,7 @@ namespace ovc {
 
 /// What of the rays that hit the triangles float32 would leave in doubt in the frame, roughly: the
 /// share of the area, in small neighbourhoods all over the scene, that lies within the error bound
-/// of the triangles' sides (docs/numerics.md). It looks at a sample.
+/// of the triangles' sides (docs/design/numerics.md). It looks at a sample.
 double doubtful_share(const Soup& soup, std::span<const TriangleId> triangles, const Frame& frame);
 
 /// Up to this share a frame suits all leaves of a scene.

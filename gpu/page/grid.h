@@ -25,7 +25,8 @@ public:
     GridHeader header() const { return {middle_, cell_}; }
 
     /// Of `box` along an axis, rounded outwards by a tenth of a cell at least: 1/655,350
-    /// of the leaf, 50 float roundings, where the kernel makes 26 at most (docs/numerics.md).
+    /// of the leaf, 50 float roundings, where the kernel makes 26 at most
+    /// (docs/design/numerics.md).
     GridRange range(const Boxf& box, int axis) const {
         const double lo = std::floor(position(box.lo[axis], axis) - kPadding);
         const double hi = std::ceil(position(box.hi[axis], axis) + kPadding);

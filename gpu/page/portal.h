@@ -39,7 +39,7 @@ struct Portal {
 Box placed_box(const Box& box, const Transform* transform);
 
 /// Into the frame, with all that lies in `box` behind it. transform: of both, which has an inverse;
-/// null where they are in the world. Error bound: docs/numerics.md, "Frames".
+/// null where they are in the world. Error bound: docs/design/numerics.md, "Frames".
 Portal portal_into(const Frame& frame, const Box& box, const Transform* transform = nullptr);
 
 inline constexpr uint64_t kPortalBytes = OVC_PORTAL_TEXELS * sizeof(uvec4);

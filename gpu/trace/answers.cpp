@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t kGrain = 16384; // rays a task that are only copied
 
-/// The pixel of a ray's answer, row by row: the duplicate of pixel_of() in shaders/ray.glsl.
+/// The pixel of a ray's answer, row by row: the counterpart of pixel_of() in shaders/ray.glsl.
 size_t pixel_of(size_t ray) {
     constexpr size_t kTile = OVC_TILE, kTilesInRow = OVC_ROW_RAYS / OVC_TILE;
     const size_t tile = ray / (kTile * kTile);

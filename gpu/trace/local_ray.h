@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ray in the frame of the top-level tree, as the kernel takes it (docs/numerics.md, "Frames"):
-// the duplicate in C++ of local_ray() in shaders/portals.glsl, so that a ray goes over as 32 bytes.
+// A ray in the frame of the top-level tree, as the kernel takes it (docs/design/numerics.md,
+// "Frames"): the counterpart in C++ of local_ray() in shaders/portals.glsl, so that a ray goes over
+// as 32 bytes.
 #pragma once
 
 #include "core/exact/triangle.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A ray in the frame of the top-level tree is where the ray is, to the roundings that
-// docs/numerics.md allows.
+// docs/design/numerics.md allows.
 #include "gpu/trace/local_ray.h"
 
 #include "kdtree/test_soups.h"

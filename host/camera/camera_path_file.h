@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera paths in files: one camera a frame, as JSON or as lines of numbers (docs/scenes.md).
+// Camera paths in files: one camera a frame, as JSON or as lines of numbers
+// (docs/reference/formats.md).
 #pragma once
 
 #include "core/result.h"

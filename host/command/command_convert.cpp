@@ -111,8 +111,9 @@ namespace {
 class Convert final : public Subcommand {
 public:
     void add_to(CLI::App& app) override {
-        app.description("Writes the triangles of a scene as .ply (binary) or .obj, or all of it "
-                        "and what tracing builds as .ovc, which starts at once (docs/cache.md).");
+        app.description(
+            "Writes the triangles of a scene as .ply (binary) or .obj, or all of it "
+            "and what tracing builds as .ovc, which starts at once (docs/guide/cache.md).");
         source_.add_to(app, "IN");
         // CLI11 gives IN all names there are: run() takes the last of them for OUT.
         app.add_option("OUT", output_,

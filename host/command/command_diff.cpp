@@ -126,7 +126,7 @@ public:
             ->type_name("X");
         fail_.add_to(app, "fail", Verdict::Failure);
         warn_.add_to(app, "warn", Verdict::Warning);
-        app.add_flag("--json", json_, "As JSON, for a program (docs/diff.md)");
+        app.add_flag("--json", json_, "As JSON, for a program (docs/guide/diff.md)");
         app.add_flag("-q,--quiet", quiet_, "Print nothing but errors");
         app.footer(kExamples);
     }

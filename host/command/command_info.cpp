@@ -49,7 +49,7 @@ static Json materials_json(const Scene& scene) {
     return list;
 }
 
-/// docs/stats.md says what the keys mean; null where nothing can tell.
+/// docs/reference/stats.md says what the keys mean; null where nothing can tell.
 static Json plan_json(const Result<ovc_plan>& plan) {
     if (!plan)
         return nullptr;

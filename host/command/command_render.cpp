@@ -37,13 +37,13 @@ static constexpr const char* kExamples = R"(Examples:
   overcast render dragons-10 --frames 0:99 -o dragons-####.png
       100 frames along the scene's camera path, built once: dragons-0000.png to dragons-0099.png
   overcast render dragon.ply --camera-path walk.csv --frames 0:90:10 -o walk-###.png
-      every tenth frame of a path of your own (docs/scenes.md)
+      every tenth frame of a path of your own (docs/guide/scenes.md)
   overcast render dragons-5 --model dragon.ply
       the scene with your model in the place of the generated one
   overcast render plants.pbrt --cache ~/.cache/overcast -o plants.png
       the second time it starts at once
   overcast render cornell-box.pbrt --integrator path --samples 256 -o box.exr
-      all light there is, from surface to surface; more samples, less noise (docs/path.md)
+      all light there is, from surface to surface; more samples, less noise (docs/guide/path.md)
   overcast render dragon.ply +W640 +H480 +Od.png
       POV-Ray's words are understood
 
@@ -123,8 +123,9 @@ void RenderWords::add_to(CLI::App& app) {
                    "Frames of the camera path, the first and the last included; default: one "
                    "picture, with --camera-path all frames")
         ->type_name("A:B[:STEP]");
-    app.add_option("--camera-path", camera_path,
-                   "A path in a file, JSON or CSV, instead of the scene's own (docs/scenes.md)")
+    app.add_option(
+           "--camera-path", camera_path,
+           "A path in a file, JSON or CSV, instead of the scene's own (docs/guide/scenes.md)")
         ->type_name("FILE");
     app.add_option("--light", lights, "A point light instead of the scene's; may be repeated")
         ->allow_extra_args(false)
@@ -159,7 +160,7 @@ void RenderWords::add_to(CLI::App& app) {
         ->type_name("N");
     app.add_option("--integrator", integrator,
                    "whitted (mirrors, glass, and the light of lamps) or path (path tracing: light "
-                   "from everywhere, with the noise of --samples; docs/path.md)")
+                   "from everywhere, with the noise of --samples; docs/guide/path.md)")
         ->type_name(choice_names(kIntegrators));
     app.add_option("--max-depth,--max-trace-level", max_depth,
                    "Reflections and refractions in a row at most, up to 1000; default: what the "
@@ -181,7 +182,7 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
     app.add_option("--cache", cache,
                    "Keep the scene and what is built of it in this folder, and start from there "
-                   "next time; what is stale or damaged is made anew (docs/cache.md)")
+                   "next time; what is stale or damaged is made anew (docs/guide/cache.md)")
         ->type_name("DIR");
     app.add_flag("--continue", go_on,
                  "Go on from what an interrupted run has left: the pixels in NAME.unfinished.film, "
@@ -189,7 +190,7 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_option("--threads,--nthreads", threads,
                    "Cores to use at most, of the software renderer too; default: all")
         ->type_name("N");
-    app.add_option("--stats", stats, "Write statistics as JSON (docs/stats.md)")
+    app.add_option("--stats", stats, "Write statistics as JSON (docs/reference/stats.md)")
         ->type_name("FILE.json");
     app.add_flag("--working-set", working_set,
                  "The statistics tell which pages each frame's rays go through; takes up to half "

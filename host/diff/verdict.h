@@ -31,7 +31,7 @@ Verdict judge(const Comparison& comparison, const Limits& limits);
 /// The names of the two files and all that is known of them, with a line end.
 std::string diff_text(const std::string& a, const std::string& b, const Comparison& comparison,
                       const Limits& limits);
-/// As JSON (docs/diff.md); what is infinite is null.
+/// As JSON (docs/guide/diff.md); what is infinite is null.
 std::string diff_json(const std::string& a, const std::string& b, const Comparison& comparison,
                       const Limits& limits);
 

@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-// Keys stay in the order they are written here, as docs/stats.md lists them.
+// Keys stay in the order they are written here, as docs/reference/stats.md lists them.
 using Json = nlohmann::ordered_json;
 
 uint64_t host_peak_bytes() {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a rendering took: as JSON for programs (docs/stats.md) and as a few lines for people.
+// What a rendering took: as JSON for programs (docs/reference/stats.md) and as a few lines for
+// people.
 #pragma once
 
 #include "host/render/render.h"
@@ -47,7 +48,7 @@ struct RenderStats {
     void add(const FrameStats& frame);
 };
 
-/// The document of docs/stats.md, with a line end.
+/// The document of docs/reference/stats.md, with a line end.
 std::string stats_json(const RenderStats& stats);
 
 /// The entry of that document's `frames`, in one line without its end.

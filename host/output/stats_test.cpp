@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Statistics: the keys that docs/stats.md promises.
+// Statistics: the keys that docs/reference/stats.md promises.
 #include "host/output/stats.h"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ TEST(StatsJson, HasTheKeysOfItsDocument) {
 }
 
 TEST(StatsJson, EveryKeyIsDocumented) {
-    std::ifstream file(OVC_SOURCE_DIR "/docs/stats.md");
+    std::ifstream file(OVC_SOURCE_DIR "/docs/reference/stats.md");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     const nlohmann::json flat = nlohmann::json::parse(stats_json(example())).flatten();
     for (const auto& [key, value] : flat.items())

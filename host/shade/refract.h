@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Snell's law in double, careful where the textbook's formula cancels. docs/numerics.md,
+// Snell's law in double, careful where the textbook's formula cancels. docs/design/numerics.md,
 // "Refraction", has the derivation.
 #pragma once
 

@@ -19,8 +19,8 @@ static constexpr float kAmbient = 0.04f;
 static constexpr float kGround = 0.35f;
 
 /// How far a position lies off its triangle, in units of the largest coordinate of the corners.
-/// docs/numerics.md, "Spawned rays": computed from the corners a position errs by less than half of
-/// this.
+/// docs/design/numerics.md, "Spawned rays": computed from the corners a position errs by less than
+/// half of this.
 static constexpr double kOffset = 0x1p-48;
 /// How many offsets it keeps away from the edges, or its neighbour there would be crossed: at
 /// least, for any angle of more than 1/64 rad between the two; and at most, for 1e-4 rad, as long

@@ -127,7 +127,7 @@ TEST(DirectLight, FadesWithDistanceToHalfOfWhatItWouldBeTwiceAsNear) {
     EXPECT_NEAR(direct_light(light, s).x, 0.5, 1e-6) << "as it is at fade_distance";
     light.position.y = s.position.y + 6;
     EXPECT_NEAR(direct_light(light, s).x, 0.5 * 2 / 5, 1e-6);
-    // The square law, as docs/scenes.md tells an importer to write it: color 12 at distance 6.
+    // The square law, as core/scene.h tells an importer to write it: color 12 at distance 6.
     light.fade_distance = 1e-6;
     light.color *= 12 / (2 * 1e-12f);
     EXPECT_NEAR(direct_light(light, s).x, 0.5 * 12 / 36, 1e-5);

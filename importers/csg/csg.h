@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Constructive solid geometry on triangles: which parts of the operands' surfaces bound the result.
-// Every part is cut exactly and remembers the triangle that it is of. docs/pov.md says how.
+// Every part is cut exactly and remembers the triangle that it is of. docs/design/solids.md says
+// how.
 #pragma once
 
 #include "core/vec.h"

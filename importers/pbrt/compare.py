@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 TOLERANCE = 1e-5  # of the extent: the other reading has rounded its bounds
-WHOLE = {"sphere": 1520, "disk": 32, "cylinder": 64}  # triangles of one that is not partial; docs/pbrt.md
+WHOLE = {"sphere": 1520, "disk": 32, "cylinder": 64}  # triangles of one that is not partial; docs/reference/pbrt.md
 PARTIAL = {  # scene: one of its shapes is a part of one, 225 degrees of it, 20 of 32 steps
     "pbrt/v1-pharr/cylinders.pbrt": ("cylinder", 40),
     "pbrt/v1-pharr/disks.pbrt": ("disk", 40),  # a ring: two triangles a step

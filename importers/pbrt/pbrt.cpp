@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PBRT: the scene descriptions of pbrt-v1 to v4. docs/pbrt.md says what is read and how.
+// PBRT: the scene descriptions of pbrt-v1 to v4. docs/reference/pbrt.md says what is read and how.
 #include "importers/pbrt/assembly.h"
 #include "importers/pbrt/interpret/interpreter.h"
 #include "importers/pbrt/look/exposure.h"

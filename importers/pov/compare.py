@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Which pixels of POV-Ray scenes are hit: povray's answer beside ours, scene by scene. docs/pov.md says how povray's is had.
+"""Which pixels of POV-Ray scenes are hit: povray's answer beside ours, scene by scene. docs/design/readers_compared.md says how povray's is had.
 
 usage: compare.py [--data DIR] [--index FILE] [--tiers AB] [--only TEXT] [--again TABLE] [--cache DIR] [--build DIR] [--jobs N] [--limit SECONDS]
                   [--reference-only]

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How POV-Ray scenes look: povray's picture beside ours, scene by scene. docs/pov.md says what is compared.
+"""How POV-Ray scenes look: povray's picture beside ours, scene by scene. docs/design/readers_compared.md says what is compared.
 
 usage: compare_pictures.py -o DIR [--data DIR] [--index FILE] [--tiers AB] [--only TEXT] [--cache DIR] [--build DIR] [--backend NAME] [--jobs N]
                            [--limit SECONDS] [--plain] [--at-most N] [SCENE ...]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The POV-Ray reader: statements of a scene, and the errors it ends with. docs/pov.md says what is
-// read.
+// The POV-Ray reader: statements of a scene, and the errors it ends with. docs/reference/pov.md
+// says what is read.
 #include "importers/file/text.h"
 #include "importers/pov/flatten.h"
 #include "importers/pov/parse/parse_camera.h"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fails unless docs/abi.md shows the examples as they are and what they print, and hills.c is C99 of at most 80 lines.
+"""Fails unless docs/guide/tutorial.md shows the examples as they are and what they print, and hills.c is C99 of at most 80 lines.
 
 usage: run_examples.py ROOT HILLS SUNLIT LIBRARY
 """
@@ -10,12 +10,12 @@ import sys
 
 def main():
     root, hills, sunlit, library = sys.argv[1:]
-    manual = (pathlib.Path(root) / "docs/abi.md").read_text()
+    manual = (pathlib.Path(root) / "docs/guide/tutorial.md").read_text()
     examples = pathlib.Path(root) / "plugin/examples"
     wrong = []
     for name in ["hills.c", "sunlit.cpp"]:
         if (examples / name).read_text() not in manual:
-            wrong.append(f"docs/abi.md does not show {name} as it is")
+            wrong.append(f"docs/guide/tutorial.md does not show {name} as it is")
     if len((examples / "hills.c").read_text().splitlines()) > 80:
         wrong.append("hills.c has more than 80 lines")
     for command in ([hills, library], [sunlit]):
@@ -26,7 +26,7 @@ def main():
         print(run.stdout, run.stderr, sep="")
         shown = "\n".join(line.rstrip() for line in run.stdout.splitlines() if line.strip())
         if run.returncode != 0 or not shown or shown not in manual:
-            wrong.append(f"{pathlib.Path(command[0]).name}: exit {run.returncode}, and docs/abi.md does not show what it printed")
+            wrong.append(f"{pathlib.Path(command[0]).name}: exit {run.returncode}, and docs/guide/tutorial.md does not show what it printed")
     print("\n".join(wrong))
     return 1 if wrong else 0
 

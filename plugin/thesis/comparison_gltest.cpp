@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The duplicate rule for the systems of the thesis: each answers bit for bit what testing every
-// triangle in double answers.
+// The rule of equal answers for the systems of the thesis: each answers bit for bit what testing
+// every triangle in double answers.
 #include "gpu/gl/test_gl.h"
 #include "plugin/structure/failure.h"
 #include "plugin/structure/test_structures.h"

@@ -37,7 +37,7 @@ static_assert(sizeof(FrameAnswer) == 16);
 
 /// The ray in the scene's frame, from where it enters the scene's box; no ray where it does not.
 /// decidable = false where double precision cannot say where it enters to within 1/64 of a float
-/// rounding (docs/numerics.md, "Frames").
+/// rounding (docs/design/numerics.md, "Frames").
 FrameRay frame_ray(const Leaf& whole, const PreparedRay& p, bool& decidable);
 
 /// The host's t of what the kernel found at t_frame on the ray that frame_ray() made of p.

@@ -43,7 +43,7 @@ uint64_t work_of(ovc_structure structure, uint64_t triangles);
 /// Boxes, cells and planes are this much wider in the frame, whose half-extent is 1: 2^-18 = 64u.
 /// The kernels' own roundings move a point of a ray by at most 21u against a plane: the origin u,
 /// the plane's place 3u, the direction 2u over the frame's width, the reciprocal and the product
-/// 13u, the difference 2u (docs/numerics.md, "Boxes").
+/// 13u, the difference 2u (docs/design/numerics.md, "Boxes").
 inline constexpr double kWider = 0x1p-18;
 
 /// The triangles of `whole` in its frame, rounded as the kernel sees them.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The duplicate rule: whatever the leaf size, the budget and the batch, two-level answers bit for
-// bit what testing every triangle in double answers.
+// The rule of equal answers: whatever the leaf size, the budget and the batch, two-level answers
+// bit for bit what testing every triangle in double answers.
 #include "plugin/two_level/test_two_level.h"
 
 #include "kdtree/build.h"

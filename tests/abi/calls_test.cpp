@@ -328,7 +328,7 @@ std::vector<Ray> slow_rays(const Soup& soup, size_t count) {
 }
 
 /// Asked in time, and obeyed in time. Limits are wide, for machines that do other things as well;
-/// docs/abi.md says a twentieth and a tenth of a second.
+/// docs/reference/abi.md says a twentieth and a tenth of a second.
 TEST_F(Calls, ASlowCallIsAskedOftenAndEndsSoon) {
     const Soup soup = test::closed_grid(60);
     const auto scene = committed(soup);

@@ -24,7 +24,7 @@ TEST_F(Instances, AnswerAsTheirTrianglesMovedByHandDo) {
         World w = world();
         const auto floats = random_corners<vec3>(random, 40, 0.3);
         const auto doubles = random_corners<dvec3>(random, 40, 0.3);
-        const Transform placed = any_transform(random, reach);
+        const Matrix placed = any_transform(random, reach);
         const uint32_t sources[] = {
             w.add(floats, dvec3(0.1, 1e3, -7), nullptr),
             w.add(doubles, random.point(-1, 1), nullptr),
@@ -34,7 +34,7 @@ TEST_F(Instances, AnswerAsTheirTrianglesMovedByHandDo) {
             w.add(doubles, dvec3(1.7), &placed, OVC_MESH_TEMPLATE | OVC_MESH_SHARED)};
         std::vector<uint32_t> numbers(std::begin(sources), std::end(sources));
         for (int i = 0; i < 15; ++i) {
-            const Transform m = any_transform(random, reach);
+            const Matrix m = any_transform(random, reach);
             const uint32_t of = numbers[random.below(uint32_t(numbers.size()))];
             numbers.push_back(w.instance(of, i == 7 ? nullptr : &m));
         }
@@ -89,7 +89,7 @@ TEST_F(Instances, TilesShareTheirCornersWhereSumsAreExact) {
     const dvec3 far(5e6, -3e6, 7e5);
     for (int i = 0; i < 12; ++i)
         for (int j = 0; j < 12; ++j) {
-            const Transform m = shift(far + dvec3(3 * i, 3 * j, 0));
+            const Matrix m = shift(far + dvec3(3 * i, 3 * j, 0));
             w.instance(number, &m);
         }
     w.commit();
@@ -111,7 +111,7 @@ TEST_F(Instances, TilesShareTheirCornersWhereSumsAreExact) {
 TEST_F(Instances, MirroredOnesKeepTheirPrimsAndWeights) {
     test::Random random(3);
     const auto corners = random_corners<vec3>(random, 30, 0.5);
-    const Transform mirror = scale({-1, 1, 1});
+    const Matrix mirror = scale({-1, 1, 1});
     World plain = world(), mirrored = world();
     plain.add(corners, dvec3(0), nullptr);
     mirrored.add(corners, dvec3(0), &mirror);
@@ -137,7 +137,7 @@ TEST_F(Instances, MirroredOnesKeepTheirPrimsAndWeights) {
 TEST_F(Instances, SingularTransformsFlatten) {
     test::Random random(5);
     const auto corners = random_corners<vec3>(random, 30, 0.5);
-    const Transform onto_plane = scale({1, 1, 0}), onto_line = scale({0, 0, 1}), onto_point{};
+    const Matrix onto_plane = scale({1, 1, 0}), onto_line = scale({0, 0, 1}), onto_point{};
     World w = world();
     const uint32_t number = w.add(corners, dvec3(0), nullptr, OVC_MESH_TEMPLATE);
     w.instance(number, &onto_plane);
@@ -155,8 +155,8 @@ TEST_F(Instances, SingularTransformsFlatten) {
 
 TEST_F(Instances, OverflowIsDroppedAndUnderflowIsZero) {
     const std::vector<vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    const Transform huge = scale(dvec3(1e80)), overflows = scale(dvec3(1e308)),
-                    tiny = scale(dvec3(1e-80)), thin = scale({1, 1, 1e-300});
+    const Matrix huge = scale(dvec3(1e80)), overflows = scale(dvec3(1e308)),
+                 tiny = scale(dvec3(1e-80)), thin = scale({1, 1, 1e-300});
     World w = world();
     w.add(corners, dvec3(0), &huge);
     w.add(corners, dvec3(1e10), &overflows);
@@ -176,7 +176,7 @@ TEST_F(Instances, AnyScaleWithinTheRange) {
         SCOPED_TRACE(size);
         test::Random random(7);
         const auto corners = random_corners<vec3>(random, 60, 0.4);
-        const Transform m = scale(dvec3(size));
+        const Matrix m = scale(dvec3(size));
         World w = world();
         w.add(corners, dvec3(0), &m);
         w.commit();
@@ -189,7 +189,7 @@ TEST_F(Instances, WhatMakesNoSenseIsRefused) {
     World w = world();
     const std::vector<vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     const std::vector<dvec3> doubles(corners.begin(), corners.end());
-    Transform bad = shift(dvec3(0));
+    Matrix bad = shift(dvec3(0));
     bad[6] = NAN;
     const struct {
         const char* part;
@@ -260,10 +260,10 @@ TEST_F(Instances, TheMeshOfAnEarlierHeaderIsFine) {
 TEST_F(Instances, AreSavedWithTheirTransforms) {
     test::Random random(13);
     const auto corners = random_corners<vec3>(random, 80, 0.3);
-    const Transform here = any_transform(random, 2);
-    Transform there = here;
+    const Matrix here = any_transform(random, 2);
+    Matrix there = here;
     there[3] = std::nextafter(there[3], 9.0);
-    const auto made_of = [&](const Transform& m) {
+    const auto made_of = [&](const Matrix& m) {
         World w = world();
         w.instance(w.add(corners, dvec3(0), nullptr), &m);
         w.commit();
@@ -297,7 +297,7 @@ TEST_F(Instances, NameTheTrianglesThatEmbreesInstancesName) {
         embree.add_mesh(corners);
     }
     for (uint32_t i = 0; i < 40; ++i) {
-        Transform m = any_transform(random, 4);
+        Matrix m = any_transform(random, 4);
         for (double& x : m)
             x = float(x); // both are asked the same
         w.instance(i % 4, &m);

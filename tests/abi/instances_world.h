@@ -18,10 +18,10 @@
 
 namespace ovc::test {
 
-using Transform = std::array<double, 12>;
+using Matrix = std::array<double, 12>;
 
 /// As overcast.h has it.
-inline dvec3 moved(const Transform& m, const dvec3& p) {
+inline dvec3 moved(const Matrix& m, const dvec3& p) {
     dvec3 q;
     for (int row = 0; row < 3; ++row) {
         const double* r = &m[size_t(4 * row)];
@@ -30,8 +30,8 @@ inline dvec3 moved(const Transform& m, const dvec3& p) {
     return q;
 }
 
-inline Transform product(const Transform& second, const Transform& first) {
-    Transform both{};
+inline Matrix product(const Matrix& second, const Matrix& first) {
+    Matrix both{};
     for (size_t i = 0; i < 3; ++i)
         for (size_t j = 0; j < 4; ++j) {
             const double* r = &second[4 * i];
@@ -42,17 +42,17 @@ inline Transform product(const Transform& second, const Transform& first) {
     return both;
 }
 
-inline Transform shift(const dvec3& by) {
+inline Matrix shift(const dvec3& by) {
     return {1, 0, 0, by.x, 0, 1, 0, by.y, 0, 0, 1, by.z};
 }
 
-inline Transform scale(const dvec3& by) {
+inline Matrix scale(const dvec3& by) {
     return {by.x, 0, 0, 0, 0, by.y, 0, 0, 0, 0, by.z, 0};
 }
 
 /// Any affine map: rotations, shears, mirrors, whatever comes.
-inline Transform any_transform(Random& random, double reach) {
-    Transform m;
+inline Matrix any_transform(Random& random, double reach) {
+    Matrix m;
     for (size_t i = 0; i < 12; ++i)
         m[i] = random.point(-1, 1).x * (i % 4 == 3 ? reach : 1);
     return m;
@@ -67,25 +67,25 @@ public:
         scene.reset(created);
     }
 
-    uint32_t add(const std::vector<vec3>& positions, const dvec3& origin, const Transform* m,
+    uint32_t add(const std::vector<vec3>& positions, const dvec3& origin, const Matrix* m,
                  uint32_t flags = 0) {
         auto mesh = sized<ovc_mesh>();
         mesh.positions = &positions[0].x;
         return add(mesh, {positions.begin(), positions.end()}, origin, m, flags);
     }
-    uint32_t add(const std::vector<dvec3>& positions, const dvec3& origin, const Transform* m,
+    uint32_t add(const std::vector<dvec3>& positions, const dvec3& origin, const Matrix* m,
                  uint32_t flags = 0) {
         auto mesh = sized<ovc_mesh>();
         mesh.positions_double = &positions[0].x;
         return add(mesh, positions, origin, m, flags);
     }
-    uint32_t instance(uint32_t mesh, const Transform* m) {
+    uint32_t instance(uint32_t mesh, const Matrix* m) {
         auto given = sized<ovc_instance>();
         given.mesh = mesh;
         given.transform = m ? m->data() : nullptr;
         uint32_t number = OVC_NONE;
         EXPECT_EQ(api().add_instance(scene.get(), &given, &number), OVC_OK) << error();
-        const Transform first = transforms_.count(mesh) ? transforms_[mesh] : shift(dvec3(0));
+        const Matrix first = transforms_.count(mesh) ? transforms_[mesh] : shift(dvec3(0));
         const bool has_both = m && transforms_.count(mesh);
         if (m)
             transforms_[number] = has_both ? product(*m, first) : *m;
@@ -117,8 +117,8 @@ public:
     Soup expected;
 
 private:
-    uint32_t add(ovc_mesh& mesh, std::vector<dvec3> positions, const dvec3& origin,
-                 const Transform* m, uint32_t flags) {
+    uint32_t add(ovc_mesh& mesh, std::vector<dvec3> positions, const dvec3& origin, const Matrix* m,
+                 uint32_t flags) {
         mesh.vertex_count = positions.size();
         mesh.flags = flags;
         mesh.transform = m ? m->data() : nullptr;
@@ -147,7 +147,7 @@ private:
 
     ovc_device device_;
     std::map<uint32_t, std::vector<dvec3>> sources_; // as overcast.h has them, without transforms
-    std::map<uint32_t, Transform> transforms_;
+    std::map<uint32_t, Matrix> transforms_;
 };
 
 template <class Corner>

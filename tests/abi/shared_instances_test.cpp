@@ -13,9 +13,9 @@ namespace {
 using namespace test;
 
 /// A map of one of the kinds that people place meshes by, and some that nobody should.
-Transform transform_of_any_kind(Random& random) {
+Matrix transform_of_any_kind(Random& random) {
     const dvec3 at = std::pow(10.0, double(random.below(5))) * random.point(-1, 1);
-    const Transform turned = any_transform(random, 0);
+    const Matrix turned = any_transform(random, 0);
     switch (random.below(8)) {
     case 0:
         return shift(at);
@@ -30,7 +30,7 @@ Transform transform_of_any_kind(Random& random) {
     case 4: // a shear
         return {1, 300 * random.point(-1, 1).x, 0, at.x, 0, 1, 7, at.y, 0, 0, 1, at.z};
     case 5: { // nearly singular
-        Transform m = product(turned, product(scale({1, 1, 1e-9}), turned));
+        Matrix m = product(turned, product(scale({1, 1, 1e-9}), turned));
         m[3] = at.x;
         return m;
     }
@@ -76,9 +76,9 @@ TEST_F(Instances, SharePagesAndAnswerAlike) {
             numbers.push_back(w.add(mesh_of_any_kind(random), random.point(-1, 1), nullptr,
                                     random.below(2) ? OVC_MESH_TEMPLATE : 0));
         const uint32_t instances = 3 + random.below(12);
-        Transform before = shift(dvec3(0));
+        Matrix before = shift(dvec3(0));
         for (uint32_t i = 0; i < instances; ++i) {
-            const Transform m = random.below(5) ? transform_of_any_kind(random) : before;
+            const Matrix m = random.below(5) ? transform_of_any_kind(random) : before;
             numbers.push_back(w.instance(numbers[random.below(uint32_t(numbers.size()))], &m));
             before = m;
         }
@@ -101,7 +101,7 @@ TEST_F(Instances, SharePagesAndAnswerAlike) {
 TEST_F(Instances, InOnePlaceAreOne) {
     Random random(11);
     const auto corners = random_corners<vec3>(random, 200, 0.3);
-    const Transform m = any_transform(random, 3);
+    const Matrix m = any_transform(random, 3);
     World one = world(), many = world();
     for (World* w : {&one, &many}) {
         const uint32_t number = w->add(corners, dvec3(0), nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The libFuzzer target fuzz_calls (docs/fuzzing.md).
+// The libFuzzer target fuzz_calls (docs/design/fuzzing.md).
 #include "tests/fuzz/calls.h"
 
 #include <cstdlib>

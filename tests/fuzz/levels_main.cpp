@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The libFuzzer target fuzz_levels (docs/fuzzing.md).
+// The libFuzzer target fuzz_levels (docs/design/fuzzing.md).
 #include "tests/fuzz/levels.h"
 
 extern "C" __attribute__((visibility("default"))) int LLVMFuzzerTestOneInput(const uint8_t* data,

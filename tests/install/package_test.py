@@ -48,14 +48,14 @@ class DebianPackage(Tree, unittest.TestCase):
         for script in ("postinst", "prerm"):
             run("sh", "-n", control / script)
 
-    def test_the_manuals_command_builds_its_example(self):
-        manual = (SOURCE / "docs/abi.md").read_text()
-        command = re.search("`(cc .* hills\\.c .*?)`", manual).group(1)
+    def test_the_tutorials_command_builds_its_example(self):
+        tutorial = (SOURCE / "docs/guide/tutorial.md").read_text()
+        command = re.search("^(cc .* hills\\.c .*)$", tutorial, re.MULTILINE).group(1)
         folder = self.folder / "hills"
         shutil.copytree(self.prefix / "share/doc/overcast/examples", folder)
         run("sh", "-c", command, cwd=folder, environment={"PKG_CONFIG_PATH": str(self.libraries / "pkgconfig")})
         printed = run(folder / "hills", self.libraries / "libovercast.so.1")
-        self.assertIn("\n".join(line.rstrip() for line in printed.splitlines() if line.strip()), manual)
+        self.assertIn("\n".join(line.rstrip() for line in printed.splitlines() if line.strip()), tutorial)
 
     def test_lintian_finds_nothing(self):
         if not shutil.which("lintian"):

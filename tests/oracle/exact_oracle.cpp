@@ -91,9 +91,9 @@ double rounded(const Integer& numerator, const Integer& denominator, int exponen
     return negative ? -value : value;
 }
 
-/// Whether a triangle certainly is not hit, or not before `limit`; all bounds are wide. t_max:
+/// Whether a triangle certainly is not hit, or not before `limit`; all bounds are wide. t_bound:
 /// receives a t before which it certainly is hit, or infinity.
-bool certainly_out(const ovc_ray& ray, const Triangle& t, Long limit, Long& t_max) {
+bool certainly_out(const ovc_ray& ray, const Triangle& t, Long limit, Long& t_bound) {
     constexpr Long kError = 0x1p-56L;
     const LongVec a = longs(t.corners[0].data());
     const LongVec ab = minus(longs(t.corners[1].data()), a);
@@ -111,7 +111,7 @@ bool certainly_out(const ovc_ray& ray, const Triangle& t, Long limit, Long& t_ma
     const Long det_error = kError * dot(size(ab), p_size), u_error = kError * dot(size(s), p_size);
     const Long v_error = kError * dot(size(dir), q_size);
     const Long depth_error = kError * dot(size(ac), q_size);
-    t_max = std::numeric_limits<Long>::infinity();
+    t_bound = std::numeric_limits<Long>::infinity();
     if (!(det > 4 * det_error))
         return false; // its sign is not known
     if (u < -u_error || v < -v_error || u + v - det > u_error + v_error + det_error)
@@ -124,7 +124,7 @@ bool certainly_out(const ovc_ray& ray, const Triangle& t, Long limit, Long& t_ma
         return true;
     const bool inside = u > u_error && v > v_error && det - u - v > u_error + v_error + det_error;
     if (inside && least > Long(ray.t_min) && most < Long(ray.t_max))
-        t_max = most;
+        t_bound = most;
     return false;
 }
 
@@ -176,16 +176,16 @@ ovc_hit Oracle::nearest(const ovc_ray& ray, ovc_triangle skip) const {
     const IntegerVec org = wholes(ray.org, length_bit), dir = wholes(ray.dir, dir_bit);
     std::vector<const Triangle*> left;
     for (const Triangle& triangle : triangles_) {
-        Long t_max = 0;
+        Long t_bound = 0;
         if ((triangle.id.mesh == skip.mesh && triangle.id.prim == skip.prim) ||
-            certainly_out(ray, triangle, limit, t_max))
+            certainly_out(ray, triangle, limit, t_bound))
             continue;
-        limit = std::min(limit, t_max);
+        limit = std::min(limit, t_bound);
         left.push_back(&triangle);
     }
     for (const Triangle* triangle : left) {
-        Long t_max = 0;
-        if (certainly_out(ray, *triangle, limit, t_max))
+        Long t_bound = 0;
+        if (certainly_out(ray, *triangle, limit, t_bound))
             continue;
         ++exact_tests_;
         const IntegerVec a = wholes(triangle->corners[0].data(), length_bit);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Claims: what README.md and docs/benchmarks.md say that can be measured or tested, a row each. A
-// test holds them against the documents, so that neither changes without the other.
+// Claims: what README.md, docs/guide/performance.md and docs/benchmarks.md say that can be measured
+// or tested, a row each. A test holds them against the documents, so that neither changes without
+// the other.
 #pragma once
 
 #include "host/report/experiments/experiment.h"

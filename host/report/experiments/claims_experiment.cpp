@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Claims: a row for each figure and each promise of README.md and docs/benchmarks.md, measured here
-// or held by a test that is named.
+// Claims: a row for each figure and each promise of README.md, docs/guide/performance.md and
+// docs/benchmarks.md, measured here or held by a test that is named.
 #include "host/report/experiments/claims.h"
 #include "host/report/experiments/experiment_table.h"
 
@@ -172,7 +172,8 @@ std::vector<Block> blocks(const Json& figures) {
 Experiment claims_experiment() {
     return {"claims",
             "Claims",
-            "a row for each claim of README.md and docs/benchmarks.md, measured or held by a test",
+            "a row for each claim of README.md, docs/guide/performance.md and docs/benchmarks.md, "
+            "measured or held by a test",
             runs,
             figures,
             blocks};

@@ -18,7 +18,7 @@ Experiment hard_experiment();
 Experiment scale_experiment();
 /// What renderings have no need of.
 Experiment left_out_experiment();
-/// What README.md and docs/benchmarks.md claim.
+/// What README.md, docs/guide/performance.md and docs/benchmarks.md claim.
 Experiment claims_experiment();
 /// Chapter 4 of the thesis, a scene each.
 Experiment pictures_experiment();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials: pbrt's, mapped to Whitted's. docs/pbrt.md has the table.
+// Materials: pbrt's, mapped to Whitted's. docs/reference/pbrt.md has the table.
 #pragma once
 
 #include "core/scene.h"

@@ -31,7 +31,7 @@ class Examples(unittest.TestCase):
 
     def test_picture(self):
         """Lit and shadowed floor, lit and dark knot, and sky around it."""
-        text = pathlib.Path(os.environ["OVC_SOURCE_DIR"], "docs/python.md").read_text()
+        text = pathlib.Path(os.environ["OVC_SOURCE_DIR"], "docs/guide/python.md").read_text()
         names = {}
         with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
             exec(re.search(r"```python\n(.*?)```", text, re.DOTALL).group(1), names)
