@@ -83,9 +83,9 @@ Chunk Chunk::unplaced() const {
 }
 
 Chunk::MeshKey Chunk::mesh_key() const {
-    return {uint64_t(reinterpret_cast<uintptr_t>(address_of(0))), size(),
-            std::bit_cast<uint64_t>(origin_.x), std::bit_cast<uint64_t>(origin_.y),
-            std::bit_cast<uint64_t>(origin_.z)};
+    return {uint64_t(reinterpret_cast<uintptr_t>(address_of(0))),
+            uint64_t(size()) << 1 | uint64_t(corners_.empty()), std::bit_cast<uint64_t>(origin_.x),
+            std::bit_cast<uint64_t>(origin_.y), std::bit_cast<uint64_t>(origin_.z)};
 }
 
 void Chunk::place(const Transform& transform) {

@@ -19,6 +19,9 @@
 #ifndef OVC_POOL_BUFFERS
 #define OVC_POOL_BUFFERS 1 // that the pool consists of
 #endif
+#ifndef OVC_EACH_BUFFER
+#define OVC_EACH_BUFFER(do_with) do_with(0) // and with each number below OVC_POOL_BUFFERS
+#endif
 #ifndef OVC_BUFFER_BITS
 #define OVC_BUFFER_BITS 25 // of a unit's number, those within a buffer; above them the buffer's number
 #endif

@@ -9,8 +9,8 @@ struct Found {
     float best_lo;
     float best_hi;
     uint prim;
-    float candidates_lo[2];
-    uint candidates[2];
+    float further_lo[2];
+    uint further[2];
     float others_lo;
     vec2 weights; // fast precision: of the pair's corners that are not v0; with `order` they become u and v
     uint order;
@@ -21,17 +21,17 @@ Found nothing_found(float t_end) {
                  OVC_NEVER, vec2(0.0), 8u);
 }
 
-// Keeps the two least of the candidates and `lo`.
-void add_candidate(inout Found found, float lo, uint prim) {
-    bool first = lo < found.candidates_lo[0];
-    bool second = lo < found.candidates_lo[1];
-    float no_first = greater(lo, found.candidates_lo[0]);
-    float no_second = greater(no_first, found.candidates_lo[1]);
-    found.candidates_lo[0] = lesser(lo, found.candidates_lo[0]);
-    found.candidates_lo[1] = lesser(no_first, found.candidates_lo[1]);
+// Keeps the two nearest of the further candidates and `lo`.
+void add_further(inout Found found, float lo, uint prim) {
+    bool first = lo < found.further_lo[0];
+    bool second = lo < found.further_lo[1];
+    float no_first = greater(lo, found.further_lo[0]);
+    float no_second = greater(no_first, found.further_lo[1]);
+    found.further_lo[0] = lesser(lo, found.further_lo[0]);
+    found.further_lo[1] = lesser(no_first, found.further_lo[1]);
     found.others_lo = lesser(no_second, found.others_lo);
-    found.candidates[1] = first ? found.candidates[0] : (second ? prim : found.candidates[1]);
-    found.candidates[0] = first ? prim : found.candidates[0];
+    found.further[1] = first ? found.further[0] : (second ? prim : found.further[1]);
+    found.further[0] = first ? prim : found.further[0];
 }
 
 // Takes a candidate in. Returns true when it is now the best.
@@ -39,13 +39,13 @@ bool take(inout Found found, Candidate c, bool valid, uint prim, uint order) {
     bool possible = valid && c.possible && c.hi >= 0.0;
 #if OVC_PORTALS
     // What lies beyond a part is met in another. And a triangle that parts share may be in doubt in several of them.
-    bool named = (prim == found.candidates[0] && found.candidates_lo[0] < OVC_NEVER) || (prim == found.candidates[1] && found.candidates_lo[1] < OVC_NEVER);
+    bool named = (prim == found.further[0] && found.further_lo[0] < OVC_NEVER) || (prim == found.further[1] && found.further_lo[1] < OVC_NEVER);
     possible = possible && c.lo <= found.best_hi && (c.certain || !named);
 #endif
     bool better = possible && c.certain && (c.lo > 0.0 || OVC_CERTIFY == 0) && c.hi < found.best_hi;
     if (OVC_CERTIFY != 0) {
         float lo = better ? found.best_lo : c.lo; // the one of the two that is not the best
-        add_candidate(found, possible ? lo : OVC_NEVER, better ? found.prim : prim);
+        add_further(found, possible ? lo : OVC_NEVER, better ? found.prim : prim);
     }
     found.best_lo = better ? c.lo : found.best_lo;
     found.best_hi = better ? c.hi : found.best_hi;
@@ -60,7 +60,7 @@ bool take(inout Found found, Corner a, Corner b, Corner c, Edges e, Depths depth
     return take(found, candidate(a, b, c, e, depths), valid, prim, order);
 }
 
-// What planes cut comes once for each part, within a page and in others: it is no candidates of itself.
+// What planes cut comes once for each part, within a page and in others: it is not a second candidate.
 bool is_known(Found found, uint prim) { return prim == found.prim; }
 
 // The weights of the pair's corners as u and v of the triangle's own: order says which of its corners v0 and v2 are.
@@ -83,8 +83,8 @@ Found in_times(Found found, Times from, Times to, float t_end) {
     there.best_lo = hit ? earlier(found.best_lo, from, to) : OVC_NEVER;
     there.best_hi = hit ? later(found.best_hi, from, to) : t_end;
     for (int i = 0; i < 2; ++i) {
-        bool counts = found.candidates_lo[i] < OVC_NEVER && !(hit && found.candidates_lo[i] > found.best_hi);
-        there.candidates_lo[i] = counts ? earlier(found.candidates_lo[i], from, to) : OVC_NEVER;
+        bool counts = found.further_lo[i] < OVC_NEVER && !(hit && found.further_lo[i] > found.best_hi);
+        there.further_lo[i] = counts ? earlier(found.further_lo[i], from, to) : OVC_NEVER;
     }
     bool others = found.others_lo < OVC_NEVER && !(hit && found.others_lo > found.best_hi);
     there.others_lo = others ? earlier(found.others_lo, from, to) : OVC_NEVER;
@@ -96,11 +96,11 @@ Found in_times(Found found, Times from, Times to, float t_end) {
 uvec4 answer_of(Found found, bool any_hit, uint leaf) {
     if (OVC_CERTIFY == 0 || (any_hit && found.prim != OVC_MISS))
         return uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, leaf, found.prim);
-    // A candidates counts unless it certainly lies beyond the best; with more than two, none can be named.
-    // Without a hit best_hi is the end of the part that was met last, and candidates are of all.
+    // A further candidate counts unless it certainly lies beyond the best; with more than two, none can be named.
+    // Without a hit best_hi is the end of the part that was met last, and further candidates are of all.
     float end = OVC_PORTALS != 0 && !has_hit(found) ? 0.5 * OVC_NEVER : found.best_hi;
-    uint first = found.candidates_lo[0] <= end ? found.candidates[0] : OVC_NO_TRIANGLE;
-    uint second = found.candidates_lo[1] <= end ? found.candidates[1] : OVC_NO_TRIANGLE;
+    uint first = found.further_lo[0] <= end ? found.further[0] : OVC_NO_TRIANGLE;
+    uint second = found.further_lo[1] <= end ? found.further[1] : OVC_NO_TRIANGLE;
 #if OVC_PORTALS
     // In doubt in one part, and certain in another.
     second = second == found.prim ? OVC_NO_TRIANGLE : second;

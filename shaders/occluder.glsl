@@ -4,7 +4,7 @@
 
 struct Found {
     float best_hi; // the ray's end; OVC_ENOUGH: it certainly hits something
-    uint candidates[3]; // the last triangles that it may hit, but not certainly; two can be named
+    uint further[3]; // the last triangles that it may hit, but not certainly; two can be named
 };
 
 Found nothing_found(float t_end) {
@@ -25,14 +25,14 @@ bool take(inout Found found, Corner a, Corner b, Corner c, Edges e, Depths depth
     int between = ~(floatBitsToInt(lo) | less(end, hi));
     int beyond = floatBitsToInt(hi) | less(end, lo);
     bool took = valid && (passing.inside & between) < 0;
-    bool candidates = valid && ~(passing.outside | (passing.inside & (between | beyond))) < 0;
-    found.candidates[2] = candidates ? found.candidates[1] : found.candidates[2];
-    found.candidates[1] = candidates ? found.candidates[0] : found.candidates[1];
-    found.candidates[0] = candidates ? prim : found.candidates[0];
+    bool may_hit = valid && ~(passing.outside | (passing.inside & (between | beyond))) < 0;
+    found.further[2] = may_hit ? found.further[1] : found.further[2];
+    found.further[1] = may_hit ? found.further[0] : found.further[1];
+    found.further[0] = may_hit ? prim : found.further[0];
     return took;
 }
 
-// A part of what planes cut may be a candidates of the others: it is named again, and settled once more.
+// A triangle that planes cut may be a further candidate of its own parts: it is named again, and resolved once more.
 bool is_known(Found found, uint prim) { return false; }
 
 bool has_hit(Found found) { return false; }
@@ -49,5 +49,5 @@ Found in_times(Found found, Times from, Times to, float t_end) {
 uvec4 answer_of(Found found, bool any_hit, uint leaf) {
     if (found.best_hi == OVC_ENOUGH)
         return uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, leaf, 0u);
-    return uvec4(found.candidates[0], found.candidates[1], leaf, found.candidates[2] != OVC_NO_TRIANGLE ? OVC_FLAGGED : OVC_MISS);
+    return uvec4(found.further[0], found.further[1], leaf, found.further[2] != OVC_NO_TRIANGLE ? OVC_FLAGGED : OVC_MISS);
 }

@@ -15,26 +15,14 @@ OVC_TEXELS(OVC_BINDING_POOL) pool[OVC_POOL_BUFFERS];
 #if OVC_POOL_BUFFERS == 1
 Unit unit_at(int unit) { return OVC_UNIT_OF(0, unit * OVC_UNIT_TEXELS); }
 #else
-// GLSL lets no two lanes read different buffers at once. Where lanes can tell each other they go on by turns, those that want the
-// first one's buffer together (llvmpipe: 1.5 times the time of one buffer with two of them, 2 times with 27; by the other way 1.7 and
-// 10). Else each buffer is asked whether the unit is its own. Based on: thesis, section 3.2 (algorithm 1).
+// Each buffer is asked whether the unit is its own, because GLSL lets no two lanes read different ones at once. Written out: a loop
+// would count among those that llvmpipe ends (gpu/gl/workarounds.h, counted-rounds). Based on: thesis, section 3.2 (algorithm 1).
 Unit unit_at(int unit) {
     int own = unit >> OVC_BUFFER_BITS;
     int at = (unit & ((1 << OVC_BUFFER_BITS) - 1)) * OVC_UNIT_TEXELS;
-    Unit found = Unit(uvec4(0u), uvec4(0u), uvec4(0u), uvec4(0u));
-#if OVC_REFILL
-    bool wants;
-    do {
-        int first = readFirstInvocationARB(own);
-        wants = own != first;
-        if (!wants)
-            found = OVC_UNIT_OF(first, at);
-    } while (wants);
-#else
-    for (int i = 0; i < OVC_POOL_BUFFERS; ++i)
-        if (i == own)
-            found = OVC_UNIT_OF(i, at);
-#endif
+    Unit found;
+#define OVC_FROM_BUFFER(number) if (own == number) found = OVC_UNIT_OF(number, at);
+    OVC_EACH_BUFFER(OVC_FROM_BUFFER)
     return found;
 }
 #endif

@@ -31,6 +31,8 @@ struct EglContext::Platform {
 namespace {
 
 constexpr uint64_t kSoftwareMemory = uint64_t(1) << 30;
+// As many as a stack word can count; and llvmpipe (Mesa 22.3) crashes on larger buffers that are
+// bound as images.
 constexpr uint64_t kMaxBufferTexels = uint64_t(OVC_UNIT_TEXELS) << OVC_MAX_BUFFER_BITS;
 
 /// What most often is behind a display that does not start.

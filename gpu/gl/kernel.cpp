@@ -125,6 +125,9 @@ bool compiles_fragment_shaders() {
 } // namespace
 
 std::string ShaderConfig::defines() const {
+    std::string each_buffer;
+    for (uint32_t i = 0; i < pool_buffers; ++i)
+        each_buffer += fmt::format("do_with({}) ", i);
     return fmt::format("#define OVC_ANY_HIT {:d}\n"
                        "#define OVC_CERTIFY {:d}\n"
                        "#define OVC_PORTALS {:d}\n"
@@ -132,6 +135,7 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_TELL_ACTIVE {:d}\n"
                        "#define OVC_LOOSE_PAIRS {:d}\n"
                        "#define OVC_POOL_BUFFERS {}\n"
+                       "#define OVC_EACH_BUFFER(do_with) {}\n"
                        "#define OVC_BUFFER_BITS {}\n"
                        "#define OVC_STACK_DEPTH {}\n"
                        "#define OVC_STACK_REGISTERS {:d}\n"
@@ -142,8 +146,8 @@ std::string ShaderConfig::defines() const {
                        "#define OVC_BUFFER_IMAGES {:d}\n"
                        "#define OVC_MAX_ROUNDS {}\n",
                        any_hit, certify, portals, may_wait, tell_active, loose_pairs, pool_buffers,
-                       buffer_bits, stack_depth, stack_registers, packet, refill, branches,
-                       deal_groups, buffer_images, max_rounds);
+                       each_buffer, buffer_bits, stack_depth, stack_registers, packet, refill,
+                       branches, deal_groups, buffer_images, max_rounds);
 }
 
 Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines) {

@@ -4,6 +4,9 @@
 
 #include "gpu/gl/gl.h"
 
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
 #include <cstdlib>
 #include <string_view>
 
@@ -11,7 +14,12 @@ namespace ovc {
 
 bool has_defect(Workaround which, std::string_view renderer, std::string_view version) {
     const WorkaroundEntry& entry = entry_of(which);
-    return renderer.starts_with(entry.driver) && version.find(entry.version) != version.npos;
+    const auto alike = [](char a, char b) {
+        return std::tolower(uint8_t(a)) == std::tolower(uint8_t(b));
+    };
+    const bool named =
+        entry.driver.empty() || !std::ranges::search(renderer, entry.driver, alike).empty();
+    return named && version.find(entry.version) != version.npos;
 }
 
 bool is_switched_off(Workaround which) {

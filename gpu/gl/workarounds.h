@@ -22,11 +22,11 @@ enum class Workaround {
 struct WorkaroundEntry {
     Workaround which;
     std::string_view name;    // for OVERCAST_NO_WORKAROUNDS
-    std::string_view driver;  // how GL_RENDERER begins; empty: whatever the driver
+    std::string_view driver;  // in GL_RENDERER, in any case; empty: whatever the driver
     std::string_view version; // what GL_VERSION has in it; empty: each
     std::string_view symptom;
     std::string_view answer; // what we do
-    std::string_view test;   // fails where the driver has the defect and nothing is done
+    std::string_view test;   // holds what we do
 };
 
 inline constexpr std::array<WorkaroundEntry, 7> kWorkarounds{{
@@ -43,7 +43,7 @@ inline constexpr std::array<WorkaroundEntry, 7> kWorkarounds{{
      "longer stacks are arrays", "Instances.SharePagesAndAnswerAlike"},
     {Workaround::FinishedPass, "finished-pass", "llvmpipe", "",
      "writes to buffers that a pass under way still reads as images",
-     "a pass is over before anything else is sent", "TwoLevelGl.KeepsToTheBudgetByMovingPages"},
+     "a pass is over before anything else is sent", "ManyBuffersGl.AnswerAsOneDoesWherePagesMove"},
     {Workaround::NarrowFragments, "narrow-fragments", "llvmpipe", "",
      "crashes when it compiles any fragment shader for vectors of 512 bits",
      "fragment kernels are refused there", "VectorWidth.IsNotForFragmentKernels"},

@@ -31,6 +31,7 @@ TEST(Workarounds, AreForTheDriversThatTheyName) {
     const char* const llvmpipe = "llvmpipe (LLVM 15.0.6, 256 bits)";
     EXPECT_TRUE(has_defect(Workaround::CountedRounds, llvmpipe, "4.5 (Core Profile) Mesa 22.3.6"));
     EXPECT_FALSE(has_defect(Workaround::CountedRounds, "NVIDIA H200", "4.6.0 NVIDIA 550"));
+    EXPECT_TRUE(has_defect(Workaround::CountedRounds, "virgl (LLVMPIPE (LLVM 15))", "4.3 Mesa"));
     EXPECT_TRUE(has_defect(Workaround::PassedOver, "zink (llvmpipe)", "4.6 Mesa 22.3.6"));
     EXPECT_FALSE(has_defect(Workaround::PassedOver, "zink (NVIDIA)", "4.6 Mesa 25.0.1"));
     EXPECT_TRUE(has_defect(Workaround::RendererInSources, "NVIDIA H200", "4.6.0 NVIDIA 550"));

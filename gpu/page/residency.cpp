@@ -22,18 +22,28 @@ std::vector<Stretch> stretches_of(const PoolLayout& layout, uint64_t begin) {
     return stretches;
 }
 
-size_t fitting_pages(std::span<const Page> pages, const PoolLayout& layout, uint64_t begin) {
+std::vector<uint64_t> bytes_of_each(std::span<const Page> pages) {
+    std::vector<uint64_t> bytes;
+    for (const Page& page : pages)
+        bytes.push_back(page.bytes());
+    return bytes;
+}
+
+Fit fit_in(std::span<const uint64_t> page_bytes, const PoolLayout& layout, uint64_t begin) {
     std::vector<Stretch> free = stretches_of(layout, begin);
-    size_t count = 0;
-    for (; count < pages.size(); ++count) {
-        const uint64_t bytes = pages[count].bytes();
+    Fit fit{0, std::min(begin, layout.bytes)};
+    for (const uint64_t bytes : page_bytes) {
         const auto room =
             std::ranges::find_if(free, [&](const Stretch& s) { return s.begin + bytes <= s.end; });
         if (room == free.end())
             break;
         room->begin += bytes;
+        const auto buffer = uint32_t(room - free.begin());
+        fit.pool_bytes = std::max(fit.pool_bytes, buffer * layout.buffer_bytes + room->begin -
+                                                      layout.begin_of(buffer));
+        ++fit.pages;
     }
-    return count;
+    return fit;
 }
 
 Residency::Residency(std::span<const Stretch> stretches, uint64_t alignment, size_t leaves)
@@ -73,6 +83,8 @@ bool Residency::admit(uint32_t leaf, uint64_t bytes, uint64_t keep,
                       std::vector<uint32_t>& evicted) {
     assert(!resident(leaf));
     bytes = rounded_up(bytes, alignment_);
+    assert(std::ranges::any_of(shelves_,
+                               [&](const Shelf& s) { return s.room.begin + bytes <= s.room.end; }));
     Range range{0, 0, 0, 0, std::numeric_limits<uint64_t>::max()};
     for (size_t shelf = 0; shelf < shelves_.size(); ++shelf)
         find_cheaper(shelf, bytes, range);

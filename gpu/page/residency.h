@@ -19,13 +19,13 @@ struct PoolLayout {
     uint64_t bytes;
     uint64_t buffer_bytes; // the most of one
 
-    uint32_t count() const { return uint32_t((bytes + buffer_bytes - 1) / buffer_bytes); }
+    uint32_t count() const { return bytes == 0 ? 0 : uint32_t((bytes - 1) / buffer_bytes) + 1; }
     uint64_t bytes_of(uint32_t buffer) const {
         return std::min(buffer_bytes, bytes - buffer * buffer_bytes);
     }
     /// Of the number of a unit, those that count within its buffer.
     uint32_t buffer_bits() const {
-        return count() == 1 ? OVC_MAX_BUFFER_BITS
+        return count() <= 1 ? OVC_MAX_BUFFER_BITS
                             : uint32_t(std::bit_width(buffer_bytes / OVC_UNIT_BYTES - 1));
     }
     /// The buffer's first byte among those of a pool whose buffers could be filled to the last
@@ -38,11 +38,18 @@ struct PoolLayout {
     }
 };
 
-/// How many pages, the first of these, find room one after the other behind the first `begin`
-/// bytes.
-size_t fitting_pages(std::span<const Page> pages, const PoolLayout& layout, uint64_t begin);
+/// How many pages, the first of those of so many bytes, find room one after the other behind the
+/// first `begin` bytes; and how many bytes of the pool that takes.
+struct Fit {
+    size_t pages;
+    uint64_t pool_bytes;
+};
+Fit fit_in(std::span<const uint64_t> page_bytes, const PoolLayout& layout, uint64_t begin);
+
+std::vector<uint64_t> bytes_of_each(std::span<const Page> pages);
+
 inline bool all_fit(std::span<const Page> pages, const PoolLayout& layout, uint64_t begin) {
-    return fitting_pages(pages, layout, begin) == pages.size();
+    return fit_in(bytes_of_each(pages), layout, begin).pages == pages.size();
 }
 
 /// Where a page lies in the pool, as PoolLayout::begin_of() counts.

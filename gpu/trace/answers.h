@@ -23,7 +23,7 @@ struct Answer {
     uint32_t where;
 
     /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
-    std::span<const uint32_t, 2> candidates() const { return std::span(words).first<2>(); }
+    std::span<const uint32_t, 2> further() const { return std::span(words).first<2>(); }
     /// Fast precision: where the hit is.
     double t() const { return std::bit_cast<double>(uint64_t(words[1]) << 32 | words[0]); }
     /// Fast precision.

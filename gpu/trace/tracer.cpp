@@ -21,8 +21,8 @@ namespace {
 
 constexpr uint32_t kMaxBlocks = 2048; // half a million rays: beyond, a pass gains nothing more
 constexpr uint32_t kMaxBlocksInSoftware = 512; // llvmpipe clears what it allocates
-// Each word is a register, and 1 % of the time; of a million rays at the Stanford dragon thirty
-// want more (docs/decisions/0012).
+// Each word is a register (with several buffers two), and 1 % of the time; of a million rays at the
+// Stanford dragon thirty want more (docs/decisions/0012).
 constexpr uint32_t kMaxStackWordsInSoftware = 8;
 constexpr uint32_t kMaxWordsInRegisters = 32; // Workaround::ShortRegisterStack
 constexpr size_t kMaxLostShare = 256;         // of rays, one in so many; else kernels go on longer
@@ -69,6 +69,10 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
     if (buffer_bytes > 0)
         plan.buffer_bytes = std::min(plan.buffer_bytes, buffer_bytes);
     plan.pool_bytes = std::min(plan.pool_bytes, plan.buffer_bytes * device.max_pool_buffers);
+    // A further buffer costs every step of a ray: it is worth that where it holds some pages.
+    const uint64_t rest = plan.pool_bytes % plan.buffer_bytes;
+    if (plan.pool_bytes > plan.buffer_bytes && rest < plan.buffer_bytes / 4)
+        plan.pool_bytes -= rest;
     return plan;
 }
 

@@ -46,7 +46,7 @@ struct MemoryPlan {
     uint64_t budget_bytes = 0;
     uint32_t batch_rays = 0; // most rays a pass
     uint64_t pool_bytes = 0;
-    uint64_t buffer_bytes = 0; // the most of one of the pool's buffers
+    uint64_t buffer_bytes = ~uint64_t(0); // the most of one of the pool's buffers
     uint64_t active_bytes = 0; // 4 a leaf, or 0: passes mark which pages rays are traced through
     uint64_t bytes_per_ray = sizeof(RayState) + kAnswerBytes;
     uint64_t driver_bytes = ~uint64_t(0); // for tests: what the driver has

@@ -80,7 +80,7 @@ Ray random_ray(test::Random& random, const Leaf& leaf) {
 }
 
 bool is_certain(const Answer& answer) {
-    return answer.prim != OVC_FLAGGED && answer.candidates()[0] == OVC_NO_TRIANGLE;
+    return answer.prim != OVC_FLAGGED && answer.further()[0] == OVC_NO_TRIANGLE;
 }
 
 /// What is certain of the rays is what brute force finds.
@@ -226,7 +226,7 @@ TEST_F(KernelGl, NamesBothTrianglesAtASharedEdge) {
     }
     const auto answers = trace(rays);
     for (size_t i = 0; i < rays.size(); ++i) {
-        const auto candidates = answers[i].candidates();
+        const auto candidates = answers[i].further();
         EXPECT_FALSE(is_certain(answers[i]));
         if (answers[i].prim != OVC_FLAGGED) {
             EXPECT_TRUE(candidates[0] == i || candidates[1] == i || answers[i].prim == i)

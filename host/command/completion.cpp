@@ -37,7 +37,7 @@ static std::string gist(const std::string& description) {
 }
 
 /// In single quotes, which all of the shells take.
-static std::string quoted(const std::string& text) {
+static std::string shell_quoted(const std::string& text) {
     std::string out = "'";
     for (const char c : text)
         out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -140,7 +140,7 @@ static std::string zsh_option(const OptionManual& option) {
         std::string spec = fmt::format("*{}{}[{}]", name, joint, what);
         if (takes_value)
             spec += fmt::format(":{}:{}", gist(option.value), zsh_values(option));
-        text += fmt::format(" \\\n        {}", quoted(spec));
+        text += fmt::format(" \\\n        {}", shell_quoted(spec));
     }
     return text;
 }
@@ -151,8 +151,8 @@ static std::string zsh_of(const CommandManual& command) {
         text += zsh_option(option);
     for (const OptionManual& place : command.places)
         text += fmt::format(" \\\n        {}",
-                            quoted(fmt::format("{}:{}:{}", place.repeats ? "*" : "",
-                                               gist(place.names[0]), zsh_values(place))));
+                            shell_quoted(fmt::format("{}:{}:{}", place.repeats ? "*" : "",
+                                                     gist(place.names[0]), zsh_values(place))));
     return text + " ;;\n";
 }
 
@@ -166,7 +166,7 @@ _overcast_scenes() {
     text += "    _alternative 'scenes:test scene:($scenes)' 'files:file:_files'\n}\n"
             "_overcast() {\n    local -a commands\n    commands=(\n";
     for (const CommandManual& command : manual)
-        text += fmt::format("        {}\n", quoted(command.name + ":" + command.summary));
+        text += fmt::format("        {}\n", shell_quoted(command.name + ":" + command.summary));
     text += R"(    )
     if (( CURRENT == 2 )); then
         _describe command commands
@@ -195,7 +195,7 @@ fi
 static std::string fish_values(const OptionManual& option) {
     switch (option.kind) {
     case ValueKind::Choice:
-        return fmt::format(" -x -a {}", quoted(joined(option.choices)));
+        return fmt::format(" -x -a {}", shell_quoted(joined(option.choices)));
     case ValueKind::Scene:
     case ValueKind::File:
         return " -r -F";
@@ -217,16 +217,16 @@ static std::string fish_of(const CommandManual& command) {
         text += when;
         for (const std::string& name : option.names)
             text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-        text += fish_values(option) + " -d " + quoted(gist(option.description)) + "\n";
+        text += fish_values(option) + " -d " + shell_quoted(gist(option.description)) + "\n";
     }
     for (const OptionManual& place : command.places) {
         if (place.kind == ValueKind::Scene)
-            text +=
-                fmt::format("{} -F -a {} -d 'test scene'\n", when, quoted(joined(scene_names())));
+            text += fmt::format("{} -F -a {} -d 'test scene'\n", when,
+                                shell_quoted(joined(scene_names())));
         else if (place.kind == ValueKind::File)
             text += when + " -F\n";
         else if (place.kind == ValueKind::Choice)
-            text += fmt::format("{} -f -a {}\n", when, quoted(joined(place.choices)));
+            text += fmt::format("{} -f -a {}\n", when, shell_quoted(joined(place.choices)));
     }
     return text;
 }
@@ -236,7 +236,7 @@ std::string fish_completion(const Manuals& manual) {
                        "complete -c overcast -f\n";
     for (const CommandManual& command : manual)
         text += fmt::format("complete -c overcast -n __fish_use_subcommand -a {} -d {}\n",
-                            command.name, quoted(command.summary));
+                            command.name, shell_quoted(command.summary));
     for (const CommandManual& command : manual)
         text += fish_of(command);
     return text;

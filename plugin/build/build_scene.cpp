@@ -39,7 +39,8 @@ bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPla
     const size_t links = max_links(pages, scene.level2_bytes(), plan.pool_bytes);
     for (const size_t some : {links, pages}) {
         scene.top = top_level_of(scene, some);
-        if (is_usable(scene.top, scene.pages,
+        if (scene.top.portals.size() * kPortalBytes <= plan.buffer_bytes &&
+            is_usable(scene.top, scene.pages,
                       {room_for_pool(scene, options, plan), plan.buffer_bytes}))
             return true;
     }
@@ -81,6 +82,7 @@ Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const
                          BuildProgress* progress) {
     BuiltScene scene(soup);
     Placed placed = placed_chunks(soup);
+    const SmallestCut cut = smallest_cut(soup, placed, options);
     const uint64_t unique = unique_triangles(soup, placed);
     begin(progress, "triangles", 0.1, 2 * unique);
     HittableParts hittable = take_hittable_parts(scene, std::move(placed), progress);
@@ -96,7 +98,6 @@ Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const
     gather_pages(scene);
     if (add_tree(scene, options, plan))
         return scene;
-    const SmallestCut cut = smallest_cut(soup, options);
     build_smallest_levels(scene, std::move(hittable.once), cut.leaf_triangles,
                           /* in_one_frame= */ false, progress);
     for (size_t i = 0; i < scene.shared.size(); ++i)
@@ -106,6 +107,10 @@ Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const
     if (add_tree(scene, options, plan))
         return scene;
     // check_budget() told that bytes suffice.
+    if (const uint64_t table = scene.top.portals.size() * kPortalBytes; table > plan.buffer_bytes)
+        return over_budget(fmt::format("{} instances are too many: their table takes {} bytes, and "
+                                       "a buffer of this device holds {}",
+                                       scene.top.portals.size(), table, plan.buffer_bytes));
     return over_budget(fmt::format("{} pages under a budget are too many: at most {}; let leaves "
                                    "hold more triangles",
                                    scene.pages.size(), OVC_KEY_LEAF - 1));

@@ -37,9 +37,9 @@ struct SavedCut {
     uint64_t not_finite = 0;
     uint64_t degenerate = 0;
     uint64_t duplicates = 0;
-    uint64_t duplicate_pairs =
-        0;              // so many of the part "twins", behind those of the cuts before; as are
-    uint64_t nodes = 0; // the next two
+    // So many of each part of the archive belong to this cut, behind those of the cuts before.
+    uint64_t duplicate_pairs = 0;
+    uint64_t nodes = 0;
     uint64_t leaves = 0;
     uint64_t triangles = 0;
     uint64_t shares_frame = 0;

@@ -174,13 +174,6 @@ Result<Sizes> sizes_of(BuiltScene& scene, const Hittable& hittable, BuildProgres
     return sizes_of(scene);
 }
 
-uint64_t fitting(std::span<const uint64_t> pages, uint64_t bytes) {
-    uint64_t count = 0;
-    for (; count < pages.size() && pages[count] <= bytes; ++count)
-        bytes -= pages[count];
-    return count;
-}
-
 } // namespace
 
 Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
@@ -190,10 +183,10 @@ Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
         return memory.error();
     BuiltScene scene(soup);
     Placed placed = placed_chunks(soup);
+    const SmallestCut cut = smallest_cut(soup, placed, options);
     begin(progress, "planning", 1, 6 * unique_triangles(soup, placed));
     const HittableParts hittable = take_hittable_parts(scene, std::move(placed), progress);
     set_limits(scene, options, *memory);
-    const SmallestCut cut = smallest_cut(soup, options);
     ovc_plan plan{};
     plan.struct_size = sizeof(plan);
     plan.triangles = soup.triangle_count();
@@ -224,13 +217,15 @@ Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
     plan.level2_bytes = sizes.level2_bytes();
     plan.largest_page_bytes = sizes.largest_page;
     plan.level1_bytes = portals > 1 ? (1 + portals) * kPortalBytes : 0;
+    plan.fits = plan.fits && plan.level1_bytes <= memory->buffer_bytes;
     const uint64_t room = memory->pool_bytes - std::min(memory->pool_bytes, plan.level1_bytes);
     uint64_t tree = max_top_level_bytes(max_links(plan.leaves, plan.level2_bytes, room));
     if (portals > 1) // and inner nodes above: a third of them
         tree += portals * OVC_UNIT_BYTES * 4 / 3 + 2 * sizes.parts * OVC_UNIT_BYTES;
+    const Fit fit = fit_in(sizes.pages, {room, memory->buffer_bytes}, tree);
+    plan.resident_pages = fit.pages;
     if (plan.fits)
-        plan.pool_bytes = std::min(room, plan.level2_bytes + tree);
-    plan.resident_pages = fitting(sizes.pages, plan.pool_bytes - std::min(plan.pool_bytes, tree));
+        plan.pool_bytes = fit.pages == sizes.pages.size() ? fit.pool_bytes : room;
     plan.host_bytes = plan.level2_bytes + plan.leaf_references * sizeof(TriangleId) +
                       plan.leaves * sizeof(Leaf) + sizes.nodes * sizeof(KdNode) + tree +
                       (portals > 1 ? (1 + portals) * sizeof(Portal) : 0);

@@ -19,10 +19,10 @@ namespace {
 // worth a move.
 constexpr uint64_t kPagesAtOnce = 3;
 constexpr uint64_t kPagesByDefault = 32;
-constexpr uint64_t kPagesABuffer =
-    8; // at least, where there are several: what is left over is less
 constexpr uint64_t kWorthMoving = 512 << 10; // bytes
 constexpr uint64_t kDefaultLeaves = 10;      // thesis, section 4
+// Where the pool is several buffers: so the room that is left over at their ends is small.
+constexpr uint64_t kPagesABuffer = 8;
 
 } // namespace
 
@@ -41,8 +41,7 @@ Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
     return plan;
 }
 
-SmallestCut smallest_cut(const Soup& soup, const TwoLevelOptions& options) {
-    const Placed placed = placed_chunks(soup);
+SmallestCut smallest_cut(const Soup& soup, const Placed& placed, const TwoLevelOptions& options) {
     const uint64_t triangles = unique_triangles(soup, placed); // whether they can be hit or not
     const uint64_t active_bytes = options.tell_active ? sizeof(uint32_t) : 0;
     if (triangles == 0)
@@ -80,22 +79,23 @@ uint64_t smallest_budget(uint64_t pool_bytes, const DeviceInfo& device) {
 
 Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
                           const DeviceInfo& device) {
-    const SmallestCut cut = smallest_cut(soup, options);
+    const Placed placed = placed_chunks(soup);
+    const SmallestCut cut = smallest_cut(soup, placed, options);
     if (plan.pool_bytes >= cut.pool_bytes)
         return Done{};
     return over_budget(fmt::format(
         "a GPU budget of {} bytes is too small for this scene: the smallest that works is {} "
         "bytes ({} triangles in leaves of {}, whose tree and largest page take {}; an eighth is "
         "for rays)",
-        plan.budget_bytes, smallest_budget(cut.pool_bytes, device),
-        unique_triangles(soup, placed_chunks(soup)), cut.leaf_triangles, cut.pool_bytes));
+        plan.budget_bytes, smallest_budget(cut.pool_bytes, device), unique_triangles(soup, placed),
+        cut.leaf_triangles, cut.pool_bytes));
 }
 
 /// The most that a page may take of the pool: a third, so that some stay resident; half of it where
 /// what leads to as many leaves might not find room beside that.
 static uint64_t share_of_page(const MemoryPlan& plan, uint64_t triangles) {
     uint64_t page_bytes = std::max<uint64_t>(plan.pool_bytes / kPagesAtOnce, 1);
-    if (plan.pool().count() > 1)
+    if (triangles * kMaxBytesPerTriangle > plan.buffer_bytes)
         page_bytes = std::min(page_bytes, plan.buffer_bytes / kPagesABuffer);
     const uint64_t leaves = triangles * kMaxBytesPerTriangle / page_bytes;
     const uint64_t table = leaves * kMaxBytesPerPart;

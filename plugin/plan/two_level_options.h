@@ -44,7 +44,7 @@ struct SmallestCut {
     uint32_t leaf_triangles = 1;
     uint64_t pool_bytes = 0; // that portals, tree and the largest page take, at most
 };
-SmallestCut smallest_cut(const Soup& soup, const TwoLevelOptions& options);
+SmallestCut smallest_cut(const Soup& soup, const Placed& placed, const TwoLevelOptions& options);
 
 /// The smallest budget that leaves so much to the pool.
 uint64_t smallest_budget(uint64_t pool_bytes, const DeviceInfo& device);

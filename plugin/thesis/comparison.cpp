@@ -184,8 +184,7 @@ private:
                        ? c_.scene_.numbers.of(c_.whole().triangles[index])
                        : index; // OVC_MISS, OVC_NO_TRIANGLE
         };
-        return {number(answer.prim),
-                {number(answer.candidates()[0]), number(answer.candidates()[1])}};
+        return {number(answer.prim), {number(answer.further()[0]), number(answer.further()[1])}};
     }
 
     Hit fast_hit(const PreparedRay& p, const FrameAnswer& answer) const {

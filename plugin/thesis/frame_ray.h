@@ -27,7 +27,7 @@ struct FrameAnswer {
     uint32_t prim;
 
     /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
-    std::array<uint32_t, 2> candidates() const { return {words[0], words[1]}; }
+    std::array<uint32_t, 2> further() const { return {words[0], words[1]}; }
     /// Fast precision.
     float t() const { return std::bit_cast<float>(words[0]); }
     float u() const { return std::bit_cast<float>(words[1]); }

@@ -17,8 +17,10 @@ PassRunner::PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& p
     if (scene.pages.empty())
         return;
     plan_.active_bytes = tracing.options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
-    plan_.pool_bytes = std::min(room_for_pool(scene, tracing.options, plan),
-                                scene.level2_bytes() + scene.top.tree.bytes());
+    plan_.pool_bytes = room_for_pool(scene, tracing.options, plan);
+    const Fit fit = fit_in(bytes_of_each(scene.pages), plan_.pool(), scene.top.tree.bytes());
+    if (fit.pages == scene.pages.size())
+        plan_.pool_bytes = fit.pool_bytes;
 }
 
 Result<Done> PassRunner::open(BuildProgress* progress) {
@@ -86,7 +88,8 @@ void PassRunner::bring_first(BuildProgress* progress) {
     constexpr uint64_t kBytesAtOnce = 32 << 20; // between two looks whether to stop
     const std::vector<Page>& pages = tracing_.scene.pages;
     begin(progress, "moving pages to the GPU", 0.05, plan_.pool_bytes);
-    const size_t fitting = fitting_pages(pages, plan_.pool(), tracing_.scene.top.tree.bytes());
+    const size_t fitting =
+        fit_in(bytes_of_each(pages), plan_.pool(), tracing_.scene.top.tree.bytes()).pages;
     for (size_t next = 0; next < fitting;) {
         std::vector<uint32_t> some;
         uint64_t bytes = 0;

@@ -23,7 +23,7 @@ inline constexpr size_t kRaysPerTask = 256; // of parallel loops over rays that 
 
 /// Of an answer in certified precision that names triangles or OVC_MISS.
 inline Candidates candidates_of(const Answer& answer) {
-    return {answer.prim, {answer.candidates()[0], answer.candidates()[1]}};
+    return {answer.prim, {answer.further()[0], answer.further()[1]}};
 }
 
 /// The hit with t, u and v of where the ray meets the triangle's plane, as doubles have it; as it

@@ -9,7 +9,7 @@ bool take_triangle(inout Found found, uvec4 A, uvec4 B, uvec4 C, bool valid, Lin
     float error = error_of(a, b, c);
     Candidate hit = candidate(a, b, c, edges_of(a, b, c, error), with_corner(depths_of(a, b, error), c));
     uint prim = A.w & 0x7fffffffu;
-    // A triangle listed in several cells is offered several times: it is no candidates of itself.
-    bool known = prim == found.prim || prim == found.candidates[0] || prim == found.candidates[1];
+    // A triangle listed in several cells is offered several times: it is not a second candidate.
+    bool known = prim == found.prim || prim == found.further[0] || prim == found.further[1];
     return take(found, hit, valid && !known && prim != skip, prim, 8u);
 }

@@ -21,7 +21,7 @@ layout(binding = OVC_BINDING_STATE) uniform usampler2D state[3];
 
 layout(location = 0) out uvec4 answer; // right when the ray has ended; until then it is written again
 layout(location = 1) out uvec4 place;
-layout(location = 2) out uvec4 candidates;
+layout(location = 2) out uvec4 further;
 layout(location = 3) out uvec4 others;
 
 Walk read_walk(ivec2 pixel) {
@@ -36,7 +36,7 @@ Walk read_walk(ivec2 pixel) {
 void write_walk(Walk walk) {
     Found found = walk.found;
     place = uvec4(walk.at, found.prim, floatBitsToUint(found.best_lo), floatBitsToUint(found.best_hi));
-    candidates = uvec4(floatBitsToUint(found.candidates_lo[0]), floatBitsToUint(found.candidates_lo[1]), found.candidates[0], found.candidates[1]);
+    further = uvec4(floatBitsToUint(found.further_lo[0]), floatBitsToUint(found.further_lo[1]), found.further[0], found.further[1]);
     others = uvec4(floatBitsToUint(found.others_lo), floatBitsToUint(found.weights), 0u);
 }
 

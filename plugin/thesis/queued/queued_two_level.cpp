@@ -4,7 +4,7 @@
 
 #include "core/backlog.h"
 #include "core/system/stopwatch.h"
-#include "plugin/thesis/queued/ray_states.h"
+#include "plugin/thesis/queued/queued_rays.h"
 #include "plugin/two_level/query.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace ovc::thesis {
 namespace {
 
 /// Algorithm 3: all queues of leaves, then level 1 again.
-Result<Done> trace_in_rounds(RayStates& states) {
+Result<Done> trace_in_rounds(QueuedRays& states) {
     while (true) {
         states.walk_level1();
         if (!states.waiting())
@@ -30,7 +30,7 @@ Result<Done> trace_in_rounds(RayStates& states) {
 class MixedStream final : public RayStream {
 public:
     MixedStream(QueuedScene& scene, StreamHost& host)
-        : statistics_(scene.statistics), host_(host), states_(scene) {}
+        : statistics_(scene.statistics), host_(host), rays_(scene) {}
 
     void push(const StreamRays& rays) override { (rays.any_hit ? any_ : nearest_).push(rays); }
 
@@ -43,10 +43,10 @@ public:
                 if (!deliver())
                     return stopped_by_host();
             } while (may_start());
-            if (!states_.waiting())
+            if (!rays_.waiting())
                 return Done{};
             const Stopwatch watch;
-            Result<Done> done = states_.trace_next_leaf();
+            Result<Done> done = rays_.trace_next_leaf();
             statistics_.seconds_trace += watch.seconds();
             if (!done)
                 return done;
@@ -58,11 +58,11 @@ private:
 
     /// Asks the host for more where half of what may be under way is missing.
     bool fill() {
-        const size_t busy = states_.under_way() + backlog();
-        if (!more_ || busy > RayStates::kMax / 2)
+        const size_t busy = rays_.under_way() + backlog();
+        if (!more_ || busy > QueuedRays::kMax / 2)
             return true;
         const size_t before = backlog();
-        if (!host_.more(*this, RayStates::kMax - busy))
+        if (!host_.more(*this, QueuedRays::kMax - busy))
             return false;
         more_ = backlog() > before;
         return true;
@@ -70,8 +70,8 @@ private:
 
     /// Is there more to send through level 1 before a leaf is chosen?
     bool may_start() const {
-        return (backlog() > 0 && states_.under_way() < RayStates::kMax) ||
-               (more_ && !states_.waiting());
+        return (backlog() > 0 && rays_.under_way() < QueuedRays::kMax) ||
+               (more_ && !rays_.waiting());
     }
 
     /// Sends rays of the backlog, and all that have left their leaves, through level 1.
@@ -79,20 +79,20 @@ private:
         const Stopwatch watch;
         start(any_, /* any_hit= */ true);
         start(nearest_, /* any_hit= */ false);
-        states_.walk_level1();
+        rays_.walk_level1();
         statistics_.seconds_trace += watch.seconds();
     }
 
     void start(Backlog& backlog, bool any_hit) {
-        const size_t count = std::min(backlog.size(), RayStates::kMax - states_.under_way());
+        const size_t count = std::min(backlog.size(), QueuedRays::kMax - rays_.under_way());
         const StreamRays rays = backlog.last(count);
-        states_.add(any_hit, rays.rays, rays.skip, rays.tokens);
+        rays_.add(any_hit, rays.rays, rays.skip, rays.tokens);
         backlog.drop_last(count);
     }
 
     bool deliver() {
         Answers answers;
-        states_.take_answered([&](const RayState& state) {
+        rays_.take_answered([&](const QueuedRay& state) {
             if (state.any_hit) {
                 answers.shadow_tokens.push_back(state.token);
                 answers.occluded.push_back(state.hit.is_hit());
@@ -115,7 +115,7 @@ private:
 
     ovc_statistics& statistics_;
     StreamHost& host_;
-    RayStates states_;
+    QueuedRays rays_;
     Backlog nearest_;
     Backlog any_;
     bool more_ = true;
@@ -128,14 +128,14 @@ Result<Done> QueuedTwoLevel::trace(const Query& query) {
     const Stopwatch watch;
     std::vector<uint64_t> tokens(query.rays.size());
     std::iota(tokens.begin(), tokens.end(), uint64_t(0));
-    RayStates states(*scene_);
-    for (size_t first = 0; first < query.rays.size(); first += RayStates::kMax) {
-        const size_t count = std::min(RayStates::kMax, query.rays.size() - first);
+    QueuedRays states(*scene_);
+    for (size_t first = 0; first < query.rays.size(); first += QueuedRays::kMax) {
+        const size_t count = std::min(QueuedRays::kMax, query.rays.size() - first);
         const Query part = query.part(first, count);
         states.add(Query::kAnyHit, part.rays, part.skip, std::span(tokens).subspan(first, count));
         if (Result<Done> done = trace_in_rounds(states); !done)
             return done;
-        states.take_answered([&](const RayState& state) { query.set(state.token, state.hit); });
+        states.take_answered([&](const QueuedRay& state) { query.set(state.token, state.hit); });
     }
     scene_->statistics.seconds_trace += watch.seconds();
     return Done{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// RayStates: rays under way between level 1 on the CPU and the queues of its leaves; the steps that
-// algorithms 3, 4 and 6 of the thesis are made of.
+// QueuedRays: rays under way between level 1 on the CPU and the queues of its leaves; the steps
+// that algorithms 3, 4 and 6 of the thesis are made of.
 #pragma once
 
 #include "core/exact/triangle.h"
@@ -17,7 +17,7 @@
 namespace ovc::thesis {
 
 /// A ray under way, as the host gave it, and how far it has come.
-struct RayState {
+struct QueuedRay {
     Ray ray;
     TriangleId skip;
     uint64_t token = 0;
@@ -30,11 +30,12 @@ struct RayState {
     Hit hit;          // the nearest so far
 };
 
-class RayStates {
+class QueuedRays {
 public:
-    explicit RayStates(QueuedScene& scene) : s_(scene), queues_(scene.built.level1.leaves.size()) {}
-    ~RayStates();
-    RayStates(const RayStates&) = delete;
+    explicit QueuedRays(QueuedScene& scene)
+        : s_(scene), queues_(scene.built.level1.leaves.size()) {}
+    ~QueuedRays();
+    QueuedRays(const QueuedRays&) = delete;
 
     /// Puts rays into the queue of level 1; with those under way, at most kMax. skip: empty, or
     /// one per ray, as the tokens.
@@ -65,19 +66,19 @@ public:
 
 private:
     uint32_t slot();
-    void begin(RayState& state);
-    void find_leaf(RayState& state);
+    void begin(QueuedRay& state);
+    void find_leaf(QueuedRay& state);
     Result<Done> pass(uint32_t leaf, std::span<const uint32_t> batch);
     void load(uint32_t leaf, std::span<const uint32_t> batch);
-    void resolve(RayState& state, const FrameAnswer& answer, bool decidable);
-    bool resolve_candidates(RayState& state, const FrameAnswer& answer);
-    void enter_fast(RayState& state, const FrameAnswer& answer);
-    void end_at(RayState& state, const PreparedRay& p, double end, double slack);
-    void fall_back(RayState& state);
+    void resolve(QueuedRay& state, const FrameAnswer& answer, bool decidable);
+    bool resolve_candidates(QueuedRay& state, const FrameAnswer& answer);
+    void enter_fast(QueuedRay& state, const FrameAnswer& answer);
+    void end_at(QueuedRay& state, const PreparedRay& p, double end, double slack);
+    void fall_back(QueuedRay& state);
 
     QueuedScene& s_;
     Queues queues_; // of leaves; hold indices of states_, as all below
-    std::vector<RayState> states_;
+    std::vector<QueuedRay> states_;
     std::vector<uint32_t> free_;
     std::vector<uint32_t> level1_queue_;
     std::vector<uint32_t> answered_;

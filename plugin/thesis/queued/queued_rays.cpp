@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// RayStates: from level 1 into a queue, through a pass, and back; what the kernel leaves is
+// QueuedRays: from level 1 into a queue, through a pass, and back; what the kernel leaves is
 // resolved.
-#include "plugin/thesis/queued/ray_states.h"
+#include "plugin/thesis/queued/queued_rays.h"
 
 #include "core/system/parallel.h"
 #include "plugin/two_level/candidates.h"
@@ -19,7 +19,7 @@ namespace {
 constexpr size_t kGrain = 256; // rays a task
 
 /// What is left of it.
-PreparedRay rest_of(const RayState& state) {
+PreparedRay rest_of(const QueuedRay& state) {
     Ray rest = state.ray;
     rest.t_max = state.t_end;
     return PreparedRay(rest, state.skip);
@@ -27,14 +27,14 @@ PreparedRay rest_of(const RayState& state) {
 
 } // namespace
 
-RayStates::~RayStates() {
+QueuedRays::~QueuedRays() {
     s_.statistics.invalid_rays += invalid_;
     s_.statistics.flagged += flagged_;
     s_.statistics.retraced += retraced_;
     s_.statistics.capped += capped_;
 }
 
-uint32_t RayStates::slot() {
+uint32_t QueuedRays::slot() {
     if (free_.empty()) {
         states_.emplace_back();
         return uint32_t(states_.size() - 1);
@@ -44,8 +44,8 @@ uint32_t RayStates::slot() {
     return i;
 }
 
-void RayStates::add(bool any_hit, const RaySpan& rays, std::span<const TriangleId> skip,
-                    std::span<const uint64_t> tokens) {
+void QueuedRays::add(bool any_hit, const RaySpan& rays, std::span<const TriangleId> skip,
+                     std::span<const uint64_t> tokens) {
     assert(under_way() + rays.size() <= kMax);
     for (size_t i = 0; i < rays.size(); ++i) {
         const uint32_t at = slot();
@@ -55,7 +55,7 @@ void RayStates::add(bool any_hit, const RaySpan& rays, std::span<const TriangleI
     (any_hit ? s_.statistics.occlusion_rays : s_.statistics.nearest_rays) += rays.size();
 }
 
-void RayStates::walk_level1() {
+void QueuedRays::walk_level1() {
     parallel_for(level1_queue_.size(), kGrain, [&](size_t from, size_t to) {
         for (size_t j = from; j < to; ++j)
             find_leaf(states_[level1_queue_[j]]);
@@ -68,20 +68,20 @@ void RayStates::walk_level1() {
     level1_queue_.clear();
 }
 
-void RayStates::find_leaf(RayState& state) {
+void QueuedRays::find_leaf(QueuedRay& state) {
     state.leaf = kNone;
-    if (state.step == RayState::New)
+    if (state.step == QueuedRay::New)
         begin(state);
-    if (state.step == RayState::Answered)
+    if (state.step == QueuedRay::Answered)
         return;
     const PreparedRay rest = rest_of(state);
-    state.leaf = state.step == RayState::InLastCell
+    state.leaf = state.step == QueuedRay::InLastCell
                      ? next_leaf_in_cell(s_.built.level1, rest, state.place).leaf
                      : next_leaf(s_.walk, s_.built.level1, rest, state.place).leaf;
 }
 
-void RayStates::begin(RayState& state) {
-    state.step = RayState::Answered;
+void QueuedRays::begin(QueuedRay& state) {
+    state.step = QueuedRay::Answered;
     if (!state.ray.valid()) {
         ++invalid_;
         return;
@@ -92,10 +92,10 @@ void RayStates::begin(RayState& state) {
     }
     state.place.cells.t = state.ray.t_min;
     state.t_end = state.ray.t_max;
-    state.step = RayState::Walking;
+    state.step = QueuedRay::Walking;
 }
 
-Result<Done> RayStates::trace_next_leaf() {
+Result<Done> QueuedRays::trace_next_leaf() {
     const uint32_t leaf =
         queues_.choose([&](uint32_t l) { return s_.passes->resident(l); }, s_.built.pages);
     const std::vector<uint32_t> queue = queues_.take(leaf);
@@ -108,7 +108,7 @@ Result<Done> RayStates::trace_next_leaf() {
     return Done{};
 }
 
-Result<Done> RayStates::pass(uint32_t leaf, std::span<const uint32_t> queued) {
+Result<Done> QueuedRays::pass(uint32_t leaf, std::span<const uint32_t> queued) {
     std::vector<uint32_t> batch(queued.begin(), queued.end());
     const auto occlusion = std::stable_partition(batch.begin(), batch.end(),
                                                  [&](uint32_t i) { return !states_[i].any_hit; });
@@ -134,13 +134,13 @@ Result<Done> RayStates::pass(uint32_t leaf, std::span<const uint32_t> queued) {
 }
 
 /// The rays in the leaf's frame.
-void RayStates::load(uint32_t leaf, std::span<const uint32_t> batch) {
+void QueuedRays::load(uint32_t leaf, std::span<const uint32_t> batch) {
     rays_.assign(LeafPasses::row_padded(batch.size()), FrameRay{});
     answers_.resize(rays_.size());
     decidable_.resize(rays_.size());
     parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
         for (size_t j = from; j < to; ++j) {
-            const RayState& state = states_[batch[j]];
+            const QueuedRay& state = states_[batch[j]];
             bool decidable = true;
             rays_[j] = frame_ray(s_.built.level1.leaves[leaf], rest_of(state), decidable);
             rays_[j].skip = s_.built.number_to_skip(state.skip);
@@ -149,7 +149,7 @@ void RayStates::load(uint32_t leaf, std::span<const uint32_t> batch) {
     });
 }
 
-void RayStates::resolve(RayState& state, const FrameAnswer& answer, bool decidable) {
+void QueuedRays::resolve(QueuedRay& state, const FrameAnswer& answer, bool decidable) {
     const bool capped = decidable && answer.prim == OVC_CAPPED;
     capped_ += capped;
     if (!decidable || capped || answer.prim == OVC_FLAGGED)
@@ -162,13 +162,13 @@ void RayStates::resolve(RayState& state, const FrameAnswer& answer, bool decidab
 
 /// Enters the kernel's candidates of the leaf, as exact arithmetic decides them. False where it
 /// does not confirm the certain hit.
-bool RayStates::resolve_candidates(RayState& state, const FrameAnswer& answer) {
-    const Candidates found{answer.prim, answer.candidates()};
+bool QueuedRays::resolve_candidates(QueuedRay& state, const FrameAnswer& answer) {
+    const Candidates found{answer.prim, answer.further()};
     if (found.is_miss())
         return true;
     if (state.any_hit && found.is_certain_hit()) {
         state.hit = {0, 0, 0, s_.built.numbers.id(found.certain)};
-        state.step = RayState::Answered;
+        state.step = QueuedRay::Answered;
         return true;
     }
     const PreparedRay p(state.ray, state.skip);
@@ -184,7 +184,7 @@ bool RayStates::resolve_candidates(RayState& state, const FrameAnswer& answer) {
     return true;
 }
 
-void RayStates::enter_fast(RayState& state, const FrameAnswer& answer) {
+void QueuedRays::enter_fast(QueuedRay& state, const FrameAnswer& answer) {
     if (answer.prim == OVC_MISS)
         return;
     const Leaf& leaf = s_.built.level1.leaves[state.leaf];
@@ -201,20 +201,20 @@ void RayStates::enter_fast(RayState& state, const FrameAnswer& answer) {
 
 /// The ray was hit, not beyond `end` however t is rounded. It is in its last cell where that lies
 /// in the leaf's cell, larger by `slack`: then nothing of later cells is nearer, nor as near.
-void RayStates::end_at(RayState& state, const PreparedRay& p, double end, double slack) {
+void QueuedRays::end_at(QueuedRay& state, const PreparedRay& p, double end, double slack) {
     state.t_end = std::min(state.t_end, end);
     const Box cell = s_.built.level1.leaves[state.leaf].cell.padded(slack);
     if (state.any_hit)
-        state.step = RayState::Answered;
+        state.step = QueuedRay::Answered;
     else if (s_.walk.along_the_ray() && end <= clip(p, cell, p.ray.t_min, p.ray.t_max).exit)
-        state.step = RayState::InLastCell;
+        state.step = QueuedRay::InLastCell;
 }
 
-void RayStates::fall_back(RayState& state) {
+void QueuedRays::fall_back(QueuedRay& state) {
     const PreparedRay p(state.ray, state.skip);
     state.hit =
         state.any_hit ? trace_exactly<true>(s_.built, p) : trace_exactly<false>(s_.built, p);
-    state.step = RayState::Answered;
+    state.step = QueuedRay::Answered;
     ++flagged_;
     ++retraced_;
 }
