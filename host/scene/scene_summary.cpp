@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One look at every triangle.
+// One look at every triangle, and at each instance of a mesh.
 #include "host/scene/scene_summary.h"
 
 #include "core/system/parallel.h"
@@ -7,6 +7,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
 
 namespace ovc {
 
@@ -45,6 +49,48 @@ static Census count(const Chunk& chunk) {
         join);
 }
 
+/// Whether what rounding makes of placed corners is small beside the mesh, so that its triangles
+/// keep their areas.
+static bool keeps_areas(const Transform& transform) {
+    const auto inverse = inverse_matrix(transform);
+    if (!inverse)
+        return false;
+    double largest = 0, largest_back = 0;
+    for (size_t i = 0; i < 3; ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+            largest = std::max(largest, std::abs(transform.rows[i][size_t(axis)]));
+            largest_back = std::max(largest_back, std::abs((*inverse)[i][axis]));
+        }
+    return largest * largest_back <= 0x1p19;
+}
+
+/// The census of all chunks. A mesh is looked at triangle by triangle once, and again only where an
+/// instance may reach beyond the bounds so far.
+static Census count(const Soup& soup) {
+    Census all;
+    std::map<Chunk::MeshKey, Census> meshes;
+    for (const Chunk& chunk : soup.chunks) {
+        const Transform* transform = chunk.transform();
+        if (!transform || chunk.size() == 0) {
+            all = join(all, count(chunk));
+            continue;
+        }
+        const auto [place, is_new] = meshes.try_emplace(chunk.mesh_key());
+        if (is_new)
+            place->second = count(chunk.unplaced());
+        const Census& mesh = place->second;
+        Box box = all.bounds;
+        for (int i = 0; i < 8; ++i)
+            box.add((*transform)({i & 1 ? mesh.bounds.hi.x : mesh.bounds.lo.x,
+                                  i & 2 ? mesh.bounds.hi.y : mesh.bounds.lo.y,
+                                  i & 4 ? mesh.bounds.hi.z : mesh.bounds.lo.z}));
+        const bool is_inside = box.lo == all.bounds.lo && box.hi == all.bounds.hi;
+        if (!is_inside || mesh.dropped.total() > 0 || !keeps_areas(*transform))
+            all = join(all, count(chunk));
+    }
+    return all;
+}
+
 static uint64_t triangles_without_normals(const Scene& scene) {
     uint64_t triangles = 0;
     for (size_t m = 0; m < scene.meshes.size(); ++m)
@@ -65,9 +111,7 @@ SceneSummary summarize(const Scene& scene) {
     SceneSummary summary;
     summary.triangles = scene.soup.triangle_count();
     summary.meshes = scene.soup.chunks.size();
-    Census census;
-    for (const Chunk& chunk : scene.soup.chunks)
-        census = join(census, count(chunk));
+    const Census census = count(scene.soup);
     summary.dropped = census.dropped;
     summary.bounds = census.bounds;
 

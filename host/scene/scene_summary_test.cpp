@@ -25,6 +25,34 @@ TEST(SceneSummary, CountsWhatCannotBeHitAndLeavesItOutOfTheBounds) {
     EXPECT_EQ(hittable_bounds(scene.soup).hi, s.bounds.hi);
 }
 
+TEST(SceneSummary, CountsInstancesAsTheirTriangles) {
+    Scene scene;
+    scene.add_mesh(
+        "one", 0,
+        Chunk::owning(dvec3(0),
+                      {{0, 0, 0}, {1, 0, 0}, {0, 1, 2}, {0, 0, 0}, {1, 1, 1}, {2, 2, 2}}));
+    scene.add_mesh("two", 0, Chunk::owning(dvec3(5), {{0, 0, 0}, {1, 0, 0}, {0, 1, 2}}));
+    const auto place = [&](uint32_t mesh, const Transform& transform) {
+        Chunk chunk = scene.soup.chunks[mesh].instance();
+        chunk.place(transform);
+        scene.add_mesh("instance", 0, std::move(chunk));
+    };
+    const Transform turned{{{{0, -1, 0, 3}, {1, 0, 0, 0}, {0, 0, 1, 0}}}};
+    const Transform flat{{{{1, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}}}};
+    const Transform far{{{{1, 0, 0, -40}, {0, 1, 0, 0}, {0, 0, 3, 0}}}};
+    for (const uint32_t mesh : {0u, 1u})
+        for (const Transform& transform : {turned, turned, flat, far, turned})
+            place(mesh, transform);
+    const SceneSummary s = summarize(scene);
+    Dropped dropped;
+    Box bounds;
+    hittable_triangles(scene.soup, &dropped, &bounds);
+    EXPECT_EQ(s.dropped.degenerate, dropped.degenerate);
+    EXPECT_EQ(s.dropped.degenerate, 8u); // a line in each of six, and two that are flat
+    EXPECT_EQ(s.bounds.lo, bounds.lo);
+    EXPECT_EQ(s.bounds.hi, bounds.hi);
+}
+
 TEST(SceneSummary, KnowsWhatIsNeeded) {
     Scene scene;
     scene.materials = {{"dull"}, {"mirror", vec3(1), 0.5f}};
