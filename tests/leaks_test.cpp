@@ -98,7 +98,7 @@ TEST(SoundTargets, AreHitThoughTheMeshHasHoles) {
     for (const dvec3& place : {dvec3(0), dvec3(4.5e6, 6e6, 6), dvec3(1e9)}) {
         const Soup soup = soup_of(with_hole(2000), place);
         Random random(1);
-        const RaySet set = SoundTargets(soup).rays(random, 5000);
+        const AimedRays set = SoundTargets(soup).rays(random, 5000);
         ASSERT_EQ(set.rays.size(), 5000u);
         std::vector<Hit> hits(set.rays.size());
         intersect(build_kd_tree(soup), soup, set.rays, {}, hits);

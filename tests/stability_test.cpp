@@ -68,7 +68,7 @@ void compare_with_exact(const StabilityCase& one) {
     // A ray costs a box test for every triangle, and exact numbers for every one that it comes
     // near.
     const size_t sample = std::clamp<size_t>(120'000 / soup.triangle_count(), 8, 60);
-    const RaySet set = stability_rays(one, soup, 0, sample);
+    const AimedRays set = stability_rays(one, soup, 0, sample);
     size_t wrong = 0;
     for (size_t i = 0; i < sample; ++i) {
         const TriangleId skip = set.skip.empty() ? TriangleId{} : set.skip[i];

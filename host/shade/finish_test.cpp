@@ -12,11 +12,11 @@ static constexpr Hit kHit{1, 0.3, 0.3, {0, 0}};
 static const vec3 kColor{0.5f, 0.25f, 1};
 
 /// A triangle in the plane y = 0 with this finish, seen along (1, -1, 0).
-struct Sample {
+struct SeenTriangle {
     Scene scene;
     SurfacePoint point;
 
-    explicit Sample(const Finish& finish, double ior = 1, float transmission = 0) {
+    explicit SeenTriangle(const Finish& finish, double ior = 1, float transmission = 0) {
         Material material;
         material.color = kColor;
         material.ior = ior;
@@ -40,14 +40,15 @@ TEST(Finish, DiffuseFollowsTheCosineToThePowerOfBrilliance) {
     finish.diffuse = 0.6f;
     finish.brilliance = 3;
     const dvec3 slanting(std::sqrt(0.75), 0.5, 0);
-    expect_near(finish_light(Sample(finish).point, slanting, vec3(2), true), 2 * 0.6f / 8 * kColor);
+    expect_near(finish_light(SeenTriangle(finish).point, slanting, vec3(2), true),
+                2 * 0.6f / 8 * kColor);
 }
 
 TEST(Finish, AmbientIsTheFinishesOwn) {
     Finish finish;
     finish.ambient = {0.1f, 0.2f, 0.3f};
     const Background sky;
-    expect_near(ambient_light(sky, {0, 1, 0}, Sample(finish).point), finish.ambient * kColor);
+    expect_near(ambient_light(sky, {0, 1, 0}, SeenTriangle(finish).point), finish.ambient * kColor);
 }
 
 TEST(Finish, HighlightsPeakAtTheMirrorsAngle) {
@@ -55,7 +56,7 @@ TEST(Finish, HighlightsPeakAtTheMirrorsAngle) {
     finish.diffuse = 0;
     finish.phong = 0.75f;
     finish.specular = 0.5f;
-    const SurfacePoint& point = Sample(finish).point;
+    const SurfacePoint& point = SeenTriangle(finish).point;
     expect_near(finish_light(point, kMirrored, vec3(1), true), vec3(1.25f));
     EXPECT_LT(finish_light(point, {0, 1, 0}, vec3(1), true).x, 0.2f);
     expect_near(finish_light(point, kMirrored, vec3(1), /* highlights= */ false), vec3(0));
@@ -66,7 +67,7 @@ TEST(Finish, MetalColorsItsHighlight) {
     finish.diffuse = 0;
     finish.specular = 1;
     finish.metallic = 1;
-    const vec3 light = finish_light(Sample(finish).point, kMirrored, vec3(1), true);
+    const vec3 light = finish_light(SeenTriangle(finish).point, kMirrored, vec3(1), true);
     EXPECT_NEAR(light.x, 0.5, 0.05);
     EXPECT_NEAR(light.y, 0.25, 0.05);
     EXPECT_NEAR(light.z, 1, 1e-6);
@@ -78,7 +79,7 @@ TEST(Finish, ReflectionRunsFromHeadOnToGrazing) {
     finish.grazing_reflection = vec3(1, 1, 0.2f);
     finish.reflection_falloff = 2;
     const float grazing = std::pow(1 - std::sqrt(0.5f), 2.0f);
-    expect_near(branches(Sample(finish).point, false).mirror,
+    expect_near(branches(SeenTriangle(finish).point, false).mirror,
                 {0.2f + 0.8f * grazing, 0.2f + 0.8f * grazing, 0.2f});
 }
 
@@ -87,18 +88,18 @@ TEST(Finish, FresnelReflectsMoreTheFlatterTheRay) {
     finish.grazing_reflection = vec3(1);
     finish.fresnel = true;
     // Fresnel's equations at 45 degrees, from 1 to 1.5: the mean of 0.0920 and 0.00847.
-    EXPECT_NEAR(branches(Sample(finish, 1.5).point, false).mirror.x, 0.0502, 1e-4);
+    EXPECT_NEAR(branches(SeenTriangle(finish, 1.5).point, false).mirror.x, 0.0502, 1e-4);
 }
 
 TEST(Finish, PartsAreAddedUnlessEnergyIsConserved) {
     Finish finish;
     finish.reflection = finish.grazing_reflection = vec3(0.4f);
-    const Branches sum = branches(Sample(finish, 1.5, 0.5f).point, false);
+    const Branches sum = branches(SeenTriangle(finish, 1.5, 0.5f).point, false);
     expect_near(sum.mirror, vec3(0.4f));
     expect_near(sum.through, vec3(0.5f));
     EXPECT_EQ(sum.taken_by_mirror + sum.taken_by_through, 0);
     finish.conserve_energy = true;
-    expect_near(branches(Sample(finish, 1.5, 0.5f).point, false).through, vec3(0.3f));
+    expect_near(branches(SeenTriangle(finish, 1.5, 0.5f).point, false).through, vec3(0.3f));
 }
 
 TEST(Finish, TotalReflectionLosesNoLight) {
@@ -109,14 +110,14 @@ TEST(Finish, TotalReflectionLosesNoLight) {
         Finish finish;
         finish.reflection = finish.grazing_reflection = vec3(0.3f);
         finish.conserve_energy = conserve;
-        const Branches total = branches(Sample(finish, 1.5, 0.9f).point, true);
+        const Branches total = branches(SeenTriangle(finish, 1.5, 0.9f).point, true);
         EXPECT_EQ(total.mirror, vec3(1));
         EXPECT_EQ(total.through, vec3(0));
     }
 }
 
 TEST(Checker, TakesTurnsCubeByCube) {
-    Scene scene = Sample({}).scene;
+    Scene scene = SeenTriangle({}).scene;
     Checker checker;
     checker.other = vec3(0);
     checker.to_cubes = {dvec4(2, 0, 0, 0), dvec4(0, 2, 0, 0), dvec4(0, 0, 2, 0)};

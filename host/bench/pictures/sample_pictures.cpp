@@ -91,7 +91,7 @@ private:
     fs::path dat() const { return folder_ / "mesh.dat"; }
 
     Result<Done> write_scenes(const Soup& soup) {
-        const Shot shot = shot_of(hittable_bounds(soup), job_.size);
+        const ProgramShot shot = shot_of(hittable_bounds(soup), job_.size);
         if (const Result<Done> saved = save_text(povray_scene(soup, shot), pov()); !saved)
             return saved;
         return save_text(tachyon_scene(soup, shot), dat());

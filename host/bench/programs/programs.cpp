@@ -24,14 +24,14 @@ static std::string comma_list(const dvec3& v) {
     return fmt::format("{},{},{}", v.x, v.y, v.z);
 }
 
-Shot shot_of(const Box& bounds, uint32_t size) {
+ProgramShot shot_of(const Box& bounds, uint32_t size) {
     const dvec3 center = 0.5 * (bounds.lo + bounds.hi);
     const double extent = max_component(bounds.hi - bounds.lo);
     return {center + extent * dvec3(0.3, 0.4, 1.6), center, 40, center + extent * dvec3(-1, 2, 2),
             size};
 }
 
-std::string povray_scene(const Soup& soup, const Shot& shot) {
+std::string povray_scene(const Soup& soup, const ProgramShot& shot) {
     UniqueVertices unique;
     std::vector<uint32_t> corners;
     for (const Chunk& chunk : soup.chunks)
@@ -57,7 +57,7 @@ std::string povray_scene(const Soup& soup, const Shot& shot) {
     return text;
 }
 
-std::string tachyon_scene(const Soup& soup, const Shot& shot) {
+std::string tachyon_scene(const Soup& soup, const ProgramShot& shot) {
     const auto words = [](const dvec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
     // Tachyon's coordinates are left-handed: seen in a mirror along z, they are ours.
     const auto mirrored = [](dvec3 v) { return dvec3(v.x, v.y, -v.z); };
@@ -98,7 +98,8 @@ struct Racer {
     bool there;
 };
 
-Racer overcast(const std::string& mesh, const Shot& shot, const std::filesystem::path& folder) {
+Racer overcast(const std::string& mesh, const ProgramShot& shot,
+               const std::filesystem::path& folder) {
     const std::string camera =
         fmt::format("{},{},{}", comma_list(shot.eye), comma_list(shot.target), shot.fov_degrees);
     return {{"overcast", "the mesh as given", {}, std::filesystem::file_size(mesh)},
@@ -108,7 +109,8 @@ Racer overcast(const std::string& mesh, const Shot& shot, const std::filesystem:
             true};
 }
 
-Result<Racer> povray(const Soup& soup, const Shot& shot, const std::filesystem::path& folder) {
+Result<Racer> povray(const Soup& soup, const ProgramShot& shot,
+                     const std::filesystem::path& folder) {
     const std::string scene = folder / "mesh.pov";
     Racer racer{{"povray", "mesh2 text", {}, 0},
                 {"povray", "+I" + scene, "+O" + std::string(folder / "povray.png"),
@@ -123,7 +125,8 @@ Result<Racer> povray(const Soup& soup, const Shot& shot, const std::filesystem::
     return saved ? Result<Racer>(std::move(racer)) : saved.error();
 }
 
-Result<Racer> tachyon(const Soup& soup, const Shot& shot, const std::filesystem::path& folder) {
+Result<Racer> tachyon(const Soup& soup, const ProgramShot& shot,
+                      const std::filesystem::path& folder) {
     const std::string scene = folder / "mesh.dat";
     Racer racer{{"tachyon", "TRI text", {}, 0},
                 {"tachyon", scene, "-numthreads", fmt::format("{}", thread_count()), "-fullshade",
@@ -143,7 +146,7 @@ Result<Racer> tachyon(const Soup& soup, const Shot& shot, const std::filesystem:
 Result<ProgramsResult> race_programs(const std::string& mesh, const Soup& soup, uint32_t size,
                                      uint32_t runs, const std::filesystem::path& folder,
                                      const StopRequest& stop) {
-    const Shot shot = shot_of(hittable_bounds(soup), size);
+    const ProgramShot shot = shot_of(hittable_bounds(soup), size);
     std::vector<Racer> racers = {overcast(mesh, shot, folder)};
     for (const auto& make : {povray, tachyon}) {
         Result<Racer> racer = make(soup, shot, folder);

@@ -16,7 +16,7 @@
 namespace ovc {
 
 /// One light with shadows, no antialiasing, as many threads as there are cores.
-struct Shot {
+struct ProgramShot {
     dvec3 eye, target;
     double fov_degrees;
     dvec3 light;
@@ -39,12 +39,12 @@ struct ProgramsResult {
 };
 
 /// From before the mesh's front and a little above, lit from its upper left.
-Shot shot_of(const Box& bounds, uint32_t size);
+ProgramShot shot_of(const Box& bounds, uint32_t size);
 
 /// A text that POV-Ray and Tachyon read. Vertices of POV-Ray's mesh2 are shared as in a file of
 /// vertices and faces; Tachyon's triangles have none to share.
-std::string povray_scene(const Soup& soup, const Shot& shot);
-std::string tachyon_scene(const Soup& soup, const Shot& shot);
+std::string povray_scene(const Soup& soup, const ProgramShot& shot);
+std::string tachyon_scene(const Soup& soup, const ProgramShot& shot);
 
 /// mesh: a file that `overcast render` takes; soup: what is in it. Each program runs once untimed,
 /// which fills the cache of files, then `runs` times, in turn. Pictures stay in `folder` as

@@ -124,7 +124,8 @@ std::vector<Block> blocks(const Json& figures) {
         const Shot* shot = shot_of(one["key"]);
         if (!shot)
             continue;
-        blocks.emplace_back(Picture{one["file"], shot->caption + one["model"].get<std::string>()});
+        blocks.emplace_back(
+            PagePicture{one["file"], shot->caption + one["model"].get<std::string>()});
         const std::string at = fmt::format("/shots/{}", i);
         table.rows.push_back({{one["key"].get<std::string>()},
                               {one["scene"].get<std::string>()},

@@ -117,7 +117,7 @@ public:
         bool in_plots = false; // plots that follow each other stand side by side
         for (const Block& block : section_.blocks) {
             const bool is_plot =
-                std::holds_alternative<Plot>(block) || std::holds_alternative<Picture>(block);
+                std::holds_alternative<Plot>(block) || std::holds_alternative<PagePicture>(block);
             if (is_plot != in_plots)
                 text += is_plot ? "<div class=\"plots\">\n" : "</div>\n";
             in_plots = is_plot;
@@ -184,7 +184,7 @@ private:
                            pictures_.at(plot.name), escaped(plot.caption));
     }
 
-    std::string html_of(const Picture& picture) const {
+    std::string html_of(const PagePicture& picture) const {
         return fmt::format(
             "<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
             pictures_.at(picture.file), escaped(picture.caption), escaped(picture.caption));
@@ -196,7 +196,7 @@ private:
 
 } // namespace
 
-std::string page_html(const Page& page, const std::map<std::string, std::string>& pictures) {
+std::string page_html(const ReportPage& page, const std::map<std::string, std::string>& pictures) {
     std::string html = kHead;
     html += "<header>\n<h1>Overcast: the report</h1>\n<p class=\"soft\">" + escaped(page.subtitle) +
             "</p>\n<nav>";

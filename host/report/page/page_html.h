@@ -10,7 +10,7 @@
 
 namespace ovc {
 
-struct Page {
+struct ReportPage {
     std::string subtitle; // which program, and how it was asked
     std::vector<Section> sections;
     std::vector<std::string> troubles; // what went wrong, a sentence each
@@ -22,9 +22,9 @@ struct Page {
 
 /// pictures: SVG by the names of the plots, "data:" addresses by the files of the pictures. A
 /// number is <data value="..." data-at="error.json#/...">.
-std::string page_html(const Page& page, const std::map<std::string, std::string>& pictures);
+std::string page_html(const ReportPage& page, const std::map<std::string, std::string>& pictures);
 
 /// Plots are links to plots/NAME.png.
-std::string page_markdown(const Page& page);
+std::string page_markdown(const ReportPage& page);
 
 } // namespace ovc

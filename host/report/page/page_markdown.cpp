@@ -36,18 +36,18 @@ std::string markdown_of(const Plot& plot) {
     return fmt::format("![{}](plots/{}.png)\n\n", plot.caption, plot.name);
 }
 
-std::string markdown_of(const Picture& picture) {
+std::string markdown_of(const PagePicture& picture) {
     return fmt::format("![{}]({})\n\n", picture.caption, picture.file);
 }
 
 } // namespace
 
-std::string Page::missing_text() const {
+std::string ReportPage::missing_text() const {
     return fmt::format("Not run, or not whole, in this form and by this build: {}.",
                        fmt::join(missing, ", "));
 }
 
-std::string page_markdown(const Page& page) {
+std::string page_markdown(const ReportPage& page) {
     std::string text = "# Overcast: the report\n\n" + page.subtitle + "\n\n";
     for (const std::string& trouble : page.troubles)
         text += "**" + trouble + "**\n\n";

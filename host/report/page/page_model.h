@@ -45,12 +45,12 @@ struct Plot {
 int height_of_bars(size_t lines);
 
 /// A .png file that is there already.
-struct Picture {
+struct PagePicture {
     std::string file; // within the report's folder
     std::string caption;
 };
 
-using Block = std::variant<Text, Table, Plot, Picture>;
+using Block = std::variant<Text, Table, Plot, PagePicture>;
 
 struct Section {
     std::string name; // of its experiment

@@ -18,7 +18,7 @@ TEST(ShownNumber, HasThreeDigitsOrAllOfAWholeNumber) {
     EXPECT_EQ(shown_number(123456.7), "123457");
 }
 
-Page example() {
+ReportPage example() {
     Section section{"sample", "A <title>", {{"rays", 12345}, {"list", {{{"t", 0.25}}}}}, {}};
     section.figures["list"][0]["none"] = nullptr;
     const auto at = [&](const char* pointer) { return number(section.figures, pointer); };

@@ -46,7 +46,7 @@ std::string machine_text() {
 }
 
 /// A section where all was run; troubles where something went wrong.
-void add_section(const Outcome& outcome, Page& page) {
+void add_section(const Outcome& outcome, ReportPage& page) {
     const Experiment& experiment = *outcome.experiment;
     for (const std::string& failure : outcome.failures)
         page.troubles.push_back(fmt::format("{}: a run failed: {}", experiment.title, failure));
@@ -86,7 +86,7 @@ std::string data_address(const fs::path& png) {
 }
 
 /// What a page's plots and pictures are drawn by; what cannot be drawn is a trouble of the page.
-std::map<std::string, std::string> draw_all(Page& page, const fs::path& folder) {
+std::map<std::string, std::string> draw_all(ReportPage& page, const fs::path& folder) {
     std::map<std::string, std::string> pictures;
     for (const Section& section : page.sections)
         for (const Block& block : section.blocks)
@@ -95,13 +95,13 @@ std::map<std::string, std::string> draw_all(Page& page, const fs::path& folder) 
                 pictures[plot->name] = svg ? std::move(*svg) : std::string();
                 if (!svg)
                     page.troubles.push_back(svg.error().message);
-            } else if (const Picture* picture = std::get_if<Picture>(&block)) {
+            } else if (const PagePicture* picture = std::get_if<PagePicture>(&block)) {
                 pictures[picture->file] = data_address(folder / picture->file);
             }
     return pictures;
 }
 
-Result<Done> write_page(Page& page, const fs::path& folder) {
+Result<Done> write_page(ReportPage& page, const fs::path& folder) {
     for (const Section& section : page.sections)
         if (const Result<Done> saved =
                 save_text(section.figures.dump(1) + "\n", folder / (section.name + ".json"));
@@ -141,7 +141,7 @@ Result<int> make_report_page(const ReportJob& job) {
     progress.clear();
     if (!outcomes)
         return outcomes.error();
-    Page page;
+    ReportPage page;
     page.subtitle = fmt::format("overcast {}, {} form, {}, {}", version_text(),
                                 job.plan.quick ? "the quick" : "the full", today(), machine_text());
     for (const Outcome& outcome : *outcomes)

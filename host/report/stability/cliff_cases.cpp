@@ -75,7 +75,7 @@ Soup large_and_small(int count) {
 /// From about so far away at the point.
 auto rays_at(dvec3 point, double far) {
     return [=](const Soup&, Random& random, size_t count) {
-        RaySet set;
+        AimedRays set;
         for (size_t i = 0; i < count; ++i) {
             const dvec3 org = far * (dvec3(0.1, 0.2, 1) + 0.5 * random.in_ball());
             set.rays.push_back({org, 0, point - org});
@@ -87,7 +87,7 @@ auto rays_at(dvec3 point, double far) {
 /// At corners of triangles, from a side of so far away, in units of the length of the direction.
 auto rays_at_corners(double far) {
     return [=](const Soup& soup, Random& random, size_t count) {
-        RaySet set;
+        AimedRays set;
         for (size_t i = 0; i < count; ++i) {
             const TriangleId id{0, random.below(soup.chunks[0].size())};
             const dvec3 corner = soup.triangle(id)[random.below(3)];

@@ -119,8 +119,8 @@ bool SoundTargets::surrounds(std::span<const uint32_t> triangles, const Ray& ray
     return true;
 }
 
-RaySet SoundTargets::rays(Random& random, size_t count) const {
-    RaySet set;
+AimedRays SoundTargets::rays(Random& random, size_t count) const {
+    AimedRays set;
     if (edges_.empty() || vertices_.empty())
         return set;
     // Far from the origin nearly all triangles may be too narrow for double.

@@ -20,7 +20,7 @@ public:
 
     /// Half at vertices, half at points of edges; half at fronts, from as near as a triangle's size
     /// to as far as the mesh is large. Fewer, or none, where the mesh has no such targets.
-    RaySet rays(Random& random, size_t count) const;
+    AimedRays rays(Random& random, size_t count) const;
 
     uint64_t sound_vertices() const { return vertices_.size(); }
     uint64_t vertices() const { return positions_.size(); }

@@ -46,7 +46,7 @@ enum class Claim { EveryBit, Triangle };
 
 /// A batch of rays and what the reference says of them.
 struct Batch {
-    RaySet set;
+    AimedRays set;
     std::vector<Hit> truth;
 
     TriangleId skip(size_t i) const { return set.skip.empty() ? TriangleId{} : set.skip[i]; }
@@ -141,7 +141,7 @@ private:
 
     /// The driver compiles with the first rays; they are neither timed nor counted.
     Result<Done> warm_up() {
-        const RaySet set = stability_rays(case_, soup_, 0, kWarmUp);
+        const AimedRays set = stability_rays(case_, soup_, 0, kWarmUp);
         std::vector<Hit> hits(set.rays.size());
         const Result<Done> done = certified_->intersect(set.rays, set.skip, hits);
         before_ = certified_->statistics();
@@ -227,8 +227,8 @@ private:
 
 } // namespace
 
-RaySet stability_rays(const StabilityCase& stability_case, const Soup& soup, uint64_t batch,
-                      size_t count) {
+AimedRays stability_rays(const StabilityCase& stability_case, const Soup& soup, uint64_t batch,
+                         size_t count) {
     Random random(/* seed= */ 2006, batch);
     return stability_case.aim(soup, random, count);
 }

@@ -65,7 +65,7 @@ run_stability(std::span<const StabilityCase> cases, const StabilityOptions& opti
               const LogSink& log, const std::function<void(const StabilityResult&)>& seen);
 
 /// The rays of batch `batch`, as run_stability_case draws them.
-RaySet stability_rays(const StabilityCase& stability_case, const Soup& soup, uint64_t batch,
-                      size_t count);
+AimedRays stability_rays(const StabilityCase& stability_case, const Soup& soup, uint64_t batch,
+                         size_t count);
 
 } // namespace ovc

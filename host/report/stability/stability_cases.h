@@ -19,7 +19,7 @@ struct StabilityCase {
     size_t rays;
     std::function<Soup()> soup;
     /// The same soup, random state and count give the same rays.
-    std::function<RaySet(const Soup&, Random&, size_t)> aim;
+    std::function<AimedRays(const Soup&, Random&, size_t)> aim;
     /// The case whose time per ray this one must stay within so many times of; empty: none.
     std::string time_as;
     double within = 2.5;

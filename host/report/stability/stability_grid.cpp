@@ -21,8 +21,9 @@ Soup strip(const GridPoint& point, dvec3 place, double scale) {
 }
 
 /// The rays of the strip as it is, scaled and moved as it was.
-RaySet moved_rays(const GridPoint& point, dvec3 place, double scale, Random& random, size_t count) {
-    RaySet set = strip_rays(strip(point, dvec3(0), 1), random, count);
+AimedRays moved_rays(const GridPoint& point, dvec3 place, double scale, Random& random,
+                     size_t count) {
+    AimedRays set = strip_rays(strip(point, dvec3(0), 1), random, count);
     for (Ray& ray : set.rays) {
         ray.org = place + scale * ray.org;
         ray.dir *= scale;

@@ -88,8 +88,8 @@ double log_uniform(Random& random, double from, double to) {
 
 /// count rays, each from one call.
 template <class Make>
-RaySet collect(size_t count, const Make& make) {
-    RaySet set;
+AimedRays collect(size_t count, const Make& make) {
+    AimedRays set;
     set.rays.reserve(count);
     while (set.rays.size() < count)
         set.rays.push_back(make());
@@ -109,12 +109,12 @@ dvec3 point_of(const Triangle& t, Random& random, Target target) {
     return as_float(kind == 1 ? on_edge : on_edge + random.uniform() * (c - on_edge));
 }
 
-RaySet closed_mesh_rays(const Soup& soup, Random& random, size_t count, const Aim& aim) {
+AimedRays closed_mesh_rays(const Soup& soup, Random& random, size_t count, const Aim& aim) {
     const ClosedMesh mesh(soup);
     return collect(count, [&] { return closed_mesh_ray(mesh, random, aim); });
 }
 
-RaySet any_closed_mesh_rays(const Soup& soup, Random& random, size_t count) {
+AimedRays any_closed_mesh_rays(const Soup& soup, Random& random, size_t count) {
     const ClosedMesh mesh(soup);
     return collect(count, [&] {
         const Side side = random.chance(0.5) ? Side::Inside : Side::Outside;
@@ -122,7 +122,7 @@ RaySet any_closed_mesh_rays(const Soup& soup, Random& random, size_t count) {
     });
 }
 
-RaySet edge_and_vertex_rays(const Soup& soup, Random& random, size_t count, double grid) {
+AimedRays edge_and_vertex_rays(const Soup& soup, Random& random, size_t count, double grid) {
     const ClosedMesh mesh(soup);
     return collect(count, [&] {
         const Side side = random.chance(0.5) ? Side::Inside : Side::Outside;
@@ -131,7 +131,7 @@ RaySet edge_and_vertex_rays(const Soup& soup, Random& random, size_t count, doub
     });
 }
 
-RaySet rays_at_triangles(const Soup& soup, Random& random, size_t count) {
+AimedRays rays_at_triangles(const Soup& soup, Random& random, size_t count) {
     Box bounds;
     const std::vector<TriangleId> ids = hittable_triangles(soup, nullptr, &bounds);
     const double all = max_component(bounds.extent());
@@ -147,7 +147,7 @@ RaySet rays_at_triangles(const Soup& soup, Random& random, size_t count) {
     });
 }
 
-RaySet grazing_rays(const Soup& soup, Random& random, size_t count, double height) {
+AimedRays grazing_rays(const Soup& soup, Random& random, size_t count, double height) {
     const Local sheet(soup);
     const dvec3 up = glm::normalize(normal_of(sheet.triangle(0)));
     return collect(count, [&] {
@@ -158,7 +158,7 @@ RaySet grazing_rays(const Soup& soup, Random& random, size_t count, double heigh
     });
 }
 
-RaySet strip_rays(const Soup& soup, Random& random, size_t count) {
+AimedRays strip_rays(const Soup& soup, Random& random, size_t count) {
     const Local strip(soup);
     const uint32_t inner = strip.size() - 4; // without the first and the last row
     return collect(count, [&] {
@@ -170,7 +170,7 @@ RaySet strip_rays(const Soup& soup, Random& random, size_t count) {
     });
 }
 
-RaySet fan_rays(const Soup& soup, Random& random, size_t count) {
+AimedRays fan_rays(const Soup& soup, Random& random, size_t count) {
     const Local cone(soup);
     return collect(count, [&] {
         const dvec3 on = point_of(cone.triangle(random.below(cone.size())), random, Target::Any);
@@ -187,7 +187,7 @@ static Ray with_signed_zeros(Ray ray, Random& random) {
     return ray;
 }
 
-RaySet axis_rays(const Soup& soup, Random& random, size_t count) {
+AimedRays axis_rays(const Soup& soup, Random& random, size_t count) {
     const Local box(soup);
     return collect(count, [&] {
         dvec3 from, dir(0);
@@ -201,7 +201,7 @@ RaySet axis_rays(const Soup& soup, Random& random, size_t count) {
     });
 }
 
-RaySet in_plane_rays(const Soup& soup, Random& random, size_t count) {
+AimedRays in_plane_rays(const Soup& soup, Random& random, size_t count) {
     const Local box(soup);
     return collect(count, [&] {
         const int axis = int(random.below(3));
@@ -217,10 +217,10 @@ RaySet in_plane_rays(const Soup& soup, Random& random, size_t count) {
     });
 }
 
-RaySet surface_rays(const Soup& soup, Random& random, size_t count, Start start, bool skip,
-                    bool inwards) {
+AimedRays surface_rays(const Soup& soup, Random& random, size_t count, Start start, bool skip,
+                       bool inwards) {
     const ClosedMesh mesh(soup);
-    RaySet set;
+    AimedRays set;
     for (size_t i = 0; i < count; ++i) {
         const uint32_t prim = random.below(mesh.size());
         const Target target = start == Start::Vertex ? Target::Vertices : Target::Any;
@@ -236,8 +236,8 @@ RaySet surface_rays(const Soup& soup, Random& random, size_t count, Start start,
     return set;
 }
 
-RaySet range_rays(const Soup& soup, Random& random, size_t count) {
-    RaySet set = rays_at_triangles(soup, random, count);
+AimedRays range_rays(const Soup& soup, Random& random, size_t count) {
+    AimedRays set = rays_at_triangles(soup, random, count);
     const Local mesh(soup);
     for (Ray& ray : set.rays) {
         // Asked of single triangles until one is hit, so that t is the reference's own.
@@ -255,16 +255,17 @@ RaySet range_rays(const Soup& soup, Random& random, size_t count) {
     return set;
 }
 
-RaySet long_direction_rays(const Soup& soup, Random& random, size_t count, double from, double to) {
-    RaySet set = any_closed_mesh_rays(soup, random, count);
+AimedRays long_direction_rays(const Soup& soup, Random& random, size_t count, double from,
+                              double to) {
+    AimedRays set = any_closed_mesh_rays(soup, random, count);
     for (Ray& ray : set.rays)
         ray.dir = as_float(ray.dir * log_uniform(random, from, to));
     return set;
 }
 
-RaySet bad_rays(const Soup& soup, Random& random, size_t count) {
+AimedRays bad_rays(const Soup& soup, Random& random, size_t count) {
     constexpr double inf = std::numeric_limits<double>::infinity();
-    RaySet set = any_closed_mesh_rays(soup, random, count);
+    AimedRays set = any_closed_mesh_rays(soup, random, count);
     for (size_t i = 0; i < count; ++i) {
         Ray& ray = set.rays[i];
         const double bad = std::array{std::nan(""), inf, -inf}[i / 10 % 3];

@@ -10,7 +10,7 @@
 
 namespace ovc {
 
-struct RaySet {
+struct AimedRays {
     std::vector<Ray> rays;
     std::vector<TriangleId> skip; // empty, or for each ray the triangle it does not see
 };
@@ -26,43 +26,44 @@ struct Aim {
 };
 
 /// Chunk 0 is a closed mesh: every ray passes a point inside it, or begins there, so it must hit.
-RaySet closed_mesh_rays(const Soup& soup, Random& random, size_t count, const Aim& aim);
+AimedRays closed_mesh_rays(const Soup& soup, Random& random, size_t count, const Aim& aim);
 /// Half begin inside; targets of all kinds.
-RaySet any_closed_mesh_rays(const Soup& soup, Random& random, size_t count);
+AimedRays any_closed_mesh_rays(const Soup& soup, Random& random, size_t count);
 
 /// At vertices and edges, half begin inside. grid: as in Aim.
-RaySet edge_and_vertex_rays(const Soup& soup, Random& random, size_t count, double grid);
+AimedRays edge_and_vertex_rays(const Soup& soup, Random& random, size_t count, double grid);
 
 /// A vertex, or a point of an edge or the inside, rounded to float; on edges every other one is a
 /// multiple of an eighth.
 dvec3 point_of(const Triangle& t, Random& random, Target target);
 
 /// At vertices, edges and insides of any triangle, from near (its size) to far (the soup's).
-RaySet rays_at_triangles(const Soup& soup, Random& random, size_t count);
+AimedRays rays_at_triangles(const Soup& soup, Random& random, size_t count);
 /// Down at the sheet of [-1, 1]^2 at height 0, `height` above it at their beginning, to insides,
 /// edges and vertices of its triangles.
-RaySet grazing_rays(const Soup& soup, Random& random, size_t count, double height);
+AimedRays grazing_rays(const Soup& soup, Random& random, size_t count, double height);
 /// Across sliver_strip, aimed at vertices and edges within it: every ray must hit.
-RaySet strip_rays(const Soup& soup, Random& random, size_t count);
+AimedRays strip_rays(const Soup& soup, Random& random, size_t count);
 /// Down into the cone of fan, at its apex, spokes and faces.
-RaySet fan_rays(const Soup& soup, Random& random, size_t count);
+AimedRays fan_rays(const Soup& soup, Random& random, size_t count);
 /// Inside box_of_squares from points of its grid, along axes and diagonals of its planes; zeros of
 /// both signs.
-RaySet axis_rays(const Soup& soup, Random& random, size_t count);
+AimedRays axis_rays(const Soup& soup, Random& random, size_t count);
 /// In the planes of box_of_squares' own faces.
-RaySet in_plane_rays(const Soup& soup, Random& random, size_t count);
+AimedRays in_plane_rays(const Soup& soup, Random& random, size_t count);
 
 enum class Start { Surface, Vertex };
 /// From the closed chunk 0 itself. inwards: towards a point inside, so they must hit; else
 /// anywhere.
-RaySet surface_rays(const Soup& soup, Random& random, size_t count, Start start, bool skip,
-                    bool inwards);
+AimedRays surface_rays(const Soup& soup, Random& random, size_t count, Start start, bool skip,
+                       bool inwards);
 
 /// t_min or t_max just below, at or just above a hit.
-RaySet range_rays(const Soup& soup, Random& random, size_t count);
+AimedRays range_rays(const Soup& soup, Random& random, size_t count);
 /// closed_mesh_rays with directions `shrink` times as long, drawn from [from, to] powers of ten.
-RaySet long_direction_rays(const Soup& soup, Random& random, size_t count, double from, double to);
+AimedRays long_direction_rays(const Soup& soup, Random& random, size_t count, double from,
+                              double to);
 /// Every field in turn NaN or infinite, zero directions, empty ranges: no ray is valid.
-RaySet bad_rays(const Soup& soup, Random& random, size_t count);
+AimedRays bad_rays(const Soup& soup, Random& random, size_t count);
 
 } // namespace ovc

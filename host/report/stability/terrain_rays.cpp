@@ -26,11 +26,11 @@ bool must_hit_ground(const Ray& ray, const Box& bounds) {
     return ray.dir.y < 0 && ray.at(leaves).y < bounds.lo.y - 1;
 }
 
-RaySet terrain_rays(const Soup& soup, Random& random, size_t count, double low, double high) {
+AimedRays terrain_rays(const Soup& soup, Random& random, size_t count, double low, double high) {
     Box bounds;
     hittable_triangles(soup, nullptr, &bounds);
     const dvec3 corner(bounds.hi.x, 0, bounds.hi.z);
-    RaySet set;
+    AimedRays set;
     while (set.rays.size() < count) {
         Ray ray;
         // The hills around are not as high as 1 cm.
