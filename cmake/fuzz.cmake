@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DOVC_FUZZ=ON with clang: the libFuzzer targets fuzz_NAME; docs/design/fuzzing.md says how they are run.
+# cmake -DOVC_FUZZ=ON with clang: the libFuzzer targets fuzz_NAME; docs/design/fuzzing.md says how
+# they are run.
 option(OVC_FUZZ "Build the libFuzzer targets; needs clang" OFF)
 if(OVC_FUZZ AND NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     message(FATAL_ERROR "OVC_FUZZ needs clang: -DCMAKE_CXX_COMPILER=clang++")
@@ -15,13 +16,21 @@ endfunction()
 
 # ovc_add_fuzzer(NAME SOURCES … LIBRARIES …)
 function(ovc_add_fuzzer name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES;DEFINITIONS" ${ARGN})
+    # Said without clang too, where a file that was moved would be missed.
+    foreach(source ${ARG_SOURCES})
+        cmake_path(ABSOLUTE_PATH source OUTPUT_VARIABLE path)
+        if(NOT source MATCHES "TARGET_OBJECTS" AND NOT EXISTS ${path})
+            message(FATAL_ERROR "fuzz_${name}: there is no ${path}")
+        endif()
+    endforeach()
     if(NOT OVC_FUZZ)
         return()
     endif()
-    cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES;DEFINITIONS" ${ARGN})
     add_executable(fuzz_${name} ${ARG_SOURCES})
     target_compile_definitions(fuzz_${name} PRIVATE ${ARG_DEFINITIONS})
-    target_compile_options(fuzz_${name} PRIVATE -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined)
+    target_compile_options(fuzz_${name} PRIVATE
+        -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined)
     target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer,address,undefined)
     target_link_libraries(fuzz_${name} PRIVATE ovc_flags ${ARG_LIBRARIES})
 endfunction()
