@@ -2,11 +2,10 @@
 // Transform: the affine map that puts a mesh where one of its instances is.
 #pragma once
 
+#include "core/box.h"
 #include "core/vec.h"
 
 #include <array>
-#include <cmath>
-#include <cstddef>
 #include <optional>
 
 namespace ovc {
@@ -25,17 +24,7 @@ struct Transform {
 };
 
 /// `first`, then `second`, as one map: their product in doubles.
-inline Transform then(const Transform& first, const Transform& second) {
-    Transform both{};
-    for (size_t i = 0; i < 3; ++i)
-        for (size_t j = 0; j < 4; ++j) {
-            for (size_t k = 0; k < 3; ++k)
-                both.rows[i][j] += second.rows[i][k] * first.rows[k][j];
-            if (j == 3)
-                both.rows[i][j] += second.rows[i][3];
-        }
-    return both;
-}
+Transform then(const Transform& first, const Transform& second);
 
 inline constexpr Transform kIdentity{{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
 
@@ -45,19 +34,15 @@ inline const Transform& or_identity(const Transform* transform) {
 }
 
 /// The rows of the inverse of the matrix, without its shift; none where doubles cannot tell it.
-inline std::optional<std::array<dvec3, 3>> inverse_matrix(const Transform& transform) {
-    const auto row = [&](size_t i) {
-        return dvec3(transform.rows[i][0], transform.rows[i][1], transform.rows[i][2]);
-    };
-    const dvec3 a = glm::cross(row(1), row(2)), b = glm::cross(row(2), row(0)),
-                c = glm::cross(row(0), row(1));
-    const double determinant = glm::dot(row(0), a);
-    if (!(std::abs(determinant) >= 0x1p-500 && std::abs(determinant) <= 0x1p500))
-        return std::nullopt;
-    std::array<dvec3, 3> rows;
-    for (int i = 0; i < 3; ++i)
-        rows[size_t(i)] = dvec3(a[i], b[i], c[i]) / determinant;
-    return rows;
-}
+std::optional<std::array<dvec3, 3>> inverse_matrix(const Transform& transform);
+
+/// The box in the world of what lies in `box` before it is placed. transform: null where it is in
+/// the world.
+Box placed_box(const Box& box, const Transform* transform);
+
+/// Whether what doubles round of corners that are placed, and of rays that are brought to the mesh,
+/// is less than 2^-30 of the mesh: 1/64 of what float32 rounds there. box: of the mesh before it is
+/// placed.
+bool is_well_placed(const Box& box, const Transform* transform);
 
 } // namespace ovc

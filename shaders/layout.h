@@ -36,7 +36,7 @@
 #define OVC_MAX_PAGE_UNITS (1 << OVC_MAX_BUFFER_BITS)
 
 // Under the top-level tree (gpu/page/top_level.h) units count from the pool's first, where the tree lies; else from the page's own. Where
-// the pool is several buffers a unit's number is that within its buffer, and above it the number of the buffer (gpu/trace/pool.h). The
+// the pool is several buffers a unit's number is that within its buffer, and above it the number of the buffer (gpu/page/residency.h). The
 // tree's lowest nodes are links, copies of pages' nodes; texel 3: the unit of the first child in the pool, or OVC_LEADS_NOWHERE;
 // 1 + the page's leaf; the first child's unit in the page, 0. Of a ray that meets it a link has a key, by which links are in order: the
 // upper half of the bits of the t in the tree's frame (float; 0 where it is less), and below it 1 + the leaf.

@@ -111,10 +111,12 @@ uint64_t free_memory() {
 /// Both kernels' limits: images on a software renderer, else textures
 /// (ShaderConfig::buffer_images).
 uint32_t max_pool_buffers(bool as_images) {
-    const std::array<GLenum, 2> limits =
-        as_images
-            ? std::array<GLenum, 2>{GL_MAX_COMPUTE_IMAGE_UNIFORMS, GL_MAX_FRAGMENT_IMAGE_UNIFORMS}
-            : std::array<GLenum, 2>{GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, GL_MAX_TEXTURE_IMAGE_UNITS};
+    using Limits = std::array<GLenum, 3>;
+    const Limits limits =
+        as_images ? Limits{GL_MAX_COMPUTE_IMAGE_UNIFORMS, GL_MAX_FRAGMENT_IMAGE_UNIFORMS,
+                           GL_MAX_IMAGE_UNITS}
+                  : Limits{GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, GL_MAX_TEXTURE_IMAGE_UNITS,
+                           GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS};
     GLint least = std::numeric_limits<GLint>::max();
     for (const GLenum limit : limits) {
         GLint value = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What drivers do wrong, and what we do about it. One table: a defect that is not in it is not
-// worked around.
+// The defects of drivers that Overcast works around, in one table. Limits that a driver tells are
+// not among them, nor what is merely slow on one.
 #pragma once
 
 #include <array>

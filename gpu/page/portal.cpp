@@ -22,16 +22,6 @@ PreparedRay Portal::local_ray(const PreparedRay& p) const {
     return local;
 }
 
-Box placed_box(const Box& box, const Transform* transform) {
-    if (!transform)
-        return box;
-    Box placed;
-    for (int corner = 0; corner < 8; ++corner)
-        placed.add((*transform)({corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                                 corner & 4 ? box.hi.z : box.lo.z}));
-    return placed.padded(placed.rounding());
-}
-
 Portal portal_into(const Frame& frame, const Box& box, const Transform* transform) {
     Portal portal;
     portal.origin = transform ? (*transform)(frame.origin) : frame.origin;

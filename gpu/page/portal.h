@@ -34,10 +34,6 @@ struct Portal {
     PreparedRay local_ray(const PreparedRay& p) const;
 };
 
-/// The box in the world of what lies in `box` before it is placed. transform: null where it is in
-/// the world.
-Box placed_box(const Box& box, const Transform* transform);
-
 /// Into the frame, with all that lies in `box` behind it. transform: of both, which has an inverse;
 /// null where they are in the world. Error bound: docs/design/numerics.md, "Frames".
 Portal portal_into(const Frame& frame, const Box& box, const Transform* transform = nullptr);

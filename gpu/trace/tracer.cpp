@@ -6,7 +6,6 @@
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 #include "gpu/gl/gl_check.h"
-#include "gpu/gl/workarounds.h"
 #include "shaders/layout.h"
 
 #include <fmt/format.h>
@@ -252,12 +251,12 @@ ShaderConfig Tracer::shader_config() const {
     config.buffer_bits = pool_.layout().buffer_bits();
     config.loose_pairs = std::ranges::any_of(page_data_, &Page::has_loose_pairs);
     config.stack_depth = stack_words_;
-    config.stack_registers = software_ && (stack_words_ <= kMaxWordsInRegisters ||
-                                           !needs(Workaround::ShortRegisterStack));
+    config.stack_registers =
+        software_ && (stack_words_ <= kMaxWordsInRegisters || !registers_lose_words_);
     config.branches = !software_;
     config.deal_groups = software_;
     config.buffer_images = software_;
-    if (needs(Workaround::CountedRounds))
+    if (counts_rounds_)
         config.max_rounds = kMaxCountedRounds;
     if (packets_)
         config.packet = kPacketRays;
@@ -305,7 +304,7 @@ Result<Done> Tracer::launch() {
     if (!software_)
         glEndQuery(GL_TIME_ELAPSED);
     glPopDebugGroup();
-    if (needs(Workaround::FinishedPass))
+    if (finishes_passes_)
         glFinish();
     else
         glFlush();

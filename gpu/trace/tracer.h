@@ -8,6 +8,7 @@
 #include "gpu/gl/egl_context.h"
 #include "gpu/gl/kernel.h"
 #include "gpu/gl/ledger.h"
+#include "gpu/gl/workarounds.h"
 #include "gpu/page/top_level.h"
 #include "gpu/trace/answers.h"
 #include "gpu/trace/packets.h"
@@ -140,6 +141,9 @@ private:
     std::span<const Page> page_data_;
     bool software_;
     bool refills_ = false; // lanes go on to a next ray
+    const bool counts_rounds_ = needs(Workaround::CountedRounds);
+    const bool registers_lose_words_ = needs(Workaround::ShortRegisterStack);
+    const bool finishes_passes_ = needs(Workaround::FinishedPass);
     const TopLevel& top_;
     bool all_fit_;                    // the pool has room for all pages and the tree
     uint64_t pages_moved_ = 0;        // into the pool, all in all

@@ -3,6 +3,7 @@
 #include "host/scene/scene_summary.h"
 
 #include "core/system/parallel.h"
+#include "core/transform.h"
 #include "host/arguments/memory_size.h"
 
 #include <fmt/format.h>
@@ -49,21 +50,6 @@ static Census count(const Chunk& chunk) {
         join);
 }
 
-/// Whether what rounding makes of placed corners is small beside the mesh, so that its triangles
-/// keep their areas.
-static bool keeps_areas(const Transform& transform) {
-    const auto inverse = inverse_matrix(transform);
-    if (!inverse)
-        return false;
-    double largest = 0, largest_back = 0;
-    for (size_t i = 0; i < 3; ++i)
-        for (int axis = 0; axis < 3; ++axis) {
-            largest = std::max(largest, std::abs(transform.rows[i][size_t(axis)]));
-            largest_back = std::max(largest_back, std::abs((*inverse)[i][axis]));
-        }
-    return largest * largest_back <= 0x1p19;
-}
-
 /// The census of all chunks. A mesh is looked at triangle by triangle once, and again only where an
 /// instance may reach beyond the bounds so far.
 static Census count(const Soup& soup) {
@@ -80,12 +66,9 @@ static Census count(const Soup& soup) {
             place->second = count(chunk.unplaced());
         const Census& mesh = place->second;
         Box box = all.bounds;
-        for (int i = 0; i < 8; ++i)
-            box.add((*transform)({i & 1 ? mesh.bounds.hi.x : mesh.bounds.lo.x,
-                                  i & 2 ? mesh.bounds.hi.y : mesh.bounds.lo.y,
-                                  i & 4 ? mesh.bounds.hi.z : mesh.bounds.lo.z}));
+        box.add(placed_box(mesh.bounds, transform));
         const bool is_inside = box.lo == all.bounds.lo && box.hi == all.bounds.hi;
-        if (!is_inside || mesh.dropped.total() > 0 || !keeps_areas(*transform))
+        if (!is_inside || mesh.dropped.total() > 0 || !is_well_placed(mesh.bounds, transform))
             all = join(all, count(chunk));
     }
     return all;

@@ -39,7 +39,7 @@ struct LeafLimits {
     /// takes, in bytes a triangle (copies: as in LoosePairs); asked only where that matters.
     /// one_leaf(): whether rays gain by one leaf (one_leaf.h), asked only where there may be one.
     template <class Rate, class OneLeaf>
-    uint32_t max_of(uint64_t all, Rate&& rate, OneLeaf&& one_leaf) const {
+    uint32_t max_triangles(uint64_t all, Rate&& rate, OneLeaf&& one_leaf) const {
         if (whole_bytes > 0 && one_leaf() && (whole_bytes == kAny || fits(all, rate(all, 1))))
             return kNone - 1;
         return pages_matter() ? triangles_at(rate(triangles, kCopiesOfLeaves))

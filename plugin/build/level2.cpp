@@ -65,8 +65,8 @@ public:
         // Where small triangles are not lost in the scene.
         const bool one_frame = one_frame_suits(soup_, triangles, bounds);
         const Sample sample = drawn(triangles, one_frame);
-        const uint32_t most = first_max(triangles, bounds, one_frame, sample);
-        scene_.level1 = partition(soup_, triangles, bounds, most, progress_, sample,
+        const uint32_t max_triangles = first_max_triangles(triangles, bounds, one_frame, sample);
+        scene_.level1 = partition(soup_, triangles, bounds, max_triangles, progress_, sample,
                                   /* may_have_far_leaves= */ true);
         if (one_frame || scene_.level1.leaves.size() == 1)
             share_frame(scene_.level1);
@@ -118,8 +118,8 @@ private:
         return {sample_, rate};
     }
 
-    uint32_t first_max(std::span<const TriangleId> triangles, const Box& bounds, bool one_frame,
-                       const Sample& sample) const {
+    uint32_t first_max_triangles(std::span<const TriangleId> triangles, const Box& bounds,
+                                 bool one_frame, const Sample& sample) const {
         std::optional<PageRates> rates;
         const auto rate_of = [&](uint64_t page, double copies) {
             if (sample.triangles.empty())
@@ -128,7 +128,7 @@ private:
                 rates.emplace(soup_, triangles, sample.triangles, sample.rate, bounds, progress_);
             return rates->mean_of(double(page), copies);
         };
-        return limits_.max_of(triangles.size(), rate_of, [&] {
+        return limits_.max_triangles(triangles.size(), rate_of, [&] {
             return maybe_one_leaf(one_frame) && one_leaf_pays(soup_, sample.triangles, sample.rate,
                                                               bounds, uint32_t(limits_.triangles));
         });

@@ -6,7 +6,6 @@
 #include "gpu/page/top_level.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace ovc {
@@ -27,29 +26,6 @@ Box bounds_of(const Chunk& mesh) {
             box.add(corner);
         }
     return box;
-}
-
-/// Whether what doubles round of corners that are placed, and of rays that are brought to the mesh,
-/// is less than 2^-30 of it: 1/64 of what float32 rounds there. With one more bit to spare.
-bool is_well_placed(const Box& box, const Transform* transform) {
-    constexpr double kFarthest = 0x1p19;    // in sizes of the mesh
-    constexpr double kWithinRange = 0x1p80; // no product of three is out of range
-    const auto& m = or_identity(transform).rows;
-    const auto inverted = inverse_matrix(or_identity(transform));
-    const double size = max_component(box.extent()) / 2;
-    if (!inverted || box.empty() || !(size >= 1 / kWithinRange))
-        return false;
-    const dvec3 farthest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
-    dvec3 reach; // of placed corners, and of what their sums are made of
-    for (int i = 0; i < 3; ++i) {
-        const auto& r = m[size_t(i)];
-        reach[i] = std::abs(r[0]) * farthest.x + std::abs(r[1]) * farthest.y +
-                   std::abs(r[2]) * farthest.z + std::abs(r[3]);
-    }
-    double most = 0;
-    for (const dvec3& row : *inverted)
-        most = std::max(most, glm::dot(glm::abs(row), reach));
-    return most <= kFarthest * size && max_component(reach) <= kWithinRange;
 }
 
 /// Chunks of the same mesh, in the order of their numbers, by their first.

@@ -84,17 +84,18 @@ public:
         draw(sample_rate(triangles_.size(), limits.triangles));
         rates_.emplace(soup_, triangles_, sample_, rate_, bounds_, progress_);
         const bool one_frame = one_frame_suits(soup_, triangles_, bounds_);
-        max_ = limits.max_of(
+        leaf_triangles_ = limits.max_triangles(
             triangles_.size(),
             [&](uint64_t page, double copies) { return rates_->mean_of(double(page), copies); },
             [&] {
                 return one_frame &&
                        one_leaf_pays(soup_, sample_, rate_, bounds_, uint32_t(limits.triangles));
             });
-        if (const uint32_t rate = sample_rate(triangles_.size(), max_); rate != rate_)
+        if (const uint32_t rate = sample_rate(triangles_.size(), leaf_triangles_); rate != rate_)
             draw(rate);
-        const KdTree tree = cut_sample(soup_, sample_, rate_, bounds_,
-                                       triangles_.size() <= max_ ? kNone - 1 : max_, progress_);
+        const KdTree tree = cut_sample(
+            soup_, sample_, rate_, bounds_,
+            triangles_.size() <= leaf_triangles_ ? kNone - 1 : leaf_triangles_, progress_);
         const double padding = padding_of(bounds_);
         const std::vector<Cell> cells = cells_of(tree.nodes, bounds_, padding);
         const CellFinder finder(tree.nodes, cells, padding);
@@ -102,7 +103,7 @@ public:
             return counted(soup_, finder, triangles_, far_cells, progress_);
         };
         std::vector<uint64_t> counts = count(kFarCells);
-        if (counts.back() > 0 && !far_leaf_pays(counts.back(), triangles_.size(), max_))
+        if (counts.back() > 0 && !far_leaf_pays(counts.back(), triangles_.size(), leaf_triangles_))
             counts = count(kNone);
         sizes_.nodes = tree.nodes.size();
         const uint64_t references = std::accumulate(counts.begin(), counts.end(), uint64_t(0));
@@ -130,7 +131,7 @@ private:
 
     void add_cell(const Box& cell, uint64_t count, uint64_t page_bytes, const LeafLimits& limits) {
         // What holds more than the sample made believe is cut again, and so are too large pages.
-        uint64_t parts = (count + max_ - 1) / max_;
+        uint64_t parts = (count + leaf_triangles_ - 1) / leaf_triangles_;
         const auto page_at = [&](double rate) {
             const double triangles = double(count) / double(parts);
             return kPageStart + uint64_t(rate * rates_->with_cuts(triangles, copies_) * triangles);
@@ -156,7 +157,7 @@ private:
     uint32_t rate_ = 1;
     std::vector<TriangleId> sample_;
     std::optional<PageRates> rates_;
-    uint32_t max_ = 1;
+    uint32_t leaf_triangles_ = 1;
     double copies_ = 1; // of a triangle in all leaves
     Sizes sizes_;
 };
