@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Loops on oneTBB; under ThreadSanitizer those of parallel_threads.cpp take their place.
 #include "core/system/parallel.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <atomic>
 #include <chrono>
@@ -10,6 +17,60 @@
 #include <vector>
 
 namespace ovc {
+
+#ifndef __SANITIZE_THREAD__
+namespace {
+
+using Context = oneapi::tbb::task_group_context;
+
+/// Calls loop(context) in isolation and in a group of its own. In that context it runs in this
+/// thread's floating-point mode; else it would run in that of the thread on which oneTBB began,
+/// which may be the host's: with subnormals flushed, say.
+void isolated(FunctionRef<void(Context&)> loop) {
+    oneapi::tbb::this_task_arena::isolate([&] {
+        Context context(Context::isolated, Context::default_traits | Context::fp_settings);
+        loop(context);
+    });
+}
+
+} // namespace
+
+void parallel_for(size_t count, size_t grain, FunctionRef<void(size_t, size_t)> body) {
+    using Range = oneapi::tbb::blocked_range<size_t>;
+    isolated([&](Context& context) {
+        oneapi::tbb::parallel_for(
+            Range(0, count, grain), [&](const Range& range) { body(range.begin(), range.end()); },
+            context);
+    });
+}
+
+void parallel_invoke(FunctionRef<void()> a, FunctionRef<void()> b) {
+    isolated([&](Context& context) { oneapi::tbb::parallel_invoke(a, b, context); });
+}
+
+void Fork::operator()(FunctionRef<void()> a, FunctionRef<void()> b) const {
+    oneapi::tbb::parallel_invoke(a, b, *static_cast<Context*>(context_));
+}
+
+void in_forks(FunctionRef<void(const Fork&)> body) {
+    isolated([&](Context& context) { body(Fork(&context)); });
+}
+#endif
+
+struct ThreadLimit::Limit {
+    oneapi::tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(size_t threads)
+    : limit_(new Limit{{oneapi::tbb::global_control::max_allowed_parallelism, threads}}) {}
+
+ThreadLimit::~ThreadLimit() = default;
+
+size_t thread_count() {
+    return oneapi::tbb::global_control::active_value(
+        oneapi::tbb::global_control::max_allowed_parallelism);
+}
+
 namespace {
 
 /// Throws where the system does not allow this process so many threads more.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parallel loops. The only file that sees oneTBB.
+// Parallel loops. Only parallel.cpp sees oneTBB, whose headers take a second to compile.
 //
 // A host may call us from its own oneTBB tasks, and we loop with locks taken. A thread that waits
 // for the rest of such a loop must not be given another task of the host meanwhile: that could call
@@ -10,99 +10,61 @@
 // every loop is a group of its own, which only what its own parts throw can end.
 #pragma once
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_invoke.h>
-#include <oneapi/tbb/parallel_reduce.h>
-#include <oneapi/tbb/parallel_sort.h>
-#include <oneapi/tbb/task_arena.h>
+#include "core/function_ref.h"
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
+#include <memory>
 #include <utility>
-
-#ifdef __SANITIZE_THREAD__
-#include "core/system/parallel_threads.h"
-#endif
+#include <vector>
 
 namespace ovc {
 
-#ifndef __SANITIZE_THREAD__
-
-/// loop(context) in isolation and in a group of its own. In that context it runs in this thread's
-/// floating-point mode; else it would run in that of the thread on which oneTBB began, which may be
-/// the host's: with subnormals flushed, say.
-template <class Loop>
-auto isolated(Loop&& loop) {
-    using Context = oneapi::tbb::task_group_context;
-    return oneapi::tbb::this_task_arena::isolate([&] {
-        Context context(Context::isolated, Context::default_traits | Context::fp_settings);
-        return loop(context);
-    });
-}
-
 /// Calls body(first, last) on disjoint ranges that cover [0, count), of at least `grain` items
 /// where possible, from several threads. What body throws is thrown here.
-template <class Body>
-void parallel_for(size_t count, size_t grain, Body&& body) {
-    isolated([&](auto& context) {
-        oneapi::tbb::parallel_for(
-            oneapi::tbb::blocked_range<size_t>(0, count, grain),
-            [&](const auto& range) { body(range.begin(), range.end()); }, context);
-    });
-}
+void parallel_for(size_t count, size_t grain, FunctionRef<void(size_t, size_t)> body);
 
-/// body(first, last, T) -> T over ranges that cover [0, count), joined by join(T, T) -> T. Both
-/// must be associative and commutative for the result to be the same on every run.
-template <class T, class Body, class Join>
-T parallel_reduce(size_t count, T identity, Body&& body, Join&& join) {
-    return isolated([&](auto& context) {
-        return oneapi::tbb::parallel_reduce(
-            oneapi::tbb::blocked_range<size_t>(0, count, 4096), std::move(identity),
-            [&](const auto& range, T value) {
-                return body(range.begin(), range.end(), std::move(value));
-            },
-            std::forward<Join>(join), context);
-    });
-}
-
-/// Runs both, perhaps at the same time.
-template <class A, class B>
-void parallel_invoke(A&& a, B&& b) {
-    isolated([&](auto& context) {
-        oneapi::tbb::parallel_invoke(std::forward<A>(a), std::forward<B>(b), context);
-    });
-}
+/// Runs both, perhaps at the same time. What one of them throws is thrown here.
+void parallel_invoke(FunctionRef<void()> a, FunctionRef<void()> b);
 
 /// Forks of one recursion (in_forks): fork(a, b) runs both, perhaps at the same time. Unlike in
 /// parallel_invoke(), a thread that waits for one of them may take on any other fork of it.
 class Fork {
 public:
-    explicit Fork(oneapi::tbb::task_group_context& context) : context_(context) {}
-
-    template <class A, class B>
-    void operator()(A&& a, B&& b) const {
-        oneapi::tbb::parallel_invoke(std::forward<A>(a), std::forward<B>(b), context_);
-    }
+    explicit Fork(void* context) : context_(context) {}
+    void operator()(FunctionRef<void()> a, FunctionRef<void()> b) const;
 
 private:
-    oneapi::tbb::task_group_context& context_;
+    void* context_; // oneTBB's
 };
 
-/// body(Fork). What a fork throws ends them all, and is thrown here.
-template <class Body>
-void in_forks(Body&& body) {
-    isolated([&](auto& context) { body(Fork(context)); });
-}
+/// Calls body. What a fork throws ends them all, and is thrown here.
+void in_forks(FunctionRef<void(const Fork&)> body);
 
-/// Sorts [first, last) by <. Equal elements come in any order.
-template <class Iterator>
-void parallel_sort(Iterator first, Iterator last) {
-    // It takes no context, but has that of the loop that it is part of.
-    parallel_invoke([&] { oneapi::tbb::parallel_sort(first, last); }, [] {});
+/// Folds [0, count) with body(first, last, T) -> T over a fixed sequence of ranges, each of which
+/// begins with a copy of `identity`, and joins their results in order with join(T, T) -> T. The
+/// result is the same on every run, on any number of threads.
+template <class T, class Body, class Join>
+T parallel_reduce(size_t count, T identity, Body&& body, Join&& join) {
+    constexpr size_t kMinItems = 4096, kMaxRanges = 64;
+    struct Part { // so that those of bool are no bits of one word
+        T value;
+    };
+    const size_t ranges = std::clamp<size_t>(count / kMinItems, 1, kMaxRanges);
+    std::vector<Part> parts(ranges, Part{std::move(identity)});
+    const auto begin_of = [&](size_t range) {
+        return count / ranges * range + std::min(range, count % ranges);
+    };
+    parallel_for(ranges, 1, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            parts[i].value = body(begin_of(i), begin_of(i + 1), std::move(parts[i].value));
+    });
+    T total = std::move(parts[0].value);
+    for (size_t i = 1; i < ranges; ++i)
+        total = join(std::move(total), std::move(parts[i].value));
+    return total;
 }
-
-#endif
 
 /// Starts the threads that loops run on, once in a process; else they start within the first loops,
 /// and where the system refuses one there, oneTBB throws in the midst of a loop or ends the
@@ -112,17 +74,32 @@ void start_threads();
 /// While it lives, loops of the whole process run on at most so many threads.
 class ThreadLimit {
 public:
-    explicit ThreadLimit(size_t threads)
-        : limit_(oneapi::tbb::global_control::max_allowed_parallelism, threads) {}
+    explicit ThreadLimit(size_t threads);
+    ~ThreadLimit();
 
 private:
-    oneapi::tbb::global_control limit_;
+    struct Limit;
+    std::unique_ptr<Limit> limit_;
 };
 
 /// On how many threads loops run at most.
-inline size_t thread_count() {
-    return oneapi::tbb::global_control::active_value(
-        oneapi::tbb::global_control::max_allowed_parallelism);
+size_t thread_count();
+
+/// Sorts [first, last) by <. Equal elements come in any order.
+template <class Iterator>
+void parallel_sort(Iterator first, Iterator last) {
+    const size_t count = size_t(last - first);
+    const size_t parts = count < 4096 ? 1 : std::bit_ceil(thread_count());
+    const auto begin_of = [&](size_t part) { return first + ptrdiff_t(count * part / parts); };
+    parallel_for(parts, 1, [&](size_t from, size_t to) {
+        for (size_t i = from; i < to; ++i)
+            std::sort(begin_of(i), begin_of(i + 1));
+    });
+    for (size_t merged = 1; merged < parts; merged *= 2)
+        parallel_for(parts / merged / 2, 1, [&](size_t from, size_t to) {
+            for (size_t i = 2 * merged * from; i < 2 * merged * to; i += 2 * merged)
+                std::inplace_merge(begin_of(i), begin_of(i + merged), begin_of(i + 2 * merged));
+        });
 }
 
 } // namespace ovc

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
