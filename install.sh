@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that packages.txt lists, with sudo when not root. Sourced by demo.sh and test.sh; re-runnable.
+# Installs the Debian packages that packages.txt lists, with sudo when not root. Sourced by demo.sh
+# and test.sh; re-runnable. Those of further lists too: ./install.sh tests/packages.txt
 # install_packages [LIST...]: those of further lists as well.
 set -euo pipefail
 
@@ -31,5 +32,5 @@ install_packages() {
 }
 
 if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
-    install_packages
+    install_packages "$@"
 fi

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake --install: the command, the library, its headers, CMake package, pkg-config file, manual, completions, Python module. All find
-# each other by the way from one to the next, so that an installed tree may be moved. docs/guide/install.md.
+# cmake --install: the library, its headers, CMake package, pkg-config file and Python module; the
+# command is in install_command.cmake. All find each other by the way from one to the next, so that
+# an installed tree may be moved. docs/guide/install.md.
 #
 # Components: `overcast` goes to the same places everywhere; `local` is what Debian's packages have elsewhere than what is
 # installed by hand; `debian` is what only the package has (cmake/package.cmake).
@@ -8,16 +9,8 @@ include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Overcast)
 
-install(TARGETS overcast RUNTIME COMPONENT overcast)
 install(TARGETS overcast_plugin EXPORT Overcast LIBRARY COMPONENT overcast NAMELINK_COMPONENT overcast
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-# Loaded by the command alone.
-install(TARGETS overcast_thesis LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/overcast COMPONENT overcast)
-# tachyon with Overcast in it, where it is built; the module is preloaded by its command alone.
-if(TARGET overcast_tachyon)
-    install(TARGETS overcast-tachyon RUNTIME COMPONENT overcast)
-    install(TARGETS overcast_tachyon LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/overcast COMPONENT overcast)
-endif()
 install(FILES plugin/overcast.h plugin/overcast.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/overcast COMPONENT overcast)
 
 install(FILES plugin/examples/hills.c plugin/examples/sunlit.cpp DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT overcast)
@@ -36,30 +29,6 @@ file(RELATIVE_PATH OVC_PREFIX_FROM_PC ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${C
 string(REGEX REPLACE "/$" "" OVC_PREFIX_FROM_PC ${OVC_PREFIX_FROM_PC})
 configure_file(cmake/overcast.pc.in ${PROJECT_BINARY_DIR}/overcast.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/overcast.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT overcast)
-
-# The manual page and the completions, which the command writes itself.
-set(words ${PROJECT_BINARY_DIR}/words)
-find_program(OVC_GZIP gzip REQUIRED)
-add_custom_command(OUTPUT ${words}/overcast.1.gz ${words}/overcast.bash ${words}/_overcast ${words}/overcast.fish
-    COMMAND ${CMAKE_COMMAND} -E make_directory ${words}
-    COMMAND overcast man > ${words}/overcast.1
-    COMMAND ${OVC_GZIP} -9nf ${words}/overcast.1
-    COMMAND overcast completion bash > ${words}/overcast.bash
-    COMMAND overcast completion zsh > ${words}/_overcast
-    COMMAND overcast completion fish > ${words}/overcast.fish
-    DEPENDS overcast VERBATIM)
-add_custom_command(OUTPUT ${words}/overcast-tachyon.1.gz
-    COMMAND ${CMAKE_COMMAND} -E make_directory ${words}
-    COMMAND ${OVC_GZIP} -9nc ${PROJECT_SOURCE_DIR}/plugin/hosts/tachyon/overcast-tachyon.1 > ${words}/overcast-tachyon.1.gz
-    DEPENDS plugin/hosts/tachyon/overcast-tachyon.1 VERBATIM)
-set(manuals ${words}/overcast.1.gz $<$<TARGET_EXISTS:overcast_tachyon>:${words}/overcast-tachyon.1.gz>)
-add_custom_target(overcast_words ALL DEPENDS ${manuals})
-install(FILES ${manuals} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT overcast)
-install(FILES ${words}/overcast.bash RENAME overcast
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT overcast)
-install(FILES ${words}/overcast.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT overcast)
-install(FILES ${words}/_overcast DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT local)
-install(FILES ${words}/_overcast DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT debian EXCLUDE_FROM_ALL)
 
 # ovc_install_python(FOLDER COMPONENT …): the module, and the way from it to the library.
 function(ovc_install_python folder)

@@ -16,18 +16,28 @@ class Numbering {
 public:
     Numbering() = default;
     explicit Numbering(const Soup& soup) {
-        first_.reserve(soup.chunks.size());
+        first_.reserve(soup.chunks.size() + 1);
         uint32_t count = 0;
         for (const Chunk& chunk : soup.chunks) {
             first_.push_back(count);
             count += chunk.size();
         }
+        first_.push_back(count);
     }
 
-    uint32_t of(TriangleId id) const { return first_[id.mesh] + id.prim; }
+    /// Whether the soup has such a triangle.
+    bool has(TriangleId id) const {
+        return id.mesh + size_t(1) < first_.size() &&
+               id.prim < first_[id.mesh + 1] - first_[id.mesh];
+    }
+
+    uint32_t of(TriangleId id) const {
+        assert(has(id));
+        return first_[id.mesh] + id.prim;
+    }
 
     TriangleId id(uint32_t number) const {
-        assert(!first_.empty());
+        assert(!first_.empty() && number < first_.back());
         // The last chunk that begins at or before the number: empty ones before it share its first.
         const auto after = std::upper_bound(first_.begin(), first_.end(), number);
         const uint32_t mesh = uint32_t(after - first_.begin()) - 1;
@@ -35,7 +45,7 @@ public:
     }
 
 private:
-    std::vector<uint32_t> first_; // per chunk
+    std::vector<uint32_t> first_; // per chunk, and behind the last how many there are
 };
 
 } // namespace ovc

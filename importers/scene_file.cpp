@@ -23,7 +23,7 @@ namespace {
 constexpr std::string_view kKind = "ovc scene";
 /// To be raised with every change of scene_fields.h, and where importers make another scene of the
 /// same file.
-constexpr uint32_t kVersion = 5;
+constexpr uint32_t kVersion = 6;
 
 /// What of a mesh lies in other parts.
 struct MeshExtent {

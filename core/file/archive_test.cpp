@@ -26,17 +26,6 @@ ArchiveMemory example() {
     return file;
 }
 
-TEST(Checksum, IsXxh3OfTheBytesInAnyParts) {
-    // XXH3_64bits("") and of "abc": xxhsum 0.8.1, option -H3.
-    EXPECT_EQ(Checksum().value(), 0x2d06800538d394c2u);
-    const std::string_view text = "abc";
-    EXPECT_EQ(checksum_of(bytes_of(std::span<const char>(text))), 0x78af5f94892f3950u);
-    Checksum sum;
-    for (const char c : text)
-        sum.add_value(c);
-    EXPECT_EQ(sum.value(), 0x78af5f94892f3950u);
-}
-
 TEST(Archive, GivesBackItsParts) {
     const ArchiveMemory memory = example();
     const auto archive = Archive::open(memory.bytes(), "example", 7);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kTried = 0.05;      // of all subtrees, a round: the most promising
 constexpr double kWorthwhile = 0.01; // of the cost: what a round must gain for another one
 constexpr int kMaxRounds = 16;
-constexpr size_t kGrain = 256; // searches a task
+constexpr size_t kSearchGrain = 256; // searches a task
 
 /// hope: what the tree would save without the subtree, but for what nodes above then shrink by.
 struct Candidate {
@@ -43,7 +43,7 @@ std::vector<Candidate> candidates(const SiblingTree& tree) {
 std::vector<Move> moves(const SiblingTree& tree, BuildProgress* progress) {
     const std::vector<Candidate> tried = candidates(tree);
     std::vector<Move> moves(tried.size());
-    parallel_for(tried.size(), kGrain, [&](size_t first, size_t last) {
+    parallel_for(tried.size(), kSearchGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
             moves[i] = MoveSearch(tree, tried[i].place).best();
         add(progress, 0);

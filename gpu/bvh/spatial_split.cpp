@@ -9,8 +9,8 @@
 namespace ovc {
 namespace {
 
-constexpr int kBins = 16;
-constexpr size_t kSample = 2048; // items that are looked at to choose a plane
+constexpr int kSplitBins = 16;
+constexpr size_t kSplitSample = 2048; // items that are looked at to choose a plane
 
 struct SpatialBin {
     Bounds bounds = Bounds::empty();
@@ -21,7 +21,7 @@ struct SpatialBin {
 class SpatialBins {
 public:
     SpatialBins(const Bounds& bounds, size_t axis)
-        : axis_(axis), lo_(bounds.lo[axis]), width_((bounds.hi[axis] - lo_) / float(kBins)) {}
+        : axis_(axis), lo_(bounds.lo[axis]), width_((bounds.hi[axis] - lo_) / float(kSplitBins)) {}
 
     /// Are there planes to choose from?
     bool usable() const { return width_ > 1e-6f && plane(1) > lo_; }
@@ -45,15 +45,15 @@ public:
     }
 
     void choose(SpatialSplit& best, uint32_t count, size_t max_added) const {
-        std::array<Bounds, kBins> above;
+        std::array<Bounds, kSplitBins> above;
         Bounds rest = Bounds::empty();
-        for (int i = kBins - 1; i > 0; --i) {
+        for (int i = kSplitBins - 1; i > 0; --i) {
             rest.add(bins_[size_t(i)].bounds);
             above[size_t(i)] = rest;
         }
         Bounds below = Bounds::empty();
         uint32_t below_count = 0, above_count = count;
-        for (int i = 1; i < kBins; ++i) {
+        for (int i = 1; i < kSplitBins; ++i) {
             below.add(bins_[size_t(i - 1)].bounds);
             below_count += bins_[size_t(i - 1)].begin;
             above_count -= bins_[size_t(i - 1)].end;
@@ -69,19 +69,19 @@ public:
     }
 
 private:
-    int bin_of(float x) const { return std::clamp(int((x - lo_) / width_), 0, kBins - 1); }
+    int bin_of(float x) const { return std::clamp(int((x - lo_) / width_), 0, kSplitBins - 1); }
 
     const size_t axis_;
     const float lo_;
     const float width_;
-    std::array<SpatialBin, kBins> bins_;
+    std::array<SpatialBin, kSplitBins> bins_;
 };
 
 } // namespace
 
 SpatialSplit best_spatial_split(std::span<const Item> items, const Bounds& bounds,
                                 size_t max_added) {
-    const size_t step = items.size() / kSample + 1;
+    const size_t step = items.size() / kSplitSample + 1;
     const size_t looked_at = (items.size() + step - 1) / step;
     SpatialSplit best;
     for (size_t axis = 0; axis < 3; ++axis) {

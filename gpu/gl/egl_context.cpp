@@ -3,13 +3,13 @@
 // EGL_MESA_platform_surfaceless where there is none.
 #include "gpu/gl/egl_context.h"
 
+#include "core/text/format_text.h"
 #include "gpu/gl/fork_mark.h"
 #include "gpu/gl/gl.h"
 #include "gpu/gl/gl_libraries.h"
 #include "gpu/gl/workarounds.h"
 #include "shaders/layout.h"
 
-#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ constexpr uint64_t kMaxBufferTexels = uint64_t(OVC_UNIT_TEXELS) << OVC_MAX_BUFFE
 std::string likely_cause() {
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-        return fmt::format("; this process may have too little address space for its driver: "
+        return format_text("; this process may have too little address space for its driver: "
                            "ulimit -v is {} KiB",
                            limit.rlim_cur / 1024);
     return "; its driver may be missing: install libgl1-mesa-dri for Mesa's, or your GPU's";
@@ -163,7 +163,7 @@ Result<Done> check_egl_environment() {
     if (std::any_of(known.begin(), known.end(),
                     [&](const char* name) { return lower(value) == name; }))
         return Done{};
-    return Error{fmt::format(
+    return Error{format_text(
         "EGL cannot start: EGL_PLATFORM is set to '{}', which is no EGL platform; Overcast tried "
         "'device' and 'surfaceless'; unset EGL_PLATFORM or set it to one of these",
         value)};
@@ -195,13 +195,13 @@ Result<std::vector<EglContext::Platform>> EglContext::platforms() {
         if (eglQueryDevicesEXT(EGLint(handles.size()), handles.data(), &count))
             for (EGLint i = 0; i < count; ++i)
                 found.push_back(
-                    {fmt::format("EGL device {}", i), EGL_PLATFORM_DEVICE_EXT, handles[i]});
+                    {format_text("EGL device {}", i), EGL_PLATFORM_DEVICE_EXT, handles[i]});
     }
     if (found.empty() && lists(extensions, "EGL_MESA_platform_surfaceless"))
         found.push_back({"Mesa's surfaceless platform", EGL_PLATFORM_SURFACELESS_MESA,
                          reinterpret_cast<void*>(EGL_DEFAULT_DISPLAY)});
     if (found.empty())
-        return Error{fmt::format("EGL offers no headless device: tried EGL_EXT_platform_device and "
+        return Error{format_text("EGL offers no headless device: tried EGL_EXT_platform_device and "
                                  "EGL_MESA_platform_surfaceless, EGL lists "
                                  "'{}'; install libegl-mesa0 and libgl1-mesa-dri for the software "
                                  "renderer, or your GPU's EGL driver",
@@ -215,19 +215,19 @@ Result<EglContext> EglContext::open(const Platform& platform) {
         eglGetPlatformDisplayEXT(platform.platform, platform.native, nullptr);
     if (display == EGL_NO_DISPLAY)
         return Error{
-            fmt::format("{}: eglGetPlatformDisplay failed: {}", platform.name, egl_error())};
+            format_text("{}: eglGetPlatformDisplay failed: {}", platform.name, egl_error())};
     EGLint major = 0, minor = 0;
     if (!eglInitialize(display, &major, &minor))
-        return Error{fmt::format("{}: eglInitialize failed: {}{}", platform.name, egl_error(),
+        return Error{format_text("{}: eglInitialize failed: {}{}", platform.name, egl_error(),
                                  likely_cause())};
     context.display_ = display;
     const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
     for (const char* needed : {"EGL_KHR_surfaceless_context", "EGL_KHR_no_config_context"})
         if (!lists(extensions, needed))
             return Error{
-                fmt::format("{}: no {}, which headless rendering needs", platform.name, needed)};
+                format_text("{}: no {}, which headless rendering needs", platform.name, needed)};
     if (!eglBindAPI(EGL_OPENGL_API))
-        return Error{fmt::format("{}: no desktop OpenGL: {}", platform.name, egl_error())};
+        return Error{format_text("{}: no desktop OpenGL: {}", platform.name, egl_error())};
     const std::array<EGLint, 11> attributes{EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
                                             EGL_LOSE_CONTEXT_ON_RESET,
                                             EGL_CONTEXT_MAJOR_VERSION,
@@ -251,13 +251,13 @@ Result<EglContext> EglContext::open(const Platform& platform) {
         context.context_ =
             eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data() + 2);
     if (context.context_ == EGL_NO_CONTEXT)
-        return Error{fmt::format("{}: no OpenGL 4.5 core context: {}", platform.name, egl_error())};
+        return Error{format_text("{}: no OpenGL 4.5 core context: {}", platform.name, egl_error())};
     if (!context.make_current())
-        return Error{fmt::format("{}: eglMakeCurrent failed: {}", platform.name, egl_error())};
+        return Error{format_text("{}: eglMakeCurrent failed: {}", platform.name, egl_error())};
     context.info_ = describe();
     if (needs(Workaround::PassedOver)) {
         const WorkaroundEntry& entry = entry_of(Workaround::PassedOver);
-        return Error{fmt::format("{}: '{}' {}; {}", platform.name, context.info_.renderer,
+        return Error{format_text("{}: '{}' {}; {}", platform.name, context.info_.renderer,
                                  entry.symptom, entry.answer)};
     }
     return context;
@@ -311,7 +311,7 @@ Result<EglContext> EglContext::create(const std::string& name, const LogSink& lo
         return Error{"no EGL device works: " + failures};
     if (name.empty()) {
         say(log, LogLevel::Info, // answers are the same
-            fmt::format("no GPU found{}; using the software renderer {}",
+            format_text("no GPU found{}; using the software renderer {}",
                         failures.empty() ? "" : " (" + failures + ")", working[0].info().renderer));
         if (!working[0].make_current())
             return Error{"eglMakeCurrent failed: " + egl_error()};
@@ -319,8 +319,8 @@ Result<EglContext> EglContext::create(const std::string& name, const LogSink& lo
     }
     std::string names;
     for (size_t i = 0; i < working.size(); ++i)
-        names += fmt::format("{}{} '{}'", i ? ", " : "", i, working[i].info().renderer);
-    return Error{fmt::format("no device is called '{}'; there is {}{}", name, names,
+        names += format_text("{}{} '{}'", i ? ", " : "", i, working[i].info().renderer);
+    return Error{format_text("no device is called '{}'; there is {}{}", name, names,
                              failures.empty() ? "" : "; failed: " + failures)};
 }
 

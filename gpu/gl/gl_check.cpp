@@ -2,9 +2,8 @@
 // GL's error flag as a sentence.
 #include "gpu/gl/gl_check.h"
 
+#include "core/text/format_text.h"
 #include "gpu/gl/gl.h"
-
-#include <fmt/format.h>
 
 namespace ovc {
 
@@ -16,9 +15,9 @@ Result<Done> check_gl(const char* doing) {
     }
     if (error == GL_OUT_OF_MEMORY)
         return Error{
-            fmt::format("the GPU is out of memory while {}; a smaller budget may work", doing),
+            format_text("the GPU is out of memory while {}; a smaller budget may work", doing),
             ErrorKind::OutOfGpuMemory};
-    return Error{fmt::format("OpenGL error 0x{:04x} while {}", error, doing)};
+    return Error{format_text("OpenGL error 0x{} while {}", hexadecimal(error, 4), doing)};
 }
 
 } // namespace ovc

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/gl/gl_libraries.h"
 
+#include "core/text/format_text.h"
+
 #include <dlfcn.h>
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -38,11 +39,11 @@ bool is_for_memory(const std::string& reason) {
 
 Error missing(const std::string& reasons, const char* packages) {
     if (is_for_memory(reasons))
-        return {fmt::format("no memory to load OpenGL: {}; allow this process more address space "
+        return {format_text("no memory to load OpenGL: {}; allow this process more address space "
                             "(ulimit -v)",
                             reasons),
                 ErrorKind::OutOfMemory};
-    return {fmt::format("OpenGL is missing: {}; install {}", reasons, packages)};
+    return {format_text("OpenGL is missing: {}; install {}", reasons, packages)};
 }
 
 bool is_true(const char* value) {
@@ -105,7 +106,7 @@ Result<Done> reserve_shader_cache_index(const fs::path& folder) {
     if (refused != ENOSPC && refused != EDQUOT)
         return Done{};
     return Error{
-        fmt::format("the disk is full under Mesa's shader cache, {}, where its driver "
+        format_text("the disk is full under Mesa's shader cache, {}, where its driver "
                     "would crash: free {} KiB there, or set MESA_SHADER_CACHE_DISABLE=true "
                     "or MESA_SHADER_CACHE_DIR to another folder",
                     folder.string(), (kIndexBytes + 1023) / 1024)};

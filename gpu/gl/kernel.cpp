@@ -2,11 +2,10 @@
 // Kernel: include expansion, compilation, logs that name the file.
 #include "gpu/gl/kernel.h"
 
+#include "core/text/format_text.h"
 #include "gpu/gl/program_store.h"
 #include "gpu/gl/workarounds.h"
 #include "shaders/sources.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <regex>
@@ -38,18 +37,18 @@ std::string append_expanded(std::string_view name, const std::string& defines,
         constexpr std::string_view include = "#include \"";
         if (text.starts_with(include)) {
             const std::string_view rest = text.substr(include.size());
-            out += fmt::format("#line 1 {}\n", files.size());
+            out += format_text("#line 1 {}\n", files.size());
             if (std::string missing =
                     append_expanded(rest.substr(0, rest.find('"')), {}, files, out);
                 !missing.empty())
                 return missing;
-            out += fmt::format("#line {} {}\n", line + 1, number);
+            out += format_text("#line {} {}\n", line + 1, number);
             continue;
         }
         out += text;
         out += '\n';
         if (text.starts_with("#version"))
-            out += fmt::format("{}#line {} {}\n", defines, line + 1, number);
+            out += format_text("{}#line {} {}\n", defines, line + 1, number);
     }
     return {};
 }
@@ -78,7 +77,7 @@ Result<gl::Shader> compile(const ExpandedStage& expanded) {
     glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &ok);
     if (!ok)
         return Error{
-            fmt::format("the driver does not compile {}: {}", expanded.stage.source,
+            format_text("the driver does not compile {}: {}", expanded.stage.source,
                         rewrite_log(info_log(shader.id(), /* program= */ false), expanded.files))};
     return shader;
 }
@@ -113,7 +112,7 @@ std::string driver_line() {
     if (!needs(Workaround::RendererInSources))
         return {};
     const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    return fmt::format("// {}\n", renderer ? renderer : "");
+    return format_text("// {}\n", renderer ? renderer : "");
 }
 
 bool compiles_fragment_shaders() {
@@ -127,23 +126,23 @@ bool compiles_fragment_shaders() {
 std::string ShaderConfig::defines() const {
     std::string each_buffer;
     for (uint32_t i = 0; i < pool_buffers; ++i)
-        each_buffer += fmt::format("do_with({}) ", i);
-    return fmt::format("#define OVC_ANY_HIT {:d}\n"
-                       "#define OVC_CERTIFY {:d}\n"
-                       "#define OVC_PORTALS {:d}\n"
-                       "#define OVC_MAY_WAIT {:d}\n"
-                       "#define OVC_TELL_ACTIVE {:d}\n"
-                       "#define OVC_LOOSE_PAIRS {:d}\n"
+        each_buffer += format_text("do_with({}) ", i);
+    return format_text("#define OVC_ANY_HIT {}\n"
+                       "#define OVC_CERTIFY {}\n"
+                       "#define OVC_PORTALS {}\n"
+                       "#define OVC_MAY_WAIT {}\n"
+                       "#define OVC_TELL_ACTIVE {}\n"
+                       "#define OVC_LOOSE_PAIRS {}\n"
                        "#define OVC_POOL_BUFFERS {}\n"
                        "#define OVC_EACH_BUFFER(do_with) {}\n"
                        "#define OVC_BUFFER_BITS {}\n"
                        "#define OVC_STACK_DEPTH {}\n"
-                       "#define OVC_STACK_REGISTERS {:d}\n"
+                       "#define OVC_STACK_REGISTERS {}\n"
                        "#define OVC_PACKET {}\n"
-                       "#define OVC_REFILL {:d}\n"
-                       "#define OVC_BRANCHES {:d}\n"
-                       "#define OVC_DEAL_GROUPS {:d}\n"
-                       "#define OVC_BUFFER_IMAGES {:d}\n"
+                       "#define OVC_REFILL {}\n"
+                       "#define OVC_BRANCHES {}\n"
+                       "#define OVC_DEAL_GROUPS {}\n"
+                       "#define OVC_BUFFER_IMAGES {}\n"
                        "#define OVC_MAX_ROUNDS {}\n",
                        any_hit, certify, portals, may_wait, tell_active, loose_pairs, pool_buffers,
                        each_buffer, buffer_bits, stack_depth, stack_registers, packet, refill,
@@ -183,7 +182,7 @@ Result<std::string> expand_shader(std::string_view name, const std::string& defi
     std::string out;
     const std::string missing = append_expanded(name, defines, files, out);
     if (!missing.empty())
-        return Error{fmt::format("no shader source is called '{}'", missing)};
+        return Error{format_text("no shader source is called '{}'", missing)};
     return out;
 }
 

@@ -5,9 +5,9 @@
 
 #include "core/file/archive.h"
 #include "core/file/mapped_file.h"
+#include "core/text/format_text.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kKind = "ovc kernel";
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 constexpr std::string_view kSuffix = ".ovck";
 
 /// Who compiles. llvmpipe's renderer names its vector width, which Mesa's own cache overlooks.
@@ -86,7 +86,7 @@ fs::path ProgramStore::default_folder() {
 }
 
 fs::path ProgramStore::file_of(uint64_t key) const {
-    return folder_ / fmt::format("{:016x}{}", key, kSuffix);
+    return folder_ / (hexadecimal(key, 16) + std::string(kSuffix));
 }
 
 bool ProgramStore::load(const std::vector<std::string>& sources, GLuint program) const {
@@ -146,7 +146,7 @@ void ProgramStore::keep(const std::vector<std::string>& sources, GLuint program)
     std::error_code failed;
     fs::create_directories(folder_, failed);
     static std::atomic<uint32_t> count{0};
-    const fs::path temporary = folder_ / fmt::format(".{}-{}", getpid(), count++);
+    const fs::path temporary = folder_ / format_text(".{}-{}", getpid(), count++);
     if (write_file(temporary, bytes))
         fs::rename(temporary, file_of(key_of(sources, who)), failed);
     fs::remove(temporary, failed); // where that did not work

@@ -20,11 +20,11 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kGrain = 16384; // triangles, or pairs, a task
+constexpr size_t kTriangleGrain = 16384; // triangles, or pairs, a task
 
 std::vector<LocalTriangle> local_triangles(const Soup& soup, const Leaf& leaf) {
     std::vector<LocalTriangle> triangles(leaf.triangles.size());
-    parallel_for(triangles.size(), kGrain, [&](size_t first, size_t last) {
+    parallel_for(triangles.size(), kTriangleGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const Triangle world = soup.triangle(leaf.triangles[i]);
             for (int k = 0; k < 3; ++k)
@@ -91,7 +91,7 @@ private:
     /// Hits count inside the leaf's box only, so what reaches out of it need not be in the boxes.
     std::vector<Boxf> boxes(const Boxf& inside) const {
         std::vector<Boxf> boxes(pairs_.size());
-        parallel_for(boxes.size(), kGrain, [&](size_t first, size_t last) {
+        parallel_for(boxes.size(), kTriangleGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i) {
                 for (const vec3& corner : pairs_[i].corners)
                     boxes[i].add(corner);

@@ -248,10 +248,10 @@ bool is_usable(const TopLevel& top, std::span<const Page> pages, const PoolLayou
 }
 
 void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to) {
-    constexpr size_t kGrain = 4096; // units a task
+    constexpr size_t kUnitGrain = 4096; // units a task
     const std::span<const uvec4> from = page.view();
     assert(to.size() == from.size());
-    parallel_for(page.units(), kGrain, [&](size_t begin, size_t end) {
+    parallel_for(page.units(), kUnitGrain, [&](size_t begin, size_t end) {
         for (size_t unit = begin; unit < end; ++unit) {
             const uvec4* const source = from.data() + unit * OVC_UNIT_TEXELS;
             uvec4* const texel = to.data() + unit * OVC_UNIT_TEXELS;

@@ -11,7 +11,7 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kGrain = 16384; // rays a task that are only copied
+constexpr size_t kAnswerGrain = 16384; // rays a task that are only copied
 
 /// The pixel of a ray's answer, row by row: the counterpart of pixel_of() in shaders/ray.glsl.
 size_t pixel_of(size_t ray) {
@@ -42,7 +42,7 @@ void AnswerPixels::read(std::span<Answer> answers) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     glReadPixels(0, 0, OVC_ROW_RAYS, GLsizei(pixels_.size() / OVC_ROW_RAYS), GL_RGBA_INTEGER,
                  GL_UNSIGNED_INT, pixels_.data());
-    parallel_for(answers.size(), kGrain, [&](size_t first, size_t last) {
+    parallel_for(answers.size(), kAnswerGrain, [&](size_t first, size_t last) {
         for (size_t ray = first; ray < last; ++ray) {
             const uvec4& p = pixels_[pixel_of(ray)];
             answers[ray] = {{p.x, p.y, p.z}, p.w, p.z};
@@ -87,7 +87,7 @@ std::span<const uint32_t> AnswerWords::plane(int number, size_t first, size_t ra
 void AnswerWords::read(std::span<Answer> answers, size_t first_ray) {
     const std::span<const uint32_t> names = plane(0, first_ray, answers.size());
     std::atomic<uint32_t> seen = 0;
-    parallel_for(answers.size(), kGrain, [&](size_t first, size_t last) {
+    parallel_for(answers.size(), kAnswerGrain, [&](size_t first, size_t last) {
         uint32_t all = 0;
         for (size_t ray = first; ray < last; ++ray) {
             all |= names[ray];
@@ -101,7 +101,7 @@ void AnswerWords::read(std::span<Answer> answers, size_t first_ray) {
         return;
     const std::array more{plane(1, first_ray, answers.size()), plane(2, first_ray, answers.size()),
                           plane(3, first_ray, answers.size())};
-    parallel_for(answers.size(), kGrain, [&](size_t first, size_t last) {
+    parallel_for(answers.size(), kAnswerGrain, [&](size_t first, size_t last) {
         for (size_t ray = first; ray < last; ++ray)
             if (names[ray] & OVC_SAYS_MORE) {
                 answers[ray].words = {more[0][ray], more[1][ray], more[2][ray]};

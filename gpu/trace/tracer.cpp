@@ -5,10 +5,9 @@
 
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
+#include "core/text/format_text.h"
 #include "gpu/gl/gl_check.h"
 #include "shaders/layout.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
@@ -28,7 +27,7 @@ constexpr size_t kMaxLostShare = 256;         // of rays, one in so many; else k
 // With ray refill: the most rays of a lane on average, as long as each thread has some groups.
 constexpr size_t kLaneRays = 128;
 constexpr size_t kGroupsAThread = 4;
-constexpr size_t kGrain = 1024;           // rays a task
+constexpr size_t kRayGrain = 1024;        // rays a task
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
 /// How many packets each lane takes, on average.
@@ -49,7 +48,7 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
     const uint64_t smallest = plan.ray_bytes() + kSmallestPool;
     if (budget_bytes < smallest)
         return over_budget(
-            fmt::format("a GPU budget of {} bytes is too small: the smallest that works "
+            format_text("a GPU budget of {} bytes is too small: the smallest that works "
                         "is {} bytes ({} for rays and answers, {} for a page)",
                         budget_bytes, smallest, plan.ray_bytes(), kSmallestPool));
     // An eighth for rays: batches of ten thousand and more already run at full speed, and pages
@@ -191,7 +190,7 @@ void Tracer::upload_world(std::span<const RayState> rays) {
     if (options_.certify)
         return;
     times_.resize(rays.size());
-    parallel_for(rays.size(), kGrain, [&](size_t first, size_t last) {
+    parallel_for(rays.size(), kRayGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
             local_ray(scene_, rays[i].ray, OVC_NO_TRIANGLE, false, times_[i]);
     });
@@ -202,7 +201,7 @@ template <class Sent>
 void Tracer::upload_local(std::span<const RayState> rays, std::vector<Sent>& sent) {
     sent.resize(whole_blocks(rays.size()));
     times_.resize(options_.certify ? 0 : sent.size());
-    parallel_for(sent.size(), kGrain, [&](size_t first, size_t last) {
+    parallel_for(sent.size(), kRayGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             const RayState& state = rays.data()[i]; // up to the next whole block: see collect()
             LocalTime time;

@@ -3,10 +3,9 @@
 #include "plugin/abi/device.h"
 
 #include "core/system/parallel.h"
+#include "core/text/format_text.h"
 #include "plugin/abi/device_call.h"
 #include "plugin/abi/struct_size.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
@@ -87,10 +86,10 @@ Result<std::vector<DeviceInfo>> list_on_own_thread() {
 bool is_device(ovc_device device, const char* call) {
     if (!device || device->magic != kDeviceMagic)
         no_device.set(OVC_ERROR_INVALID_ARGUMENT,
-                      fmt::format("{}: device is NULL or not a device", call));
+                      format_text("{}: device is NULL or not a device", call));
     else if (device->mark.forked())
         no_device.set(OVC_ERROR_INVALID_ARGUMENT,
-                      fmt::format("{}: the device belongs to the process that this one was forked "
+                      format_text("{}: the device belongs to the process that this one was forked "
                                   "from",
                                   call));
     else
@@ -177,9 +176,9 @@ void destroy_device(ovc_device device) {
         if (scenes > 0 || tickets > 0)
             say(device->log, LogLevel::Error,
                 scenes > 0
-                    ? fmt::format("destroy_device: {} scenes are still alive; the device stays",
+                    ? format_text("destroy_device: {} scenes are still alive; the device stays",
                                   scenes)
-                    : fmt::format("destroy_device: {} tickets are not released; the device "
+                    : format_text("destroy_device: {} tickets are not released; the device "
                                   "stays",
                                   tickets));
         return scenes > 0 || tickets > 0;

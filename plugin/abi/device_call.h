@@ -2,10 +2,9 @@
 // What every function of the table that works on a device begins and ends with.
 #pragma once
 
+#include "core/text/format_text.h"
 #include "plugin/abi/device.h"
 #include "plugin/abi/handles.h"
-
-#include <fmt/format.h>
 
 namespace ovc {
 
@@ -17,7 +16,7 @@ ovc_result on_device(ovc_device device, const char* call, Body&& body) {
     const CallsInside::Call inside(device->calls);
     if (device->magic != kDeviceMagic)
         return fail_without_device(OVC_ERROR_INVALID_STATE,
-                                   fmt::format("{}: the device is being destroyed", call));
+                                   format_text("{}: the device is being destroyed", call));
     return guard(device->messages, std::forward<Body>(body));
 }
 

@@ -140,9 +140,9 @@ struct ovc_device_t {
 namespace ovc {
 
 /// Runs body; whatever it throws becomes a code, and a message in `messages`: something with set(),
-/// which is called in the host's floating-point mode.
+/// which is called in the host's floating-point mode and may throw for want of memory.
 template <class Keeper, class Body>
-ovc_result guard(Keeper& messages, Body&& body) {
+ovc_result told_result(Keeper& messages, Body&& body) {
     const auto fail = [&](ovc_result code, const std::string& message) {
         messages.set(code, message);
         return code;
@@ -173,6 +173,16 @@ ovc_result guard(Keeper& messages, Body&& body) {
         return fail(OVC_ERROR_INTERNAL, std::string("internal error: ") + e.what());
     } catch (...) {
         return fail(OVC_ERROR_INTERNAL, "internal error");
+    }
+}
+
+/// The same, and nothing is thrown.
+template <class Keeper, class Body>
+ovc_result guard(Keeper& messages, Body&& body) noexcept {
+    try {
+        return told_result(messages, std::forward<Body>(body));
+    } catch (...) {
+        return OVC_ERROR_OUT_OF_MEMORY; // there was no room even for a message
     }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Meshes and their instances: checked, and made into chunks of the soup.
+#include "core/text/format_text.h"
 #include "plugin/abi/scene.h"
 #include "plugin/abi/scene_call.h"
 #include "plugin/abi/struct_size.h"
@@ -23,28 +24,28 @@ void check_positions(const ovc_mesh& mesh) {
     if (mesh.positions_double) {
         if (mesh.stride < 24 || mesh.stride % 8 ||
             reinterpret_cast<uintptr_t>(mesh.positions_double) % 8)
-            invalid(fmt::format("ovc_mesh.stride is {}, expected 24 or more and, as "
+            invalid(format_text("ovc_mesh.stride is {}, expected 24 or more and, as "
                                 "positions_double, a multiple of 8",
                                 mesh.stride));
         return;
     }
     if (mesh.stride < 12 || mesh.stride % 4 || reinterpret_cast<uintptr_t>(mesh.positions) % 4)
-        invalid(fmt::format(
+        invalid(format_text(
             "ovc_mesh.stride is {}, expected 12 or more and, as positions, a multiple of 4",
             mesh.stride));
 }
 
 void check_counts(const ovc_mesh& mesh) {
     if (!mesh.indices && mesh.vertex_count % 3)
-        invalid(fmt::format("ovc_mesh.vertex_count is {} without indices, expected a multiple of 3",
+        invalid(format_text("ovc_mesh.vertex_count is {} without indices, expected a multiple of 3",
                             mesh.vertex_count));
     const uint64_t triangles = triangles_of(mesh);
     if (!mesh.indices && mesh.triangle_count && mesh.triangle_count != triangles)
         invalid(
-            fmt::format("ovc_mesh.triangle_count is {}, but {} vertices without indices make {}",
+            format_text("ovc_mesh.triangle_count is {}, but {} vertices without indices make {}",
                         mesh.triangle_count, mesh.vertex_count, triangles));
     if (triangles >= kNone)
-        invalid(fmt::format("a mesh holds fewer than {} triangles, not {}; split it", kNone,
+        invalid(format_text("a mesh holds fewer than {} triangles, not {}; split it", kNone,
                             triangles));
 }
 
@@ -59,7 +60,7 @@ ovc_mesh checked(const ovc_mesh* given) {
         invalid("ovc_mesh.flags or reserved has bits that this version does not know");
     check_counts(mesh);
     if ((mesh.flags & OVC_MESH_SHARED) && (mesh.stride != packed || mesh.indices))
-        invalid(fmt::format("OVC_MESH_SHARED needs stride {} and no indices", packed));
+        invalid(format_text("OVC_MESH_SHARED needs stride {} and no indices", packed));
     for (const double coordinate : mesh.origin)
         if (!std::isfinite(coordinate))
             invalid("ovc_mesh.origin is not finite");
@@ -72,7 +73,7 @@ std::vector<Corner> copied_corners(const ovc_mesh& mesh, const void* positions) 
     for (uint64_t i = 0; i < corners.size(); ++i) {
         const uint64_t vertex = mesh.indices ? mesh.indices[i] : i;
         if (vertex >= mesh.vertex_count)
-            invalid(fmt::format("ovc_mesh.indices[{}] is {}, expected less than vertex_count = {}",
+            invalid(format_text("ovc_mesh.indices[{}] is {}, expected less than vertex_count = {}",
                                 i, vertex, mesh.vertex_count));
         std::memcpy(&corners[i], static_cast<const char*>(positions) + vertex * mesh.stride,
                     sizeof(Corner));
@@ -98,7 +99,7 @@ std::optional<Transform> transform_of(const char* field, const double* given) {
     Transform transform;
     for (size_t i = 0; i < 12; ++i) {
         if (!std::isfinite(given[i]))
-            invalid(fmt::format("{}[{}] is not finite", field, i));
+            invalid(format_text("{}[{}] is not finite", field, i));
         transform.rows[i / 4][i % 4] = given[i];
     }
     return transform;
@@ -107,7 +108,7 @@ std::optional<Transform> transform_of(const char* field, const double* given) {
 void check_open(ovc_scene scene, const char* call) {
     if (scene->structure)
         throw Failure{OVC_ERROR_INVALID_STATE,
-                      fmt::format("{}: the scene is committed; it takes no more meshes", call)};
+                      format_text("{}: the scene is committed; it takes no more meshes", call)};
 }
 
 void add_chunk(ovc_scene scene, Chunk chunk, uint32_t* mesh_id) {
@@ -144,7 +145,7 @@ ovc_result add_instance(ovc_scene scene, const ovc_instance* given, uint32_t* me
         const ovc_instance instance = whole("ovc_instance", given);
         const size_t meshes = scene->soup.chunks.size();
         if (instance.mesh >= meshes)
-            invalid(fmt::format("ovc_instance.mesh is {}, but {} meshes were added so far",
+            invalid(format_text("ovc_instance.mesh is {}, but {} meshes were added so far",
                                 instance.mesh, meshes));
         if (instance.reserved)
             invalid("ovc_instance.reserved has bits that this version does not know");

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/ray_span.h"
+#include "core/text/format_text.h"
 #include "plugin/abi/scene_call.h"
 
 #include <algorithm>
@@ -26,13 +27,13 @@ inline ovc_query complete(const ovc_query* query) {
     constexpr size_t sizes[] = {offsetof(ovc_query, leaf), offsetof(ovc_query, flagged),
                                 offsetof(ovc_query, ray_format), sizeof(ovc_query)};
     if (std::find(std::begin(sizes), std::end(sizes), query->struct_size) == std::end(sizes))
-        invalid(fmt::format("ovc_query.struct_size is {}, expected sizeof(ovc_query) = {}",
+        invalid(format_text("ovc_query.struct_size is {}, expected sizeof(ovc_query) = {}",
                             query->struct_size, sizeof(ovc_query)));
     std::memcpy(&all, query, query->struct_size);
     if (all.ray_format > OVC_RAY_FLOAT)
-        invalid(fmt::format("ovc_query.ray_format is {}, expected 0 or 1", all.ray_format));
+        invalid(format_text("ovc_query.ray_format is {}, expected 0 or 1", all.ray_format));
     if (all.reserved)
-        invalid(fmt::format("ovc_query.reserved is {}, expected 0", all.reserved));
+        invalid(format_text("ovc_query.reserved is {}, expected 0", all.reserved));
     return all;
 }
 
@@ -59,12 +60,12 @@ inline RayNotes notes_of(const ovc_query& query, size_t ray_count) {
 
 inline void refuse_notes(const char* call, const ovc_query& query) {
     if (query.leaf || query.passes || query.flagged)
-        invalid(fmt::format("{}: ovc_query.leaf, passes and flagged are for intersect", call));
+        invalid(format_text("{}: ovc_query.leaf, passes and flagged are for intersect", call));
 }
 
 inline void refuse_progress(const char* call, const ovc_query& query) {
     if (query.progress)
-        invalid(fmt::format(
+        invalid(format_text(
             "{}: ovc_query.progress is for intersect and occluded and their submitted forms",
             call));
 }

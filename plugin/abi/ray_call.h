@@ -3,6 +3,7 @@
 // then traced.
 #pragma once
 
+#include "core/text/format_text.h"
 #include "plugin/abi/query_call.h"
 
 #include <cstdint>
@@ -20,7 +21,7 @@ struct RayCall {
 
 inline void check_buffers(const char* name, const void* rays, const void* answers, size_t count) {
     if (count && (!rays || !answers))
-        invalid(fmt::format("{}: rays or the answers' buffer is NULL", name));
+        invalid(format_text("{}: rays or the answers' buffer is NULL", name));
 }
 
 /// One of the caller's buffers.
@@ -55,7 +56,7 @@ inline void check_apart(const char* name, const void* rays, const void* answers,
     for (const BufferRange& a : buffers)
         for (const BufferRange& b : buffers)
             if (&a < &b && b.is_written && a.overlaps(b))
-                invalid(fmt::format("{}: {} and {} overlap, expected buffers apart", name, a.name,
+                invalid(format_text("{}: {} and {} overlap, expected buffers apart", name, a.name,
                                     b.name));
 }
 
@@ -86,7 +87,7 @@ inline RayCall occlusion_call(const char* name, const ovc_ray* rays, size_t coun
 
 inline void check_notes(const RayCall& call, const Structure& structure) {
     if (notes_of(call.query, call.rays.size()).any() && !structure.takes_notes())
-        invalid(fmt::format("{}: this structure cannot tell ovc_query.leaf, passes or flagged",
+        invalid(format_text("{}: this structure cannot tell ovc_query.leaf, passes or flagged",
                             call.name));
 }
 

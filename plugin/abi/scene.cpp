@@ -5,6 +5,7 @@
 
 #include "core/build_progress.h"
 #include "core/system/stopwatch.h"
+#include "core/text/format_text.h"
 #include "plugin/abi/device_call.h"
 #include "plugin/abi/scene_call.h"
 #include "plugin/abi/struct_size.h"
@@ -17,7 +18,7 @@ namespace {
 
 void check_choice(const char* field, uint32_t value, uint32_t last) {
     if (value > last)
-        invalid(fmt::format("ovc_scene_config.{} is {}, expected {}{}", field, value,
+        invalid(format_text("ovc_scene_config.{} is {}, expected {}{}", field, value,
                             last ? "0 to " : "", last));
 }
 
@@ -36,7 +37,7 @@ void with_progress(const ovc_scene_config& config, const char* call, Body&& body
         body(&progress);
     } catch (const Cancelled&) {
         throw Failure{OVC_ERROR_CANCELLED,
-                      fmt::format("{}: cancelled by ovc_scene_config.progress", call)};
+                      format_text("{}: cancelled by ovc_scene_config.progress", call)};
     }
 }
 

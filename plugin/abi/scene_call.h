@@ -2,10 +2,9 @@
 // What every function of the table that works on a scene begins and ends with.
 #pragma once
 
+#include "core/text/format_text.h"
 #include "plugin/abi/device.h"
 #include "plugin/abi/handles.h"
-
-#include <fmt/format.h>
 
 #include <cstddef>
 
@@ -29,7 +28,7 @@ inline bool is_scene(ovc_scene scene, const char* call) {
     if (scene && scene->magic == kSceneMagic)
         return is_device(scene->device, call);
     const bool destroyed = scene && scene->magic == kDestroyed;
-    const std::string message = fmt::format(
+    const std::string message = format_text(
         "{}: {}", call, destroyed ? "the scene is destroyed" : "scene is NULL or not a scene");
     if (destroyed && is_device(scene->device, call))
         scene->device->messages.set(OVC_ERROR_INVALID_ARGUMENT, message);
@@ -56,7 +55,7 @@ ovc_result beside_scene(ovc_scene scene, const char* call, Body&& body) {
 }
 
 [[noreturn]] inline void cancelled(const char* call) {
-    throw Failure{OVC_ERROR_CANCELLED, fmt::format("{}: cancelled", call)};
+    throw Failure{OVC_ERROR_CANCELLED, format_text("{}: cancelled", call)};
 }
 
 /// body() with the scene's turn taken, within beside_scene(). goes_on() is asked while other calls
@@ -65,7 +64,7 @@ template <class GoesOn, class Body>
 void in_turn(ovc_scene scene, const char* call, GoesOn&& goes_on, Body&& body) {
     if (scene->streaming == std::this_thread::get_id())
         throw Failure{OVC_ERROR_INVALID_STATE,
-                      fmt::format("{}: called from within the scene's own stream, where push "
+                      format_text("{}: called from within the scene's own stream, where push "
                                   "is the only call on it",
                                   call)};
     if (!scene->turn.lock_while(goes_on))
@@ -73,7 +72,7 @@ void in_turn(ovc_scene scene, const char* call, GoesOn&& goes_on, Body&& body) {
     const std::lock_guard turn(scene->turn, std::adopt_lock);
     if (scene->magic != kSceneMagic)
         throw Failure{OVC_ERROR_INVALID_STATE,
-                      fmt::format("{}: the scene was destroyed before its turn came", call)};
+                      format_text("{}: the scene was destroyed before its turn came", call)};
     body();
 }
 
@@ -87,7 +86,7 @@ ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
 }
 
 [[noreturn]] inline void not_committed(const char* call) {
-    throw Failure{OVC_ERROR_INVALID_STATE, fmt::format("{}: the scene is not committed yet", call)};
+    throw Failure{OVC_ERROR_INVALID_STATE, format_text("{}: the scene is not committed yet", call)};
 }
 
 inline Structure& committed(ovc_scene scene, const char* call) {

@@ -2,6 +2,7 @@
 // Streams: the caller's functions as a StreamHost, and what it pushes.
 #include "plugin/abi/stream_call.h"
 
+#include "core/text/format_text.h"
 #include "plugin/abi/float_mode.h"
 #include "plugin/abi/query_call.h"
 
@@ -71,7 +72,7 @@ ovc_result stream(ovc_scene scene, const ovc_stream_host* host) {
         if (!host)
             invalid("stream: host is NULL");
         if (host->struct_size != sizeof(ovc_stream_host))
-            invalid(fmt::format(
+            invalid(format_text(
                 "ovc_stream_host.struct_size is {}, expected sizeof(ovc_stream_host) = {}",
                 host->struct_size, sizeof(ovc_stream_host)));
         if (!host->more || !host->answered)
@@ -99,7 +100,7 @@ ovc_result push(ovc_stream stream, const ovc_ray* rays, const uint64_t* tokens, 
         if (ray_count && (!rays || !tokens))
             invalid("push: rays or tokens is NULL");
         if (any_hit > 1)
-            invalid(fmt::format("push: any_hit is {}, expected 0 or 1", any_hit));
+            invalid(format_text("push: any_hit is {}, expected 0 or 1", any_hit));
         const ovc_query asked = complete(query);
         refuse_notes("push", asked);
         refuse_progress("push", asked);

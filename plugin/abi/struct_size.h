@@ -2,9 +2,8 @@
 // Structs of the ABI, of this header or of an earlier one.
 #pragma once
 
+#include "core/text/format_text.h"
 #include "plugin/structure/failure.h"
-
-#include <fmt/format.h>
 
 #include <cstddef>
 #include <cstring>
@@ -17,7 +16,7 @@ template <class T>
 void check_size(const char* name, size_t size, size_t least = sizeof(T)) {
     if (size < least || size > sizeof(T))
         throw Failure{OVC_ERROR_INVALID_ARGUMENT,
-                      fmt::format("{}.struct_size is {}, expected sizeof({}) = {}", name, size,
+                      format_text("{}.struct_size is {}, expected sizeof({}) = {}", name, size,
                                   name, sizeof(T))};
 }
 

@@ -2,6 +2,7 @@
 // Submission: a call of intersect or occluded that somebody else does, and what became of it.
 #pragma once
 
+#include "core/text/format_text.h"
 #include "plugin/abi/asked_progress.h"
 #include "plugin/abi/ray_call.h"
 
@@ -48,7 +49,7 @@ public:
         const std::lock_guard lock(mutex_);
         cancelled_ = true;
         if (!begun_ && !done_)
-            finish({OVC_ERROR_CANCELLED, fmt::format("{}: cancelled", call_.name)});
+            finish({OVC_ERROR_CANCELLED, format_text("{}: cancelled", call_.name)});
     }
     bool done() const {
         const std::lock_guard lock(mutex_);

@@ -2,6 +2,7 @@
 // Tickets: what the host holds of calls that it has submitted.
 #include "plugin/abi/ticket_call.h"
 
+#include "core/text/format_text.h"
 #include "plugin/abi/submission.h"
 
 namespace ovc {
@@ -25,7 +26,7 @@ ovc_result submit(ovc_scene scene, const char* name, ovc_ticket* ticket, Check&&
         *ticket = nullptr;
     return beside_scene(scene, name, [&] {
         if (!ticket)
-            invalid(fmt::format("{}: ticket is NULL", name));
+            invalid(format_text("{}: ticket is NULL", name));
         const RayCall call = check();
         Structure* structure = SingleRays::Call(scene->single_rays).structure();
         if (!structure)
@@ -39,7 +40,7 @@ ovc_result submit(ovc_scene scene, const char* name, ovc_ticket* ticket, Check&&
                 do_in_turn(scene, submission);
             }))
             throw Failure{OVC_ERROR_INVALID_STATE,
-                          fmt::format("{}: the scene is being destroyed", name)};
+                          format_text("{}: the scene is being destroyed", name)};
         ++scene->device->tickets;
         *ticket = made.release();
     });
@@ -51,7 +52,7 @@ bool is_ticket(ovc_ticket ticket, const char* call) {
     if (ticket && ticket->magic == kTicketMagic)
         return is_device(ticket->device, call);
     fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
-                        fmt::format("{}: ticket is NULL, released, or not a ticket", call));
+                        format_text("{}: ticket is NULL, released, or not a ticket", call));
     return false;
 }
 

@@ -2,10 +2,9 @@
 // A scene is restored or built, and cut as small as can be where the budget has no room for it.
 #include "plugin/build/build_scene.h"
 
+#include "core/text/format_text.h"
 #include "plugin/build/level2.h"
 #include "plugin/build/saved_levels.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
@@ -58,7 +57,7 @@ std::optional<BuiltScene> restored(const Soup& soup, const TwoLevelOptions& opti
         });
     if (!found) {
         say(log, LogLevel::Warning,
-            fmt::format("building anew: what was saved {}", found.error().message));
+            format_text("building anew: what was saved {}", found.error().message));
         return std::nullopt;
     }
     if (!*found)
@@ -72,10 +71,10 @@ std::optional<BuiltScene> restored(const Soup& soup, const TwoLevelOptions& opti
 void warn_of_dropped(const Dropped& dropped, const LogSink& log) {
     if (dropped.not_finite)
         say(log, LogLevel::Warning,
-            fmt::format("left out {} triangles with a NaN or infinite corner", dropped.not_finite));
+            format_text("left out {} triangles with a NaN or infinite corner", dropped.not_finite));
     if (dropped.degenerate)
         say(log, LogLevel::Warning,
-            fmt::format("left out {} triangles without area", dropped.degenerate));
+            format_text("left out {} triangles without area", dropped.degenerate));
 }
 
 Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
@@ -108,10 +107,10 @@ Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const
         return scene;
     // check_budget() told that bytes suffice.
     if (const uint64_t table = scene.top.portals.size() * kPortalBytes; table > plan.buffer_bytes)
-        return over_budget(fmt::format("{} instances are too many: their table takes {} bytes, and "
+        return over_budget(format_text("{} instances are too many: their table takes {} bytes, and "
                                        "a buffer of this device holds {}",
                                        scene.top.portals.size(), table, plan.buffer_bytes));
-    return over_budget(fmt::format("{} pages under a budget are too many: at most {}; let leaves "
+    return over_budget(format_text("{} pages under a budget are too many: at most {}; let leaves "
                                    "hold more triangles",
                                    scene.pages.size(), OVC_KEY_LEAF - 1));
 }

@@ -102,9 +102,9 @@ struct BuiltScene {
     }
 
     /// The number of a triangle that the kernel passes over for a ray; OVC_NO_TRIANGLE where the
-    /// triangle stands for others, which the ray does see.
+    /// triangle stands for others, which the ray does see, and where there is no such triangle.
     uint32_t number_to_skip(TriangleId id) const {
-        return id.mesh == kNone || stands_for_others(id) ? OVC_NO_TRIANGLE : numbers.of(id);
+        return !numbers.has(id) || stands_for_others(id) ? OVC_NO_TRIANGLE : numbers.of(id);
     }
 
     /// Adds a mesh that is shared, with nothing built of it.

@@ -4,12 +4,11 @@
 
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
+#include "core/text/format_text.h"
 #include "gpu/page/frames.h"
 #include "kdtree/sample.h"
 #include "plugin/plan/one_leaf.h"
 #include "plugin/plan/page_rate.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
@@ -23,7 +22,8 @@ bool LeafLimits::pages_matter() const {
 /// In so many bytes, a twentieth less than fits on average: most leaves that are worse than that
 /// fit as well.
 static uint64_t triangles_in(uint64_t bytes, double bytes_per_triangle) {
-    return uint64_t(0.95 * double(bytes - std::min(bytes, kPageStart)) / bytes_per_triangle);
+    return uint64_t(0.95 * double(bytes - std::min(bytes, kPageStart)) /
+                    std::max(bytes_per_triangle, 1.0));
 }
 
 bool LeafLimits::fits(uint64_t all, double bytes_per_triangle) const {
@@ -181,7 +181,7 @@ private:
                 continue;
             if (triangles == 1)
                 return over_budget(
-                    fmt::format("a page of one triangle does not fit into {} bytes", max_bytes));
+                    format_text("a page of one triangle does not fit into {} bytes", max_bytes));
             most[i] = limits_.triangles_again(triangles, bytes);
             any = true;
         }

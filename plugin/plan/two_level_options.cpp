@@ -2,11 +2,10 @@
 // How a budget limits leaves, and which budgets are too small.
 #include "plugin/plan/two_level_options.h"
 
+#include "core/text/format_text.h"
 #include "gpu/page/top_level.h"
 #include "plugin/build/shared_meshes.h"
 #include "plugin/plan/page_rate.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +33,7 @@ Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
     if (!plan)
         return plan;
     if (soup.triangle_count() > OVC_MAX_TRIANGLES)
-        return Error{fmt::format("{} triangles are too many: a scene takes {}",
+        return Error{format_text("{} triangles are too many: a scene takes {}",
                                  soup.triangle_count(), OVC_MAX_TRIANGLES),
                      ErrorKind::InvalidArgument};
     plan->driver_bytes = options.driver_bytes;
@@ -83,7 +82,7 @@ Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, cons
     const SmallestCut cut = smallest_cut(soup, placed, options);
     if (plan.pool_bytes >= cut.pool_bytes)
         return Done{};
-    return over_budget(fmt::format(
+    return over_budget(format_text(
         "a GPU budget of {} bytes is too small for this scene: the smallest that works is {} "
         "bytes ({} triangles in leaves of {}, whose tree and largest page take {}; an eighth is "
         "for rays)",

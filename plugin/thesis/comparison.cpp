@@ -9,15 +9,13 @@
 #include "plugin/two_level/exact_fallback.h"
 #include "shaders/layout.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 
 namespace ovc::thesis {
 namespace {
 
-constexpr size_t kGrain = 256; // rays a task
+constexpr size_t kRayGrain = 256; // rays a task
 
 } // namespace
 
@@ -119,7 +117,7 @@ public:
 private:
     template <class Body>
     void each_ray(Body&& body) {
-        parallel_for(count_, kGrain, [&](size_t from, size_t to) {
+        parallel_for(count_, kRayGrain, [&](size_t from, size_t to) {
             for (size_t i = from; i < to; ++i)
                 body(i);
         });

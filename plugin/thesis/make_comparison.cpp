@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The structures of libovercast-thesis.so.
+#include "core/text/format_text.h"
 #include "plugin/structure/failure.h"
 #include "plugin/structure/structure.h"
 #include "plugin/thesis/comparison.h"
 #include "plugin/thesis/queued/queued_two_level.h"
-
-#include <fmt/format.h>
 
 namespace ovc {
 namespace {
@@ -37,12 +36,12 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
                "has 1 to 6");
     const char* name = thesis::name_of(ovc_structure(config.structure));
     if (config.tell_active)
-        refuse(fmt::format("{} does not tell which pages are active", name));
+        refuse(format_text("{} does not tell which pages are active", name));
     if (config.kernel == OVC_KERNEL_COMPUTE)
-        refuse(fmt::format("{} has no compute kernel", name));
+        refuse(format_text("{} has no compute kernel", name));
     if (config.structure == OVC_STRUCTURE_THESIS_TWO_LEVEL) {
         if (config.level1 == OVC_LEVEL1_GRID && config.level1_build != OVC_LEVEL1_BUILD_TOP_DOWN)
-            refuse(fmt::format("{}: a grid is built top-down; it has no leaves to merge", name));
+            refuse(format_text("{}: a grid is built top-down; it has no leaves to merge", name));
         if (config.gpu_memory_bytes)
             if (const auto plan =
                     plan_memory(config.gpu_memory_bytes, device, thesis::LeafPasses::kBytesPerRay);
@@ -51,21 +50,21 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
         return;
     }
     if (config.level1 || config.level1_build)
-        refuse(fmt::format("{} has no level 1: level1 is {} and level1_build {}, expected 0", name,
+        refuse(format_text("{} has no level 1: level1 is {} and level1_build {}, expected 0", name,
                            config.level1, config.level1_build));
     if (config.leaf_triangles)
-        refuse(fmt::format("{} has no leaves: leaf_triangles is {}, expected 0", name,
+        refuse(format_text("{} has no leaves: leaf_triangles is {}, expected 0", name,
                            config.leaf_triangles));
     if (config.leaves && config.structure != OVC_STRUCTURE_MULTI_TEXTURE)
-        refuse(fmt::format("{} has no leaves: leaves is {}, expected 0", name, config.leaves));
+        refuse(format_text("{} has no leaves: leaves is {}, expected 0", name, config.leaves));
     if (config.leaves > thesis::kMaxTextures)
-        refuse(fmt::format("multi-texture: leaves is {}, expected at most {} textures",
+        refuse(format_text("multi-texture: leaves is {}, expected at most {} textures",
                            config.leaves, thesis::kMaxTextures));
 }
 
 Result<ovc_plan> plan_structure(const Soup&, const DeviceInfo&, const ovc_scene_config& config,
                                 BuildProgress*) {
-    refuse(fmt::format("plan: what {} takes is known only once it is built; two-level "
+    refuse(format_text("plan: what {} takes is known only once it is built; two-level "
                        "(libovercast.so) can tell before",
                        thesis::name_of(ovc_structure(config.structure))));
 }

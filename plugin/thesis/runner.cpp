@@ -3,12 +3,11 @@
 // section 3.1.
 #include "plugin/thesis/runner.h"
 
+#include "core/text/format_text.h"
 #include "gpu/gl/gl_check.h"
 #include "gpu/gl/kernel.h"
 #include "gpu/gl/workarounds.h"
 #include "shaders/layout.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
@@ -35,14 +34,14 @@ Result<MemoryPlan> plan_memory(const RunnerOptions& options, uint64_t texels,
     plan.tiles = plan_tiles(texels, options.textures);
     const uint32_t allowed = options.structure == OVC_STRUCTURE_MULTI_TEXTURE ? kMaxTextures : 1;
     if (plan.tiles.count() > allowed)
-        return over_budget(fmt::format(
+        return over_budget(format_text(
             "{}: the scene takes {}{} bytes; a texture of 4096 x 4096 texels "
             "holds {}, and it uses {}",
             name_of(options.structure), at_least, texels * sizeof(uvec4), kTextureBytes, allowed));
     const uint64_t row = row_bytes(options.structure);
     const uint64_t scene = plan.tiles.bytes();
     if (options.budget_bytes < scene + row)
-        return over_budget(fmt::format(
+        return over_budget(format_text(
             "{}: a GPU budget of {} bytes is too small: the smallest that works is {}{} bytes ({} "
             "for the scene, which it holds whole, {} for rays and answers)",
             name_of(options.structure), options.budget_bytes, at_least, scene + row, scene, row));
@@ -93,7 +92,7 @@ Result<GLuint> Runner::link(std::optional<gl::Program>& program, const char* fra
     if (needs(Workaround::CountedRounds) && max_rounds_ > kMaxCountedRounds)
         config.max_rounds = kMaxCountedRounds;
     const std::string defines = config.defines() + tile_defines_ +
-                                fmt::format("#define OVC_STRUCTURE {}\n", int(options_.structure));
+                                format_text("#define OVC_STRUCTURE {}\n", int(options_.structure));
     const std::array<ShaderStage, 2> stages = {
         {{GL_VERTEX_SHADER, "fullscreen.vert.glsl"}, {GL_FRAGMENT_SHADER, fragment}}};
     Result<gl::Program> linked = link_program(stages, defines);

@@ -3,13 +3,12 @@
 #include "plugin/thesis/system.h"
 
 #include "core/system/parallel.h"
+#include "core/text/format_text.h"
 #include "gpu/page/page.h"
 #include "plugin/thesis/grid.h"
 #include "plugin/thesis/kd_texels.h"
 #include "plugin/thesis/skip_bvh.h"
 #include "shaders/layout.h"
-
-#include <fmt/format.h>
 
 namespace ovc::thesis {
 
@@ -25,7 +24,7 @@ static Result<System> build_page_system(const Soup& soup, const Leaf& whole,
     Page page = build_page(soup, whole, progress);
     if (page.units() >= OVC_MAX_PAGE_UNITS)
         return over_budget(
-            fmt::format("a BVH of {} bytes is more than its nodes can name: {} bytes", page.bytes(),
+            format_text("a BVH of {} bytes is more than its nodes can name: {} bytes", page.bytes(),
                         uint64_t(OVC_MAX_PAGE_UNITS) * OVC_UNIT_BYTES));
     const uint32_t depth = stack_depth({&page, 1});
     const uint64_t units = page.units();

@@ -2,9 +2,8 @@
 // Tiles: how many, how large, filled and bound.
 #include "plugin/thesis/tiles.h"
 
+#include "core/text/format_text.h"
 #include "shaders/layout.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
@@ -36,7 +35,7 @@ uint64_t TilePlan::bytes() const {
 }
 
 std::string TilePlan::defines() const {
-    return fmt::format(
+    return format_text(
         "#define OVC_TILES {}\n#define OVC_TILE_BITS {}\n#define OVC_TILE_SHIFT {}\n", count(),
         bits, shift);
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The structure of libovercast.so: two-level, and what it counts in the words of the ABI.
+#include "core/text/format_text.h"
 #include "plugin/plan/forecast.h"
 #include "plugin/structure/failure.h"
 #include "plugin/structure/structure.h"
 #include "plugin/two_level/two_level.h"
-
-#include <fmt/format.h>
 
 namespace ovc {
 
@@ -13,7 +12,7 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
     if (config.structure != OVC_STRUCTURE_TWO_LEVEL)
         throw Failure{
             OVC_ERROR_INVALID_ARGUMENT,
-            fmt::format("ovc_scene_config.structure is {}; this library has two-level (0) "
+            format_text("ovc_scene_config.structure is {}; this library has two-level (0) "
                         "alone, libovercast-thesis.so has the others",
                         config.structure)};
     if (config.level1 || config.level1_build)

@@ -3,9 +3,8 @@
 #include "plugin/two_level/pass_runner.h"
 
 #include "core/system/stopwatch.h"
+#include "core/text/format_text.h"
 #include "plugin/build/build_scene.h"
-
-#include <fmt/format.h>
 
 #include <utility>
 
@@ -50,11 +49,11 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
             std::max(plan_.pool_bytes / 2, scene.largest_page_bytes() + scene.top.tree.bytes());
         if (smaller == plan_.pool_bytes ||
             !is_usable(scene.top, scene.pages, {smaller, plan_.buffer_bytes}))
-            return Error{fmt::format("{}: it has no room for the largest page, {} bytes",
+            return Error{format_text("{}: it has no room for the largest page, {} bytes",
                                      made.error().message, smaller),
                          ErrorKind::OutOfGpuMemory};
         say(log_, LogLevel::Warning,
-            fmt::format("the GPU has no room for a pool of {} bytes; going on with {}",
+            format_text("the GPU has no room for a pool of {} bytes; going on with {}",
                         plan_.pool_bytes, smaller));
         plan_.pool_bytes = smaller;
     }
@@ -78,7 +77,7 @@ void PassRunner::purge() {
 
 Error PassRunner::lost() {
     const Result<Done> again = gl_.reopen(tracer_generation_);
-    return {fmt::format("the GPU's context was lost{}",
+    return {format_text("the GPU's context was lost{}",
                         again ? "; the device is open again, and the next call will work"
                               : ", and the device does not open again: " + again.error().message),
             ErrorKind::DeviceLost};

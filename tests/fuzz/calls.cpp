@@ -306,7 +306,8 @@ private:
         if (!slot.soup.chunks.empty())
             for (ovc_triangle& skip : made)
                 if (choices_.once_in(4))
-                    skip = {choices_.below(uint32_t(slot.soup.chunks.size())), choices_.below(24)};
+                    skip = {choices_.below(uint32_t(slot.soup.chunks.size()) + 1),
+                            choices_.below(24)}; // perhaps one that there is not
         return made;
     }
 

@@ -10,7 +10,7 @@ namespace ovc::thesis {
 namespace {
 
 /// One: a better order of ten changes the leaves far below level 1, where it has none.
-constexpr int kShuffles = 1;
+constexpr int kLevel1Shuffles = 1;
 
 /// A leaf has items, an inner node children.
 struct Branch {
@@ -132,7 +132,7 @@ CompleteBvh::CompleteBvh(const Soup& soup, std::span<const TriangleId> triangles
     if (build == OVC_LEVEL1_BUILD_TOP_DOWN)
         nodes_ = build_bvh(boxes, progress);
     else
-        insertion_ = best_insertion_tree(boxes, kShuffles, progress);
+        insertion_ = best_insertion_tree(boxes, kLevel1Shuffles, progress);
 }
 
 Level1 CompleteBvh::cut(uint32_t max_leaf_triangles, std::vector<BvhEntry>& entries) const {

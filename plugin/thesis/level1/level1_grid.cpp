@@ -9,7 +9,7 @@
 namespace ovc::thesis {
 namespace {
 
-constexpr uint64_t kMaxCells = 1 << 24;
+constexpr uint64_t kMaxGridCells = 1 << 24;
 
 using Place = std::array<uint32_t, 3>; // of a cell, along x, y and z
 
@@ -50,7 +50,7 @@ Grid choose_grid(const Soup& soup, std::span<const TriangleId> triangles, const 
     for (const TriangleId id : triangles)
         centers.push_back(bounds_of(soup.triangle(id)).center());
     const uint64_t enough = (triangles.size() + most - 1) / most;
-    const uint64_t finest = std::min(kMaxCellsPerLeaf * enough, kMaxCells);
+    const uint64_t finest = std::min(kMaxCellsPerLeaf * enough, kMaxGridCells);
     Grid grid;
     grid.bounds = bounds;
     refine(grid, std::min(enough, finest));

@@ -2,7 +2,7 @@
 // What is never hit is left out, and counted.
 #include "plugin/thesis/queued/hittable.h"
 
-#include <fmt/format.h>
+#include "core/text/format_text.h"
 
 namespace ovc::thesis {
 
@@ -12,7 +12,7 @@ Hittable take_hittable(BuiltScene& scene, ovc_statistics& statistics, const LogS
     const Dropped& dropped = scene.dropped;
     if (dropped.total())
         say(log, LogLevel::Warning,
-            fmt::format("left out {} triangles with a NaN or infinite corner, {} without area",
+            format_text("left out {} triangles with a NaN or infinite corner, {} without area",
                         dropped.not_finite, dropped.degenerate));
     statistics.triangles = scene.soup.triangle_count();
     statistics.dropped_not_finite = dropped.not_finite;

@@ -9,8 +9,6 @@
 #include "gpu/gl/workarounds.h"
 #include "shaders/layout.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>

@@ -16,7 +16,7 @@ namespace ovc::thesis {
 static constexpr double kFastSlack = 0x1p-20;
 namespace {
 
-constexpr size_t kGrain = 256; // rays a task
+constexpr size_t kQueueGrain = 256; // rays a task
 
 /// What is left of it.
 PreparedRay rest_of(const QueuedRay& state) {
@@ -56,7 +56,7 @@ void QueuedRays::add(bool any_hit, const RaySpan& rays, std::span<const Triangle
 }
 
 void QueuedRays::walk_level1() {
-    parallel_for(level1_queue_.size(), kGrain, [&](size_t from, size_t to) {
+    parallel_for(level1_queue_.size(), kQueueGrain, [&](size_t from, size_t to) {
         for (size_t j = from; j < to; ++j)
             find_leaf(states_[level1_queue_[j]]);
     });
@@ -125,7 +125,7 @@ Result<Done> QueuedRays::pass(uint32_t leaf, std::span<const uint32_t> queued) {
     s_.statistics.bytes_in += pass->bytes_in;
     s_.statistics.seconds_pass += pass->seconds;
     s_.statistics.seconds_kernel = s_.statistics.seconds_pass;
-    parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
+    parallel_for(batch.size(), kQueueGrain, [&](size_t from, size_t to) {
         for (size_t j = from; j < to; ++j)
             resolve(states_[batch[j]], answers_[j], decidable_[j]);
     });
@@ -138,7 +138,7 @@ void QueuedRays::load(uint32_t leaf, std::span<const uint32_t> batch) {
     rays_.assign(LeafPasses::row_padded(batch.size()), FrameRay{});
     answers_.resize(rays_.size());
     decidable_.resize(rays_.size());
-    parallel_for(batch.size(), kGrain, [&](size_t from, size_t to) {
+    parallel_for(batch.size(), kQueueGrain, [&](size_t from, size_t to) {
         for (size_t j = from; j < to; ++j) {
             const QueuedRay& state = states_[batch[j]];
             bool decidable = true;

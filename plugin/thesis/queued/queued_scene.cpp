@@ -4,10 +4,9 @@
 
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
+#include "core/text/format_text.h"
 #include "plugin/thesis/queued/hittable.h"
 #include "shaders/layout.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -63,7 +62,7 @@ Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint
         }
         if (most == 1)
             return over_budget(
-                fmt::format("a page of one triangle does not fit into {} bytes", page_bytes));
+                format_text("a page of one triangle does not fit into {} bytes", page_bytes));
         // What this page took a triangle, and a little more, tells how many fit.
         const double triangles = double(scene.built.level1.leaves[largest].triangles.size());
         const uint64_t fit = uint64_t(0.95 * double(page_bytes) / double(bytes) * triangles);
@@ -104,7 +103,7 @@ Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThre
                                                         const LogSink& log,
                                                         BuildProgress* progress) {
     if (soup.triangle_count() > OVC_MAX_TRIANGLES)
-        return Error{fmt::format("{} triangles are too many: a scene takes {}",
+        return Error{format_text("{} triangles are too many: a scene takes {}",
                                  soup.triangle_count(), OVC_MAX_TRIANGLES),
                      ErrorKind::InvalidArgument};
     auto scene = std::make_unique<QueuedScene>(soup, gl, options.certify);
