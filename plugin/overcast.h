@@ -222,7 +222,7 @@ typedef struct ovc_instance {
 /* The struct_size of an earlier header is fine. */
 typedef struct ovc_query {
     size_t struct_size;
-    const ovc_triangle* skip; /* ray_count, or NULL: the triangle that ray i starts on and therefore does not see; {OVC_NONE, OVC_NONE}: none */
+    const ovc_triangle* skip; /* ray_count, or NULL: the triangle that ray i starts on and therefore does not see; {OVC_NONE, OVC_NONE}, or one that there is not: none */
     /* Experimental. Written by intersect of OVC_STRUCTURE_TWO_LEVEL alone; NULL for all else. */
     uint32_t* leaf;   /* ray_count, or NULL: the level-1 leaf that the hit of ray i lies in; OVC_NONE: a miss */
     uint32_t* passes; /* ray_count, or NULL: kernel launches that ray i took part in; 0: an invalid ray, or one that doubles alone could walk */
@@ -260,47 +260,94 @@ typedef struct ovc_plan {
     double seconds;                /* what it took to tell */
 } ovc_plan;
 
-/* The struct_size of an earlier header is fine: what it lacks is not filled in. */
+/* How a scene stands, and what has been done with it. Fields that are marked + count up from commit
+ * on, so that the difference of two readings tells what lies between; seconds are of wall clock.
+ * The struct_size of an earlier header is fine: what it lacks is not filled in. A field is added
+ * here, at the end, and nowhere else: its name in JSON and Python and its line in
+ * docs/reference/stats.md are made from this list (cmake/statistics.cmake). */
 typedef struct ovc_statistics {
     size_t struct_size;
-    uint64_t triangles;            /* added */
-    uint64_t dropped_not_finite;   /* with a NaN or infinite corner: never hit */
-    uint64_t dropped_degenerate;   /* without area: never hit */
-    uint64_t twins;                /* with the same three corners as a smaller (mesh, prim), which answers for them: in no leaf */
+    /* added, dropped ones and duplicates among them */
+    uint64_t triangles;
+    /* never hit, for a corner is NaN or infinite */
+    uint64_t dropped_not_finite;
+    /* never hit, for they have no area */
+    uint64_t dropped_degenerate;
+    /* duplicates: in no leaf, because a smaller (mesh, prim) has the same three corners and
+     * answers for them */
+    uint64_t twins;
+    /* of the level-1 tree */
     uint64_t leaves;
-    uint64_t leaf_references;      /* triangles counted once in each leaf they touch */
-    uint64_t level2_bytes;         /* all pages together */
+    /* triangles, counted once in each leaf that they touch */
+    uint64_t leaf_references;
+    /* of all pages together: what would have to fit for the whole scene to be resident */
+    uint64_t level2_bytes;
+    /* of the largest page */
     uint64_t largest_page_bytes;
+    /* that pages, rays and answers may take together */
     uint64_t gpu_budget_bytes;
-    uint64_t gpu_peak_bytes;       /* most bytes of GL buffers and textures alive at once */
-    uint64_t passes;               /* kernel launches */
-    uint64_t pages_in;             /* pages moved to the GPU */
-    uint64_t bytes_in;             /* their bytes */
+    /* of GL buffers and textures, the most that were alive at once; never above the budget */
+    uint64_t gpu_peak_bytes;
+    /* + launches of the kernel */
+    uint64_t passes;
+    /* + pages moved to the GPU */
+    uint64_t pages_in;
+    /* + their bytes */
+    uint64_t bytes_in;
+    /* + rays that asked for their nearest hit */
     uint64_t nearest_rays;
+    /* + rays that asked whether anything is hit */
     uint64_t occlusion_rays;
-    uint64_t invalid_rays;         /* answered as misses */
-    uint64_t ray_visits;           /* rays counted once in each pass they took part in */
-    uint64_t flagged;              /* answers the kernel could not decide alone: doubles chose among its candidates */
-    uint64_t retraced;             /* of them with too many candidates: the ray was traced again in double */
-    uint64_t capped;               /* of them because the kernel's loop ended early: for the driver (llvmpipe, after 65535 rounds) or a full stack */
-    double seconds_level1;         /* building the level-1 tree */
-    double seconds_level2;         /* building and packing all pages */
-    double seconds_trace;          /* inside intersect and occluded */
-    double seconds_kernel;         /* of seconds_pass, the kernel alone; all of it where a structure cannot tell */
-    uint64_t host_bytes;           /* level 1 and level 2 in host memory */
-    uint64_t queues;               /* of rays that waited for a leaf until its page was moved in */
-    uint64_t queued_rays;          /* in them, all together */
-    uint64_t longest_queue;        /* rays */
-    uint64_t from_saved;           /* 1: commit took them from ovc_scene_config.saved; else 0 */
-    double seconds_pass;           /* of seconds_trace, passes: from sending rays until their answers are here, pages moved in beside */
-    uint64_t gpu_bytes;            /* of GL buffers and textures alive now; after purge 0, until rays are traced again */
-    uint64_t soup_bytes;           /* positions in host memory, without shared ones; instances share those of their mesh */
-    uint64_t single_rays;          /* of nearest_rays and occlusion_rays, those of intersect1 and occluded1 */
-    uint64_t gathered_rays;        /* of single_rays, those that the GPU answered in batches; the CPU did the others */
-    uint64_t stragglers;           /* rays that doubles answered on the CPU, because too few waited for a page to be worth moving */
-    uint64_t unique_triangles;     /* of `triangles`, those that are packed: once for a mesh whose instances share pages */
-    uint64_t instances;            /* that share pages */
-    uint64_t top_level_bytes;      /* of the tree over all pages and instances, on the GPU */
+    /* + rays with NaN or infinity in them, answered as misses */
+    uint64_t invalid_rays;
+    /* + rays, counted once in each pass that they took part in */
+    uint64_t ray_visits;
+    /* + answers that the kernel could not decide alone: doubles chose among its candidates */
+    uint64_t flagged;
+    /* + of `flagged`, those with too many candidates: the ray was traced again in double */
+    uint64_t retraced;
+    /* + of `retraced`, those whose loop in the kernel ended early: by the driver (llvmpipe,
+     * after 65,535 rounds), or because the stack was full */
+    uint64_t capped;
+    /* building the level-1 tree */
+    double seconds_level1;
+    /* building and packing all pages */
+    double seconds_level2;
+    /* + inside intersect and occluded */
+    double seconds_trace;
+    /* + of `seconds_pass`, the kernel alone, by the device's clock; with a software renderer the
+     * CPU time of the thread that worked longest; all of it where a structure cannot tell */
+    double seconds_kernel;
+    /* of level 1 and level 2 in host memory */
+    uint64_t host_bytes;
+    /* + queues of rays that waited for a leaf until its page was moved in */
+    uint64_t queues;
+    /* + rays in them, all together */
+    uint64_t queued_rays;
+    /* rays in the longest of them */
+    uint64_t longest_queue;
+    /* 1: commit took them from ovc_scene_config.saved; else 0 */
+    uint64_t from_saved;
+    /* + of `seconds_trace`, passes: from sending rays until their answers are here, pages moved
+     * in beside; other rays are resolved meanwhile */
+    double seconds_pass;
+    /* of GL buffers and textures alive now; after purge 0, until rays are traced again */
+    uint64_t gpu_bytes;
+    /* of positions in host memory, without shared ones; instances share those of their mesh */
+    uint64_t soup_bytes;
+    /* + of `nearest_rays` and `occlusion_rays`, those of intersect1 and occluded1 */
+    uint64_t single_rays;
+    /* + of `single_rays`, those that the GPU answered in batches; the CPU answered the others */
+    uint64_t gathered_rays;
+    /* + rays that doubles answered on the CPU, because too few waited for a page to be worth
+     * moving */
+    uint64_t stragglers;
+    /* of `triangles`, those that are packed: once for a mesh whose instances share pages */
+    uint64_t unique_triangles;
+    /* that share pages */
+    uint64_t instances;
+    /* of the tree over all pages and instances, on the GPU */
+    uint64_t top_level_bytes;
 } ovc_statistics;
 
 /* The pages that rays went through since this was asked last, or since the commit; experimental. */

@@ -9,6 +9,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cstring>
+#include <string_view>
+#include <utility>
+
 namespace ovc {
 
 // Keys stay in the order they are written here, as docs/reference/stats.md lists them.
@@ -19,18 +23,44 @@ uint64_t host_peak_bytes() {
     return resident_bytes("VmHWM");
 }
 
+/// Calls visit(name, field, counts up) for each field of ovc_statistics.
+template <class Visit>
+static void for_each_statistic(Visit&& visit) {
+#define OVC_STATISTIC(name, counts_up) visit(#name, &ovc_statistics::name, counts_up);
+#include "statistics_fields.inc"
+#undef OVC_STATISTIC
+}
+
+#define OVC_STATISTIC(name, counts_up) +1
+static_assert(sizeof(ovc_statistics) == 8 * (1
+#include "statistics_fields.inc"
+                                             ),
+              "cmake/statistics.cmake has overlooked a field of plugin/overcast.h");
+#undef OVC_STATISTIC
+
+/// Where a field stands in the document: under its own name, but for those that belong together.
+static Json::json_pointer place_of(std::string_view field) {
+    static constexpr std::pair<std::string_view, const char*> kPlaces[] = {
+        {"queues", "/queues/count"},
+        {"queued_rays", "/queues/rays"},
+        {"longest_queue", "/queues/longest"},
+        {"stragglers", "/queues/stragglers"},
+        {"from_saved", "/from_cache/levels"}};
+    for (const auto& [name, place] : kPlaces)
+        if (field == name)
+            return Json::json_pointer(place);
+    for (const auto& [prefix, group] : {std::pair("seconds_", "/time/"), {"dropped_", "/dropped/"}})
+        if (field.starts_with(prefix))
+            return Json::json_pointer(group + std::string(field.substr(strlen(prefix))));
+    return Json::json_pointer("/" + std::string(field));
+}
+
 ovc_statistics counted_between(const ovc_statistics& before, const ovc_statistics& after) {
     ovc_statistics counted = after;
-    for (const auto count :
-         {&ovc_statistics::passes, &ovc_statistics::pages_in, &ovc_statistics::bytes_in,
-          &ovc_statistics::nearest_rays, &ovc_statistics::occlusion_rays,
-          &ovc_statistics::invalid_rays, &ovc_statistics::ray_visits, &ovc_statistics::flagged,
-          &ovc_statistics::retraced, &ovc_statistics::queues, &ovc_statistics::queued_rays,
-          &ovc_statistics::stragglers})
-        counted.*count -= before.*count;
-    counted.seconds_trace -= before.seconds_trace;
-    counted.seconds_pass -= before.seconds_pass;
-    counted.seconds_kernel -= before.seconds_kernel;
+    for_each_statistic([&](const char*, auto field, bool counts_up) {
+        if (counts_up)
+            counted.*field -= before.*field;
+    });
     return counted;
 }
 
@@ -48,13 +78,6 @@ static Json rays_of(const RayCounts& rays) {
             {"bounce", rays.bounce}};
 }
 
-static Json queues_of(const ovc_statistics& t) {
-    return {{"count", t.queues},
-            {"rays", t.queued_rays},
-            {"longest", t.longest_queue},
-            {"stragglers", t.stragglers}};
-}
-
 static Json active_of(const std::optional<ovc_active>& active) {
     if (!active)
         return nullptr;
@@ -64,29 +87,30 @@ static Json active_of(const std::optional<ovc_active>& active) {
             {"new_bytes", active->new_bytes}};
 }
 
+/// The times of the renderer; its `trace` stands for that of the library, which other backends than
+/// the plugin do not tell.
+static void add_times(Json& time, const RenderReport& report) {
+    time["trace"] = report.seconds_trace;
+    time["shade"] = report.seconds_shade;
+    time["render"] = report.seconds;
+    time["cpu"] = report.seconds_cpu;
+}
+
 static Json frame_of(const FrameStats& f) {
-    return {{"frame", f.frame},
-            {"complete", f.report.complete},
-            {"passes", f.tracing.passes},
-            {"pages_in", f.tracing.pages_in},
-            {"bytes_in", f.tracing.bytes_in},
-            {"rays", rays_of(f.report.rays)},
-            {"ray_visits", f.tracing.ray_visits},
-            {"flagged", f.tracing.flagged},
-            {"retraced", f.tracing.retraced},
-            {"queues", queues_of(f.tracing)},
-            {"active", active_of(f.active)},
-            {"gpu_peak_bytes", f.tracing.gpu_peak_bytes},
-            {"host_peak_bytes", f.host_peak_bytes},
-            {"time",
-             {{"trace", f.report.seconds_trace},
-              {"pass", f.tracing.seconds_pass},
-              {"kernel", f.tracing.seconds_kernel},
-              {"shade", f.report.seconds_shade},
-              {"render", f.report.seconds},
-              {"cpu", f.report.seconds_cpu},
-              {"output", f.seconds_output},
-              {"total", f.seconds}}}};
+    Json frame = {{"frame", f.frame}, {"complete", f.report.complete}};
+    for_each_statistic([&](const char* name, auto field, bool counts_up) {
+        if (counts_up)
+            frame[place_of(name)] = f.tracing.*field;
+    });
+    frame["queues"]["longest"] = f.tracing.longest_queue;
+    frame["rays"] = rays_of(f.report.rays);
+    frame["active"] = active_of(f.active);
+    frame["gpu_peak_bytes"] = f.tracing.gpu_peak_bytes;
+    frame["host_peak_bytes"] = f.host_peak_bytes;
+    add_times(frame["time"], f.report);
+    frame["time"]["output"] = f.seconds_output;
+    frame["time"]["total"] = f.seconds;
+    return frame;
 }
 
 static Json frames_of(const RenderStats& s) {
@@ -107,55 +131,23 @@ static Json left_out_of(const RenderStats& s) {
     return list;
 }
 
-static Json times_of(const RenderStats& s) {
-    return {{"import", s.seconds_import},
-            {"level1", s.tracing.seconds_level1},
-            {"level2", s.tracing.seconds_level2},
-            {"trace", s.report.seconds_trace},
-            {"pass", s.tracing.seconds_pass},
-            {"kernel", s.tracing.seconds_kernel},
-            {"shade", s.report.seconds_shade},
-            {"render", s.report.seconds},
-            {"cpu", s.report.seconds_cpu},
-            {"output", s.seconds_output},
-            {"total", s.seconds_total}};
-}
-
 std::string stats_json(const RenderStats& s) {
-    const ovc_statistics& t = s.tracing;
-    const Json document = {
-        {"scene", s.scene},
-        {"width", s.width},
-        {"height", s.height},
-        {"complete", s.report.complete},
-        {"renderer", s.renderer},
-        {"triangles", t.triangles},
-        {"dropped", {{"not_finite", t.dropped_not_finite}, {"degenerate", t.dropped_degenerate}}},
-        {"twins", t.twins},
-        {"leaves", t.leaves},
-        {"leaf_references", t.leaf_references},
-        {"level2_bytes", t.level2_bytes},
-        {"largest_page_bytes", t.largest_page_bytes},
-        {"unique_triangles", t.unique_triangles},
-        {"instances", t.instances},
-        {"top_level_bytes", t.top_level_bytes},
-        {"gpu_budget_bytes", t.gpu_budget_bytes},
-        {"gpu_peak_bytes", t.gpu_peak_bytes},
-        {"host_peak_bytes", host_peak_bytes()},
-        {"passes", t.passes},
-        {"pages_in", t.pages_in},
-        {"bytes_in", t.bytes_in},
-        {"rays", rays_of(s.report.rays)},
-        {"ray_visits", t.ray_visits},
-        {"invalid_rays", t.invalid_rays},
-        {"flagged", t.flagged},
-        {"retraced", t.retraced},
-        {"capped", t.capped},
-        {"queues", queues_of(t)},
-        {"left_out", left_out_of(s)},
-        {"from_cache", {{"scene", s.scene_from_cache}, {"levels", t.from_saved != 0}}},
-        {"time", times_of(s)},
-        {"frames", frames_of(s)}};
+    Json document = {{"scene", s.scene},
+                     {"width", s.width},
+                     {"height", s.height},
+                     {"complete", s.report.complete},
+                     {"renderer", s.renderer}};
+    for_each_statistic(
+        [&](const char* name, auto field, bool) { document[place_of(name)] = s.tracing.*field; });
+    document["host_peak_bytes"] = host_peak_bytes();
+    document["rays"] = rays_of(s.report.rays);
+    document["left_out"] = left_out_of(s);
+    document["from_cache"] = {{"scene", s.scene_from_cache}, {"levels", s.tracing.from_saved != 0}};
+    document["time"]["import"] = s.seconds_import;
+    add_times(document["time"], s.report);
+    document["time"]["output"] = s.seconds_output;
+    document["time"]["total"] = s.seconds_total;
+    document["frames"] = frames_of(s);
     // A name of a file or a driver need not be UTF-8; what is not is replaced rather than
     // thrown about.
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

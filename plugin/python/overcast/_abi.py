@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import ctypes as c
 
+from ._built import STATISTICS
+
 ABI_VERSION = 1
 NONE = 0xFFFFFFFF
 """The mesh and the prim of a miss."""
@@ -70,20 +72,7 @@ class ovc_plan(Sized):
 
 
 class ovc_statistics(Sized):
-    _fields_ = [("struct_size", c.c_size_t), ("triangles", c.c_uint64), ("dropped_not_finite", c.c_uint64),
-                ("dropped_degenerate", c.c_uint64), ("twins", c.c_uint64), ("leaves", c.c_uint64),
-                ("leaf_references", c.c_uint64), ("level2_bytes", c.c_uint64), ("largest_page_bytes", c.c_uint64),
-                ("gpu_budget_bytes", c.c_uint64), ("gpu_peak_bytes", c.c_uint64), ("passes", c.c_uint64),
-                ("pages_in", c.c_uint64), ("bytes_in", c.c_uint64), ("nearest_rays", c.c_uint64),
-                ("occlusion_rays", c.c_uint64), ("invalid_rays", c.c_uint64), ("ray_visits", c.c_uint64),
-                ("flagged", c.c_uint64), ("retraced", c.c_uint64), ("capped", c.c_uint64),
-                ("seconds_level1", c.c_double), ("seconds_level2", c.c_double), ("seconds_trace", c.c_double),
-                ("seconds_kernel", c.c_double), ("host_bytes", c.c_uint64), ("queues", c.c_uint64),
-                ("queued_rays", c.c_uint64), ("longest_queue", c.c_uint64), ("from_saved", c.c_uint64),
-                ("seconds_pass", c.c_double), ("gpu_bytes", c.c_uint64), ("soup_bytes", c.c_uint64),
-                ("single_rays", c.c_uint64), ("gathered_rays", c.c_uint64),
-                ("stragglers", c.c_uint64), ("unique_triangles", c.c_uint64), ("instances", c.c_uint64),
-                ("top_level_bytes", c.c_uint64)]
+    _fields_ = [("struct_size", c.c_size_t)] + [(name, getattr(c, kind)) for name, kind in STATISTICS]
 
 
 def _call(*arguments: type) -> type:
