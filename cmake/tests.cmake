@@ -12,11 +12,9 @@ function(ovc_add_tests folder)
     endif()
     cmake_parse_arguments(ARG "" "" "LABELS;SOURCES;LIBRARIES" ${ARGN})
     add_executable(${folder}_test ${ARG_SOURCES})
+    # Tests may call their helpers alike.
+    set_target_properties(${folder}_test PROPERTIES UNITY_BUILD OFF)
     target_link_libraries(${folder}_test PRIVATE ovc_flags ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
-    list(LENGTH ARG_SOURCES count)
-    if(count GREATER 3)
-        ovc_precompile(${folder}_test <gmock/gmock.h> <gtest/gtest.h>)
-    endif()
     target_compile_definitions(${folder}_test PRIVATE OVC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                                       OVC_BINARY_DIR="${PROJECT_BINARY_DIR}")
     # One label of several words: gtest_discover_tests (CMake 3.25) takes no list, and ctest -L matches a part.

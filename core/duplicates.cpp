@@ -16,7 +16,7 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kGrain = 4096; // triangles a task
+constexpr size_t kHashGrain = 4096; // triangles a task
 
 /// A bit a hash, by those of the hash's bits that lie above `shift`.
 class BitTable {
@@ -113,7 +113,7 @@ Found compared(const Soup& soup, std::vector<Suspect> all) {
 std::vector<uint64_t> hashes_of(const Soup& soup, std::span<const TriangleId> triangles,
                                 BuildProgress* progress) {
     std::vector<uint64_t> hashes(triangles.size());
-    parallel_for(triangles.size(), kGrain, [&](size_t first, size_t last) {
+    parallel_for(triangles.size(), kHashGrain, [&](size_t first, size_t last) {
         LoopProgress loop(progress);
         for (size_t i = first; i < last; ++i, loop.step())
             hashes[i] = triangle_hash(soup.triangle(triangles[i]));

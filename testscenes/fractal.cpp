@@ -7,19 +7,21 @@
 
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace ovc {
 namespace {
 
-constexpr uint32_t kSegments = 164, kRings = 92; // 2 x 164 x 91 triangles
+constexpr uint32_t kBallSegments = 164, kBallRings = 92; // 2 x 164 x 91 triangles
 constexpr size_t kBalls = 25'250;
 constexpr double kSmaller = 0.38; // a ball to the one that carries it
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// Of a ball of about 1, bumps of a twentieth.
 vec3 corner_at(uint32_t segment, uint32_t ring) {
-    const double around = 2 * kPi * (segment % kSegments) / kSegments, down = kPi * ring / kRings;
-    const double width = ring == 0 || ring == kRings ? 0 : std::sin(down);
+    const double around = 2 * pi * (segment % kBallSegments) / kBallSegments,
+                 down = pi * ring / kBallRings;
+    const double width = ring == 0 || ring == kBallRings ? 0 : std::sin(down);
     const dvec3 p(width * std::cos(around), std::cos(down), width * std::sin(around));
     const double bump = std::sin(9 * p.x) * std::sin(9 * p.y + 1) * std::sin(9 * p.z + 2);
     return vec3(p * (1 + 0.05 * bump));
@@ -27,13 +29,13 @@ vec3 corner_at(uint32_t segment, uint32_t ring) {
 
 Corners ball() {
     Corners out;
-    for (uint32_t ring = 0; ring < kRings; ++ring)
-        for (uint32_t segment = 0; segment < kSegments; ++segment) {
+    for (uint32_t ring = 0; ring < kBallRings; ++ring)
+        for (uint32_t segment = 0; segment < kBallSegments; ++segment) {
             const vec3 a = corner_at(segment, ring), b = corner_at(segment + 1, ring),
                        c = corner_at(segment + 1, ring + 1), d = corner_at(segment, ring + 1);
             if (ring > 0)
                 out.insert(out.end(), {a, b, d});
-            if (ring + 1 < kRings)
+            if (ring + 1 < kBallRings)
                 out.insert(out.end(), {b, c, d});
         }
     return out;
@@ -57,7 +59,7 @@ struct Ball {
 
     /// One of the seven that it carries: six around it, one on top.
     Ball carried(int which) const {
-        const double around = which * kPi / 3, up = which == 6 ? kPi / 2 : 0.2;
+        const double around = which * pi / 3, up = which == 6 ? pi / 2 : 0.2;
         const dvec3 y(std::cos(up) * std::cos(around), std::sin(up),
                       std::cos(up) * std::sin(around)); // its own upwards
         const dvec3 z =

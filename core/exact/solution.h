@@ -24,8 +24,8 @@ struct Vec3Of {
 
 template <class A, class B>
 OVC_INLINE auto cross(const Vec3Of<A>& a, const Vec3Of<B>& b) {
-    using Number = decltype(a.x * b.x);
-    return Vec3Of<Number>{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    using Product = decltype(a.x * b.x);
+    return Vec3Of<Product>{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 template <class A, class B>
 OVC_INLINE auto dot(const Vec3Of<A>& a, const Vec3Of<B>& b) {

@@ -29,7 +29,7 @@ static std::optional<double> quotient(double over, double under) {
     return over / under;
 }
 
-static double call_seconds(const Measurement& m) {
+double call_seconds(const Measurement& m) {
     return spread_of(m.seconds).median;
 }
 

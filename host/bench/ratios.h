@@ -25,6 +25,8 @@ std::optional<double> mrays(const Measurement& m, double seconds);
 /// kernel alone, of Embree what its own functions take; of the others the whole call. Of those that
 /// run on the CPU, software renderers included, CPU seconds of a thread.
 double kernel_seconds(const Measurement& m);
+/// Median of its calls.
+double call_seconds(const Measurement& m);
 
 /// The peer's kernel seconds over these, at the same workload. Nothing where the peer did not take
 /// part.

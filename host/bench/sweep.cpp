@@ -31,10 +31,6 @@ std::vector<Contender> with_robust() {
     return contenders;
 }
 
-double call_seconds(const Measurement& m) {
-    return spread_of(m.seconds).median;
-}
-
 SceneBench bench_of(const BenchJob& job, std::string scene, Asked asked,
                     std::vector<Contender> contenders) {
     SceneBench bench;

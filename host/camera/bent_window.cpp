@@ -11,7 +11,7 @@ namespace ovc {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// p: where in a circle around the axis, 1 its rim; off_axis: the angle that a distance from its
 /// middle stands for. 0 outside.
@@ -47,8 +47,8 @@ Ray bent_ray(const ImageWindow& w, const dvec3& eye, const dvec2& at) {
     using Bend = ImageWindow::Bend;
     const dvec3 right = glm::normalize(w.right), up = glm::normalize(w.up);
     const dvec3 forward = glm::normalize(w.direction);
-    const double across = at.x * w.angle * kPi / 180;
-    const double upward = at.y * w.angle * kPi / 180;
+    const double across = at.x * w.angle * pi / 180;
+    const double upward = at.y * w.angle * pi / 180;
     const double ratio = glm::length(w.up) / glm::length(w.right);
     Ray ray;
     ray.org = eye;
@@ -56,7 +56,7 @@ Ray bent_ray(const ImageWindow& w, const dvec3& eye, const dvec2& at) {
     case Bend::Fisheye:
         ray.dir =
             around_the_axis(w, {2 * at.x * glm::length(w.right), 2 * at.y * glm::length(w.up)},
-                            [&](double r) { return r * w.angle * kPi / 360; });
+                            [&](double r) { return r * w.angle * pi / 360; });
         break;
     case Bend::Omnimax:
         ray.dir = around_the_axis(w, on_omnimax(w, at), omnimax);
@@ -68,12 +68,12 @@ Ray bent_ray(const ImageWindow& w, const dvec3& eye, const dvec2& at) {
                   std::cos(across) * std::cos(upward * ratio) * forward;
         break;
     case Bend::Panoramic: {
-        const double turn = at.x * kPi, rise = std::clamp(at.y * kPi, -1.57, 1.57);
+        const double turn = at.x * pi, rise = std::clamp(at.y * pi, -1.57, 1.57);
         ray.dir = std::sin(turn) * w.right + std::tan(rise) * w.up + std::cos(turn) * forward;
         break;
     }
     case Bend::Spherical: {
-        const double rise = at.y * w.vertical_angle * kPi / 180;
+        const double rise = at.y * w.vertical_angle * pi / 180;
         ray.dir = std::cos(rise) * (std::sin(across) * right + std::cos(across) * forward) +
                   std::sin(rise) * up;
         break;

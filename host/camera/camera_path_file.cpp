@@ -14,12 +14,10 @@
 
 namespace ovc {
 
-using Json = nlohmann::json;
-
 /// Deeper than cameras[7].eye[2] no value is looked at, nor kept.
 static constexpr int kDeepest = 4;
 
-static std::optional<dvec3> point_of(const Json& value) {
+static std::optional<dvec3> point_of(const nlohmann::json& value) {
     if (!value.is_array() || value.size() != 3)
         return std::nullopt;
     dvec3 point;
@@ -32,7 +30,8 @@ static std::optional<dvec3> point_of(const Json& value) {
 }
 
 /// Reads the point called `key` into `to`; the error says what is wrong with it.
-static Result<Done> read_point(const Json& camera, const char* key, bool needed, dvec3& to) {
+static Result<Done> read_point(const nlohmann::json& camera, const char* key, bool needed,
+                               dvec3& to) {
     const auto found = camera.find(key);
     if (found == camera.end()) {
         if (needed)
@@ -46,7 +45,7 @@ static Result<Done> read_point(const Json& camera, const char* key, bool needed,
     return Done{};
 }
 
-static Result<Camera> json_camera(const Json& value) {
+static Result<Camera> json_camera(const nlohmann::json& value) {
     if (!value.is_object())
         return Error{"it is not an object with \"eye\" and \"target\""};
     Camera camera;
@@ -72,22 +71,24 @@ static Result<Camera> json_camera(const Json& value) {
 }
 
 static Result<CameraPath> parse_json(const std::string& name, const std::string& text) {
-    const auto shallow = [](int depth, Json::parse_event_t, Json&) { return depth <= kDeepest; };
-    Json document;
+    const auto shallow = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+        return depth <= kDeepest;
+    };
+    nlohmann::json document;
     try {
-        document = Json::parse(text, shallow);
-    } catch (const Json::parse_error& error) {
+        document = nlohmann::json::parse(text, shallow);
+    } catch (const nlohmann::json::parse_error& error) {
         return Error{fmt::format("{}, byte {}: this is not JSON", name, error.byte)};
-    } catch (const Json::out_of_range&) {
+    } catch (const nlohmann::json::out_of_range&) {
         return Error{fmt::format("{}: a number in it is too large", name)};
     }
-    const Json& cameras =
+    const nlohmann::json& cameras =
         document.is_object() && document.contains("cameras") ? document["cameras"] : document;
     if (!cameras.is_array())
         return Error{
             fmt::format("{}: expected a list of cameras, or {{\"cameras\": [...]}}", name)};
     CameraPath path;
-    for (const Json& value : cameras) {
+    for (const nlohmann::json& value : cameras) {
         if (path.size() == kMaxFrames)
             return Error{fmt::format("{}: more than {} cameras", name, kMaxFrames)};
         const Result<Camera> camera = json_camera(value);

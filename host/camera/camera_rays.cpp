@@ -8,7 +8,7 @@
 
 namespace ovc {
 
-static constexpr size_t kGrain = 1024; // rays a task
+static constexpr size_t kCameraGrain = 1024; // rays a task
 
 /// The bits of i behind the point: the first dimension of Sobol's sequence.
 static double mirrored_bits(uint32_t i) {
@@ -57,7 +57,7 @@ CameraRays::Place CameraRays::place(uint64_t i) const {
 void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const {
     const size_t before = paths.size();
     paths.resize(before + count);
-    parallel_for(count, kGrain, [&](size_t from, size_t to) {
+    parallel_for(count, kCameraGrain, [&](size_t from, size_t to) {
         for (size_t i = from; i < to; ++i) {
             const Place at = place(first + i);
             paths.rays[before + i] = pinhole_.ray(at.x, at.y, at.within);

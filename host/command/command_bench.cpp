@@ -28,7 +28,7 @@ namespace ovc {
 
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kBenchExamples = R"(Examples:
   overcast bench dragon.ply
       camera, shadow and bounced rays, and a frame: all contenders, five times in turn
   overcast bench knot plants --only certified,embree --size 512x512 --repeats 11
@@ -208,7 +208,7 @@ public:
                         "peers.");
         words_.add_to(app);
         log_.add_to(app);
-        app.footer(kExamples);
+        app.footer(kBenchExamples);
     }
 
     Result<int> run() override {

@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-static constexpr const char* kExamples = R"(Examples:
+static constexpr const char* kCompletionExamples = R"(Examples:
   source <(overcast completion bash)
       in this shell, or from ~/.bashrc in every one; zsh likewise
   overcast completion fish | source
@@ -31,7 +31,7 @@ public:
         app.add_option("SHELL", shell_, "Whose script")
             ->type_name(choice_names(kShells))
             ->required();
-        app.footer(kExamples);
+        app.footer(kCompletionExamples);
     }
 
     Result<int> run() override {

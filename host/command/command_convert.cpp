@@ -21,7 +21,7 @@
 
 namespace ovc {
 
-static constexpr const char* kExamples = R"(Examples:
+static constexpr const char* kConvertExamples = R"(Examples:
   overcast convert kitchen.obj kitchen.ply
   overcast convert dragon.ply.gz dragon.ply
   overcast convert plants plants.ply          a generated scene, for other programs
@@ -121,7 +121,7 @@ public:
                        "is complete");
         log_.add_to(app, /* with_quiet= */ true);
         backend_.add_to(app);
-        app.footer(kExamples);
+        app.footer(kConvertExamples);
     }
 
     Result<int> run() override {

@@ -12,7 +12,7 @@
 
 namespace ovc {
 
-static constexpr const char* kExamples = R"(Examples:
+static constexpr const char* kDevicesExamples = R"(Examples:
   overcast devices
   overcast render dragon.ply --device 1
   overcast render dragon.ply --device llvmpipe
@@ -38,7 +38,7 @@ class Devices final : public Subcommand {
 public:
     void add_to(CLI::App& app) override {
         app.description("Lists the devices that rays can be traced on, by number and name.");
-        app.footer(kExamples);
+        app.footer(kDevicesExamples);
     }
 
     Result<int> run() override {

@@ -15,7 +15,7 @@
 
 namespace ovc {
 
-static constexpr const char* kExamples =
+static constexpr const char* kDiffExamples =
     R"(PNG is compared as its codes, 0 to 1 whatever its depth; OpenEXR as its numbers, every layer that both files have.
 Of a PNG and an OpenEXR file, the second is encoded as sRGB first, but not rounded. Whole numbers, such as the layers
 id and leaf, are equal or not. FLIP (Andersson et al. 2020) says how different the colors look, 0 to 1, to somebody who
@@ -128,7 +128,7 @@ public:
         warn_.add_to(app, "warn", Verdict::Warning);
         app.add_flag("--json", json_, "As JSON, for a program (docs/guide/diff.md)");
         app.add_flag("-q,--quiet", quiet_, "Print nothing but errors");
-        app.footer(kExamples);
+        app.footer(kDiffExamples);
     }
 
     Result<int> run() override {

@@ -19,7 +19,7 @@ namespace ovc {
 
 using Json = nlohmann::ordered_json;
 
-static constexpr const char* kExamples = R"(Examples:
+static constexpr const char* kInfoExamples = R"(Examples:
   overcast info dragon.ply
   overcast info plants --json | jq .triangles
   overcast info dragons-10 --gpu-memory 128M
@@ -185,7 +185,7 @@ public:
         backend_.add_to(app);
         app.add_flag("--json", json_, "As JSON, for a program");
         log_.add_to(app);
-        app.footer(kExamples);
+        app.footer(kInfoExamples);
     }
 
     Result<int> run() override {

@@ -8,7 +8,7 @@
 
 namespace ovc {
 
-static constexpr const char* kExamples = R"(Examples:
+static constexpr const char* kManExamples = R"(Examples:
   overcast man | man -l -
   overcast man > ~/.local/share/man/man1/overcast.1
       from then on: man overcast)";
@@ -20,7 +20,7 @@ public:
     void add_to(CLI::App& app) override {
         app.description("Prints the manual page, overcast.1: all that --help says of every "
                         "command.");
-        app.footer(kExamples);
+        app.footer(kManExamples);
     }
 
     Result<int> run() override {

@@ -23,7 +23,7 @@ namespace ovc {
 
 namespace fs = std::filesystem;
 
-static constexpr const char* kExamples = R"(Examples:
+static constexpr const char* kRenderExamples = R"(Examples:
   overcast render dragon.ply
       writes out.png, 512x512; camera and light are placed by themselves
   overcast render scan.ply floor.obj --up z
@@ -491,7 +491,7 @@ public:
         app.description("Renders a picture of a scene: shadows, mirrors and glass, or all light "
                         "there is by path tracing.");
         words_.add_to(app);
-        app.footer(kExamples);
+        app.footer(kRenderExamples);
     }
 
     Result<Arguments> in_our_words(const Arguments& arguments) override {

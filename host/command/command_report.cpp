@@ -26,7 +26,7 @@
 
 namespace ovc {
 
-static constexpr const char* kExamples =
+static constexpr const char* kReportExamples =
     R"(The page is DIR/index.html, with all it needs within; beside it lie summary.md, the figures of
 each experiment as NAME.json, the plots, and in raw/ what each run left. Runs that are done are not
 repeated. Ctrl-C ends the run that goes on; the same command goes on from there. It needs gnuplot.
@@ -363,7 +363,7 @@ public:
             ->type_name("NAME");
         app.add_option("--kernel", given_.kernel, "auto (the faster one), fragment or compute")
             ->type_name(choice_names(kKernels));
-        app.footer("The experiments of the page:\n" + experiments_text() + "\n" + kExamples);
+        app.footer("The experiments of the page:\n" + experiments_text() + "\n" + kReportExamples);
     }
 
     Result<int> run() override {

@@ -12,7 +12,7 @@
 
 namespace ovc {
 
-static constexpr const char* kExamples = R"(A name stands wherever a command takes a SCENE:
+static constexpr const char* kScenesExamples = R"(A name stands wherever a command takes a SCENE:
   overcast render plants -o plants.png
 A scene with frames has a camera path; these are its first two frames:
   overcast render dragons-3 --frames 0:1 -o dragons-###.png
@@ -25,7 +25,7 @@ class Scenes final : public Subcommand {
 public:
     void add_to(CLI::App& app) override {
         app.description("Lists the test scenes that are generated on demand.");
-        app.footer(kExamples);
+        app.footer(kScenesExamples);
     }
 
     Result<int> run() override {

@@ -14,7 +14,7 @@
 
 namespace ovc {
 
-static constexpr const char* kExamples =
+static constexpr const char* kTraceExamples =
     R"(Standard input, one ray a line:    ox oy oz dx dy dz [tmin tmax]
 Standard output, one line a ray:   t u v mesh prim   or   miss   (with --any: hit or miss)
 The hit lies at o + t d = (1 - u - v) a + u b + v c of the triangle's corners a, b, c. Without tmin and tmax a ray
@@ -45,7 +45,7 @@ public:
                      "Records of doubles instead of lines, in and out");
         log_.add_to(app);
         backend_.add_to(app);
-        app.footer(kExamples);
+        app.footer(kTraceExamples);
     }
 
     Result<int> run() override {

@@ -11,11 +11,12 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace ovc {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double kColorExponent = 0.7;                 // q_c, section 4.1
 constexpr double kFeatureExponent = 0.5;               // q_f, section 4.2
 constexpr dvec3 kWhite(0.950428545, 1.0, 1.088900371); // of D65 in XYZ
@@ -134,15 +135,15 @@ struct Sensitivity {
 Plane blurred(const Plane& in, const Grid& grid, std::span<const Sensitivity> terms,
               double pixels_per_degree) {
     constexpr double kWidest = 0.04; // b of the widest term
-    const int radius = int(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * pixels_per_degree));
+    const int radius = int(std::ceil(3 * std::sqrt(kWidest / (2 * pi * pi)) * pixels_per_degree));
     Plane sum(in.size(), 0.0f);
     double all = 0;
     for (const auto& [a, b] : terms) {
         const Kernel kernel = make_kernel(radius, [&](double x) {
             const double degrees = x / pixels_per_degree;
-            return std::exp(-kPi * kPi * degrees * degrees / b);
+            return std::exp(-pi * pi * degrees * degrees / b);
         });
-        const double weight = a * std::sqrt(kPi / b) * sum_of(kernel) * sum_of(kernel);
+        const double weight = a * std::sqrt(pi / b) * sum_of(kernel) * sum_of(kernel);
         const Plane one = filtered(in, grid, normalized(kernel), normalized(kernel));
         for (size_t i = 0; i < sum.size(); ++i)
             sum[i] += float(weight) * one[i];

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view kNames[] = {"depth", "normal", "id", "leaf", "passes", "flagged"};
 constexpr size_t kBatchRays = size_t(1) << 20;
-constexpr size_t kGrain = 1024; // pixels a task
+constexpr size_t kLayerGrain = 1024; // pixels a task
 
 Layer layer(std::string name, Layer::Type type, size_t pixels) {
     return {std::move(name), type, std::vector<uint32_t>(pixels)};
@@ -114,7 +114,7 @@ Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Pinhole& camera,
     for (size_t start = 0; start < pixels; start += kBatchRays) {
         rays.resize(std::min(kBatchRays, pixels - start));
         hits.resize(rays.size());
-        parallel_for(rays.size(), kGrain, [&](size_t first, size_t last) {
+        parallel_for(rays.size(), kLayerGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
                 rays[i] = camera.ray(uint32_t((start + i) % width), uint32_t((start + i) / width));
         });
@@ -122,7 +122,7 @@ Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Pinhole& camera,
                 backend.intersect_noted(rays, {}, hits, layers.notes(start, rays.size()));
             !done)
             return done.error();
-        parallel_for(rays.size(), kGrain, [&](size_t first, size_t last) {
+        parallel_for(rays.size(), kLayerGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
                 layers.set(start + i, scene, rays[i], hits[i]);
         });

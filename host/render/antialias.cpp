@@ -13,7 +13,7 @@ namespace ovc {
 namespace {
 
 constexpr size_t kMaxPoints = size_t(1) << 21; // asked for at once: bounds memory
-constexpr size_t kGrain = 4096;                // pixels a task
+constexpr size_t kPixelGrain = 4096;           // pixels a task
 
 /// In [-0.5, 0.5): the same for the same numbers. Hash: Steele, Lea and Flood 2014, SplitMix64.
 dvec2 chance(uint64_t a, uint64_t b) {
@@ -91,7 +91,7 @@ private:
     /// Pixels of one sample that differ from a neighbour, in the order to trace them in.
     std::vector<uint32_t> rough() const {
         std::vector<uint8_t> is_rough(colors_.size());
-        parallel_for(colors_.size(), kGrain, [&](size_t first, size_t last) {
+        parallel_for(colors_.size(), kPixelGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
                 is_rough[i] = !refined_[i] && differs_from_neighbour(i);
         });
@@ -189,7 +189,7 @@ public:
             cells = std::move(quarters);
         }
         std::vector<vec3> colors(size_t(size_.width) * size_.height);
-        parallel_for(colors.size(), kGrain, [&](size_t first, size_t last) {
+        parallel_for(colors.size(), kPixelGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i)
                 colors[i] = mean(cell_of(uint32_t(i)));
         });

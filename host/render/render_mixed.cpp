@@ -13,7 +13,7 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kGrain = 1024; // rays a task that are only copied
+constexpr size_t kCopyGrain = 1024; // rays a task that are only copied
 
 /// A ray in the stream, until its answer comes.
 template <class Purpose>
@@ -33,7 +33,7 @@ public:
     void push(RayStream& stream, const RayList<Purpose>& rays) {
         const std::vector<uint32_t> taken = slots_.take(rays.size());
         tokens_.resize(rays.size());
-        parallel_for(rays.size(), kGrain, [&](size_t first, size_t last) {
+        parallel_for(rays.size(), kCopyGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i) {
                 slots_[taken[i]] = {rays.rays[i], rays.purposes[i]};
                 tokens_[i] = kind_ | taken[i];
@@ -45,7 +45,7 @@ public:
     /// What these answers are of.
     void take(std::span<const uint64_t> tokens, RayList<Purpose>& rays) {
         rays.resize(tokens.size());
-        parallel_for(tokens.size(), kGrain, [&](size_t first, size_t last) {
+        parallel_for(tokens.size(), kCopyGrain, [&](size_t first, size_t last) {
             for (size_t i = first; i < last; ++i) {
                 const UnderWay<Purpose>& ray = slots_[uint32_t(tokens[i])];
                 rays.rays[i] = ray.ray;

@@ -20,7 +20,7 @@ struct Census {
     Box bounds;
 };
 
-static Census join(Census a, const Census& b) {
+static Census sum_of(Census a, const Census& b) {
     a.dropped.not_finite += b.dropped.not_finite;
     a.dropped.degenerate += b.dropped.degenerate;
     a.bounds.add(b.bounds);
@@ -47,7 +47,7 @@ static Census count(const Chunk& chunk) {
             }
             return census;
         },
-        join);
+        sum_of);
 }
 
 /// The census of all chunks. A mesh is looked at triangle by triangle once, and again only where an
@@ -58,7 +58,7 @@ static Census count(const Soup& soup) {
     for (const Chunk& chunk : soup.chunks) {
         const Transform* transform = chunk.transform();
         if (!transform || chunk.size() == 0) {
-            all = join(all, count(chunk));
+            all = sum_of(all, count(chunk));
             continue;
         }
         const auto [place, is_new] = meshes.try_emplace(chunk.mesh_key());
@@ -69,7 +69,7 @@ static Census count(const Soup& soup) {
         box.add(placed_box(mesh.bounds, transform));
         const bool is_inside = box.lo == all.bounds.lo && box.hi == all.bounds.hi;
         if (!is_inside || mesh.dropped.total() > 0 || !is_well_placed(mesh.bounds, transform))
-            all = join(all, count(chunk));
+            all = sum_of(all, count(chunk));
     }
     return all;
 }

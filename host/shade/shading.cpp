@@ -8,8 +8,8 @@
 
 namespace ovc {
 
-static constexpr size_t kBlock = 256;  // answers a task: what it makes fits a cache
-static constexpr size_t kGrain = 1024; // rays a task that are only copied or added up
+static constexpr size_t kBlock = 256;         // answers a task: what it makes fits a cache
+static constexpr size_t kShadingGrain = 1024; // rays a task that are only copied or added up
 static constexpr size_t kMaxAnswers = size_t(1) << 16;
 static constexpr size_t kMaxSpawned = size_t(1) << 18;
 
@@ -29,7 +29,7 @@ static void append(std::span<const Spawned> blocks, RayList<Purpose> Spawned::*l
         size += (blocks[b].*list).size();
     }
     to.resize(size);
-    parallel_for(blocks.size(), kGrain / kBlock, [&](size_t first, size_t last) {
+    parallel_for(blocks.size(), kShadingGrain / kBlock, [&](size_t first, size_t last) {
         for (size_t b = first; b < last; ++b)
             to.put(places[b], blocks[b].*list);
     });
@@ -64,7 +64,7 @@ void Shading::shade_block(const RayList<Path>& paths, std::span<const Hit> hits,
 }
 
 void Shading::arrive(std::span<const Shadow> purposes, std::span<const uint8_t> occluded) {
-    parallel_for(purposes.size(), kGrain, [&](size_t first, size_t last) {
+    parallel_for(purposes.size(), kShadingGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             if (!occluded[i])
                 film_.add(purposes[i].pixel, purposes[i].arriving);

@@ -14,7 +14,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <map>
+#include <unordered_map>
 
 namespace ovc::pov {
 
@@ -60,14 +62,18 @@ public:
         if (interior)
             tell_all(interior->notes, look_);
         ovc::Material material = made(texture, placed, interior);
-        std::vector<double> key = key_of(material);
-        const auto [at, is_new] =
-            numbers_.try_emplace(std::move(key), uint32_t(scene_.materials.size()));
-        if (is_new) {
-            material.name = fmt::format("material {}", scene_.materials.size() + 1);
-            scene_.materials.push_back(std::move(material));
+        const auto [first, last] = by_color_.equal_range(color_key(material));
+        for (auto known = first; known != last; ++known) {
+            const ovc::Material& other = scene_.materials[known->second];
+            material.name = other.name; // which alone tells materials that are alike apart
+            if (material == other)
+                return known->second;
         }
-        return at->second;
+        const auto number = uint32_t(scene_.materials.size());
+        material.name = fmt::format("material {}", number + 1);
+        by_color_.emplace(color_key(material), number);
+        scene_.materials.push_back(std::move(material));
+        return number;
     }
 
 private:
@@ -104,38 +110,17 @@ private:
         return material;
     }
 
-    static std::vector<double> key_of(const ovc::Material& m) {
-        std::vector<double> key;
-        const auto add = [&](const vec3& v) {
-            for (int i = 0; i < 3; ++i)
-                key.push_back(v[i]);
-        };
-        add(m.color);
-        add(m.filter);
-        add(m.finish->ambient);
-        add(m.finish->reflection);
-        add(m.finish->grazing_reflection);
-        const Finish& f = *m.finish;
-        for (const double value :
-             {double(m.transmission), m.ior, double(f.diffuse), double(f.brilliance),
-              double(f.phong), double(f.phong_size), double(f.specular), double(f.roughness),
-              double(f.metallic), double(f.reflection_falloff), double(f.fresnel),
-              double(f.metallic_reflection), double(f.conserve_energy)})
-            key.push_back(value);
-        if (m.checker) {
-            add(m.checker->other);
-            for (const dvec4& row : m.checker->to_cubes)
-                for (int i = 0; i < 4; ++i)
-                    key.push_back(row[i]);
-        }
-        for (double& value : key)
-            value = std::isnan(value) ? 0 : value; // a key must be equal to itself
+    /// A hash of what materials differ in most often.
+    static size_t color_key(const ovc::Material& m) {
+        size_t key = 0;
+        for (int i = 0; i < 3; ++i)
+            key = 31 * key + std::hash<float>()(m.color[i]);
         return key;
     }
 
     const Look& look_;
     Scene& scene_;
-    std::map<std::vector<double>, uint32_t> numbers_;
+    std::unordered_multimap<size_t, uint32_t> by_color_; // numbers
 };
 
 void add_light(const LightSource& source, const dmat4& placed, Scene& scene) {
@@ -516,6 +501,8 @@ Box moved(const Box& box, const dmat4& by) {
     return all;
 }
 
+namespace {
+
 /// An object gathered by itself, what no_image hides included.
 struct ObjectAlone {
     ObjectAlone(const Object& object, uint64_t max_triangles) {
@@ -529,6 +516,8 @@ struct ObjectAlone {
     Look look;
     Gatherer gatherer{look, scene};
 };
+
+} // namespace
 
 CutObject cut_object(const Object& object, uint64_t max_triangles) {
     const ObjectAlone alone(object, max_triangles);

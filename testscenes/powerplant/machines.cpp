@@ -7,7 +7,7 @@ namespace ovc::powerplant {
 
 namespace {
 
-constexpr dvec3 kUp{0, 1, 0}, kAlong{1, 0, 0}, kAcross{0, 0, 1};
+constexpr dvec3 kAlong{1, 0, 0}, kAcross{0, 0, 1};
 
 /// A ladder with a cage up the side of something round.
 void add_ladder(Works& works, dvec3 foot, double height) {

@@ -11,6 +11,8 @@
 
 namespace ovc::powerplant {
 
+inline constexpr dvec3 kUp{0, 1, 0};
+
 /// Each is a material and a mesh.
 enum class Paint : uint8_t {
     Concrete,

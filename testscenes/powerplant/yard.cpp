@@ -11,8 +11,6 @@ namespace ovc::powerplant {
 
 namespace {
 
-constexpr dvec3 kUp{0, 1, 0};
-
 void add_ground(Works& works, const Plan& plan) {
     const double reach = 3 * (plan.length() + plan.depth());
     add_quad(works[Paint::Concrete], {-reach, -0.2, -reach}, {-reach, -0.2, reach},

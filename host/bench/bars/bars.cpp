@@ -61,10 +61,6 @@ Bar against(const BenchResult& r, const char* workload, const std::string& what,
     return bar;
 }
 
-double call_seconds(const Measurement& m) {
-    return spread_of(m.seconds).median;
-}
-
 } // namespace
 
 std::vector<Bar> kernel_bars(const BenchResult& mesh) {

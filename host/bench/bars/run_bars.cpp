@@ -32,7 +32,7 @@ Contender embree(std::string_view name, EmbreeMode mode) {
     return {.name = name, .kind = ContenderKind::Embree, .embree = mode};
 }
 
-const Contender kCertified = two_level("certified", OVC_PRECISION_CERTIFIED);
+const Contender kCertifiedBar = two_level("certified", OVC_PRECISION_CERTIFIED);
 
 bool has_embree() {
     return bool(make_embree_backend(Soup{}, EmbreeMode::Medium));
@@ -131,7 +131,7 @@ private:
 
     Result<Done> kernels() {
         std::vector<Contender> contenders = {
-            kCertified,
+            kCertifiedBar,
             two_level("fast", OVC_PRECISION_FAST),
             {.name = "cpu-float-kdtree", .kind = ContenderKind::FloatKdTree}};
         if (has_embree())
@@ -146,7 +146,7 @@ private:
     }
 
     Result<Done> high_quality() {
-        std::vector<Contender> contenders = {kCertified};
+        std::vector<Contender> contenders = {kCertifiedBar};
         if (has_embree())
             contenders.push_back(embree("embree-high", EmbreeMode::High));
         for (const auto& [scene, repeats] :
@@ -165,7 +165,7 @@ private:
     Result<Done> leaves() {
         std::vector<Contender> contenders;
         for (const uint32_t leaves : {1, 8, 32, 128}) {
-            contenders.push_back(kCertified);
+            contenders.push_back(kCertifiedBar);
             contenders.back().leaves = {leaves, std::to_string(leaves)};
         }
         const Result<const BenchResult*> r = bench(job_.mesh, {.size = large_, .frame = false},
@@ -180,7 +180,7 @@ private:
     Result<Done> leaves_of_scenes() {
         std::vector<Contender> contenders;
         for (const uint32_t leaves : {1, 14, 136}) {
-            contenders.push_back(kCertified);
+            contenders.push_back(kCertifiedBar);
             contenders.back().leaves = {leaves, std::to_string(leaves)};
         }
         for (const std::string& scene :
@@ -198,7 +198,7 @@ private:
     }
 
     Result<Done> default_leaves() {
-        std::vector<Contender> contenders = {kCertified};
+        std::vector<Contender> contenders = {kCertifiedBar};
         if (has_embree())
             contenders.push_back(embree("embree-robust", EmbreeMode::Robust));
         const Result<const BenchResult*> r =
@@ -210,7 +210,7 @@ private:
     }
 
     Result<Done> budget() {
-        std::vector<Contender> contenders(2, kCertified);
+        std::vector<Contender> contenders(2, kCertifiedBar);
         contenders[0].budget.words = "all";
         contenders[1].budget.words = "30%";
         contenders[1].budget.pages_share = 0.3;
@@ -242,7 +242,7 @@ private:
         around_.progress.show("building the mesh");
         for (uint32_t i = 0; i < job_.repeats && !around_.stop(); ++i)
             for (const auto& [contender, seconds] :
-                 {std::pair(kCertified, &ours),
+                 {std::pair(kCertifiedBar, &ours),
                   std::pair(embree("embree-medium", EmbreeMode::Medium), &theirs)}) {
                 const Result<std::shared_ptr<Backend>> backend = builder.build(contender);
                 if (!backend)

@@ -32,9 +32,10 @@ double relative(double t, double right) {
     return std::abs(t - right) / std::abs(right);
 }
 
-class Sweep {
+class TessellationSweep {
 public:
-    Sweep(const TessellationJob& job, const BenchSurroundings& around, std::filesystem::path folder)
+    TessellationSweep(const TessellationJob& job, const BenchSurroundings& around,
+                      std::filesystem::path folder)
         : job_(job), around_(around), folder_(std::move(folder)), shapes_(example_shapes()) {
         result_.size = job.size;
         for (const ExactShape& shape : shapes_)
@@ -198,7 +199,7 @@ ShapeError shape_error(std::span<const ExactShape> shapes, std::span<const Ray> 
 
 Result<Tessellation> run_tessellation(const TessellationJob& job, const BenchSurroundings& around) {
     const Result<ScratchFolder> folder = ScratchFolder::make();
-    return folder ? Sweep(job, around, folder->path()).run() : folder.error();
+    return folder ? TessellationSweep(job, around, folder->path()).run() : folder.error();
 }
 
 std::string tessellation_table(const Tessellation& r) {

@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-namespace {
+namespace claims_page {
 
 constexpr const char* kBars = "bars";
 
@@ -167,16 +167,16 @@ std::vector<Block> blocks(const Json& figures) {
         reached_plot(figures), table};
 }
 
-} // namespace
+} // namespace claims_page
 
 Experiment claims_experiment() {
     return {"claims",
             "Claims",
             "a row for each claim of README.md, docs/guide/performance.md and docs/benchmarks.md, "
             "measured or held by a test",
-            runs,
-            figures,
-            blocks};
+            claims_page::runs,
+            claims_page::figures,
+            claims_page::blocks};
 }
 
 } // namespace ovc

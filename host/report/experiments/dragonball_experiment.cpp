@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-namespace {
+namespace dragonball {
 
 constexpr std::string_view kScene = "dragonball";
 constexpr std::string_view kLeafSystems[] = {"batched", "mixed", "product-batched"};
@@ -243,15 +243,15 @@ std::vector<Block> blocks(const Json& figures) {
         systems_table(figures, "/few", "Few leaves: means of the frames")};
 }
 
-} // namespace
+} // namespace dragonball
 
 Experiment dragonball_experiment() {
     return {"dragonball",
             "The thesis: dragonball",
             "figures 4.7 to 4.9 of the thesis: leaves of level 1 from 2 to 400, and frame by frame",
-            runs,
-            figures,
-            blocks};
+            dragonball::runs,
+            dragonball::figures,
+            dragonball::blocks};
 }
 
 } // namespace ovc

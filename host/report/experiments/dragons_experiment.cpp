@@ -12,7 +12,7 @@
 
 namespace ovc {
 
-namespace {
+namespace dragons {
 
 /// Table 4.2: MB of textures of 1 to 21 dragons.
 constexpr std::array<double, 21> kReportedMegabytes = {68.3, 123, 177, 232, 286,  341,  396,
@@ -267,16 +267,16 @@ std::vector<Block> blocks(const Json& figures) {
     return blocks;
 }
 
-} // namespace
+} // namespace dragons
 
 Experiment dragons_experiment() {
     return {"dragons",
             "The thesis: dragons",
             "table 4.2, figures 4.5 and 4.6 of the thesis: from 1 to 21 dragons, in each of its "
             "systems and ours",
-            runs,
-            figures,
-            blocks};
+            dragons::runs,
+            dragons::figures,
+            dragons::blocks};
 }
 
 } // namespace ovc

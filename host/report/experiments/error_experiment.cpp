@@ -15,7 +15,7 @@
 
 namespace ovc {
 
-namespace {
+namespace error {
 
 constexpr std::string_view kDefault = "certified-compute, auto leaves, budget all";
 
@@ -215,16 +215,16 @@ std::vector<Block> blocks(const Json& figures) {
     return blocks;
 }
 
-} // namespace
+} // namespace error
 
 Experiment error_experiment() {
     return {"error",
             "Error against run time",
             "what each choice of precision, kernel, leaves and budget costs, beside the CPU's "
             "KD-trees and Embree, and how wrong it is",
-            runs,
-            figures,
-            blocks};
+            error::runs,
+            error::figures,
+            error::blocks};
 }
 
 } // namespace ovc

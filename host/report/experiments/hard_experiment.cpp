@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-namespace {
+namespace hard {
 
 struct Program {
     const char* key; // in stability.json
@@ -282,16 +282,16 @@ std::vector<Block> blocks(const Json& figures) {
     return blocks;
 }
 
-} // namespace
+} // namespace hard
 
 Experiment hard_experiment() {
     return {"hard-cases",
             "Numerical stability",
             "wrong answers and leaks on extreme cases, and over scale, offset and aspect, beside "
             "Embree's",
-            runs,
-            figures,
-            blocks};
+            hard::runs,
+            hard::figures,
+            hard::blocks};
 }
 
 } // namespace ovc

@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-namespace {
+namespace left_out {
 
 /// Something that is not there unless it is asked for.
 struct Switch {
@@ -254,15 +254,15 @@ std::vector<Block> blocks(const Json& figures) {
     return blocks;
 }
 
-} // namespace
+} // namespace left_out
 
 Experiment left_out_experiment() {
     return {"left-out",
             "Left out",
             "what renderings have no need of, and what that saves, by switching it on and off",
-            runs,
-            figures,
-            blocks};
+            left_out::runs,
+            left_out::figures,
+            left_out::blocks};
 }
 
 } // namespace ovc

@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-namespace {
+namespace pictures {
 
 struct Shot {
     const char* key;
@@ -137,15 +137,15 @@ std::vector<Block> blocks(const Json& figures) {
     return blocks;
 }
 
-} // namespace
+} // namespace pictures
 
 Experiment pictures_experiment() {
     return {"pictures",
             "The thesis: pictures",
             "figures 3.5, 4.1, 4.2 and 4.3 of the thesis: its scenes, and level 1 in colours",
-            runs,
-            figures,
-            blocks};
+            pictures::runs,
+            pictures::figures,
+            pictures::blocks};
 }
 
 } // namespace ovc

@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-namespace {
+namespace samples {
 
 constexpr const char* kDefault = "certified, 1 sample";
 
@@ -152,16 +152,16 @@ std::vector<Block> blocks(const Json& figures) {
     return blocks;
 }
 
-} // namespace
+} // namespace samples
 
 Experiment samples_experiment() {
     return {"samples",
             "Samples a pixel",
             "the error of a picture against time by samples a pixel, beside Embree, povray and "
             "tachyon",
-            runs,
-            figures,
-            blocks};
+            samples::runs,
+            samples::figures,
+            samples::blocks};
 }
 
 } // namespace ovc

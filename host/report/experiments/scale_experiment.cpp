@@ -12,7 +12,7 @@
 
 namespace ovc {
 
-namespace {
+namespace scale {
 
 ReportRun sweep_run(const std::string& over, const std::vector<std::string>& more, double seconds) {
     ReportRun run{over, {"bench"}, "sweep.json", seconds};
@@ -289,16 +289,16 @@ std::vector<Block> blocks(const Json& figures) {
     return blocks;
 }
 
-} // namespace
+} // namespace scale
 
 Experiment scale_experiment() {
     return {"scale",
             "Cost as work grows",
             "times of calls and builds as rays, triangles, leaves and the budget grow, with the "
             "exponents that fit",
-            runs,
-            figures,
-            blocks};
+            scale::runs,
+            scale::figures,
+            scale::blocks};
 }
 
 } // namespace ovc

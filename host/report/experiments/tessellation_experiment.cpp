@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-namespace {
+namespace tessellation {
 
 constexpr const char* kDefault = "the reader's own";
 
@@ -217,16 +217,16 @@ std::vector<Block> blocks(const Json& figures) {
     return blocks;
 }
 
-} // namespace
+} // namespace tessellation
 
 Experiment tessellation_experiment() {
     return {"tessellation",
             "Tessellation",
             "what finer triangles cost, against exact spheres, cones and tori, and against "
             "povray's picture",
-            runs,
-            figures,
-            blocks};
+            tessellation::runs,
+            tessellation::figures,
+            tessellation::blocks};
 }
 
 } // namespace ovc

@@ -7,12 +7,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace ovc {
 
+using std::numbers::pi;
+
 namespace {
 
-constexpr double kTau = 6.283185307179586;
 constexpr const char* kTypical = "decided exactly, for time";
 
 Soup of_floats(Corners corners) {
@@ -31,7 +33,7 @@ Soup of_doubles(std::vector<dvec3> corners) {
 Soup book(int count) {
     Corners corners;
     for (int i = 0; i < count; ++i) {
-        const double a = kTau * i / count;
+        const double a = 2 * pi * i / count;
         add_triangle(corners, dvec3(0), dvec3(0, 0, 1), dvec3(std::cos(a), std::sin(a), 0.5));
     }
     return of_floats(std::move(corners));
@@ -43,7 +45,7 @@ Soup stacked(int count, Height&& height) {
     Random random(/* seed= */ 7);
     std::vector<dvec3> corners;
     for (int i = 0; i < 3 * count; ++i) {
-        const double a = kTau * (i % 3) / 3;
+        const double a = 2 * pi * (i % 3) / 3;
         // Few bits, so that heights of planes are exact.
         const auto rounded = [](double x) { return std::round(x * 1024) / 1024; };
         const double x = rounded(8 * std::cos(a) + random.uniform(-1, 1));

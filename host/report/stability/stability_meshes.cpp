@@ -11,10 +11,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 namespace ovc {
 
-static constexpr double kTau = 6.283185307179586;
+using std::numbers::pi;
 
 static dvec3 on_grid(dvec3 p) {
     return glm::round(p / kStabilityGrid) * kStabilityGrid;
@@ -35,7 +36,7 @@ Corners lat_long() {
         radius = random.uniform(0.5, 1.5);
     const auto at = [&](int row, int column) {
         const bool pole = row == 0 || row == n;
-        const double down = 0.5 * kTau * row / n, round = kTau * (column % n) / n;
+        const double down = pi * row / n, round = 2 * pi * (column % n) / n;
         const double radius = radii[size_t(row * n + (pole ? 0 : column % n))];
         const double out = pole ? 0 : std::sin(down);
         return on_grid(radius *
@@ -57,13 +58,13 @@ Corners lat_long() {
 /// A point of the tube round a trefoil, both parameters in turns.
 static dvec3 on_knot(double along, double around) {
     const auto centre = [](double turns) {
-        const double a = kTau * turns, radius = 1 + 0.42 * std::cos(3 * a);
+        const double a = 2 * pi * turns, radius = 1 + 0.42 * std::cos(3 * a);
         return dvec3(radius * std::cos(2 * a), 0.42 * std::sin(3 * a), radius * std::sin(2 * a));
     };
     const dvec3 at = centre(along), ahead = glm::normalize(centre(along + 1e-4) - at);
     const dvec3 side = glm::normalize(glm::cross(ahead, dvec3(0, 1, 0)));
-    return at + 0.2 * (std::cos(kTau * around) * side +
-                       std::sin(kTau * around) * glm::cross(side, ahead));
+    return at + 0.2 * (std::cos(2 * pi * around) * side +
+                       std::sin(2 * pi * around) * glm::cross(side, ahead));
 }
 
 Corners small_knot() {
@@ -237,7 +238,7 @@ Corners coincident(int count) {
 
 Corners fan(int count) {
     const auto rim = [&](int i) {
-        const double a = kTau * (i % count) / count;
+        const double a = 2 * pi * (i % count) / count;
         return dvec3(std::cos(a), std::sin(a), 0.25);
     };
     Corners corners;

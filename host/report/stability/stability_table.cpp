@@ -38,29 +38,29 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-struct Peer {
+struct PeerColumn {
     const char* name;
     std::optional<StabilityScore> StabilityResult::*score;
 };
 
-constexpr Peer kPeers[] = {{"fast", &StabilityResult::fast},
-                           {"Embree robust", &StabilityResult::embree_robust},
-                           {"Embree default", &StabilityResult::embree_default}};
+constexpr PeerColumn kPeers[] = {{"fast", &StabilityResult::fast},
+                                 {"Embree robust", &StabilityResult::embree_robust},
+                                 {"Embree default", &StabilityResult::embree_default}};
 
 /// Those that were asked anywhere.
-std::vector<Peer> peers_of(std::span<const StabilityResult> results) {
-    std::vector<Peer> peers;
-    for (const Peer& peer : kPeers)
+std::vector<PeerColumn> peers_of(std::span<const StabilityResult> results) {
+    std::vector<PeerColumn> peers;
+    for (const PeerColumn& peer : kPeers)
         if (std::ranges::any_of(results,
                                 [&](const auto& r) { return (r.*peer.score).has_value(); }))
             peers.push_back(peer);
     return peers;
 }
 
-Row header_of(std::span<const Peer> peers) {
+Row header_of(std::span<const PeerColumn> peers) {
     Row row = {"case",    "triangles", "rays",       "wrong", "leaks",
                "t error", "flagged %", "retraced %", "us/ray"};
-    for (const Peer& peer : peers)
+    for (const PeerColumn& peer : peers)
         for (const char* column : {"wrong", "leaks", "t err"})
             row.push_back(fmt::format("{} {}", peer.name, column));
     return row;
@@ -82,7 +82,7 @@ void add(Row& row, const std::optional<StabilityScore>& peer, bool closed) {
                                fmt::format("{:.1e}", peer->t_error)});
 }
 
-Row row_of(const StabilityResult& r, std::span<const Peer> peers) {
+Row row_of(const StabilityResult& r, std::span<const PeerColumn> peers) {
     Row row = {r.name,
                fmt::format("{}", r.triangles),
                fmt::format("{}", r.rays),
@@ -92,7 +92,7 @@ Row row_of(const StabilityResult& r, std::span<const Peer> peers) {
                percent(r.flagged, r.rays),
                percent(r.retraced, r.rays),
                fmt::format("{:.2f}", r.microseconds)};
-    for (const Peer& peer : peers)
+    for (const PeerColumn& peer : peers)
         add(row, r.*peer.score, r.closed);
     return row;
 }
@@ -190,7 +190,7 @@ nlohmann::ordered_json list_of(std::span<const Result> results) {
 } // namespace
 
 std::string stability_markdown(const std::string& title, std::span<const StabilityResult> results) {
-    const std::vector<Peer> peers = peers_of(results);
+    const std::vector<PeerColumn> peers = peers_of(results);
     std::vector<Row> rows = {header_of(peers)};
     for (const StabilityResult& result : results)
         rows.push_back(row_of(result, peers));

@@ -4,6 +4,7 @@
 
 #include "importers/file/text.h"
 #include "importers/pbrt/look/area_lights.h"
+#include "importers/pbrt/look/material_families.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +15,7 @@ namespace ovc::pbrt {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Each costs a shadow ray for every hit.
 constexpr size_t kMaxAreaLights = 32;
@@ -23,18 +24,14 @@ constexpr size_t kMaxAreaLights = 32;
 /// casts some. An open surface would reflect all; rooms see little of it.
 constexpr float kSkyAmbient = 0.25f, kSkyFromAbove = 0.35f;
 
-float mean(const vec3& c) {
-    return (c.x + c.y + c.z) / 3;
-}
-
 double cosine(double degrees) {
-    return std::cos(degrees * (kPi / 180));
+    return std::cos(degrees * (pi / 180));
 }
 
 /// v4's "power" of a light that shines all ways; nothing where it is not given.
 std::optional<float> intensity_of_power(const Parameters& p) {
     const double power = p.number("power", -1);
-    return power >= 0 ? std::optional(float(power / (4 * kPi))) : std::nullopt;
+    return power >= 0 ? std::optional(float(power / (4 * pi))) : std::nullopt;
 }
 
 } // namespace
@@ -162,7 +159,7 @@ void Lights::finish(const dvec3& view_up, Scene& scene) {
         above.parallel = true;
         above.direction = glm::length(view_up) > 0 ? -glm::normalize(view_up) : dvec3(0, -1, 0);
         above.stand_in = true;
-        above.color = sky_mean_ * float(kPi) * kSkyFromAbove;
+        above.color = sky_mean_ * float(pi) * kSkyFromAbove;
         scene.lights.push_back(above);
         for (Material& material : scene.materials)
             if (material.finish && material.finish->diffuse > 0)

@@ -11,7 +11,7 @@ namespace ovc::pbrt {
 namespace {
 
 /// Corners at (u, v) = (0,0), (1,0), (0,1), (1,1).
-struct Patch {
+struct BilinearPatch {
     dvec3 p[4];
 
     dvec3 at(double u, double v) const {
@@ -27,21 +27,21 @@ struct Patch {
     double bulge() const { return glm::length(p[0] + p[3] - p[1] - p[2]) / 4; }
 };
 
-constexpr double kMaxSteps = 16;
+constexpr double kMaxPatchSteps = 16;
 
 /// Divided into n x n, a patch lies 1/n^2 of its bulge off its triangles. All are divided alike,
 /// or neighbours would not meet.
-uint32_t steps_for(const std::vector<Patch>& patches, double tolerance) {
+uint32_t steps_for(const std::vector<BilinearPatch>& patches, double tolerance) {
     double steps = 1;
-    for (const Patch& patch : patches) {
+    for (const BilinearPatch& patch : patches) {
         const double allowed = tolerance * patch.size();
         if (allowed > 0 && allowed < 1e300 && patch.bulge() > 1e-9 * patch.size())
             steps = std::max(steps, std::ceil(std::sqrt(patch.bulge() / allowed)));
     }
-    return uint32_t(std::min(steps, kMaxSteps));
+    return uint32_t(std::min(steps, kMaxPatchSteps));
 }
 
-void add_patch(const Patch& patch, uint32_t steps, Mesh& mesh) {
+void add_patch(const BilinearPatch& patch, uint32_t steps, Mesh& mesh) {
     const auto first = uint32_t(mesh.positions.size() / 3);
     const uint32_t row = steps + 1;
     for (uint32_t v = 0; v <= steps; ++v)
@@ -68,7 +68,7 @@ std::optional<Mesh> make_bilinear_mesh(ShapeRequest& request) {
         *indices = {0, 1, 2, 3};
     if (indices->empty())
         return left_out(request, "it has no indices");
-    std::vector<Patch> patches(indices->size() / 4);
+    std::vector<BilinearPatch> patches(indices->size() / 4);
     for (size_t i = 0; i < indices->size(); ++i) {
         const double* p = points.data() + size_t((*indices)[i]) * 3;
         patches[i / 4].p[i % 4] = {p[0], p[1], p[2]};
@@ -83,7 +83,7 @@ std::optional<Mesh> make_bilinear_mesh(ShapeRequest& request) {
         return std::nullopt;
     }
     Mesh mesh;
-    for (const Patch& patch : patches)
+    for (const BilinearPatch& patch : patches)
         add_patch(patch, steps, mesh);
     return mesh;
 }

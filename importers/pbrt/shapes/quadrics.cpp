@@ -13,8 +13,8 @@ namespace ovc::pbrt {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kMaxSteps = 256;
+using std::numbers::pi;
+constexpr double kMaxQuadricSteps = 256;
 
 /// Points at phi = 0, in the order of pbrt's v, and the normals there.
 struct Profile {
@@ -35,12 +35,12 @@ struct Steps {
     /// Round a full circle: a multiple of 4, so that the bounds are exact. A triangle between steps
     /// of angle a lies 1 - cos(a / 2) radii off a cylinder, about twice that off a sphere.
     double round(bool is_curved) const {
-        const double steps = kPi / std::sqrt(is_curved ? tolerance : 2 * tolerance);
+        const double steps = pi / std::sqrt(is_curved ? tolerance : 2 * tolerance);
         return 4 * std::ceil(steps / 4);
     }
-    /// From 1 to as many as a circle has, or kMaxSteps; 1 for what is no number.
+    /// From 1 to as many as a circle has, or kMaxQuadricSteps; 1 for what is no number.
     size_t whole(double steps) const {
-        const double most = std::max(kMaxSteps, round(true));
+        const double most = std::max(kMaxQuadricSteps, round(true));
         return steps > 1 ? size_t(std::ceil(std::min(steps, most))) : 1;
     }
     size_t of(double share_of_circle, bool is_curved) const {
@@ -51,7 +51,7 @@ struct Steps {
 /// About z; exact at quarter turns.
 dvec3 turned(const dvec3& p, double turns) {
     const double quarter = turns * 4;
-    double c = std::cos(2 * kPi * turns), s = std::sin(2 * kPi * turns);
+    double c = std::cos(2 * pi * turns), s = std::sin(2 * pi * turns);
     if (quarter == std::floor(quarter)) {
         constexpr double kCosines[] = {1, 0, -1, 0};
         c = kCosines[int(quarter) % 4];
@@ -104,10 +104,10 @@ Profile sphere(const Parameters& p, const Steps& fine) {
     const double high = std::asin(std::max(z0, z1) / radius);
     Profile profile;
     profile.is_curved = true;
-    const size_t steps = fine.of((high - low) / (2 * kPi), true);
+    const size_t steps = fine.of((high - low) / (2 * pi), true);
     for (size_t i = 0; i <= steps; ++i) {
         const double latitude = low + (high - low) * double(i) / double(steps);
-        const bool is_pole = std::abs(latitude) == kPi / 2;
+        const bool is_pole = std::abs(latitude) == pi / 2;
         const bool is_equator = latitude == 0;
         const dvec3 normal(is_pole      ? 0.0
                            : is_equator ? 1.0
@@ -169,10 +169,10 @@ Profile hyperboloid(const Parameters& p, const Steps& fine) {
     const dvec3 p1 = p.point("p1", {0, 0, 0}), p2 = p.point("p2", {1, 1, 1});
     const auto azimuth = [](const dvec3& v) { return std::atan2(v.y, v.x); };
     double twist = on_axis(p1) || on_axis(p2) ? 0 : std::abs(azimuth(p2) - azimuth(p1));
-    twist = std::min(twist, 2 * kPi - twist);
+    twist = std::min(twist, 2 * pi - twist);
     Profile profile;
     profile.is_curved = twist > 0;
-    const size_t steps = fine.of(twist / (2 * kPi), true);
+    const size_t steps = fine.of(twist / (2 * pi), true);
     for (size_t i = 0; i <= steps; ++i) {
         const dvec3 at = glm::mix(p1, p2, double(i) / double(steps));
         const dvec3 round =

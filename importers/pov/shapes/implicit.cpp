@@ -12,7 +12,7 @@ namespace ovc::pov {
 namespace {
 
 using Cell = std::array<int, 3>;
-using Value = std::function<double(const dvec3&)>;
+using FieldValue = std::function<double(const dvec3&)>;
 
 /// Values at the corners of cubic cells; the outermost are outside, whatever the field says.
 class Samples {
@@ -42,7 +42,7 @@ public:
                size_t(c[0]);
     }
     /// The field in and around a cell.
-    const Value& value_near(const Cell& cell) const { return field_in_[block_of(cell)]; }
+    const FieldValue& value_near(const Cell& cell) const { return field_in_[block_of(cell)]; }
     bool is_outermost(const Cell& cell) const {
         for (size_t i = 0; i < 3; ++i)
             if (cell[i] == 0 || cell[i] == counts_[i] - 1)
@@ -76,7 +76,7 @@ private:
         Cell hi;
         for (size_t i = 0; i < 3; ++i)
             hi[i] = std::min(lo[i] + kBlock - 1, counts_[i]);
-        Value& value = field_in_[block_of(lo)];
+        FieldValue& value = field_in_[block_of(lo)];
         // Its cells reach a step farther, and corners a little out of them.
         value = field.within ? field.within(Box{place(lo), place(hi)}.padded(1.5 * step_))
                              : field.value;
@@ -96,10 +96,10 @@ private:
     dvec3 origin_;
     Cell counts_, blocks_{};
     std::vector<double> values_;
-    std::vector<Value> field_in_; // each block
+    std::vector<FieldValue> field_in_; // each block
 };
 
-dvec3 gradient(const Value& field, const dvec3& p, double step) {
+dvec3 gradient(const FieldValue& field, const dvec3& p, double step) {
     dvec3 g;
     for (int i = 0; i < 3; ++i) {
         dvec3 h(0);
@@ -111,7 +111,7 @@ dvec3 gradient(const Value& field, const dvec3& p, double step) {
 
 /// A point of the surface in the cell, or near the middle of where it runs through.
 Corner corner_in(const Samples& samples, const Cell& cell) {
-    const Value& field = samples.value_near(cell);
+    const FieldValue& field = samples.value_near(cell);
     dvec3 sum(0);
     int count = 0;
     for (int axis = 0; axis < 3; ++axis)
