@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // overcast.h for C++20: owners for its handles, spans for its buffers, exceptions for its errors.
-// No more than that: what a call does and promises stands in overcast.h and docs/reference/abi.md,
-// and any call may be made through the table as well.
+// It adds no more than that: overcast.h and docs/reference/abi.md say what a call does and
+// promises, and any call may be made through the table as well.
 #pragma once
 
 #include "overcast.h"

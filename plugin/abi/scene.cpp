@@ -77,7 +77,7 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
             if (!created->config.saved && created->config.saved_bytes)
                 invalid("ovc_scene_config.saved is NULL, but saved_bytes is not 0");
         }
-        // What is known to be impossible before anything is added is refused now.
+        // A config that no scene can have is refused now, before anything is added.
         check_config(created->config, device->gl->info());
         ++device->scenes;
         *scene = created.release();

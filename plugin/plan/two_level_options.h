@@ -43,7 +43,7 @@ inline constexpr uint64_t kMaxUncutBytesPerTriangle = 128;
 /// anything is built, and every larger budget works too.
 struct SmallestCut {
     uint32_t leaf_triangles = 1;
-    uint64_t pool_bytes = 0; // max of portals, tree and the largest page together
+    uint64_t pool_bytes = 0; // upper bound of portals, tree and largest page together
 };
 SmallestCut smallest_cut(const Soup& soup, const Placed& placed, const TwoLevelOptions& options);
 
