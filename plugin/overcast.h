@@ -37,7 +37,7 @@ typedef enum ovc_result {
     OVC_ERROR_OUT_OF_MEMORY = 5,
     OVC_ERROR_DEVICE_LOST = 6,
     OVC_ERROR_INTERNAL = 7,
-    OVC_ERROR_CANCELLED = 8 /* a function of the caller's asked for it */
+    OVC_ERROR_CANCELLED = 8 /* a caller's function, cancel, release or destroy_scene asked for it */
 } ovc_result;
 
 #define OVC_NONE 0xffffffffu
@@ -53,8 +53,8 @@ typedef struct ovc_ray {
     double t_max;
 } ovc_ray;
 
-/* The same in half the bytes, where ovc_query.ray_format says so; what it holds is taken as the doubles that it is, and answers are
- * the same bits as for a ray of those. 32 bytes. */
+/* The same in half the bytes, where ovc_query.ray_format says so. Its floats are taken as doubles,
+ * and answers are the same bits as for an ovc_ray of these. 32 bytes. */
 typedef struct ovc_ray_float {
     float org[3];
     float t_min;
@@ -85,12 +85,14 @@ typedef struct ovc_triangle {
 
 typedef enum ovc_log_level { OVC_LOG_ERROR = 0, OVC_LOG_WARNING = 1, OVC_LOG_INFO = 2 } ovc_log_level;
 
-/* One sentence without a line end; valid during the call only. May come from the device's thread. */
+/* Takes a message of one sentence without a line end, valid during the call only. It may be called
+ * on the device's thread. */
 typedef void (*ovc_log_function)(void* user, ovc_log_level level, const char* message);
 
-/* A call has failed: with this code, and with the sentence that last_error() has from now on; valid during the call only. Called on
- * the thread whose call it is, before that call returns and in the caller's floating-point mode; from several threads at once, where
- * several calls fail. May call last_error, and nothing else; must not throw. */
+/* Takes the code of a call that has failed, and the sentence that last_error() has from now on,
+ * valid during the call only. It is called on the thread whose call it is, before that call returns
+ * and in the caller's floating-point mode; from several threads at once, where several calls fail.
+ * It may call last_error and nothing else, and must not throw. */
 typedef void (*ovc_error_function)(void* user, ovc_result result, const char* message);
 
 typedef struct ovc_device_config {
@@ -98,11 +100,11 @@ typedef struct ovc_device_config {
     const char* name; /* NULL: the first GPU, else the software renderer. A number as listed, or a part of the renderer's name, any case */
     ovc_log_function log; /* NULL: silent */
     void* log_user;
-    ovc_error_function error; /* NULL: nobody is told. Every call on the device and its scenes that fails, and its own create_device */
+    ovc_error_function error; /* NULL: nobody is told. Else told of all calls on the device and its scenes that fail, create_device too */
     void* error_user;
 } ovc_device_config;
 
-/* The struct_size of an earlier header is fine: what it lacks is not filled in. */
+/* The struct_size of an earlier header is fine: fields that it lacks are not filled in. */
 typedef struct ovc_device_info {
     size_t struct_size;
     char renderer[128]; /* GL_RENDERER, as the driver says it */
@@ -128,8 +130,9 @@ typedef enum ovc_kernel {
     OVC_KERNEL_COMPUTE = 2
 } ovc_kernel;
 
-/* Experimental: the numbers stay, what is behind those but 0 may change. libovercast.so has two-level alone. libovercast-thesis.so,
- * of the same ABI, has the others, which two-level is compared with; 1 to 5 keep the whole scene in GPU memory at once. */
+/* Experimental: the numbers stay, but the structures other than 0 may change. libovercast.so has
+ * two-level alone. libovercast-thesis.so, of the same ABI, has the others, which two-level is
+ * compared with; 1 to 5 keep the whole scene in GPU memory at once. */
 typedef enum ovc_structure {
     OVC_STRUCTURE_TWO_LEVEL = 0,
     OVC_STRUCTURE_SINGLE_TEXTURE = 1, /* one BVH in one texture of at most 4096 x 4096 texels */
@@ -143,25 +146,27 @@ typedef enum ovc_structure {
 /* Experimental: level 1 of OVC_STRUCTURE_THESIS_TWO_LEVEL. */
 typedef enum ovc_level1 { OVC_LEVEL1_KD_TREE = 0, OVC_LEVEL1_GRID = 1, OVC_LEVEL1_BVH = 2 } ovc_level1;
 
-/* Experimental: how it is built. */
+/* Experimental: how that level 1 is built. */
 typedef enum ovc_level1_build {
     OVC_LEVEL1_BUILD_TOP_DOWN = 0, /* cut until leaves are small enough */
     OVC_LEVEL1_BUILD_BOTTOM_UP = 1 /* the leaves of a complete tree merged while they are small enough; not for a grid */
 } ovc_level1_build;
 
-/* Takes the next `size` bytes of what is saved. 0: go on; anything else: stop. */
+/* Takes the next `size` bytes that are saved. Returns 0 to go on, anything else to stop. */
 typedef int (*ovc_write_function)(void* user, const void* bytes, size_t size);
 
-/* How far a commit or a plan is: done from 0 to 1, never less than before; stage: what is being done, valid during the call only.
- * Called fifty times a second at most, from any thread, but never from two at once. Must return soon and call nothing on the
- * scene. 0: go on; anything else: stop, and the call returns OVC_ERROR_CANCELLED within a tenth of a second or so. */
+/* Takes how far a commit, a plan or a call with rays is. done: from 0 to 1, never less than before;
+ * stage: names the work under way, valid during the call only. It is called fifty times a second at
+ * most, from any thread, but never from two at once. It must return soon and call nothing on the
+ * scene. It returns 0 to go on, anything else to stop: the call then returns OVC_ERROR_CANCELLED
+ * within a tenth of a second or so. */
 typedef int (*ovc_progress_function)(void* user, double done, const char* stage);
 
 /* Fields are only ever appended; the struct_size of an earlier header is fine, and what it lacks is the default. */
 typedef struct ovc_scene_config {
     size_t struct_size;
     uint64_t gpu_memory_bytes; /* the budget: pages, rays and hits together stay below it. 0: the device's default */
-    uint64_t leaf_triangles;   /* most triangles a level-1 leaf holds. 0: a tenth of the scene or less; one leaf where that fits and rays gain by it */
+    uint64_t leaf_triangles;   /* max triangles of a level-1 leaf. 0: a tenth of the scene or less; one leaf where that fits and rays gain by it */
     uint32_t leaves;           /* instead of leaf_triangles: about this many leaves. 0: as leaf_triangles says */
     uint32_t precision;        /* ovc_precision */
     uint32_t kernel;           /* ovc_kernel */
@@ -170,11 +175,12 @@ typedef struct ovc_scene_config {
     uint32_t level1_build;     /* ovc_level1_build; 0 for all other structures */
     ovc_progress_function progress; /* NULL: silent, and not to be stopped */
     void* progress_user;
-    uint32_t tell_active; /* experimental. 1: active() tells which pages rays go through; tracing takes up to half as long again. Not for all structures. 0 */
+    uint32_t tell_active; /* experimental. 1: active() tells which pages rays go through, and tracing takes up to half as long again; not for all structures. 0: off */
     uint32_t reserved;    /* 0 */
-    /* What save() wrote of a scene with the same meshes, so that commit need not build: NULL or its bytes, aligned to 64, valid and
-     * unchanged until the scene is destroyed; a mapped file will do. Commit checks them: where they are damaged, or of other meshes
-     * or options, it builds, and the device's log says why. Answers are the same bits either way. */
+    /* NULL, or the bytes that save() wrote of a scene with the same meshes, so that commit need not
+     * build. They are aligned to 64, valid and unchanged until the scene is destroyed; a mapped
+     * file will do. Commit checks them: where they are damaged, or of other meshes or options, it
+     * builds, and the device's log says why. Answers are the same bits either way. */
     const void* saved;
     uint64_t saved_bytes;
 } ovc_scene_config;
@@ -201,7 +207,8 @@ typedef struct ovc_mesh {
     const double* transform;  /* 12 finite numbers, or NULL: as in ovc_instance; applied after origin is added */
 } ovc_mesh;
 
-/* A mesh that is there once more, somewhere else. It has a number of its own, which its hits tell, and the prims of its mesh.
+/* A mesh placed once more, somewhere else. It has a number of its own, which its hits name, and the
+ * prims of its mesh.
  *
  * transform: three rows of four numbers. A corner (x, y, z) of the mesh comes to lie at ((r0 x + r1 y) + r2 z) + r3 for each row r,
  * in doubles, every operation rounded; and there it is, in certified precision, to the last bit. So tiles whose corners these sums
@@ -210,8 +217,9 @@ typedef struct ovc_mesh {
  * turns the other side out. A singular one flattens: triangles left without area are dropped and counted, as are those that
  * overflow.
  *
- * What it costs: positions and pages are kept once, for all instances, and each adds some 250 bytes to what leads there. But instances
- * of small meshes, and of transforms that doubles cannot invert well enough, are built as if they were meshes of their own. */
+ * What it costs: positions and pages are kept once, for all instances, and each adds some 250 bytes
+ * to the top-level tree. But instances of small meshes, and of transforms that doubles cannot
+ * invert well enough, are built as if they were meshes of their own. */
 typedef struct ovc_instance {
     size_t struct_size;
     uint32_t mesh;           /* the number of a mesh added before, or of an instance: then that one's transform comes first, in one product of both */
@@ -229,16 +237,19 @@ typedef struct ovc_query {
     uint32_t* flagged; /* ray_count, or NULL: 1 where the kernel was not certain and doubles decided; else 0 */
     uint32_t ray_format; /* ovc_ray_format */
     uint32_t reserved;   /* 0 */
-    /* NULL, or asked each twentieth of a second or so of intersect and occluded, also while they wait for their turn on the scene; not
-     * for single rays and push. done: the share of rays that is answered; stage: "rays". It runs on the thread that called, of a
-     * submitted call on one of the library's. Not 0: the call ends within a tenth of a second or so with OVC_ERROR_CANCELLED, and its
-     * answers are undefined. Structures but two-level ask before the first ray only. */
+    /* NULL, or asked each twentieth of a second or so by intersect and occluded, also while they
+     * wait for their turn on the scene; not for single rays and push. done: the share of rays that
+     * is answered; stage: "rays". It runs on the thread that called; for a submitted call, on one
+     * of the library's. Where it does not return 0, the call ends within a tenth of a second or so
+     * with OVC_ERROR_CANCELLED, and its answers are undefined. Structures other than two-level ask
+     * before the first ray only. */
     ovc_progress_function progress;
     void* progress_user;
 } ovc_query;
 
-/* What commit would make of the meshes added so far, told without making it. Numbers of leaves, bytes and pages are estimates:
- * within 10 % of what commit then makes, or one whole leaf or page. The smallest budget is exact. */
+/* The scene that commit would make of the meshes added so far, told without making it. Numbers of
+ * leaves, bytes and pages are estimates: within 10 % of what commit then makes, or one whole leaf
+ * or page. The smallest budget is exact. */
 typedef struct ovc_plan {
     size_t struct_size;
     uint64_t triangles;            /* added */
@@ -246,7 +257,7 @@ typedef struct ovc_plan {
     uint64_t leaves;
     uint64_t leaf_references;      /* triangles counted once in each leaf they touch */
     uint64_t level2_bytes;         /* all pages together: to move every page once */
-    uint64_t largest_page_bytes;   /* what it may come to: up to three tenths more than it does */
+    uint64_t largest_page_bytes;   /* an upper estimate: up to three tenths above the true size */
     uint64_t gpu_budget_bytes;
     uint64_t smallest_budget_bytes; /* works, as all larger ones do; commit names the same */
     uint64_t ray_bytes;            /* of the budget, for rays and answers */
@@ -254,10 +265,10 @@ typedef struct ovc_plan {
     uint64_t pool_bytes;           /* of the budget, for pages: what rays and portals leave, and no more than pages take */
     uint64_t resident_pages;       /* pages that are in the pool at once when commit returns */
     uint64_t host_bytes;           /* level 1 and level 2 in host memory */
-    uint64_t batch_rays;           /* most rays a pass */
+    uint64_t batch_rays;           /* max rays a pass */
     uint32_t fits;                 /* 0: the budget is too small; commit would be OVC_ERROR_OUT_OF_BUDGET */
     uint32_t reserved;             /* 0 */
-    double seconds;                /* what it took to tell */
+    double seconds;                /* that this call took */
 } ovc_plan;
 
 /* How a scene stands, and what has been done with it. Fields that are marked + count up from commit
@@ -364,7 +375,7 @@ typedef struct ovc_active {
 typedef struct ovc_stream_answers {
     size_t struct_size;
     size_t count;
-    const uint64_t* tokens;  /* count: what each ray was called when it was pushed */
+    const uint64_t* tokens;  /* count: those that the rays were pushed with */
     const ovc_hit* hits;     /* count, or NULL */
     const uint8_t* occluded; /* count: 1 or 0, or NULL */
 } ovc_stream_answers;
@@ -374,8 +385,8 @@ typedef struct ovc_stream_answers {
 typedef struct ovc_stream_host {
     size_t struct_size;
     void* user;
-    /* Asks for rays that come from no answer, such as camera rays: about `wanted` are welcome. None pushed: there are no more,
-     * and it is not called again. */
+    /* Asks for rays that come from no answer, such as camera rays: about `wanted` are welcome.
+     * Where it pushes none, there are no more, and it is not called again. */
     int (*more)(void* user, ovc_stream stream, size_t wanted);
     int (*answered)(void* user, ovc_stream stream, const ovc_stream_answers* answers);
 } ovc_stream_host;
@@ -396,8 +407,9 @@ typedef struct ovc_api {
     /* Opens a device and its thread. config may be NULL. */
     ovc_result (*create_device)(const ovc_device_config* config, ovc_device* device);
     ovc_result (*describe_device)(ovc_device device, ovc_device_info* info);
-    /* Its scenes must be destroyed before. NULL is nothing to do. Afterwards its handle, and those of the scenes it had, are as
-     * memory that is freed. */
+    /* Closes a device and ends its thread. Its scenes must be destroyed and its tickets released
+     * before. NULL does nothing. Afterwards its handle, and those of the scenes and tickets it had,
+     * are like freed memory. */
     void (*destroy_device)(ovc_device device);
 
     /* config may be NULL. */
@@ -407,13 +419,14 @@ typedef struct ovc_api {
     /* Builds level 1 and level 2. Afterwards the scene takes rays and no more meshes. An empty scene is fine: all rays miss.
      * Where it fails or is cancelled (ovc_scene_config.progress) it leaves nothing behind and may be called again. */
     ovc_result (*commit)(ovc_scene scene);
-    /* Nearest hits of ray_count rays into hits[ray_count]. query may be NULL. */
+    /* Writes the nearest hits of ray_count rays into hits[ray_count]. query may be NULL. */
     ovc_result (*intersect)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits, const ovc_query* query);
-    /* occluded[i] = 1 when ray i hits anything, else 0. query may be NULL. */
+    /* Sets occluded[i] to 1 when ray i hits anything, else to 0. query may be NULL. */
     ovc_result (*occluded)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded, const ovc_query* query);
     ovc_result (*statistics)(ovc_scene scene, ovc_statistics* statistics);
-    /* NULL is nothing to do. A call that is running ends first; those that wait for their turn end with OVC_ERROR_INVALID_STATE.
-     * As long as the device lives, the handle is an error wherever it is used. */
+    /* Destroys a scene. NULL does nothing. A call that is running ends first; those that wait for
+     * their turn end with OVC_ERROR_INVALID_STATE. As long as the device lives, and until it has
+     * destroyed a thousand more scenes, the handle is an error wherever it is used. */
     void (*destroy_scene)(ovc_scene scene);
 
     /* The mixed form: rays of both kinds are under way together, and what the caller pushes joins them before the next leaves are
@@ -425,16 +438,19 @@ typedef struct ovc_api {
     ovc_result (*push)(ovc_stream stream, const ovc_ray* rays, const uint64_t* tokens, size_t ray_count, uint32_t any_hit,
                        const ovc_query* query);
 
-    /* Tells what commit makes, or has made, of the scene; a small part of its work. Before or after it. OVC_ERROR_INVALID_ARGUMENT
-     * for structures that cannot tell. */
+    /* Tells what commit makes, or has made, of the scene, for a small part of its work; before
+     * commit or after it. OVC_ERROR_INVALID_ARGUMENT for structures that cannot tell. */
     ovc_result (*plan)(ovc_scene scene, ovc_plan* plan);
 
-    /* Which pages are active: asked at the end of each picture, its working set. OVC_ERROR_INVALID_ARGUMENT where the scene's
-     * config did not ask for it (tell_active) or its structure cannot tell. Experimental. */
+    /* Counts the pages that are active: asked at the end of each picture, they are its working set.
+     * OVC_ERROR_INVALID_ARGUMENT where the scene's config did not ask for it (tell_active) or its
+     * structure cannot tell. Experimental. */
     ovc_result (*active)(ovc_scene scene, ovc_active* active);
-    /* Hands what commit has built to `write`, front to back in parts of any size, for ovc_scene_config.saved of a later scene with the
-     * same meshes. It is for this version on this kind of machine: whatever else takes it builds anew. OVC_ERROR_CANCELLED where
-     * `write` says so; OVC_ERROR_INVALID_ARGUMENT for structures that cannot be saved. `write` may call nothing on the scene. */
+    /* Hands what commit has built to `write`, front to back in parts of any size, for
+     * ovc_scene_config.saved of a later scene with the same meshes. The bytes are for this version
+     * on this kind of machine: any other builds anew. OVC_ERROR_CANCELLED where `write` says so;
+     * OVC_ERROR_INVALID_ARGUMENT for structures that cannot be saved. `write` may call nothing on
+     * the scene. */
     ovc_result (*save)(ovc_scene scene, ovc_write_function write, void* user);
 
     /* Adds an instance of a mesh. It is numbered as meshes are, in the order that both are added; mesh_id may be NULL. */
@@ -444,11 +460,13 @@ typedef struct ovc_api {
      * is nothing to give back. OVC_ERROR_INVALID_ARGUMENT for structures that cannot. */
     ovc_result (*purge)(ovc_scene scene);
 
-    /* One ray, for renderers that need an answer before they know the next ray: made to be called from many threads at once, beside
-     * all other calls on the scene, none of which it waits for, and from within the functions of a stream. The calling thread walks
-     * the CPU's tree, or what all threads ask is gathered into batches for the GPU, whichever is faster: short trials tell, now and
-     * then while the calls go on. Answers are those of intersect, bit for bit; in OVC_PRECISION_FAST those of doubles where the CPU
-     * answers. query may be NULL; its arrays have one element. For structures but two-level it is intersect of one ray. */
+    /* One ray, for renderers that need an answer before they know the next ray: made to be called
+     * from many threads at once, beside all other calls on the scene, none of which it waits for,
+     * and from within the functions of a stream. The calling thread walks the CPU's tree, or what
+     * all threads ask is gathered into batches for the GPU, whichever is faster: short trials tell,
+     * now and then while the calls go on. Answers are those of intersect, bit for bit; in
+     * OVC_PRECISION_FAST those of doubles where the CPU answers. query may be NULL; its arrays have
+     * one element. For structures other than two-level it is intersect of one ray. */
     ovc_result (*intersect1)(ovc_scene scene, const ovc_ray* ray, ovc_hit* hit, const ovc_query* query);
     /* The same for occlusion: *occluded = 1 when the ray hits anything, else 0. */
     ovc_result (*occluded1)(ovc_scene scene, const ovc_ray* ray, uint8_t* occluded, const ovc_query* query);
@@ -462,17 +480,19 @@ typedef struct ovc_api {
                                    ovc_ticket* ticket);
     ovc_result (*submit_occluded)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded, const ovc_query* query,
                                   ovc_ticket* ticket);
-    /* Returns when the ticket is done, with what the call came to: OVC_OK, or its error, whose sentence last_error() then has.
-     * OVC_ERROR_CANCELLED: cancelled; the answers are undefined. As often as wished, from any thread; but from within the scene's
+    /* Returns when the ticket is done, with the result of its call: OVC_OK, or an error, whose
+     * sentence last_error() then has. OVC_ERROR_CANCELLED: it was cancelled, and the answers are
+     * undefined. It may be called as often as wished, from any thread; but from within the scene's
      * stream, which it would wait for, it is OVC_ERROR_INVALID_STATE. */
     ovc_result (*wait)(ovc_ticket ticket);
-    /* Whether the ticket is done, without waiting: *done = 1 or 0. progress: NULL, or set to the share of rays answered, from 0 to
-     * 1. Errors are those of this call; what the ticket came to is what wait() returns. */
+    /* Whether the ticket is done, without waiting: *done = 1 or 0. progress: NULL, or set to the
+     * share of rays answered, from 0 to 1. Errors are those of poll itself; wait() returns the
+     * result of the ticket's call. */
     ovc_result (*poll)(ovc_ticket ticket, uint32_t* done, double* progress);
     /* Asks for an end, and does not wait for it: a ticket that has not begun is done at once, one under way after its pass, both
      * with OVC_ERROR_CANCELLED; one that is done, or just getting done, stays as it is. */
     ovc_result (*cancel)(ovc_ticket ticket);
-    /* Cancels the ticket, waits until it is done, and forgets it. NULL is nothing to do. */
+    /* Cancels the ticket, waits until it is done, and forgets it. NULL does nothing. */
     void (*release)(ovc_ticket ticket);
 } ovc_api;
 
@@ -482,7 +502,8 @@ typedef struct ovc_api {
 #define OVC_EXPORT __attribute__((visibility("default")))
 #endif
 
-/* The table for this version of the ABI, or NULL when the library does not have it. Owned by the library. */
+/* Returns the table for this version of the ABI, or NULL when the library does not have it. The
+ * library owns it. */
 OVC_EXPORT const ovc_api* ovc_get_api(uint32_t abi_version);
 typedef const ovc_api* (*ovc_get_api_function)(uint32_t abi_version);
 

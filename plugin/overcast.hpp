@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // overcast.h for C++20: owners for its handles, spans for its buffers, exceptions for its errors.
-// No more than that: what a call does and promises stands in overcast.h and docs/reference/abi.md,
-// and any call may be made through the table as well.
+// It adds no more than that: overcast.h and docs/reference/abi.md say what a call does and
+// promises, and any call may be made through the table as well.
 #pragma once
 
 #include "overcast.h"
@@ -21,7 +21,8 @@
 
 namespace overcast {
 
-/// A call that did not return OVC_OK: its code, and what() is the sentence of last_error().
+/// Thrown for a call that did not return OVC_OK: code() is its result, what() the sentence of
+/// last_error().
 class Error : public std::runtime_error {
 public:
     Error(ovc_result code, const std::string& message) : std::runtime_error(message), code_(code) {}
@@ -31,7 +32,7 @@ private:
     ovc_result code_;
 };
 
-/// A struct of overcast.h with its struct_size set and all else the default.
+/// Returns a struct of overcast.h with its struct_size set and all else the default.
 template <class T>
 T make() {
     T value{};
@@ -42,7 +43,8 @@ T make() {
 /// Three rows of four, as in ovc_instance.
 using Transform = std::array<double, 12>;
 
-/// The table of the library that the program is linked with. Throws where that is too old.
+/// Returns the table of the library that the program is linked with. Throws an Error where the
+/// library is too old.
 inline const ovc_api& linked_api() {
     if (const ovc_api* api = ovc_get_api(OVC_ABI_VERSION))
         return *api;
@@ -61,7 +63,7 @@ public:
         handle_ = {created, Destroy{&api}};
     }
 
-    /// All there are.
+    /// Returns all devices that there are.
     static std::vector<ovc_device_info> list(const ovc_api& api = linked_api()) {
         uint32_t count = 0;
         ovc_result result = api.list_devices(nullptr, 0, &count);
@@ -81,7 +83,7 @@ public:
 
     ovc_device get() const { return handle_.get(); }
     const ovc_api& api() const { return *api_; }
-    /// Throws unless it is OVC_OK: for calls through the table, on this thread.
+    /// Throws an Error unless the result is OVC_OK. For calls through the table, on this thread.
     void check(ovc_result result) const {
         if (result != OVC_OK)
             throw Error(result, api_->last_error(get()));
@@ -113,20 +115,21 @@ private:
     ovc_stream handle_;
 };
 
-/// A call that was submitted. Its buffers stay as they are until it is done. Destroying it cancels
-/// the call and waits until it has ended. Move-only; before the device is destroyed.
+/// A call that was submitted. Its buffers must stay as they are until it is done. Destroying the
+/// Ticket cancels the call and waits until it has ended, and must come before the device is
+/// destroyed. Move-only.
 class Ticket {
 public:
     Ticket(const Device& device, ovc_ticket handle)
         : device_(&device), handle_(handle, Release{&device.api()}) {}
-    /// Throws what the call came to.
+    /// Returns when the call is done; throws its Error where it failed.
     void wait() const { device_->check(device_->api().wait(get())); }
     bool done() const {
         uint32_t done = 0;
         device_->check(device_->api().poll(get(), &done, nullptr));
         return done != 0;
     }
-    /// The share of rays answered, from 0 to 1.
+    /// Returns the share of rays answered, from 0 to 1.
     double progress() const {
         uint32_t done = 0;
         double share = 0;
@@ -145,7 +148,7 @@ private:
     std::unique_ptr<ovc_ticket_t, Release> handle_;
 };
 
-/// Owns a scene. The device stays where it is, and outlives it. Move-only.
+/// Owns a scene. The Device must outlive it and must not be moved meanwhile. Move-only.
 class Scene {
 public:
     explicit Scene(const Device& device, const ovc_scene_config& config = make<ovc_scene_config>())
@@ -155,14 +158,14 @@ public:
         handle_ = {created, Destroy{&api()}};
     }
 
-    /// Its number.
+    /// Returns the number of the mesh.
     uint32_t add(const ovc_mesh& mesh) {
         uint32_t number = OVC_NONE;
         check(api().add_mesh(get(), &mesh, &number));
         return number;
     }
-    /// positions: 3 numbers a vertex, float or double. indices: 3 a triangle; none: three vertices
-    /// after each other are one.
+    /// Returns the number of the mesh. positions: 3 numbers a vertex, float or double. indices: 3 a
+    /// triangle; none: three vertices after each other are a triangle.
     template <class Number>
     uint32_t add(std::span<const Number> positions, std::span<const uint32_t> indices = {},
                  uint32_t flags = 0) {
@@ -208,7 +211,7 @@ public:
         same_number("occluded", rays.size(), occluded.size());
         check(api().occluded(get(), rays.data(), rays.size(), occluded.data(), query));
     }
-    /// One ray; from any number of threads at once.
+    /// Answers one ray. Any number of threads may call it at once.
     ovc_hit intersect1(const ovc_ray& ray, const ovc_query* query = nullptr) const {
         ovc_hit hit;
         check(api().intersect1(get(), &ray, &hit, query));
@@ -220,7 +223,7 @@ public:
         return occluded != 0;
     }
 
-    /// The same on a thread of the library's; see ovc_api.submit_intersect.
+    /// As intersect(), but returns at once; see ovc_api.submit_intersect.
     [[nodiscard]] Ticket submit_intersect(std::span<const ovc_ray> rays, std::span<ovc_hit> hits,
                                           const ovc_query* query = nullptr) const {
         same_number("submit_intersect", rays.size(), hits.size());
@@ -237,8 +240,8 @@ public:
         return Ticket(*device_, ticket);
     }
 
-    /// more(Stream&, wanted), answered(Stream&, const ovc_stream_answers&): what they throw stops
-    /// the stream and is thrown here.
+    /// Calls more(Stream&, wanted) and answered(Stream&, const ovc_stream_answers&) as
+    /// ovc_stream_host says. An exception of theirs stops the stream and is thrown here.
     template <class More, class Answered>
     void stream(More&& more, Answered&& answered) const {
         StreamHost<More, Answered> host{more, answered, *device_};
@@ -262,7 +265,7 @@ public:
     ovc_statistics statistics() const { return told<ovc_statistics>(api().statistics); }
     ovc_active active() const { return told<ovc_active>(api().active); }
     void purge() const { check(api().purge(get())); }
-    /// For ovc_scene_config.saved of a later scene.
+    /// Returns the bytes for ovc_scene_config.saved of a later scene.
     std::vector<std::byte> save() const {
         std::vector<std::byte> bytes;
         const auto append = [](void* user, const void* from, size_t size) {
@@ -286,7 +289,7 @@ private:
         const ovc_api* api;
         void operator()(ovc_scene scene) const { api->destroy_scene(scene); }
     };
-    /// What throws must not cross C: it is kept until stream() is back.
+    /// Keeps an exception until stream() is back, because it must not cross C.
     template <class More, class Answered>
     struct StreamHost {
         std::remove_reference_t<More>& more;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ovc_query.progress as a structure asks it: as rays go on, but fifty times a second at most.
+// AskedProgress: asks ovc_query.progress whether a call goes on, fifty times a second at most.
 #pragma once
 
 #include "plugin/abi/float_mode.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// CallsInside: how many calls are inside a handle, so that whoever destroys it can wait for them.
+// CallsInside: counts the calls inside a handle, so that a thread can wait for them before it
+// destroys the handle.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 
 namespace ovc {
 
-/// Counted in shards, so that many threads with short calls do not write to one cache line.
+/// It counts in shards, so that many threads with short calls do not write to one cache line.
 class CallsInside {
     struct alignas(64) Shard {
         std::atomic<int> inside{0};
@@ -33,8 +34,8 @@ public:
         return std::all_of(shards_.begin(), shards_.end(),
                            [](const Shard& shard) { return shard.inside == 0; });
     }
-    /// Returns when no call is inside. The caller sees to it that those who come find the handle
-    /// closed.
+    /// Returns when no call is inside. The caller has closed the handle, so that later calls turn
+    /// back at once.
     void wait_until_none() const {
         while (!none())
             std::this_thread::sleep_for(std::chrono::microseconds(100));

@@ -14,8 +14,8 @@
 namespace ovc {
 namespace {
 
-/// The last message of a thread that has no device to keep it; cut where it is too long. Trivial,
-/// as in_host_function.
+/// Keeps the last message of a thread where no device does, and cuts it where it is too long. It is
+/// trivial for the same reason as in_host_function.
 class ThreadMessage {
 public:
     void set(ovc_result, const std::string& text) {
@@ -38,7 +38,7 @@ void copy(char (&to)[N], const std::string& from) {
     to[length] = '\0';
 }
 
-/// All that an info of this header or of an earlier one has room for.
+/// Fills in the fields that `to`, an info of this header or of an earlier one, has room for.
 void fill(ovc_device_info& to, const DeviceInfo& from) {
     const size_t size = to.struct_size;
     check_size<ovc_device_info>("ovc_device_info", size, offsetof(ovc_device_info, is_tested));
@@ -117,7 +117,7 @@ ovc_result list_devices(ovc_device_info* infos, uint32_t capacity, uint32_t* cou
         const Result<std::vector<DeviceInfo>> found = list_on_own_thread();
         if (!found)
             throw no_device_for(found.error());
-        // Infos of an earlier header are smaller, and lie as near to each other.
+        // Infos of an earlier header are smaller, and the caller's array of them is dense.
         auto* info = reinterpret_cast<std::byte*>(infos);
         for (uint32_t i = 0; i < std::min<size_t>(capacity, found->size()); ++i) {
             auto& to = *reinterpret_cast<ovc_device_info*>(info);
@@ -142,7 +142,7 @@ ovc_result create_device(const ovc_device_config* given, ovc_device* device) {
             created->log = [log = config.log, user = config.log_user](LogLevel level,
                                                                       const std::string& text) {
                 if (in_host_function)
-                    return; // what a call from within such a function says is its code
+                    return; // a call from within such a function only returns its code
                 const HostFunction mark;
                 log(user, ovc_log_level(level), printable(text).c_str());
             };
@@ -187,7 +187,7 @@ void destroy_device(ovc_device device) {
     if (refused() || !device->magic.compare_exchange_strong(alive, kDestroyed))
         return;
     device->calls.wait_until_none();
-    if (refused()) { // one of them has made a scene
+    if (refused()) { // a call that was inside has made a scene or a ticket
         device->magic = kDeviceMagic;
         return;
     }

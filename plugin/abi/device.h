@@ -14,8 +14,9 @@ ovc_result create_device(const ovc_device_config* config, ovc_device* device);
 ovc_result describe_device(ovc_device device, ovc_device_info* info);
 void destroy_device(ovc_device device);
 
-/// Not null, of a device that lives, and not of the process that this one was forked from; else
-/// there is a message for last_error(NULL), which begins with the name of the call.
+/// Returns whether the handle is that of a device that lives and belongs to this process, not to
+/// the one that this was forked from. If not, it records a message for last_error(NULL) that begins
+/// with the name of the call.
 bool is_device(ovc_device device, const char* call);
 /// Records a message for last_error(NULL) and returns the code.
 ovc_result fail_without_device(ovc_result code, const std::string& message);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every function of the table that works on a device begins and ends with.
+// on_device(): the frame of every function of the table that works on a device.
 #pragma once
 
 #include "core/text/format_text.h"
@@ -8,7 +8,7 @@
 
 namespace ovc {
 
-/// body() while the device cannot go away.
+/// Runs body() while the device cannot be destroyed; guard() turns what it throws into a code.
 template <class Body>
 ovc_result on_device(ovc_device device, const char* call, Body&& body) {
     if (!is_device(device, call))

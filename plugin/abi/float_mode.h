@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The floating-point mode of a thread: the library's own inside a call, the host's outside of it
-// and in its functions.
+// Sets the floating-point mode of a thread: the library's own inside a call, the host's outside of
+// calls and in the host's functions.
 #pragma once
 
 #if defined(__SSE2__)
@@ -12,8 +12,8 @@
 namespace ovc {
 
 #if defined(__SSE2__)
-/// MXCSR: nothing of ours is computed in x87 registers, and <cfenv>, which saves those as well,
-/// would take a tenth of the time of a single ray.
+/// The mode is MXCSR alone: the library computes nothing in x87 registers, and <cfenv>, which saves
+/// those as well, would take a tenth of the time of a single ray.
 using FloatMode = unsigned;
 inline FloatMode float_mode() {
     return _mm_getcsr();
@@ -43,8 +43,8 @@ inline void set_default_float_mode() {
 }
 #endif
 
-/// The host's mode replaced by the default while this lives: proofs about rounding hold in no
-/// other.
+/// Replaces the host's mode by the default while it lives, because the proofs about rounding hold
+/// in no other mode.
 class DefaultFloatMode {
 public:
     DefaultFloatMode() { set_default_float_mode(); }
@@ -55,8 +55,8 @@ private:
     const FloatMode host_ = float_mode();
 };
 
-/// Made before the library sets its mode, to call functions of the host in the mode that the host
-/// had, and may change there.
+/// Calls functions of the host in the host's own mode, which they may change. It must be made
+/// before the library sets its mode.
 class HostFloatMode {
 public:
     template <class Function>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the opaque handles of overcast.h point to, and how failures become result codes.
+// The structs that the opaque handles of overcast.h point to, and guard(), which turns failures
+// into result codes.
 #pragma once
 
 #include "core/soup.h"
@@ -30,11 +31,11 @@
 
 namespace ovc {
 
-/// The last message per thread, and who is told of each.
+/// Keeps the last message of each thread, and tells the host's function of each.
 class Messages {
 public:
-    /// Before any call fails. The function is the host's: it may ask for the message, on any
-    /// thread.
+    /// Sets the host's function (NULL: none), before any call fails. It runs on the thread of the
+    /// call that fails, and may ask for the message.
     void tell(ovc_error_function function, void* user) {
         function_ = function;
         user_ = user;
@@ -71,7 +72,8 @@ class RayStream;
 
 } // namespace ovc
 
-/// What push() is called with: part of its scene, so that a handle kept too long is still an error.
+/// The handle that push() takes. It is part of its scene, so that a push() after the stream's end
+/// is an error and no access to freed memory.
 struct ovc_stream_t {
     std::atomic<uint32_t> magic{0}; // kStreamMagic while stream() runs
     ovc_scene scene = nullptr;
@@ -93,7 +95,7 @@ struct ovc_scene_t {
     ovc::Turn turn; // calls on one scene wait here
     ovc_scene_config config{sizeof(ovc_scene_config)};
     ovc::Soup soup;
-    std::map<uint32_t, ovc::Chunk> templates;  // by number; each an empty chunk of the soup
+    std::map<uint32_t, ovc::Chunk> templates;  // by number; the soup has an empty chunk for each
     std::unique_ptr<ovc::Structure> structure; // set by commit
     ovc::Submissions submissions;
     ovc::SingleRays single_rays{turn, streaming};
@@ -103,8 +105,8 @@ struct ovc_scene_t {
 
 namespace ovc {
 
-/// The handles that a device had last, empty: they are still told from others, so that a thread
-/// that comes too late gets an error.
+/// Keeps the handles that a device has destroyed last, emptied, so that a thread that comes too
+/// late with one of them gets an error.
 template <class Handle>
 class DestroyedHandles {
 public:
@@ -139,8 +141,9 @@ struct ovc_device_t {
 
 namespace ovc {
 
-/// Runs body; whatever it throws becomes a code, and a message in `messages`: something with set(),
-/// which is called in the host's floating-point mode and may throw for want of memory.
+/// Runs body() in the default floating-point mode. Returns OVC_OK, or the code of what body()
+/// throws, whose message goes to messages.set(code, message) in the host's floating-point mode
+/// and may throw for want of memory.
 template <class Keeper, class Body>
 ovc_result told_result(Keeper& messages, Body&& body) {
     const auto fail = [&](ovc_result code, const std::string& message) {
@@ -161,7 +164,7 @@ ovc_result told_result(Keeper& messages, Body&& body) {
     } catch (const std::bad_alloc&) {
         return fail(OVC_ERROR_OUT_OF_MEMORY, "out of host memory");
     } catch (const std::system_error& e) {
-        // What the system refuses us is a thread, for want of memory or by a limit.
+        // The system refuses a thread, for want of memory or because of a limit.
         if (e.code() == std::errc::resource_unavailable_try_again ||
             e.code() == std::errc::not_enough_memory)
             return fail(OVC_ERROR_OUT_OF_MEMORY,

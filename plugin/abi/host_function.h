@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions that a host hands in for logs, progress and what is saved: while one runs, the
-// plugin is in the middle of something, often with locks taken, and answers no call of that thread.
+// HostFunction: marks a thread while it runs a function that the host has handed in for errors,
+// logs, progress or saved bytes. Meanwhile the plugin is in the middle of something, often with
+// locks taken, and answers no call of that thread.
 #pragma once
 
 namespace ovc {
 
-/// Whether this thread is inside such a function. Trivial, as all that is thread_local here: when a
-/// thread of the host's ends, no code of ours runs.
+/// Whether this thread is inside such a function. It is trivial, as all that is thread_local here
+/// must be, so that none of our code runs when a thread of the host ends.
 inline constinit thread_local bool in_host_function = false;
 
 /// Marks the thread while it lives.

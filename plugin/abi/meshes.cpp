@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes and their instances: checked, and made into chunks of the soup.
+// add_mesh and add_instance: check what is added, and make a chunk of the soup of it.
 #include "core/text/format_text.h"
 #include "plugin/abi/scene.h"
 #include "plugin/abi/scene_call.h"
@@ -49,7 +49,8 @@ void check_counts(const ovc_mesh& mesh) {
                             triangles));
 }
 
-/// The struct with its stride filled in, in order but for its indices.
+/// Returns the struct with its stride filled in. Throws a Failure for anything wrong in it, except
+/// for indices, which copied_corners() checks.
 ovc_mesh checked(const ovc_mesh* given) {
     ovc_mesh mesh = whole("ovc_mesh", given, offsetof(ovc_mesh, positions_double));
     const uint32_t packed = mesh.positions_double ? 24 : 12;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What calls with rays take besides: ovc_query of this header or of an earlier one, and the rays as
-// it says that they are.
+// Reads ovc_query, of this header or of an earlier one, and the rays in the format that it names.
 #pragma once
 
 #include "core/ray_span.h"
@@ -18,7 +17,8 @@ static_assert(sizeof(ovc_ray_float) == sizeof(FloatRay) &&
               offsetof(ovc_ray_float, dir) == offsetof(FloatRay, dir) &&
               offsetof(ovc_ray_float, t_max) == offsetof(FloatRay, t_max));
 
-/// The caller's query, whole: what it lacks, or all of it, is the default.
+/// Returns the caller's query with defaults for the fields that it lacks, or for all where it is
+/// NULL. Throws a Failure for a query that is wrong.
 inline ovc_query complete(const ovc_query* query) {
     ovc_query all{};
     all.struct_size = sizeof(all);
@@ -43,14 +43,14 @@ inline RaySpan rays_of(const ovc_query& query, const ovc_ray* rays, size_t ray_c
     return RaySpan(std::span(reinterpret_cast<const Ray*>(rays), ray_count));
 }
 
-/// The triangles that rays do not see; empty for none.
+/// Returns the triangle that each ray does not see; empty where there are none.
 inline std::span<const TriangleId> skip_of(const ovc_query& query, size_t ray_count) {
     if (!query.skip)
         return {};
     return {reinterpret_cast<const TriangleId*>(query.skip), ray_count};
 }
 
-/// What else is to be told of rays.
+/// Returns the caller's buffers for notes on rays; each of the spans may be empty.
 inline RayNotes notes_of(const ovc_query& query, size_t ray_count) {
     const auto span = [&](uint32_t* notes) {
         return notes ? std::span(notes, ray_count) : std::span<uint32_t>();

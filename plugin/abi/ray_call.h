@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A call of intersect or occluded, whether it is waited for or submitted: its arguments checked,
-// then traced.
+// RayCall: a call of intersect or occluded, whether it is waited for or submitted, whose arguments
+// have been checked.
 #pragma once
 
 #include "core/text/format_text.h"
 #include "plugin/abi/query_call.h"
 
+#include <cassert>
 #include <cstdint>
 
 namespace ovc {
@@ -15,8 +16,8 @@ struct RayCall {
     bool any_hit = false;
     ovc_query query{};
     RaySpan rays;
-    std::span<Hit> hits;         // where not any_hit
-    std::span<uint8_t> occluded; // where any_hit
+    std::span<Hit> hits;         // one per ray, unless any_hit
+    std::span<uint8_t> occluded; // one per ray, if any_hit
 };
 
 inline void check_buffers(const char* name, const void* rays, const void* answers, size_t count) {
@@ -38,8 +39,8 @@ struct BufferRange {
     }
 };
 
-/// Refuses an answer that would be written over rays that are still to be read, or over another
-/// answer.
+/// Throws a Failure where an answer would be written over rays that are still to be read, or over
+/// another answer.
 inline void check_apart(const char* name, const void* rays, const void* answers,
                         size_t answer_bytes, size_t count, const ovc_query& query) {
     const size_t ray_bytes =
@@ -60,7 +61,7 @@ inline void check_apart(const char* name, const void* rays, const void* answers,
                                     b.name));
 }
 
-/// Throws a Failure for arguments that make no sense.
+/// Returns a call for the nearest hits. Throws a Failure for arguments that make no sense.
 inline RayCall nearest_call(const char* name, const ovc_ray* rays, size_t count, ovc_hit* hits,
                             const ovc_query* query) {
     check_buffers(name, rays, hits, count);
@@ -91,8 +92,10 @@ inline void check_notes(const RayCall& call, const Structure& structure) {
                             call.name));
 }
 
-/// With the scene's turn. watch: nullptr, or asked between passes. Throws a Failure.
+/// Answers the call, for a thread that has the scene's turn. watch: nullptr, or asked as the rays
+/// go on. Throws a Failure.
 inline void trace(const RayCall& call, Structure& structure, TraceWatch* watch) {
+    assert((call.any_hit ? call.occluded.size() : call.hits.size()) == call.rays.size());
     check_notes(call, structure);
     const auto skip = skip_of(call.query, call.rays.size());
     const CallWatch::Scope watched(structure.call_watch(), watch);

@@ -22,7 +22,8 @@ void check_choice(const char* field, uint32_t value, uint32_t last) {
                             last ? "0 to " : "", last));
 }
 
-/// body(progress), told to the config's function; body's Cancelled becomes a code.
+/// Runs body(progress), where progress tells the config's function, or is null where there is none.
+/// Turns body's Cancelled into a Failure.
 template <class Body>
 void with_progress(const ovc_scene_config& config, const char* call, Body&& body) {
     if (!config.progress) {
@@ -77,7 +78,7 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
             if (!created->config.saved && created->config.saved_bytes)
                 invalid("ovc_scene_config.saved is NULL, but saved_bytes is not 0");
         }
-        // Known to be impossible before anything is added: say so now.
+        // A config that no scene can have is refused now, before anything is added.
         check_config(created->config, device->gl->info());
         ++device->scenes;
         *scene = created.release();
@@ -191,7 +192,7 @@ void destroy_scene(ovc_scene scene) {
         scene->soup = {};
         scene->templates.clear();
     }
-    scene->calls.wait_until_none(); // those who waited for their turn use the device yet
+    scene->calls.wait_until_none(); // those that waited for their turn still use the device
     device->destroyed.add(std::unique_ptr<ovc_scene_t>(scene));
     --device->scenes;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every function of the table that works on a scene begins and ends with.
+// on_scene() and beside_scene(): the frames of every function of the table that works on a scene.
 #pragma once
 
 #include "core/text/format_text.h"
@@ -22,8 +22,8 @@ static_assert(sizeof(ovc_triangle) == sizeof(TriangleId) && OVC_NONE == kNone);
     throw Failure{OVC_ERROR_INVALID_ARGUMENT, std::move(message)};
 }
 
-/// Not null, a scene that lives, and not of the process that this one was forked from; else there
-/// is a message for last_error(NULL).
+/// Returns whether the handle is that of a scene that lives and belongs to this process, not to the
+/// one that this was forked from. If not, it records a message for last_error(NULL).
 inline bool is_scene(ovc_scene scene, const char* call) {
     if (scene && scene->magic == kSceneMagic)
         return is_device(scene->device, call);
@@ -36,19 +36,20 @@ inline bool is_scene(ovc_scene scene, const char* call) {
     return false;
 }
 
-/// body() beside all other calls on the handle, of a scene or a ticket, which stays until it ends.
-/// lives(handle, call): whether it is one; else there is a message.
+/// Runs body() beside all other calls on the handle of a scene or a ticket, which is not destroyed
+/// before body() ends. lives(handle, call): whether the handle is alive; if not, it has recorded a
+/// message.
 template <class Handle, class Lives, class Body>
 ovc_result beside_calls(Handle* handle, const char* call, Lives&& lives, Body&& body) {
     if (!lives(handle, call))
         return OVC_ERROR_INVALID_ARGUMENT;
     const CallsInside::Call inside(handle->calls);
-    if (!lives(handle, call)) // it was not counted yet when whoever ends the handle looked
+    if (!lives(handle, call)) // a thread may have destroyed it before this call was counted
         return OVC_ERROR_INVALID_ARGUMENT;
     return guard(handle->device->messages, std::forward<Body>(body));
 }
 
-/// body() beside all other calls on the scene, without its turn.
+/// Runs body() beside all other calls on the scene, without the scene's turn.
 template <class Body>
 ovc_result beside_scene(ovc_scene scene, const char* call, Body&& body) {
     return beside_calls(scene, call, is_scene, std::forward<Body>(body));
@@ -58,8 +59,8 @@ ovc_result beside_scene(ovc_scene scene, const char* call, Body&& body) {
     throw Failure{OVC_ERROR_CANCELLED, format_text("{}: cancelled", call)};
 }
 
-/// body() with the scene's turn taken, within beside_scene(). goes_on() is asked while other calls
-/// have it; false: this one is cancelled.
+/// Runs body() in the scene's turn, within beside_scene(). goes_on() is asked while other calls
+/// have the turn; where it returns false, this call throws the Failure of a cancelled one.
 template <class GoesOn, class Body>
 void in_turn(ovc_scene scene, const char* call, GoesOn&& goes_on, Body&& body) {
     if (scene->streaming == std::this_thread::get_id())
@@ -76,7 +77,7 @@ void in_turn(ovc_scene scene, const char* call, GoesOn&& goes_on, Body&& body) {
     body();
 }
 
-/// body() with the scene's turn taken.
+/// Runs body() in the scene's turn.
 template <class Body>
 ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
     return beside_scene(scene, call, [&] {

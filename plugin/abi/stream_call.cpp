@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams: the caller's functions as a StreamHost, and what it pushes.
+// Streams: wraps the caller's functions as a StreamHost, and passes on the rays that it pushes.
 #include "plugin/abi/stream_call.h"
 
 #include "core/text/format_text.h"
 #include "plugin/abi/float_mode.h"
 #include "plugin/abi/query_call.h"
+
+#include <cassert>
 
 namespace ovc {
 namespace {
@@ -50,6 +52,7 @@ private:
 class Streaming {
 public:
     explicit Streaming(ovc_scene scene) : scene_(scene) {
+        assert(scene_->streaming == std::thread::id()); // this thread has the scene's turn
         scene_->streaming = std::this_thread::get_id();
         scene_->stream.scene = scene;
         scene_->stream.magic = kStreamMagic;
@@ -89,7 +92,7 @@ ovc_result push(ovc_stream stream, const ovc_ray* rays, const uint64_t* tokens, 
     if (!stream || stream->magic != kStreamMagic)
         return fail_without_device(OVC_ERROR_INVALID_ARGUMENT,
                                    "push: stream is NULL or not a stream");
-    // Of the stream's own thread alone: others could not know when the stream ends.
+    // Only the stream's own thread may push: others could not know when the stream ends.
     if (stream->scene->streaming != std::this_thread::get_id())
         return fail_without_device(OVC_ERROR_INVALID_STATE,
                                    "push: called from another thread than the stream's");

@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// Structs of the ABI, of this header or of an earlier one.
+// Checks and reads structs of the ABI that may be those of an earlier header.
 #pragma once
 
 #include "core/text/format_text.h"
 #include "plugin/structure/failure.h"
 
+#include <cassert>
 #include <cstddef>
 #include <cstring>
 
 namespace ovc {
 
-/// Throws for a struct_size that is not of this header, nor of an earlier one, which had `least`
-/// bytes at least.
+/// Throws a Failure for a struct_size that is neither that of this header nor of an earlier one.
+/// least: the size of T in the first header that had it.
 template <class T>
 void check_size(const char* name, size_t size, size_t least = sizeof(T)) {
+    assert(least <= sizeof(T));
     if (size < least || size > sizeof(T))
         throw Failure{OVC_ERROR_INVALID_ARGUMENT,
                       format_text("{}.struct_size is {}, expected sizeof({}) = {}", name, size,
                                   name, sizeof(T))};
 }
 
-/// The struct, with zeros for what an earlier header lacked. Throws as check_size().
+/// Returns the struct, with zeros for fields that an earlier header lacked. Throws as check_size().
 template <class T>
 T whole(const char* name, const T* given, size_t least = sizeof(T)) {
     check_size<T>(name, given->struct_size, least);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Submission: a call of intersect or occluded that somebody else does, and what became of it.
+// Submission: a submitted call of intersect or occluded, which another thread runs, and its
+// outcome.
 #pragma once
 
 #include "core/text/format_text.h"
@@ -7,14 +8,15 @@
 #include "plugin/abi/ray_call.h"
 
 #include <atomic>
+#include <cassert>
 #include <condition_variable>
 #include <mutex>
 #include <string>
 
 namespace ovc {
 
-/// One thread does it, any number ask. It begins once, unless it was cancelled before, and ends
-/// once.
+/// One thread runs it, any number of threads ask about it. It ends once, and begins before unless
+/// it is cancelled first.
 class Submission final : public TraceWatch {
 public:
     struct Outcome {
@@ -28,23 +30,26 @@ public:
 
     const RayCall& call() const { return call_; }
 
-    /// Who does it. false: it was cancelled, nothing is to be done.
+    /// Called by the thread that runs it. Returns false where it is cancelled already, and nothing
+    /// is to be done.
     bool begin() {
         const std::lock_guard lock(mutex_);
+        assert(!begun_);
         begun_ = true;
         return !done_;
     }
     void end(Outcome outcome) {
         const std::lock_guard lock(mutex_);
+        assert(begun_);
         finish(std::move(outcome));
     }
-    /// Between passes.
+    /// Asked by the thread that runs it, between passes.
     bool goes_on(double done) override {
         progress_ = done;
         return !cancelled_ && asked_.goes_on(done);
     }
 
-    /// Who asked for it: ends it at once where it has not begun, else soon.
+    /// Ends it at once where it has not begun, else soon. Any thread, as all that follow.
     void cancel() {
         const std::lock_guard lock(mutex_);
         cancelled_ = true;
@@ -57,7 +62,8 @@ public:
     }
     double progress() const { return progress_; }
 
-    /// may_wait() is asked where it is not done; while it runs, it does not get done.
+    /// Returns the outcome, as soon as there is one. Where it is not done yet, calls may_wait()
+    /// first, which may throw; until that returns, it does not get done.
     template <class MayWait>
     Outcome wait(MayWait&& may_wait) {
         std::unique_lock lock(mutex_);
@@ -69,6 +75,7 @@ public:
 
 private:
     void finish(Outcome outcome) {
+        assert(!done_);
         outcome_ = std::move(outcome);
         if (outcome_.result == OVC_OK)
             progress_ = 1;
@@ -77,11 +84,11 @@ private:
     }
 
     const RayCall call_;
-    HostFloatMode mode_; // of the thread that submitted it
+    HostFloatMode mode_; // that of the thread that submitted it
     AskedProgress asked_{call_.query, mode_};
     std::atomic<double> progress_{0};
     std::atomic<bool> cancelled_{false};
-    mutable std::mutex mutex_; // of what is below
+    mutable std::mutex mutex_; // guards the members below
     std::condition_variable ended_;
     bool begun_ = false;
     bool done_ = false;

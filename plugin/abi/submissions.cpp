@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// One after another, in their order.
+// Submissions: one thread runs the calls of the queue, one after the other, in their order.
 #include "plugin/abi/submissions.h"
 
 #include "plugin/abi/submission.h"
 
+#include <cassert>
+
 namespace ovc {
 
 bool Submissions::submit(std::shared_ptr<Submission> submission, const Work& work) {
+    assert(submission && work);
     const std::lock_guard lock(mutex_);
     if (stopped_)
         return false;
@@ -44,6 +47,7 @@ void Submissions::serve(const Work& work) {
         lock.unlock();
         work(*next);
         lock.lock();
+        assert(waiting_.front() == next); // others only add behind it
         waiting_.pop_front();
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Submissions: the queue of a scene, and the thread that does what is in it, which begins with the
-// first.
+// Submissions: a scene's queue of submitted calls, and the thread that runs them, which starts with
+// the first.
 #pragma once
 
 #include <condition_variable>
@@ -17,21 +17,23 @@ class Submission;
 
 class Submissions {
 public:
-    /// work(submission) does one, from its beginning to its end, and throws nothing.
+    /// work(submission) runs one, from its beginning to its end, and throws nothing.
     using Work = std::function<void(Submission&)>;
 
     ~Submissions() { stop(); }
 
-    /// false: stopped, it will not be done. Always with the same work.
+    /// Adds a call to the queue. Returns false after stop(), where it is not run. work: the same in
+    /// every call of this.
     bool submit(std::shared_ptr<Submission> submission, const Work& work);
 
-    /// Cancels all, and returns when they are done. Afterwards none is taken.
+    /// Cancels all calls in the queue, and returns when they are done. No more are taken
+    /// afterwards.
     void stop();
 
 private:
     void serve(const Work& work);
 
-    std::mutex mutex_; // of what is below
+    std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
     std::deque<std::shared_ptr<Submission>> waiting_; // the first may be under way
     bool stopped_ = false;

@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tickets: what the host holds of calls that it has submitted.
+// Tickets: the host's handles of calls that it has submitted.
 #include "plugin/abi/ticket_call.h"
 
 #include "core/text/format_text.h"
 #include "plugin/abi/submission.h"
 
+#include <cassert>
+
 namespace ovc {
 namespace {
 
-/// On the scene's thread: the submission in its turn.
+/// Runs the submission in its turn, on the thread of the scene's queue.
 void do_in_turn(ovc_scene scene, Submission& submission) {
     const std::lock_guard turn(scene->turn);
     if (!submission.begin())
         return;
+    assert(scene->structure); // destroy_scene() stops the queue before it frees the structure
     Submission::Outcome outcome;
     outcome.result =
         guard(outcome, [&] { trace(submission.call(), *scene->structure, &submission); });
     submission.end(std::move(outcome));
 }
 
-/// The call that check() makes of the arguments, submitted.
+/// Submits the call that check() makes of the arguments.
 template <class Check>
 ovc_result submit(ovc_scene scene, const char* name, ovc_ticket* ticket, Check&& check) {
     if (ticket)
@@ -46,8 +49,8 @@ ovc_result submit(ovc_scene scene, const char* name, ovc_ticket* ticket, Check&&
     });
 }
 
-/// Not null, not released, and not of the process that this one was forked from; else there is a
-/// message for last_error(NULL).
+/// Returns whether the handle is that of a ticket that is not released and belongs to this process,
+/// not to the one that this was forked from. If not, it records a message for last_error(NULL).
 bool is_ticket(ovc_ticket ticket, const char* call) {
     if (ticket && ticket->magic == kTicketMagic)
         return is_device(ticket->device, call);
@@ -56,7 +59,7 @@ bool is_ticket(ovc_ticket ticket, const char* call) {
     return false;
 }
 
-/// body(submission) for a ticket that is one.
+/// Runs body(submission) for a ticket that is not released.
 template <class Body>
 ovc_result on_ticket(ovc_ticket ticket, const char* call, Body&& body) {
     return beside_calls(ticket, call, is_ticket, [&] { body(*ticket->submission); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table's functions on calls that are submitted.
+// The table's functions on submitted calls.
 #pragma once
 
 #include "plugin/overcast.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches of rays, and single ones, in calls that return with the answers.
+// Calls that return with the answers: batches of rays and single rays.
 #include "plugin/abi/trace_call.h"
 
 #include "plugin/abi/asked_progress.h"
@@ -8,7 +8,7 @@
 namespace ovc {
 namespace {
 
-/// make_call() checks the arguments, which needs no turn.
+/// Traces a batch in the scene's turn. make_call() checks the arguments, which needs no turn.
 template <class MakeCall>
 ovc_result batch_of_rays(ovc_scene scene, const char* name, MakeCall&& make_call) {
     HostFloatMode mode;
@@ -22,7 +22,7 @@ ovc_result batch_of_rays(ovc_scene scene, const char* name, MakeCall&& make_call
     });
 }
 
-/// Answers one ray beside other calls; batch() does where the structure has no tree on the CPU.
+/// Answers one ray beside other calls; where the structure has no tree on the CPU, batch() does.
 template <class Batch>
 ovc_result single(ovc_scene scene, const char* name, const ovc_ray* ray, const void* result,
                   const ovc_query* query, SingleRay& single, Batch&& batch) {

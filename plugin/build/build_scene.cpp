@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene is restored or built, and cut as small as can be where the budget has no room for it.
+// Restores or builds a scene, and cuts it as small as can be where the budget has no room for it.
 #include "plugin/build/build_scene.h"
 
 #include "core/text/format_text.h"
@@ -7,6 +7,7 @@
 #include "plugin/build/saved_levels.h"
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 
 namespace ovc {
@@ -29,8 +30,8 @@ void set_limits(BuiltScene& scene, const TwoLevelOptions& options, const MemoryP
 
 namespace {
 
-/// Puts the tree over the scene's pages, smaller where the pool has not room for all of them; false
-/// where it has no room for the tree and the largest page.
+/// Builds the top-level tree over the scene's pages, a smaller one where the pool has no room for
+/// all of them. Returns false where it has no room for the tree and the largest page.
 bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan) {
     const size_t pages = scene.pages.size();
     if (pages == 0)
@@ -46,7 +47,7 @@ bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPla
     return false;
 }
 
-/// The scene from what was saved; none where that will not do, and the scene is to be built.
+/// Returns the scene that options.saved holds; nothing where the scene must be built.
 std::optional<BuiltScene> restored(const Soup& soup, const TwoLevelOptions& options,
                                    const MemoryPlan& plan, const LogSink& log) {
     if (options.saved.empty())
@@ -85,6 +86,7 @@ Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const
     const uint64_t unique = unique_triangles(soup, placed);
     begin(progress, "triangles", 0.1, 2 * unique);
     HittableParts hittable = take_hittable_parts(scene, std::move(placed), progress);
+    assert(hittable.shared.size() == scene.shared.size());
     set_limits(scene, options, plan);
     const auto build = [&](BuiltScene& part, const Hittable& of) {
         return build_levels(part, of, progress, double(of.triangles.size()) / double(unique));
@@ -105,7 +107,7 @@ Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const
     gather_pages(scene);
     if (add_tree(scene, options, plan))
         return scene;
-    // check_budget() told that bytes suffice.
+    // check_budget() has found enough bytes, so the refusal is about a count.
     if (const uint64_t table = scene.top.portals.size() * kPortalBytes; table > plan.buffer_bytes)
         return over_budget(format_text("{} instances are too many: their table takes {} bytes, and "
                                        "a buffer of this device holds {}",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a soup to the scene that a budget allows: restored where that will do, else built.
+// build_scene(): makes the scene of a soup that a budget allows, from saved bytes where it can.
 #pragma once
 
 #include "core/system/log.h"
@@ -8,18 +8,20 @@
 
 namespace ovc {
 
-/// The scene of a soup under its plan_memory(), which check_budget() lets pass: the pool holds the
-/// top-level tree and the largest page. The soup and options.saved must outlive it.
+/// Returns the scene of a soup under its plan_memory(), which check_budget() has let pass. The
+/// plan's pool has room for the top-level tree and the largest page. The soup and options.saved
+/// must outlive the scene. Error: there are too many pages or instances, or a page of one triangle
+/// does not fit. Throws Cancelled when `progress` is told to stop.
 Result<BuiltScene> build_scene(const Soup& soup, const TwoLevelOptions& options,
                                const MemoryPlan& plan, const LogSink& log,
                                BuildProgress* progress = nullptr);
 
-/// The bytes of a plan's pool that are left for the top-level tree and pages; the others are for
-/// portals and for marks of active pages.
+/// Returns the bytes of the plan's pool that portals and marks of active pages leave to the
+/// top-level tree and pages.
 uint64_t room_for_pool(const BuiltScene& scene, const TwoLevelOptions& options,
                        const MemoryPlan& plan);
 
-/// Sets what leaves may be, of all that is cut, where triangles are taken.
+/// Sets the limits on leaves of the scene and of its shared meshes, whose triangles are taken.
 void set_limits(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan);
 
 } // namespace ovc

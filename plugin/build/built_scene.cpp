@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a soup is packed, and in how many places it lies.
+// BuiltScene: finds the triangles of a soup that are packed, and the places where they lie.
 #include "plugin/build/built_scene.h"
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace ovc {
 
@@ -12,6 +13,7 @@ BuiltScene::~BuiltScene() = default;
 BuiltScene::BuiltScene(BuiltScene&&) = default;
 
 SharedMesh& BuiltScene::share(const Placed::Instances& instances) {
+    assert(!instances.empty());
     mesh_of_chunk.resize(soup.chunks.size(), kNone);
     for (const uint32_t chunk : instances)
         mesh_of_chunk[chunk] = uint32_t(shared.size());
@@ -94,8 +96,8 @@ uint64_t BuiltScene::host_bytes() const {
 
 namespace {
 
-/// Of a mesh: triangles on a line, though no two of their corners are the same. Where they are
-/// placed rounding may give them an area.
+/// Returns the triangles of a mesh whose three corners differ but lie on a line. Where the mesh is
+/// placed, rounding may give them an area.
 std::vector<uint32_t> on_a_line(const Chunk& mesh) {
     std::vector<uint32_t> prims;
     for (uint32_t prim = 0; prim < mesh.size(); ++prim) {
@@ -107,7 +109,8 @@ std::vector<uint32_t> on_a_line(const Chunk& mesh) {
     return prims;
 }
 
-/// What the instances of shared meshes are made of, and what of them is cut with the others.
+/// Takes the triangles of shared meshes, and finds those that must be cut with the others because
+/// they have an area only where an instance is placed.
 class SharedParts {
 public:
     explicit SharedParts(BuiltScene& scene) : scene_(scene) {}
@@ -117,7 +120,7 @@ public:
         for (const Placed::Instances& instances : shared) {
             BuiltScene& mesh = scene_.share(instances).scene;
             hittable.push_back(take_hittable(mesh, progress));
-            mesh.seconds_level1 = 0; // it is part of what the whole took
+            mesh.seconds_level1 = 0; // the scene's own count includes it
             note(mesh, instances, hittable.back().bounds);
         }
     }
@@ -142,6 +145,7 @@ private:
                     continue;
                 by_themselves_.push_back({chunk, prim});
                 bounds_.add(bounds_of(triangle));
+                assert(scene_.dropped.degenerate > 0); // the mesh's count, added above, has it
                 scene_.dropped.degenerate -= 1;
             }
         }
@@ -186,6 +190,7 @@ HittableParts take_hittable_parts(BuiltScene& scene, Placed placed, BuildProgres
 }
 
 void gather_pages(BuiltScene& scene) {
+    assert(scene.pages.size() == scene.level1.leaves.size());
     for (SharedMesh& mesh : scene.shared) {
         mesh.first_page = uint32_t(scene.pages.size());
         for (const Page& page : mesh.scene.pages)
@@ -199,6 +204,7 @@ TopLevel top_level_of(const BuiltScene& scene, size_t max_links) {
     Parts parts;
     parts.add(scene.level1, 0, std::array{Place()});
     for (const SharedMesh& mesh : scene.shared) {
+        assert(mesh.first_page + mesh.scene.pages.size() <= scene.pages.size());
         std::vector<Place> places;
         for (const uint32_t chunk : mesh.instances)
             places.push_back({scene.soup.chunks[chunk].transform(), scene.numbers.of({chunk, 0})});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Level 1, then all pages in parallel; again for leaves whose page turns out too large.
+// Builds level 1, then all pages in parallel, and cuts leaves again whose page turns out too large.
 #include "plugin/build/level2.h"
 
 #include "core/system/parallel.h"
@@ -11,6 +11,7 @@
 #include "plugin/plan/page_rate.h"
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 
 namespace ovc {
@@ -19,8 +20,8 @@ bool LeafLimits::pages_matter() const {
     return triangles > page_bytes / kMaxBytesPerTriangle;
 }
 
-/// In so many bytes, a twentieth less than fits on average: most leaves that are worse than that
-/// fit as well.
+/// Returns how many triangles fit into so many bytes on average, less a twentieth, so that most
+/// leaves that are worse than the average fit as well.
 static uint64_t triangles_in(uint64_t bytes, double bytes_per_triangle) {
     return uint64_t(0.95 * double(bytes - std::min(bytes, kPageStart)) /
                     std::max(bytes_per_triangle, 1.0));
@@ -36,6 +37,7 @@ uint32_t LeafLimits::triangles_at(double bytes_per_triangle) const {
 }
 
 uint32_t LeafLimits::triangles_again(uint64_t triangles_before, uint64_t bytes_before) const {
+    assert(triangles_before > 1);
     const double rate = double(bytes_before) / double(triangles_before);
     return uint32_t(std::min<uint64_t>(triangles_at(rate), triangles_before - 1));
 }
@@ -53,16 +55,17 @@ public:
           scene_(scene) {}
 
     Result<Done> build(std::span<const TriangleId> triangles, const Box& bounds) {
+        assert(limits_.triangles > 0 && std::ranges::is_sorted(triangles));
         const Stopwatch watch;
         if (triangles.empty()) {
             scene_.level1 = Level1{.bounds = bounds};
-            if (!bounds.empty()) // of meshes that are shared
+            if (!bounds.empty()) // those of shared meshes
                 scene_.level1.padding = padding_of(bounds);
             return Done{};
         }
         begin(progress_, "level 1", 0.35 * share_, 2 * triangles.size());
         triangles_ = triangles.size();
-        // Where small triangles are not lost in the scene.
+        // One frame suits where small triangles are not lost in the scene.
         const bool one_frame = one_frame_suits(soup_, triangles, bounds);
         const Sample sample = drawn(triangles, one_frame);
         const uint32_t max_triangles = first_max_triangles(triangles, bounds, one_frame, sample);
@@ -89,6 +92,7 @@ public:
 
     void build_smallest(std::vector<TriangleId> triangles, const Box& bounds,
                         uint32_t leaf_triangles, bool in_one_frame) {
+        assert(leaf_triangles > 0);
         scene_.pages.clear();
         if (triangles.empty())
             return;
@@ -108,8 +112,8 @@ public:
 private:
     bool maybe_one_leaf(bool one_frame) const { return limits_.whole_bytes > 0 && one_frame; }
 
-    /// The sample that leaves are cut by where pages do not matter; none where nobody asks it
-    /// first.
+    /// Draws the sample for first_max_triangles(), or none where that needs none. Where pages do
+    /// not matter, leaves are cut by the same sample.
     Sample drawn(std::span<const TriangleId> triangles, bool one_frame) {
         if (!maybe_one_leaf(one_frame) && !limits_.pages_matter())
             return {};
@@ -134,7 +138,8 @@ private:
         });
     }
 
-    /// In a frame of its own a leaf may have triangles that reach far beyond it.
+    /// Loose pairs need a shared frame, because in a frame of its own a leaf may have triangles
+    /// that reach far beyond it.
     LoosePairs loose_pairs() const {
         return {scene_.level1.shares_frame && loose_pairs_pay_,
                 double(scene_.level1.reference_count()) / double(triangles_)};
@@ -167,8 +172,8 @@ private:
         build_missing_pages(loose_pairs());
     }
 
-    /// Cuts the leaves whose pages are too large, which are then missing; false where there are
-    /// none.
+    /// Cuts the leaves whose pages are too large; the pages of their parts are then missing.
+    /// Returns false where there are no such leaves.
     Result<bool> cut_too_large() {
         const Stopwatch watch;
         std::vector<uint32_t> most(scene_.pages.size(), kNone);
@@ -189,6 +194,7 @@ private:
             return false;
         std::vector<uint32_t> was;
         scene_.level1 = cut_again(soup_, std::move(scene_.level1), most, was, progress_);
+        assert(was.size() == scene_.level1.leaves.size());
         std::vector<Page> pages(was.size());
         for (size_t i = 0; i < was.size(); ++i)
             if (was[i] != kNone)
@@ -202,7 +208,7 @@ private:
     const Numbering& numbers_;
     const LeafLimits& limits_;
     BuildProgress* const progress_;
-    const double share_; // of what the progress tells of
+    const double share_; // of the whole progress
     uint64_t triangles_ = 0;
     std::vector<TriangleId> sample_;
     bool loose_pairs_pay_ = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many leaves there are where nobody says, and how much planes cut in them.
+// How many leaves there are where the caller leaves that open, and the sizes of their pages.
 #include "plugin/build/level2.h"
 
 #include "kdtree/test_soups.h"
@@ -40,7 +40,7 @@ TEST(LevelsOf, AMeshThatFitsAreLeavesBuiltSideBySide) {
 TEST(LevelsOf, ASceneThatSeemedToFitAreLeavesWithinTheirPages) {
     const Soup soup = test::random_soup(3, 8000, 0.2);
     const uint64_t bytes = build(soup, {1 << 20, 1 << 30, LeafLimits::kAny}).bytes;
-    // What cubes tell of the page may be too little by a few percent.
+    // The estimate by cubes may be a few percent below the size of the page.
     for (const double share : {0.97, 0.99, 1.0, 1.03, 1.06}) {
         const uint64_t whole = uint64_t(share * double(bytes));
         const Built built = build(soup, {soup.triangle_count() / 10, bytes / 3, whole});

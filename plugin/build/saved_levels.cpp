@@ -11,17 +11,18 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 
 namespace ovc {
 namespace {
 
 constexpr std::string_view kKind = "ovc levels";
-/// To be raised when a build makes other leaves or pages of the same soup; a change of layout.h is
-/// noticed without.
+/// The version must be raised when a build makes other leaves or pages of the same soup. A change
+/// of layout.h is noticed without that.
 constexpr uint32_t kVersion = 7;
 
-/// Where all of it is the same, a build makes the same levels.
+/// A build makes the same levels where all of its key is the same.
 struct Key {
     uint64_t layout = 0;         // checksum of shaders/layout.h
     uint64_t soup = 0;           // checksum of origins and corners
@@ -32,7 +33,7 @@ struct Key {
     bool operator==(const Key&) const = default;
 };
 
-/// What is cut together: first all that is placed once, then each mesh that is shared.
+/// One cut: all triangles that are placed once make the first, and each shared mesh makes another.
 struct SavedCut {
     uint64_t not_finite = 0;
     uint64_t degenerate = 0;
@@ -94,7 +95,7 @@ bool is_sound(const Box& box) {
     return is_finite(box.lo) && is_finite(box.hi) && !box.empty();
 }
 
-/// Whether a walk from the root ends, stays within the nodes and names leaves there are.
+/// Whether a walk from the root ends, stays within the nodes and names leaves that exist.
 bool is_walkable(std::span<const KdNode> nodes, size_t leaves) {
     constexpr uint32_t kDeepest = 120; // what kdtree/walk.h has a stack for, and some
     std::vector<uint8_t> depth(nodes.size(), 0);
@@ -129,7 +130,7 @@ bool share_frame(const SavedLeaf& a, const SavedLeaf& b) {
            a.grid.hi == b.grid.hi;
 }
 
-/// The first `count` of what is left, and less is left; nothing where there are not so many.
+/// Takes the first `count` items off `left` and returns them; nothing where there are fewer.
 template <class T>
 std::optional<std::span<const T>> take(std::span<const T>& left, uint64_t count) {
     if (count > left.size())
@@ -152,7 +153,7 @@ bool are_sound(std::span<const Duplicates::Pair> pairs, const Soup& soup) {
 
 const Error kUnsound{"is damaged: what it holds are no levels"};
 
-/// The arrays of all cuts, one behind the other; what is not yet read.
+/// The part of the arrays that is not read yet. The cuts lie one behind the other in them.
 struct Arrays {
     std::span<const Duplicates::Pair> duplicates;
     std::span<const KdNode> nodes;
@@ -167,7 +168,7 @@ struct Arrays {
     }
 };
 
-/// A cut, from the beginning of the arrays. False where it is none.
+/// Reads a cut from the beginning of the arrays. read() returns false where they are damaged.
 class CutReader {
 public:
     CutReader(const SavedCut& cut, Arrays& arrays, BuiltScene& scene)
@@ -217,7 +218,7 @@ private:
         return true;
     }
 
-    /// Each page its part of the texels.
+    /// Gives each page its part of the texels, without a copy.
     bool read_pages() {
         const auto pages = take(arrays_.pages, cut_.leaves);
         if (!pages)
@@ -268,13 +269,14 @@ Result<Arrays> arrays_of(const Archive& archive) {
 
 Result<BuiltScene> restored(const Archive& archive, std::span<const SavedCut> cuts,
                             const Soup& soup) {
+    assert(!cuts.empty());
     Result<Arrays> arrays = arrays_of(archive);
     if (!arrays)
         return arrays.error();
     BuiltScene scene(soup);
     if (!CutReader(cuts.front(), *arrays, scene).read())
         return kUnsound;
-    Placed placed = placed_chunks(soup); // which meshes are shared is told by the soup
+    Placed placed = placed_chunks(soup); // the soup alone tells which meshes are shared
     scene.copies = std::move(placed.copies);
     if (cuts.size() != 1 + placed.shared.size())
         return kUnsound;
@@ -289,7 +291,7 @@ Result<BuiltScene> restored(const Archive& archive, std::span<const SavedCut> cu
     return scene;
 }
 
-/// All that is cut by itself.
+/// Returns the scene and the scenes of its shared meshes, in the order in which they are saved.
 std::vector<const BuiltScene*> cuts_of(const BuiltScene& scene) {
     std::vector<const BuiltScene*> cuts{&scene};
     for (const SharedMesh& mesh : scene.shared)
@@ -330,6 +332,7 @@ bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
                               leaf.triangles.size()});
     }
     std::vector<SavedPage> pages; // scene.pages has all of them, in the same order
+    assert(scene.pages.size() == leaves.size());
     for (const Page& page : scene.pages)
         pages.push_back({page.view().size(), page.depth});
 
@@ -378,7 +381,7 @@ restore_levels(Bytes saved, const Soup& soup,
     Key key;
     key.layout = checksum_of_layout();
     put_limits(key, limits);
-    key.soup = keys->front().soup; // the rest first: this takes a while
+    key.soup = keys->front().soup; // compared last, because its checksum takes a while
     if (key != keys->front() || checksum_of_soup(soup) != key.soup)
         return std::optional<BuiltScene>();
     Result<BuiltScene> scene = restored(*archive, *cuts, soup);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene as bytes that outlive the process: level 1 and the pages, and what they were made of.
+// Saves a scene as bytes that outlive the process, and restores it: level 1 and the pages, and a
+// key of what they were made of.
 #pragma once
 
 #include "core/file/archive.h"
@@ -11,14 +12,14 @@
 
 namespace ovc {
 
-/// Passes the scene on to the sink, front to back. False where the sink wanted no more.
+/// Passes the scene on to the sink, front to back. Returns false where the sink wanted no more.
 bool save_levels(const BuiltScene& scene, const ByteSink& sink);
 
-/// The scene that save_levels() wrote of this soup. Pages stay in `saved`, which is aligned to
-/// kPartAlignment and outlives them. Nothing: what was saved is of another soup, or a build would
-/// now make another scene. limits_for: as limits_of(triangles, unique). Error: the bytes are
-/// damaged, or are not such bytes; the sentence goes on from a name. Whatever the bytes are, the
-/// scene that comes back is safe to walk.
+/// Returns the scene that save_levels() wrote of this soup; nothing where the bytes are of another
+/// soup, or where a build would now make another scene. limits_for(triangles, unique): as
+/// limits_of(). The pages stay in `saved`, which must outlive them. Whatever the bytes are, the
+/// scene that comes back is safe to walk. Error: the bytes are damaged, not aligned to
+/// kPartAlignment, or no saved levels; the sentence goes on from a name.
 Result<std::optional<BuiltScene>>
 restore_levels(Bytes saved, const Soup& soup,
                const std::function<LeafLimits(uint64_t, uint64_t)>& limits_for);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Saved levels come back as they were; those of other soups or options do not; no damage is passed
-// over, and none that is hidden behind right checksums leads a walk astray.
+// Saved levels come back as they were, and those of other soups or options do not. No damage is
+// passed over, and damage behind right checksums leads no walk astray.
 #include "plugin/build/saved_levels.h"
 
 #include "core/file/test_archive.h"
@@ -128,12 +128,12 @@ TEST(SavedLevels, NoChangedByteIsTaken) {
         memory.data()[i] ^= std::byte(0x10);
         const auto found = restore_levels(memory.bytes(), soup, kSameLimits);
         if (found && *found)
-            expect_same(built, **found); // between parts
+            expect_same(built, **found); // the byte lies between parts
         memory.data()[i] ^= std::byte(0x10);
     }
 }
 
-/// What the fuzzer does for longer.
+/// The fuzzer does the same for longer.
 TEST(SavedLevels, DamageBehindRightChecksumsIsRefusedOrHarmless) {
     for (uint32_t seed = 0; seed < 4000; ++seed) {
         std::mt19937 random(seed);

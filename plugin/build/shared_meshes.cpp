@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chunks by the corners that they borrow, and what a transform does to them.
+// Groups chunks by the corners that they borrow, and tells which groups are worth sharing.
 #include "plugin/build/shared_meshes.h"
 
 #include "core/transform.h"
@@ -11,12 +11,12 @@
 namespace ovc {
 namespace {
 
-/// A page's bytes for a triangle, about.
+/// The bytes of a page for each triangle, roughly.
 constexpr uint64_t kBytesPerTriangle = 46;
-/// Bytes are worth a portal's time if there are so many times more of them.
+/// A portal costs rays time, so sharing must save so many times the bytes that it adds.
 constexpr uint64_t kWorthAPortal = 4;
 
-/// The box of a mesh before it is placed; empty where a corner is not finite.
+/// Returns the box of a mesh before it is placed, empty where a corner is not finite.
 Box bounds_of(const Chunk& mesh) {
     Box box;
     for (uint32_t prim = 0; prim < mesh.size(); ++prim)
@@ -28,7 +28,8 @@ Box bounds_of(const Chunk& mesh) {
     return box;
 }
 
-/// Chunks of the same mesh, in the order of their numbers, by their first.
+/// Returns the groups of chunks of the same mesh, in the order of their first chunks; the chunks of
+/// a group are sorted.
 std::vector<std::vector<uint32_t>> by_mesh(const Soup& soup) {
     std::map<Chunk::MeshKey, size_t> found;
     std::vector<std::vector<uint32_t>> meshes;
@@ -44,7 +45,7 @@ std::vector<std::vector<uint32_t>> by_mesh(const Soup& soup) {
     return meshes;
 }
 
-/// Takes out those that lie where one before does.
+/// Takes out the chunks that lie exactly where one before them does.
 void take_copies_out(const Soup& soup, std::vector<uint32_t>& chunks, Placed& placed) {
     std::map<decltype(Transform::rows), Placed::Copies> places;
     std::vector<uint32_t> apart;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which meshes of a soup lie in several places, so that they are cut and packed once, where they
-// are by themselves, and placed by portals.
+// Finds the meshes of a soup that lie in several places. Each is cut and packed once, where it lies
+// without a transform, and portals lead to its places.
 #pragma once
 
 #include "core/soup.h"
@@ -10,27 +10,27 @@
 
 namespace ovc {
 
-/// The chunks of a soup, by their numbers.
+/// The chunks of a soup, which are named by their numbers, and how each is built.
 struct Placed {
     /// Chunks of the same mesh that lie exactly in the same place.
     struct Copies {
         uint32_t first;
         uint32_t second; // the next smallest
-        uint32_t count;  // all of them; those but the first are left out
+        uint32_t count;  // of all copies; only the first is built
     };
     /// The chunks of one mesh, each in a place of its own.
     using Instances = std::vector<uint32_t>;
 
-    std::vector<uint32_t> once;    // their triangles are cut together
-    std::vector<Instances> shared; // by their first
-    std::vector<Copies> copies;    // by first
+    std::vector<uint32_t> once;    // sorted; their triangles are cut together
+    std::vector<Instances> shared; // in the order of their meshes
+    std::vector<Copies> copies;    // sorted by first
 };
 
-/// Shares what is placed more than once where that saves more than portals cost, and where a portal
-/// is as good as the triangles themselves.
+/// Returns how the chunks of a soup are built. A mesh that is placed more than once is shared where
+/// that saves more than portals cost, and where a portal is as good as the triangles themselves.
 Placed placed_chunks(const Soup& soup);
 
-/// The triangles that are packed: once for each mesh that is shared.
+/// Returns the number of triangles that are packed: those of a shared mesh count once.
 uint64_t unique_triangles(const Soup& soup, const Placed& placed);
 
 } // namespace ovc

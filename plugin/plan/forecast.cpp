@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sample that level 1 is cut by, all triangles counted in its cells, and pages of clusters.
+// forecast(): cuts level 1 by a sample, counts all triangles in its cells, and estimates pages by
+// those of clusters.
 #include "plugin/plan/forecast.h"
 
 #include "core/system/parallel.h"
@@ -12,6 +13,7 @@
 #include "plugin/plan/page_rate.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -21,12 +23,13 @@
 namespace ovc {
 namespace {
 
-/// So few triangles are built in less time than a sample needs to tell anything.
+/// Building so few triangles takes less time than a sample needs to tell anything.
 constexpr size_t kBuiltAtOnce = 8192;
-/// How full leaves are, of many: measured 0.57 to 0.62 on meshes, up to 0.7 on soups.
+/// How full leaves are on average where there are many: measured 0.57 to 0.62 on meshes, up to 0.7
+/// on soups.
 constexpr double kFill = 0.58;
 
-/// What the pages of a level 1 come to.
+/// The sizes of a level 1 and its pages.
 struct Sizes {
     std::vector<uint64_t> pages; // bytes, in the order of leaves
     uint64_t references = 0;
@@ -57,8 +60,8 @@ Sizes sizes_of(const BuiltScene& scene) {
     return sizes;
 }
 
-/// counts[c]: the triangles that touch cell c; behind all cells those that touch far_cells of them
-/// or more.
+/// Returns `counts`: counts[c] triangles touch cell c. Triangles that touch far_cells of them or
+/// more count behind all cells instead.
 std::vector<uint64_t> counted(const Soup& soup, const CellFinder& finder,
                               std::span<const TriangleId> triangles, uint32_t far_cells,
                               BuildProgress* progress) {
@@ -72,14 +75,16 @@ std::vector<uint64_t> counted(const Soup& soup, const CellFinder& finder,
     return counts;
 }
 
-/// The sizes told by a sample.
+/// Estimates sizes by a sample of the triangles, which are not empty.
 class Estimator {
 public:
     Estimator(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
               BuildProgress* progress)
-        : soup_(soup), triangles_(triangles), bounds_(bounds), progress_(progress) {}
+        : soup_(soup), triangles_(triangles), bounds_(bounds), progress_(progress) {
+        assert(!triangles.empty());
+    }
 
-    /// Of leaves that keep to the limits.
+    /// Returns the sizes of leaves that keep to the limits. Called once.
     Sizes estimate(const LeafLimits& limits) {
         draw(sample_rate(triangles_.size(), limits.triangles));
         rates_.emplace(soup_, triangles_, sample_, rate_, bounds_, progress_);
@@ -91,6 +96,7 @@ public:
                 return one_frame &&
                        one_leaf_pays(soup_, sample_, rate_, bounds_, uint32_t(limits.triangles));
             });
+        assert(leaf_triangles_ > 0);
         if (const uint32_t rate = sample_rate(triangles_.size(), leaf_triangles_); rate != rate_)
             draw(rate);
         const KdTree tree = cut_sample(
@@ -103,6 +109,7 @@ public:
             return counted(soup_, finder, triangles_, far_cells, progress_);
         };
         std::vector<uint64_t> counts = count(kFarCells);
+        assert(counts.size() == cells.size() + 1);
         if (counts.back() > 0 && !far_leaf_pays(counts.back(), triangles_.size(), leaf_triangles_))
             counts = count(kNone);
         sizes_.nodes = tree.nodes.size();
@@ -119,8 +126,8 @@ public:
     }
 
 private:
-    /// The corners' hashes decide who is in the sample, and where triangles are few that may be
-    /// nobody: then one stands for fewer.
+    /// Draws the sample. The corners' hashes decide which triangles are in it, which may be none
+    /// where there are few; then the rate is lowered.
     void draw(uint32_t rate) {
         do {
             rate_ = rate;
@@ -130,7 +137,7 @@ private:
     }
 
     void add_cell(const Box& cell, uint64_t count, uint64_t page_bytes, const LeafLimits& limits) {
-        // What holds more than the sample made believe is cut again, and so are too large pages.
+        // Cells that hold more than the sample told are cut again, and so are too large pages.
         uint64_t parts = (count + leaf_triangles_ - 1) / leaf_triangles_;
         const auto page_at = [&](double rate) {
             const double triangles = double(count) / double(parts);
@@ -162,7 +169,7 @@ private:
     Sizes sizes_;
 };
 
-/// Of what is cut together.
+/// Returns the sizes of one cut. A small one is built, so its sizes are exact.
 Result<Sizes> sizes_of(BuiltScene& scene, const Hittable& hittable, BuildProgress* progress) {
     if (hittable.triangles.empty())
         return Sizes();
@@ -221,7 +228,7 @@ Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
     plan.fits = plan.fits && plan.level1_bytes <= memory->buffer_bytes;
     const uint64_t room = memory->pool_bytes - std::min(memory->pool_bytes, plan.level1_bytes);
     uint64_t tree = max_top_level_bytes(max_links(plan.leaves, plan.level2_bytes, room));
-    if (portals > 1) // and inner nodes above: a third of them
+    if (portals > 1) // inner nodes above the portals add a third
         tree += portals * OVC_UNIT_BYTES * 4 / 3 + 2 * sizes.parts * OVC_UNIT_BYTES;
     const Fit fit = fit_in(sizes.pages, {room, memory->buffer_bytes}, tree);
     plan.resident_pages = fit.pages;

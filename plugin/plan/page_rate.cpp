@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cubes, a coarse grid that tells which of them a triangle may touch, and their pages.
+// PageRates: chooses cubes, finds the triangles that touch them by a coarse grid, and builds their
+// pages.
 #include "plugin/plan/page_rate.h"
 
 #include "core/system/parallel.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 namespace ovc {
@@ -22,14 +24,14 @@ constexpr uint64_t kMinTriangles = 4096;
 constexpr uint64_t kMaxTriangles = 32768;
 constexpr size_t kMaxOverfull = 8; // times the triangles that a cube was made for
 constexpr size_t kInASmallCube = 512;
-// Cubes in which planes cut triangles as often as in pages.
+// In cubes of this size planes cut triangles as often as in pages.
 constexpr size_t kLargeCubes = 4;
 constexpr size_t kInALargeCube = 8192;
-/// Of the cuts that a page is allowed, how many there are where that is few: 0.8 to 1.1 among
-/// slivers in 16 to 130 leaves, the last by pairs that stay alone.
+/// The share of the cuts that a page is allowed which planes make, where few are allowed. Measured
+/// among slivers in 16 to 130 leaves: 0.8 to 1.1, the last because of pairs that stay alone.
 constexpr double kCutOfAllowed = 0.9;
 
-/// The cube around `center` that holds so many of the other centres.
+/// Returns the cube around `center`, one of the centres, that holds `count` of them.
 Box cube_around(const dvec3& center, std::span<const dvec3> centers, size_t count,
                 std::vector<double>& distances) {
     distances.resize(centers.size());
@@ -43,6 +45,7 @@ Box cube_around(const dvec3& center, std::span<const dvec3> centers, size_t coun
 
 std::vector<Box> choose_cubes(const Soup& soup, std::span<const TriangleId> sample, uint32_t rate,
                               size_t cubes, size_t triangles_each) {
+    assert(!sample.empty() && rate > 0);
     std::vector<dvec3> centers(sample.size());
     parallel_for(sample.size(), 4096, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
@@ -54,7 +57,7 @@ std::vector<Box> choose_cubes(const Soup& soup, std::span<const TriangleId> samp
     parallel_for(cubes, 1, [&](size_t first, size_t last) {
         std::vector<double> distances;
         for (size_t c = first; c < last; ++c) {
-            // Ids are evenly spread over a scene's parts: each gets its share of cubes.
+            // Ids are evenly spread over a scene's parts, so each part gets its share of cubes.
             const size_t i = (2 * c + 1) * sample.size() / (2 * cubes);
             chosen[c] = cube_around(centers[i], centers, triangles_each / rate, distances);
         }
@@ -62,10 +65,11 @@ std::vector<Box> choose_cubes(const Soup& soup, std::span<const TriangleId> samp
     return chosen;
 }
 
-/// For each cell of a grid around all cubes, the cubes that reach into it, a bit each.
+/// A grid around all cubes, with a bit in each cell for every cube that reaches into it.
 class CubeGrid {
 public:
     explicit CubeGrid(std::span<const Box> cubes) : cells_(kSide * kSide * kSide, 0) {
+        assert(cubes.size() <= kMaxCubes);
         for (const Box& cube : cubes)
             bounds_.add(cube);
         scale_ = dvec3(kSide) / glm::max(bounds_.extent(), dvec3(1e-300));
@@ -73,7 +77,7 @@ public:
             each_cell(cubes[c], [&](uint64_t& cell) { cell |= uint64_t(1) << c; });
     }
 
-    /// The cubes that the box may touch, and perhaps others.
+    /// Returns a bit for each cube that the box may touch.
     uint64_t near(const Box& box) {
         if (!bounds_.touches(box))
             return 0;
@@ -107,7 +111,7 @@ private:
     std::vector<uint64_t> cells_;
 };
 
-/// members[c]: the triangles that touch cube c, in order.
+/// Returns `members`, where members[c] has the triangles that touch cube c, in order.
 std::vector<std::vector<TriangleId>> members_of(std::span<const Box> cubes, const Soup& soup,
                                                 std::span<const TriangleId> triangles,
                                                 BuildProgress* progress) {
@@ -157,7 +161,7 @@ public:
         Page page;
     };
 
-    /// Of so many cubes, those that triangles touch. Each holds about so many.
+    /// Makes so many cubes of about triangles_each triangles. Returns those that triangles touch.
     std::vector<CubePage> make(size_t cubes, size_t triangles_each) const {
         const std::vector<Box> chosen = choose_cubes(soup_, sample_, rate_, cubes, triangles_each);
         std::vector<std::vector<TriangleId>> members =
@@ -165,8 +169,8 @@ public:
         std::vector<CubePage> made(cubes);
         parallel_for(cubes, 1, [&](size_t first, size_t last) {
             for (size_t c = first; c < last; ++c) {
-                // Where triangles are far larger than what lies between them, very many touch a
-                // cube.
+                // Very many triangles touch a cube where they are far larger than the gaps between
+                // them.
                 members[c].resize(std::min(members[c].size(), kMaxOverfull * triangles_each));
                 if (!members[c].empty())
                     made[c] = {chosen[c].center(), members[c].size(),
@@ -194,8 +198,9 @@ private:
     BuildProgress* const progress_;
 };
 
-/// Triangles in units beyond one each, per triangle.
+/// Returns by how many units a triangle of the page is in more than one, on average.
 double cut_share(const CubePages::CubePage& cube) {
+    assert(cube.triangles > 0);
     size_t count = 0;
     for (uint64_t unit = OVC_ROOT_UNIT; unit < cube.page.units(); ++unit) {
         const uvec4* const texel = &cube.page.view()[unit * OVC_UNIT_TEXELS];
@@ -248,7 +253,7 @@ size_t PageRates::cubes_in(const Box& box, double& sum) const {
 }
 
 double PageRates::within(const Box& box) const {
-    // One cube alone says little of a whole leaf: the average counts as another one.
+    // One cube alone says little of a whole leaf, so the average counts as another one.
     double sum = mean_;
     const size_t cubes = cubes_in(box, sum);
     return sum / double(cubes + 1);
@@ -261,7 +266,7 @@ double PageRates::worst_within(const Box& box) const {
 }
 
 double PageRates::with_cuts(double triangles, double copies) const {
-    // Level by level from the small cubes' up to the large ones'.
+    // The cuts grow level by level from those in small cubes to those in large ones.
     const double levels = std::log2(triangles / kInASmallCube);
     const double way = std::clamp(levels / std::log2(kInALargeCube / kInASmallCube), 0.0, 1.0);
     const double cut = cut_in_small_ + way * (cut_in_large_ - cut_in_small_);

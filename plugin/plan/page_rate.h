@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pages take a triangle, told before they are built: by pages of small clusters.
+// PageRates: estimates the bytes of pages before they are built, by pages of small clusters.
 #pragma once
 
 #include "core/build_progress.h"
@@ -13,33 +13,36 @@ namespace ovc {
 
 /// Bytes of a page that do not grow with it: the header and the root.
 inline constexpr uint64_t kPageStart = 128;
-/// No page takes more a triangle: no two in a pair, a node above every other triangle; and eight
-/// tenths of them cut by planes where pairs were to be loose and hardly any is.
+/// The max bytes of a page for each triangle: where no two are in a pair, there is a node above
+/// every other triangle, and planes cut eight tenths of them because pairs may be loose but hardly
+/// any is.
 inline constexpr uint64_t kMaxBytesPerTriangle = 232;
 
-/// Pages of some cubes, each with all the triangles that touch it. Cubes lie around triangles of a
-/// sample, so where triangles are many there are many cubes.
+/// Builds pages of some cubes, each with all the triangles that touch it. The cubes lie around
+/// triangles of a sample, so there are many cubes where there are many triangles.
 class PageRates {
 public:
-    /// sample: of `triangles`, one in `rate`; not empty. bounds: of all. Costs about a sixtieth of
-    /// building all pages, and a look at every triangle, a unit of progress each.
+    /// sample: about one in `rate` (> 0) of `triangles`, not empty. bounds: the box of all. This
+    /// costs about a sixtieth of building all pages, and a look at every triangle, a unit of
+    /// progress each.
     PageRates(const Soup& soup, std::span<const TriangleId> triangles,
               std::span<const TriangleId> sample, uint32_t rate, const Box& bounds,
               BuildProgress* progress = nullptr);
 
-    /// Bytes a triangle, on average, in small cubes.
+    /// Returns the bytes a triangle, on average, in small cubes.
     double mean() const { return mean_; }
-    /// The same in pages of so many triangles.
+    /// Returns the same in pages of so many triangles. copies: as in LoosePairs.
     double mean_of(double triangles, double copies) const {
         return mean_ * with_cuts(triangles, copies);
     }
-    /// The same in `box`, by the cubes that lie in it, the average and nothing else where none do.
+    /// Returns the same in `box`, by the cubes that lie in it; the average where none do.
     double within(const Box& box) const;
-    /// What the worst of many such boxes may take: where no cube lies, one may be worse than the
-    /// average by as much as cubes differ.
+    /// Returns what the worst of many such boxes may take. Where no cube lies, a box may be worse
+    /// than the average by as much as cubes differ.
     double worst_within(const Box& box) const;
-    /// By how much pages of so many triangles take more than all these, where they hold loose
-    /// pairs: because planes cut many of those, but few in small cubes. copies: as in LoosePairs.
+    /// Returns the factor by which pages of so many triangles take more than the rates above tell,
+    /// where they hold loose pairs: planes cut many of those in pages, but few in small cubes.
+    /// copies: as in LoosePairs.
     double with_cuts(double triangles, double copies) const;
 
 private:

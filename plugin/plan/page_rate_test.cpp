@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What clusters say of pages, against the page of all triangles.
+// Rates that clusters tell, compared with the page of all triangles.
 #include "plugin/plan/page_rate.h"
 
 #include "gpu/page/page.h"

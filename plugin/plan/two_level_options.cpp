@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a budget limits leaves, and which budgets are too small.
+// Tells how a budget limits leaves, and which budgets are too small.
 #include "plugin/plan/two_level_options.h"
 
 #include "core/text/format_text.h"
@@ -13,14 +13,14 @@
 namespace ovc {
 namespace {
 
-// A page takes at most this share of the pool, so that some stay resident; and where leaves are
-// ours to choose, this one, so that rays bring in little that they do not go through: but it is
-// worth a move.
+// A page takes at most the first of these shares of the pool, so that some stay resident. Where
+// leaves are ours to choose it takes at most the second, so that rays bring in little that they do
+// not go through, but may always take as much as is worth a move.
 constexpr uint64_t kPagesAtOnce = 3;
 constexpr uint64_t kPagesByDefault = 32;
 constexpr uint64_t kWorthMoving = 512 << 10; // bytes
 constexpr uint64_t kDefaultLeaves = 10;      // thesis, section 4
-// Where the pool is several buffers: so the room that is left over at their ends is small.
+// Pages are so small where the pool is several buffers, so that little room is left at their ends.
 constexpr uint64_t kPagesABuffer = 8;
 
 } // namespace
@@ -53,7 +53,7 @@ SmallestCut smallest_cut(const Soup& soup, const Placed& placed, const TwoLevelO
         std::clamp<uint64_t>(uint64_t(balanced), 1, std::min(triangles, uint64_t(kNone - 1)));
     if (options.leaf_triangles)
         most = std::min(most, options.leaf_triangles);
-    // Each mesh has a leaf that is not full, and is one part, with a portal an instance.
+    // Each shared mesh may have a leaf that is not full, and is one part with a portal an instance.
     const uint64_t leaves = (triangles + most - 1) / most + placed.shared.size();
     uint64_t portals = 0;
     for (const Placed::Instances& chunks : placed.shared)
@@ -90,8 +90,8 @@ Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, cons
         cut.leaf_triangles, cut.pool_bytes));
 }
 
-/// The most that a page may take of the pool: a third, so that some stay resident; half of it where
-/// what leads to as many leaves might not find room beside that.
+/// Returns the max bytes of a page: a third of the pool, so that some stay resident, but half of it
+/// where the tree and the table that lead to so many leaves might find no room beside that.
 static uint64_t share_of_page(const MemoryPlan& plan, uint64_t triangles) {
     uint64_t page_bytes = std::max<uint64_t>(plan.pool_bytes / kPagesAtOnce, 1);
     if (triangles * kMaxBytesPerTriangle > plan.buffer_bytes)
@@ -103,7 +103,7 @@ static uint64_t share_of_page(const MemoryPlan& plan, uint64_t triangles) {
 
 LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles,
                      uint64_t unique) {
-    // Halving ends between half full and full: this much on average gives about so many leaves.
+    // Halving ends between half full and full, so leaves are this full on average.
     constexpr double kFull = 0.7;
     const uint64_t page_bytes = std::min(share_of_page(plan, unique), plan.buffer_bytes);
     if (options.leaf_triangles)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TwoLevelOptions: what a host asks of two-level, and what that makes of a budget.
+// TwoLevelOptions: the options of two-level, and the limits that they and a budget set.
 #pragma once
 
 #include "core/file/archive.h"
@@ -16,45 +16,46 @@ namespace ovc {
 struct TwoLevelOptions {
     uint64_t budget_bytes = 0;   // 0: the device's default
     uint64_t leaf_triangles = 0; // 0: a tenth of the scene, or all where that is better
-    uint64_t leaves = 0;         // instead: about this many
+    uint64_t leaves = 0;         // instead of leaf_triangles: about so many; or 0
     bool certify = true;         // false: fast precision, the kernel's own answers
-    bool compute = false;        // which kernel
+    bool compute = false;        // true: the compute kernel, else the fragment kernel
     bool tell_active = false;    // passes mark the pages that rays are traced through
-    /// Pages move in beside a pass. Default: on a GPU; a software renderer cannot do two things at
-    /// once, and what is moved before a pass has ended is some 20 % more.
+    /// Whether pages move in beside a pass. Default: on a GPU alone, because a software renderer
+    /// cannot do two things at once, and moving before a pass has ended moves some 20 % more.
     std::optional<bool> beside;
     uint64_t driver_bytes = ~uint64_t(0); // for tests: as in MemoryPlan
     uint64_t buffer_bytes = 0;            // for tests: as in plan_memory()
-    Bytes saved = {}; // what save() of a structure over the same soup wrote; outlives this one
+    Bytes saved = {}; // from save() of a structure over the same soup; outlives this one
 };
 
-/// The plan for the budget that the options ask for, portals not yet taken off. Error: as of
-/// plan_memory(); more triangles than a scene takes.
+/// Returns the plan for the budget that the options ask for, before portals are taken off. Error:
+/// as of plan_memory() in gpu/trace/tracer.h, or there are more triangles than a scene takes.
 Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
                                const DeviceInfo& device);
 
-/// Of a page in which planes cut nothing: a unit a triangle, and a node above every two.
+/// The max bytes a triangle of a page in which planes cut nothing: a unit, and a node above every
+/// two.
 inline constexpr uint64_t kMaxUncutBytesPerTriangle = 128;
 
-/// How a scene is cut where hardly anything fits: leaves by count (kdtree/partition.h), all of them
-/// about as large as what leads to them is, which takes the least together. Told by counts alone,
-/// so that plan and commit say the same before anything is built, and every larger budget works
-/// too.
+/// How a scene is cut where hardly anything fits. Leaves are cut by count (kdtree/partition.h), so
+/// large that a page takes about as much as the tree and the table that lead to all of them, which
+/// takes the least together. Counts alone decide, so that plan and commit say the same before
+/// anything is built, and every larger budget works too.
 struct SmallestCut {
     uint32_t leaf_triangles = 1;
-    uint64_t pool_bytes = 0; // that portals, tree and the largest page take, at most
+    uint64_t pool_bytes = 0; // upper bound of portals, tree and largest page together
 };
 SmallestCut smallest_cut(const Soup& soup, const Placed& placed, const TwoLevelOptions& options);
 
-/// The smallest budget that leaves so much to the pool.
+/// Returns the smallest budget that leaves so many bytes to the pool.
 uint64_t smallest_budget(uint64_t pool_bytes, const DeviceInfo& device);
 
-/// Error: a budget too small for the scene, with the smallest that works.
+/// Error: the budget is too small for the scene; the sentence names the smallest that works.
 Result<Done> check_budget(const Soup& soup, const TwoLevelOptions& options, const MemoryPlan& plan,
                           const DeviceInfo& device);
 
-/// What leaves may be under a plan of which portals are not yet taken off, where so many triangles
-/// can be hit, and `unique` with those of meshes that are cut by themselves.
+/// Returns the limits on the leaves of a cut with so many hittable triangles. plan: before portals
+/// are taken off. unique: the hittable triangles of all cuts of the scene.
 LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan, uint64_t triangles,
                      uint64_t unique);
 inline LeafLimits limits_of(const TwoLevelOptions& options, const MemoryPlan& plan,

@@ -1,32 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// CallWatch: whether a call that traces rays is to go on.
+// CallWatch: asks, while a call traces rays, whether it is to go on or is cancelled.
 #pragma once
 
 #include "core/result.h"
 
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <thread>
 
 namespace ovc {
 
-/// Who waits for rays, and may stop their tracing.
+/// The side that waits for a call's rays and may cancel it.
 class TraceWatch {
 public:
-    /// done: the share of the rays that is answered. false: stop.
+    /// Returns false to stop the tracing. done: the share of the rays that is answered, 0 to 1.
     virtual bool goes_on(double done) = 0;
 
 protected:
     ~TraceWatch() = default;
 };
 
-/// What the call under way asks as it goes on: the watch that it was given, if it was given one.
+/// Holds the watch of the call under way, if it has one. Only keeps_on() may be called from any
+/// thread.
 class CallWatch {
 public:
-    /// While it lives, `watch`, which may be nullptr, is asked, on this thread alone.
+    /// While a Scope lives, `watch` (nullptr: nothing) is asked, on the thread that made the Scope.
     class Scope {
     public:
         Scope(CallWatch& call, TraceWatch* watch) : call_(call) {
+            assert(!call.watch_); // calls take turns
             call.watch_ = watch;
             call.thread_ = std::this_thread::get_id();
             call.share_ = 0;
@@ -41,20 +44,24 @@ public:
 
     bool is_watched() const { return watch_ != nullptr; }
 
-    /// What a call of so many rays asks between passes.
+    /// Tells the watch, between passes, how many of the call's rays (> 0) are answered. Error of
+    /// the kind Cancelled: the call is to end.
     Result<Done> go_on(size_t answered, size_t rays) {
+        assert(answered <= rays && rays > 0);
         share_ = double(answered) / double(rays);
         keeps_on();
         return unless_cancelled();
     }
-    /// What a call returns at its end, because the answers of a cancelled call are incomplete.
+    /// Returns an error of the kind Cancelled where the call is cancelled. Calls end with this,
+    /// because the answers of a cancelled call are incomplete.
     Result<Done> unless_cancelled() const {
         if (watch_ && cancelled_)
             return Error{"cancelled", ErrorKind::Cancelled};
         return Done{};
     }
-    /// The same within a pass, from any thread, as often as something may take long. false: the
-    /// call is cancelled, and work on it is in vain.
+    /// Asks the watch within a pass, wherever something may take long. Returns false where the call
+    /// is cancelled and work on it is in vain. Any thread; those without the Scope only look up the
+    /// answer.
     bool keeps_on() const {
         if (!watch_)
             return true;
@@ -66,7 +73,7 @@ public:
 private:
     TraceWatch* watch_ = nullptr;
     std::thread::id thread_;
-    double share_ = 0; // of the call's rays that is answered
+    double share_ = 0; // the answered part of the call's rays
     mutable std::atomic<bool> cancelled_{false};
 };
 

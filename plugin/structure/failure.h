@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A failure on its way to the ABI; thrown and caught inside the plugin only.
+// Failure: the exception that carries an error to the C ABI. It is thrown and caught inside the
+// plugin only.
 #pragma once
 
 #include "plugin/overcast.h"

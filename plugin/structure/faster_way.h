@@ -5,26 +5,28 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <chrono>
 #include <cstdint>
 #include <mutex>
 
 namespace ovc {
 
-/// Any number of threads. Begins with the first way (0). A trial is a slice of time with the way
-/// in use, then one with the other. What counts is how many calls end in the time during which any
-/// is under way: what the host does between its calls makes neither way look slow.
+/// Any number of threads may call it. The first way (0) is in use at the start. A trial is a slice
+/// of time with the way in use, then one with the other. It counts how many calls end in the time
+/// during which any is under way, so that the host's own work between its calls makes neither way
+/// look slow.
 class FasterWay {
 public:
     using Clock = std::chrono::steady_clock;
     using Time = Clock::time_point;
 
     static constexpr auto kSlice = std::chrono::milliseconds(5);
-    static constexpr auto kFirstPause = std::chrono::milliseconds(50); // twice as long each time
+    static constexpr auto kFirstPause = std::chrono::milliseconds(50); // doubles up to the longest
     static constexpr auto kLongestPause = std::chrono::seconds(5);
     static constexpr double kGain = 1.1; // a change must be worth it
 
-    /// How a call goes.
+    /// The way that a call takes.
     struct Use {
         int way;
         uint32_t slice; // 0: in no trial
@@ -38,7 +40,8 @@ public:
         return use;
     }
 
-    /// may_look: whether to look at the clock; now and then will do.
+    /// Ends the call that begin() returned `use` for. may_look: whether to look at the clock for
+    /// the next trial; it suffices that some calls do.
     void end(const Use& use, bool may_look, Time (*now)() = Clock::now) {
         if (use.slice != 0)
             leave(use, now());
@@ -59,6 +62,7 @@ private:
         const std::lock_guard lock(mutex_);
         if (!is_current(use))
             return;
+        assert(inside_ > 0); // enter() counted this call in the same slice
         ++ended_;
         --inside_;
         const bool over = now >= slice_end_;
@@ -107,12 +111,12 @@ private:
 
     std::atomic<uint64_t> state_{0}; // the slice, and the way in the lowest bit
     std::atomic<Clock::rep> next_trial_{0};
-    std::mutex mutex_; // of what is below
+    std::mutex mutex_; // guards the members below
     uint32_t last_slice_ = 0;
     int incumbent_ = 0;
     Time slice_end_, busy_since_;
     Clock::duration busy_{}, pause_ = kFirstPause;
-    uint64_t inside_ = 0, ended_ = 0; // of the calls that began in the slice
+    uint64_t inside_ = 0, ended_ = 0; // calls that began in the slice
     double rate_[2]{};
 };
 

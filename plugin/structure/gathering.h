@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gathering: rays that threads ask about one by one, in batches. While one of the threads traces
-// what has come, the next batch comes together.
+// Gathering: collects rays that threads ask about one by one into batches. While one of the threads
+// traces a batch, the next one fills.
 #pragma once
 
 #include "core/ray.h"
 
+#include <cassert>
 #include <condition_variable>
 #include <mutex>
 #include <span>
@@ -18,15 +19,16 @@ struct SingleRay {
     bool any_hit = false;
     Ray ray;
     TriangleId skip;
-    Hit hit{};             // where not any_hit
-    bool occluded = false; // where any_hit
+    Hit hit{};             // the answer unless any_hit
+    bool occluded = false; // the answer if any_hit
 };
 
 class Gathering {
 public:
-    /// Returns when `asked` is answered; false: it was in a batch that could not be traced.
-    /// trace(batch) -> bool is called by whichever thread finds that no batch is under way, for
-    /// all that have come until then, so that a ray waits for two batches at most.
+    /// Returns true when `asked` is answered, false when its batch could not be traced. Any thread.
+    /// The thread that finds no batch under way calls trace(batch) -> bool for all rays that have
+    /// come until then, so that a ray waits for two batches at most. An exception of trace() counts
+    /// as false.
     template <class Trace>
     bool answer(SingleRay& asked, Trace&& trace) {
         Request request{&asked};
@@ -38,6 +40,7 @@ public:
                 continue;
             }
             std::swap(waiting_, batch_);
+            assert(waiting_.empty() && !batch_.empty()); // this thread's ray is in the batch
             lock.unlock();
             const bool traced = run(trace);
             lock.lock();
@@ -64,11 +67,12 @@ private:
                 rays_.push_back(request->ray);
             return trace(std::span<SingleRay* const>(rays_));
         } catch (...) {
-            return false; // each thread does without
+            return false; // each thread then answers its own ray
         }
     }
 
-    std::mutex mutex_; // of what is below, but for whom the batch is of
+    /// Guards the members below; batch_ and rays_ belong to the thread that traces.
+    std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<Request*> waiting_;
     bool under_way_ = false;

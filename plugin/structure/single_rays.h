@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single rays: calls of one ray each from many threads at once, beside all else on the scene. Each
-// thread walks the CPU's tree, or what all ask is gathered for the GPU, whichever is faster.
+// SingleRays: answers calls of one ray each from many threads at once, beside all other calls on
+// the scene. Each thread walks the CPU's tree, or all rays are gathered for the GPU, whichever is
+// faster.
 #pragma once
 
 #include "plugin/structure/faster_way.h"
@@ -10,6 +11,7 @@
 
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -22,12 +24,13 @@ class SingleRays {
     struct Shard;
 
 public:
-    /// turn: of the scene; streaming: the thread that has it and may call from within, if any.
+    /// turn: the scene's. streaming: the thread that is inside the scene's stream, if any; it holds
+    /// the turn, and the functions of its host may ask for single rays. Both must outlive this.
     SingleRays(Turn& turn, const std::atomic<std::thread::id>& streaming)
         : turn_(turn), streaming_(streaming) {}
 
-    /// The structure that calls are answered by, from now on; calls that were made before this
-    /// returns are over. nullptr: none.
+    /// Sets the structure that answers calls from now on; nullptr: none. When this returns, no call
+    /// uses the structure before it any more.
     void serve(Structure* structure) {
         structure_ = structure;
         for (const Shard& shard : shards_)
@@ -35,7 +38,7 @@ public:
                 std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
 
-    /// A call under way, while it lives.
+    /// One call. serve() waits until it is destroyed.
     class Call {
     public:
         explicit Call(SingleRays& rays) : rays_(rays), shard_(rays.own_shard()) {
@@ -45,11 +48,12 @@ public:
         ~Call() { --shard_.inside; }
         Call(const Call&) = delete;
 
-        /// nullptr: there is none.
+        /// Returns nullptr where there is none.
         Structure* structure() const { return structure_; }
 
-        /// Answers a ray. Needs a structure that has_cpu_tree().
+        /// Answers a ray; an invalid one misses. Needs a structure that has_cpu_tree().
         void answer(SingleRay& asked) {
+            assert(structure_ && structure_->has_cpu_tree());
             const FasterWay::Use use = rays_.way_.begin();
             const uint64_t before = use.way == kGathered && rays_.gather(*structure_, asked)
                                         ? add_one(shard_.gathered)
@@ -68,7 +72,7 @@ public:
             return add_one(asked.any_hit ? shard_.occlusion : shard_.nearest);
         }
 
-        /// Returns the count before.
+        /// Returns the count before the addition.
         static uint64_t add_one(std::atomic<uint64_t>& count) {
             return count.fetch_add(1, std::memory_order_relaxed);
         }
@@ -92,10 +96,10 @@ public:
 private:
     enum { kOnCpu = 0, kGathered = 1 }; // the ways
 
-    /// What some of the threads write; each has one that is always the same.
+    /// The counters that some of the threads write. A thread always uses the same shard.
     struct alignas(64) Shard {
         std::atomic<uint32_t> inside{0};  // calls under way
-        std::atomic<uint64_t> nearest{0}; // on the CPU, as the next
+        std::atomic<uint64_t> nearest{0}; // answered on the CPU, as the next two
         std::atomic<uint64_t> occlusion{0};
         std::atomic<uint64_t> invalid{0};
         std::atomic<uint64_t> gathered{0};
@@ -108,7 +112,8 @@ private:
         return shards_[(hash * 0x9e3779b97f4a7c15u) >> 58];
     }
 
-    /// false: not now. Never waits for a call of another kind.
+    /// Returns false where another call has the turn or the batch cannot be traced. Never waits for
+    /// a call of another kind.
     bool gather(Structure& structure, SingleRay& asked) {
         return gathering_.answer(asked, [&](std::span<SingleRay* const> batch) {
             if (streaming_ == std::this_thread::get_id())
@@ -119,7 +124,7 @@ private:
         });
     }
 
-    /// Those of the batch that ask so.
+    /// Traces the rays of the batch that ask for any hit, or those that ask for the nearest.
     static bool trace(Structure& structure, std::span<SingleRay* const> batch, bool any_hit) {
         std::vector<SingleRay*> asked;
         std::vector<Ray> rays;

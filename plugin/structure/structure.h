@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Structure: what answers rays behind the C ABI. Each library has its own two functions below:
-// libovercast.so makes two-level (make_two_level.cpp), libovercast-thesis.so what two-level is
-// compared with (thesis/).
+// Structure: the interface of what answers rays behind the C ABI. Each library defines the three
+// functions at the end for itself: libovercast.so makes two-level (two_level/make_two_level.cpp),
+// libovercast-thesis.so the structures that two-level is compared with (thesis/).
 #pragma once
 
 #include "core/batched_stream.h"
@@ -21,25 +21,27 @@
 
 namespace ovc {
 
-/// Built over a soup. One call at a time, but for those that say otherwise.
+/// Answers rays through a soup. It takes one call at a time, except where a function says
+/// otherwise.
 class Structure {
 public:
     virtual ~Structure() = default;
 
-    /// What intersect and occluded ask as they go on, if the structure can. Error of the kind
-    /// Cancelled where they are told to stop.
+    /// Returns the watch that intersect() and occluded() ask as they go on, where the structure
+    /// supports it. They end with an error of the kind Cancelled when it tells them to stop.
     CallWatch& call_watch() { return watch_; }
 
-    /// hits[i] for rays[i]; skip: empty, or per ray the triangle it does not see.
+    /// Sets hits[i], one per ray, to the nearest hit of rays[i]. skip: empty, or for each ray the
+    /// triangle that it does not see.
     virtual Result<Done> intersect(RaySpan rays, std::span<const TriangleId> skip,
                                    std::span<Hit> hits) = 0;
-    /// occluded[i] = 1 or 0 for rays[i].
+    /// Sets occluded[i], one per ray, to 1 where rays[i] hits anything, else to 0.
     virtual Result<Done> occluded(RaySpan rays, std::span<const TriangleId> skip,
                                   std::span<uint8_t> occluded) = 0;
-    /// Traces what the host pushes until there is no more. Error of the kind Cancelled: the host
-    /// stopped it. Here: batch after batch, for structures that know no better.
+    /// Traces the rays that the host pushes until there are no more. Error of the kind Cancelled:
+    /// the host stopped it. This default traces batch after batch.
     virtual Result<Done> stream(StreamHost& host) { return stream_in_batches(*this, host); }
-    /// intersect(), which fills in the notes as well. Only where takes_notes().
+    /// As intersect(), and fills in the notes, which are empty unless takes_notes().
     virtual Result<Done> intersect_noted(RaySpan rays, std::span<const TriangleId> skip,
                                          std::span<Hit> hits,
                                          [[maybe_unused]] const RayNotes& notes) {
@@ -47,23 +49,25 @@ public:
         return intersect(rays, skip, hits);
     }
     virtual bool takes_notes() const { return false; }
-    /// Whether single rays, valid ones, can be answered on the CPU, from any thread and beside all
-    /// other calls: the same bits as intersect() and occluded(), those of certified precision.
+    /// Whether the next two functions answer single rays, which must be valid, on the CPU. They may
+    /// be called from any thread and beside all other calls, and answer the same bits as
+    /// intersect() and occluded() in certified precision.
     virtual bool has_cpu_tree() const { return false; }
     virtual Hit nearest_on_cpu(const Ray&, TriangleId) const { return {}; }
     virtual bool occluded_on_cpu(const Ray&, TriangleId) const { return false; }
-    /// The pages that rays were traced through since this was asked last. Error: a structure that
-    /// cannot tell, or was not asked to when it was built.
+    /// Counts the pages that rays were traced through since the last call of this. Error: the
+    /// structure cannot tell, or was not asked to when it was built.
     virtual Result<ovc_active> take_active() {
         return Error{"this structure does not tell which pages are active"};
     }
-    /// Passes on what a structure over the same soup can be made from without building. Error of
-    /// the kind Cancelled: the sink wanted no more; else: it cannot be saved.
+    /// Writes to the sink what a structure over the same soup can be made from without building.
+    /// Error of the kind Cancelled: the sink wanted no more; of another kind: the structure cannot
+    /// be saved.
     virtual Result<Done> save(const ByteSink&) const {
         return Error{"only two-level can be saved"};
     }
     /// Gives back all GPU memory, and host memory that only serves speed; the next call that needs
-    /// it brings it in again. Error: a structure that cannot.
+    /// it brings it in again. Error: the structure cannot.
     virtual Result<Done> purge() { return Error{"only two-level can be purged"}; }
     /// Counted since it was built. What a structure does not have is 0.
     virtual ovc_statistics report() const = 0;
@@ -72,20 +76,22 @@ protected:
     CallWatch watch_;
 };
 
-/// Throws a Failure for what this library cannot do on the device, as far as that can be told
-/// before there are triangles. The config's size and its enumerators are in order.
+/// Throws a Failure where the config asks for something that this library cannot do on the device,
+/// as far as that can be told before there are triangles. The caller has checked the config's size
+/// and its enumerators.
 void check_config(const ovc_scene_config& config, const DeviceInfo& device);
 
-/// The structure that the config, checked before, asks for. The soup and the thread must outlive
-/// it. Error: a budget too small, with the smallest that works; GL's refusals. Throws Cancelled
-/// when told to stop.
+/// Builds the structure that the config asks for, which check_config() has let pass. The soup and
+/// the thread must outlive it. Error: the budget is too small, with the smallest that works, or GL
+/// refuses something. Throws Cancelled when `progress` is told to stop.
 Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
                                                   const ovc_scene_config& config,
                                                   const LogSink& log,
                                                   BuildProgress* progress = nullptr);
 
-/// What make_structure() would make, but for seconds. Throws as it does. Error: a budget too small
-/// for anything, or a structure that cannot tell.
+/// Tells what make_structure() would make; ovc_plan.seconds is left to the caller. Throws as
+/// make_structure() does. Error: the budget is too small for any scene, or the structure cannot
+/// tell.
 Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
                                 const ovc_scene_config& config, BuildProgress* progress = nullptr);
 

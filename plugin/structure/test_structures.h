@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of every structure ask: rays, the right answers, and a host of streams.
+// Rays, right answers and a stream's host, which the tests of every structure share.
 #pragma once
 
 #include "core/stream.h"
@@ -41,7 +41,7 @@ struct RaysOnTriangles {
     }
 };
 
-/// The answers of testing every triangle.
+/// Returns the answers that testing every triangle gives.
 inline std::vector<Hit> brute_force(const Soup& soup, std::span<const Ray> rays) {
     const auto ids = hittable_triangles(soup, nullptr, nullptr);
     std::vector<Hit> hits;
@@ -50,7 +50,7 @@ inline std::vector<Hit> brute_force(const Soup& soup, std::span<const Ray> rays)
     return hits;
 }
 
-/// Nearest hits and occlusion are the expected ones bit for bit.
+/// Expects that nearest hits and occlusion equal the expected ones bit for bit.
 inline void expect_answers(Structure& structure, std::span<const Ray> rays,
                            std::span<const Hit> expected) {
     std::vector<Hit> hits(rays.size());
@@ -66,7 +66,7 @@ inline void expect_answers(Structure& structure, std::span<const Ray> rays,
     }
 }
 
-/// The counts of a structure that was asked expect_answers() once, with these rays.
+/// Expects the counts of a structure after one call of expect_answers() with these rays.
 inline void expect_counts(const ovc_statistics& s, std::span<const Ray> rays) {
     EXPECT_EQ(s.nearest_rays, rays.size());
     EXPECT_EQ(s.occlusion_rays, rays.size());

@@ -3,6 +3,7 @@
 // a thread that comes back at once overtake those that sleep, as long as it likes.
 #pragma once
 
+#include <cassert>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -17,8 +18,8 @@ public:
         lock_while([] { return true; });
     }
 
-    /// Waits while goes_on() says so, which is asked some fifty times a second. false: it is not
-    /// this thread's turn.
+    /// Waits for this thread's turn as long as goes_on(), which is asked some fifty times a second,
+    /// returns true. Returns whether the thread has the turn.
     template <class GoesOn>
     bool lock_while(GoesOn&& goes_on) {
         std::unique_lock lock(mutex_);
@@ -47,6 +48,7 @@ public:
     void unlock() {
         {
             const std::lock_guard lock(mutex_);
+            assert(served_ != next_); // some thread has the turn
             do
                 ++served_;
             while (given_up_.erase(served_) > 0);
@@ -55,11 +57,11 @@ public:
     }
 
 private:
-    std::mutex mutex_; // of what is below
+    std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
-    uint64_t next_ = 0;           // the number that the next to come gets
-    uint64_t served_ = 0;         // whose turn it is
-    std::set<uint64_t> given_up_; // of those that are still to be served
+    uint64_t next_ = 0;           // the number for the next thread that comes
+    uint64_t served_ = 0;         // the number whose turn it is
+    std::set<uint64_t> given_up_; // numbers that are still to be served
 };
 
 } // namespace ovc

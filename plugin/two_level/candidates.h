@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Candidates: what a kernel found of a ray in certified precision, and the rule by which exact
-// arithmetic decides it. Two-level and the systems of plugin/thesis share the rule.
+// Candidates: the triangles that a kernel found for a ray in certified precision, and the rule by
+// which exact arithmetic decides among them. Two-level and the systems of plugin/thesis share the
+// rule.
 #pragma once
 
 #include "plugin/build/built_scene.h"
@@ -19,9 +20,9 @@ struct Candidates {
     /// The kernel is certain that something is hit; nothing is left to decide for an occlusion ray.
     bool is_certain_hit() const { return certain != OVC_MISS && !has_further(); }
 
-    /// Offers all of them, each as a ray sees it that does not see `skip`. False: exact arithmetic
-    /// does not confirm the certain hit, so the kernel's answer cannot be trusted and the ray goes
-    /// to the exact fallback.
+    /// Offers all of them, each as a ray sees it that does not see `skip`. Returns false where
+    /// exact arithmetic does not confirm the certain hit: then the kernel's answer cannot be
+    /// trusted, and the ray goes to the exact fallback.
     bool offer_to(Nearest& nearest, const BuiltScene& scene, TriangleId skip) const {
         if (certain != OVC_MISS && !scene.offer(nearest, scene.seen(certain, skip)))
             return false;

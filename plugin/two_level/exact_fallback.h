@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact fallback: a ray that float32 could not decide, traced in double down the top-level
-// tree and through the pages in host memory. Equals the CPU KDT of kdtree/traverse.h bit for bit,
-// because both test with core/exact/triangle.h every triangle that could be hit.
+// The exact fallback: traces a ray that float32 could not decide in double, down the top-level tree
+// and through the pages in host memory. Its answers equal those of the CPU KD-tree
+// (kdtree/traverse.h) bit for bit, because both test with core/exact/triangle.h every triangle that
+// could be hit.
 #pragma once
 
 #include "gpu/page/page_walk.h"
@@ -10,7 +11,7 @@
 
 namespace ovc {
 
-/// The nearest hit, or with kAnyHit some hit, of a valid ray.
+/// Returns the nearest hit of a valid ray, or with kAnyHit some hit. Any thread.
 template <bool kAnyHit>
 Hit trace_exactly(const BuiltScene& scene, const PreparedRay& p) {
     Nearest nearest(p);

@@ -24,11 +24,12 @@ Soup scene_of_five_mebibytes(bool with_instances) {
     return soup;
 }
 
-/// The most bytes of a buffer; whether meshes are shared; whether the kernel is the compute kernel.
+/// The parameters are the max bytes of a buffer, whether meshes are shared, and whether the kernel
+/// is the compute kernel.
 class ManyBuffersGl : public TwoLevelGl,
                       public testing::WithParamInterface<std::tuple<uint64_t, bool, bool>> {
 protected:
-    /// Of the structure with many buffers.
+    /// Returns the statistics of the structure with many buffers.
     ovc_statistics expect_alike(const Soup& soup, TwoLevelOptions options) {
         const std::vector<Ray> rays = test::rays_from_outside(31, 20000);
         const auto one = build(soup, options);

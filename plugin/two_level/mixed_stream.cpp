@@ -7,11 +7,13 @@
 #include "core/system/stopwatch.h"
 #include "plugin/two_level/wave_round.h"
 
+#include <cassert>
+
 namespace ovc {
 namespace {
 
-/// Rays of one kind under way in a stream: each has a slot, from when it starts until its answer is
-/// handed over.
+/// The rays of one kind in a stream. A ray has a slot from its start until its answer is handed
+/// over.
 template <class Query>
 class Lane {
     using Result = std::remove_reference_t<decltype(Query{}.results[0])>;
@@ -32,6 +34,7 @@ public:
         if (count == 0)
             return 0;
         grow(under_way() + count);
+        assert(free_.size() >= count);
         const StreamRays rays = backlog_.last(count);
         const std::vector<uint32_t> slots(free_.end() - ptrdiff_t(count), free_.end());
         free_.resize(free_.size() - count);
@@ -47,7 +50,8 @@ public:
         return count;
     }
 
-    /// Hands the answers to hand_over(tokens, results), if there are any; false when that says so.
+    /// Hands the answers to hand_over(tokens, results), if there are any. Returns false where that
+    /// does.
     template <class HandOver>
     bool deliver(HandOver&& hand_over) {
         const std::vector<uint32_t> finished = wave_.take_finished();
@@ -68,10 +72,11 @@ public:
     static constexpr size_t kSlots = size_t(1) << 20; // some 150 bytes each
 
 private:
-    static constexpr size_t kGrain = 1024; // rays a task that are only copied
+    static constexpr size_t kGrain = 1024; // rays a task, which only copies them
 
-    /// At least `slots` of them, and twice as many as before where they do not do.
+    /// Makes at least `slots` slots, and twice as many as before where it makes any.
     void grow(size_t slots) {
+        assert(slots <= kSlots);
         const size_t before = rays_.size();
         if (slots <= before)
             return;
@@ -142,7 +147,8 @@ public:
     }
 
 private:
-    /// Asks the host for more where half of what may be under way is missing.
+    /// Asks the host for more rays where fewer than half of the slots are taken. Returns false
+    /// where the host stops the stream.
     bool fill() {
         const size_t under_way = nearest_.under_way() + nearest_.backlog();
         if (!more_ || under_way > Lane<NearestQuery>::kSlots / 2)
@@ -164,7 +170,7 @@ private:
     }
 
     /// Rays a pass where no page need be moved: enough to keep a device busy, and few enough that
-    /// passes and the host's work on what they answered go on beside each other.
+    /// passes and the host's work on their answers go on beside each other.
     static constexpr size_t kPassRays = size_t(1) << 17;
 
     bool deliver() {

@@ -7,8 +7,8 @@
 
 namespace ovc {
 
-/// Traces what the host pushes until there is no more. Error of the kind Cancelled: the host
-/// stopped it; those of passes.
+/// Traces the rays that the host pushes until there are no more. Error of the kind Cancelled: the
+/// host stopped it; else: a pass failed.
 Result<Done> trace_stream(const Tracing& tracing, PassRunner& passes, StreamHost& host);
 
 } // namespace ovc

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// OnePass: a query where all pages are resident, so that one pass of the kernel answers a ray.
-// Beside the pass of one part of the rays, the part before is resolved and the next one made ready.
+// OnePass: answers a query where all pages are resident, so that one pass of the kernel answers a
+// ray. Beside the pass of one part of the rays, the part before is resolved and the next one is
+// made ready.
 #pragma once
 
 #include "plugin/two_level/pass_runner.h"
 #include "plugin/two_level/resolve.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 #include <vector>
 
@@ -19,6 +21,7 @@ public:
         : watch_(tracing.watch), passes_(passes), query_(query), resolver_(tracing, query) {}
 
     Result<Done> run() {
+        assert(passes_.all_resident());
         Batch* now = &passes_.batches()[0];
         Batch* other = &passes_.batches()[1];
         other->rays.clear();
@@ -42,7 +45,8 @@ public:
     }
 
 private:
-    /// The next rays of the query that the kernel is to be asked about; none where all have begun.
+    /// Fills the batch with the next rays of the query that the kernel is to be asked about, or
+    /// with none where all have begun.
     void begin(Batch& batch) {
         batch.rays.clear();
         while (batch.rays.empty() && next_ < query_.rays.size())
@@ -62,8 +66,8 @@ private:
         const size_t part = passes_.part_rays(query_.rays.size());
         const size_t first = next_, count = std::min(part, query_.rays.size() - first);
         const size_t blocks = (count + kRaysPerTask - 1) / kRaysPerTask;
-        // A block writes its rays where it begins, then all move together: in order, and without
-        // holes, whichever thread takes which block.
+        // Each block writes its rays from its own beginning, then all are moved together: in order
+        // and without holes, whichever thread takes which block.
         batch.rays.resize(count);
         block_rays_.resize(blocks);
         parallel_for(blocks, 1, [&](size_t from, size_t to) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// PassRunner: the tracer on the thread of its context, and passes beside the caller's own work.
+// PassRunner: calls the tracer on the thread of its context, and runs passes beside the caller's
+// own work.
 #include "plugin/two_level/pass_runner.h"
 
 #include "core/system/stopwatch.h"
 #include "core/text/format_text.h"
 #include "plugin/build/build_scene.h"
 
+#include <cassert>
 #include <utility>
 
 namespace ovc {
@@ -84,7 +86,7 @@ Error PassRunner::lost() {
 }
 
 void PassRunner::bring_first(BuildProgress* progress) {
-    constexpr uint64_t kBytesAtOnce = 32 << 20; // between two looks whether to stop
+    constexpr uint64_t kBytesAtOnce = 32 << 20; // moved between two looks whether to stop
     const std::vector<Page>& pages = tracing_.scene.pages;
     begin(progress, "moving pages to the GPU", 0.05, plan_.pool_bytes);
     const size_t fitting =
@@ -102,6 +104,7 @@ void PassRunner::bring_first(BuildProgress* progress) {
 }
 
 size_t PassRunner::bring(std::span<const uint32_t> wanted) {
+    assert(tracer_);
     Moved moved;
     gl_.run([&](GlState& state) {
         if (is_ours(state))
@@ -115,6 +118,8 @@ size_t PassRunner::bring(std::span<const uint32_t> wanted) {
 Result<size_t> PassRunner::pass(Batch& batch, std::span<const uint32_t> wanted,
                                 const std::function<void()>& meanwhile) {
     const size_t count = batch.rays.size();
+    assert(tracer_ && count > 0 && count <= plan_.batch_rays);
+    assert(batch.states.size() >= whole_blocks(count) && batch.answers.size() >= count);
     std::fill_n(batch.states.begin() + ptrdiff_t(count), whole_blocks(count) - count, RayState());
     Result<Done> done = Done{};
     bool alive = false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// PassRunner: what a scene has on the device. It owns the tracer, moves pages into the pool and
-// runs passes of the kernel; it makes the tracer anew after purge() and where a context was lost.
+// PassRunner: the part of a scene that lives on the device. It owns the tracer, moves pages into
+// the pool and runs passes of the kernel; it makes the tracer anew after purge() and where a
+// context was lost.
 #pragma once
 
 #include "core/system/log.h"
@@ -20,8 +21,8 @@ namespace ovc {
 /// The rays of a pass, and their answers.
 struct Batch {
     std::vector<uint32_t> rays;       // their numbers in the query
-    std::array<size_t, 2> of_waves{}; // so many of each wave, one behind the other
-    std::vector<RayState> states;     // as the next, at least one per ray, to a whole block
+    std::array<size_t, 2> of_waves{}; // the rays of each wave, which lie together
+    std::vector<RayState> states;     // at least one per ray, in whole blocks, as the next
     std::vector<Answer> answers;
 
     void make_room() {
@@ -33,7 +34,7 @@ struct Batch {
 
 class PassRunner {
 public:
-    /// plan: portals are not yet taken off. The thread must outlive the runner.
+    /// plan: before portals are taken off. The thread must outlive the runner.
     PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& plan, LogSink log);
     ~PassRunner() { purge(); }
     PassRunner(const PassRunner&) = delete;
@@ -41,7 +42,8 @@ public:
     /// Makes the tracer, with a smaller pool where the driver has no room for the plan's, and moves
     /// the first pages in, so that rays need not come and wait first.
     Result<Done> open(BuildProgress* progress = nullptr);
-    /// Makes anew what went with an earlier context, or with purge().
+    /// Opens again where the tracer went with an earlier context or with purge(). Errors are those
+    /// of open().
     Result<Done> ready();
     /// Gives back all GPU memory.
     void purge();
@@ -52,22 +54,24 @@ public:
     /// Moves the first pages of `wanted` in, as many as fit; returns how many.
     size_t bring(std::span<const uint32_t> wanted);
 
-    /// Sends the rays of the batch on their way; their answers go into it. Pages of `wanted` are
-    /// moved in and meanwhile() runs beside them; returns how many pages were moved.
+    /// Traces the rays of the batch (not empty, at most plan().batch_rays) in one pass; their
+    /// answers go into the batch. Beside the pass, pages of `wanted` move in, and meanwhile() runs
+    /// on this thread. Returns how many pages were moved. Error: the context is lost, or GL's.
     Result<size_t> pass(Batch& batch, std::span<const uint32_t> wanted,
                         const std::function<void()>& meanwhile);
 
-    /// Opens a new context for the calls to come. The error that the call under way returns.
+    /// Opens a new context for the calls to come, and returns the error for the call under way.
     Error lost();
 
-    /// Per leaf, whether rays were traced through its page since this was asked last.
+    /// Returns for each leaf whether rays were traced through its page since the last call of this.
     std::vector<uint32_t> take_active();
 
     /// Whether pages are to move in beside a pass.
     bool moves_beside() const { return tracing_.options.beside.value_or(!gl_.info().is_software); }
     /// Fewer rays are not worth a pass while others wait.
     size_t few_rays() const { return std::min<size_t>(4096, plan_.batch_rays / 4); }
-    /// So many rays of `rays` a pass keep a device busy, and leave something to do beside it.
+    /// Returns how many of `rays` a pass takes, so that it keeps the device busy and leaves
+    /// something to do beside it. At most plan().batch_rays.
     size_t part_rays(size_t rays) const;
     /// Two batches, kept between calls, take turns: one is with the kernel, while the answers of
     /// the other are resolved and it is filled again.
@@ -78,7 +82,7 @@ public:
 
 private:
     void bring_first(BuildProgress* progress);
-    /// Whether the context that the tracer lives in is there. On its thread.
+    /// Whether the tracer's context is alive. Called on the context's thread.
     bool is_ours(const GlState& state) const {
         return state.generation == tracer_generation_ && state.context.alive();
     }

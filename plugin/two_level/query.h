@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What nearest-hit and occlusion queries differ in: the kernel, and what becomes of an answer.
+// NearestQuery, OcclusionQuery: how the two kinds of queries differ in the kernel and in the use of
+// an answer.
 #pragma once
 
 #include "core/exact/triangle.h"
@@ -16,8 +17,8 @@ struct NearestQuery {
     RaySpan rays;
     std::span<const TriangleId> skip; // empty, or one per ray
     std::span<Hit> results;
-    std::span<uint32_t> passes;  // empty, or counts each ray's
-    std::span<uint32_t> flagged; // empty, or becomes 1 for rays that are
+    std::span<uint32_t> passes;  // empty, or counts those of each ray
+    std::span<uint32_t> flagged; // empty, or becomes 1 for flagged rays
 
     TriangleId skipped(size_t i) const { return skip.empty() ? TriangleId{} : skip[i]; }
     NearestQuery part(size_t first, size_t count) const {
@@ -58,10 +59,10 @@ struct OcclusionQuery {
     void set(size_t i, const Hit& hit) const { results[i] = hit.is_hit(); }
     void set(size_t i, const Nearest& nearest) const { results[i] = nearest.is_hit(); }
     bool was_hit(size_t i) const { return results[i] != 0; }
-    Hit hit(size_t) const { return {}; } // which one is not kept
+    Hit hit(size_t) const { return {}; } // the triangle is not kept
 };
 
-/// Ray i as the host gave it.
+/// Returns ray i as the host gave it.
 template <class Query>
 PreparedRay prepare(const Query& query, size_t i) {
     return PreparedRay(query.rays[i], query.skipped(i));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Resolver: which rays the kernel is asked about, and what exact arithmetic makes of its answers.
+// Resolver: tells which rays the kernel is asked about, and resolves its answers by exact
+// arithmetic.
 #pragma once
 
 #include "core/exact/hit_batch.h"
@@ -13,21 +14,23 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 namespace ovc {
 
-inline constexpr size_t kRaysPerTask = 256; // of parallel loops over rays that are traced
+inline constexpr size_t kRaysPerTask = 256; // in parallel loops over rays that are traced
 
-/// Of an answer in certified precision that names triangles or OVC_MISS.
+/// Returns the candidates of an answer in certified precision that names triangles or OVC_MISS.
 inline Candidates candidates_of(const Answer& answer) {
     return {answer.prim, {answer.further()[0], answer.further()[1]}};
 }
 
-/// The hit with t, u and v of where the ray meets the triangle's plane, as doubles have it; as it
-/// is where they cannot tell. Based on: Moller and Trumbore 1997.
+/// Returns the hit with t, u and v of where the ray meets the triangle's plane, computed in
+/// doubles; the hit unchanged where they find no such point on the ray. Based on: Moller and
+/// Trumbore 1997.
 inline Hit in_doubles(const Hit& hit, const Ray& ray, const Triangle& triangle) {
     const dvec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
     const dvec3 p = glm::cross(ray.dir, ac), from = ray.org - triangle[0];
@@ -40,8 +43,8 @@ inline Hit in_doubles(const Hit& hit, const Ray& ray, const Triangle& triangle) 
             std::clamp(glm::dot(ray.dir, q) / determinant, 0.0, 1.0), hit.id};
 }
 
-/// The part that is the same however rays come to their leaves. Its members may be called for
-/// different rays at once; its counts go to the statistics when it is destroyed.
+/// The part of tracing that is the same however rays come to their leaves. Several threads may call
+/// its members at once, for different rays. Its counts go to the statistics when it is destroyed.
 template <class Query>
 class Resolver {
 public:
@@ -60,10 +63,10 @@ public:
     Resolver(const Resolver&) = delete;
 
     const Query& query() const { return query_; }
-    /// The query's arrays have moved, or have more rays than before.
+    /// Replaces the query where its arrays have moved or have more rays than before.
     void show(const Query& query) { query_ = query; }
 
-    /// Whether the kernel is to be asked about ray i. Else the ray is answered now.
+    /// Returns whether the kernel is to be asked about ray i. If not, this has answered the ray.
     bool begins(uint32_t i) {
         query_.set_miss(i);
         if (!query_.rays[i].valid()) {
@@ -71,7 +74,8 @@ public:
             return false;
         }
         const PreparedRay p = prepare(query_, i);
-        // First: from where double cannot walk, rounding may carry a ray past the whole scene.
+        // This comes before the clip: where double cannot walk, rounding may carry a ray past the
+        // whole scene.
         if (!can_walk(scene_.level1, p)) {
             fall_back(i);
             return false;
@@ -79,7 +83,8 @@ public:
         return !clip(p, box_, p.ray.t_min, p.ray.t_max).empty();
     }
 
-    /// Ray i on its way: of interest up to t_end; key: as RayState::key().
+    /// Returns the state of ray i for a pass. Hits beyond t_end are of no interest. key: as
+    /// RayState::key().
     RayState ray_state(uint32_t i, double t_end, uint32_t key) const {
         query_.count_pass(i);
         Ray rest = query_.rays[i];
@@ -90,16 +95,17 @@ public:
                 key | (Query::kAnyHit ? OVC_RAY_ANY_HIT : 0)};
     }
 
-    /// Enters the kernel's answers for these rays, as far as they are certain or exact arithmetic
-    /// decides them. takes(i, answer) is asked before; false: the answer is to be left alone.
-    /// go_on(i, key, limit) is told where a page that is not resident may hold a hit before
-    /// `limit`; key: of the link that leads there.
+    /// Enters the kernel's answers, one per ray, as far as they are certain or exact arithmetic
+    /// decides them. takes(i, answer) -> bool is asked before; false leaves the answer alone.
+    /// go_on(i, key, limit) is called where a page that is not resident may hold a hit before
+    /// `limit`; key: that of the link that leads there.
     template <class Takes, class GoOn>
     void resolve(std::span<const uint32_t> rays, std::span<const Answer> answers, Takes&& takes,
                  GoOn&& go_on) {
+        assert(rays.size() == answers.size());
         if (!tracing_.watch.keeps_on())
             return;
-        HitBatch<size_t> certain; // of `answers`
+        HitBatch<size_t> certain; // tagged with the index in `answers`
         std::vector<uint32_t> in_doubt;
         const auto enter = [&](const Hit& hit, size_t j) {
             enter_certain(rays[j], answers[j], hit, go_on);
@@ -125,22 +131,22 @@ public:
         fall_back(in_doubt);
     }
 
-    /// Answers ray i for good, whatever it has met. Asks before whether that is in vain, because
-    /// some rays take a hundred times as long as most.
+    /// Answers ray i for good, whatever it has met, unless the call is cancelled. That is asked for
+    /// each ray, because some take a hundred times as long as most.
     void answer_exactly(uint32_t i) {
         if (tracing_.watch.keeps_on())
             query_.set(i, trace_exactly<Query::kAnyHit>(scene_, prepare(query_, i)));
     }
 
 private:
-    /// Fetches the triangle of one of the answers behind the j-th, which is soon to be resolved.
+    /// Fetches the triangle of an answer some way behind the j-th, which is to be resolved soon.
     void fetch_ahead(std::span<const Answer> answers, size_t j) const {
         constexpr size_t kAhead = 8;
         if (j + kAhead >= answers.size())
             return;
         const uint32_t prim = answers[j + kAhead].prim;
         if (prim >= OVC_MAX_TRIANGLES || Query::kAnyHit || !tracing_.options.certify)
-            return; // nobody looks at its corners
+            return; // the corners will not be read
         const TriangleId id = scene_.numbers.id(prim);
         __builtin_prefetch(scene_.soup.chunks[id.mesh].address_of(id.prim));
     }
@@ -158,7 +164,7 @@ private:
             go_on(i, answer.where, std::nextafter(hit.t, std::numeric_limits<double>::max()));
     }
 
-    /// False: the ray goes to the exact fallback.
+    /// Returns false where the ray must go to the exact fallback.
     template <class GoOn>
     bool resolve_one(uint32_t i, const Answer& answer, GoOn&& go_on) {
         capped_ += answer.prim == OVC_CAPPED;
@@ -170,7 +176,7 @@ private:
         return true;
     }
 
-    /// False where exact arithmetic does not confirm the certain hit.
+    /// Returns false where exact arithmetic does not confirm the certain hit.
     template <class GoOn>
     bool resolve_candidates(uint32_t i, const Answer& answer, GoOn&& go_on) {
         const Candidates found = candidates_of(answer);
@@ -195,7 +201,8 @@ private:
         return true;
     }
 
-    /// The ray was asked about up to the hit before, if there was one, so that this one is nearer.
+    /// The kernel was asked about the ray up to its hit before, if there was one, so this one is
+    /// nearer.
     template <class GoOn>
     void enter_fast(uint32_t i, const Answer& answer, GoOn&& go_on) {
         if (answer.prim == OVC_MISS)
@@ -208,7 +215,7 @@ private:
             go_on(i, answer.where, hit.t);
     }
 
-    /// In parallel where the rays are many, because each may take as long as thousands of others.
+    /// Runs in parallel where rays are many, because each may take as long as thousands of others.
     void fall_back(std::span<const uint32_t> rays) {
         const auto each = [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j)
@@ -234,7 +241,7 @@ private:
     const Tracing tracing_;
     const BuiltScene& scene_;
     Query query_;
-    const Box box_; // of the scene; empty: no triangles
+    const Box box_; // around the scene; empty where it has no triangles
     std::atomic<uint64_t> invalid_{0};
     std::atomic<uint64_t> flagged_{0};
     std::atomic<uint64_t> retraced_{0};

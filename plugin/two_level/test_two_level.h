@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of two-level on a device share.
+// TwoLevelGl: the fixture that the tests of two-level on a device share.
 #pragma once
 
 #include "plugin/two_level/two_level.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tracing: what waves, resolving and passes are handed.
+// Tracing: the objects that waves, resolving and passes share.
 #pragma once
 
 #include "plugin/build/built_scene.h"
@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-/// What is referred to outlives everything that is handed a Tracing.
+/// The objects that it refers to outlive everything that keeps a Tracing.
 struct Tracing {
     const BuiltScene& scene;
     const TwoLevelOptions& options;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two-level: what a call does before and after its rays are traced.
+// TwoLevel: the work of each call before and after its rays are traced.
 #include "plugin/two_level/two_level.h"
 
 #include "core/system/stopwatch.h"
@@ -10,6 +10,7 @@
 #include "plugin/two_level/wave_round.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc {
 
@@ -43,6 +44,8 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
 
 template <class Query>
 Result<Done> TwoLevel::trace(const Query& query) {
+    assert(query.results.size() == query.rays.size());
+    assert(query.skip.empty() || query.skip.size() == query.rays.size());
     const Stopwatch watch;
     if (Result<Done> ready = passes_.ready(); !ready)
         return ready;
@@ -67,6 +70,7 @@ Result<Done> TwoLevel::occluded(RaySpan rays, std::span<const TriangleId> skip,
 
 Result<Done> TwoLevel::intersect_noted(RaySpan rays, std::span<const TriangleId> skip,
                                        std::span<Hit> hits, const RayNotes& notes) {
+    assert(notes.leaf.empty() || notes.leaf.size() == rays.size());
     std::fill(notes.passes.begin(), notes.passes.end(), 0);
     std::fill(notes.flagged.begin(), notes.flagged.end(), 0);
     if (Result<Done> done = trace(NearestQuery{rays, skip, hits, notes.passes, notes.flagged});
@@ -81,10 +85,12 @@ Result<Done> TwoLevel::intersect_noted(RaySpan rays, std::span<const TriangleId>
 }
 
 Hit TwoLevel::nearest_on_cpu(const Ray& ray, TriangleId skip) const {
+    assert(ray.valid());
     return trace_exactly</* kAnyHit= */ false>(scene_, PreparedRay(ray, skip));
 }
 
 bool TwoLevel::occluded_on_cpu(const Ray& ray, TriangleId skip) const {
+    assert(ray.valid());
     return trace_exactly</* kAnyHit= */ true>(scene_, PreparedRay(ray, skip)).is_hit();
 }
 
@@ -100,6 +106,7 @@ Result<ovc_active> TwoLevel::take_active() {
     if (Result<Done> ready = passes_.ready(); !ready)
         return ready.error();
     const std::vector<uint32_t> now = passes_.take_active();
+    assert(now.size() == scene_.pages.size());
     ovc_active active{};
     was_active_.resize(now.size());
     for (size_t leaf = 0; leaf < now.size(); ++leaf) {

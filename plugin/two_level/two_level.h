@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two-level: level 1, a page per leaf, passes in which rays go from page to page as far as these
-// are in the pool, and wait for the others. Based on: thesis, sections 3.3 and 3.4 (algorithms 2, 3
-// and 4), with the way from page to page found in the kernel.
+// TwoLevel: the structure of level 1 and a page per leaf. In a pass, rays go from page to page as
+// far as these are in the pool, and wait for the others. Based on: thesis, sections 3.3 and 3.4
+// (algorithms 2, 3 and 4), but the kernel finds the way from page to page.
 #pragma once
 
 #include "core/system/log.h"
@@ -14,11 +14,12 @@
 
 namespace ovc {
 
-/// A scene, what it has on the device, and rays through it. One call at a time.
+/// Owns a scene and its part on the device, and traces rays through it. One call at a time.
 class TwoLevel final : public Structure {
 public:
-    /// The soup and the thread must outlive it. Error: a budget too small, with the smallest that
-    /// works; GL's refusals.
+    /// Builds or restores the scene, and opens it on the device. The soup and the thread must
+    /// outlive it. Error: the budget is too small, with the smallest that works, or GL refuses
+    /// something. Throws Cancelled when `progress` is told to stop.
     static Result<std::unique_ptr<TwoLevel>> build(const Soup& soup, GlThread& gl,
                                                    const TwoLevelOptions& options,
                                                    const LogSink& log,
@@ -57,7 +58,7 @@ private:
     ovc_statistics statistics_{sizeof(ovc_statistics)};
     const Tracing tracing_{scene_, options_, statistics_, watch_};
     PassRunner passes_;
-    std::vector<uint8_t> was_active_; // per leaf: when take_active() was asked last
+    std::vector<uint8_t> was_active_; // per leaf, at the last take_active()
 };
 
 } // namespace ovc

@@ -114,7 +114,7 @@ TEST_F(TwoLevelGl, AnyBudgetNearThatOfAllPagesAnswersAlike) {
     EXPECT_GT(resident, 0u);
 }
 
-/// So many rays that they come in several parts, of which one has no ray for the kernel at all.
+/// There are so many rays that they come in several parts, one of which has no ray for the kernel.
 TEST_F(TwoLevelGl, ManyRaysAreAnsweredAsFewAre) {
     const Soup soup = test::closed_grid(60);
     std::vector<Ray> rays = test::rays_from_outside(11, 300000);
@@ -277,7 +277,7 @@ TEST_F(TwoLevelGl, DuplicatesAnswerAsBruteForceDoes) {
             const auto structure = build(soup, options);
             ASSERT_TRUE(structure);
             EXPECT_EQ(structure->scene().duplicates.count(), ids.size() - once.triangle_count());
-            // Not the same: which triangles pair up depends on how they are numbered.
+            // They are not equal, because pairs depend on how triangles are numbered.
             const auto alone = double(build(once, options)->scene().level2_bytes());
             EXPECT_NEAR(double(structure->scene().level2_bytes()), alone, 0.05 * alone);
             std::vector<Hit> hits(rays.size());
@@ -391,7 +391,7 @@ Soup overlapping_rectangles(int count) {
     return test::one_chunk(std::move(corners));
 }
 
-// What lies in one plane is in many leaves, of one cell and of the next, and t is rounded
+// Triangles in one plane are in many leaves, of one cell and of the next, and t is rounded
 // differently for each triangle.
 TEST_F(TwoLevelGl, TiesAcrossLeavesAndCellsGoToTheSmallerId) {
     const Soup soup = overlapping_rectangles(400);

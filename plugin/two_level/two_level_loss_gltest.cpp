@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two-level where the driver has no room, or loses the context.
+// Two-level goes on or refuses where the driver has no room, and where it loses the context.
 #include "plugin/two_level/test_two_level.h"
 
 namespace ovc {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rays that wait for leaves outside the pool, and which leaves are worth moving in.
+// Waiting: queues of the rays that wait for leaves outside the pool; and the choice of the leaves
+// that are worth moving in.
 #pragma once
 
 #include "gpu/page/page.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -21,6 +23,7 @@ public:
         ++count_;
     }
     std::vector<uint32_t> take(uint32_t leaf) {
+        assert(leaf < queues_.size());
         count_ -= queues_[leaf].size();
         return std::exchange(queues_[leaf], {});
     }
@@ -33,16 +36,17 @@ private:
     size_t count_ = 0;
 };
 
-/// Moving so many bytes takes as long as answering a ray in double: 1 us on a core, either of them
+/// Moving so many bytes takes as long as answering a ray in double: each takes 1 us on a core
 /// (docs/decisions/0013).
 inline constexpr uint64_t kBytesARay = 8192;
 
-/// Of the leaves that rays wait for, counts[leaf] of them: those worth moving in, most rays per
-/// byte first, but none that is worth less than an eighth of the first: its queue may grow until it
-/// is; nor one with less than a ray for `bytes_a_ray`, which doubles answer sooner than it is
-/// moved.
+/// Returns the leaves worth moving in, where counts[leaf] rays wait for each, one count a page:
+/// those with more rays per byte come first. A leaf that is worth less than an eighth of the
+/// first is left out, because its queue may grow; so is one with less than a ray for `bytes_a_ray`
+/// (> 0), because doubles answer its rays sooner than it is moved.
 inline std::vector<uint32_t> worth_moving(std::span<const size_t> counts,
                                           std::span<const Page> pages, uint64_t bytes_a_ray) {
+    assert(counts.size() == pages.size() && bytes_a_ray > 0);
     constexpr double kMinShare = 1.0 / 8;
     std::vector<std::pair<double, uint32_t>> leaves;
     for (uint32_t leaf = 0; leaf < counts.size(); ++leaf)

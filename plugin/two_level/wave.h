@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wave: rays on their way. Those that need no other page yet are ready for the next pass, the
-// others wait for theirs.
+// Wave: the rays of a query that are on their way. Those that need no other page yet are ready for
+// the next pass, the others wait for theirs.
 #pragma once
 
 #include "plugin/two_level/pass_runner.h"
@@ -8,11 +8,12 @@
 #include "plugin/two_level/waiting.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace ovc {
 
-/// The rays of a query, by their numbers in it.
+/// Rays go by their numbers in the query.
 template <class Query>
 class Wave {
 public:
@@ -23,13 +24,13 @@ public:
           states_(query.rays.size()),
           waiting_(tracing.scene.pages.size()) {}
 
-    /// The query's arrays have moved, or have more rays than before.
+    /// Replaces the query where its arrays have moved or have more rays than before.
     void show(const Query& query) {
         resolver_.show(query);
         states_.resize(query.rays.size());
     }
 
-    /// Puts these rays, none of them under way, at the beginning of theirs.
+    /// Starts these rays, none of which is under way.
     void start(std::span<const uint32_t> rays) {
         parallel_for(rays.size(), kRaysPerTask, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j)
@@ -38,13 +39,13 @@ public:
         send_on(rays);
     }
 
-    /// Rays that are not answered yet.
+    /// Returns how many rays are under way and not answered yet.
     size_t left() const { return ready() + waiting() + loaded_; }
     size_t ready() const { return ready_.size(); }
     size_t waiting() const { return waiting_.count(); }
     const Waiting& queues() const { return waiting_; }
 
-    /// The leaves are resident now, so that the rays that waited for them are ready.
+    /// Makes the rays ready that waited for these leaves, which are resident now.
     void call_up(std::span<const uint32_t> leaves) {
         for (const uint32_t leaf : leaves) {
             const std::vector<uint32_t> queue = waiting_.take(leaf);
@@ -71,12 +72,13 @@ public:
         finished_.insert(finished_.end(), rays.begin(), rays.end());
     }
 
-    /// The rays that were answered since this was asked last.
+    /// Returns the rays that were answered since the last call of this.
     std::vector<uint32_t> take_finished() { return std::exchange(finished_, {}); }
 
     /// Puts rays that are ready into `states`, as many as there is room for, and their numbers into
-    /// `rays`; returns how many. Beside a pass.
+    /// `rays`; returns how many. May run beside a pass.
     size_t load(std::span<uint32_t> rays, std::span<RayState> states) {
+        assert(states.size() >= rays.size());
         const size_t count = std::min(ready_.size(), rays.size());
         std::copy_n(ready_.begin(), count, rays.begin());
         ready_.erase(ready_.begin(), ready_.begin() + ptrdiff_t(count));
@@ -90,8 +92,10 @@ public:
         return count;
     }
 
-    /// Resolves the answers for rays that were loaded, and sends the rays on. Beside a pass.
+    /// Resolves the answers, one per ray, for rays that were loaded, and sends the rays on. May run
+    /// beside a pass.
     void resolve(std::span<const uint32_t> rays, std::span<const Answer> answers) {
+        assert(rays.size() == answers.size() && rays.size() <= loaded_);
         parallel_for(rays.size(), kRaysPerTask, [&](size_t from, size_t to) {
             resolver_.resolve(
                 rays.subspan(from, to - from), answers.subspan(from, to - from),
@@ -105,7 +109,8 @@ public:
     }
 
 private:
-    /// How far a ray has come: the resume key, and nothing beyond t_end is of interest.
+    /// How far a ray has come. It goes on at the resume key, and hits beyond t_end are of no
+    /// interest.
     struct State {
         double t_end = 0;
         uint32_t key = 0;
@@ -129,8 +134,8 @@ private:
         }
     }
 
-    /// Says in states_[i] where the ray goes from here, as far as the answer alone tells. False:
-    /// there is nothing in it to resolve.
+    /// Sets in states_[i] where the ray goes from here, as far as the answer alone tells. Returns
+    /// false where it has nothing to resolve.
     bool takes(uint32_t i, const Answer& answer) {
         State& at = states_[i];
         at.stage = State::Done;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// WaveRound: passes of the rays that are ready in one wave, or in two that share the passes. As in
-// OnePass, the rays are parted: beside the pass of one part, the part before is resolved and the
-// next one made ready.
+// WaveRound: runs passes over the rays that are ready in one wave, or in two that share the passes.
+// As in OnePass, the rays are parted: beside the pass of one part, the part before is resolved and
+// the next one is made ready.
 #pragma once
 
 #include "plugin/two_level/wave.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -20,9 +21,9 @@ public:
     WaveRound(const Tracing& tracing, PassRunner& passes, Wave<Queries>&... waves)
         : tracing_(tracing), passes_(passes), waves_(waves...) {}
 
-    /// Passes of at most max_rays rays of all the waves. Pages that others wait for are moved in
-    /// before them where few rays are ready, and beside them where few are left. meanwhile() ->
-    /// bool runs beside each pass; false: it is the last.
+    /// Runs passes over at most max_rays rays of all the waves. Pages that other rays wait for are
+    /// moved in before the passes where few rays are ready, and beside them where few are left.
+    /// meanwhile() -> bool runs beside each pass, and returns false to make it the last one.
     template <class Meanwhile>
     Result<Done> run(size_t max_rays, Meanwhile&& meanwhile) {
         // Rays that are ready join the next pass, most of which then consists of rays that waited
@@ -43,6 +44,7 @@ public:
         std::vector<uint32_t> beside; // pages moved in beside the pass: its rays may wait for them
         bool goes_on = true;
         while (!now->rays.empty()) {
+            assert(now->rays.size() <= max_rays);
             max_rays -= now->rays.size();
             std::vector<uint32_t> wanted_beside;
             if (passes_.moves_beside())
@@ -56,6 +58,7 @@ public:
             });
             if (!moved)
                 return moved.error();
+            assert(*moved <= wanted_beside.size());
             wanted_beside.resize(*moved);
             call_up(beside);
             call_up(wanted_beside);
@@ -82,7 +85,7 @@ private:
         each([&](auto& wave) { wave.call_up(leaves); });
     }
 
-    /// The leaves worth moving in for rays of these waves where few are ready; else none.
+    /// Returns the leaves worth moving in for rays of these waves where few are ready; else none.
     std::vector<uint32_t> wanted() {
         if (ready() >= passes_.few_rays() || waiting() == 0)
             return {};
@@ -92,7 +95,7 @@ private:
             for (uint32_t leaf = 0; leaf < counts.size(); ++leaf)
                 counts[leaf] += wave.queues().count(leaf);
         });
-        // Where active pages are told, each that a ray goes through is to be in the pool.
+        // Where active pages are told, each page that a ray goes through must be in the pool.
         return worth_moving(counts, pages,
                             tracing_.options.tell_active ? ~uint64_t(0) : kBytesARay);
     }
@@ -108,6 +111,7 @@ private:
             batch.of_waves[k++] = count;
             first += count;
         });
+        assert(first == batch.rays.size());
     }
 
     void resolve(const Batch& batch) {
@@ -125,7 +129,7 @@ private:
     std::tuple<Wave<Queries>&...> waves_;
 };
 
-/// Answers the query in waves of as many rays as the host memory of a call is to hold at once.
+/// Answers the query in waves of as many rays as a call may hold in host memory at once.
 template <class Query>
 Result<Done> trace_in_waves(const Tracing& tracing, PassRunner& passes, const Query& query) {
     constexpr size_t kWaveRays = 4u << 20;
