@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 
@@ -27,7 +28,7 @@ static Error unknown_option(const CLI::App& app, const std::string& word) {
     return {fmt::format("there is no option '{}'{}", option, did_you_mean(option, candidates))};
 }
 
-/// Help of 100 columns, descriptions from the 30th on; a terminal would break words.
+/// Wraps the help at 100 columns, descriptions from the 30th on; a terminal would break words.
 class HelpFormatter final : public CLI::Formatter {
     static constexpr size_t kColumns = 70;
 
@@ -50,21 +51,23 @@ class HelpFormatter final : public CLI::Formatter {
     }
 };
 
-/// "--size: 1 required WxH missing" and the like, in our words.
+/// Says CLI11's "--size: 1 required WxH missing" and the like in our words.
 static Error wrong_number_of_values(std::string_view message) {
     const std::string_view option = message.substr(0, message.find(':'));
     const bool missing = message.find("missing") != std::string_view::npos;
     return {fmt::format("{} {}", option, missing ? "needs a value" : "is given more than once")};
 }
 
-/// The word that nobody wanted: an option rather than the value that follows it.
+/// Returns the word to blame. An unknown option leaves its value over as well, so we prefer the
+/// option.
 static std::string culprit(const std::vector<std::string>& left_over) {
     const auto option = std::find_if(left_over.begin(), left_over.end(),
                                      [](const std::string& word) { return word[0] == '-'; });
     return option == left_over.end() ? left_over.front() : *option;
 }
 
-/// --quiet=maybe and --stats=, which CLI11 would convert, or take the next word for.
+/// Refuses --quiet=maybe, which CLI11 would convert, and --stats=, for which it would take the next
+/// word.
 static Result<Done> check_joined_values(const CLI::App& app,
                                         const std::vector<std::string>& arguments) {
     for (const std::string& word : arguments) {
@@ -74,7 +77,7 @@ static Result<Done> check_joined_values(const CLI::App& app,
         const std::string name = word.substr(0, equals);
         const CLI::Option* option = app.get_option_no_throw(name);
         if (!option)
-            continue; // an unknown option, which has its own sentence
+            continue; // unknown_option() has a sentence for it
         if (option->get_items_expected_max() == 0)
             return Error{fmt::format("{} takes no value, and was given '{}'", name,
                                      word.substr(equals + 1))};
@@ -84,8 +87,7 @@ static Result<Done> check_joined_values(const CLI::App& app,
     return Done{};
 }
 
-/// An empty word is what a shell makes of a variable that is not set; it was not meant as
-/// "default".
+/// A shell makes an empty word of a variable that is not set; the user did not mean "default".
 static Result<Done> check_empty_values(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options())
         for (const std::string& value : option->results())
@@ -97,7 +99,7 @@ static Result<Done> check_empty_values(const CLI::App& app) {
 Result<Parsed> parse_arguments(CLI::App& app, std::vector<std::string> arguments) {
     if (const Result<Done> fine = check_joined_values(app, arguments); !fine)
         return fine.error();
-    std::reverse(arguments.begin(), arguments.end()); // as CLI11 takes them
+    std::reverse(arguments.begin(), arguments.end()); // CLI11 takes the last word first
     try {
         app.parse(arguments);
         const Result<Done> fine = check_empty_values(app);
@@ -148,6 +150,7 @@ Result<double> parse_real(std::string_view option, std::string_view text, double
 
 Result<size_t> parse_choice(std::string_view option, std::string_view text,
                             std::span<const std::string_view> names) {
+    assert(!names.empty());
     const auto known = text.empty() ? names.begin() : std::find(names.begin(), names.end(), text);
     if (known != names.end())
         return size_t(known - names.begin());
@@ -174,7 +177,8 @@ Result<ImageSize> parse_size(std::string_view option, std::string_view text) {
     return ImageSize{uint32_t(*width), uint32_t(*height)};
 }
 
-/// Finite numbers between commas; nothing where one is none.
+/// Returns the finite numbers between commas, each with or without blanks and POV-Ray's < and >
+/// around it; empty where one of them is no finite number.
 static std::vector<double> parse_reals(std::string_view text) {
     std::vector<double> values;
     for (size_t at = 0; at <= text.size();) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arguments: what every subcommand does with its words, and errors that say what was meant. CLI11
-// does the parsing.
+// Parsing of a subcommand's arguments and of their values, with errors that suggest what was meant.
+// CLI11 does the parsing.
 #pragma once
 
 #include "core/result.h"
@@ -18,33 +18,33 @@ namespace ovc {
 
 enum class Parsed { Run, HelpShown };
 
-/// Parses a subcommand's arguments; --help prints its help. Error: one sentence, with the nearest
-/// option there is.
+/// Parses a subcommand's arguments into the variables of `app`; --help prints its help instead.
+/// Error: one sentence, with the nearest option that there is.
 Result<Parsed> parse_arguments(CLI::App& app, std::vector<std::string> arguments);
 
-/// A whole number from least to most. option: named in the error.
+/// Returns `text` as a whole number from least to most. option: its name in the error.
 Result<uint64_t> parse_count(std::string_view option, std::string_view text, uint64_t least,
                              uint64_t most);
 
-/// A number from least to most, likewise.
+/// Returns `text` as a number from least to most. NaN is an error. option: its name in the error.
 Result<double> parse_real(std::string_view option, std::string_view text, double least,
                           double most);
 
-/// The place of `text` among `names`; 0 where it is empty.
+/// Returns the index of `text` in `names`, which are not empty; 0, the default, for an empty text.
 Result<size_t> parse_choice(std::string_view option, std::string_view text,
                             std::span<const std::string_view> names);
 
-/// "auto|fragment|compute": a type name that the help shows and completion offers.
+/// Returns a type name such as "auto|fragment|compute", which the help shows and completion offers.
 std::string choice_names(std::span<const std::string_view> names);
 
-/// "640x480"; each side from 1 to 65535.
+/// Parses a size such as "640x480"; each side is from 1 to 65535.
 Result<ImageSize> parse_size(std::string_view option, std::string_view text);
 
-/// "ex,ey,ez,tx,ty,tz" or with ",fov" in degrees, 0 < fov < 180; eye and target differ. what: who
-/// needs it, in the error.
+/// Parses "ex,ey,ez,tx,ty,tz", or with ",fov" in degrees, 0 < fov < 180; eye and target differ.
+/// what: the name of the option, or of the place in a file, that the error blames.
 Result<Camera> parse_camera(std::string_view what, std::string_view text);
 
-/// "x,y,z".
+/// Parses "x,y,z", each finite and of at most kFarthest in size.
 Result<dvec3> parse_position(std::string_view option, std::string_view text);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arguments: values, and what an error says.
+// Tests of the values of arguments, and of their errors.
 #include "core/text/suggestion.h"
 #include "host/arguments/arguments.h"
 

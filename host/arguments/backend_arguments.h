@@ -14,10 +14,10 @@ class App;
 
 namespace ovc {
 
-/// Error: which backends there are, and which one was probably meant.
+/// Returns the backend of that name. Error: lists the backends, with the one probably meant.
 Result<BackendKind> parse_backend(std::string_view name);
 
-/// The words as given; empty: not given.
+/// The options as the user wrote them; empty where not given.
 struct BackendArguments {
     std::string backend = "auto";
     std::string gpu_memory;

@@ -15,14 +15,14 @@ namespace ovc {
 
 class LogArguments {
 public:
-    /// otherwise: what is said where neither option is given.
+    /// otherwise: the level where neither option is given.
     explicit LogArguments(LogLevel otherwise = LogLevel::Warning) : otherwise_(otherwise) {}
 
-    /// with_quiet: --quiet is an option as well.
+    /// Adds --log-level, and with_quiet also --quiet.
     void add_to(CLI::App& app, bool with_quiet = false);
 
     bool quiet() const { return quiet_; }
-    /// Error: no level of that name.
+    /// Returns the level to log at; --log-level overrides --quiet. Error: no level of that name.
     Result<LogLevel> resolve() const;
 
 private:

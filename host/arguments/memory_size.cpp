@@ -13,7 +13,7 @@ namespace ovc {
 /// More than any device has.
 static constexpr uint64_t kMaxBytes = uint64_t(1) << 50;
 
-/// The factor that a unit stands for; 0 for what is no unit.
+/// Returns the factor that a unit stands for; 0 where it is no unit.
 static double unit_factor(std::string unit) {
     for (char& c : unit)
         c = char(std::tolower(static_cast<unsigned char>(c)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory sizes: which texts mean what, and which are refused.
+// Tests which texts are memory sizes, and which are refused.
 #include "host/arguments/memory_size.h"
 
 #include <gtest/gtest.h>

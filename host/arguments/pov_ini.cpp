@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cctype>
 #include <fstream>
 
@@ -29,7 +30,7 @@ static std::string unquoted(std::string_view text) {
     return std::string(text);
 }
 
-/// Up to a semicolon that is not quoted.
+/// Returns the line up to the first semicolon that is not quoted.
 static std::string_view without_comment(std::string_view line) {
     char quote = 0;
     for (size_t i = 0; i < line.size(); ++i) {
@@ -60,7 +61,7 @@ std::optional<IniItem> as_setting(std::string_view word) {
     return IniItem{lower(key), unquoted(trimmed(word.substr(equals + 1))), {}};
 }
 
-/// Words between blanks; quotes keep them together.
+/// Splits the line at blanks that are not quoted, and drops the quotes.
 static std::vector<std::string> words_of(std::string_view line) {
     std::vector<std::string> words;
     bool in_word = false;
@@ -84,6 +85,7 @@ static std::vector<std::string> words_of(std::string_view line) {
 }
 
 Result<std::vector<IniItem>> read_ini(const std::string& word) {
+    assert(names_ini(word));
     const size_t bracket = std::min(word.find('['), word.size());
     const std::string path = word.substr(0, bracket);
     const std::string wanted =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// POV-Ray's .ini files: settings and words of the command line, by sections.
+// Reads POV-Ray's .ini files, which hold settings and words of the command line, by sections.
 // Source: the documentation of POV-Ray 3.7, section 3.2.1.2, "Using INI Files".
 #pragma once
 
@@ -12,20 +12,23 @@
 
 namespace ovc {
 
-/// Width=640: the key in small letters; or a word as the command line has it, and no key.
+/// A setting such as Width=640, with its key in small letters. A word of the command line has no
+/// key, and is the value.
 struct IniItem {
     std::string key;
     std::string value;
     std::string place; // "FILE:LINE: " before a message; empty on the command line
 };
 
-/// "FILE.ini" or "FILE.ini[SECTION]".
+/// Returns whether `word` is "FILE.ini" or "FILE.ini[SECTION]", in any case.
 bool names_ini(std::string_view word);
 
-/// What stands before the first section, and in the section that `word` names. Error: no such file.
+/// Returns the items before the first section, and those in the section that `word` names, in the
+/// order of the file. word: names_ini() holds. Error: the file cannot be opened.
 Result<std::vector<IniItem>> read_ini(const std::string& word);
 
-/// "Key=value"; nothing where the word has no '=' behind letters, digits and underscores.
+/// Parses "Key=value". Returns nothing where the word has no '=' behind letters, digits and
+/// underscores.
 std::optional<IniItem> as_setting(std::string_view word);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// POV-Ray's words, one by one.
+// The tables of POV-Ray's words and settings, and their translation one by one.
 // Source: the documentation of POV-Ray 3.7, section 3.2, "Command-Line and INI-File Options".
 #include "host/arguments/pov_words.h"
 
@@ -9,16 +9,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cctype>
 
 namespace ovc {
 namespace {
 
-/// Switches about what we do not have: a window, other texts, other ways to the same picture.
+/// Switches that we ignore, since they leave the picture as it is: they are about a window, message
+/// streams, or other ways to the same picture.
 constexpr std::string_view kPassedOver[] = {"D",  "P",  "V",  "X",  "G",  "UV", "UO", "MB", "BP",
                                             "BS", "UR", "UL", "UD", "AG", "BM", "MI", "SU", "TH"};
 
-/// Words with a meaning that ours have under another name, or not at all.
+/// A word that is an error, and what the error says instead: our option, or that there is none.
 struct Refused {
     std::string_view word;
     std::string_view instead;
@@ -40,11 +42,11 @@ constexpr Refused kRefused[] = {
     {"F", "the ending of -o's name says the format, .png or .exr; +FN16 is --png-bits 16"},
 };
 
-/// What .ini files call it, and the word of the command line.
+/// A setting's key in .ini files, and its word on the command line.
 struct Setting {
     std::string_view key;
     std::string_view word;
-    bool is_switch = false; // on or off, plus or minus; else its value follows a plus
+    bool is_switch = false; // on is "+WORD", off is "-WORD"; otherwise "+WORD" and the value
 };
 constexpr Setting kSettings[] = {
     {"antialias", "A", true},
@@ -116,7 +118,7 @@ public:
                     return fine;
             } else if (is_pov(word)) {
                 const bool alone = word.size() == 2 && std::toupper(word[1]) == 'O';
-                i += alone && !next.empty(); // +O file
+                i += alone && !next.empty(); // "+O file" is two words
                 if (const Result<Done> fine = take_word(alone ? word + next : word); !fine)
                     return fine;
             } else if (takes_sign(word) && !next.empty()) {
@@ -158,7 +160,7 @@ private:
         return Done{};
     }
 
-    /// Two of them say how, and do not switch on.
+    /// Four keys have no row in kSettings, because take_setting() knows them by itself.
     static bool is_known(std::string_view key) {
         return setting_of(key) || key == "antialias_threshold" || key == "jitter_amount" ||
                key == "bits_per_color" || key == "output_to_file";
@@ -199,7 +201,7 @@ private:
             ours_.push_back("--jitter=" + (jitters_ ? jitter_ : "0"));
     }
 
-    /// Ours with a minus are small letters or begin with two.
+    /// Our own options begin with "--", or with a minus and a small letter.
     static bool is_pov(const std::string& word) {
         return word.size() > 1 &&
                (word[0] == '+' || (word[0] == '-' && word[1] >= 'A' && word[1] <= 'Z'));
@@ -209,6 +211,7 @@ private:
     }
 
     Result<Done> take_word(const std::string& word) {
+        assert(word.size() > 1 && (word[0] == '+' || word[0] == '-'));
         const bool on = word[0] == '+';
         std::string letters = word.substr(1, 2);
         std::transform(letters.begin(), letters.end(), letters.begin(),
@@ -247,8 +250,8 @@ private:
         return Done{};
     }
 
-    /// From 4 on there are shadows, from 8 on mirrors and glass; what else it tells apart is always
-    /// there, or never.
+    /// POV-Ray has shadows from 4 on, mirrors and glass from 8 on. Whatever else its levels change,
+    /// we always do, or never.
     Result<Done> take_quality(const std::string& value) {
         const Result<uint64_t> quality = parse_count("+Q", value, 0, 11);
         if (!quality)
@@ -295,7 +298,7 @@ private:
     std::vector<std::string> ours_;
     std::string width_, height_;
     bool antialiasing_ = false, jitters_ = true;
-    std::string threshold_ = "0.3"; // POV-Ray's
+    std::string threshold_ = "0.3"; // POV-Ray's default
     std::string method_, depth_, jitter_;
     int ini_depth_ = 0;
 };

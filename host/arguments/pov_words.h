@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// POV-Ray's command line in ours: +W640 +H480 +Iscene.pov +Opicture.png.
+// Translates POV-Ray's command line into ours: +W640 +H480 +Iscene.pov +Opicture.png.
 #pragma once
 
 #include "core/result.h"
@@ -10,10 +10,11 @@
 
 namespace ovc {
 
-/// The words that begin with a plus, and POV-Ray's own that begin with a minus and a capital
-/// letter, in ours; all others as they are, but that --camera and --light are joined with their
-/// value, which may begin with a minus sign. log: is told which words mean nothing here. Error: a
-/// word that cannot be understood or obeyed, with the option to take instead.
+/// Returns the arguments with POV-Ray's translated into ours: words that begin with a plus, or with
+/// a minus and a capital letter, settings such as Width=640, and .ini files. All others stay, but
+/// --camera and --light are joined with their value, which may begin with a minus sign. log: is
+/// told which words mean nothing here. Error: a word that cannot be understood or obeyed, with the
+/// option to take instead.
 Result<std::vector<std::string>> translate_pov_words(const std::vector<std::string>& arguments,
                                                      const LogSink& log);
 

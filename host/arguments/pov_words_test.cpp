@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// POV-Ray's words: what they become, and what is said of those that cannot be obeyed.
+// Tests how POV-Ray's words are translated, and the errors for words that cannot be obeyed.
 #include "host/arguments/pov_words.h"
 
 #include <gmock/gmock.h>

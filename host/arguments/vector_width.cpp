@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Variables of Mesa's.
+// Chooses and sets the environment variables that Mesa reads.
 #include "host/arguments/vector_width.h"
 
 #include <cstdlib>
@@ -17,7 +17,8 @@ static fs::path path_in(const Environment& environment, const char* name) {
     return value ? value : "";
 }
 
-/// Below what the user named, or where caches are kept; empty: there is no such place.
+/// Returns a folder below the one that the user named, or below the user's folder for caches; empty
+/// where neither is known.
 static fs::path cache_folder(const Environment& environment) {
     if (const fs::path named = path_in(environment, kMesaCache); !named.empty())
         return named / "overcast-512";
@@ -50,9 +51,9 @@ static bool cpu_has_avx512() {
 void use_wide_vectors(bool fragment_kernels) {
     for (const auto& [name, value] :
          wide_vectors(std::getenv, cpu_has_avx512(), fragment_kernels)) {
-        std::error_code error; // then Mesa keeps nothing, and compiles each time
+        std::error_code error; // ignored: without the folder Mesa compiles each time
         if (name == kMesaCache)
-            fs::create_directories(value, error); // Mesa makes the last folder alone
+            fs::create_directories(value, error); // Mesa would create only the last folder
         setenv(name.c_str(), value.c_str(), /* overwrite= */ 1);
     }
 }

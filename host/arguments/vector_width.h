@@ -12,19 +12,21 @@
 
 namespace ovc {
 
-/// A variable's value; null: not set.
+/// Returns the value of a variable; null where it is not set.
 using Environment = std::function<const char*(const char* name)>;
 
-/// The variables to set for 512 bits, and their values: none where the user has chosen a width, the
-/// CPU has no AVX-512, or fragment kernels are asked for, with which llvmpipe (22.3) crashes there.
-/// Mesa keeps what it compiled under a key that lacks the width: so it gets a folder of its own.
+/// Returns the variables to set for 512 bits, with their values. There are none where the user has
+/// chosen a width, the CPU has no AVX-512, or fragment kernels are asked for: llvmpipe (22.3)
+/// crashes on those at 512 bits. Mesa caches compiled kernels under a key that lacks the width, so
+/// one variable gives this width a cache folder of its own, or none where no place is known.
 std::map<std::string, std::string> wide_vectors(const Environment& environment, bool has_avx512,
                                                 bool fragment_kernels);
 
-/// Sets them for this process, before it opens its first device: later ones are as the first.
+/// Sets these variables for this process. Call it before the process opens its first device,
+/// because later devices take the width of the first.
 void use_wide_vectors(bool fragment_kernels);
 
-/// The same for a process that has only this backend.
+/// Sets them for a process whose only backend has these options.
 void use_wide_vectors(const BackendOptions& options);
 
 } // namespace ovc

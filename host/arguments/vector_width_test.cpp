@@ -33,7 +33,7 @@ TEST(VectorWidth, StaysAsTheUserSays) {
     EXPECT_EQ(wide({{"HOME", "/home/me"}, {"LP_NATIVE_VECTOR_WIDTH", "256"}}), Variables{});
 }
 
-/// Mesa would take for one width what it compiled for another.
+/// In a common folder Mesa would find kernels that it compiled for another width.
 TEST(VectorWidth, HasAFolderOfItsOwnForWhatMesaKeeps) {
     const auto folder = [](const Variables& set) { return wide(set)["MESA_SHADER_CACHE_DIR"]; };
     EXPECT_EQ(folder({{"HOME", "/home/me"}, {"MESA_SHADER_CACHE_DIR", "/mesa"}}),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which backend: the one asked for, or for Auto the first that this machine has.
+// Makes the backend that is asked for, or for Auto the first one that this machine has.
 #include "host/backend/backend.h"
 #include "host/backend/device_opening.h"
 #include "host/backend/plugin_loader.h"
@@ -26,8 +26,8 @@ Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOpt
         return make_plugin_backend(std::move(*device), soup, options, log);
     if (code == OVC_OK)
         return Error{device.error().message + " (--backend cpu-kdtree works without it)"};
-    // Whoever named a device or a backend meant it, and a wrong setting is for its owner to mend;
-    // where there just is no device, the picture is made, slower, and the reason told.
+    // A user who named a device or a backend meant it, and must mend a wrong setting. Where there
+    // just is no device, the CPU makes the picture, slower, and a warning tells why.
     if (options.kind != BackendKind::Auto || !options.device.empty() || code != OVC_ERROR_NO_DEVICE)
         return Error{device.error().message + " (--backend cpu-kdtree works without EGL)"};
     say(log, LogLevel::Warning,

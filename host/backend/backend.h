@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Backend: what answers rays. The plugin, or what it is compared with: the systems of
-// the thesis, the CPU KD-tree and Embree.
+// A Backend answers rays. It is the plugin, or one of those that it is compared with: the systems
+// of the thesis, the CPU KD-tree and Embree.
 #pragma once
 
 #include "core/batched_stream.h"
@@ -23,22 +23,23 @@ class DeviceOpening;
 class PluginDevice;
 struct KdTree;
 
-/// Built over one soup, which it may use in place: the soup outlives it unchanged.
+/// A backend is built over one soup, which must outlive it unchanged, because it may use the
+/// corners in place. It is called by one thread at a time.
 class Backend {
 public:
     virtual ~Backend() = default;
 
-    /// The nearest hit of each ray. skip: empty, or for each ray the triangle it starts on and does
-    /// not see. hits: as many as rays.
+    /// Writes the nearest hit of each ray. skip: empty, or for each ray the triangle that it starts
+    /// on and does not see. hits: as many as rays.
     virtual Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
                                    std::span<Hit> hits) = 0;
-    /// occluded[i] = 1 when ray i hits anything, else 0.
+    /// Writes occluded[i] = 1 where ray i hits anything, else 0. Sizes as in intersect().
     virtual Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
                                   std::span<uint8_t> occluded) = 0;
-    /// The mixed form: traces what the host pushes until there is no more. Error of the kind
-    /// Cancelled: it stopped.
+    /// The mixed form: traces the rays that the host pushes until there are no more. An Error of
+    /// the kind Cancelled means that the host stopped it.
     virtual Result<Done> stream(StreamHost& host) { return stream_in_batches(*this, host); }
-    /// intersect() with notes. Error: a backend without leaves.
+    /// Does intersect() and takes notes of each ray. Error: the backend has no leaves.
     virtual Result<Done> intersect_noted(std::span<const Ray> rays,
                                          std::span<const TriangleId> skip, std::span<Hit> hits,
                                          const RayNotes& notes) {
@@ -46,16 +47,16 @@ public:
                    ? Error{"leaf, passes and flagged can be told by --backend two-level alone"}
                    : intersect(rays, skip, hits);
     }
-    /// The pages that rays went through since this was asked last; none where the options did not
-    /// ask for it or the backend cannot tell.
+    /// Returns the pages that rays went through since the last call; none where the options did not
+    /// ask for them or the backend cannot tell.
     virtual std::optional<ovc_active> take_active() { return {}; }
-    /// Whether save() can do anything.
+    /// Returns whether save() can do anything.
     virtual bool saves() const { return false; }
-    /// Passes on what BackendOptions::saved of a later run over the same soup takes.
+    /// Writes what was built, as a later run over the same soup takes it in BackendOptions::saved.
     virtual Result<Done> save(const ByteSink&) const { return Error{"this backend saves nothing"}; }
-    /// Counted since it was built. What a backend does not have is 0.
+    /// Returns what was counted since the backend was built; 0 for what a backend does not have.
     virtual ovc_statistics statistics() const = 0;
-    /// What does the work, for a person: the GL renderer's name, or the CPU.
+    /// Returns the name, for the user, of the GL renderer or the CPU library that does the work.
     virtual std::string renderer() const = 0;
 };
 
@@ -73,7 +74,7 @@ enum class BackendKind {
     ThesisTwoLevel
 };
 
-/// What the backend is to the ABI: two-level unless it is one of the thesis.
+/// Returns the ABI's name for the backend: two-level unless it is a system of the thesis.
 inline ovc_structure structure_of(BackendKind kind) {
     return kind < BackendKind::SingleTexture
                ? OVC_STRUCTURE_TWO_LEVEL
@@ -81,8 +82,8 @@ inline ovc_structure structure_of(BackendKind kind) {
                                OVC_STRUCTURE_SINGLE_TEXTURE);
 }
 
-/// Whether Ctrl-C cancels the plugin's building, which then is an Error of the kind Cancelled, and
-/// a line on a terminal says how far it is. Not while another InterruptGuard lives.
+/// Silent: Ctrl-C cancels the plugin's building, with an Error of the kind Cancelled. Shown: a line
+/// on a terminal tells the progress as well. Both need that no other InterruptGuard lives.
 enum class BuildWatching { None, Silent, Shown };
 
 struct BackendOptions {
@@ -93,28 +94,29 @@ struct BackendOptions {
     std::string device;          // empty: the plugin chooses
     ovc_precision precision = OVC_PRECISION_CERTIFIED;
     ovc_kernel kernel = OVC_KERNEL_AUTO;
-    ovc_level1 level1 = OVC_LEVEL1_KD_TREE; // of ThesisTwoLevel, as the next
+    ovc_level1 level1 = OVC_LEVEL1_KD_TREE; // of ThesisTwoLevel, like the next
     ovc_level1_build level1_build = OVC_LEVEL1_BUILD_TOP_DOWN;
-    bool tell_active = false; // of two-level: take_active() is asked
+    bool tell_active = false; // counts pages for take_active(); two-level only
     BuildWatching watching = BuildWatching::None;
     Bytes saved{}; // of an earlier run over the same soup; outlives the backend. Two-level only
 };
 
-/// Auto is the plugin; where no device opens and none was named it is the CPU KD-tree, and the log
-/// gets a warning that says so.
+/// Makes the backend that the options ask for. Auto is the plugin; where the machine has no device
+/// and the options name none, it is the CPU KD-tree, and a warning in the log says so.
 Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOptions& options,
                                               const LogSink& log);
 
-/// The same with a device that was begun to be opened for these options.
+/// Makes the same with a device whose opening for these options has begun. It takes the device: the
+/// opening cannot be used again.
 Result<std::unique_ptr<Backend>> make_backend(const Soup& soup, const BackendOptions& options,
                                               const LogSink& log, DeviceOpening& opening);
 
-/// What make_backend() would make of the soup, told by the plugin before anything is built. Error:
-/// no plugin or no device; a backend that cannot tell.
+/// Returns what make_backend() would make of the soup, as the plugin tells it before anything is
+/// built. Error: there is no plugin or no device, or the backend cannot tell.
 Result<ovc_plan> make_plan(const Soup& soup, const BackendOptions& options, const LogSink& log);
 
-/// The options' device is not looked at again. Through plugin/overcast.h and nothing else. The log
-/// is told of a budget beyond what the device has.
+/// Makes a backend on `device`, through plugin/overcast.h and nothing else; options.device is not
+/// read. A warning in the log tells of a budget beyond the device's memory.
 Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const Soup& soup,
                                                      const BackendOptions& options,
                                                      const LogSink& log);
@@ -123,16 +125,17 @@ Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
                                   const BackendOptions& options, const LogSink& log);
 
 std::unique_ptr<Backend> make_cpu_backend(const Soup& soup);
-/// Over a tree that is there already, and took so long to build.
+/// Makes the backend over a tree of this soup that is built already. build_seconds goes into the
+/// statistics.
 std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, std::shared_ptr<const KdTree> tree,
                                           double build_seconds);
 
-/// Medium and High are its build qualities (High splits triangles that are long); Robust is High
-/// with RTC_SCENE_FLAG_ROBUST, with which Embree 3 splits none; Packets is High, asked for 16 rays
-/// in a call.
+/// Medium and High are Embree's build qualities (High splits triangles that are long). Robust is
+/// High with RTC_SCENE_FLAG_ROBUST, with which Embree 3 splits none. Packets is High, asked for 16
+/// rays in a call.
 enum class EmbreeMode { Medium, High, Robust, Packets };
 
-/// Embree has floats only: world positions and rays are rounded to them, and rays with numbers
+/// Embree has floats only: world positions and rays are rounded to floats, and rays with numbers
 /// beyond 1.8e18 miss. Error: this program was built without Embree, or Embree cannot build.
 Result<std::unique_ptr<Backend>> make_embree_backend(const Soup& soup, EmbreeMode mode);
 

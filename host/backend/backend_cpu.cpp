@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU KD-tree as a backend: the baseline, and the reference that certified hits are equal to.
+// The CPU KD-tree as a backend: the baseline, and the reference that certified hits must equal.
 #include "core/system/stopwatch.h"
 #include "host/backend/backend.h"
 #include "kdtree/build.h"
@@ -13,6 +13,7 @@ class CpuBackend final : public Backend {
 public:
     CpuBackend(const Soup& soup, std::shared_ptr<const KdTree> tree, double build_seconds)
         : soup_(soup), tree_(std::move(tree)) {
+        assert(tree_);
         statistics_.struct_size = sizeof(statistics_);
         statistics_.triangles = soup.triangle_count();
         statistics_.seconds_level1 = build_seconds;

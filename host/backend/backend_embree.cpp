@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Embree 3 as a backend: a peer to compare with. The only file of the host that sees Embree.
+// Embree 3 as a backend: a peer to compare with. No other file of the host includes Embree.
 #include "host/backend/backend.h"
 
 #include "core/system/parallel.h"
@@ -17,10 +17,10 @@ namespace ovc {
 
 namespace {
 
-/// What the filter needs to know of the rays of a call.
+/// The context of a call, with the triangles that its rays skip.
 struct Context {
-    RTCIntersectContext base; // first: Embree hands its address to the filter
-    const TriangleId* skip;   // by the rays' ids; null: none skips
+    RTCIntersectContext base; // first, because Embree hands its address to the filter
+    const TriangleId* skip;   // indexed by the rays' ids; null where no ray skips any
 
     explicit Context(const TriangleId* skipped);
 };
@@ -41,7 +41,7 @@ Context::Context(const TriangleId* skipped) : skip(skipped) {
         base.filter = refuse_skipped;
 }
 
-/// False for what Embree asserts that nobody asks: NaN, an empty range, numbers beyond its
+/// Returns false for rays that fail Embree's assertions: NaN, an empty range, numbers beyond its
 /// FLT_LARGE.
 bool can_ask(const Ray& ray) {
     constexpr double large = 1.844e18;
@@ -51,7 +51,7 @@ bool can_ask(const Ray& ray) {
     return ray.valid() && within(ray.org) && within(ray.dir);
 }
 
-/// How Embree is asked for N rays in one call.
+/// The functions of Embree that trace N rays in one call.
 template <unsigned N>
 struct Calls;
 
@@ -81,13 +81,13 @@ struct Calls<16> {
     }
 };
 
-/// Rays of one task, rounded, as Embree takes them N at a time.
+/// The rays of a task, rounded to floats, which Embree takes N at a time.
 template <unsigned N>
 class Block {
 public:
     static constexpr size_t kRays = 256;
 
-    /// skips: null, or one a ray.
+    /// skips: null, or a triangle for each ray; must stay until the rays are traced.
     void load(std::span<const Ray> rays, const TriangleId* skips) {
         assert(rays.size() <= kRays);
         count_ = rays.size();
@@ -188,7 +188,7 @@ public:
     EmbreeBackend(const EmbreeBackend&) = delete;
     EmbreeBackend& operator=(const EmbreeBackend&) = delete;
 
-    /// What went wrong while it was built.
+    /// Returns the error that Embree met while it built, if any.
     Result<Done> built() const {
         const RTCError code = rtcGetDeviceError(device_);
         if (code == RTC_ERROR_NONE)
@@ -239,7 +239,8 @@ private:
         rtcReleaseGeometry(mesh);
     }
 
-    /// find(block) asks Embree; tell(block, i, at) takes the answer of ray i, which is at `at`.
+    /// Calls find(block), which asks Embree, for all rays in blocks, then tell(block, i, at) for
+    /// each ray i, whose answer is in the block's place `at`.
     template <class Find, class Tell>
     void for_each(std::span<const Ray> rays, std::span<const TriangleId> skip, const Find& find,
                   const Tell& tell) {
@@ -273,7 +274,7 @@ private:
             }
             all += task.seconds();
         });
-        // Its share of the call, however many threads the machine had to give.
+        // The kernel's share of the call does not depend on how many threads were free.
         if (all > 0)
             statistics_.seconds_kernel += call.seconds() * inside / all;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// In place of backend_embree.cpp where Embree is not installed.
+// This file takes the place of backend_embree.cpp where Embree is not installed.
 #include "host/backend/backend.h"
 
 namespace ovc {

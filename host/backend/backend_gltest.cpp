@@ -120,7 +120,7 @@ TEST(EmbreeBackend, AnswersAboutWhatTheCpuAnswers) {
             size_t other = 0;
             for (size_t i = 0; i < rays.size(); ++i) {
                 other += expected[i].id != found[i].id || hidden[i] != expected[i].is_hit();
-                // Floats at 100: its triangles are moved by some 1e-5.
+                // Embree's floats move the triangles by some 1e-5 at 100.
                 if (expected[i].id == found[i].id && found[i].is_hit()) {
                     EXPECT_NEAR(expected[i].t, found[i].t, 1e-2) << "ray " << i;
                 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The backends behind the C ABI: a soup and its rays, handed through the C ABI without a copy.
+// The backends behind the C ABI, which takes the soup and its rays without a copy.
 #include "host/backend/backend.h"
 #include "host/backend/plugin_loader.h"
 #include "host/terminal/build_watch.h"
@@ -36,7 +36,7 @@ static ovc_query query_of(std::span<const TriangleId> skip) {
     return query;
 }
 
-/// A StreamHost as the C ABI calls it, and the stream that it pushes to.
+/// Translates between a StreamHost and the callbacks of the C ABI, in both directions.
 class CalledBack final : public RayStream {
 public:
     CalledBack(const ovc_api& api, StreamHost& host) : api_(api), host_(host) {}
@@ -44,6 +44,7 @@ public:
     ovc_stream_host as_abi() { return {sizeof(ovc_stream_host), this, more, answered}; }
 
     void push(const StreamRays& rays) override {
+        assert(rays.tokens.size() == rays.rays.size());
         const ovc_query query = query_of(rays.skip);
         refused_ = refused_ || api_.push(stream_, ovc::as_abi(rays.rays), rays.tokens.data(),
                                          rays.rays.size(), rays.any_hit, &query) != OVC_OK;
@@ -69,7 +70,7 @@ private:
     const ovc_api& api_;
     StreamHost& host_;
     ovc_stream stream_ = nullptr;
-    bool refused_ = false; // a push was
+    bool refused_ = false; // the library refused a push
 };
 
 static ovc_mesh mesh_of(const Chunk& chunk) {
@@ -84,7 +85,7 @@ static ovc_mesh mesh_of(const Chunk& chunk) {
         mesh.origin[axis] = chunk.origin()[axis];
     if (chunk.transform())
         mesh.transform = chunk.transform()->rows[0].data();
-    mesh.flags = OVC_MESH_SHARED; // instances show the same corners, and share pages
+    mesh.flags = OVC_MESH_SHARED; // instances of a mesh point to the same corners, and share pages
     return mesh;
 }
 
@@ -158,7 +159,7 @@ private:
 
     PluginDevice device_;
     std::string renderer_;
-    PluginScene scene_; // after device_: destroyed before it
+    PluginScene scene_; // after device_, so that it is destroyed first
     const bool saves_;
 };
 
@@ -172,9 +173,9 @@ static Result<Done> add_meshes(const PluginDevice& device, ovc_scene scene, cons
     return Done{};
 }
 
-/// Memory that is promised and not there is a warning: a scene may take less than its budget.
+/// Warns of a budget beyond the memory. A scene may take less than its budget, so it is no error.
 static void check_budget(uint64_t budget_bytes, const ovc_device_info& info, const LogSink& log) {
-    // A software renderer reports a number of its own; what it takes is the machine's.
+    // A software renderer takes the machine's memory, whatever number it reports.
     const uint64_t there = info.is_software
                                ? uint64_t(sysconf(_SC_PHYS_PAGES)) * uint64_t(sysconf(_SC_PAGESIZE))
                                : info.memory_bytes;

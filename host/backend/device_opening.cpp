@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A thread that opens the device, and its messages, held until somebody wants the device: an error
-// of reading the scene is then the only thing said, as if the device had been opened afterwards.
+// A thread opens the device, and holds back its messages until finish(). Where reading the scene
+// fails, its error is then the only message, as if the device had been opened afterwards.
 #include "host/backend/device_opening.h"
 
+#include <cassert>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -53,6 +54,7 @@ DeviceOpening::DeviceOpening(const BackendOptions& options) : held_(std::make_sh
 }
 
 Result<PluginDevice> DeviceOpening::finish(const LogSink& log, ovc_result& code) {
+    assert(opened_.valid());
     Opened opened = opened_.get();
     held_->release(log);
     code = opened.code;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// DeviceOpening: the plugin is loaded and its device opened beside other work, such as reading the
-// scene: loading the driver's libraries and making a context take 0.05 s on llvmpipe, of one core.
+// DeviceOpening loads the plugin and opens its device beside other work, such as reading the scene.
+// Loading the driver's libraries and making a context take 0.05 s of one core on llvmpipe.
 #pragma once
 
 #include "host/backend/backend.h"
@@ -13,12 +13,13 @@ namespace ovc {
 
 class DeviceOpening {
 public:
-    /// Begins to open the device of these options, on a thread of its own; a backend on the CPU has
-    /// none. Whoever lets go of it unfinished waits until the device is open, and closed again.
+    /// Begins to open the device of these options on a thread of its own, unless the backend needs
+    /// none. A destructor without finish() waits until the device is open, and closed again.
     explicit DeviceOpening(const BackendOptions& options);
 
-    /// Waits for the device; once. What was said of it meanwhile goes to the log now, and all that
-    /// is said later as it comes. code: what the plugin said; OVC_OK where it was not found.
+    /// Waits for the device and returns it. Call it at most once, and not for a backend on the CPU.
+    /// Messages held back so far go to the log now, later ones as they come. code: receives the
+    /// plugin's result, or OVC_OK where the plugin was not found.
     Result<PluginDevice> finish(const LogSink& log, ovc_result& code);
 
 private:

@@ -31,7 +31,7 @@ TEST(DeviceOpening, HoldsWhatIsSaidUntilTheDeviceIsWanted) {
         }
     }
     const size_t before = told.messages.size();
-    DeviceOpening{BackendOptions{}}; // opened, closed, and nothing said
+    DeviceOpening{BackendOptions{}}; // opens, closes, and says nothing
     EXPECT_EQ(told.messages.size(), before);
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// dlopen of the plugin, and its handles.
+// Loads the plugin by dlopen, and wraps its handles.
 #include "host/backend/plugin_loader.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -20,8 +21,8 @@ static std::string sentence_of(const ovc_api* api, ovc_device device, ovc_result
 }
 
 static Result<const ovc_api*> load_from(const std::string& path) {
-    // Never unloaded: GL drivers leave handlers for the end of threads behind, which must still
-    // find their code.
+    // The library is never unloaded: GL drivers leave handlers for the end of threads behind, which
+    // must still find their code.
     void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (!library)
         return Error{fmt::format("cannot load the plugin: {}", dlerror())};
@@ -63,6 +64,7 @@ static void forward_log(void* user, ovc_log_level level, const char* message) {
 
 Result<PluginDevice> PluginDevice::open(const ovc_api* api, const std::string& name, LogSink log,
                                         ovc_result* code) {
+    assert(api);
     PluginDevice opened(api, std::make_unique<LogSink>(std::move(log)));
     ovc_device_config config{};
     config.struct_size = sizeof(config);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plugin from the host's side: finding its library, and owners for its handles. They add
-// nothing to the C calls.
+// The host's side of the plugin: it finds the library and owns its handles, and adds nothing else
+// to the C calls.
 #pragma once
 
 #include "core/result.h"
@@ -13,14 +13,14 @@
 
 namespace ovc {
 
-/// The libraries that speak the ABI: two-level's, and that of the systems it is compared with.
+/// The libraries that have the ABI: that of two-level, and that of the systems of the thesis.
 inline constexpr const char* kProduct = "libovercast.so.1"; // by its soname
 static_assert(OVC_ABI_VERSION == 1);
 inline constexpr const char* kThesis = "libovercast-thesis.so";
 
-/// Where a library is: beside this program, or where it is installed as seen from there, or its
-/// name alone for the system's loader; the product in the file that the environment variable
-/// OVC_PLUGIN names, if there is one.
+/// Returns the path of a library: beside this program, else where it is installed as seen from
+/// there, else its name alone for the system's loader. Where the environment variable OVC_PLUGIN is
+/// set, it is the path of the product.
 std::string find_plugin(const std::string& library = kProduct);
 
 /// Loads the library that find_plugin() finds. It stays loaded until the program ends.
@@ -38,11 +38,12 @@ struct DestroyScene {
 
 using PluginScene = std::unique_ptr<ovc_scene_t, DestroyScene>;
 
-/// An open device. What went wrong, and why the library's last error says so, is one Error.
+/// An open device. Its Errors are the sentences that the library gives as its last error.
 class PluginDevice {
 public:
-    /// name: a number as listed or a part of the renderer's name; empty: the plugin chooses. log
-    /// may be called from the device's thread. code: optional, receives the library's result.
+    /// Opens a device. name: a number as listed or a part of the renderer's name; empty: the plugin
+    /// chooses. log: may be called from the device's thread as long as the device lives. code:
+    /// optional, receives the library's result.
     static Result<PluginDevice> open(const ovc_api* api, const std::string& name, LogSink log,
                                      ovc_result* code = nullptr);
 
@@ -50,7 +51,8 @@ public:
     Result<ovc_device_info> describe() const;
     Result<PluginScene> create_scene(const ovc_scene_config& config) const;
 
-    /// Nothing when `result` is OVC_OK, else the library's sentence.
+    /// Returns Done when `result` is OVC_OK, else the library's sentence. Call it right after the
+    /// call that failed: the next one may replace the sentence.
     Result<Done> checked(ovc_result result) const;
 
 private:
@@ -62,7 +64,7 @@ private:
     std::unique_ptr<ovc_device_t, DestroyDevice> device_;
 };
 
-/// All devices there are.
+/// Returns all devices that the plugin can run on.
 Result<std::vector<ovc_device_info>> list_devices(const ovc_api* api);
 
 } // namespace ovc

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// RayList: rays as a backend takes them, each with what it is for.
+// RayList holds rays as a backend takes them, each with the purpose of its answer.
 #pragma once
 
 #include "core/ray.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -14,7 +15,7 @@ namespace ovc {
 template <class Purpose>
 struct RayList {
     std::vector<Ray> rays;
-    std::vector<TriangleId> skip; // the triangle it starts on, and does not see
+    std::vector<TriangleId> skip; // the triangle that each ray starts on, and does not see
     std::vector<Purpose> purposes;
 
     size_t size() const { return rays.size(); }
@@ -32,8 +33,9 @@ struct RayList {
         purposes.resize(count);
     }
 
-    /// Writes all of `from` over the rays from `at` on.
+    /// Copies all of `from` over the rays from index `at` on; at + from.size() <= size().
     void put(size_t at, const RayList& from) {
+        assert(at + from.size() <= size());
         std::copy(from.rays.begin(), from.rays.end(), rays.begin() + ptrdiff_t(at));
         std::copy(from.skip.begin(), from.skip.end(), skip.begin() + ptrdiff_t(at));
         std::copy(from.purposes.begin(), from.purposes.end(), purposes.begin() + ptrdiff_t(at));
@@ -45,8 +47,9 @@ struct RayList {
         put(before, from);
     }
 
-    /// Moves the rays from `first` on into `to`, whose own are lost.
+    /// Moves the rays from index `first` on into `to`, whose own are dropped; first <= size().
     void move_tail(size_t first, RayList& to) {
+        assert(first <= size());
         if (first == 0) {
             std::swap(*this, to);
         } else {

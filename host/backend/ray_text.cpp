@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text to rays, hits to text.
+// Parses rays from text, and writes hits as text.
 #include "host/backend/ray_text.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@ namespace ovc {
 
 static constexpr std::string_view kBlanks = " \t\r";
 
-/// The word in quotes, cut short, bytes that do not print as \x and their code.
+/// Returns the word in quotes, cut short, with unprintable bytes as \x and their code.
 static std::string quoted(std::string_view word) {
     constexpr size_t kShown = 40;
     std::string text = "'";
@@ -31,8 +31,9 @@ static Error not_a_number(std::string_view word) {
     return {fmt::format("found {}, expected a number{}", quoted(word), hint)};
 }
 
-/// Whether the text of a number that no double holds stands for one too small rather than too
-/// large. Only the exponent can say so, for a line is too short to hold so many zeros.
+/// Returns whether a number that no double holds is too small rather than too large. Where a long
+/// double does not hold it either, only the exponent can say so, because a line is too short for so
+/// many zeros.
 static bool is_underflow(const char* first, const char* last) {
     long double wide = 1;
     const auto [stop, failure] = std::from_chars(first, last, wide);
@@ -47,7 +48,7 @@ bool is_blank_line(std::string_view line) {
     return first == std::string_view::npos || line[first] == '#';
 }
 
-/// The whole word as a number; one too small for a double is 0.
+/// Parses the whole word as a number; one too small for a double is 0.
 static Result<double> parse_number(std::string_view word) {
     const char* first = word.data();
     const char* const last = first + word.size();

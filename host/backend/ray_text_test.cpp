@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays and hits as text.
+// Tests of rays and hits as text.
 #include "host/backend/ray_text.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The read, trace, write loop.
+// The loop that reads rays, traces them and writes their answers.
 #include "host/backend/trace_stream.h"
 
 #include "host/backend/ray_text.h"
@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -19,17 +20,19 @@ namespace ovc {
 
 static_assert(std::endian::native == std::endian::little, "the binary form is little-endian");
 
-/// How long a batch waits for more rays: shorter than a person notices, longer than a pipe takes to
-/// be filled again.
+/// A batch waits this long for more rays: too short for a person to notice, and long enough for a
+/// pipe to be filled again.
 static constexpr int kMillisecondsPatience = 20;
 static constexpr size_t kReadBytes = size_t(1) << 16;
-/// No ray takes this many characters; a line that does is not text.
+/// No ray takes more characters than this; a longer line is not text.
 static constexpr size_t kLongestLine = 4096;
 
 class TraceStream {
 public:
     TraceStream(Backend& backend, int in, int out, const TraceOptions& options)
-        : backend_(backend), in_(in), out_(out), options_(options) {}
+        : backend_(backend), in_(in), out_(out), options_(options) {
+        assert(options.batch_rays > 0); // answer() steps by it
+    }
 
     Result<Done> run() {
         for (bool more = true; more;) {
@@ -48,7 +51,7 @@ public:
     }
 
 private:
-    /// Appends what a read gives to pending_; false at the end.
+    /// Appends the bytes of one read() to pending_. Returns false at the end of the input.
     Result<bool> read_some() {
         const size_t old_size = pending_.size();
         pending_.resize(old_size + kReadBytes);
@@ -67,7 +70,7 @@ private:
         return poll(&waiting, 1, kMillisecondsPatience) > 0;
     }
 
-    /// Turns whole lines into rays; a line without an end counts when at_end.
+    /// Turns whole lines into rays. A line without an end counts where at_end.
     Result<Done> parse_text(bool at_end) {
         size_t begin = 0;
         while (begin < pending_.size()) {
@@ -111,7 +114,7 @@ private:
         return Done{};
     }
 
-    /// Traces what has been read, writes the answers.
+    /// Traces the rays that have been read, and writes the answers.
     Result<Done> answer() {
         for (size_t first = 0; first < rays_.size(); first += options_.batch_rays) {
             const size_t count = std::min(options_.batch_rays, rays_.size() - first);
@@ -163,8 +166,8 @@ private:
     Backend& backend_;
     const int in_, out_;
     const TraceOptions options_;
-    std::string pending_; // read, not yet a ray
-    uint64_t line_ = 0;   // of text lines, or of binary rays, so far
+    std::string pending_; // bytes that are read and no ray yet
+    uint64_t line_ = 0;   // text lines, or binary rays, so far
     std::vector<Ray> rays_;
     std::vector<Hit> hits_;
     std::vector<uint8_t> occluded_;

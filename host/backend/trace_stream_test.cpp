@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The read, trace, write loop, on temporary files and a pipe.
+// Tests of the loop that reads, traces and writes, on temporary files and a pipe.
 #include "host/backend/trace_stream.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ protected:
         return file;
     }
 
-    /// What comes out; error_ receives the sentence, or nothing.
+    /// Returns the output. error_ receives the sentence of the Error, or nothing.
     std::string trace(const std::string& input, const TraceOptions& options = {}) {
         const File in = file_of(input), out = file_of("");
         const Result<Done> done =
@@ -108,7 +108,7 @@ TEST_F(TraceStreamTest, AnswersBeforeTheEndOfAPipe) {
         ASSERT_EQ(write(rays[1], "0 0 5 0 0 -1\n", 13), 13);
         char answer[64];
         ASSERT_EQ(read(hits[0], answer, sizeof(answer)),
-                  16); // blocks for ever if nothing is answered
+                  16); // this blocks for ever where rays are not answered
     }
     close(rays[1]);
     tracer.join();

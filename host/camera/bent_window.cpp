@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The projections of POV-Ray's cameras.
 // Based on: POV-Ray 3.7 reference, section 3.4.1.2, "Types of Projection"; the formulas are those
 // that its pictures follow.
 #include "host/camera/bent_window.h"
@@ -13,8 +14,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// p: where in a circle around the axis, 1 its rim; off_axis: the angle that a distance from its
-/// middle stands for. 0 outside.
+/// Returns the direction of a place in a circle around the axis; 0 outside of it. p: the place, at
+/// distance 1 on the rim. off_axis: maps the distance from the middle to the angle from the axis.
 template <class OffAxis>
 dvec3 around_the_axis(const ImageWindow& w, const dvec2& p, OffAxis off_axis) {
     const double distance = glm::length(p);
@@ -26,17 +27,17 @@ dvec3 around_the_axis(const ImageWindow& w, const dvec2& p, OffAxis off_axis) {
            std::cos(angle) * glm::normalize(w.direction);
 }
 
-/// Where in the circle of a dome's lens. A picture wider than high is cut off below; one that is
-/// wider still than the film, left and right. Measured on povray 3.7.0.10.
+/// Returns the place in the circle of a dome's lens. A picture wider than high is cut off below,
+/// and one that is wider than the film also at the left and right. Measured on povray 3.7.0.10.
 dvec2 on_omnimax(const ImageWindow& w, const dvec2& at) {
-    constexpr double kFilm = 1.283458; // wide, 1 high
+    constexpr double kFilm = 1.283458; // the width of the film at height 1
     const double aspect = glm::length(w.right) / glm::length(w.up);
     if (aspect <= 1)
         return {2 * at.x, 2 * at.y / aspect};
     return {2 * at.x * std::max(1.0, aspect / kFilm), (2 * at.y - 1) / std::min(aspect, kFilm) + 1};
 }
 
-/// POV-Ray's polynomial for that lens.
+/// Returns the angle from the axis by POV-Ray's polynomial for that lens.
 double omnimax(double r) {
     return r * (1.411269 + r * r * (-0.09439 + r * r * 0.25674));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bent pictures: the directions that povray 3.7.0.10 looks along through pixels of a 160 x 120
-// picture, had from a sphere around its camera whose color says where it is.
+// Tests bent pictures against the directions of povray 3.7.0.10 through pixels of a 160 x 120
+// picture. They come from a sphere around its camera whose color tells the direction.
 #include "host/camera/bent_window.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ struct BentCase {
     Bend bend;
     double right;
     double angle, vertical_angle;
-    std::optional<dvec3> seen[3]; // through the pixels below; none: the pixel is left out
+    std::optional<dvec3> seen[3]; // directions through kPixels; none: the pixel is left out
 };
 
 constexpr dvec2 kPixels[3] = {{90, 20}, {40, 80}, {120, 100}};

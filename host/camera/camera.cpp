@@ -46,7 +46,7 @@ Result<Done> check_camera(const Camera& camera) {
     if (!(camera.fov_degrees > 0 && camera.fov_degrees < 180))
         return Error{fmt::format("the camera's field of view is {}, not between 0 and 180 degrees",
                                  camera.fov_degrees)};
-    // Also when they differ by so little that their distance comes out as 0.
+    // Points that differ by so little that their distance comes out as 0 are refused too.
     if (!(glm::length(camera.target - camera.eye) > 0))
         return Error{"the camera looks from a point at itself"};
     const auto unit = [](const dvec3& v) { return v / max_component(glm::abs(v)); };
@@ -100,8 +100,8 @@ public:
         pixels_.reserve(size_t(width) * height);
     }
 
-    /// The pixels in the square at (x, y) with a power of two as its side. turned: x and y change
-    /// places in it. flipped: both count from the other end.
+    /// Appends the pixels in the square at (x, y), whose side is a power of two. turned: x and y
+    /// change places in it. flipped: both count from the other end.
     void go_through(uint32_t x, uint32_t y, uint32_t side, bool turned, bool flipped) {
         if (x >= width_ || y >= height_)
             return;
@@ -136,12 +136,13 @@ std::vector<uint32_t> pixel_order(uint32_t width, uint32_t height) {
 }
 
 dvec3 axis_vector(int axis) {
+    assert(axis >= 0 && axis < 3);
     dvec3 vector(0);
     vector[axis] = 1;
     return vector;
 }
 
-/// By a quarter, so that y comes to be `up`.
+/// Returns v turned by a quarter, so that the y axis becomes the axis `up`.
 static dvec3 turned(const dvec3& v, int up) {
     return up == 0 ? dvec3(v.y, -v.x, v.z) : up == 1 ? v : dvec3(v.x, -v.z, v.y);
 }
@@ -167,7 +168,7 @@ Camera framing_camera(const Box& bounds, uint32_t width, uint32_t height, int up
             std::max({distance, nearer + std::abs(glm::dot(corner, axes.right)) / (unit * width),
                       nearer + std::abs(glm::dot(corner, axes.up)) / (unit * height)});
     }
-    // 4 % of air around the model; a scene that is one point is looked at from some way off.
+    // We leave 4 % of air around the model, and look at a scene that is one point from 1 away.
     distance = distance > 0 ? distance * 1.04 : 1;
     camera.eye = camera.target + distance * towards_eye;
     return camera;

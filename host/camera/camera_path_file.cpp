@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two formats. The first character that is not blank tells them apart: JSON begins with a
-// bracket or a brace.
+// Reads both formats of camera paths. The first character that is not blank tells them apart: JSON
+// begins with a bracket or a brace.
 #include "host/camera/camera_path_file.h"
 
 #include "host/arguments/arguments.h"
@@ -14,7 +14,7 @@
 
 namespace ovc {
 
-/// Deeper than cameras[7].eye[2] no value is looked at, nor kept.
+/// The parser drops values that lie deeper than cameras[7].eye[2]; no camera has any there.
 static constexpr int kDeepest = 4;
 
 static std::optional<dvec3> point_of(const nlohmann::json& value) {
@@ -29,7 +29,8 @@ static std::optional<dvec3> point_of(const nlohmann::json& value) {
     return point;
 }
 
-/// Reads the point called `key` into `to`; the error says what is wrong with it.
+/// Reads the point called `key` into `to`. Without such a point, `to` stays; it is an error if the
+/// point is needed.
 static Result<Done> read_point(const nlohmann::json& camera, const char* key, bool needed,
                                dvec3& to) {
     const auto found = camera.find(key);

@@ -10,11 +10,11 @@
 
 namespace ovc {
 
-/// The most frames and bytes that are read.
+/// The maximum of frames and of bytes in a file.
 inline constexpr uint32_t kMaxFrames = 1'000'000;
 inline constexpr uint64_t kMaxPathBytes = uint64_t(64) << 20;
 
-/// Reads a path of at least one frame; what the file leaves out (up, the angle of view) is the
+/// Reads a path of at least one frame. Where the file leaves out up or the angle of view, it is the
 /// default Camera's. Error: one sentence with the file, the line or the frame.
 Result<CameraPath> load_camera_path(const std::filesystem::path& file);
 

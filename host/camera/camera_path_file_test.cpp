@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera paths from files: both formats, and everything that can be wrong with them.
+// Tests of camera paths from files: both formats, and everything that can be wrong with them.
 #include "host/camera/camera_path_file.h"
 
 #include "host/camera/camera.h"
@@ -26,7 +26,7 @@ protected:
         std::ofstream(file_, std::ios::binary) << text;
         return load_camera_path(file_);
     }
-    /// The sentence without the file's name; empty where it is a path.
+    /// Returns the error's sentence without the file's name; empty where the text is a path.
     std::string error(const std::string& text) const {
         const Result<CameraPath> path = load_text(text);
         if (path)
@@ -104,7 +104,7 @@ TEST_F(CameraPathFile, WrongOnesAreAnsweredWithOneSentence) {
     EXPECT_THAT(load_camera_path(testing::TempDir()).error().message, HasSubstr("directory"));
 }
 
-/// What is cut or changed is a path of usable cameras or a sentence, never anything else.
+/// A file that is cut or changed gives a path of usable cameras or a sentence, never anything else.
 TEST_F(CameraPathFile, SurvivesWhatChanceMakesOfIt) {
     const std::string texts[] = {
         "ex,ey,ez,tx,ty,tz\n1,2,3,4,5,6\n-1,2e3,.5,0,0,0,75\n",

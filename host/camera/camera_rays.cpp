@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera rays: pixels along a curve, the rays of a pixel one after the other.
+// Makes camera rays pixel by pixel along a curve, the rays of a pixel one after the other.
 #include "host/camera/camera_rays.h"
 
 #include "core/system/parallel.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc {
 
 static constexpr size_t kCameraGrain = 1024; // rays a task
 
-/// The bits of i behind the point: the first dimension of Sobol's sequence.
+/// Returns the first dimension of Sobol's sequence: the bits of i, mirrored behind the point.
 static double mirrored_bits(uint32_t i) {
     uint32_t bits = 0;
     for (uint32_t place = 1u << 31; i; i >>= 1, place >>= 1)
@@ -18,7 +19,7 @@ static double mirrored_bits(uint32_t i) {
     return bits * 0x1p-32;
 }
 
-/// The second: the columns of Pascal's triangle modulo 2.
+/// Returns the second dimension, by the columns of Pascal's triangle modulo 2.
 static double pascal_bits(uint32_t i) {
     uint32_t bits = 0;
     for (uint32_t column = 1u << 31; i; i >>= 1, column ^= column >> 1)
@@ -27,6 +28,7 @@ static double pascal_bits(uint32_t i) {
 }
 
 dvec2 sample_place(uint32_t i, uint32_t samples) {
+    assert(i < samples);
     const double to_the_middle = 0.5 / samples; // of the smallest strata
     return samples == 1 ? dvec2(0.5)
                         : dvec2(mirrored_bits(i) + to_the_middle, pascal_bits(i) + to_the_middle);
@@ -55,6 +57,7 @@ CameraRays::Place CameraRays::place(uint64_t i) const {
 }
 
 void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const {
+    assert(first + count <= size());
     const size_t before = paths.size();
     paths.resize(before + count);
     parallel_for(count, kCameraGrain, [&](size_t from, size_t to) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera: what pinhole rays, the pixel order and the automatic view promise.
+// Tests of pinhole rays, the pixel order and the automatic view.
 #include "host/camera/camera.h"
 
 #include <gtest/gtest.h>
@@ -40,8 +40,8 @@ TEST(Pinhole, OpensTheFieldOfViewAlongTheShorterSide) {
     EXPECT_NEAR(tall.y, 1.99, 1e-12);
 }
 
-/// POV-Ray's camera { location <1,2,3> direction 2*z right -1.6*x up <0,1,0.5> }: left-handed,
-/// sheared, wider than high whatever the image's size.
+/// Returns POV-Ray's camera { location <1,2,3> direction 2*z right -1.6*x up <0,1,0.5> }, which is
+/// left-handed, sheared, and wider than high whatever the image's size.
 static Camera windowed(bool orthographic) {
     Camera camera;
     camera.eye = {1, 2, 3};
@@ -104,8 +104,8 @@ TEST(PixelOrder, KeepsATileTogether) {
     }
 }
 
-/// The largest |x| and |y| of the corners of `box` as `camera` sees them; 1 is the edge of the
-/// image.
+/// Returns the largest |x| and |y| of the corners of `box` as `camera` sees them; 1 is the edge of
+/// the image.
 static dvec2 seen_extent(const Box& box, const Camera& camera, uint32_t width, uint32_t height) {
     const Pinhole pinhole(camera, width, height);
     const double plane =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subcommands, and the program that hands over to them.
+// The interface of the subcommands, their table, and the program that hands over to them.
 #pragma once
 
 #include "core/result.h"
@@ -19,16 +19,17 @@ namespace ovc {
 
 using Arguments = std::vector<std::string>;
 
-/// The words that a subcommand takes, and what it does with them.
+/// A subcommand knows its options, and keeps their values until it runs.
 class Subcommand {
 public:
     virtual ~Subcommand() = default;
-    /// Describes itself, its options and examples, to an app that does not outlive it: to be
-    /// parsed, or only to be told of in a manual.
+    /// Adds a description, options and examples to `app`. The app must not outlive this object,
+    /// whose members its options write. manual() only reads the app, and never parses it.
     virtual void add_to(CLI::App& app) = 0;
-    /// The arguments in words that the app knows: other programs' spellings in ours.
+    /// Returns the arguments with other programs' spellings translated into ours, for the app.
     virtual Result<Arguments> in_our_words(const Arguments& arguments) { return arguments; }
-    /// Once the app has parsed them. The result is an exit code, or the sentence to fail with.
+    /// Runs once the app has parsed the arguments. Returns an exit code, or the sentence to fail
+    /// with.
     virtual Result<int> run() = 0;
 };
 
@@ -46,18 +47,19 @@ std::unique_ptr<Subcommand> make_man();
 
 struct Command {
     std::string_view name;
-    std::string_view summary; // a line of the program's help
+    std::string_view summary; // a line in the program's help
     std::unique_ptr<Subcommand> (*make)();
     int exit_on_error = kExitError;
 };
 
-/// In the order of the help.
+/// Returns the table of subcommands, in the order of the help.
 std::span<const Command> commands();
 
-/// What the program's exit codes mean, for its help and its manual; one paragraph.
+/// Returns a paragraph on the program's exit codes, for its help and its manual.
 std::string exit_codes();
 
-/// The whole program but for exceptions: arguments are those after the program's name.
+/// Runs the whole program and returns its exit code. arguments: those after the program's name.
+/// Error: the sentence to print. Exceptions, such as std::bad_alloc, pass through to main().
 Result<int> run_command(const Arguments& arguments);
 
 } // namespace ovc

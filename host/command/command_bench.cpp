@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast bench: how fast rays are answered, by the plugin certified and fast and by its peers, in
-// turn on the same rays; and what that comes to: bars, whole programs, growth.
+// overcast bench: times the plugin, certified and fast, and its peers in turn on the same rays. Its
+// other tables are the performance targets (--bars), whole programs, sweeps and pictures.
 #include "host/arguments/log_arguments.h"
 #include "host/arguments/vector_width.h"
 #include "host/bench/bars/run_bars.h"
@@ -52,13 +52,14 @@ constexpr const char* kBenchExamples = R"(Examples:
 All contenders answer the same rays with the same number of threads, and are in memory at once.
 Interrupted with Ctrl-C, it prints what it has and exits with 2.)";
 
-/// To standard error, each sentence once: every contender of the plugin opens the same device.
+/// Logs to standard error, each sentence once: every contender of the plugin opens the same device,
+/// which repeats what it says.
 class QuietLog {
 public:
     explicit QuietLog(LogLevel most) : log_(standard_error_log(most)) {}
     LogSink sink() {
         return [this](LogLevel level, const std::string& message) {
-            const std::lock_guard lock(mutex_); // the device's thread may call
+            const std::lock_guard lock(mutex_); // a device's thread may call
             if (said_.insert(message).second)
                 log_(level, message);
         };
@@ -70,7 +71,7 @@ private:
     std::set<std::string> said_;
 };
 
-/// Tables for people, unless JSON goes where they would.
+/// Prints a table, unless standard output is taken by JSON.
 void show(const BenchJob& job, const std::string& table) {
     if (job.json == "-")
         return;
@@ -162,7 +163,7 @@ Result<Done> bench_tolerance(const BenchJob& job, const BenchSurroundings& aroun
     return save(job, tessellation_json(*r));
 }
 
-/// Contenders are in one process, and so have one width of vectors.
+/// Returns whether any contender needs the narrower vectors: all share a process, and so a width.
 bool any_fragment_kernel(const std::vector<Contender>& contenders) {
     return std::ranges::any_of(contenders, [](const Contender& c) {
         return c.on_gpu() && (c.kernel == OVC_KERNEL_FRAGMENT || c.kind == ContenderKind::Thesis);

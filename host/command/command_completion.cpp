@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast completion: what a shell needs in order to complete our words.
+// overcast completion: prints a script by which a shell completes our arguments.
 #include "host/arguments/arguments.h"
 #include "host/command/command.h"
 #include "host/command/manual.h"

@@ -35,7 +35,7 @@ static std::string extension_of(const std::filesystem::path& path) {
     return extension;
 }
 
-/// Known before a big file is read for nothing.
+/// Checks the output's name before a big scene is read for nothing.
 static Result<Done> check_output(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
     if (extension != ".ply" && extension != ".obj" && extension != ".ovc")
@@ -44,14 +44,15 @@ static Result<Done> check_output(const std::filesystem::path& path) {
     return check_writable("output", path);
 }
 
-/// What the scene has and a mesh does not keep, for a person; empty: nothing.
+/// Returns, as a text for the user, what a mesh file does not keep of the scene; empty where it
+/// keeps all.
 static std::string left_out(const Scene& scene) {
     std::vector<std::string> items;
     const auto add = [&](size_t count, std::string_view what) {
         if (count > 0)
             items.push_back(fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"));
     };
-    // Every scene has the grey that a file without materials gets.
+    // The default grey does not count: every scene has it.
     add(size_t(std::count_if(scene.materials.begin(), scene.materials.end(),
                              [](const Material& material) {
                                  return material.color != Material{}.color ||
@@ -67,7 +68,7 @@ static std::string left_out(const Scene& scene) {
     return fmt::format("{}", fmt::join(items, ", "));
 }
 
-/// All of the scene, and what the plugin builds of it, as .ovc.
+/// Writes all of the scene, and what the plugin builds of it, as .ovc.
 static Result<Done> convert_to_scene_file(const SceneArguments& source,
                                           const BackendOptions& backend_options, const LogSink& log,
                                           const std::string& output) {
@@ -115,7 +116,7 @@ public:
             "Writes the triangles of a scene as .ply (binary) or .obj, or all of it "
             "and what tracing builds as .ovc, which starts at once (docs/guide/cache.md).");
         source_.add_to(app, "IN");
-        // CLI11 gives IN all names there are: run() takes the last of them for OUT.
+        // CLI11 gives all names to IN; run() takes the last of them as OUT.
         app.add_option("OUT", output_,
                        "The file to write, the last that is named; replaced only once the new one "
                        "is complete");

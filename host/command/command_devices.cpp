@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast devices: what the plugin can run on.
+// overcast devices: the GPUs and software renderers that the plugin can run on.
 #include "host/arguments/arguments.h"
 #include "host/arguments/memory_size.h"
 #include "host/backend/plugin_loader.h"

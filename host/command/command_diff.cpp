@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast diff: two pictures compared, with the exit codes of OpenImageIO's idiff.
+// overcast diff: compares two pictures, with the exit codes of OpenImageIO's idiff.
 #include "host/arguments/arguments.h"
 #include "host/command/command.h"
 #include "host/diff/verdict.h"
@@ -40,11 +40,11 @@ Examples:
 
 namespace {
 
-/// The words of one limit.
+/// The three options of a limit as the user wrote them.
 struct LimitWords {
     std::string each, percent, any;
 
-    /// name: fail or warn; code: the exit code.
+    /// name: fail or warn; code: the exit code when the limit is exceeded.
     void add_to(CLI::App& app, const std::string& name, Verdict code) {
         app.add_option("--" + name, each, "How far apart two pixels may be; default: 1e-6")
             ->type_name("X");
@@ -84,8 +84,8 @@ Result<Limit> understand(const LimitWords& words, const std::string& name) {
     return Limit{*each, *percent, *any};
 }
 
-/// Red, green and blue as a picture whose file shows `scale` times the difference: in .png as
-/// codes.
+/// Returns the differences of red, green and blue, times `scale`. as_codes: for a .png, whose codes
+/// should be the differences; the picture holds the light that is encoded as them.
 Image picture_of(const Comparison& comparison, double scale, bool as_codes) {
     Image image(comparison.width, comparison.height);
     for (vec4& pixel : image.pixels)
@@ -101,7 +101,7 @@ Image picture_of(const Comparison& comparison, double scale, bool as_codes) {
     return image;
 }
 
-/// The differences of all other channels, for a format that takes them.
+/// Returns the differences of all other channels, for a format that has layers.
 std::vector<Layer> other_layers(const Comparison& comparison) {
     std::vector<Layer> layers;
     for (const Layer& layer : comparison.differences)

@@ -28,7 +28,8 @@ static constexpr const char* kInfoExamples = R"(Examples:
 static Json as_json(const dvec3& v) {
     return {v.x, v.y, v.z};
 }
-/// The shortest decimal that is this float: as a double 0.8f would be 0.800000011920929.
+/// Returns the shortest decimal that reads back as this float. As a double, 0.8f would be printed
+/// as 0.800000011920929.
 static Json as_json(float value) {
     return std::stod(fmt::format("{}", value));
 }
@@ -49,7 +50,7 @@ static Json materials_json(const Scene& scene) {
     return list;
 }
 
-/// docs/reference/stats.md says what the keys mean; null where nothing can tell.
+/// Returns null where there is no plan. docs/reference/stats.md says what the keys mean.
 static Json plan_json(const Result<ovc_plan>& plan) {
     if (!plan)
         return nullptr;

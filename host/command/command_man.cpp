@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast man: the manual page.
+// overcast man: prints the manual page.
 #include "host/arguments/arguments.h"
 #include "host/command/command.h"
 #include "host/command/manual.h"

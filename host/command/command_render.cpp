@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast render: a scene in, pictures and statistics out. The words of the command line, and
-// what they mean.
+// overcast render: a scene in, pictures and statistics out. Here are its options, and their checks;
+// host/render/render_job.cpp does the work.
 #include "host/arguments/backend_arguments.h"
 #include "host/arguments/log_arguments.h"
 #include "host/arguments/pov_words.h"
@@ -59,7 +59,7 @@ static constexpr std::string_view kAntialiasMethods[] = {"1", "2"};
 static constexpr std::string_view kAxes[] = {"x", "y", "z"};
 static constexpr std::string_view kPngBits[] = {"8", "16"};
 
-/// The words as given.
+/// The options as the user wrote them.
 struct RenderWords {
     SceneArguments scene;
     std::vector<std::string> outputs;
@@ -90,9 +90,10 @@ struct RenderWords {
     void add_to(CLI::App& app);
 };
 
-/// Rays a batch while somebody watches: less than a second's work for the slowest device known,
-/// llvmpipe on two cores, so that Ctrl-C is obeyed in time. Elsewhere batches are larger: time is
-/// the same within the noise, but where the budget is tight these move up to 1.6 times the bytes.
+/// Rays a batch where standard error is a terminal: less than a second's work for the slowest
+/// device known, llvmpipe on two cores, so that Ctrl-C is obeyed in time. Elsewhere batches are
+/// larger: the time is the same within the noise, but small batches move up to 1.6 times the bytes
+/// where the budget is tight.
 static constexpr size_t kWatchedBatchRays = size_t(1) << 18;
 
 void RenderWords::add_to(CLI::App& app) {
@@ -199,7 +200,7 @@ void RenderWords::add_to(CLI::App& app) {
     backend.add_to(app);
 }
 
-/// "320x240+100+50"
+/// Parses a crop such as "320x240+100+50".
 static Result<Crop> parse_crop(std::string_view text) {
     const size_t left = std::min(text.find('+'), text.size());
     const size_t top = std::min(text.find('+', left + 1), text.size());
@@ -219,7 +220,7 @@ static Result<Crop> parse_crop(std::string_view text) {
     return Crop{uint32_t(*x), uint32_t(*y), *size};
 }
 
-/// The path to take, and what it is called in a sentence.
+/// A camera path, and its name in error messages.
 struct NamedPath {
     CameraPath cameras;
     std::string name;
@@ -238,12 +239,12 @@ static Result<NamedPath> choose_path(const RenderWords& words) {
     return NamedPath{std::move(*path), from_file ? "'" + words.camera_path + "'" : scene};
 }
 
-/// The shots that --frames and --camera-path ask for; none for a single picture.
+/// Returns the shots that --frames and --camera-path ask for; none for a single picture.
 static Result<std::vector<Shot>> understand_frames(const RenderWords& words) {
     std::vector<Shot> shots;
     if (words.frames.empty() && words.camera_path.empty())
         return shots;
-    // Not CLI11's excludes(): help lists two of them in an order that changes from run to run.
+    // CLI11's excludes() would list the two in the help in an order that changes from run to run.
     if (!words.camera.empty())
         return Error{fmt::format("--camera and {} cannot be given together",
                                  words.frames.empty() ? "--camera-path" : "--frames")};
@@ -265,7 +266,7 @@ static Result<std::vector<Shot>> understand_frames(const RenderWords& words) {
     return shots;
 }
 
-/// No file is written that is read or written besides.
+/// Refuses to write a file that is also read, or two files by one name.
 static Result<Done> check_files(const RenderWords& words, const RenderJob& job,
                                 std::optional<uint32_t> frame) {
     std::vector<NamedFile> files = job.scene.files();
@@ -438,7 +439,8 @@ static Result<Done> understand_aovs(const RenderWords& words, RenderJob& job) {
     return Error{"--aov needs an output that holds layers: -o FILE.exr"};
 }
 
-/// Everything that can be wrong before anything but a camera path is read.
+/// Turns the words into a job. It finds every error that can be found before the scene is read; of
+/// the inputs it reads a camera path alone.
 static Result<RenderJob> understand(const RenderWords& words) {
     RenderJob job;
     job.scene = words.scene;

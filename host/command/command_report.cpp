@@ -70,7 +70,7 @@ struct ReportArguments {
     bool quick = false;
 };
 
-/// Tables by themselves; every other name is an experiment of the page.
+/// The tables that --only can name; every other name is an experiment of the page.
 constexpr std::string_view kReports[] = {"stability", "leaks", "grid"};
 
 /// In the order of ovc_kernel.
@@ -80,7 +80,7 @@ bool is_page(const std::string& name) {
     return std::find(std::begin(kReports), std::end(kReports), name) == std::end(kReports);
 }
 
-/// "100000000" or "1e8".
+/// Parses a whole number such as "100000000" or "1e8".
 Result<uint64_t> parse_rays(const std::string& text) {
     constexpr double most = 1e12;
     double value = 0;
@@ -115,12 +115,12 @@ Result<StabilityOptions> options_of(const ReportArguments& given) {
     return options;
 }
 
-/// What one of the reports runs.
+/// The cases and options of one of the tables.
 struct Report {
     std::string name;
     std::string title;
     std::vector<StabilityCase> cases;
-    std::vector<OpticsCase> optics; // after the cases
+    std::vector<OpticsCase> optics; // run after the cases
     StabilityOptions options;
 };
 
@@ -196,7 +196,7 @@ struct Results {
     std::vector<StabilityResult> cases;
     std::vector<OpticsResult> optics;
 
-    /// A table for each kind of case that was run.
+    /// Returns a table for each kind of case that was run.
     std::string markdown(const std::string& title) const {
         return (cases.empty() ? "" : stability_markdown(title, cases)) +
                (optics.empty() ? "" : optics_markdown(optics));
@@ -224,7 +224,7 @@ bool all_right(const Results& results) {
            });
 }
 
-/// One line a case on a terminal, which overwrites itself while the case runs.
+/// Prints a line for each case, on a terminal alone. It overwrites the line while the case runs.
 void print_progress(const StabilityResult& r, bool finished) {
     if (isatty(STDERR_FILENO))
         fmt::print(stderr, "\r{}: {} rays, {} wrong, {} leaks\033[K{}", r.name, human_count(r.rays),
@@ -237,7 +237,7 @@ void print_progress(const OpticsResult& r) {
                    r.score.wrong, r.score.leaks);
 }
 
-/// All cases in turn; after each, `seen` gets what is known so far.
+/// Runs all cases in turn, and calls `seen` after each with the results so far.
 Result<Results> run_all(const Report& report, const InterruptGuard& interrupt,
                         const std::function<void(const Results&)>& seen) {
     Results results;
@@ -269,7 +269,8 @@ Result<Results> run_all(const Report& report, const InterruptGuard& interrupt,
     return results;
 }
 
-/// Runs the cases; files, if any, have all that is known after each.
+/// Runs the cases and prints their tables. Where a folder is given it saves the results after each
+/// case.
 Result<int> make_report(const Report& report, const std::string& folder) {
     if (!folder.empty())
         if (const Result<Done> made = make_folder(folder, report); !made)
@@ -290,7 +291,7 @@ Result<int> make_report(const Report& report, const std::string& folder) {
     return interrupt.interrupted() ? kExitInterrupted : kExitOk;
 }
 
-/// What goes with tables and not with the page.
+/// Refuses a page without a folder, and options that only the tables take.
 Result<Done> check_page_words(const ReportArguments& given) {
     if (given.folder.empty())
         return Error{"the report needs a folder: overcast report -o DIR"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast scenes: the catalog of generated test scenes.
+// overcast scenes: lists the generated test scenes.
 #include "host/arguments/arguments.h"
 #include "host/command/command.h"
 #include "host/terminal/interrupt.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command as a whole, on the CPU: what it writes, and that an error writes nothing.
+// Tests of the command as a whole, on the CPU: what it writes, and that an error writes nothing.
 #include "host/command/command.h"
 #include "host/terminal/interrupt.h"
 #include "testscenes/catalog.h"
@@ -32,7 +32,7 @@ protected:
 
     std::string path(const char* name) const { return (folder_ / name).string(); }
 
-    /// The sentence that the command fails with; empty when it does not.
+    /// Returns the sentence with which the command fails; empty when it does not fail.
     static std::string error(const Arguments& arguments) {
         const Result<int> code = run_command(arguments);
         return code ? "" : code.error().message;
@@ -130,7 +130,7 @@ TEST_F(CommandTest, AFileThatIsNotThereMayBeMisspelt) {
                 testing::HasSubstr("did you mean 'walk.csv'?"));
     std::ofstream(path("one.png")) << "x";
     testing::internal::CaptureStderr();
-    error({"diff", path("onne.png"), path("one.png")}); // which tells by itself
+    error({"diff", path("onne.png"), path("one.png")}); // diff prints its errors itself
     EXPECT_THAT(testing::internal::GetCapturedStderr(),
                 testing::HasSubstr("did you mean 'one.png'?"));
 }
@@ -219,7 +219,7 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
     }
 }
 
-/// A model small enough for a test, and what renders dragons-2 with it.
+/// Returns arguments that render dragons-2 with a model small enough for a test.
 static Arguments small_dragons(const std::string& model, const std::string& output,
                                const char* size = "32x32") {
     return {"render",     "dragons-2", "--model", model, "--backend",
@@ -297,7 +297,7 @@ TEST_F(CommandTest, AnInterruptedSequenceKeepsItsFinishedFrames) {
     };
     EXPECT_EQ(pictures(), saved);
 
-    // The rest, and what is there stays.
+    // --continue renders the rest, and leaves the files that are there.
     const auto first_written = fs::last_write_time(path("0000.png"));
     Arguments more = small_dragons(model, path("####.png"), "256x256");
     more.insert(more.end(), {"--frames", fmt::format("0:{}", saved + 1), "--quiet", "--continue"});
@@ -384,7 +384,7 @@ TEST_F(CommandTest, EveryCommandHasHelpWithExamples) {
     }
 }
 
-/// What a command prints on standard output.
+/// Returns the text that a command prints on standard output.
 static std::string printed(const Arguments& arguments) {
     testing::internal::CaptureStdout();
     EXPECT_TRUE(run_command(arguments));
@@ -448,7 +448,7 @@ TEST_F(CommandTest, StrictMakesAnErrorOfWhatAPbrtSceneLacks) {
 
 TEST_F(CommandTest, MoreTrianglesThanAllowedAreRefusedWithTheirCount) {
     std::ofstream(path("two.pbrt")) << "WorldBegin\nShape \"sphere\"\nShape \"sphere\"\n"
-                                       "WorldEnd\n"; // 1,520 each
+                                       "WorldEnd\n"; // 1,520 triangles each
     const std::string scene = path("two.pbrt");
     EXPECT_EQ(error({"convert", scene, path("a.ply"), "--max-triangles", "3040"}), "");
     EXPECT_TRUE(fs::exists(path("a.ply")));

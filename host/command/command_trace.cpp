@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast trace: rays in, hits out.
+// overcast trace: reads rays and writes their hits.
 #include "host/arguments/arguments.h"
 #include "host/arguments/backend_arguments.h"
 #include "host/arguments/log_arguments.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Completion scripts: what may come next, by the subcommand and the word before.
+// Shell completion scripts. They offer what may come next by the subcommand and the word before.
 // Sources: the manuals of bash 5.2 ("Programmable Completion"), zsh 5.9 (zshcompsys) and fish 3.6
 // (complete).
 #include "host/command/manual.h"
@@ -31,12 +31,12 @@ static std::vector<std::string> option_names(const CommandManual& command) {
     return names;
 }
 
-/// What stands before the first semicolon or colon: in a list that is enough.
+/// Returns the text before the first semicolon or colon, which is enough in a list of choices.
 static std::string gist(const std::string& description) {
     return description.substr(0, description.find_first_of(";:"));
 }
 
-/// In single quotes, which all of the shells take.
+/// Puts the text in single quotes, which all three shells understand.
 static std::string shell_quoted(const std::string& text) {
     std::string out = "'";
     for (const char c : text)
@@ -46,7 +46,7 @@ static std::string shell_quoted(const std::string& text) {
 
 // ---- bash
 
-/// What fills COMPREPLY with words for one kind of value.
+/// Returns the shell command that adds the values of an option to COMPREPLY.
 static std::string bash_values(const OptionManual& option) {
     switch (option.kind) {
     case ValueKind::Choice:
@@ -72,7 +72,7 @@ static std::string bash_of(const CommandManual& command) {
                                 bash_values(option));
     text += "        esac\n        if [[ $word == -* ]]; then\n";
     text += fmt::format("            _overcast_words \"{}\"\n", joined(option_names(command)));
-    if (!command.places.empty()) // the last one, for what comes before it is one word
+    if (!command.places.empty()) // the script does not count places, and offers the last one's
         text += fmt::format("        else\n            {}\n", bash_values(command.places.back()));
     return text + "        fi ;;\n";
 }
@@ -125,18 +125,19 @@ static std::string zsh_values(const OptionManual& option) {
     case ValueKind::Other:
         break;
     }
-    return " "; // something, but nothing to offer
+    return " "; // a value follows, but there is nothing to offer
 }
 
-/// For _arguments, each name: what it is, and what follows.
+/// Returns a specification for zsh's _arguments for each name of the option.
 static std::string zsh_option(const OptionManual& option) {
-    std::string what; // brackets would end it
+    std::string what; // brackets are escaped, since they would end it
     for (const char c : gist(option.description))
         what += c == '[' || c == ']' ? fmt::format("\\{}", c) : std::string(1, c);
     std::string text;
     for (const std::string& name : option.names) {
         const bool takes_value = option.kind != ValueKind::None;
-        const char* joint = !takes_value ? "" : name.starts_with("--") ? "=" : "+"; // or a blank
+        // With either joint, zsh also takes the value after a blank.
+        const char* joint = !takes_value ? "" : name.starts_with("--") ? "=" : "+";
         std::string spec = fmt::format("*{}{}[{}]", name, joint, what);
         if (takes_value)
             spec += fmt::format(":{}:{}", gist(option.value), zsh_values(option));
@@ -178,7 +179,8 @@ _overcast_scenes() {
 )";
     for (const CommandManual& command : manual)
         text += zsh_of(command);
-    // Autoloaded from $fpath, the file is the function's body; sourced, it is a command like any.
+    // zsh runs a file that it autoloads from $fpath as the function's body, and one that the user
+    // sources as commands.
     return text + R"(    esac
 }
 if [[ $zsh_eval_context[-1] == loadautofunc ]]; then

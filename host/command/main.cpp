@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The `overcast` command: hands over to a subcommand; an error is one sentence and exit code 1.
+// The `overcast` command hands over to a subcommand. It prints an error as one sentence and exits
+// with 1.
 #include "host/command/command.h"
 #include "host/terminal/interrupt.h"
 #include "host/terminal/message.h"
@@ -17,7 +18,7 @@ static int fail(std::string_view sentence) {
 int main(int argc, char** argv) {
     try {
         ovc::exit_on_interrupt();
-        std::signal(SIGXFSZ, SIG_IGN); // a file that may not grow is an error of write()
+        std::signal(SIGXFSZ, SIG_IGN); // write() fails instead where a file may not grow
         const ovc::Result<int> code = ovc::run_command({argv + 1, argv + argc});
         if (!code)
             return fail(code.error().message);
@@ -27,7 +28,7 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return fail("out of memory");
     } catch (const std::exception& error) {
-        // fmt throws where standard output takes nothing more.
+        // fmt throws when standard output takes nothing more.
         return fail(std::ferror(stdout) ? "cannot write to standard output" : error.what());
     }
 }

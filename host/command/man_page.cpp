@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast.1 in roff: the program, then each subcommand with its options and examples.
+// Writes overcast.1 in roff: the program, then each subcommand with its options and examples.
 // Source: man(7), "Conventions for writing Linux man pages" of Linux man-pages.
 #include "host/command/command.h"
 #include "host/command/manual.h"
@@ -10,7 +10,7 @@
 
 namespace ovc {
 
-/// Text in which roff sees no request and no escape. Two blanks and more stand as they are.
+/// Escapes the text so that roff sees no request and no escape in it. Runs of blanks stay.
 static std::string roff(const std::string& text) {
     std::string out;
     bool at_line_start = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The manual from each subcommand's CLI11 app, which is built and never parsed.
+// Reads the manual from each subcommand's CLI11 app, which is built for this and never parsed.
 #include "host/command/manual.h"
 
 #include "host/arguments/arguments.h"
@@ -12,7 +12,7 @@
 
 namespace ovc {
 
-/// "auto|fragment|compute"; empty where it is another kind of word.
+/// Splits a type name such as "auto|fragment|compute"; empty where it lists no choices.
 static std::vector<std::string> choices_of(const std::string& value) {
     std::vector<std::string> choices;
     for (size_t at = 0; value.find('|') != std::string::npos && at <= value.size();) {

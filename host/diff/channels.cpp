@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG into channels, and which reader a file's first bytes ask for.
+// Reads PNG into channels, and chooses the reader by a file's first bytes.
 #include "host/diff/channels.h"
 
 #include "core/system/parallel.h"
@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -71,6 +72,7 @@ Result<Channels> read_channels(const fs::path& path) {
 }
 
 void encode_srgb(Channels& channels) {
+    assert(channels.coding == Coding::Linear);
     for (Layer& layer : channels.all)
         if ((layer.name == "R" || layer.name == "G" || layer.name == "B") &&
             layer.type == Layer::Type::Float)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture file as named channels, which is how pictures are compared.
+// Reads a picture file as named channels, which is how pictures are compared.
 #pragma once
 
 #include "core/result.h"
@@ -12,7 +12,7 @@
 
 namespace ovc {
 
-/// What the numbers of R, G and B are.
+/// The meaning of the numbers in R, G and B.
 enum class Coding { Srgb, Linear };
 
 struct Channels {
@@ -22,19 +22,21 @@ struct Channels {
     std::vector<Layer> all; // each width x height
 
     size_t size() const { return size_t(width) * height; }
-    /// Null: there is none of that name.
+    /// Returns the channel of that name; null where there is none.
     const Layer* find(std::string_view name) const;
 };
 
-/// Of a .png file R, G, B, and A where it is not 1 everywhere: codes divided by the largest, 0 to
-/// 1, whatever its depth. Of an .exr file all channels, by name. Error: a sentence that names the
-/// file.
+/// Returns the channels of a .png or .exr file. A .png gives R, G, B, and A where it is not 1
+/// everywhere: codes divided by the largest, 0 to 1, whatever its depth. An .exr gives all
+/// channels, by name. Error: a sentence that names the file.
 Result<Channels> read_channels(const std::filesystem::path& path);
 
-/// R, G and B as the codes of sRGB that a .png file would have, but not rounded.
+/// Converts R, G and B from linear light to the codes of sRGB that a .png file would have, without
+/// rounding.
 void encode_srgb(Channels& channels);
 
-/// The first part of an .exr file. Error: what is wrong, without the file's name.
+/// Returns the channels of the first part of an .exr file, halves as floats. Error: what is wrong,
+/// without the file's name.
 Result<Channels> read_exr(const std::filesystem::path& path);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The metrics but for FLIP, which has its file.
+// All metrics except FLIP, which has a file of its own.
 #include "host/diff/compare.h"
 
 #include "host/diff/flip.h"
@@ -23,8 +23,8 @@ double distance(float a, float b) {
     return std::isnan(d) ? kInfinity : d;
 }
 
-/// "normal" of "normal.X"; "color" of "R", "leaf" of "leaf". Opacity by itself: where it is 1
-/// everywhere it would only make the colors' errors smaller.
+/// Returns the layer of a channel: "normal" for "normal.X", "color" for "R", "leaf" for "leaf".
+/// Opacity is a layer by itself: where it is 1 everywhere it would only dilute the colors' errors.
 std::string layer_of(const std::string& channel) {
     if (const size_t dot = channel.rfind('.'); dot != std::string::npos)
         return channel.substr(0, dot);
@@ -38,7 +38,7 @@ class LayerSum {
 public:
     LayerSum(std::string name, size_t size) : unequal_(size) { result_.name = std::move(name); }
 
-    /// One more channel; its distances of each pixel.
+    /// Adds one more channel, and returns the distance in each pixel.
     std::vector<float> add(const Layer& a, const Layer& b, uint32_t width) {
         result_.channels.push_back(a.name);
         return a.type == Layer::Type::Uint || b.type == Layer::Type::Uint ? add_whole(a, b)
@@ -82,7 +82,7 @@ private:
             unequal_[i] = true;
             distances[i] = float(d);
             errors.mean += d;
-            errors.rmse += d * d; // the root of the mean: in result()
+            errors.rmse += d * d; // result() takes the root of the mean
             if (d > errors.max) {
                 errors.max = d;
                 errors.at = {uint32_t(i % width), uint32_t(i / width), a.name, double(in_a),
@@ -94,7 +94,7 @@ private:
 
     LayerDifference result_;
     std::vector<bool> unequal_;
-    uint64_t count_ = 0; // of numbers
+    uint64_t count_ = 0; // numbers that were added
 };
 
 std::vector<std::string> not_in(const Channels& other, const Channels& channels) {
@@ -105,7 +105,7 @@ std::vector<std::string> not_in(const Channels& other, const Channels& channels)
     return names;
 }
 
-/// R, G and B as codes of sRGB; nothing where one is missing.
+/// Returns R, G and B as codes of sRGB; nothing where one is missing.
 std::optional<std::array<std::vector<float>, 3>> colors_of(const Channels& channels) {
     Channels colors{channels.width, channels.height, channels.coding, {}};
     for (const char* name : {"R", "G", "B"}) {
@@ -140,7 +140,7 @@ std::optional<Flip> flip_of(const Channels& a, const Channels& b) {
     return flip;
 }
 
-/// One channel more: among the differences, and in each pixel's worst.
+/// Takes one more channel into the differences and into each pixel's worst.
 void take(Comparison& comparison, const Layer& channel, const std::vector<float>& distances) {
     Layer difference{channel.name, Layer::Type::Float, std::vector<uint32_t>(distances.size())};
     const bool whole = channel.type == Layer::Type::Uint;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far two pictures are apart: layer by layer in numbers, and as a person sees them.
+// Compares two pictures: layer by layer in numbers, and as a person sees them.
 #pragma once
 
 #include "host/diff/channels.h"
@@ -10,7 +10,7 @@
 
 namespace ovc {
 
-/// Where two channels are farthest apart.
+/// The pixel and channel in which two layers are farthest apart.
 struct Farthest {
     uint32_t x = 0;
     uint32_t y = 0;
@@ -19,13 +19,13 @@ struct Farthest {
     double b = 0;
 };
 
-/// Of all channels of one layer. Two NaNs and two equal infinities are 0 apart; a NaN and a number
-/// are infinitely far.
+/// The errors over all channels of one layer. Two NaNs and two equal infinities are 0 apart; a NaN
+/// and a number are infinitely far apart.
 struct Errors {
     double max = 0;
     double mean = 0; // of |a - b|
     double rmse = 0;
-    double psnr = 0; // in decibels, the signal's peak being 1; infinite for equal layers
+    double psnr = 0; // in decibels, with a signal's peak of 1; infinite for equal layers
     Farthest at;
 };
 
@@ -50,15 +50,15 @@ struct Comparison {
     std::vector<std::string> only_in_a; // channels
     std::vector<std::string> only_in_b;
     std::optional<Flip> flip; // where both have R, G and B
-    std::vector<float> worst; // of each pixel the largest difference of its channels; infinite for
+    std::vector<float> worst; // for each pixel the largest difference of its channels; infinite for
                               // whole numbers that differ
-    std::vector<Layer> differences; // |a - b| of each channel compared, of whole numbers 0 or 1
+    std::vector<Layer> differences; // |a - b| of each channel compared; 0 or 1 for whole numbers
 
-    uint64_t over(double threshold) const; // pixels whose worst is greater
+    uint64_t over(double threshold) const; // the number of pixels whose worst is greater
 };
 
-/// The channels that both have. Pictures of one size (asserted). Those of one coding; FLIP sees
-/// linear light encoded as sRGB.
+/// Compares the channels that both pictures have. The pictures are of one size and one coding (both
+/// asserted). FLIP sees linear light encoded as sRGB.
 Comparison compare(const Channels& a, const Channels& b);
 
 } // namespace ovc

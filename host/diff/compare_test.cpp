@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Comparing pictures: the metrics against sums done by hand, and who is held to which limit.
+// Tests of comparing pictures: the metrics against sums done by hand, and the limits.
 #include "host/diff/compare.h"
 
 #include "host/diff/verdict.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// LDR-FLIP: colors as the eye blurs them, edges and points, and one error of both. Section numbers
-// are the paper's.
+// LDR-FLIP compares colors as the eye blurs them, and edges and points, and makes one error of
+// both. Section numbers are the paper's.
 #include "host/diff/flip.h"
 
 #include "core/system/parallel.h"
@@ -19,10 +19,10 @@ namespace {
 using std::numbers::pi;
 constexpr double kColorExponent = 0.7;                 // q_c, section 4.1
 constexpr double kFeatureExponent = 0.5;               // q_f, section 4.2
-constexpr dvec3 kWhite(0.950428545, 1.0, 1.088900371); // of D65 in XYZ
+constexpr dvec3 kWhite(0.950428545, 1.0, 1.088900371); // D65 in XYZ
 
 using Plane = std::vector<float>;
-/// Of YCxCz: luminance, red against green, blue against yellow.
+/// The planes of YCxCz: luminance, red against green, blue against yellow.
 using Opponent = std::array<Plane, 3>;
 
 dvec3 xyz_of(const dvec3& rgb) {
@@ -31,7 +31,7 @@ dvec3 xyz_of(const dvec3& rgb) {
             (1425312 * rgb.r + 8788810 * rgb.g + 70074185 * rgb.b) / 73733382};
 }
 
-/// The inverse of xyz_of(); light beyond 0 to 1 is cut off.
+/// Inverts xyz_of(), and cuts off light beyond 0 to 1.
 dvec3 rgb_of(const dvec3& xyz) {
     const dvec3 rgb(3.241003275 * xyz.x - 1.537398934 * xyz.y - 0.498615861 * xyz.z,
                     -0.969224334 * xyz.x + 1.875930071 * xyz.y + 0.041554224 * xyz.z,
@@ -54,7 +54,7 @@ double lab_curve(double t) {
     return t > d * d * d ? std::cbrt(t) : t / (3 * d * d) + 4.0 / 29;
 }
 
-/// CIELAB, its colors fainter where it is dark: Hunt's effect (section 4.1.3).
+/// Returns CIELAB with Hunt's effect: colors are fainter where it is dark (section 4.1.3).
 dvec3 hunt_lab_of(const dvec3& rgb) {
     const dvec3 n = xyz_of(rgb) / kWhite;
     const dvec3 f(lab_curve(n.x), lab_curve(n.y), lab_curve(n.z));
@@ -62,12 +62,12 @@ dvec3 hunt_lab_of(const dvec3& rgb) {
     return {lightness, 0.01 * lightness * 500 * (f.x - f.y), 0.01 * lightness * 200 * (f.y - f.z)};
 }
 
-/// HyAB, for large color differences.
+/// Returns the HyAB distance, which suits large color differences.
 double color_distance(const dvec3& a, const dvec3& b) {
     return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
 }
 
-/// Weights of -radius to radius.
+/// The weights for offsets from -radius to radius.
 using Kernel = std::vector<double>;
 
 template <class Weight>
@@ -85,7 +85,7 @@ double sum_of(const Kernel& kernel) {
     return sum;
 }
 
-/// Positive weights add up to 1, negative ones to -1.
+/// Scales the weights so that positive ones add up to 1, negative ones to -1.
 Kernel normalized(Kernel kernel) {
     double positive = 0, negative = 0;
     for (const double weight : kernel)
@@ -101,7 +101,7 @@ struct Grid {
     int height = 0;
 };
 
-/// `along` in x and `across` in y; beyond the picture its border goes on.
+/// Filters with `along` in x and `across` in y. Beyond the picture its border continues.
 Plane filtered(const Plane& in, const Grid& grid, const Kernel& along, const Kernel& across) {
     Plane rows(in.size()), out(in.size());
     const auto pass = [&](const Plane& from, Plane& to, const Kernel& kernel, int dx, int dy) {
@@ -131,10 +131,10 @@ struct Sensitivity {
     double a, b;
 };
 
-/// The eye's blur of one opponent channel.
+/// Blurs one opponent channel as the eye does.
 Plane blurred(const Plane& in, const Grid& grid, std::span<const Sensitivity> terms,
               double pixels_per_degree) {
-    constexpr double kWidest = 0.04; // b of the widest term
+    constexpr double kWidest = 0.04; // the b of the widest term of all channels
     const int radius = int(std::ceil(3 * std::sqrt(kWidest / (2 * pi * pi)) * pixels_per_degree));
     Plane sum(in.size(), 0.0f);
     double all = 0;
@@ -156,6 +156,8 @@ Plane blurred(const Plane& in, const Grid& grid, std::span<const Sensitivity> te
 
 Opponent opponent_planes(const SrgbPlanes& picture) {
     const size_t size = size_t(picture.width) * picture.height;
+    assert(picture.red.size() == size && picture.green.size() == size &&
+           picture.blue.size() == size);
     Opponent planes = {Plane(size), Plane(size), Plane(size)};
     parallel_for(size, 4096, [&](size_t first, size_t last) {
         const auto light = [](float code) {
@@ -171,7 +173,7 @@ Opponent opponent_planes(const SrgbPlanes& picture) {
     return planes;
 }
 
-/// What the eye makes of the picture's colors.
+/// Returns the picture's colors as the eye blurs them.
 Opponent seen(const Opponent& planes, const Grid& grid, double pixels_per_degree) {
     static constexpr Sensitivity luminance[] = {{1, 0.0047}};
     static constexpr Sensitivity red_green[] = {{1, 0.0053}};
@@ -181,8 +183,8 @@ Opponent seen(const Opponent& planes, const Grid& grid, double pixels_per_degree
             blurred(planes[2], grid, blue_yellow, pixels_per_degree)};
 }
 
-/// From 0 to 1 for 0 to the farthest two colors apart, most of it for the nearer ones
-/// (section 4.1.4).
+/// Maps a distance from 0 to `farthest` to an error from 0 to 1. Small distances get most of the
+/// range (section 4.1.4).
 double spread(double distance, double farthest) {
     constexpr double near_share = 0.4;  // p_c
     constexpr double near_error = 0.95; // p_t
@@ -207,13 +209,13 @@ Plane color_errors(const Opponent& a, const Opponent& b) {
     return errors;
 }
 
-/// How strongly there is an edge, or a point, in each pixel (section 4.2).
+/// The strength of edges and of points in each pixel (section 4.2).
 struct Features {
     Plane edges, points;
 };
 
 Features features_of(const Plane& luminance, const Grid& grid, double pixels_per_degree) {
-    constexpr double kWidth = 0.082; // degrees, of what detects an edge in the eye
+    constexpr double kWidth = 0.082; // of the eye's edge detector, in degrees
     const double sd = 0.5 * kWidth * pixels_per_degree;
     const int radius = int(std::ceil(3 * sd));
     const auto bell = [&](double x) { return std::exp(-x * x / (2 * sd * sd)); };

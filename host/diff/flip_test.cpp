@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// FLIP: what the authors' published program computes, and what must hold for any two pictures.
+// Tests FLIP against the authors' published program, and for properties of any two pictures.
 #include "host/diff/flip.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ Planes reference() {
     return planes;
 }
 
-/// The same with a red block, a brighter right third and one white pixel.
+/// Returns reference() with a red block, a brighter right third and one white pixel.
 Planes changed() {
     Planes planes = reference();
     for (int y = 0; y < kHeight; ++y)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The limits, and the two reports.
+// Checks a comparison against the limits, and writes the text and the JSON.
 #include "host/diff/verdict.h"
 
 #include "host/arguments/memory_size.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a comparison is held to, and how it is told: for a person, and for a program.
+// The limits that a comparison must keep, and its report for a person and for a program.
 #pragma once
 
 #include "host/diff/compare.h"
@@ -9,10 +9,11 @@
 
 namespace ovc {
 
-/// As OpenImageIO's idiff exits.
+/// The exit codes of OpenImageIO's idiff.
 enum class Verdict { Ok = 0, Warning = 1, Failure = 2, NotComparable = 3, Unreadable = 4 };
 
-/// More than `percent` of the pixels farther apart than `each`, or one farther than `any`.
+/// A limit is passed where more than `percent` of the pixels are farther apart than `each`, or one
+/// is farther than `any`.
 struct Limit {
     double each = 1e-6;
     double percent = 0;
@@ -26,12 +27,13 @@ struct Limits {
     Limit warn;
 };
 
+/// Returns Ok, Warning or Failure.
 Verdict judge(const Comparison& comparison, const Limits& limits);
 
-/// The names of the two files and all that is known of them, with a line end.
+/// Returns the comparison of the files `a` and `b` as a text, with a line end.
 std::string diff_text(const std::string& a, const std::string& b, const Comparison& comparison,
                       const Limits& limits);
-/// As JSON (docs/guide/diff.md); what is infinite is null.
+/// Returns the same as JSON (docs/guide/diff.md); infinite numbers are null.
 std::string diff_json(const std::string& a, const std::string& b, const Comparison& comparison,
                       const Limits& limits);
 

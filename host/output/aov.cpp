@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One batch of camera rays after another, and what is told of their hits.
+// Traces one batch of camera rays after another, and writes their hits into layers.
 #include "host/output/aov.h"
 
 #include "core/system/parallel.h"
@@ -24,7 +24,7 @@ Layer layer(std::string name, Layer::Type type, size_t pixels) {
     return {std::move(name), type, std::vector<uint32_t>(pixels)};
 }
 
-/// The layers, and how a pixel is filled in.
+/// The layers that are wanted; set() fills in a pixel.
 class Layers {
 public:
     Layers(const Aovs& aovs, size_t pixels) : aovs_(aovs) {
@@ -44,7 +44,7 @@ public:
             all_.push_back(layer("flagged", Layer::Type::Uint, pixels));
     }
 
-    /// Where the backend writes its notes of the rays of these pixels.
+    /// Returns the memory in which the backend writes its notes of the rays of these pixels.
     RayNotes notes(size_t first, size_t count) {
         const auto values = [&](bool wanted, std::string_view name) {
             const auto found = std::find_if(all_.begin(), all_.end(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// AOVs: what the camera's rays hit, as further channels of an OpenEXR file.
+// AOVs tell about the hits of the camera's rays, as further channels of an OpenEXR file.
 #pragma once
 
 #include "core/result.h"
@@ -13,24 +13,26 @@
 
 namespace ovc {
 
-/// Which of them are wanted.
+/// The AOVs that the user wants, each with its channels and its value for a ray that hits nothing.
 struct Aovs {
     bool depth = false;   // depth.Z: t of the pixel's ray, which is the distance along the view;
-                          // infinity where nothing is hit
-    bool normal = false;  // normal.X, .Y, .Z: of unit length in the world, towards the eye; 0
-    bool id = false;      // id.mesh, id.prim: whole numbers; 0xffffffff
-    bool leaf = false;    // leaf: of level 1, in which the hit lies; 0xffffffff
-    bool passes = false;  // passes: that the pixel's ray took part in
-    bool flagged = false; // flagged: 1 where the kernel was not certain of the answer; else 0
+                          // a miss has infinity
+    bool normal = false;  // normal.X, .Y, .Z: unit length, in the world, towards the eye; a miss: 0
+    bool id = false;      // id.mesh, id.prim: whole numbers; a miss has 0xffffffff
+    bool leaf = false;    // leaf: the level-1 leaf of the hit; a miss has 0xffffffff
+    bool passes = false;  // passes: the number of passes that the ray took part in
+    bool flagged = false; // flagged: 1 where the kernel was not certain of the answer, else 0
 
     bool any() const { return depth || normal || id || leaf || passes || flagged; }
 };
 
-/// "depth,normal,id,leaf,passes,flagged". Error: an unknown name, or one twice.
+/// Parses "depth,normal,id,leaf,passes,flagged" or some of these. Error: an unknown name, or one
+/// given twice.
 Result<Aovs> parse_aovs(std::string_view text);
 
-/// One ray through the middle of each pixel, apart from those of the picture. Error: leaf or passes
-/// of a backend that has none.
+/// Returns the layers, each with a word for each pixel. It traces one ray through the middle of
+/// each pixel, apart from those of the picture. Error: leaf, passes or flagged of a backend that
+/// has none.
 Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Pinhole& camera, Backend& backend,
                                       const Aovs& aovs);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What --aov takes, and that the layers of a file say what the camera's rays hit.
+// Tests the words of --aov, and that the layers of a file tell the hits of the camera's rays.
 #include "host/output/aov.h"
 
 #include "core/exact/triangle.h"
@@ -40,7 +40,7 @@ TEST(Aovs, AreNamedInAnyOrderOnceEach) {
     EXPECT_NE(error_of("depth,"), "");
 }
 
-/// One channel of a file, its words as they are.
+/// Returns one channel of a file, without conversion.
 std::vector<uint32_t> channel(const std::string& path, const char* name, Imf::PixelType type) {
     Imf::InputFile file(path.c_str());
     const Imf::Channel* found = file.header().channels().findChannel(name);
@@ -79,7 +79,7 @@ TEST(Aovs, OfAFileAreWhatEachPixelsRayHits) {
     size_t hit = 0, missed = 0;
     for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
         const Ray ray = pinhole.ray(i % kWidth, i / kWidth);
-        // By the triangle that is named, and none is nearer: each of the scene's is asked.
+        // We ask each triangle of the scene: the nearest must be the one that is named.
         const PreparedRay prepared(ray);
         Nearest offered(prepared);
         for (uint32_t m = 0; m < scene->soup.chunks.size(); ++m)

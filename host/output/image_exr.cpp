@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenEXR: out, linear light in float channels R, G, B, A, and layers; in, whatever channels there
-// are. The only file that sees OpenEXR.
+// Writes linear light to OpenEXR as float channels R, G, B, A, and layers; reads whatever channels
+// there are. No other file includes OpenEXR.
 #include "host/diff/channels.h"
 #include "host/output/output.h"
 
@@ -17,11 +17,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <exception>
 
 namespace ovc {
 
-/// A file in memory: OpenEXR goes back to fill in a table, which a pipe could not.
+/// A file in memory, because OpenEXR goes back to fill in a table, and a pipe cannot.
 class MemoryStream final : public Imf::OStream {
 public:
     explicit MemoryStream(std::string& bytes) : OStream("memory"), bytes_(bytes) {}
@@ -49,14 +50,14 @@ Result<std::string> encode_exr(const Image& image, const FileContents& contents)
         for (int channel = 0; channel < 4; ++channel) {
             const char name[] = {"RGBA"[channel], '\0'};
             header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-            // Slices are declared writable for reading and writing alike; writing a file only reads
-            // them.
+            // A Slice takes a writable pointer, but writing a file only reads through it.
             char* first =
                 const_cast<char*>(reinterpret_cast<const char*>(&image.pixels[0][channel]));
             frame.insert(name,
                          Imf::Slice(Imf::FLOAT, first, sizeof(vec4), sizeof(vec4) * image.width));
         }
         for (const Layer& layer : contents.layers) {
+            assert(layer.values.size() == image.pixels.size());
             const Imf::PixelType type = layer.type == Layer::Type::Float ? Imf::FLOAT : Imf::UINT;
             header.channels().insert(layer.name, Imf::Channel(type));
             char* first = const_cast<char*>(reinterpret_cast<const char*>(layer.values.data()));
@@ -69,14 +70,14 @@ Result<std::string> encode_exr(const Image& image, const FileContents& contents)
             Imf::OutputFile file(stream, header);
             file.setFrameBuffer(frame);
             file.writePixels(int(image.height));
-        } // the table of lines is written now
+        } // the destructor has written the table of lines
         return bytes;
     } catch (const std::exception& e) {
         return Error{e.what()};
     }
 }
 
-/// Halves come as floats.
+/// Reads all channels, halves as floats.
 static Result<Channels> read_all(Imf::InputFile& file) {
     const Imath::Box2i window = file.header().dataWindow();
     const int64_t width = int64_t(window.max.x) - window.min.x + 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG out: sRGB, 8 or 16 bits a channel, as a viewer expects.
+// Writes PNG in sRGB with 8 or 16 bits a channel, as viewers expect it.
 #include "host/output/output.h"
 
 #include "core/system/parallel.h"
@@ -7,12 +7,13 @@
 #include "host/terminal/version.h"
 #include "importers/png.h"
 
+#include <cassert>
 #include <cmath>
 #include <vector>
 
 namespace ovc {
 
-/// Rounded to what `bits` hold, and scaled up to 65535.
+/// Returns the sRGB code, rounded to `bits` and scaled to 65535.
 static uint16_t sample_of(float linear, int bits) {
     if (bits == 16)
         return uint16_t(std::lround(srgb_code(linear) * 65535));
@@ -20,6 +21,7 @@ static uint16_t sample_of(float linear, int bits) {
 }
 
 Result<std::string> encode_png(const Image& image, const FileContents& contents) {
+    assert(contents.png_bits == 8 || contents.png_bits == 16);
     std::vector<uint16_t> samples(image.pixels.size() * 3);
     parallel_for(image.pixels.size(), 4096, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
@@ -27,7 +29,7 @@ Result<std::string> encode_png(const Image& image, const FileContents& contents)
                 samples[i * 3 + size_t(channel)] =
                     sample_of(image.pixels[i][channel], contents.png_bits);
     });
-    // Nothing of how it was made but the program: the same pixels are the same file.
+    // Only the program's name goes into the file, so that the same pixels are the same file.
     return write_png({image.width, image.height, contents.png_bits, samples},
                      "overcast " + version_text());
 }

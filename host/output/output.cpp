@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of image formats, the checks before rendering, and the way to the file.
+// The table of image formats, the checks before rendering, and the writing of files.
 #include "host/output/output.h"
 
 #include "importers/file/output_file.h"

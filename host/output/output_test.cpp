@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Output: files appear whole or not at all, and say what is wrong before anything is rendered.
+// Tests that files appear whole or not at all, and that errors come before anything is rendered.
 #include "host/output/output.h"
 
 #include <OpenEXR/ImfHeader.h>

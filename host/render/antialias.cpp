@@ -6,16 +6,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <unordered_map>
 
 namespace ovc {
 namespace {
 
-constexpr size_t kMaxPoints = size_t(1) << 21; // asked for at once: bounds memory
+constexpr size_t kMaxPoints = size_t(1) << 21; // in one call, to bound memory
 constexpr size_t kPixelGrain = 4096;           // pixels a task
 
-/// In [-0.5, 0.5): the same for the same numbers. Hash: Steele, Lea and Flood 2014, SplitMix64.
+/// Returns a pseudo-random point in [-0.5, 0.5)^2 that depends on the numbers alone.
+/// Hash: Steele, Lea and Flood 2014, SplitMix64.
 dvec2 chance(uint64_t a, uint64_t b) {
     uint64_t bits = a * 0x9e3779b97f4a7c15u + b;
     bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -24,7 +26,7 @@ dvec2 chance(uint64_t a, uint64_t b) {
     return dvec2(double(bits >> 32), double(bits & 0xffffffffu)) * 0x1p-32 - 0.5;
 }
 
-/// A color, and how bright it looks: after POV-Ray's Antialias_Gamma, 2.5.
+/// A color, and how bright it looks by POV-Ray's Antialias_Gamma, 2.5.
 struct Seen {
     vec3 light{0}, looks{0};
 };
@@ -58,8 +60,8 @@ public:
     std::optional<std::vector<vec3>> run() {
         if (!sample_middles())
             return std::nullopt;
-        // A refined pixel may still differ from a neighbour that is not: POV-Ray goes on to that
-        // one in the same round, and here it is the next one's.
+        // A refined pixel may still differ from a neighbour that is not refined. POV-Ray refines
+        // that one in the same round, we do so in the next.
         for (std::vector<uint32_t> pixels = rough(); !pixels.empty(); pixels = rough())
             if (!refine(pixels))
                 return std::nullopt;
@@ -88,7 +90,7 @@ private:
         return true;
     }
 
-    /// Pixels of one sample that differ from a neighbour, in the order to trace them in.
+    /// Returns the pixels of one sample that differ from a neighbour, in the order of tracing.
     std::vector<uint32_t> rough() const {
         std::vector<uint8_t> is_rough(colors_.size());
         parallel_for(colors_.size(), kPixelGrain, [&](size_t first, size_t last) {
@@ -149,7 +151,7 @@ private:
     const Antialias how_;
     const double gamma_; // of the scene
     const TracePoints& trace_;
-    const std::vector<uint32_t> order_; // of pixels
+    const std::vector<uint32_t> order_; // in which pixels are traced
     std::vector<Seen> colors_;
     std::vector<uint8_t> refined_;
 };
@@ -203,7 +205,7 @@ private:
     }
     uint64_t key(uint64_t x, uint64_t y) const { return y * columns_ + x; }
 
-    /// The corners of a square that have no sample yet.
+    /// Adds the corners of the square that have no sample yet to wanted_.
     void want(const Cell& cell) {
         for (const uint64_t y : {cell.y, cell.y + cell.size})
             for (const uint64_t x : {cell.x, cell.x + cell.size})
@@ -272,9 +274,9 @@ private:
     const Antialias how_;
     const double gamma_; // of the scene
     const TracePoints& trace_;
-    const uint32_t cells_; // a pixel, along each side
+    const uint32_t cells_; // per pixel, along each side
     const uint64_t columns_;
-    std::unordered_map<uint64_t, Seen> samples_; // by their place on the grid
+    std::unordered_map<uint64_t, Seen> samples_; // by key()
     std::vector<uint64_t> wanted_;
 };
 
@@ -282,6 +284,7 @@ private:
 
 std::optional<std::vector<vec3>> antialiased(const ImageSize& size, const Antialias& how,
                                              double gamma, const TracePoints& trace) {
+    assert(how.depth >= 1 && how.depth <= kMaxAntialiasDepth);
     if (how.method == Antialias::Method::Supersample)
         return Supersampling(size, how, gamma, trace).run();
     return Subdivision(size, how, gamma, trace).run();

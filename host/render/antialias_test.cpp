@@ -15,7 +15,7 @@ struct Traced {
     size_t calls = 0;
 };
 
-/// Of what `scene` shows at each point.
+/// Returns the picture of a function that gives the color at each point.
 template <class Scene>
 Traced traced(const ImageSize& size, const Antialias& how, Scene scene, double gamma = 1) {
     Traced traced;
@@ -32,7 +32,7 @@ Traced traced(const ImageSize& size, const Antialias& how, Scene scene, double g
 }
 
 constexpr ImageSize kSize{8, 6};
-constexpr double kLeft = 4.4; // of a white half; the rest is black
+constexpr double kLeft = 4.4; // where the white half begins; the rest is black
 vec3 half_white(const dvec2& at) {
     return vec3(at.x > kLeft ? 1.0f : 0.0f);
 }
@@ -63,7 +63,7 @@ TEST(Antialias, FlatPicturesTakeOneSampleAPixel) {
     const auto gray = [](const dvec2&) { return vec3(0.4f); };
     EXPECT_EQ(traced(size, {}, gray).samples, 100 * 50u);
     EXPECT_EQ(traced(size, {.method = Method::Subdivide}, gray).samples, 101 * 51u);
-    // A gradient below the threshold is as good as flat.
+    // A gradient below the threshold counts as flat.
     const auto sky = [](const dvec2& at) { return vec3(float(0.2 + at.y / 100)); };
     EXPECT_EQ(traced(size, {}, sky).samples, 100 * 50u);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums in fixed point: adding whole numbers has no order.
+// Light is summed in fixed point, because a sum of whole numbers does not depend on their order.
 #include "host/render/film.h"
 
 #include "core/system/parallel.h"
@@ -11,10 +11,10 @@
 namespace ovc {
 
 static constexpr double kOne = 0x1p28;
-/// Light brighter than this is as bright as this: a million times as much stays below 2^63.
+/// Brighter light is clamped to this, so that a million such samples stay below 2^63.
 static constexpr float kBrightest = 32768;
 
-/// NaN is dark.
+/// Returns the light in units of 2^-28; NaN is dark.
 static int64_t fixed(float light) {
     return light == light ? std::llround(double(std::clamp(light, -kBrightest, kBrightest)) * kOne)
                           : 0;
@@ -32,6 +32,7 @@ Film::Film(uint32_t width, uint32_t height, uint32_t samples)
 }
 
 void Film::add(uint32_t pixel, const vec3& light) {
+    assert(pixel < sums_.size());
     for (int channel = 0; channel < 3; ++channel)
         if (light[channel] != 0)
             sums_[pixel][size_t(channel)].fetch_add(fixed(light[channel]),
@@ -44,6 +45,7 @@ Film::Sums Film::sums(uint32_t pixel) const {
 }
 
 void Film::restore(uint32_t pixel, const Sums& sums) {
+    assert(pixel < sums_.size());
     for (size_t channel = 0; channel < 3; ++channel)
         sums_[pixel][channel].store(sums[channel]);
     if (under_way_[pixel].exchange(0) != 0)

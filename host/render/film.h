@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Film: the picture while it is made. Light arrives in any order and from any thread, and adds up
-// to the same bits; a pixel is done when no ray of it is under way.
+// Film is the picture while it is made. Light arrives in any order and from any thread, and adds up
+// to the same bits. A pixel is done when no ray of it is under way.
 #pragma once
 
 #include "core/file/image.h"
 
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -22,15 +23,17 @@ public:
     uint32_t height() const { return height_; }
     uint32_t samples() const { return samples_; }
 
-    /// Light that one of the pixel's camera rays gets; the picture has the mean of them.
+    /// Adds light that one of the pixel's camera rays gets; the picture has the mean of its camera
+    /// rays. NaN counts as 0.
     void add(uint32_t pixel, const vec3& light);
 
-    /// More rays of the pixel are under way; at first there are its camera rays.
+    /// Counts more rays of the pixel as under way. Its camera rays are counted from the start.
     void open(uint32_t pixel, uint32_t rays = 1) {
         under_way_[pixel].fetch_add(rays, std::memory_order_relaxed);
     }
-    /// One of them has been answered, and what it spawned is open already.
+    /// Counts one ray of the pixel as answered. Open the rays that it spawned before.
     void close(uint32_t pixel) {
+        assert(!done(pixel));
         if (under_way_[pixel].fetch_sub(1, std::memory_order_acq_rel) == 1)
             done_.fetch_add(1, std::memory_order_relaxed);
     }
@@ -40,19 +43,20 @@ public:
     }
     uint64_t pixels_done() const { return done_.load(std::memory_order_relaxed); }
 
-    /// Exactly what has arrived, in units of 2^-28; for a file that is gone on with later.
+    /// The exact sums of the light that has arrived, in units of 2^-28; a file keeps them for a
+    /// later run.
     using Sums = std::array<int64_t, 3>;
     Sums sums(uint32_t pixel) const;
-    /// The pixel is done, and this is what had arrived. Before any ray of it is answered.
+    /// Marks the pixel as done, with these sums. Call it before any ray of the pixel is answered.
     void restore(uint32_t pixel, const Sums& sums);
 
-    /// Pixels that are not done are black, with alpha 0.
+    /// Returns the picture. Pixels that are not done are black, with alpha 0.
     Image image() const;
 
 private:
     uint32_t width_, height_, samples_;
     std::vector<std::array<std::atomic<int64_t>, 3>> sums_;
-    std::vector<std::atomic<uint32_t>> under_way_; // rays, per pixel
+    std::vector<std::atomic<uint32_t>> under_way_; // rays of each pixel
     std::atomic<uint64_t> done_{0};                // pixels
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The film: sums without an order, and when a pixel is done.
+// Tests that the film's sums do not depend on their order, and when a pixel is done.
 #include "host/render/film.h"
 
 #include "core/system/parallel.h"

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frame numbers in arguments and in names of files.
+// Parses frame numbers in arguments, and writes them into names of files.
 #include "host/render/frames.h"
 
 #include <fmt/format.h>
 
 #include <array>
+#include <cassert>
 #include <charconv>
 #include <optional>
 #include <vector>
 
 namespace ovc {
 
-/// Whole numbers between colons; nothing where one is none.
+/// Returns the whole numbers between colons; empty where one of them is no whole number.
 static std::vector<uint32_t> parse_numbers(std::string_view text) {
     std::vector<uint32_t> numbers;
     const char* at = text.data();
@@ -29,6 +30,7 @@ static std::vector<uint32_t> parse_numbers(std::string_view text) {
 }
 
 Result<FrameRange> parse_frames(std::string_view text, uint32_t frames, std::string_view path) {
+    assert(frames > 0);
     const std::vector<uint32_t> n = parse_numbers(text);
     if (n.empty() || n.size() > 3)
         return Error{
@@ -44,6 +46,7 @@ Result<FrameRange> parse_frames(std::string_view text, uint32_t frames, std::str
     return range;
 }
 
+/// A run of # in a name.
 struct Run {
     size_t at, length;
 };

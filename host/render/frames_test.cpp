@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --frames and #### in names.
+// Tests of --frames, and of #### in names.
 #include "host/render/frames.h"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Path tracing in both modes: the same bits for the same seed, and for others the same mean in each
-// pixel.
+// Tests path tracing in both modes: one seed gives the same bits, and other seeds the same mean in
+// each pixel.
 #include "host/render/render.h"
 #include "host/render/test_shapes.h"
 
@@ -14,7 +14,8 @@ namespace {
 
 constexpr uint32_t kSide = 20;
 
-/// A floor, a glossy one beside it, a mirror behind, a pane in front, a lamp above, a blue sky.
+/// Returns a floor, a glossy one beside it, a mirror behind, a pane in front, a lamp above and a
+/// blue sky.
 Scene corner() {
     using Boundary = Optics::Boundary;
     Scene scene;
@@ -62,7 +63,7 @@ TEST(PathModes, MakeTheSameBitsOfTheSameSeed) {
     EXPECT_NE(batched.pixels, picture(scene, *backend, RenderMode::Mixed, 6, 4).pixels);
 }
 
-/// Mean and variance of the mean, per pixel, over pictures of different seeds.
+/// The mean, and its variance, of each pixel over pictures of different seeds.
 struct Pixels {
     std::vector<double> mean, variance;
 };
@@ -92,18 +93,19 @@ TEST(PathModes, ConvergeToTheSameMean) {
     int pixels = 0;
     for (size_t p = 0; p < batched.mean.size(); ++p) {
         const double sigma = std::sqrt(batched.variance[p] + mixed.variance[p]);
-        if (!(sigma > 0)) { // sees sky or lamp alone
+        if (!(sigma > 0)) { // the pixel sees sky or lamp alone
             EXPECT_EQ(batched.mean[p], mixed.mean[p]);
             continue;
         }
         const double z = (batched.mean[p] - mixed.mean[p]) / sigma;
-        EXPECT_LT(std::abs(z), 5.5) << "pixel " << p; // Student's t of some 40 degrees
+        // z is Student's t of some 40 degrees of freedom.
+        EXPECT_LT(std::abs(z), 5.5) << "pixel " << p;
         squares += z * z;
         sum += z;
         ++pixels;
     }
     EXPECT_GT(pixels, int(kSide * kSide / 2));
-    // Of n values of variance 46/44: five sigma.
+    // Such a t has variance 46/44; the limits are five sigma of the means of n values.
     EXPECT_NEAR(sum / pixels, 0, 5 / std::sqrt(pixels));
     EXPECT_NEAR(squares / pixels, 46 / 44.0, 5 * std::sqrt(2.2 / pixels));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture: who shades, who traces, and what it took.
+// Chooses the integrator and the form of rendering, runs them, and measures the times.
 #include "host/render/render.h"
 
 #include "core/system/stopwatch.h"
@@ -12,6 +12,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 
 namespace ovc {
@@ -52,7 +53,7 @@ RenderReport& RenderReport::operator+=(const RenderReport& other) {
     return *this;
 }
 
-/// Of all threads, in the program and in the system for it.
+/// Returns the CPU time of all threads, in user and in system mode.
 static double cpu_seconds() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -73,7 +74,8 @@ static std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Cam
 
 namespace {
 
-/// Passes of adaptive antialiasing: each is a film of its own, with a pixel for each point.
+/// The passes of adaptive antialiasing. Each renders onto a film of its own, with a pixel for each
+/// point.
 class AdaptivePasses {
 public:
     /// trace: renders all rays onto a film of one sample a pixel.
@@ -83,8 +85,9 @@ public:
     AdaptivePasses(const Pinhole& pinhole, const RenderObserver& observe, Trace trace)
         : pinhole_(pinhole), observe_(observe), trace_(std::move(trace)) {}
 
-    /// Fills the film, unless it was stopped.
+    /// Fills the film, unless it was stopped. The film has one sample a pixel.
     Result<RenderReport> run(const Antialias& how, double gamma, Film& film) {
+        assert(film.samples() == 1);
         const ImageSize size{film.width(), film.height()};
         const auto colors = antialiased(
             size, how, gamma, [&](auto points, auto light) { return pass(points, light); });
@@ -102,7 +105,7 @@ private:
     bool pass(std::span<const dvec2> points, std::span<vec3> light) {
         Film film(uint32_t(points.size()), 1);
         const RenderReport before = report_;
-        // Most pictures take little more than a point for each pixel.
+        // Points count as pixels here, since most pictures take little more than one a pixel.
         const RenderObserver observe = [&](const RenderReport& now) {
             RenderReport all = before;
             all += now;

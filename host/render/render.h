@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rendering a picture: what the batched and the mixed form share.
+// Renders a picture. Options, counts and times here are shared by the batched and the mixed form.
 #pragma once
 
 #include "core/result.h"
@@ -17,22 +17,22 @@
 
 namespace ovc {
 
-/// Whitted 1980: mirrors and glass, lights as points. Path: Kajiya 1986, all light there is.
+/// Whitted 1980 has mirrors, glass and point lights; Path, Kajiya 1986, has all light there is.
 enum class IntegratorKind { Whitted, Path };
 
-/// Algorithm 5 or 6 of the thesis. Auto is batched, which is faster (docs/benchmarks.md).
+/// Algorithms 5 and 6 of the thesis. Auto is batched, which is faster (docs/benchmarks.md).
 enum class RenderMode { Auto, Batched, Mixed };
 
 struct RenderOptions {
     IntegratorKind integrator = IntegratorKind::Whitted;
     RenderMode mode = RenderMode::Auto;
-    uint32_t max_depth = 5; // surfaces that a path leaves at most
+    uint32_t max_depth = 5; // max surfaces that a path leaves
     bool shadows = true;
     uint64_t seed = 0;                  // of path tracing
-    std::optional<Antialias> antialias; // none: the film's samples, evenly
-    std::optional<PicturePart> part;    // that the film is; none: it is the whole picture
-    /// Batched: the most rays a backend gets at once. Bounds host memory: at most about three times
-    /// as many rays wait.
+    std::optional<Antialias> antialias; // none: the film's samples, evenly; else the film has 1
+    std::optional<PicturePart> part;    // the film's part of the picture; none: all of it
+    /// The batched form gives a backend at most so many rays at once. It bounds host memory too:
+    /// at most about three times as many rays wait.
     size_t batch_rays = size_t(1) << 20;
 };
 
@@ -51,17 +51,17 @@ struct RayCounts {
 struct RenderReport {
     RayCounts rays;
     double seconds = 0;       // from the first ray to the last
-    double seconds_trace = 0; // of them, while the backend was at work
+    double seconds_trace = 0; // of these, those in which the backend was at work
     double seconds_shade = 0; // making and shading rays, perhaps beside tracing
     double seconds_cpu = 0;   // of all threads of this process
     uint64_t pixels_done = 0;
     bool complete = false; // false: `observe` stopped it; pixels that are done are on the film
 
-    RenderReport& operator+=(const RenderReport& other); // but for `complete`
+    RenderReport& operator+=(const RenderReport& other); // leaves `complete` as it is
 };
 
-/// Called after every answer of the backend, with what has been done so far, by one thread at a
-/// time; false stops the rendering.
+/// Gets a report so far after every answer of the backend, from one thread at a time. Returns false
+/// to stop the rendering.
 using RenderObserver = std::function<bool(const RenderReport&)>;
 
 /// Renders the pixels of the film that are not done. The same scene, camera and options give the

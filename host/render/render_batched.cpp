@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop of algorithm 5: trace, shade, ask for shadows, until no rays are left; then the next
-// pixels. Two lanes do so beside each other: while one traces, the other shades.
+// The loop of algorithm 5 traces rays, shades hits and asks for shadows until no rays are left, and
+// goes on with the next pixels. Two lanes run it side by side: while one traces, the other shades.
 #include "host/render/render_batched.h"
 
 #include "core/system/parallel.h"
@@ -16,20 +16,21 @@
 namespace ovc {
 namespace {
 
-/// So many rays a batch for each core: what they take stays in caches, and they go through so small
+/// A batch has so many rays for each core. Their data stays in caches, and they go through so small
 /// a part of the picture that under a budget most find their pages in the pool (decision 19). A
-/// picture is cut into some batches at least, or a lane has nothing to do while the other traces.
+/// picture has a minimum of batches, or a lane would have nothing to do while the other traces.
 constexpr uint64_t kRaysACore = 1 << 14;
 constexpr uint64_t kMinBatches = 8;
 
-/// What the lanes share: the camera's rays, and the backend, which answers one call at a time.
+/// The state that both lanes share: the camera's rays, and the backend, which answers one call at a
+/// time.
 class Work {
 public:
     Work(const CameraRays& camera, Backend& backend, const RenderObserver& observe,
          const Film& film)
         : camera_(camera), backend_(backend), observe_(observe), film_(film) {}
 
-    /// The next camera rays, at most so many; false: there are none left.
+    /// Makes the next camera rays, at most `most`. Returns false where none are left.
     bool begin(size_t most, RayList<Path>& paths) {
         const uint64_t first = begun_.fetch_add(most);
         if (first >= camera_.size())
@@ -38,8 +39,8 @@ public:
         return true;
     }
 
-    /// Runs ask(backend), which traces `rays`. False: the rendering has stopped, and what is
-    /// answered does not count.
+    /// Runs ask(backend), which traces `rays`. Returns false where the rendering has stopped; the
+    /// answers do not count then.
     template <class Ask>
     bool trace(const RayCounts& rays, Ask&& ask) {
         const std::lock_guard turn(turn_);
@@ -74,7 +75,7 @@ private:
     const RenderObserver& observe_;
     const Film& film_;
     std::atomic<uint64_t> begun_{0}; // camera rays
-    std::mutex turn_;                // of what is below
+    std::mutex turn_;                // guards the backend and the members below
     bool stopped_ = false;
     std::optional<Error> error_;
     RenderReport report_;
@@ -160,8 +161,9 @@ private:
         return goes_on;
     }
 
-    /// The rays to trace next: all that wait, while one batch holds them. Where splitting rays have
-    /// made them more, the last few, which are the deepest: n rays leave at most 2 n.
+    /// Moves the rays to trace next into now_: all that wait, as long as a batch holds them. Where
+    /// splitting rays have made more, it takes the last few, which are the deepest, because n rays
+    /// leave at most 2 n.
     void take_waiting() {
         RayList<Path>& waiting = spawned_.paths;
         const size_t few =
@@ -173,11 +175,11 @@ private:
     const Integrator& integrator_;
     Shading shading_;
     const size_t batch_rays_;
-    double seconds_tracing_ = 0; // or waiting for it
-    // All are kept between rounds so that they are allocated once.
-    Spawned spawned_;   // waiting, the deepest last
-    RayList<Path> now_; // being traced, as the next
-    RayList<Shadow> shadows_;
+    double seconds_tracing_ = 0; // tracing, or waiting for the other lane's tracing
+    // These buffers are kept between rounds so that they are allocated once.
+    Spawned spawned_;         // rays that wait, the deepest last
+    RayList<Path> now_;       // rays that are being traced
+    RayList<Shadow> shadows_; // likewise
     std::vector<Hit> hits_;
     std::vector<Hit> shadow_hits_;
     std::vector<uint8_t> occluded_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The batched renderer: a backend is asked for many rays of one kind at once.
+// The batched renderer hands the backend many rays of one kind at once.
 // Based on: Lee 2006 (thesis), section 3.5, algorithm 5.
 #pragma once
 
@@ -8,7 +8,8 @@
 
 namespace ovc {
 
-/// lights: of which each may ask for a shadow ray. The report lacks times of the whole.
+/// Renders the camera's rays onto the film. lights: the number of lights, each of which may ask for
+/// a shadow ray at every hit. batch_rays: at least 1. The report lacks `seconds` and `seconds_cpu`.
 Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
                                     const CameraRays& camera, Backend& backend, size_t batch_rays,
                                     const RenderObserver& observe, Film& film);

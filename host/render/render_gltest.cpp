@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The batched and the mixed renderer: one picture, the same bits in whatever order answers come;
-// mixed makes fewer passes where memory is short.
+// Tests that the batched and the mixed renderer make the same bits in whatever order answers come,
+// and that mixed makes fewer passes where memory is short.
 #include "host/render/render.h"
 
 #include "core/system/parallel.h"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t kSide = 96;
 
-/// A test scene, dressed for a picture.
+/// A test scene with a camera and lights for a picture.
 class Shown {
 public:
     explicit Shown(const char* name) : scene(std::move(*make_test_scene(name))) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rendering: the scene and the structure once, then picture after picture.
+// Reads the scene and builds the structure once, then renders picture after picture.
 #include "host/render/render_job.h"
 
 #include "core/system/parallel.h"
@@ -36,7 +36,8 @@ namespace ovc {
 
 namespace fs = std::filesystem;
 
-/// The camera of a single picture: the one asked for, the scene's, or one that sees all of it.
+/// Returns the camera of a single picture: the one asked for, else the scene's, else one that
+/// frames the whole scene.
 static Camera still_camera(const Scene& scene, const RenderJob& job, const ImageSize& size) {
     if (job.camera) {
         Camera camera = *job.camera;
@@ -55,7 +56,7 @@ static RenderOptions render_options(const RenderJob& job, const PicturePart& par
                                     const Scene& scene) {
     RenderOptions options = job.render;
     options.part = part;
-    // What a file asks for is about mirrors and glass: light goes on for longer.
+    // A file's depth is meant for mirrors and glass; path tracing follows light for longer.
     const uint32_t otherwise = options.integrator == IntegratorKind::Path
                                    ? PathTracerOptions{}.max_depth
                                    : scene.max_depth.value_or(options.max_depth);
@@ -72,7 +73,7 @@ static std::vector<std::string> outputs_of(const RenderJob& job, uint32_t frame)
     return outputs;
 }
 
-/// An earlier run has finished the picture, and this one goes on from there.
+/// Returns whether the job continues an earlier run that has finished this picture.
 static bool is_there(const RenderJob& job, uint32_t frame) {
     const std::vector<std::string> outputs = outputs_of(job, frame);
     return job.go_on && !fs::exists(unfinished_film(outputs[0])) &&
@@ -92,7 +93,8 @@ public:
           lights_(job.lights.empty() ? scene.lights : job.lights),
           backend_(backend) {}
 
-    /// Every picture in turn until one is interrupted, whose pixels are kept beside its outputs.
+    /// Renders every picture in turn until one is interrupted; its pixels are kept beside its
+    /// outputs.
     Result<Done> run(const std::vector<Shot>& shots, RenderStats& stats) {
         stats.report.complete = true;
         for (const Shot& shot : shots) {
@@ -136,7 +138,7 @@ private:
         frame.tracing = counted_between(before, backend_.statistics());
         frame.active = backend_.take_active();
         frame.host_peak_bytes = host_peak_bytes();
-        frame.seconds = watch.seconds(); // as its files tell it
+        frame.seconds = watch.seconds(); // for the notes in its files
         const Stopwatch output;
         const Result<Done> saved = frame.report.complete ? save_finished(shot, film, frame)
                                                          : save_unfinished(shot, film, frame);
@@ -164,7 +166,8 @@ private:
         return loaded;
     }
 
-    /// Of what the pixels depend on, but for their number.
+    /// Returns a checksum of everything that the pixels depend on, without the picture's size:
+    /// save_film() adds that.
     uint64_t checksum_of_picture(const Shot& shot) const {
         ByteWriter view;
         view(shot.camera, *options_.part, options_.integrator, options_.max_depth, options_.shadows,
@@ -177,7 +180,7 @@ private:
         return sum.value();
     }
 
-    /// From the light of a scene with an assumed_gamma to what files hold.
+    /// Converts the light of a scene with an assumed_gamma to the linear light that files hold.
     void to_linear(Image& image) const {
         for (vec4& pixel : image.pixels)
             for (int i = 0; i < 3; ++i)
@@ -199,14 +202,14 @@ private:
         const std::vector<std::string> outputs = outputs_of(shot);
         if (const Result<Done> saved = save_all(outputs, shot, film, frame); !saved)
             return kept(saved.error(), shot, film);
-        std::error_code ignored; // what is not there need not go
+        std::error_code ignored; // most often there is no such file
         fs::remove(film_of(shot), ignored);
         for (const std::string& output : outputs)
             fs::remove(unfinished_picture(output), ignored);
         return Done{};
     }
 
-    /// Where an output cannot be written, what was rendered is not lost.
+    /// Saves the film where an output cannot be written, so that the picture is not lost.
     Error kept(Error error, const Shot& shot, const Film& film) {
         if (save_film(film, checksum_of_picture(shot), film_of(shot)))
             error.message += fmt::format("; the picture is kept in {}, and --continue writes it "
@@ -215,8 +218,8 @@ private:
         return error;
     }
 
-    /// Beside the outputs: what is there may be finished. Of a sequence no picture, for it would
-    /// only be one of many.
+    /// Saves the film and the picture so far beside the outputs, which may be finished pictures of
+    /// an earlier run. A sequence gets no picture, for it would only be one of many.
     Result<Done> save_unfinished(const Shot& shot, const Film& film, const FrameStats& frame) {
         if (film.pixels_done() == 0)
             return Done{};
@@ -229,7 +232,7 @@ private:
         return save_all(outputs, shot, film, frame);
     }
 
-    /// How the picture was made, for .exr files.
+    /// Returns notes for .exr files on how the picture was made.
     std::vector<FileNote> notes_of(const FrameStats& frame) const {
         return {{"overcast:version", version_text()},
                 {"overcast:scene", job_.scene.name()},
@@ -295,11 +298,11 @@ static void report(const RenderJob& job, const RenderStats& stats) {
                               saved, job.shots.size(), job.shots[saved].frame));
 }
 
-/// 0: no limit.
+/// Limits the threads of this process while the result lives; 0: no limit.
 static std::optional<ThreadLimit> limit_threads(uint32_t threads) {
     if (threads == 0)
         return {};
-    // Of Mesa's software renderer, which reads it when the device is opened.
+    // Mesa's software renderer reads this when the device is opened.
     setenv("LP_NUM_THREADS", fmt::format("{}", threads).c_str(), /* overwrite= */ 1);
     return std::optional<ThreadLimit>(std::in_place, threads);
 }
@@ -315,7 +318,7 @@ static Result<PicturePart> part_of(const ImageSize& picture, const std::optional
     return PicturePart{picture, crop->left, crop->top, crop->size};
 }
 
-/// Of a single picture, frame 0.
+/// Returns the frames of the job; a single picture is frame 0.
 static std::vector<uint32_t> frames_of(const RenderJob& job) {
     std::vector<uint32_t> frames;
     for (const Shot& shot : job.shots)
@@ -323,13 +326,13 @@ static std::vector<uint32_t> frames_of(const RenderJob& job) {
     return frames.empty() ? std::vector<uint32_t>{0} : frames;
 }
 
-/// Before anything is read: whether nothing is left to do.
+/// Returns whether all pictures are there already, so that nothing need be read.
 static bool all_there(const RenderJob& job) {
     return std::ranges::all_of(frames_of(job),
                                [&](uint32_t frame) { return is_there(job, frame); });
 }
 
-/// Says so where --continue finds neither pixels nor frames of an earlier run.
+/// Tells the user where --continue finds neither pixels nor frames of an earlier run.
 static void tell_of_nothing_to_go_on_with(const RenderJob& job, const LogSink& log) {
     const auto is_begun = [&](uint32_t frame) {
         return is_there(job, frame) || fs::exists(unfinished_film(outputs_of(job, frame)[0]));
@@ -382,7 +385,7 @@ Result<int> render(const RenderJob& job) {
                         job.scene.name()));
     const std::vector<Shot> shots =
         job.shots.empty() ? std::vector<Shot>{{0, still_camera(*scene, job, size)}} : job.shots;
-    for (const Shot& shot : shots) // a file's camera is not checked yet
+    for (const Shot& shot : shots) // nobody has checked a file's camera yet
         if (const Result<Done> fine = check_camera(shot.camera); !fine)
             return Error{fmt::format("{}: {}", job.scene.name(), fine.error().message)};
     BackendOptions options = job.backend;

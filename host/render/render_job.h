@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// RenderJob: what `overcast render` was asked for, understood and checked; and its execution.
+// RenderJob holds the arguments of `overcast render`, parsed and checked; render() executes it.
 #pragma once
 
 #include "host/arguments/arguments.h"
@@ -14,16 +14,16 @@
 
 namespace ovc {
 
-/// The most that --max-depth may ask for.
+/// The maximum of --max-depth.
 inline constexpr uint32_t kMaxDepth = 1000;
 
-/// The most that --samples may ask for.
+/// The maximum of --samples.
 inline constexpr uint32_t kMaxSamples = 65536;
 
-/// The most that --threads may ask for.
+/// The maximum of --threads.
 inline constexpr uint32_t kMaxThreads = 1024;
 
-/// What is rendered of the picture.
+/// The part of the picture that is rendered, in pixels from its top left corner.
 struct Crop {
     uint32_t left = 0;
     uint32_t top = 0;
@@ -38,10 +38,10 @@ struct Shot {
 
 struct RenderJob {
     SceneArguments scene;
-    std::vector<std::string> outputs; // with a # for each digit of the frame, where there are shots
+    std::vector<std::string> outputs; // not empty; with a # for each digit of a shot's frame
     std::optional<ImageSize> size;    // none: the scene's, else 512 x 512
     std::optional<Camera> camera;
-    std::optional<int> up; // the axis that is up in the picture: 0, 1, 2; none: y, or the scene's
+    std::optional<int> up; // the axis that is up in the picture, 0 to 2; none: the scene's, else y
     std::optional<Crop> crop;
     std::vector<Shot> shots; // empty: one picture, from `camera` or the scene's own
     std::vector<Light> lights;
@@ -50,17 +50,17 @@ struct RenderJob {
     uint32_t samples = 1;              // camera rays a pixel
     BackendOptions backend;
     Aovs aovs;         // in the outputs that take layers
-    int png_bits = 8;  // a channel, 8 or 16
-    std::string cache; // folder where scenes and levels are kept; empty: none
+    int png_bits = 8;  // per channel, 8 or 16
+    std::string cache; // the folder where scenes and levels are kept; empty: none
     std::string stats;
-    bool go_on = false;       // from what an interrupted run has left
-    uint32_t threads = 0;     // at most; 0: as many as there are cores
-    std::string command_line; // as it was given, for files that keep it
+    bool go_on = false;       // continues an interrupted run from its files
+    uint32_t threads = 0;     // maximum; 0: as many as there are cores
+    std::string command_line; // as the user gave it, for files that keep it
     LogLevel log_level = LogLevel::Info;
     bool quiet = false;
 };
 
-/// Builds the structure once and renders every shot. The result is the exit code.
+/// Builds the structure once and renders every shot. Returns the exit code.
 Result<int> render(const RenderJob& job);
 
 } // namespace ovc

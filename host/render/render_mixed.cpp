@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Algorithm 6 from the host's side: every answer is shaded when it comes, and what it spawns joins
-// the stream at once.
+// Algorithm 6 from the host's side: it shades every answer when it comes, and the rays that this
+// spawns join the stream at once.
 #include "host/render/render_mixed.h"
 
 #include "core/system/parallel.h"
@@ -13,7 +13,7 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kCopyGrain = 1024; // rays a task that are only copied
+constexpr size_t kCopyGrain = 1024; // rays a task that only copies
 
 /// A ray in the stream, until its answer comes.
 template <class Purpose>
@@ -22,7 +22,7 @@ struct UnderWay {
     Purpose purpose;
 };
 
-/// Rays of one kind in the stream. A token is a slot and the kind.
+/// The rays of one kind in the stream. A token holds the kind above and the ray's slot below.
 template <class Purpose>
 class RaysUnderWay {
 public:
@@ -42,7 +42,7 @@ public:
         stream.push({any_hit_, rays.rays, rays.skip, tokens_});
     }
 
-    /// What these answers are of.
+    /// Writes the rays that these tokens stand for, and frees their slots.
     void take(std::span<const uint64_t> tokens, RayList<Purpose>& rays) {
         rays.resize(tokens.size());
         parallel_for(tokens.size(), kCopyGrain, [&](size_t first, size_t last) {
@@ -82,7 +82,8 @@ public:
         if (!done && done.error().kind != ErrorKind::Cancelled)
             return done.error();
         report_.complete = bool(done);
-        // Some shade beside tracing, and say how long they trace; others do one or the other.
+        // Some backends shade beside tracing and count their own time. The others do one after the
+        // other.
         const double traced = backend.statistics().seconds_trace - traced_before;
         report_.seconds_trace = traced > 0 ? traced : watch.seconds() - report_.seconds_shade;
         return report_;
@@ -126,7 +127,7 @@ private:
         }
     }
 
-    /// Shadow rays that have met something which light may pass.
+    /// Takes shadow rays through surfaces that light may pass, and pushes those that go on.
     void pass_shadows(RayStream& stream, std::span<const uint64_t> tokens,
                       std::span<const Hit> hits) {
         select(shadows_, tokens, hits);
@@ -136,7 +137,7 @@ private:
         shadows_.push(stream, answered_shadows_);
     }
 
-    /// The answers to rays of this kind.
+    /// Copies the answers to rays of this kind into tokens_ and hits_.
     template <class Purpose>
     void select(const RaysUnderWay<Purpose>& kind, std::span<const uint64_t> tokens,
                 std::span<const Hit> hits) {
@@ -172,7 +173,7 @@ private:
     RaysUnderWay<Path> paths_{0, /* any_hit= */ false};
     RaysUnderWay<Shadow> shadows_;
     RenderReport report_;
-    // Of one call, and kept so that they are allocated once.
+    // These buffers of one call are kept so that they are allocated once.
     Spawned spawned_;
     RayList<Path> answered_paths_;
     RayList<Shadow> answered_shadows_;

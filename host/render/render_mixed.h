@@ -8,7 +8,7 @@
 
 namespace ovc {
 
-/// As render_batched(), and the same film.
+/// Does the same as render_batched(), to the same bits on the film.
 Result<RenderReport> render_mixed(const Integrator& integrator, size_t lights,
                                   const CameraRays& camera, Backend& backend,
                                   const RenderObserver& observe, Film& film);

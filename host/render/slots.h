@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slots: things that are named by small numbers while they are needed.
+// Slots keeps items under small numbers while they are needed, and uses the numbers again.
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -11,7 +12,7 @@ namespace ovc {
 template <class T>
 class Slots {
 public:
-    /// Names for `count` of them, whose contents are anything.
+    /// Returns the numbers of `count` free slots, whose contents are unspecified.
     std::vector<uint32_t> take(size_t count) {
         const size_t reused = std::min(count, free_.size());
         std::vector<uint32_t> taken(free_.end() - ptrdiff_t(reused), free_.end());
@@ -23,7 +24,10 @@ public:
     }
     void give_back(uint32_t slot) { free_.push_back(slot); }
 
-    T& operator[](uint32_t slot) { return items_[slot]; }
+    T& operator[](uint32_t slot) {
+        assert(slot < items_.size());
+        return items_[slot];
+    }
     size_t in_use() const { return items_.size() - free_.size(); }
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes that tests of the renderers are built of.
+// Shapes for tests of the renderers.
 #pragma once
 
 #include "core/scene.h"
@@ -9,12 +9,12 @@
 
 namespace ovc {
 
-/// Two triangles; their front is where the corners run counterclockwise.
+/// Returns two triangles. Seen from their front, the corners run counterclockwise.
 inline Chunk quad(dvec3 a, dvec3 b, dvec3 c, dvec3 d) {
     return Chunk::owning(dvec3(0), {vec3(a), vec3(b), vec3(c), vec3(a), vec3(c), vec3(d)});
 }
 
-/// A closed box of a material of its own, its fronts outside or inside.
+/// Adds a closed box with a material of its own; its fronts are outside or inside.
 inline void add_box(Scene& scene, Material material, dvec3 lo, dvec3 hi, bool outside = true) {
     scene.materials.push_back(std::move(material));
     const auto at = [&](int i) {

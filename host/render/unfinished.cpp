@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An unfinished film: an archive of the pixels that are done and of the light they have got.
+// An unfinished film is an archive of the pixels that are done and of the light that they got.
 #include "host/render/unfinished.h"
 
 #include "core/file/archive.h"
@@ -30,7 +30,7 @@ std::string unfinished_film(const std::string& output) {
     return beside(output, ".film");
 }
 
-/// What must be alike for a film to be gone on with.
+/// The numbers that must be equal for a film to continue.
 using FilmShape = std::array<uint64_t, 4>;
 
 static FilmShape shape_of(const Film& film, uint64_t picture) {
@@ -58,7 +58,7 @@ Result<Done> save_film(const Film& film, uint64_t picture, const std::filesystem
     return out->commit();
 }
 
-/// The sentence goes on from the file's name.
+/// Restores the film. The Error's text continues a sentence that begins with the file's name.
 static Result<Done> restore(const Archive& archive, uint64_t picture, Film& film) {
     const auto shape = archive.items<uint64_t>("shape", FilmShape().size());
     if (!shape)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an interrupted rendering leaves beside its outputs, and --continue goes on from: the picture
-// so far, for people, and the film, exactly.
+// An interrupted rendering leaves two files beside its outputs: the picture so far for the user,
+// and the exact film, from which --continue goes on.
 #pragma once
 
 #include "core/result.h"
@@ -12,17 +12,18 @@
 
 namespace ovc {
 
-/// "out.png" makes "out.unfinished.png".
+/// Returns the name of the picture so far: "out.unfinished.png" for "out.png".
 std::string unfinished_picture(const std::string& output);
 
-/// The film of the picture whose first output this is: "out.unfinished.film".
+/// Returns the name of the film of the picture whose first output this is: "out.unfinished.film".
 std::string unfinished_film(const std::string& output);
 
-/// Writes the pixels that are done. picture: what it is of, as a checksum.
+/// Writes the pixels that are done. picture: a checksum of everything that the picture depends on,
+/// except its size and samples.
 Result<Done> save_film(const Film& film, uint64_t picture, const std::filesystem::path& path);
 
 /// Restores the pixels of a film that save_film() wrote. Error: it is damaged, of another picture,
-/// or cannot be read; the film is as it was.
+/// or cannot be read; `film` is then unchanged.
 Result<Done> load_film(const std::filesystem::path& path, uint64_t picture, Film& film);
 
 } // namespace ovc

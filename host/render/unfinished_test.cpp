@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an interrupted picture leaves: comes back to the bit, or is refused.
+// Tests that an interrupted picture comes back to the bit, or is refused.
 #include "host/render/unfinished.h"
 
 #include "importers/test_files.h"
@@ -60,7 +60,8 @@ TEST_F(UnfinishedTest, RefusesEveryDamage) {
         folder_.write("a.unfinished.film", damaged);
         Film film(10, 6, 2);
         const Result<Done> loaded = load_film(path, 77, film);
-        EXPECT_TRUE(!loaded || film.sums(3) == film_.sums(3)) << "byte " << at; // padding
+        // Damaged padding does no harm.
+        EXPECT_TRUE(!loaded || film.sums(3) == film_.sums(3)) << "byte " << at;
     }
     folder_.write("a.unfinished.film", bytes.substr(0, bytes.size() / 2));
     Film film(10, 6, 2);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of materials and meshes move by how many there are already.
+// Appends scene after scene. Indices of materials and meshes move by the number that was there.
 #include "host/scene/joined_scene.h"
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <iterator>
 #include <utility>
 
@@ -73,7 +74,7 @@ private:
             all_.background = scene.background;
     }
 
-    /// Files without colors of their own have a gamma of 1.
+    /// Takes the first gamma that is not 1: files without colors of their own have a gamma of 1.
     void take_gamma(const Scene& scene, const std::string& name) {
         if (all_.gamma == 1) {
             all_.gamma = scene.gamma;
@@ -103,6 +104,7 @@ private:
 } // namespace
 
 Scene join(std::vector<NamedScene> scenes, const LogSink& log) {
+    assert(!scenes.empty());
     if (scenes.size() == 1)
         return std::move(scenes[0].scene);
     Joining joining(std::move(scenes[0]), log);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several files as one scene.
+// Joins several files to one scene.
 #pragma once
 
 #include "core/scene.h"
@@ -11,13 +11,14 @@
 namespace ovc {
 
 struct NamedScene {
-    std::string name; // as messages have it
+    std::string name; // in messages
     Scene scene;
 };
 
-/// All meshes, one scene's after the other's, and all lights. Camera, size, depth, background and
-/// gamma are those of the first scene that states one; of the others' the log gets a warning. What
-/// was built of a scene alone is of no use. scenes: at least one.
+/// Returns a scene with all meshes, one scene's after the other's, and all lights. Camera, size,
+/// depth, background and gamma are those of the first scene that states one; the log gets a warning
+/// for each other. Of several scenes it drops what was built of one alone (Scene::saved). scenes:
+/// at least one.
 Scene join(std::vector<NamedScene> scenes, const LogSink& log);
 
 } // namespace ovc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file per scene and options, named by a checksum of what was asked for. It tells by itself
-// whether it is stale.
+// The cache has a file for each scene and set of options, named by a checksum of the request. The
+// file itself tells whether it is stale.
 #include "host/scene/scene_cache.h"
 
 #include "testscenes/catalog.h"
@@ -9,12 +9,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc {
 
 namespace fs = std::filesystem;
 
-/// Everything besides the files that a scene and its levels depend on.
+/// Returns everything besides the files that a scene and its levels depend on.
 static std::string request_of(const SceneArguments& arguments, const BackendOptions& backend,
                               std::optional<ImageSize> size) {
     std::error_code ec;
@@ -34,7 +35,7 @@ static std::string request_of(const SceneArguments& arguments, const BackendOpti
         backend.gpu_memory.bytes, backend.gpu_memory.share);
 }
 
-/// The scene's name and a checksum: "plants-0123456789abcdef.ovc".
+/// Returns the scene's name and a checksum, such as "plants-0123456789abcdef.ovc".
 static std::string file_name(const std::string& scene, const std::string& request) {
     std::string stem = fs::path(scene).filename().string();
     stem = stem.substr(0, stem.find('.'));
@@ -45,10 +46,11 @@ static std::string file_name(const std::string& scene, const std::string& reques
 SceneCache::SceneCache(const std::string& folder, const SceneArguments& arguments,
                        const BackendOptions& backend, std::optional<ImageSize> size)
     : arguments_(arguments), size_(size) {
+    assert(!arguments.scenes.empty());
     const std::string& first = arguments.scenes[0];
     const bool is_cache = arguments.scenes.size() == 1 && fs::path(first).extension() == ".ovc";
-    if (folder.empty() || is_cache)
-        return; // which is a cache itself
+    if (folder.empty() || is_cache) // an .ovc file is a cache itself
+        return;
     from_.request = request_of(arguments, backend, size);
     path_ = fs::path(folder) / file_name(first, from_.request);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --cache DIR: scenes and what was built of them, kept from one run to the next.
+// --cache DIR keeps scenes, and the structures that were built of them, from one run to the next.
 #pragma once
 
 #include "host/backend/backend.h"
@@ -12,25 +12,26 @@
 
 namespace ovc {
 
-/// One scene as one set of options asks for it.
+/// The cache's entry for one scene with one set of options.
 class SceneCache {
 public:
-    /// folder: empty: nothing is kept. size: as for open_scene().
+    /// folder: where it is empty, nothing is kept. arguments: name at least one scene, and must
+    /// outlive it. size: as for open_scene().
     SceneCache(const std::string& folder, const SceneArguments& arguments,
                const BackendOptions& backend, std::optional<ImageSize> size);
 
-    /// The scene, from the cache where that has it as its files are now, else from them. Warnings
-    /// come either way.
+    /// Returns the scene: from the cache where the entry fits the files as they are now, else from
+    /// the files. The log gets the scene's warnings either way.
     Result<Scene> open(const LogSink& log);
 
-    /// Whether open() found it there.
+    /// Returns whether open() found the scene in the cache.
     bool found() const { return found_; }
 
-    /// Keeps the scene that open() gave, and what the backend has built of it, unless all of that
-    /// came from there. Where that fails the log gets a warning.
+    /// Keeps the scene that open() gave, and the levels that the backend has built of it, unless
+    /// all of that came from the cache. A failure is a warning in the log.
     void keep(const Scene& scene, const Backend& backend, const LogSink& log);
 
-    /// The file; empty: none.
+    /// Returns the entry's file; empty where nothing is kept.
     const std::filesystem::path& path() const { return path_; }
 
 private:
@@ -41,8 +42,8 @@ private:
     bool found_ = false;
 };
 
-/// For write_scene_file(): what the backend saves; where it cannot, the log gets a warning and the
-/// file no levels.
+/// Returns a function for write_scene_file() that writes the levels of the backend, which must
+/// outlive it. backend: saves() is true.
 SaveLevels levels_of(const Backend& backend);
 
 } // namespace ovc

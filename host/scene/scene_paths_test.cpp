@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera paths of the test scenes: every camera sees something, and none is inside of it.
+// Tests the camera paths of the test scenes: every camera sees something and is not inside of it.
 #include "host/backend/backend.h"
 #include "host/camera/camera.h"
 #include "testscenes/catalog.h"
@@ -25,8 +25,8 @@ std::vector<Hit> look(Backend& backend, const Camera& camera) {
 struct Case {
     const char* name;
     bool with_model;
-    size_t step;         // looks at every step-th frame
-    double min_distance; // to what is seen
+    size_t step;         // the test looks at every step-th frame
+    double min_distance; // to the nearest surface in view
 };
 
 TEST(ScenePaths, SeeSomethingAndStandInNothing) {
@@ -46,7 +46,7 @@ TEST(ScenePaths, SeeSomethingAndStandInNothing) {
             for (const Hit& hit : look(*backend, path[frame]))
                 if (hit.is_hit()) {
                     ++seen;
-                    nearest = std::min(nearest, hit.t); // depth: rays reach 1 ahead at t = 1
+                    nearest = std::min(nearest, hit.t); // t is the depth
                 }
             EXPECT_GT(seen, kSide * kSide / 4) << c.name << ", frame " << frame;
             EXPECT_GT(nearest, c.min_distance) << c.name << ", frame " << frame;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Test scenes by name, files by path.
+// Opens test scenes by name and files by path.
 #include "host/scene/scene_source.h"
 
 #include "core/text/suggestion.h"
@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cassert>
 #include <charconv>
 #include <filesystem>
 #include <system_error>
@@ -65,7 +66,7 @@ static Result<std::optional<double>> tolerance_of(const std::string& text) {
     return std::optional(*value);
 }
 
-/// Of POV-Ray's language: from its first to whatever may come.
+/// Parses a version of POV-Ray's language, from its first to whatever may come.
 static Result<std::optional<double>> pov_version_of(const std::string& text) {
     if (text.empty())
         return std::optional<double>();
@@ -122,6 +123,7 @@ static Result<Scene> make_with_model(const std::string& name, const ImportOption
 
 Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
                          std::optional<ImageSize> size, FilesRead* files) {
+    assert(arguments.check());
     ImportOptions options{log, arguments.strict};
     options.size = size;
     options.files = files;
@@ -148,7 +150,7 @@ Result<Scene> open_scene(const std::string& source, const ImportOptions& options
         return Error{fmt::format("'{}' is a directory, expected a file or a test scene", source)};
     const bool looks_like_a_name = source.find_first_of("./") == std::string::npos;
     if (looks_like_a_name && !source.empty() && !std::filesystem::exists(source, ignored)) {
-        // The catalog knows the nearest name; a file of this name is not there either.
+        // There is no such file, so the error comes from the catalog, which knows the nearest name.
         const Result<Scene> none = make_test_scene(source);
         const std::string near = did_you_mean_file(source);
         return none || !near.empty() ? Error{fmt::format("there is no file '{}'{}", source, near)}

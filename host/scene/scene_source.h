@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SCENE on the command line: files, or names of generated test scenes.
+// SCENE on the command line is a file, or the name of a generated test scene.
 #pragma once
 
 #include "core/result.h"
@@ -17,9 +17,9 @@ class App;
 
 namespace ovc {
 
-/// SCENE and what belongs to it, the same for every subcommand that takes one.
+/// SCENE and its options, the same for every subcommand that takes one.
 struct SceneArguments {
-    std::vector<std::string> scenes; // one at least, all of them one scene
+    std::vector<std::string> scenes; // at least one; all are joined to one scene
     std::string model;               // empty: not given
     bool strict = false;
     std::string max_triangles; // empty: not given
@@ -27,30 +27,30 @@ struct SceneArguments {
     std::string pov_version;   // empty: not given
     std::string world;         // empty: not given
 
-    /// name: what the help calls the scene.
+    /// name: the scene's name in the help.
     void add_to(CLI::App& app, const char* name = "SCENE");
-    /// Whether the words make sense, and --model goes with this scene; before anything is read.
+    /// Checks the values, and that --model goes with this scene, before anything is read.
     Result<Done> check() const;
-    /// As messages and statistics have it: "dragon.ply + floor.obj".
+    /// Returns the scene's name in messages and statistics: "dragon.ply + floor.obj".
     std::string name() const;
-    /// The files it reads.
+    /// Returns the files that the user named; test scenes are none.
     std::vector<NamedFile> files() const;
 };
 
-/// The name of a test scene makes that scene; everything else is a file (./plants is a file even if
-/// plants is not). model: a file whose triangles a test scene shows instead of its own; or empty.
+/// Makes the test scene of that name, or reads the file (./plants is a file even if plants is not).
+/// model: a file or a test scene whose triangles a test scene shows instead of its own; or empty.
 Result<Scene> open_scene(const std::string& source, const ImportOptions& options,
                          const std::string& model = {});
 inline Result<Scene> open_scene(const std::string& source, const LogSink& log,
                                 const std::string& model = {}) {
     return open_scene(source, ImportOptions{log}, model);
 }
-/// check() has accepted them. size: of the picture to come, where that is known.
-/// files: receives what is read; or null.
+/// Opens all scenes of the arguments, which check() must have accepted, as one. size: of the
+/// picture to come, where that is known. files: receives the files that are read; or null.
 Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
                          std::optional<ImageSize> size = {}, FilesRead* files = nullptr);
 
-/// Writes messages up to `most` to standard error, one line each.
+/// Returns a log that writes messages up to the level `most` to standard error, one line each.
 LogSink standard_error_log(LogLevel most);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lambert below a coat, GGX, mirror and glass.
+// The four parts of a Bsdf: Lambert below a coat, GGX, mirror and glass.
 #include "host/shade/bsdf.h"
 
 #include "core/fresnel.h"
@@ -11,7 +11,8 @@
 
 namespace ovc {
 
-/// Narrower highlights are mirrors: they are narrower than a pixel, and pbrt draws the line here.
+/// Narrower highlights count as mirrors: they are narrower than a pixel, and pbrt draws the line
+/// here.
 static constexpr double kSmooth = 1e-3;
 
 static float average(const vec3& c) {
@@ -44,7 +45,7 @@ vec3 Reflectance::mean() const {
     return vec3(0);
 }
 
-/// A right-handed frame about a normal. Duff et al. 2017, "Building an Orthonormal Basis,
+/// Makes a right-handed frame about a normal. Duff et al. 2017, "Building an Orthonormal Basis,
 /// Revisited".
 static void frame(const dvec3& n, dvec3& tangent, dvec3& bitangent) {
     const double sign = std::copysign(1.0, n.z);
@@ -55,12 +56,12 @@ static void frame(const dvec3& n, dvec3& tangent, dvec3& bitangent) {
 }
 
 Bsdf::Bsdf(const SurfacePoint& surface) : geometric_(surface.geometric_normal) {
-    // Seen from behind its interpolated normal, a facet is what it is.
+    // A facet that is seen from behind its interpolated normal takes its own normal.
     const double facing = -glm::dot(surface.view, surface.normal);
     normal_ = facing > 1e-6 ? surface.normal : surface.geometric_normal;
     frame(normal_, tangent_, bitangent_);
     view_ = local(-surface.view);
-    view_.z = std::max(view_.z, 1e-9); // seen edge-on but for a rounding
+    view_.z = std::max(view_.z, 1e-9); // a rounding may put an edge-on view below the plane
     const Material& material = *surface.material;
     if (material.optics)
         take_optics(surface, *material.optics);
@@ -91,7 +92,7 @@ static Reflectance reflectance_of(const Optics& optics, bool from_outside) {
 
 void Bsdf::take_optics(const SurfacePoint& surface, const Optics& optics) {
     const bool clear = optics.through != vec3(0);
-    // The back of what is not clear is as its front: there is no inside to look out of.
+    // The back of an opaque surface is like its front: there is no inside to look out of.
     Reflectance boundary = reflectance_of(optics, surface.entering || !clear);
     if (surface.entering || optics.two_sided)
         emission_ = optics.emission;
@@ -106,7 +107,7 @@ void Bsdf::take_optics(const SurfacePoint& surface, const Optics& optics) {
         double share =
             optics.boundary == Optics::Boundary::None ? 0 : fresnel(view_.z, boundary.ior);
         if (optics.boundary == Optics::Boundary::Thin)
-            share = 2 * share / (1 + share); // and from side to side within
+            share = 2 * share / (1 + share); // light also goes from side to side within
         mirror_ = optics.reflection * float(share);
         through_ = total ? vec3(0) : optics.through * float(1 - share);
         if (optics.boundary == Optics::Boundary::Dielectric) {
@@ -122,7 +123,7 @@ void Bsdf::take_optics(const SurfacePoint& surface, const Optics& optics) {
     }
 }
 
-/// What Whitted's shares say; radiance changes at a boundary of glass as it does for Optics.
+/// Takes Whitted's shares. Radiance changes at a boundary of glass as it does for Optics.
 void Bsdf::take_shares(const SurfacePoint& surface) {
     const Material& material = *surface.material;
     const bool total = material.transmission > 0 && material.ior != 1 &&
@@ -136,16 +137,15 @@ void Bsdf::take_shares(const SurfacePoint& surface) {
     diffuse_ = surface.color * std::max(1 - parts.taken_by_mirror - parts.taken_by_through, 0.0f);
 }
 
-/// POV-Ray's terms add up to whatever they add up to: where that is more than arrives, all are
-/// dimmed alike.
+/// Takes POV-Ray's terms. Where they add up to more light than arrives, it dims all alike.
 void Bsdf::take_finish(const SurfacePoint& surface, const Finish& finish) {
     take_shares(surface);
-    // Elsewhere ambient light stands for what comes from other surfaces, which path tracing finds;
-    // POV-Ray 3.7 drops it so where there is radiosity.
+    // On a diffuse surface ambient light stands for light from other surfaces, which path tracing
+    // finds itself. POV-Ray 3.7 drops it in the same way where there is radiosity.
     emission_ = finish.diffuse > 0 ? vec3(0) : surface.color * finish.ambient;
     diffuse_ = surface.color * finish.diffuse;
-    // Blinn's exponent n is as wide as alpha^2 = 2 / (n + 2), and (n + 2) / 8 high over pi where
-    // all is reflected; Phong's of m is as wide as Blinn's of 4 m.
+    // A highlight of Blinn's exponent n is as wide as alpha^2 = 2 / (n + 2), and (n + 2) / 8 high
+    // over pi where all light is reflected; Phong's of m is as wide as Blinn's of 4 m.
     const bool blinn = finish.specular > 0 && finish.roughness > 0;
     const double exponent = blinn ? 1 / double(finish.roughness) : 4 * double(finish.phong_size);
     const float height = blinn ? finish.specular : finish.phong;
@@ -161,7 +161,7 @@ void Bsdf::take_finish(const SurfacePoint& surface, const Finish& finish) {
             *part /= sum;
 }
 
-/// As much as each is about to send on.
+/// Makes each way as probable as the light that it is about to send on.
 void Bsdf::choose_probabilities() {
     const vec3 below = coat_ ? vec3(1) - coat_->at(view_.z) : vec3(1);
     chance_ = {double(average(diffuse_ * below)),
@@ -184,11 +184,12 @@ bool Bsdf::is_above(const dvec3& towards) const {
     return glm::dot(towards, normal_) > 0 && glm::dot(towards, geometric_) > 0;
 }
 
-/// towards: in the frame, above the surface.
+/// Returns evaluate() for `towards` in the frame and above the surface.
 vec3 Bsdf::scattered(const dvec3& towards) const {
     vec3 sum = diffuse_ * float(towards.z * std::numbers::inv_pi);
-    // Once through the coat on the way in, once on the way out, and what it throws back below finds
-    // its way out too: reciprocal, and 1 - coat at the viewer's angle in all for a white ground.
+    // Light goes through the coat on its way in and on its way out, and light that the coat throws
+    // back down finds its way out too. This is reciprocal, and a white ground reflects 1 - coat at
+    // the viewer's angle in all.
     // Shirley et al. 1997, "A Practitioners' Assessment of Light Reflection Models", section 3.
     if (coat_)
         sum *= (vec3(1) - coat_->at(view_.z)) * (vec3(1) - coat_->at(towards.z)) * coat_scale_;
@@ -215,7 +216,7 @@ double Bsdf::density(const dvec3& towards) const {
     return scatters() && is_above(towards) ? scattered_density(local(towards)) : 0;
 }
 
-/// By the cosine. Malley's: a disk, lifted.
+/// Chooses a direction by the cosine. Malley's method lifts a point of the disk.
 static dvec3 cosine_way(const dvec2& u) {
     const double r = std::sqrt(u.x), phi = 2 * std::numbers::pi * u.y;
     return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(1 - u.x, 0.0))};
@@ -225,7 +226,7 @@ std::optional<Scattered> Bsdf::sample(double choice, const dvec2& u) const {
     size_t way = 0;
     while (way < 3 && choice >= chance_[way])
         choice -= chance_[way++];
-    while (way > 0 && !(chance_[way] > 0)) // by a rounding, beyond the last
+    while (way > 0 && !(chance_[way] > 0)) // a rounding may lead beyond the last way with a chance
         --way;
     if (!(chance_[way] > 0))
         return std::nullopt;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bsdf: what a point of a surface does with light, for path tracing. It sends on no more than
-// arrives.
+// Bsdf says how a point of a surface scatters light, for path tracing. It never sends on more light
+// than arrives.
 #pragma once
 
 #include "host/shade/shade.h"
@@ -15,48 +15,49 @@ struct Reflectance {
     enum class Curve : uint8_t { Constant, Schlick, Fresnel };
 
     Curve curve = Curve::Constant;
-    vec3 head_on{0}; // Constant: at any angle. Fresnel: a factor
-    double ior = 1;  // Fresnel: behind the boundary over before it
+    vec3 head_on{0}; // Constant: the share at any angle. Fresnel: a factor
+    double ior = 1;  // Fresnel: the index behind the boundary over that before it
 
     vec3 at(double cosine) const;
-    vec3 mean() const; // of light from everywhere
+    vec3 mean() const; // over light from all directions
 };
 
-/// Which way light takes at a surface.
+/// The way that light takes at a surface.
 enum class Scattering : uint8_t { Diffuse, Glossy, Mirror, Through };
 
 struct Scattered {
     Scattering way;
-    dvec3 direction; // of unit length; Mirror and Through: mirror_ray() and refracted_ray() say
-    vec3 weight;     // BSDF x cosine / how likely it was
-    double density;  // by solid angle; 0: Mirror and Through have no other direction
+    dvec3 direction; // of unit length; 0 for Mirror and Through: see mirror_ray(), refracted_ray()
+    vec3 weight;     // BSDF x cosine / the probability of the direction
+    double density;  // by solid angle; 0 for Mirror and Through, which have one direction
 };
 
 class Bsdf {
 public:
     explicit Bsdf(const SurfacePoint& surface);
 
-    /// Radiance that the surface sends out by itself towards the viewer.
+    /// Returns the radiance that the surface sends out by itself towards the viewer.
     vec3 emission() const { return emission_; }
 
-    /// Whether it scatters light in all directions: then evaluate() is not always 0.
+    /// Returns whether it scatters light in all directions: then evaluate() is not always 0.
     bool scatters() const { return diffuse_ != vec3(0) || is_glossy_; }
 
-    /// BSDF x cosine for light from `towards` (of unit length) to the viewer, but for what is
-    /// mirrored or let through.
+    /// Returns BSDF x cosine for light from `towards` (of unit length) to the viewer, without light
+    /// that is mirrored or let through.
     vec3 evaluate(const dvec3& towards) const;
 
-    /// With which sample() chooses the direction, by solid angle.
+    /// Returns the density, by solid angle, with which sample() chooses this direction.
     double density(const dvec3& towards) const;
 
-    /// Nothing: the light ends here. choice: in [0, 1); u: in [0, 1)^2.
+    /// Chooses a direction; returns nothing where the light ends here. choice: in [0, 1); u: in
+    /// [0, 1)^2.
     std::optional<Scattered> sample(double choice, const dvec2& u) const;
 
-    /// Light that goes through as a share of what comes, as flux has it: radiance changes by the
-    /// square of the index besides.
+    /// Returns the share of the flux that goes through. Radiance changes by the square of the index
+    /// besides.
     vec3 through() const { return through_; }
 
-    /// What goes through is not bent.
+    /// Returns whether light that goes through is not bent.
     bool is_straight() const { return is_straight_; }
 
 private:
@@ -71,16 +72,16 @@ private:
     double scattered_density(const dvec3& towards) const;
 
     dvec3 tangent_, bitangent_, normal_, geometric_;
-    dvec3 view_; // towards the viewer, in that frame
+    dvec3 view_; // towards the viewer, in the frame of tangent_, bitangent_ and normal_
     vec3 diffuse_{0};
-    std::optional<Reflectance> coat_; // above what is diffuse
+    std::optional<Reflectance> coat_; // above the diffuse ground
     vec3 coat_scale_{1};              // 1 / (1 - the coat's mean)
     bool is_glossy_ = false;
     Reflectance gloss_;
     double width_ = 0;
     vec3 mirror_{0};
     vec3 through_{0};
-    float bent_ = 1; // radiance's change at the boundary
+    float bent_ = 1; // the factor of radiance at the boundary
     bool is_straight_ = true;
     vec3 emission_{0};
     std::array<double, 4> chance_{}; // of each Scattering; they add up to 1, or all are 0

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bsdf: sends on no more than arrives, both ways alike, and chooses directions as it says it does;
-// Fresnel's equations by their values.
+// Tests that Bsdf sends on no more light than arrives, both ways alike, and chooses directions by
+// its density; and the values of Fresnel's equations.
 #include "host/shade/bsdf.h"
 
 #include "core/fresnel.h"
@@ -79,7 +79,7 @@ SurfacePoint seen_from(const Material& material, const dvec3& towards_viewer,
     return s;
 }
 
-/// A direction by its cosine to the normal of seen_from(), and round that.
+/// Returns a direction by its cosine to the normal of seen_from(), and its angle around it.
 dvec3 way(double cosine, double phi) {
     const dvec3 n = glm::normalize(dvec3(1, 2, -3));
     const dvec3 x = glm::normalize(glm::cross(n, dvec3(0, 0, 1))), y = glm::cross(n, x);
@@ -89,7 +89,7 @@ dvec3 way(double cosine, double phi) {
 
 constexpr double kCosines[] = {0.02, 0.3, 0.7, 0.999};
 
-/// All directions above a surface in cells of one size.
+/// Integrates over all directions above a surface, in cells of one size.
 constexpr int kRings = 600, kSectors = 900;
 template <class Function>
 auto integral(Function&& of) {
@@ -106,15 +106,15 @@ TEST(Fresnel, HasItsKnownValues) {
     EXPECT_NEAR(fresnel(1, 2.4), 1.96 / 11.56, 1e-15);
     EXPECT_EQ(fresnel(0, 1.5), 1);
     EXPECT_EQ(fresnel(0.5, 1), 0) << "no boundary";
-    // At Brewster's angle one polarisation is let through, of the other the sine of the angles'
-    // difference counts.
+    // At Brewster's angle one polarisation passes; the other is reflected by the square of the sine
+    // of the angles' difference.
     const double angle = std::atan(1.5);
     const double s = std::sin(2 * angle - kPi / 2);
     EXPECT_NEAR(fresnel(std::cos(angle), 1.5), 0.5 * s * s, 1e-15);
     const double critical = std::asin(1 / 1.5);
     EXPECT_EQ(fresnel(std::cos(critical + 1e-6), 1 / 1.5), 1);
     EXPECT_LT(fresnel(std::cos(critical - 1e-6), 1 / 1.5), 1);
-    // Light takes the way back alike.
+    // The share is the same on the way back.
     for (const double cosine : kCosines) {
         const double below = std::sqrt(1 - (1 - cosine * cosine) / (1.5 * 1.5));
         EXPECT_NEAR(fresnel(cosine, 1.5), fresnel(below, 1 / 1.5), 1e-12);
@@ -134,7 +134,7 @@ TEST(Fresnel, MeanIsThatOverAllDirections) {
     EXPECT_EQ(fresnel_mean(1), 0);
 }
 
-/// What a white sky is reflected of: all of it by matte white, never more.
+/// A surface reflects a white sky: matte white all of it, no surface more.
 TEST(Bsdf, SendsOnNoMoreThanArrives) {
     for (const Case& test : scattering())
         for (const double cosine : kCosines) {
@@ -175,7 +175,7 @@ TEST(Bsdf, IsTheSameBothWays) {
 }
 
 /// The density adds up to the share of samples that are not mirrored and do not end below the
-/// surface; and the samples, cell by cell, are as many as it says: chi-square.
+/// surface. A chi-square test compares the number of samples in each cell with it.
 TEST(Bsdf, ChoosesDirectionsAsItsDensitySays) {
     constexpr int kCells = 8, kTurns = 12;
     constexpr uint32_t kCount = 1 << 16;
@@ -197,7 +197,7 @@ TEST(Bsdf, ChoosesDirectionsAsItsDensitySays) {
             });
             double above = 0;
             for (uint32_t i = 0; i < kCount; ++i) {
-                const PathSampler random(i, 5, 0); // independent ones: chi-square is about those
+                const PathSampler random(i, 5, 0); // chi-square needs independent samples
                 const auto s = bsdf.sample(random.pair(0).x, random.pair(1));
                 if (!s || s->way == Scattering::Mirror)
                     continue;
@@ -215,14 +215,14 @@ TEST(Bsdf, ChoosesDirectionsAsItsDensitySays) {
                     chi_square += (found[i] - e) * (found[i] - e) / e;
                     ++cells;
                 }
-            // Five sigma of a chi-square of so many degrees, which has variance 2 n.
+            // A chi-square of n degrees has variance 2 n; the limit is five sigma.
             if (!is_sharp) {
                 EXPECT_LT(chi_square, cells + 5 * std::sqrt(2.0 * cells)) << cells << " cells";
             }
         }
 }
 
-/// The mean of a sample's weight is what evaluate() adds up to.
+/// The mean weight of samples is the integral of evaluate().
 TEST(Bsdf, WeighsWhatItChooses) {
     for (const Case& test : scattering()) {
         if (test.name == "sharp plastic")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Integrator: what light a path brings to its pixel, and which rays go on from what it hit. Who
-// traces those, and in which order, is the renderers' business (render_batched.h, render_mixed.h):
-// the picture is the same.
+// An Integrator computes the light that a path brings to its pixel, and the rays that go on from
+// its hit. The renderers (render_batched.h, render_mixed.h) trace those, each in an order of its
+// own, for the same picture.
 #pragma once
 
 #include "core/ray.h"
@@ -16,28 +16,28 @@ namespace ovc {
 
 enum class RayKind : uint8_t { Camera, Reflection, Refraction, Bounce };
 
-/// What a ray that looks for the nearest surface is for.
+/// The purpose of a ray that looks for the nearest surface.
 struct Path {
     uint32_t pixel;
-    uint32_t sample; // of the pixel: which of its camera rays led here
-    uint16_t depth;  // surfaces that it left on its way here
-    RayKind kind;    // how it left the last one
-    vec3 weight;     // what light at its end is worth to the pixel
-    float density; // path tracing: with which its direction was chosen, by solid angle; 0: no other
-                   // was possible
-    float behind = 0; // path tracing: how far from the ray's origin, through panes that do not bend
-                      // it, the direction was chosen
+    uint32_t sample;  // the number of the pixel's camera ray that led here
+    uint16_t depth;   // surfaces that the path left on its way here
+    RayKind kind;     // how it left the last one
+    vec3 weight;      // the pixel's share of the light at the ray's end
+    float density;    // path tracing: the density of its direction, by solid angle; 0: no other was
+                      // possible
+    float behind = 0; // path tracing: the distance from the ray's origin back to where the
+                      // direction was chosen, through panes that do not bend it
 };
 
-/// What a shadow ray is for. Its t = 1 is the light, or a point of it.
+/// The purpose of a shadow ray, which reaches the light, or a point of it, at t = 1.
 struct Shadow {
     uint32_t pixel;
-    uint32_t light;  // which, for Integrator::pass()
-    uint32_t passed; // surfaces behind it
-    vec3 arriving;   // what the pixel gets if nothing is in the way
+    uint32_t light;  // its number, for Integrator::pass(); kNone: an emitter
+    uint32_t passed; // surfaces that the ray has passed
+    vec3 arriving;   // the light that the pixel gets if nothing is in the way
 };
 
-/// Rays that go on.
+/// Rays that go on from hits.
 struct Spawned {
     RayList<Path> paths;
     RayList<Shadow> shadows;
@@ -48,22 +48,24 @@ struct Spawned {
     }
 };
 
-/// Stateless: all functions may be called from many threads at once.
+/// An Integrator is stateless: many threads may call its functions at once.
 class Integrator {
 public:
     virtual ~Integrator() = default;
 
-    /// Adds to the film what the paths see where their rays end, and appends to `spawned` what goes
-    /// on from there: of one call side by side what is alike, so that neighbours go the same way.
+    /// Adds the light that the paths see at the ends of their rays to the film, and appends the
+    /// rays that go on from there to `spawned`. It puts rays of one kind side by side, so that
+    /// neighbours go the same way. rays, paths and hits have the same size.
     virtual void shade(std::span<const Ray> rays, std::span<const Path> paths,
                        std::span<const Hit> hits, Film& film, Spawned& spawned) const = 0;
 
-    /// Whether light passes some surface. Then shadow rays look for the nearest one, and pass() is
-    /// asked; otherwise whatever is in the way blocks the light.
+    /// Returns whether light may pass some surface. If so, shadow rays look for the nearest surface
+    /// and the renderer asks pass(); otherwise any surface in the way blocks the light.
     virtual bool light_may_pass() const = 0;
 
-    /// A shadow ray has hit a surface. True: the ray goes on, moved behind it and dimmed by it.
-    /// False: it ends here, and what arrives, perhaps 0, is in `shadow`.
+    /// Takes a shadow ray that has hit a surface. Returns true where the ray goes on: `ray` then
+    /// begins behind the surface, and `shadow` is dimmed by it. Returns false where it ends; the
+    /// light that arrives, perhaps 0, is then in `shadow`.
     virtual bool pass(const Hit& hit, Ray& ray, Shadow& shadow) const = 0;
 };
 

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights by their power: sums of chances, searched by halves.
+// Lights are chosen by their power, with a binary search in the running sums of their chances.
 #include "host/shade/light_sampler.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
 namespace ovc {
 
-/// Where a shadow ray ends, so that its emitter is not in its way: for doubles 2^-48 less than 1
-/// would do, but rays go to backends in float too.
+/// A shadow ray ends here, so that its emitter is not in its way. For doubles 2^-48 less than 1
+/// would do, but some backends take rays in float.
 static constexpr double kBeforeEmitter = 1 - 0x1p-16;
-/// How many triangles tell how large a scene is, about.
+/// About so many triangles are sampled to measure the scene.
 static constexpr uint64_t kMeasured = 4096;
 
 static double luminance(const vec3& c) {
@@ -22,7 +23,7 @@ static dvec3 area_normal(const Triangle& t) {
     return 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]);
 }
 
-/// About the box of the scene.
+/// Returns the box of a sample of the scene's triangles.
 static Box measured(const Soup& soup) {
     Box box;
     const uint64_t step = soup.triangle_count() / kMeasured + 1;
@@ -45,7 +46,8 @@ LightSampler::LightSampler(const Scene& scene) : scene_(scene) {
     share_with_the_weak();
 }
 
-/// By what they bring to the middle of the scene, from no nearer than its reach.
+/// Adds lights by the light that they bring to the middle of the scene, from no nearer than its
+/// reach.
 void LightSampler::add_lights(const dvec3& middle, double reach) {
     for (const Light& light : scene_.lights) {
         Light bare = light;
@@ -60,7 +62,7 @@ void LightSampler::add_lights(const dvec3& middle, double reach) {
     }
 }
 
-/// By what they bring over the scene's reach, from the front.
+/// Adds emitters by the light that they bring over the scene's reach, seen from the front.
 void LightSampler::add_emitters(double reach) {
     emitters_of_.assign(scene_.meshes.size(), kNone);
     for (uint32_t m = 0; m < scene_.meshes.size(); ++m) {
@@ -81,8 +83,8 @@ void LightSampler::add_emitters(double reach) {
     }
 }
 
-/// Half of the choices go by power, the others to all lights and emitting meshes alike: what a
-/// strong one does not reach may be lit by a weak one nearby.
+/// Half of the choices go by power, the others to all lights and emitting meshes alike: a weak one
+/// nearby may light places that a strong one does not reach.
 void LightSampler::share_with_the_weak() {
     std::vector<size_t> first(scene_.lights.size());
     std::iota(first.begin(), first.end(), size_t(0));
@@ -108,7 +110,7 @@ std::optional<Arriving> LightSampler::sample(const SurfacePoint& surface, double
                                              const dvec2& u) const {
     if (!(sums_.back() > 0))
         return std::nullopt;
-    // The last whose sum before it is at most this: never one without power.
+    // The last light whose sum before it is at most `at` is never one without power.
     const double at = std::min(choice * sums_.back(), std::nextafter(sums_.back(), 0.0));
     const size_t i = size_t(std::upper_bound(sums_.begin(), sums_.end(), at) - sums_.begin()) - 1;
     if (i < scene_.lights.size())
@@ -153,6 +155,7 @@ std::optional<Arriving> LightSampler::from_emitter(const Emitters& emitters, siz
 }
 
 double LightSampler::density(TriangleId id, double distance, double cosine) const {
+    assert(id.mesh < emitters_of_.size());
     const uint32_t number = emitters_of_[id.mesh];
     if (number == kNone || !(std::abs(cosine) > 0))
         return 0;

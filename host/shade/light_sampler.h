@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// LightSampler: a scene's lights for path tracing, from which one is chosen at random, the stronger
-// the likelier: emitting triangles, and lights that are points or parallel.
+// LightSampler chooses one of a scene's lights at random for path tracing, strong ones more often
+// than weak ones. Lights are emitting triangles, points, or parallel.
 #pragma once
 
 #include "core/ray.h"
@@ -14,33 +14,33 @@ namespace ovc {
 
 /// Light that may arrive at a surface from one place.
 struct Arriving {
-    Ray ray;         // from the surface; t = 1 is there
-    dvec3 towards;   // the same, of unit length
-    vec3 light;      // irradiance at a right angle, or of an emitter its radiance; / `density`, or
-                     // how likely the light was
+    Ray ray;         // from the surface; t = 1 is that place
+    dvec3 towards;   // the same direction, of unit length
+    vec3 light;      // an emitter's radiance / `density`, or a light's irradiance at a right angle
+                     // / its probability
     double density;  // of an emitter's place, by solid angle; 0: a light, which no ray hits
-    uint32_t number; // of the light among Scene::lights; kNone: an emitter
+    uint32_t number; // in Scene::lights; kNone: an emitter
 };
 
 class LightSampler {
 public:
-    /// The scene outlives it, and its lights are placed.
+    /// The scene must outlive it, and its lights must be placed.
     explicit LightSampler(const Scene& scene);
 
-    /// Whether there are any but emitters.
+    /// Returns whether there are other lights than emitters.
     bool has_lights() const { return has_lights_; }
 
-    /// One of them. Nothing: it does not shine this way, or there is none. choice: in [0, 1); u: in
-    /// [0, 1)^2.
+    /// Returns the light of one place, chosen at random; nothing where it does not shine this way,
+    /// or there is no light. choice: in [0, 1); u: in [0, 1)^2.
     std::optional<Arriving> sample(const SurfacePoint& surface, double choice,
                                    const dvec2& u) const;
 
-    /// With which sample() chooses this point of an emitter, by solid angle as seen from `distance`
-    /// away; cosine: to the triangle's normal. 0: it is none.
+    /// Returns the density with which sample() chooses this point of an emitter, by solid angle as
+    /// seen from `distance` away; 0 where the triangle does not emit. cosine: to its normal.
     double density(TriangleId id, double distance, double cosine) const;
 
 private:
-    /// Of one mesh: its triangles' sums begin at `first`.
+    /// The emitting triangles of one mesh, whose sums begin at `first`.
     struct Emitters {
         uint32_t mesh;
         size_t first;
@@ -58,9 +58,9 @@ private:
 
     const Scene& scene_;
     bool has_lights_ = false;
-    std::vector<double> sums_{0};       // of the chances of lights, then of triangles
+    std::vector<double> sums_{0};       // running sums of the chances of lights, then of triangles
     std::vector<Emitters> emitters_;    // in the order of `first`
-    std::vector<uint32_t> emitters_of_; // a mesh; kNone: it does not emit
+    std::vector<uint32_t> emitters_of_; // by mesh, an index of emitters_; kNone: it does not emit
 };
 
 } // namespace ovc

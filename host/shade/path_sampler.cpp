@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sobol's first two dimensions, scrambled as Owen has it, anew for each purpose.
+// Sobol's first two dimensions, with Owen's scrambling, anew for each purpose.
 // Based on: Burley 2020, "Practical Hash-based Owen Scrambling", JCGT 9(4), with the hash of
 // Vegdahl 2021, "Building a Better LK Hash"; the mixing of Steele, Lea and Flood 2014 (SplitMix).
 #include "host/shade/path_sampler.h"
@@ -19,8 +19,8 @@ static uint32_t reversed(uint32_t x) {
     return __builtin_bswap32(x);
 }
 
-/// Owen's scrambling of a number whose bits run backwards: each bit is flipped or not by what is
-/// below it.
+/// Scrambles a number whose bits run backwards as Owen does: the bits below a bit decide whether it
+/// is flipped.
 static uint32_t scrambled_backwards(uint32_t x, uint32_t seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
@@ -34,7 +34,8 @@ static uint32_t scrambled(uint32_t x, uint32_t seed) {
     return reversed(scrambled_backwards(reversed(x), seed));
 }
 
-/// The second dimension of Sobol's sequence: Pascal's triangle modulo 2 (Kollig and Keller 2002).
+/// Returns the second dimension of Sobol's sequence: Pascal's triangle modulo 2 (Kollig and Keller
+/// 2002).
 static uint32_t sobol_second(uint32_t index) {
     uint32_t bits = 0;
     for (uint32_t column = 1u << 31; index != 0; index >>= 1, column ^= column >> 1)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PathSampler: even over the samples of a pixel, and without ties between pixels, purposes, seeds.
+// Tests that PathSampler is even over the samples of a pixel, and independent between pixels,
+// purposes and seeds.
 #include "host/shade/path_sampler.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +28,8 @@ TEST(PathSampler, PowersOfTwoLieOneInEachBoxOfAnyShape) {
         }
 }
 
-/// Of the products of two series of [0, 1) x [0, 1), each of mean 0 and variance 1.
+/// Returns the correlation of two series of [0, 1) x [0, 1): the mean of products, each of mean 0
+/// and variance 1.
 template <class First, class Second>
 double correlation(First&& first, Second&& second) {
     constexpr uint32_t kCount = 4096;
@@ -44,7 +46,7 @@ TEST(PathSampler, PixelsPurposesAndSeedsHaveNothingToDoWithEachOther) {
     const auto of = [](uint64_t seed, uint32_t pixel, uint32_t purpose) {
         return [=](uint32_t i) { return PathSampler(seed, pixel, i).pair(purpose); };
     };
-    // Of 4096 independent products a mean is off by 1/128 (one sigma).
+    // The mean of 4 x 4096 independent products has a sigma of 1/128.
     for (uint32_t k = 0; k < 16; ++k) {
         EXPECT_LT(std::abs(correlation(of(0, k, 3), of(0, k + 1, 3))), 5 / 128.0) << k;
         EXPECT_LT(std::abs(correlation(of(0, 9, k), of(0, 9, k + 1))), 5 / 128.0) << k;

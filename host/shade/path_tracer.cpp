@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of a path at a surface: it sees what that emits, asks one light, and goes on one
-// way.
+// At a surface a path sees the light that it emits, asks one light, and goes on in one direction.
 #include "host/shade/path_tracer.h"
 
 #include "host/shade/path_sampler.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc {
 
@@ -13,7 +13,7 @@ namespace ovc {
 static constexpr uint32_t kRouletteFrom = 3;
 static constexpr float kMinSurvival = 0.05f;
 
-/// What the random numbers of a surface are for.
+/// The purposes of the random numbers of a surface.
 enum Purpose : uint32_t { kChoices, kLightPlace, kDirection, kRoulette, kPurposes };
 
 /// A surface that a path has met.
@@ -21,18 +21,18 @@ struct PathTracer::Met {
     const Ray& ray;
     const Path& path;
     const Hit& hit;
-    double distance; // to where the direction was chosen
+    double distance; // back to where the direction was chosen
     SurfacePoint surface;
     Bsdf bsdf;
 };
 
-/// The rays that go on, by how: neighbours go the same way.
+/// The rays that go on, by their way, so that neighbours go the same way.
 struct PathTracer::Sides {
     RayList<Path> mirrored, through, bounced;
 };
 
-/// The share of light that is found with `density` and might have been with `other`. Veach's power
-/// heuristic.
+/// Returns the weight, by Veach's power heuristic, of light that was found with `density` and might
+/// have been found with `other`.
 static double share_of(double density, double other) {
     if (!(other > 0))
         return 1;
@@ -40,7 +40,7 @@ static double share_of(double density, double other) {
     return 1 / (1 + ratio * ratio);
 }
 
-/// Whether light passes it straight, as far as `light` says it may be bent.
+/// Returns whether light passes the material; where it may not be bent, only if it passes straight.
 static bool passes(const Material& material, bool may_be_bent) {
     if (material.optics)
         return material.optics->through != vec3(0) &&
@@ -61,7 +61,9 @@ PathTracer::PathTracer(const Scene& scene, const vec3& up, const PathTracerOptio
       options_(options),
       lights_(scene),
       unexposed_(1 / scene.exposure),
-      light_may_pass_(light_passes(scene, lights_.has_lights())) {}
+      light_may_pass_(light_passes(scene, lights_.has_lights())) {
+    assert(options.max_depth <= UINT16_MAX); // Path::depth counts to it
+}
 
 void PathTracer::shade(std::span<const Ray> rays, std::span<const Path> paths,
                        std::span<const Hit> hits, Film& film, Spawned& spawned) const {
@@ -93,7 +95,7 @@ void PathTracer::meet(const Ray& ray, const Path& path, const Hit& hit, Film& fi
     if (!scattered)
         return;
     vec3 weight = path.weight * scattered->weight;
-    // Not in glass, where weights fall by the square of the index and rise again.
+    // Glass has no roulette: weights there fall by the square of the index and rise again.
     if (path.depth >= kRouletteFrom && scattered->density > 0) {
         const float survival = std::clamp(max_component(weight), kMinSurvival, 1.0f);
         if (random.pair(first + kRoulette).x >= survival)
@@ -151,19 +153,19 @@ void PathTracer::go_on(const Met& met, const Scattered& scattered, const vec3& w
     const std::optional<Ray> through =
         scattered.way == Scattering::Through ? refracted_ray(met.ray, met.surface) : std::nullopt;
     path.kind = through ? RayKind::Refraction : RayKind::Reflection;
-    if (!through) { // or reflected totally, but for a rounding
+    if (!through) { // mirrored, or reflected totally by a rounding
         sides.mirrored.push(mirror_ray(met.ray, met.surface), met.hit.id, path);
         return;
     }
-    if (met.bsdf.is_straight()) { // the direction is still what it was
+    if (met.bsdf.is_straight()) { // the direction is still the one that was chosen
         path.density = from.density;
         path.behind = float(met.distance);
     }
     sides.through.push(*through, met.hit.id, path);
 }
 
-/// Light of emitters passes what does not bend it; through glass paths find it. Light of points is
-/// found by shadow rays alone, so it passes glass straight, as Whitted has it.
+/// Light of emitters passes surfaces that do not bend it; behind glass, paths find it. Only shadow
+/// rays find the light of points, so it passes glass straight, as in Whitted's model.
 bool PathTracer::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
     const SurfacePoint surface = surface_point(scene_, ray, hit);
     const bool is_light = shadow.light != kNone;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PathTracer: all light there is, by chance; a picture's mean is the truth, and its noise falls
-// with the root of the samples.
+// PathTracer finds all light there is by random paths. A picture's mean is the truth, and its noise
+// falls with the root of the samples.
 // Based on: Kajiya 1986, "The Rendering Equation"; Veach and Guibas 1995, "Optimally Combining
 // Sampling Techniques for Monte Carlo Rendering" (multiple importance sampling); Arvo and Kirk
 // 1990, "Particle Transport and Image Synthesis" (Russian roulette).
@@ -16,12 +16,12 @@
 namespace ovc {
 
 /// How light of emitters is found: by shadow rays, by paths that happen to hit them, or by both,
-/// each where it is the better. All have the same mean, but that shadow rays see nothing in
+/// each where it is the better one. All have the same mean, except that shadow rays see nothing in
 /// mirrors.
 enum class LightSearch { Both, ShadowRays, Paths };
 
 struct PathTracerOptions {
-    uint32_t max_depth = 16; // surfaces that a path leaves at most
+    uint32_t max_depth = 16; // max surfaces that a path leaves; below 2^16
     bool shadows = true;
     uint64_t seed = 0;
     LightSearch search = LightSearch::Both;
@@ -29,7 +29,8 @@ struct PathTracerOptions {
 
 class PathTracer final : public Integrator {
 public:
-    /// up: of the background, unit length. The scene outlives it, and its lights are placed.
+    /// up: of the background, unit length. The scene must outlive it, and its lights must be
+    /// placed.
     PathTracer(const Scene& scene, const vec3& up, const PathTracerOptions& options);
 
     void shade(std::span<const Ray> rays, std::span<const Path> paths, std::span<const Hit> hits,
@@ -51,7 +52,7 @@ private:
     const vec3 up_;
     const PathTracerOptions options_;
     const LightSampler lights_;
-    const float unexposed_; // the file's light for that of the scene
+    const float unexposed_; // converts the scene's light to the file's
     const bool light_may_pass_;
 };
 

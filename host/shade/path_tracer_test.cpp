@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PathTracer against what formulas say: furnaces, a lamp over a floor, points, mirrors, glass and
+// Tests PathTracer against formulas: furnaces, a lamp over a floor, points, mirrors, glass and
 // panes; and its ways to find light against each other.
 #include "host/shade/path_tracer.h"
 
@@ -47,7 +47,7 @@ Scene dark() {
     return scene;
 }
 
-/// At this height, of this half width, seen from above (up) or from below. Its front is there.
+/// Adds a square at this height with this half width, whose front is above (up) or below.
 void add_level(Scene& scene, const Material& material, double y, double half, bool up) {
     scene.materials.push_back(material);
     const dvec3 a(-half, y, -half), b(-half, y, half), c(half, y, half), d(half, y, -half);
@@ -55,7 +55,7 @@ void add_level(Scene& scene, const Material& material, double y, double half, bo
                    up ? quad(a, b, c, d) : quad(d, c, b, a));
 }
 
-/// Looks so closely that all its pixels show one point.
+/// Returns a camera with so narrow a view that all its pixels show one point.
 Camera at_point(dvec3 eye, dvec3 target) {
     Camera camera;
     camera.eye = eye;
@@ -65,13 +65,13 @@ Camera at_point(dvec3 eye, dvec3 target) {
     return camera;
 }
 
-/// Of pixels that are alike.
+/// The mean of pixels that show the same.
 struct Estimate {
     double mean = 0;
     double sigma = 0; // of the mean
 };
 
-/// The second channel of 24 x 24 pixels.
+/// Estimates the second channel from 24 x 24 pixels.
 Estimate estimate(const Scene& scene, const Camera& camera, uint32_t samples,
                   const PathTracerOptions& options = {}) {
     Film film(24, 24, samples);
@@ -92,7 +92,7 @@ Estimate estimate(const Scene& scene, const Camera& camera, uint32_t samples,
     return {mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / (count - 1))};
 }
 
-/// Five sigma, and that is at most 2 % of what is expected, so that the test says something.
+/// Allows five sigma, which may be at most 2 % of the expected value, or the test would be void.
 void expect_mean(const Estimate& found, double expected, const char* what) {
     EXPECT_LT(found.sigma, 0.004 * expected + 1e-9) << what;
     EXPECT_NEAR(found.mean, expected, 5 * found.sigma + 1e-5 * expected) << what;
@@ -124,7 +124,8 @@ TEST(PathTracer, ASkyLightsWhatItSees) {
     expect_mean(estimate(scene, at_point({1, 4, 0}, {1, 9, 0}), 1), 2, "seen itself");
 }
 
-/// From the middle of a level below a square lamp of half width s in height h: Lambert's.
+/// Returns Lambert's form factor from a level to a square lamp of half width s at height h above
+/// it.
 double form_factor(double s, double h) {
     const double a = s / h, r = std::sqrt(1 + a * a);
     return 4 * (2 * a / r * std::atan(a / r)) / (2 * kPi);
@@ -187,7 +188,7 @@ TEST(PathTracer, MirrorsShowLamps) {
     expect_mean(estimate(scene, at_point({1, 1.5, 0}, {0.5, 0, 0}), 4), 0.7 * 4, "mirror image");
 }
 
-/// A lamp behind glass, seen head on: R is reflected at each side, and again within.
+/// A lamp behind glass is seen head on: each side reflects R, and within it again.
 TEST(PathTracer, ASlabLetsThroughWhatItsTwoSidesDo) {
     const double r = fresnel(1, 1.5), expected = 4 * (1 - r) / (1 + r);
     const Camera camera = at_point({0.2, -3, 0.1}, {0.2, 0, 0.1});
@@ -239,14 +240,14 @@ TEST(PathTracer, ShadowRaysAndPathsFindTheSameLight) {
               true);
     add_level(metal, lamp(vec3(4)), 1.5, 0.8, /* up= */ false);
     compare(metal, at_point({1.5, 1.2, 0.1}, {0.6, 0, 0}), true, "metal");
-    // Shadow rays go through a pane, and so do paths; what a mirror image of the lamp adds is
-    // found by paths alone.
+    // Shadow rays go through a pane, and so do paths; paths alone find the light of the lamp's
+    // mirror image.
     Scene pane = dark();
     add_level(pane, matte(vec3(0.5f)), 0, 3, true);
     add_level(pane, lamp(vec3(4)), 1.5, 0.8, /* up= */ false);
     add_level(pane, optical({.boundary = Boundary::Thin, .through = vec3(1)}), 0.7, 3, true);
     compare(pane, at_point({2, 0.5, 0}, dvec3(0)), false, "below a pane");
-    // Through glass that bends it, light is found by paths alone.
+    // Paths alone find light through glass that bends it.
     Scene slab = dark();
     add_level(slab, matte(vec3(0.5f)), 0, 3, true);
     add_level(slab, lamp(vec3(4)), 1.5, 0.8, /* up= */ false);
@@ -261,7 +262,7 @@ TEST(PathTracer, PointsShineThroughGlassStraight) {
     add_box(scene, glass(), {-1, 0.5, -1}, {1, 0.7, 1}, /* outside= */ true);
     PathTracerOptions options;
     options.max_depth = 4;
-    // Twice through a side; light from the floor that the glass throws back comes on top.
+    // Light goes through two sides. Light from the floor that the glass throws back comes on top.
     const double direct = 0.5 * 3 / kPi * 0.96 * 0.96;
     const Estimate found = estimate(scene, at_point({2, 0.4, 0}, dvec3(0)), 64, options);
     EXPECT_GT(found.mean, direct - 1e-6);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Snell's law in double, careful where the textbook's formula cancels. docs/design/numerics.md,
-// "Refraction", has the derivation.
+// Snell's law in double, without the cancellation of the textbook's formula. The derivation is in
+// docs/design/numerics.md, "Refraction".
 #pragma once
 
 #include "core/vec.h"
@@ -10,9 +10,9 @@
 
 namespace ovc {
 
-/// The direction in which light goes on that crosses from a medium of index `from` into one of
-/// index `to`; nothing where all of it is reflected: from the critical angle on. Keeps the length
-/// of dir, and dir itself bit for bit where from == to == 1.
+/// Returns the direction of light that crosses from a medium of index `from` into one of index
+/// `to`; nothing where all of it is reflected, from the critical angle on. It keeps the length of
+/// dir, and dir itself bit for bit where from == to == 1.
 /// normal: unit length, dot(dir, normal) <= 0. dir: of length 1e-100 to 1e100. from, to: 1e-6 to
 /// 1e6.
 /// Based on: Whitted 1980, section 2, in the vector form of Glassner 1989, "An Introduction to Ray

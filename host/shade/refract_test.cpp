@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Snell's law against the textbook's formula in fifty digits: like and unlike media, grazing light,
-// the critical angle.
+// Tests Snell's law against the textbook's formula in fifty digits: like and unlike media, grazing
+// light, the critical angle.
 #include "host/shade/refract.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
@@ -18,18 +18,18 @@ constexpr double kUlp = 0x1p-53;
 constexpr double kIndices[] = {1 + 1e-12, 1 - 1e-12, 1 + 1e-15, 1.0003, 1.5, 2.4, 1e3, 1e-3};
 const dvec3 kNormal(0, 0, 1);
 
-/// Light that comes down onto the plane z = 0 at this cosine to the normal.
+/// Returns the direction of light that comes down onto z = 0 at this cosine to the plane's normal.
 dvec3 at_cosine(double cosine) {
     return {std::sqrt((1 - cosine) * (1 + cosine)), 0, -cosine};
 }
 
-/// 1 - (from / to)^2 sin^2, the square of the refracted cosine, for a direction of any length.
+/// Returns 1 - (from / to)^2 sin^2, the square of the refracted cosine, for any length of dir.
 Real square_of(const dvec3& dir, double from, double to) {
     const Real x = dir.x, z = dir.z, eta = Real(from) / Real(to);
     return 1 - eta * eta * x * x / (x * x + z * z);
 }
 
-/// The textbook's refracted direction; square_of(...) > 0.
+/// Returns the textbook's refracted direction, where square_of(...) > 0.
 std::array<Real, 3> exactly(const dvec3& dir, double from, double to) {
     const Real x = dir.x, z = dir.z, eta = Real(from) / Real(to);
     return {eta * x, 0, -sqrt(square_of(dir, from, to) * (x * x + z * z))};
@@ -42,8 +42,9 @@ double error_of(const dvec3& found, const std::array<Real, 3>& exact) {
     return double(sqrt(squares));
 }
 
-/// What the roundings of a few operations may come to, with the amplification that no formula
-/// avoids: near the critical angle a small turn of the light in is a large one out.
+/// Returns a bound of the roundings of a few operations, with the amplification that no formula
+/// avoids: near the critical angle a small turn of the arriving light turns the leaving light a
+/// lot.
 double tolerance(const dvec3& dir, double from, double to) {
     const double eta = from / to;
     const double cosine = double(sqrt(square_of(dir, from, to)));
@@ -58,7 +59,7 @@ TEST(Refracted, IsSnellsLawToRoundingAtAnyIndexAndAngle) {
                 const double from = entering ? 1 : ior, to = entering ? ior : 1;
                 const std::optional<dvec3> out = refracted(dir, kNormal, from, to);
                 if (square_of(dir, from, to) <= 0)
-                    continue; // TheCriticalAngleIsWhereItIs
+                    continue; // the test TheCriticalAngleIsWhereItIs has these
                 ASSERT_TRUE(out) << ior << ", cosine " << -dir.z;
                 EXPECT_LE(error_of(*out, exactly(dir, from, to)), tolerance(dir, from, to))
                     << ior << ", cosine " << -dir.z;
@@ -80,7 +81,7 @@ TEST(Refracted, TheCriticalAngleIsWhereItIs) {
                 reflected += !out;
                 EXPECT_TRUE(!out || (is_finite(*out) && out->z <= 4 * kUlp))
                     << ior << " " << exponent;
-                // Nearer than this a rounding of the direction itself decides.
+                // Nearer to the critical angle than this, a rounding of the direction decides.
                 const double doubt = 8 * kUlp * (from / to) * (from / to) * dir.z * dir.z;
                 if (abs(exact) > doubt) {
                     EXPECT_EQ(out.has_value(), exact > 0) << ior << " " << exponent << " " << side;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Positions, normals and light of single hits.
 // Based on: Whitted 1980, "An Improved Illumination Model for Shaded Display", with a hemisphere of
 // sky for ambient light.
 #include "host/shade/shade.h"
@@ -7,45 +8,47 @@
 #include "host/shade/refract.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numbers>
 
 namespace ovc {
 
-/// The share of the background's light that arrives as ambient light; the rest is the lamps'.
+/// The share of the background's light that arrives as ambient light; lamps bring the rest.
 static constexpr float kSkyShare = 0.32f;
 /// Light from nowhere in particular, so that shadows in a room without a sky are not black.
 static constexpr float kAmbient = 0.04f;
-/// How much darker than the horizon the ground below it is taken to be.
+/// The light of the ground, as a share of the horizon's.
 static constexpr float kGround = 0.35f;
 
-/// How far a position lies off its triangle, in units of the largest coordinate of the corners.
-/// docs/design/numerics.md, "Spawned rays": computed from the corners a position errs by less than
-/// half of this.
+/// How far a position lies off its triangle, in units of the largest coordinate of the corners. A
+/// position computed from the corners errs by less than half of this: see docs/design/numerics.md,
+/// "Spawned rays".
 static constexpr double kOffset = 0x1p-48;
-/// How many offsets it keeps away from the edges, or its neighbour there would be crossed: at
-/// least, for any angle of more than 1/64 rad between the two; and at most, for 1e-4 rad, as long
-/// as that is not above this share of the triangle's height.
+/// How many offsets a position keeps away from the edges, or it would cross the neighbour there.
+/// The minimum is enough for any angle of more than 1/64 rad between the two. The maximum, for 1e-4
+/// rad, is taken as long as it is not above kEdgeShare of the triangle's height.
 static constexpr double kMinEdgeOffsets = 64, kMaxEdgeOffsets = 16384;
 static constexpr double kEdgeShare = 0x1p-20;
 
-/// How far off whole numbers a checker changes: a plane through them keeps to one side, as
-/// POV-Ray's 1e-10 has it for coordinates near 0.
+/// A checker changes this far off whole numbers, so that a plane through them keeps to one side, as
+/// by POV-Ray's 1e-10 for coordinates near 0.
 static constexpr double kCheckerOffset = 1e-9;
 
-/// a b - c d to two units in the last place, however much cancels. Kahan's; Jeannerod, Louvet and
-/// Muller 2013.
+/// Returns a b - c d to two units in the last place, however much cancels. Kahan's algorithm;
+/// Jeannerod, Louvet and Muller 2013.
 static double difference_of_products(double a, double b, double c, double d) {
     const double cd = c * d;
     return std::fma(a, b, -cd) + std::fma(-c, d, cd);
 }
 
-/// Also of slivers: a rounded product would turn it by their aspect times a rounding.
+/// Returns a x b, exact enough for slivers: rounded products would turn it by their aspect times a
+/// rounding.
 static dvec3 cross(const dvec3& a, const dvec3& b) {
     return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
             difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-/// Of unit length: an instance may be stretched.
+/// Returns the turned normal at unit length, because an instance may be stretched.
 static dvec3 turned(const dmat3& turn, const vec3& normal) {
     const dvec3 n = turn * dvec3(normal);
     const double length = glm::length(n);
@@ -64,7 +67,7 @@ static dvec3 interpolated_normal(const Scene& scene, const MeshInfo& mesh, const
             corners[i] = turned(mesh.turn, corner[i]);
     const dvec3 n = (1 - hit.u - hit.v) * corners[0] + hit.u * corners[1] + hit.v * corners[2];
     const double length = glm::length(n);
-    // Opposite or missing normals cancel out; then the plane's own has to do.
+    // Opposite or missing normals cancel out; the plane's own normal takes their place.
     return length > 1e-6 && std::isfinite(length) ? n / length : fallback;
 }
 
@@ -81,8 +84,8 @@ static dvec3 facing(const dvec3& normal, const dvec3& towards) {
     return glm::dot(normal, towards) < 0 ? -normal : normal;
 }
 
-/// The hit's weights of the corners; those of a hit too close to an edge moved in. doubled_area: of
-/// the triangle, above 0.
+/// Returns the hit's weights of the corners, moved inwards where it is too close to an edge.
+/// doubled_area: of the triangle, above 0.
 static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled_area,
                                double offset) {
     const dvec3 weights{1 - hit.u - hit.v, hit.u, hit.v};
@@ -97,6 +100,7 @@ static dvec3 weights_off_edges(const Hit& hit, const Triangle& t, double doubled
 }
 
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
+    assert(hit.is_hit() && hit.id.mesh < scene.meshes.size());
     static const Material kPlain;
     const MeshInfo& mesh = scene.meshes[hit.id.mesh];
     const Triangle t = scene.soup.triangle(hit.id);
@@ -111,8 +115,8 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit) {
     s.normal =
         facing(interpolated_normal(scene, mesh, hit, s.geometric_normal), s.geometric_normal);
 
-    // From the corners the position errs by a few ulp of their coordinates, however far away the
-    // ray began.
+    // Computed from the corners, the position errs by a few ulp of their coordinates, however far
+    // away the ray began.
     const double reach = std::max({max_component(glm::abs(t[0])), max_component(glm::abs(t[1])),
                                    max_component(glm::abs(t[2]))});
     const double offset = kOffset * reach;
@@ -138,13 +142,13 @@ vec3 ambient_light(const Background& background, const vec3& up, const SurfacePo
     return surface.color * (kAmbient + kSkyShare * glm::mix(ground, sky, openness));
 }
 
-/// From the position towards the light, not of unit length: t = 1 is the light.
+/// Returns the vector from the position to the light, at its full length.
 static dvec3 towards_light(const Light& light, const dvec3& position) {
     const dvec3 there = light.position - position;
     return light.parallel ? std::abs(glm::dot(there, light.direction)) * -light.direction : there;
 }
 
-/// What of the light's color goes this way: the cone and the fall-off. As POV-Ray 3.7's.
+/// Returns the share of the light's color after its cone and its fall-off, as in POV-Ray 3.7.
 static double attenuation(const Light& light, const dvec3& towards, double distance) {
     double share = 1;
     if (light.cone) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shading: positions, normals and the light that arrives, on single triangles.
+// Tests of shading: positions, normals and the light that arrives, on single triangles.
 #include "host/shade/shade.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 namespace ovc {
 
-/// One triangle in the plane y = 0 around the origin, seen from above or below.
+/// Returns one triangle in the plane y = 0 around the origin, to be seen from above or below.
 static Scene floor_scene(std::vector<vec3> normals = {}, dvec3 origin = dvec3(0)) {
     Scene scene;
     scene.materials = {{"", vec3(0.5f), 0.25f}};
@@ -67,7 +67,7 @@ TEST(SurfacePoint, KeepsClearOfTheEdgesOfItsTriangle) {
         const double above = at_corner.position.y - origin.y;
         EXPECT_GT(away, 32 * above) << "a neighbour at a sharp angle to this one would be crossed";
         EXPECT_LT(away, 0x1p-30 * max_component(glm::abs(t[1]))) << "float cannot tell";
-        // Elsewhere the hit is where it is.
+        // A hit away from the edges is not moved.
         EXPECT_NEAR(surface_point(scene, kFromAbove, kHit).position.x, -1 + 0.3 * 2 + 0.3, 1e-15);
     }
 }
@@ -78,7 +78,7 @@ TEST(SurfacePoint, KnowsWhetherTheRayEnters) {
 }
 
 TEST(SurfacePoint, TheNormalOfASliverIsThatOfExactArithmetic) {
-    // Its corners are on one line but for one unit in the last place.
+    // One unit in the last place keeps its corners from being on one line.
     const float step = 0x1p-23f;
     Scene scene;
     scene.add_mesh("sliver", 0,
@@ -163,7 +163,7 @@ TEST(MirrorRay, NeverGoesBelowThePlane) {
     EXPECT_GT(mirror_ray({{1, 0.3, 0}, 0, {-1, -0.3, 0}}, s).dir.y, 0);
 }
 
-/// The floor of glass whose index of refraction is below the plane; seen from above and from below.
+/// The floor is of glass, with its index of refraction below the plane, seen from above and below.
 static Scene glass_scene(double ior, std::vector<vec3> normals = {}) {
     Scene scene = floor_scene(std::move(normals));
     scene.materials = {{"glass", vec3(0), 0, 1, vec3(1), ior}};

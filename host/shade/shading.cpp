@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks of answers, each shaded by one thread, and their rays joined.
+// Threads shade the answers in blocks; then the rays of all blocks are joined in order.
 #include "host/shade/shading.h"
 
 #include "core/system/parallel.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc {
 
-static constexpr size_t kBlock = 256;         // answers a task: what it makes fits a cache
-static constexpr size_t kShadingGrain = 1024; // rays a task that are only copied or added up
+static constexpr size_t kBlock = 256;         // answers a task, whose rays fit a cache
+static constexpr size_t kShadingGrain = 1024; // rays a task that only copies or adds up
 static constexpr size_t kMaxAnswers = size_t(1) << 16;
 static constexpr size_t kMaxSpawned = size_t(1) << 18;
 
@@ -37,6 +38,7 @@ static void append(std::span<const Spawned> blocks, RayList<Purpose> Spawned::*l
 
 void Shading::shade(const RayList<Path>& paths, std::span<const Hit> hits, size_t first,
                     size_t count, Spawned& spawned) {
+    assert(hits.size() == paths.size() && first + count <= hits.size());
     const size_t block_count = (count + kBlock - 1) / kBlock;
     blocks_.resize(std::max(blocks_.size(), block_count));
     parallel_for(block_count, 1, [&](size_t from, size_t to) {
@@ -64,6 +66,7 @@ void Shading::shade_block(const RayList<Path>& paths, std::span<const Hit> hits,
 }
 
 void Shading::arrive(std::span<const Shadow> purposes, std::span<const uint8_t> occluded) {
+    assert(occluded.size() == purposes.size());
     parallel_for(purposes.size(), kShadingGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
             if (!occluded[i])
@@ -74,6 +77,7 @@ void Shading::arrive(std::span<const Shadow> purposes, std::span<const uint8_t> 
 }
 
 void Shading::pass(RayList<Shadow>& shadows, std::span<const Hit> hits) {
+    assert(hits.size() == shadows.size());
     goes_on_.resize(shadows.size());
     parallel_for(shadows.size(), kBlock, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {

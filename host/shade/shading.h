@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shading: an integrator's work over many answers, on all cores. What is spawned comes out in the
-// order of the answers, and the film is told which rays are under way.
+// Shading runs an integrator over many answers, on all cores. Spawned rays come out in the order of
+// the answers, and it tells the film which rays are under way.
 #pragma once
 
 #include "host/shade/integrator.h"
@@ -12,23 +12,26 @@
 
 namespace ovc {
 
-/// For one thread at a time; keeps its memory between calls.
+/// One thread at a time may call it. It keeps its memory between calls.
 class Shading {
 public:
-    /// lights: how many shadow rays an answer may spawn.
+    /// lights: the max number of shadow rays that an answer spawns.
     Shading(const Integrator& integrator, size_t lights, Film& film);
 
-    /// So many answers at once spawn a bounded number of rays.
+    /// Returns how many answers shade() may get at once, so that they spawn a bounded number of
+    /// rays.
     size_t max_answers() const { return max_answers_; }
 
-    /// Shades the answers of `paths` from `first` on; appends to `spawned`.
+    /// Shades `count` answers of `paths` from index `first` on, and appends to `spawned`. hits: as
+    /// many as paths.
     void shade(const RayList<Path>& paths, std::span<const Hit> hits, size_t first, size_t count,
                Spawned& spawned);
 
-    /// Shadow rays are answered; occluded[i] belongs to purposes[i].
+    /// Adds the light of shadow rays that are not occluded; occluded[i] belongs to purposes[i].
     void arrive(std::span<const Shadow> purposes, std::span<const uint8_t> occluded);
 
-    /// The same where light may pass what was hit: leaves those that go on, in their order.
+    /// Does the same where light may pass the surface that was hit. It leaves the rays that go on
+    /// in `shadows`, in their order.
     void pass(RayList<Shadow>& shadows, std::span<const Hit> hits);
 
 private:

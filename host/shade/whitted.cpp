@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of a path at a surface.
+// At a surface Whitted's integrator adds its own color, asks every light, and may follow two rays.
 #include "host/shade/whitted.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <vector>
 
 namespace ovc {
 
-/// A surface that a path has met, and what its own color is worth to the pixel.
+/// A surface that a path has met, and the pixel's share of its own color.
 struct Whitted::Met {
     SurfacePoint surface;
     TriangleId id;
@@ -17,11 +18,11 @@ struct Whitted::Met {
     vec3 weight;
 };
 
-/// What is left of a light behind many panes, as a pixel would get it: not worth another one.
+/// A shadow ray ends behind a pane where it would bring less light than this to its pixel.
 static constexpr float kMinShadow = 1 / 4096.0f;
 
-/// What a surface leaves of the light of a shadow ray. What POV-Ray's glass reflects, with
-/// conserve_energy, is missing behind it, but does not darken its shadow.
+/// Returns the share of a shadow ray's light that passes the surface. With conserve_energy, light
+/// that POV-Ray's glass reflects is missing behind it, but does not darken its shadow.
 static vec3 light_through(const SurfacePoint& surface) {
     const Material& material = *surface.material;
     return material.finish ? material.transmission * material.filter
@@ -37,7 +38,7 @@ static bool lets_light_through(const Scene& scene) {
 
 void tell_simplifications(const Scene& scene, std::span<const Light> lights,
                           std::string_view source, const LogSink& log) {
-    // The sky's stand-in is parallel light.
+    // Of the stand-ins, only the sky's is parallel.
     const auto is_on_emitter = [](const Light& light) { return light.stand_in && !light.parallel; };
     if (std::any_of(lights.begin(), lights.end(), is_on_emitter))
         say(log, LogLevel::Warning,
@@ -56,7 +57,9 @@ Whitted::Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool sh
       up_(up),
       max_depth_(max_depth),
       shadows_(shadows),
-      light_may_pass_(lets_light_through(scene)) {}
+      light_may_pass_(lets_light_through(scene)) {
+    assert(max_depth <= UINT16_MAX); // Path::depth counts to it
+}
 
 void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
                     std::span<const Hit> hits, Film& film, Spawned& spawned) const {
@@ -76,8 +79,8 @@ void Whitted::shade(std::span<const Ray> rays, std::span<const Path> paths,
             light_up(scene_.lights[light], light, met, film, spawned);
 }
 
-/// Divides the path's weight among the surface's own color, which keeps what is not followed, and
-/// the two rays that may leave it.
+/// Divides the path's weight among the surface's own color and the two rays that may leave it. The
+/// color keeps the weight of a ray that is not followed.
 Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
                            Spawned& spawned) const {
     Met met{surface_point(scene_, ray, hit), hit.id, path.pixel, path.weight};
@@ -97,7 +100,8 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
     };
     follow(parts.mirror, parts.taken_by_mirror, RayKind::Reflection, 1,
            [&] { return mirror_ray(ray, met.surface); });
-    // Straight on is no step deeper, as in POV-Ray: there are only so many surfaces along a line.
+    // A ray that goes straight on is no step deeper, as in POV-Ray: a line has only so many
+    // surfaces.
     follow(parts.through, parts.taken_by_through, RayKind::Refraction,
            met.surface.material->ior == 1 ? 0 : 1, [&] { return *refracted; });
     return met;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whitted's integrator: lights with shadows, mirrors and glass.
+// Whitted's integrator has lights with shadows, mirrors and glass.
 // Based on: Whitted 1980, "An Improved Illumination Model for Shaded Display".
 #pragma once
 
@@ -19,15 +19,16 @@ namespace ovc {
 /// camera ray's paths add up to at most 1, so it never has more than 255 of them at a time.
 inline constexpr float kMinWeight = 1 / 255.0f;
 
-/// Says what this integrator simplifies of the scene's light where path tracing does not. lights:
-/// those of the picture. source: what the scene is called on the command line.
+/// Tells the log how this integrator simplifies the scene's light where path tracing does not.
+/// lights: those of the picture. source: the scene's name on the command line.
 void tell_simplifications(const Scene& scene, std::span<const Light> lights,
                           std::string_view source, const LogSink& log);
 
 class Whitted final : public Integrator {
 public:
-    /// max_depth: reflections and refractions in a row; the last surface shows its own color alone.
-    /// up: of the background, unit length. The scene outlives it, and its lights are placed.
+    /// max_depth: reflections and refractions in a row, below 2^16; the last surface shows its own
+    /// color alone. up: of the background, unit length. The scene must outlive it, and its lights
+    /// must be placed.
     Whitted(const Scene& scene, const vec3& up, uint32_t max_depth, bool shadows);
 
     void shade(std::span<const Ray> rays, std::span<const Path> paths, std::span<const Hit> hits,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whitted's integrator in the batched renderer, on a tiny scene with the CPU backend: shadows,
-// mirrors, glass, and the same pixels however it is cut.
+// Tests Whitted's integrator in the batched renderer, on a tiny scene with the CPU backend:
+// shadows, mirrors, glass, and the same pixels however the picture is cut.
 #include "host/shade/whitted.h"
 
 #include "host/render/render.h"
@@ -12,8 +12,8 @@
 
 namespace ovc {
 
-/// A red floor at y = 0, a small blocker above its middle, a mirror wall behind, a light overhead;
-/// seen from the front.
+/// Returns a red floor at y = 0, a small blocker above its middle, a mirror wall behind and a light
+/// overhead, to be seen from the front.
 static Scene room() {
     Scene scene;
     scene.materials = {{"red", {0.8f, 0.1f, 0.1f}, 0}, {"mirror", vec3(0.5f), 0.9f}};
@@ -24,7 +24,7 @@ static Scene room() {
     return scene;
 }
 
-/// So narrow a view that its one pixel shows `target`.
+/// Returns a camera with so narrow a view that its one pixel shows `target`.
 static Camera towards(dvec3 target) {
     Camera camera;
     camera.eye = {0, 1.5, 9};
@@ -71,7 +71,7 @@ TEST(Whitted, MirrorsShowTheFloor) {
     RenderOptions no_bounces;
     no_bounces.max_depth = 0;
     const vec4 plain = render(scene, towards(low_on_the_wall), no_bounces).pixels[0];
-    EXPECT_LT(plain.r, plain.b); // grey, under a blue sky
+    EXPECT_LT(plain.r, plain.b); // the wall is grey, under a blue sky
 }
 
 TEST(Whitted, ShowsTheBackgroundWhereNothingIs) {
@@ -103,7 +103,7 @@ TEST(Whitted, EndsBetweenTwoMirrors) {
     EXPECT_EQ(report.rays.reflection, 7u);
 }
 
-/// A closed box of this material in front of the wall, whose mirror is taken away.
+/// Returns the room with a closed box of this material in front of the wall, which mirrors no more.
 static Scene room_with_box(Material material) {
     Scene scene = room();
     scene.materials[1] = {"wall", {0.1f, 0.2f, 0.8f}, 0};
@@ -213,7 +213,7 @@ TEST(Whitted, BatchSizeDoesNotChangeAPixelThroughSplittingRays) {
     }
 }
 
-/// Hands on to the CPU and remembers the most rays it got at once.
+/// Hands rays on to the CPU, and remembers the maximum that it got at once.
 class CountingBackend final : public Backend {
 public:
     explicit CountingBackend(const Soup& soup) : cpu_(make_cpu_backend(soup)) {}
@@ -276,7 +276,7 @@ TEST(Whitted, StopsWhenToldAndKeepsThePixelsThatAreDone) {
     EXPECT_GE(part->pixels_done, 5000u);
     EXPECT_LT(part->pixels_done, 10000u);
 
-    // What is done has the colors that it has in the whole picture; the rest can be rendered later.
+    // Finished pixels have the colors of the whole picture; the rest can be rendered later.
     const Image whole = render(scene, camera, {}, 256, 256);
     Film rest(256, 256);
     uint64_t kept = 0;
@@ -302,7 +302,8 @@ TEST(Whitted, SamplesSmoothEdgesAndAverageTheSameLight) {
     Camera camera = towards({0, 0, 0});
     camera.fov_degrees = 50;
     const std::unique_ptr<Backend> backend = make_cpu_backend(scene.soup);
-    // 16 samples of a pixel are stratified in 4 x 4: near what 16 pixels in its place have.
+    // The 16 samples of a pixel are stratified in 4 x 4, so their mean is near that of 16 pixels in
+    // its place.
     Film film(32, 32, 16);
     const Result<RenderReport> done = render_picture(scene, camera, *backend, {}, {}, film);
     ASSERT_TRUE(done);
@@ -324,7 +325,7 @@ TEST(Whitted, SamplesSmoothEdgesAndAverageTheSameLight) {
     EXPECT_GT(sum, 0);
 }
 
-/// Answers nothing: what a lost device looks like.
+/// Answers no ray, like a lost device.
 class FailingBackend final : public Backend {
 public:
     Result<Done> intersect(std::span<const Ray>, std::span<const TriangleId>,

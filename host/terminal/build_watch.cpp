@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The line about a build, and the answer whether to go on.
+// Shows the line about a build, and answers whether the build should stop.
 #include "host/terminal/build_watch.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// BuildWatch: while the plugin builds, a line on a terminal that says how far it is, and Ctrl-C,
-// which cancels it.
+// BuildWatch shows the progress of the plugin's building in a line on a terminal, and lets Ctrl-C
+// cancel it.
 #pragma once
 
 #include "host/terminal/interrupt.h"
@@ -11,10 +11,11 @@ namespace ovc {
 
 class BuildWatch {
 public:
-    /// shown: false keeps it silent even on a terminal. At most one at a time, as InterruptGuard.
+    /// shown: false keeps it silent even on a terminal. At most one may live, and no InterruptGuard
+    /// besides.
     explicit BuildWatch(bool shown);
 
-    /// Makes the config's scene report to this, which must outlive its commit.
+    /// Makes a scene of this config report to this object, which must outlive the scene's commit.
     void watch(ovc_scene_config& config);
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two signal handlers. A signal has no other way to reach the program than a flag of static
+// The two signal handlers. A signal can only reach the program through variables of static
 // lifetime.
 #include "host/terminal/interrupt.h"
 
@@ -15,7 +15,7 @@ namespace ovc {
 
 static volatile std::sig_atomic_t interrupt_seen = 0;
 
-/// Whether a progress line or the terminal's ^C may stand before the message.
+/// On a terminal, a progress line or ^C may stand before the message, which then begins a new line.
 static volatile std::sig_atomic_t on_terminal = 0;
 
 static void say_on(std::string_view text) {
@@ -35,7 +35,7 @@ static void leave(int) {
     _exit(kExitInterrupted);
 }
 
-/// What is said to be done about it; set before the handler is.
+/// The part of the message that says what the program does; set before the handler is.
 static const char* doing_now = "";
 
 static void remember(int) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C: the first asks, the second ends, and neither leaves half a file behind.
+// Tests Ctrl-C: the first one asks, the second one ends, and neither leaves half a file behind.
 #include "host/terminal/interrupt.h"
 
 #include "importers/file/output_file.h"

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the command says: sentences on standard error, tables on standard output.
+// Prints the command's messages on standard error and its tables on standard output.
 #pragma once
 
 #include <string_view>
 
 namespace ovc {
 
-/// "overcast: sentence" in a line of its own, printable whatever names are in it.
+/// Prints "overcast: sentence" to standard error, in a line of its own. Control characters, as in
+/// names of files, are made printable.
 void print_message(std::string_view sentence);
 
-/// Lines of text for a person on standard output, each of them printable.
+/// Prints lines of text to standard output, each of them made printable.
 void print_lines(std::string_view lines);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this process has cost so far: CPU time, and memory as Linux tells it.
+// The CPU time and the memory, as Linux tells it, that this process has taken so far.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace ovc {
 
-/// Of all threads.
+/// Returns the CPU time of all threads.
 inline double process_cpu_seconds() {
     timespec now{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
-/// field: VmHWM, the most memory that was resident, or VmRSS, what is resident now. 0 where the
-/// system does not tell.
+/// Returns resident memory, or 0 where the system does not tell. field: VmHWM for its maximum so
+/// far, VmRSS for now.
 inline uint64_t resident_bytes(const std::string& field) {
     std::ifstream status("/proc/self/status");
     for (std::string word; status >> word;)

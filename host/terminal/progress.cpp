@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The progress line: what matters most comes first, for a narrow terminal cuts the rest off.
+// The progress line begins with the important numbers: a narrow terminal cuts off the rest.
 #include "host/terminal/progress.h"
 
 #include "host/arguments/memory_size.h"
@@ -11,9 +11,9 @@
 
 namespace ovc {
 
-/// More often than this nobody can read.
+/// Nobody can read lines that change more often than this.
 static constexpr double kSecondsBetweenLines = 0.25;
-/// Before, an estimate is a guess.
+/// An estimate before this would be a guess.
 static constexpr double kSecondsBeforeEstimate = 2;
 
 Progress::Progress(const Backend& backend, std::string label, uint64_t pixel_count,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Progress: a line about the picture that is being rendered, on a terminal.
+// Progress shows a line about the picture that is being rendered, on a terminal.
 #pragma once
 
 #include "core/system/stopwatch.h"
@@ -14,15 +14,16 @@ namespace ovc {
 
 class Progress {
 public:
-    /// label: what the line begins with, such as "frame 7, "; may be empty. pixels_there: of
-    /// pixel_count, from an earlier run. shown: false keeps it silent even on a terminal.
+    /// label: the beginning of the line, such as "frame 7: "; may be empty. pixels_there: the
+    /// pixels of pixel_count that an earlier run has done. shown: false keeps it silent even on a
+    /// terminal.
     Progress(const Backend& backend, std::string label, uint64_t pixel_count, uint64_t pixels_there,
              bool shown);
 
     void update(const RenderReport& report);
 
 private:
-    /// "40 s left, " once that can be told.
+    /// Returns a text such as "40 s left, ", or an empty one while there is no estimate.
     std::string left(uint64_t pixels_done, double seconds) const;
 
     const Backend& backend_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Carriage return, the text, and "erase to the end of the line" (ECMA-48, EL) after it: what is
-// erased first is seen to go.
+// Writes a carriage return, the text, and then "erase to the end of the line" (ECMA-48, EL).
+// Erasing first would flicker.
 #include "host/terminal/terminal_line.h"
 #include "core/text/printable.h"
 
@@ -13,7 +13,7 @@
 
 namespace ovc {
 
-/// Columns of the terminal; one that does not say has as many as terminals had.
+/// Returns the columns of the terminal; 80 where it does not say.
 static size_t terminal_width() {
     winsize size{};
     const bool told = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
@@ -25,7 +25,7 @@ TerminalLine::TerminalLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO)
 void TerminalLine::show(const std::string& text) {
     if (!shown_)
         return;
-    // One less: a cursor behind the last column may stand on the next line.
+    // We leave one column, since a cursor behind the last may stand on the next line.
     const std::string fitting = printable(text).substr(0, terminal_width() - 1);
     if (fitting == there_)
         return;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// TerminalLine: one line on standard error that overwrites itself, where that is a terminal;
-// nothing elsewhere.
+// TerminalLine is one line on standard error that overwrites itself; it writes nothing where that
+// is no terminal.
 #pragma once
 
 #include <string>
 
 namespace ovc {
 
-/// At most one at a time. Nobody else writes to the terminal while it shows something, but for
-/// whole lines that come after clear().
+/// At most one may live at a time. While it shows something, nobody else may write to the terminal;
+/// call clear() before whole lines.
 class TerminalLine {
 public:
     /// wanted: false keeps it silent even on a terminal.
@@ -18,9 +18,9 @@ public:
     TerminalLine& operator=(const TerminalLine&) = delete;
 
     bool shown() const { return shown_; }
-    /// Cut to what the terminal is wide, for a line that wraps cannot be overwritten. Written in
-    /// one go, and only where it differs from what stands there: so it does not flicker. text:
-    /// ASCII.
+    /// Shows the text, cut to the width of the terminal, since a line that wraps cannot be
+    /// overwritten. It writes in one go, and only where the text differs from the one that is
+    /// there, so that the line does not flicker. text: ASCII.
     void show(const std::string& text);
     void clear() { show(""); }
 
@@ -29,7 +29,7 @@ private:
     std::string there_;
 };
 
-/// "40 s left", "12 min left", "3 h left", as precise as an estimate is.
+/// Returns "40 s left", "12 min left" or "3 h left", as precise as an estimate is.
 std::string time_left(double seconds);
 
 } // namespace ovc

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The line on a terminal, a pseudo-terminal of 20 columns: what it writes, and that it does not
-// flicker.
+// Tests the line on a pseudo-terminal of 20 columns: what it writes, and that it does not flicker.
 #include "host/terminal/terminal_line.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +9,7 @@
 namespace ovc {
 namespace {
 
-/// While it lives, standard error goes to a terminal.
+/// Sends standard error to a pseudo-terminal while it lives.
 class Terminal {
 public:
     Terminal() {
@@ -30,7 +29,7 @@ public:
             close(descriptor);
     }
     bool is_there() const { return before_ >= 0; }
-    /// All that was written before this mark.
+    /// Writes a mark, and returns everything that was written before it.
     std::string read_up_to_mark() const {
         [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, "#", 1);
         std::string text;

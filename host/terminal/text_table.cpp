@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Columns as wide as their widest cell.
+// Pads each column to its widest cell.
 #include "host/terminal/text_table.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ static std::string rule_of(std::span<const size_t> widths) {
 }
 
 std::string markdown_table(std::span<const TextRow> rows) {
-    assert(!rows.empty());
+    assert(!rows.empty() && !rows[0].empty());
     std::vector<size_t> widths(rows[0].size());
     for (const TextRow& row : rows) {
         assert(row.size() == widths.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TextTable: rows of cells as a Markdown table that is also readable as plain text.
+// Writes rows of cells as a Markdown table that is also readable as plain text.
 #pragma once
 
 #include <span>
@@ -10,8 +10,8 @@ namespace ovc {
 
 using TextRow = std::vector<std::string>;
 
-/// rows: the header first; all as long as it. The first column stands to the left, numbers to the
-/// right. With a line end.
+/// Returns the table, with a line end. rows: the header first; all have as many cells as it. The
+/// first column is aligned to the left, the others to the right.
 std::string markdown_table(std::span<const TextRow> rows);
 
 } // namespace ovc

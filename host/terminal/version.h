@@ -10,7 +10,7 @@
 
 namespace ovc {
 
-/// "0.1.0"
+/// Returns the version in the form "0.1.0".
 inline std::string version_text() {
     return fmt::format("{}.{}.{}", OVC_VERSION / 10000, OVC_VERSION / 100 % 100, OVC_VERSION % 100);
 }
