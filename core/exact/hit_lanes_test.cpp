@@ -37,6 +37,22 @@ void put(HitLanes::Vec& to, int lane, const dvec3& v) {
         to[axis][lane] = v[axis];
 }
 
+/// asked: what `answered` was before round_hits().
+void expect_every_way_alike(const HitLanes& asked, const HitLanes& answered) {
+    for (const RoundHits way : ways_to_round_hits()) {
+        HitLanes again = asked;
+        way(again);
+        for (int lane = 0; lane < HitLanes::kCount; ++lane) {
+            ASSERT_EQ(again.known[lane] != 0, answered.known[lane] != 0);
+            if (!again.known[lane])
+                continue;
+            ASSERT_EQ(again.t[lane], answered.t[lane]);
+            ASSERT_EQ(again.u[lane], answered.u[lane]);
+            ASSERT_EQ(again.v[lane], answered.v[lane]);
+        }
+    }
+}
+
 TEST(HitLanes, WhatIsKnownIsTheExactValueRounded) {
     const Case cases[] = {
         {"floats", 1, 5, 0x1p20, 0.99},
@@ -66,20 +82,10 @@ TEST(HitLanes, WhatIsKnownIsTheExactValueRounded) {
                 put(lanes.org, lane, ray.org);
                 put(lanes.dir, lane, ray.dir);
             }
+            SCOPED_TRACE(testing::Message() << c.name << " seed " << seed);
             const HitLanes asked = lanes;
             round_hits(lanes);
-            for (const RoundHits way : ways_to_round_hits()) {
-                HitLanes again = asked;
-                way(again);
-                for (int lane = 0; lane < HitLanes::kCount; ++lane) {
-                    ASSERT_EQ(again.known[lane] != 0, lanes.known[lane] != 0) << c.name;
-                    if (!again.known[lane])
-                        continue;
-                    ASSERT_EQ(again.t[lane], lanes.t[lane]) << c.name << " seed " << seed;
-                    ASSERT_EQ(again.u[lane], lanes.u[lane]) << c.name << " seed " << seed;
-                    ASSERT_EQ(again.v[lane], lanes.v[lane]) << c.name << " seed " << seed;
-                }
-            }
+            expect_every_way_alike(asked, lanes);
             for (int lane = 0; lane < HitLanes::kCount; ++lane) {
                 const test::ExactHit& truth = truths[size_t(lane)];
                 if (truth.id.mesh == kNone)

@@ -77,13 +77,9 @@ void BackendArguments::add_to(CLI::App& app) {
         ->type_name(choice_names(kLevel1Builds));
 }
 
-Result<BackendOptions> BackendArguments::resolve() const {
-    BackendOptions options;
-    const Result<BackendKind> kind = parse_backend(backend);
-    if (!kind)
-        return kind.error();
-    options.kind = *kind;
-    if (options.kind == BackendKind::CpuKdTree || options.kind == BackendKind::Embree)
+/// An error where an option says nothing to the backend that was chosen.
+Result<Done> BackendArguments::check_meaning(BackendKind kind) const {
+    if (kind == BackendKind::CpuKdTree || kind == BackendKind::Embree)
         for (const auto& [option, value] : {std::pair{"--gpu-memory", &gpu_memory},
                                             {"--leaf-triangles", &leaf_triangles},
                                             {"--leaves", &leaves},
@@ -93,13 +89,24 @@ Result<BackendOptions> BackendArguments::resolve() const {
             if (!value->empty())
                 return Error{fmt::format("{} means nothing to the backend {}, which uses no GPU",
                                          option, backend)};
-    if (options.kind != BackendKind::ThesisTwoLevel)
+    if (kind != BackendKind::ThesisTwoLevel)
         for (const auto& [option, value] :
              {std::pair{"--level1", &level1}, {"--level1-build", &level1_build}})
             if (!value->empty())
                 return Error{
                     fmt::format("{} means nothing to the backend {}; thesis-two-level has it",
                                 option, backend)};
+    return Done{};
+}
+
+Result<BackendOptions> BackendArguments::resolve() const {
+    BackendOptions options;
+    const Result<BackendKind> kind = parse_backend(backend);
+    if (!kind)
+        return kind.error();
+    options.kind = *kind;
+    if (const Result<Done> fine = check_meaning(options.kind); !fine)
+        return fine.error();
     if (!gpu_memory.empty()) {
         const Result<MemorySize> size = parse_memory_size(gpu_memory);
         if (!size)

@@ -31,6 +31,9 @@ struct BackendArguments {
 
     void add_to(CLI::App& app);
     Result<BackendOptions> resolve() const;
+
+private:
+    Result<Done> check_meaning(BackendKind kind) const;
 };
 
 } // namespace ovc

@@ -34,6 +34,11 @@ static constexpr std::array<std::string_view, 5> kWorkloads = {"primary", "shado
 void BenchWords::add_to(CLI::App& app) {
     app.add_option("SCENE", scenes,
                    fmt::format("Files or test scenes' names; default: {}", kDefaultScene));
+    add_modes_to(app);
+    add_settings_to(app);
+}
+
+void BenchWords::add_modes_to(CLI::App& app) {
     CLI::Option* table = app.add_flag(
         "--bars", bars,
         "Instead: the table of what is promised, measured over SCENE, a mesh file or a test scene");
@@ -54,6 +59,9 @@ void BenchWords::add_to(CLI::App& app) {
         ->excludes(table)
         ->excludes(race)
         ->excludes(app.get_option("--sweep"));
+}
+
+void BenchWords::add_settings_to(CLI::App& app) {
     app.add_option("--most", most,
                    "The last row of --sweep rays, triangles or leaves has at most so many; of "
                    "--pictures samples: 64")

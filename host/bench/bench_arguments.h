@@ -36,6 +36,10 @@ struct BenchWords {
     std::string json;
 
     void add_to(CLI::App& app);
+
+private:
+    void add_modes_to(CLI::App& app);
+    void add_settings_to(CLI::App& app);
 };
 
 struct BenchJob {

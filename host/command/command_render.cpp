@@ -88,6 +88,13 @@ struct RenderWords {
     LogArguments log{LogLevel::Info};
 
     void add_to(CLI::App& app);
+
+private:
+    void add_picture_to(CLI::App& app);
+    void add_view_to(CLI::App& app);
+    void add_sampling_to(CLI::App& app);
+    void add_light_to(CLI::App& app);
+    void add_run_to(CLI::App& app);
 };
 
 /// Rays a batch where standard error is a terminal: less than a second's work for the slowest
@@ -96,8 +103,7 @@ struct RenderWords {
 /// where the budget is tight.
 static constexpr size_t kWatchedBatchRays = size_t(1) << 18;
 
-void RenderWords::add_to(CLI::App& app) {
-    scene.add_to(app);
+void RenderWords::add_picture_to(CLI::App& app) {
     app.add_option("-o,--output,--outfile", outputs,
                    "The picture: .png (sRGB) or .exr (linear); may be repeated; #### becomes the "
                    "frame's number; default: out.png, of frames out-####.png")
@@ -111,6 +117,9 @@ void RenderWords::add_to(CLI::App& app) {
            "Only a part of the picture: its size, and how far it is from the left and upper "
            "edge")
         ->type_name("WxH+X+Y");
+}
+
+void RenderWords::add_view_to(CLI::App& app) {
     app.add_option(
            "--camera", camera,
            "Eye, target and angle of view in degrees along the shorter side (40); not with "
@@ -131,6 +140,9 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_option("--light", lights, "A point light instead of the scene's; may be repeated")
         ->allow_extra_args(false)
         ->type_name("X,Y,Z");
+}
+
+void RenderWords::add_sampling_to(CLI::App& app) {
     app.add_option(
            "--samples,--spp", samples,
            "Rays a pixel, up to 65536: more of them smooth edges; the same ones every time; "
@@ -159,6 +171,9 @@ void RenderWords::add_to(CLI::App& app) {
                    "Of path tracing: other numbers make other noise, the same the same picture; "
                    "default: 0")
         ->type_name("N");
+}
+
+void RenderWords::add_light_to(CLI::App& app) {
     app.add_option("--integrator", integrator,
                    "whitted (mirrors, glass, and the light of lamps) or path (path tracing: light "
                    "from everywhere, with the noise of --samples; docs/guide/path.md)")
@@ -181,6 +196,9 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_option("--png-bits", png_bits, "Bits a channel of .png files; default: 8")
         ->type_name(choice_names(kPngBits));
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
+}
+
+void RenderWords::add_run_to(CLI::App& app) {
     app.add_option("--cache", cache,
                    "Keep the scene and what is built of it in this folder, and start from there "
                    "next time; what is stale or damaged is made anew (docs/guide/cache.md)")
@@ -196,6 +214,15 @@ void RenderWords::add_to(CLI::App& app) {
     app.add_flag("--working-set", working_set,
                  "The statistics tell which pages each frame's rays go through; takes up to half "
                  "as long again");
+}
+
+void RenderWords::add_to(CLI::App& app) {
+    scene.add_to(app);
+    add_picture_to(app);
+    add_view_to(app);
+    add_sampling_to(app);
+    add_light_to(app);
+    add_run_to(app);
     log.add_to(app, /* with_quiet= */ true);
     backend.add_to(app);
 }
@@ -366,15 +393,7 @@ static Result<Done> understand_counts(const RenderWords& words, RenderJob& job) 
 }
 
 static Result<Done> understand_antialias(const RenderWords& words, RenderJob& job) {
-    if (words.antialias.empty())
-        return Done{};
-    if (!words.samples.empty())
-        return Error{"--samples and --antialias cannot be given together"};
     Antialias how;
-    const Result<double> threshold = parse_real("--antialias", words.antialias, 0, 3);
-    if (!threshold)
-        return threshold.error();
-    how.threshold = float(*threshold);
     if (!words.antialias_method.empty()) {
         const Result<size_t> method =
             parse_choice("--antialias-method", words.antialias_method, kAntialiasMethods);
@@ -395,6 +414,14 @@ static Result<Done> understand_antialias(const RenderWords& words, RenderJob& jo
             return jitter.error();
         how.jitter = float(*jitter);
     }
+    if (words.antialias.empty()) // as with POV-Ray, whose files may have the others without it
+        return Done{};
+    if (!words.samples.empty())
+        return Error{"--samples and --antialias cannot be given together"};
+    const Result<double> threshold = parse_real("--antialias", words.antialias, 0, 3);
+    if (!threshold)
+        return threshold.error();
+    how.threshold = float(*threshold);
     job.render.antialias = how;
     return Done{};
 }

@@ -12,6 +12,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <thread>
 #include <unistd.h>
@@ -155,17 +156,22 @@ TEST_F(CommandTest, NamesReachTheTerminalPrintable) {
     EXPECT_EQ(all.find("\xc2\x9b"), std::string::npos) << all;
 }
 
-TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
+/// Arguments that are refused, and a part of the sentence that says why.
+struct Refused {
+    Arguments arguments;
+    const char* part;
+};
+
+/// path: of a file in an empty folder.
+std::vector<Refused> refused_arguments(const std::string& folder,
+                                       const std::function<std::string(const char*)>& path) {
     const std::string out = path("out.png");
-    const struct {
-        Arguments arguments;
-        const char* part;
-    } cases[] = {
+    return {
         {{}, "no command given"},
         {{"rendr"}, "did you mean 'render'?"},
         {{"render"}, "SCENE is required"},
         {{"render", path("none.ply"), "-o", out}, "none.ply"},
-        {{"render", folder_.string(), "-o", out}, "is a directory"},
+        {{"render", folder, "-o", out}, "is a directory"},
         {{"render", "bxo", "-o", out}, "bxo"},
         {{"render", "box", "-o", path("no/out.png")}, "does not exist"},
         {{"render", "box", "-o", path("out.tiff")}, "neither .png nor .exr"},
@@ -210,7 +216,13 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
         {{"convert", path("a.ply")}, "OUT is required"},
         {{"convert", "box", path("box.stl")}, "ends in none of .ply, .obj, .ovc"},
         {{"convert", "box", path("no/box.ply")}, "does not exist"},
+        {{"render", "box", "-o", out, "--jitter", "2"}, "--jitter"},
     };
+}
+
+TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
+    const auto cases =
+        refused_arguments(folder_.string(), [&](const char* name) { return path(name); });
     for (const auto& c : cases) {
         const std::string sentence = error(c.arguments);
         EXPECT_THAT(sentence, testing::HasSubstr(c.part));

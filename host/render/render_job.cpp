@@ -348,6 +348,35 @@ static void tell_of_nothing_to_go_on_with(const RenderJob& job, const LogSink& l
                           output));
 }
 
+static void tell_of_up_left_out(const RenderJob& job, const Scene& scene, const LogSink& log) {
+    if (job.up && !job.camera && scene.camera)
+        say(log, LogLevel::Warning,
+            fmt::format("--up left out: {} has a camera of its own; --camera replaces it",
+                        job.scene.name()));
+}
+
+/// Returns the job's shots, or the one of a still picture. An error where a camera cannot be used:
+/// nobody has checked that of a file before.
+static Result<std::vector<Shot>> shots_of(const RenderJob& job, const Scene& scene,
+                                          const ImageSize& size) {
+    std::vector<Shot> shots =
+        job.shots.empty() ? std::vector<Shot>{{0, still_camera(scene, job, size)}} : job.shots;
+    for (const Shot& shot : shots)
+        if (const Result<Done> fine = check_camera(shot.camera); !fine)
+            return Error{fmt::format("{}: {}", job.scene.name(), fine.error().message)};
+    return shots;
+}
+
+static void add_what_backend_tells(const RenderJob& job, const Scene& scene, const Backend& backend,
+                                   RenderStats& stats) {
+    stats.tracing = backend.statistics();
+    stats.renderer = backend.renderer();
+    stats.left_out =
+        left_out_of(scene, needs_of(scene, {job.render.shadows,
+                                            job.backend.precision == OVC_PRECISION_CERTIFIED,
+                                            stats.tracing.leaves}));
+}
+
 Result<int> render(const RenderJob& job) {
     if (all_there(job)) {
         if (!job.quiet)
@@ -379,15 +408,10 @@ Result<int> render(const RenderJob& job) {
     stats.seconds_import = total.seconds();
     stats.scene_from_cache = cache.found();
 
-    if (job.up && !job.camera && scene->camera)
-        say(log, LogLevel::Warning,
-            fmt::format("--up left out: {} has a camera of its own; --camera replaces it",
-                        job.scene.name()));
-    const std::vector<Shot> shots =
-        job.shots.empty() ? std::vector<Shot>{{0, still_camera(*scene, job, size)}} : job.shots;
-    for (const Shot& shot : shots) // nobody has checked a file's camera yet
-        if (const Result<Done> fine = check_camera(shot.camera); !fine)
-            return Error{fmt::format("{}: {}", job.scene.name(), fine.error().message)};
+    tell_of_up_left_out(job, *scene, log);
+    const Result<std::vector<Shot>> shots = shots_of(job, *scene, size);
+    if (!shots)
+        return shots.error();
     BackendOptions options = job.backend;
     options.saved = scene->saved;
     options.watching = job.quiet ? BuildWatching::Silent : BuildWatching::Shown;
@@ -401,15 +425,10 @@ Result<int> render(const RenderJob& job) {
         return backend.error();
 
     cache.keep(*scene, **backend, log);
-    Result<Done> done = Rendering(job, *part, *scene, **backend, log).run(shots, stats);
+    Result<Done> done = Rendering(job, *part, *scene, **backend, log).run(*shots, stats);
     if (!done)
         return done.error();
-    stats.tracing = (*backend)->statistics();
-    stats.renderer = (*backend)->renderer();
-    stats.left_out =
-        left_out_of(*scene, needs_of(*scene, {job.render.shadows,
-                                              job.backend.precision == OVC_PRECISION_CERTIFIED,
-                                              stats.tracing.leaves}));
+    add_what_backend_tells(job, *scene, **backend, stats);
     stats.seconds_total = total.seconds();
     if (!job.stats.empty())
         if (done = save_text(stats_json(stats), job.stats); !done)
