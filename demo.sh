@@ -11,7 +11,7 @@ if [[ ${1:-} == --help || ${1:-} == -h ]]; then
 fi
 install_packages
 echo "== configure and build (Release) into build/"
-cmake --preset release -DOVC_TESTS=OFF >/dev/null
+cmake --preset release >/dev/null
 cmake --build build
 echo "== render: 'plants', 347 MiB of level 2, in 86 MiB of GPU memory"
 mkdir -p out

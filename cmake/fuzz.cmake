@@ -5,6 +5,10 @@ option(OVC_FUZZ "Build the libFuzzer targets; needs clang" OFF)
 if(OVC_FUZZ AND NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     message(FATAL_ERROR "OVC_FUZZ needs clang: -DCMAKE_CXX_COMPILER=clang++")
 endif()
+if(OVC_FUZZ) # with assertions, whatever the build type
+    string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
+    string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
+endif()
 
 # ovc_watch_for_fuzzing(TARGET): what a library's code does counts for the fuzzers, and is checked.
 function(ovc_watch_for_fuzzing target)
