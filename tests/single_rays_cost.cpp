@@ -185,7 +185,7 @@ Result<Done> run(const Job& job) {
         return scene.error();
     const Camera camera = framing_camera(hittable_bounds(scene->soup), job.size, job.size);
     scene->lights = placed_lights(*scene, scene->lights, camera);
-    const auto tree = std::make_shared<const KdTree>(build_kd_tree(scene->soup));
+    const KdTree tree = build_kd_tree(scene->soup);
     const std::unique_ptr<Backend> reference = make_cpu_backend(scene->soup, tree, 0);
     const Result<std::vector<RaySet>> sets =
         make_ray_sets(*scene, camera, job.size, job.size, *reference);
@@ -207,7 +207,7 @@ Result<Done> run(const Job& job) {
     for (const RaySet& set : *sets)
         if (set.query == RayQuery::Nearest)
             measure(job, set,
-                    contenders(job, *tree, scene->soup, **two_level, abi.get(), gathering));
+                    contenders(job, tree, scene->soup, **two_level, abi.get(), gathering));
     auto statistics = test::sized<ovc_statistics>();
     test::api().statistics(abi.get(), &statistics);
     fmt::print("{} of {} single rays were gathered\n", statistics.gathered_rays,

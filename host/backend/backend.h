@@ -125,9 +125,9 @@ Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
                                   const BackendOptions& options, const LogSink& log);
 
 std::unique_ptr<Backend> make_cpu_backend(const Soup& soup);
-/// Makes the backend over a tree of this soup that is built already. build_seconds goes into the
+/// Makes the backend over a tree of this soup, which outlives it. build_seconds goes into the
 /// statistics.
-std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, std::shared_ptr<const KdTree> tree,
+std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, const KdTree& tree,
                                           double build_seconds);
 
 /// Medium and High are Embree's build qualities (High splits triangles that are long). Robust is

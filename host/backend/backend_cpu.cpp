@@ -9,11 +9,10 @@
 
 namespace ovc {
 
-class CpuBackend final : public Backend {
+class CpuBackend : public Backend {
 public:
-    CpuBackend(const Soup& soup, std::shared_ptr<const KdTree> tree, double build_seconds)
-        : soup_(soup), tree_(std::move(tree)) {
-        assert(tree_);
+    CpuBackend(const Soup& soup, const KdTree& tree, double build_seconds)
+        : soup_(soup), tree_(tree) {
         statistics_.struct_size = sizeof(statistics_);
         statistics_.triangles = soup.triangle_count();
         statistics_.seconds_level1 = build_seconds;
@@ -23,7 +22,7 @@ public:
                            std::span<Hit> hits) override {
         assert(hits.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
         const Stopwatch watch;
-        ovc::intersect(*tree_, soup_, rays, skip, hits);
+        ovc::intersect(tree_, soup_, rays, skip, hits);
         statistics_.nearest_rays += rays.size();
         statistics_.seconds_trace += watch.seconds();
         return Done{};
@@ -33,7 +32,7 @@ public:
                           std::span<uint8_t> occluded) override {
         assert(occluded.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
         const Stopwatch watch;
-        ovc::occluded(*tree_, soup_, rays, skip, occluded);
+        ovc::occluded(tree_, soup_, rays, skip, occluded);
         statistics_.occlusion_rays += rays.size();
         statistics_.seconds_trace += watch.seconds();
         return Done{};
@@ -44,19 +43,29 @@ public:
 
 private:
     const Soup& soup_;
-    std::shared_ptr<const KdTree> tree_;
+    const KdTree& tree_;
     ovc_statistics statistics_{};
 };
 
-std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, std::shared_ptr<const KdTree> tree,
+/// Has the tree as well. It is a base that comes first, so that it is there before the backend.
+struct OwnedTree {
+    KdTree tree;
+};
+class CpuBackendWithTree final : OwnedTree, public CpuBackend {
+public:
+    CpuBackendWithTree(const Soup& soup, KdTree built, double build_seconds)
+        : OwnedTree{std::move(built)}, CpuBackend(soup, tree, build_seconds) {}
+};
+
+std::unique_ptr<Backend> make_cpu_backend(const Soup& soup, const KdTree& tree,
                                           double build_seconds) {
-    return std::make_unique<CpuBackend>(soup, std::move(tree), build_seconds);
+    return std::make_unique<CpuBackend>(soup, tree, build_seconds);
 }
 
 std::unique_ptr<Backend> make_cpu_backend(const Soup& soup) {
     const Stopwatch watch;
-    auto tree = std::make_shared<const KdTree>(build_kd_tree(soup));
-    return make_cpu_backend(soup, std::move(tree), watch.seconds());
+    KdTree tree = build_kd_tree(soup);
+    return std::make_unique<CpuBackendWithTree>(soup, std::move(tree), watch.seconds());
 }
 
 } // namespace ovc

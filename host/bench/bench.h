@@ -17,7 +17,7 @@ namespace ovc {
 /// A contender, built.
 struct Entrant {
     Contender contender;
-    std::shared_ptr<Backend> backend;
+    std::unique_ptr<Backend> backend;
 };
 
 /// One contender at one workload. Counters are those of its last call.

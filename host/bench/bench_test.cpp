@@ -51,7 +51,7 @@ protected:
     void enter(const char* name, uint32_t prim) {
         Contender contender{};
         contender.name = name;
-        entrants.push_back({contender, std::make_shared<Scripted>(name, prim, calls)});
+        entrants.push_back({contender, std::make_unique<Scripted>(name, prim, calls)});
     }
     Result<Done> run(
         uint32_t repeats, const StopRequest& stop = [] { return false; }) {
@@ -106,7 +106,7 @@ public:
 };
 
 TEST_F(RunContenders, OnTheCpuAreTimedByWhatAThreadTook) {
-    entrants.push_back({Contender{}, std::make_shared<Interrupted>()});
+    entrants.push_back({Contender{}, std::make_unique<Interrupted>()});
     workloads.push_back(ray_workload({"rays", RayQuery::Nearest, std::vector<Ray>(3)}));
     ASSERT_TRUE(run(1));
     ASSERT_EQ(result.measurements.size(), 1u);

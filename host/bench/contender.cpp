@@ -103,34 +103,29 @@ Result<std::vector<Contender>> choose_contenders(std::span<const std::string> on
     return chosen;
 }
 
-ContenderBuilder::ContenderBuilder(const Soup& soup, std::shared_ptr<Backend> reference,
-                                   std::shared_ptr<const KdTree> tree, std::string device,
-                                   LogSink log)
+ContenderBuilder::ContenderBuilder(const Soup& soup, const KdTree* tree, double tree_seconds,
+                                   std::string device, LogSink log)
     : soup_(soup),
-      reference_(std::move(reference)),
-      tree_(std::move(tree)),
+      tree_(tree),
+      tree_seconds_(tree_seconds),
       device_(std::move(device)),
       log_(std::move(log)) {}
 
-static Result<std::shared_ptr<Backend>> shared(Result<std::unique_ptr<Backend>> backend) {
-    if (!backend)
-        return backend.error();
-    return std::shared_ptr<Backend>(std::move(*backend));
-}
-
-Result<std::shared_ptr<Backend>> ContenderBuilder::build(const Contender& contender) {
+Result<std::unique_ptr<Backend>> ContenderBuilder::build(const Contender& contender) {
     switch (contender.kind) {
     case ContenderKind::TwoLevel:
     case ContenderKind::Thesis:
-        return shared(build_on_gpu(contender));
+        return build_on_gpu(contender);
     case ContenderKind::Embree:
-        return shared(make_embree_backend(soup_, contender.embree));
+        return make_embree_backend(soup_, contender.embree);
     case ContenderKind::FloatKdTree:
-        return std::shared_ptr<Backend>(make_float_kd_backend(soup_, *tree_));
+        assert(tree_);
+        return make_float_kd_backend(soup_, *tree_);
     case ContenderKind::CpuKdTree:
         break;
     }
-    return reference_;
+    assert(tree_);
+    return make_cpu_backend(soup_, *tree_, tree_seconds_);
 }
 
 /// Of a scene cut into as many leaves without a tight budget.

@@ -60,19 +60,19 @@ Result<std::vector<Contender>> choose_contenders(std::span<const std::string> on
 /// Builds contenders over one soup, which outlives them.
 class ContenderBuilder {
 public:
-    /// reference: answers for the contender cpu-kdtree; tree: the tree over the soup that it has,
-    /// for cpu-float-kdtree.
-    ContenderBuilder(const Soup& soup, std::shared_ptr<Backend> reference,
-                     std::shared_ptr<const KdTree> tree, std::string device, LogSink log);
-    Result<std::shared_ptr<Backend>> build(const Contender& contender);
+    /// tree: over the soup, for the contenders cpu-kdtree and cpu-float-kdtree, which it outlives;
+    /// null where they do not take part. tree_seconds: what building it took.
+    ContenderBuilder(const Soup& soup, const KdTree* tree, double tree_seconds, std::string device,
+                     LogSink log);
+    Result<std::unique_ptr<Backend>> build(const Contender& contender);
 
 private:
     Result<std::unique_ptr<Backend>> build_on_gpu(const Contender& contender);
     Result<uint64_t> all_pages_bytes(BackendOptions options);
 
     const Soup& soup_;
-    std::shared_ptr<Backend> reference_;
-    std::shared_ptr<const KdTree> tree_;
+    const KdTree* tree_;
+    double tree_seconds_;
     std::string device_;
     LogSink log_;
     std::map<uint32_t, uint64_t> pages_bytes_; // by leaves

@@ -14,9 +14,9 @@ namespace {
 TEST(FloatKdTree, AnswersNearlyAsTheTreeInDouble) {
     const Result<Scene> scene = make_test_scene("sphere-4");
     ASSERT_TRUE(bool(scene));
-    const auto tree = std::make_shared<const KdTree>(build_kd_tree(scene->soup));
+    const KdTree tree = build_kd_tree(scene->soup);
     const auto exact = make_cpu_backend(scene->soup, tree, 0);
-    const auto rounded = make_float_kd_backend(scene->soup, *tree);
+    const auto rounded = make_float_kd_backend(scene->soup, tree);
     std::vector<Ray> rays(20000);
     Random random(1, 0);
     for (Ray& ray : rays) {

@@ -73,7 +73,7 @@ Result<std::vector<Entrant>> build_entrants(const SceneBench& job, ContenderBuil
         if (around.stop())
             break;
         around.progress.show(fmt::format("{}: building {}", job.scene, contender.label()));
-        Result<std::shared_ptr<Backend>> backend = builder.build(contender);
+        Result<std::unique_ptr<Backend>> backend = builder.build(contender);
         if (!backend)
             return Error{fmt::format("{}: {}", contender.label(), backend.error().message)};
         entrants.push_back({contender, std::move(*backend)});
@@ -83,8 +83,9 @@ Result<std::vector<Entrant>> build_entrants(const SceneBench& job, ContenderBuil
 
 /// The CPU KDT and its tree, where it is the reference.
 struct Reference {
-    std::shared_ptr<const KdTree> tree;
-    std::shared_ptr<Backend> backend;
+    std::unique_ptr<const KdTree> tree;
+    double tree_seconds = 0;
+    std::unique_ptr<Backend> backend; // over the tree
 };
 
 Reference make_reference(const SceneBench& job, const Soup& soup, const BenchSurroundings& around) {
@@ -93,33 +94,34 @@ Reference make_reference(const SceneBench& job, const Soup& soup, const BenchSur
     around.progress.show(job.scene + ": building the reference");
     const Stopwatch building;
     Reference reference;
-    reference.tree = std::make_shared<const KdTree>(build_kd_tree(soup));
-    reference.backend = make_cpu_backend(soup, reference.tree, building.seconds());
+    reference.tree = std::make_unique<const KdTree>(build_kd_tree(soup));
+    reference.tree_seconds = building.seconds();
+    reference.backend = make_cpu_backend(soup, *reference.tree, reference.tree_seconds);
     return reference;
 }
 
 /// The rest, once the scene is there.
 Result<Done> bench_soup(const SceneBench& job, const Scene& scene, const Camera& camera,
                         const BenchSurroundings& around, BenchResult& result) {
-    Reference reference = make_reference(job, scene.soup, around);
-    ContenderBuilder builder(scene.soup, reference.backend, reference.tree, job.device, around.log);
+    const Reference reference = make_reference(job, scene.soup, around);
+    ContenderBuilder builder(scene.soup, reference.tree.get(), reference.tree_seconds, job.device,
+                             around.log);
     Result<std::vector<Entrant>> entrants = build_entrants(job, builder, around);
     if (!entrants)
         return entrants.error();
     if (entrants->empty())
         return Done{}; // it was stopped
-    if (!reference.backend)
-        reference.backend = entrants->front().backend;
+    Backend& judge = reference.backend ? *reference.backend : *entrants->front().backend;
     Result<std::vector<Workload>> workloads =
-        workloads_of(scene, camera, job.asked, *reference.backend, around.stop);
+        workloads_of(scene, camera, job.asked, judge, around.stop);
     if (!workloads)
         return workloads.error();
     result.load_before = load_average();
     const auto observe = [&](const std::string& what) {
         around.progress.show(fmt::format("{}: {}", job.scene, what));
     };
-    const Result<Done> done = run_contenders(*entrants, *workloads, *reference.backend, job.repeats,
-                                             around.stop, observe, result);
+    const Result<Done> done =
+        run_contenders(*entrants, *workloads, judge, job.repeats, around.stop, observe, result);
     result.load_after = load_average();
     return done;
 }

@@ -237,14 +237,14 @@ private:
         const Result<Scene> scene = open_scene(job_.mesh, around_.log);
         if (!scene)
             return scene.error();
-        ContenderBuilder builder(scene->soup, nullptr, nullptr, job_.device, around_.log);
+        ContenderBuilder builder(scene->soup, nullptr, 0, job_.device, around_.log);
         std::vector<double> ours, theirs;
         around_.progress.show("building the mesh");
         for (uint32_t i = 0; i < job_.repeats && !around_.stop(); ++i)
             for (const auto& [contender, seconds] :
                  {std::pair(kCertifiedBar, &ours),
                   std::pair(embree("embree-medium", EmbreeMode::Medium), &theirs)}) {
-                const Result<std::shared_ptr<Backend>> backend = builder.build(contender);
+                const Result<std::unique_ptr<Backend>> backend = builder.build(contender);
                 if (!backend)
                     return backend.error();
                 const ovc_statistics s = (*backend)->statistics();
