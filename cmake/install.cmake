@@ -3,41 +3,56 @@
 # command is in install_command.cmake. All find each other by the way from one to the next, so that
 # an installed tree may be moved. docs/guide/install.md.
 #
-# Components: `overcast` goes to the same places everywhere; `local` is what Debian's packages have elsewhere than what is
-# installed by hand; `debian` is what only the package has (cmake/package.cmake).
+# The component `overcast` goes to the same places everywhere. `local` has the files that an
+# installation by hand puts elsewhere than a Debian package does; `debian` has the package's
+# versions of those and the files that only a package has (cmake/package.cmake).
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Overcast)
 
-install(TARGETS overcast_plugin EXPORT Overcast LIBRARY COMPONENT overcast NAMELINK_COMPONENT overcast
+install(TARGETS overcast_plugin EXPORT Overcast
+    LIBRARY COMPONENT overcast NAMELINK_COMPONENT overcast
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(FILES plugin/overcast.h plugin/overcast.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/overcast COMPONENT overcast)
+install(FILES plugin/overcast.h plugin/overcast.hpp
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/overcast COMPONENT overcast)
 
-install(FILES plugin/examples/hills.c plugin/examples/sunlit.cpp DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT overcast)
+install(FILES plugin/examples/hills.c plugin/examples/sunlit.cpp
+    DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT overcast)
 
 # find_package(Overcast): the target Overcast::overcast
 set_target_properties(overcast_plugin PROPERTIES EXPORT_NAME overcast)
-install(EXPORT Overcast NAMESPACE Overcast:: FILE OvercastTargets.cmake DESTINATION ${package_dir} COMPONENT overcast)
-configure_package_config_file(cmake/OvercastConfig.cmake.in ${PROJECT_BINARY_DIR}/OvercastConfig.cmake
-    INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_LIBDIR NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/OvercastConfigVersion.cmake COMPATIBILITY SameMajorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/OvercastConfig.cmake ${PROJECT_BINARY_DIR}/OvercastConfigVersion.cmake
+install(EXPORT Overcast NAMESPACE Overcast:: FILE OvercastTargets.cmake
+    DESTINATION ${package_dir} COMPONENT overcast)
+configure_package_config_file(
+    cmake/OvercastConfig.cmake.in ${PROJECT_BINARY_DIR}/OvercastConfig.cmake
+    INSTALL_DESTINATION ${package_dir} PATH_VARS CMAKE_INSTALL_LIBDIR
+    NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/OvercastConfigVersion.cmake
+    COMPATIBILITY SameMajorVersion)
+install(
+    FILES ${PROJECT_BINARY_DIR}/OvercastConfig.cmake
+          ${PROJECT_BINARY_DIR}/OvercastConfigVersion.cmake
     DESTINATION ${package_dir} COMPONENT overcast)
 
 # pkg-config overcast
-file(RELATIVE_PATH OVC_PREFIX_FROM_PC ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+file(RELATIVE_PATH OVC_PREFIX_FROM_PC
+    ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 string(REGEX REPLACE "/$" "" OVC_PREFIX_FROM_PC ${OVC_PREFIX_FROM_PC})
 configure_file(cmake/overcast.pc.in ${PROJECT_BINARY_DIR}/overcast.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/overcast.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT overcast)
+install(FILES ${PROJECT_BINARY_DIR}/overcast.pc
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT overcast)
 
-# ovc_install_python(FOLDER COMPONENT …): the module, and the way from it to the library.
+# ovc_install_python(FOLDER COMPONENT …): installs the module, with the relative path from it to the
+# library.
 function(ovc_install_python folder)
-    file(RELATIVE_PATH OVC_LIBRARY_FOLDER ${CMAKE_INSTALL_PREFIX}/${folder}/overcast ${CMAKE_INSTALL_FULL_LIBDIR})
+    file(RELATIVE_PATH OVC_LIBRARY_FOLDER
+        ${CMAKE_INSTALL_PREFIX}/${folder}/overcast ${CMAKE_INSTALL_FULL_LIBDIR})
     string(MAKE_C_IDENTIFIER ${folder} name)
-    configure_file(plugin/python/built.py.in ${PROJECT_BINARY_DIR}/python_built/${name}/_built.py @ONLY)
-    install(DIRECTORY plugin/python/overcast DESTINATION ${folder} ${ARGN} FILES_MATCHING PATTERN "*.py" PATTERN "py.typed"
-        PATTERN "__pycache__" EXCLUDE)
-    install(FILES ${PROJECT_BINARY_DIR}/python_built/${name}/_built.py DESTINATION ${folder}/overcast ${ARGN})
+    set(built ${PROJECT_BINARY_DIR}/python_built/${name}/_built.py)
+    configure_file(plugin/python/built.py.in ${built} @ONLY)
+    install(DIRECTORY plugin/python/overcast DESTINATION ${folder} ${ARGN}
+        FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+    install(FILES ${built} DESTINATION ${folder}/overcast ${ARGN})
 endfunction()
 ovc_install_python(${OVC_PYTHON_DIR} COMPONENT local)
 ovc_install_python(lib/python3/dist-packages COMPONENT debian EXCLUDE_FROM_ALL)

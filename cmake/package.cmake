@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# cpack --config build/CPackConfig.cmake: overcast_VERSION_ARCHITECTURE.deb, all in one. docs/guide/install.md.
+# cpack --config build/CPackConfig.cmake makes overcast_VERSION_ARCHITECTURE.deb, one package with
+# everything. docs/guide/install.md.
 set(debian ${PROJECT_BINARY_DIR}/debian)
 set(maintainer "Overcast <overcast@example.org>")
 if(DEFINED ENV{DEBEMAIL})
     set(maintainer "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
 endif()
-set(OVC_MAINTAINER ${maintainer} CACHE STRING "Who answers for the Debian package; as DEBFULLNAME and DEBEMAIL say")
+set(OVC_MAINTAINER ${maintainer} CACHE STRING
+    "Who answers for the Debian package; as DEBFULLNAME and DEBEMAIL say")
 
-# What Debian's policy wants beside what is installed anyway.
+# Files that Debian's policy wants in a package besides those that cmake --install installs.
 set(OVC_DEBIAN_VERSION ${PROJECT_VERSION}-1)
 string(TIMESTAMP OVC_DEBIAN_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)
 configure_file(cmake/debian/changelog.in ${debian}/changelog.Debian @ONLY)
@@ -42,12 +44,14 @@ or on Mesa's software renderer.
 This package has the library libovercast.so with its header, the command
 overcast, which renders .ply, .obj, .pbrt and .pov scenes, the Python module
 overcast, and overcast-tachyon, which runs tachyon with the library in it.")
-# dpkg-shlibdeps finds the libraries that are linked. EGL and OpenGL are loaded while the library runs, and take a driver.
+# dpkg-shlibdeps finds the libraries that are linked. EGL and OpenGL are loaded at run time, so we
+# name them here; they need a driver, which is only recommended.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libopengl0 | libgl1")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl-mesa0, libgl1-mesa-dri, python3, python3-numpy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "pkg-config, cmake, tachyon")
-# What programs that link the library depend on, and the linker's cache.
+# symbols and shlibs say which package programs that link the library depend on; the triggers update
+# the linker's cache.
 configure_file(cmake/debian/symbols.in ${debian}/symbols @ONLY)
 configure_file(cmake/debian/shlibs.in ${debian}/shlibs @ONLY)
 set(OVC_CONTROL_FILES postinst prerm triggers)

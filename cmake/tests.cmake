@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# ovc_add_tests(FOLDER LABELS … SOURCES … LIBRARIES …): one test program per folder, found test by test, labelled by folder.
+# ovc_add_tests(FOLDER LABELS … SOURCES … LIBRARIES …): one test program per folder; ctest knows
+# each of its tests by name and by the folder's label.
 if(OVC_TESTS)
     enable_testing()
     find_package(GTest REQUIRED)
@@ -12,17 +13,20 @@ function(ovc_add_tests folder)
     endif()
     cmake_parse_arguments(ARG "" "" "LABELS;SOURCES;LIBRARIES" ${ARGN})
     add_executable(${folder}_test ${ARG_SOURCES})
-    # Tests may call their helpers alike.
+    # The helpers of two tests may have one name.
     set_target_properties(${folder}_test PROPERTIES UNITY_BUILD OFF)
-    target_link_libraries(${folder}_test PRIVATE ovc_flags ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
+    target_link_libraries(${folder}_test
+        PRIVATE ovc_flags ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
     target_compile_definitions(${folder}_test PRIVATE OVC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                                       OVC_BINARY_DIR="${PROJECT_BINARY_DIR}")
-    # One label of several words: gtest_discover_tests (CMake 3.25) takes no list, and ctest -L matches a part.
+    # The labels are joined into one, because gtest_discover_tests (CMake 3.25) takes no list;
+    # ctest -L matches a part of it.
     list(JOIN ARG_LABELS ":" labels)
     if(labels)
         set(labels "${folder}:${labels}")
     else()
         set(labels ${folder})
     endif()
-    gtest_discover_tests(${folder}_test DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${labels}" TIMEOUT 1200)
+    gtest_discover_tests(${folder}_test
+        DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${labels}" TIMEOUT 1200)
 endfunction()

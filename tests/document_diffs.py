@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fails unless every diff that docs/design shows applies to the sources as they are, and touches three files at most.
+"""Fails unless every diff that docs/design shows applies to the sources as they are, and touches
+three files at most.
 
 usage: document_diffs.py ROOT
 """

@@ -1,28 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fails where a document points to what is not there: files, headings, decisions by another number, programs that demo.sh does not
-build; where it names a file that is not there; and where a page is on no list of pages, or a call of the ABI not in its reference.
+"""Fails where a document and the repository disagree. usage: documents.py ROOT
 
-usage: documents.py ROOT
+A document may link to files and headings, name files in `code`, and show programs: all of them
+must exist, a link that says "decision 7" must lead to decision 7, and demo.sh must build the
+programs. Every page must be on a list of pages, and docs/reference/abi.md must name every call of
+the ABI.
 """
 import pathlib
 import re
-import subprocess
 import sys
 
-
-def documents(root):
-    listed = subprocess.run(["git", "-C", root, "ls-files", "*.md"], capture_output=True, text=True).stdout.split()
-    return [root / name for name in listed] or [*root.glob("*.md"), *root.glob("docs/**/*.md"), *root.glob("plugin/**/*.md")]
+import tree
 
 
 def prose(document):
-    """Without code, whose brackets and number signs are others."""
+    """The document without its code, where brackets and number signs mean something else."""
     text = re.sub(r"^( *)```.*?^\1```$", "", document.read_text(), flags=re.MULTILINE | re.DOTALL)
     return re.sub(r"`[^`\n]*`", lambda code: "" if "](" in code.group() else code.group(), text)
 
 
 def anchors(document):
-    """What headings are called in addresses, where that is the same on sites that show a repository's files and by mkdocs."""
+    """Yields the anchors of the headings that GitHub and mkdocs name alike; links may use only these."""
     for heading in re.findall(r"^#+ +(.*)$", prose(document), re.MULTILINE):
         words = re.sub(r"[`*]|\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
         name = re.sub(r"[^\w -]", "", words).replace(" ", "-")
@@ -45,7 +43,10 @@ def wrong_links(document):
 
 
 def wrong_paths(root, document):
-    """Files and folders that the text names. Decisions and the changelog name what was there in their day."""
+    """Yields a line for each file or folder that the text names and that does not exist.
+
+    Decisions and the changelog are left out: they may name files of their day.
+    """
     if document.parent.name == "decisions" or document.name == "CHANGELOG.md":
         return
     for folder, rest in re.findall(r"`([\w-]+)/([\w./-]+)`", prose(document)):
@@ -64,7 +65,7 @@ def wrong_programs(root):
 
 
 def left_out_calls(root):
-    """Functions of the ABI's table that its reference does not name."""
+    """Yields a line for each function of the ABI's table that its reference does not name."""
     table = re.search(r"typedef struct ovc_api \{.*?^\} ovc_api;", (root / "plugin/overcast.h").read_text(), re.MULTILINE | re.DOTALL).group()
     reference = (root / "docs/reference/abi.md").read_text()
     for call in re.findall(r"\(\*(\w+)\)\(", table):
@@ -73,7 +74,8 @@ def left_out_calls(root):
 
 
 def left_out_pages(root):
-    """Decisions that the list of decisions lacks, and other pages that mkdocs.yml lacks."""
+    """Yields a line for each decision that the list of decisions lacks, and each other page that
+    mkdocs.yml lacks."""
     site, decisions = (root / "mkdocs.yml").read_text(), (root / "docs/decisions/README.md").read_text()
     for page in sorted((root / "docs").glob("**/*.md")):
         if re.match(r"\d{4}-", page.name):
@@ -85,8 +87,9 @@ def left_out_pages(root):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    wrong = [line for document in documents(root) for line in wrong_links(document)]
-    wrong += [line for document in documents(root) for line in wrong_paths(root, document)]
+    documents = [path for _, path in tree.files(root, ".md")]
+    wrong = [line for document in documents for line in wrong_links(document)]
+    wrong += [line for document in documents for line in wrong_paths(root, document)]
     wrong += [*wrong_programs(root), *left_out_calls(root), *left_out_pages(root)]
     print("\n".join(wrong))
     return 1 if wrong else 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Fails when clang-format would change a C or C++ source. cmake -DFORMAT=… -DROOT=… -P format.cmake
+# Fails when clang-format would change a C++ source. cmake -DFORMAT=… -DROOT=… -P format.cmake
 foreach(folder core importers kdtree gpu plugin host testscenes tests)
     file(GLOB_RECURSE found ${ROOT}/${folder}/*.h ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.cpp)
     list(APPEND sources ${found})

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fails when a file includes what its folder may not know. usage: layering.py ROOT
 
-The graph of docs/design/overview.md: core <- importers; core <- kdtree <- gpu <- plugin; core <- testscenes;
-shaders/layout.h is a leaf; host -> plugin/overcast.h only; tests -> anything. Each third-party header has its one place.
+The graph of docs/design/overview.md: core <- importers; core <- kdtree <- gpu <- plugin;
+core <- testscenes; shaders/layout.h is a leaf; host -> plugin/overcast.h only; tests -> anything.
+Only the files in PLACES may name the third-party headers there.
 """
 import pathlib
 import re
@@ -19,7 +20,8 @@ MAY_INCLUDE = {
     "host": {"core", "importers", "testscenes", "kdtree", "host"},
 }
 
-# Within a folder, what a part of it may know of the others; parts that are not named know all.
+# The neighbours within its folder that each part may include. A part that is not named here may
+# include them all.
 PARTS = {
     "gpu/gl": set(),
     "gpu/bvh": set(),
@@ -32,7 +34,7 @@ PARTS = {
     "plugin/two_level": {"plugin", "plugin/structure", "plugin/build", "plugin/plan"},
 }
 
-# Header pattern -> the files that may name it. Tests may name any.
+# Header pattern -> the files that may include such headers. Tests may include any.
 PLACES = {
     r"glm/": ["core/vec.h"],
     r"(oneapi/)?tbb/": ["core/system/parallel.cpp"],

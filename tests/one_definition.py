@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fails where two files define types of the same name in the same namespace. usage: one_definition.py ROOT
+"""Fails where two files define types of the same name in the same namespace.
+usage: one_definition.py ROOT
 
-Such types meet in one program sooner or later. Then the linker takes the inline functions of one for both, without a word, and
-memory is freed that was never allocated.
+Sooner or later such types meet in one program. The linker then silently takes the inline functions
+of one for both, and the program frees memory that it never allocated.
 """
 import collections
 import pathlib
 import re
-import subprocess
 import sys
 
-# In parallel.h for oneTBB and in parallel_threads.h without: a program has the one or the other.
+import tree
+
+# parallel.h defines it for oneTBB and parallel_threads.h without oneTBB; a program has only one of
+# the two.
 EITHER_OR = {"ovc::Fork"}
 OPEN = re.compile(r"(?:inline )?namespace ?([\w:]*) ?\{\s*$")
 CLOSE = re.compile(r"\} +// namespace")
@@ -30,14 +33,12 @@ def definitions(path):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    listed = subprocess.run(["git", "-C", root, "ls-files"], capture_output=True, text=True).stdout.split()
-    names = listed or [p.relative_to(root).as_posix() for p in root.rglob("*") if p.is_file()]
     places = collections.defaultdict(list)
-    for name in names:
-        if name.endswith((".cpp", ".h", ".hpp")) and (root / name).is_file():
-            for type_name, number in definitions(root / name):
-                places[type_name].append(f"{name}:{number}")
-    twice = {name: where for name, where in places.items() if len(where) > 1 and name not in EITHER_OR}
+    for name, path in tree.files(root, (".cpp", ".h", ".hpp")):
+        for type_name, number in definitions(path):
+            places[type_name].append(f"{name}:{number}")
+    twice = {name: where for name, where in places.items()
+             if len(where) > 1 and name not in EITHER_OR}
     print(f"{len(places)} types, {len(twice)} of them defined more than once")
     for name, where in sorted(twice.items()):
         print(f"{name}: {', '.join(where)}")

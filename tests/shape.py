@@ -2,30 +2,27 @@
 """Prints how large folders, files and functions are; fails where one is too large.
 usage: shape.py ROOT
 
-A folder has at most 30 files of code, half of all files have at most 100 lines, and a function has at most 60.
+A folder has at most 30 files of code, the median file has at most 100 lines, and a function has at
+most 60.
 """
 import pathlib
 import re
 import statistics
-import subprocess
 import sys
+
+import tree
 
 MAX_FILES = 30
 MAX_MEDIAN_LINES = 100
 MAX_FUNCTION_LINES = 60
 CODE = (".cpp", ".h", ".hpp", ".c", ".glsl")
-# Formatted code: a function's head ends with a brace, and the line that closes it is indented like the one that opens it.
+# clang-format ends a function's head with a brace, and indents the line that closes the body like
+# the one that opens it.
 HEAD = re.compile(r"^( *)[^\s#/}].*\)( const| noexcept| override| mutable)*( -> [\w:<>&* ]+)? \{$")
 
 
-def code_files(root):
-    listed = subprocess.run(["git", "-C", root, "ls-files"], capture_output=True, text=True).stdout.split()
-    names = listed or [p.relative_to(root).as_posix() for p in root.rglob("*") if p.is_file()]
-    return [root / name for name in names if name.endswith(CODE) and (root / name).is_file()]
-
-
 def functions(lines):
-    """(length, first line) of all that looks like a function's body."""
+    """Yields (length, first line) of everything that looks like a function's body."""
     for first, line in enumerate(lines):
         head = HEAD.match(line)
         if not head or re.match(r"\s*(if|for|while|switch|else)\b", line):
@@ -38,10 +35,9 @@ def functions(lines):
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    files = code_files(root)
+    files = list(tree.files(root, CODE))
     folders, lengths, longest = {}, [], []
-    for path in files:
-        name = path.relative_to(root).as_posix()
+    for name, path in files:
         folders.setdefault(name.rpartition("/")[0], []).append(name)
         lines = path.read_text().splitlines()
         lengths.append(len(lines))

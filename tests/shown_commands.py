@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs every command that README.md and docs/guide/start.md show, as it stands there, and looks for every option that
-docs/reference/command.md names in what the command says of itself.
+"""Runs every command that README.md and docs/guide/start.md show, as it stands there, and looks in
+the command's --help for every option that docs/reference/command.md names.
 
-Packages and compilation are the gate's own first steps: here apt-get does nothing, and `cmake --build` puts in place what is built.
+The gate has installed the packages and compiled already, so here apt-get does nothing, and
+`cmake --build` only links to the finished build.
 
 usage: shown_commands.py ROOT BUILD
 """

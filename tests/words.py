@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fails where a word that was replaced comes back. usage: words.py ROOT
 
-One word an idea: docs/reference/glossary.md has those that we use. CHANGELOG.md and docs/decisions tell what was, in its words.
+Each idea has one word, which docs/reference/glossary.md defines. CHANGELOG.md and docs/decisions
+are history and keep the words of their day.
 """
 import pathlib
 import re
-import subprocess
 import sys
+
+import tree
 
 OLD = {
     r"\bk(Most|Least|Fewest)[A-Z]\w*": "kMax, kMin",
@@ -20,7 +22,7 @@ OLD = {
     r"\bOVC_TURNS\b": "ray refill",
     r"\bPlacement\b(?! of)": "transform",
 }
-# The field of ovc_statistics and its key in JSON are promised.
+# The field of ovc_statistics and its key in JSON are part of the ABI, so they keep the old word.
 PROMISED = re.compile(r'\.twins\b|"twins"|`twins`|uint64_t twins;|statistics\.twins')
 TEXT = (".cpp", ".h", ".hpp", ".c", ".glsl", ".md", ".py", ".txt", ".cmake", ".sh")
 SKIPPED = ("CHANGELOG.md", "docs/decisions/", "docs/reference/glossary.md", "tests/words.py")
@@ -28,12 +30,9 @@ SKIPPED = ("CHANGELOG.md", "docs/decisions/", "docs/reference/glossary.md", "tes
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    listed = subprocess.run(["git", "-C", root, "ls-files"], capture_output=True, text=True).stdout.split()
-    names = listed or [p.relative_to(root).as_posix() for p in root.rglob("*") if p.is_file()]
     read = found = 0
-    for name in names:
-        path = root / name
-        if not name.endswith(TEXT) or name.startswith(SKIPPED) or not path.is_file():
+    for name, path in tree.files(root, TEXT):
+        if name.startswith(SKIPPED):
             continue
         read += 1
         for number, line in enumerate(path.read_text(errors="replace").splitlines(), 1):

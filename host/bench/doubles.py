@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What triangles in the same place cost: renders scenes of 200,000 triangles without doubles, and with.
+"""Measures what triangles in the same place cost: renders scenes without such doubles, and with.
 
-usage: doubles.py [--overcast build/bin/overcast] [--runs 5] [--size 512] [--triangles 200000] [--most 1.5]
+usage: doubles.py [--overcast build/bin/overcast] [--runs 5] [--size 512] [--triangles 200000]
+                  [--most 1.5]
 
-Pairs: slivers strewn at random and a closed sphere, each written twice (as it is, and with the copy wound the
-other way from another corner); two walls along an axis and two tilted ones, cut differently, once one behind the other
-and once in one plane. One light with shadows; runs in turn. Prints a row a
-scene: medians of seconds of the kernel, of tracing, of building and of the whole program, shares of flagged and retraced
-answers; and the ratio of each doubled scene to its single one. Exits with 1 where a whole program or its tracing takes
-more than --most times the single scene's.
+The scenes come in pairs: slivers strewn at random and a closed sphere, each written twice (as it
+is, and with the copy wound the other way from another corner); two walls along an axis and two
+tilted ones, cut differently, once one behind the other and once in one plane. Each has one light
+with shadows, and the scenes take turns. The program prints a row a scene: medians of seconds of the
+kernel, of tracing, of building and of the whole program, shares of flagged and retraced answers;
+and the ratio of each doubled scene to its single one. It exits with 1 where a whole program or its
+tracing takes more than --most times the single scene's.
 """
 import argparse
 import array
@@ -30,8 +32,10 @@ def write_ply(path, triangles):
     for first in range(0, 3 * len(triangles), 3):
         faces += b"\x03" + array.array("i", (first, first + 1, first + 2)).tobytes()
     with open(path, "wb") as out:
-        out.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {3 * len(triangles)}\nproperty float x\nproperty float y\n"
-                  f"property float z\nelement face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n".encode())
+        out.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {3 * len(triangles)}\n"
+                  f"property float x\nproperty float y\nproperty float z\n"
+                  f"element face {len(triangles)}\nproperty list uchar int vertex_indices\n"
+                  f"end_header\n".encode())
         out.write(corners.tobytes())
         out.write(faces)
 
@@ -54,14 +58,17 @@ def sphere(count):
     def at(i, j):
         theta, phi = math.pi * j / n, 2 * math.pi * (i % n) / n
         ring = math.sin(theta) if 0 < j < n else 0.0
-        return (0.5 + 0.5 * ring * math.cos(phi), 0.5 + 0.5 * math.cos(theta), 0.5 + 0.5 * ring * math.sin(phi))
+        return (0.5 + 0.5 * ring * math.cos(phi), 0.5 + 0.5 * math.cos(theta),
+                0.5 + 0.5 * ring * math.sin(phi))
 
     return [t for i in range(n) for j in range(n)
-            for t in ((at(i, j), at(i, j + 1), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i + 1, j)))]
+            for t in ((at(i, j), at(i, j + 1), at(i + 1, j + 1)),
+                      (at(i, j), at(i + 1, j + 1), at(i + 1, j)))]
 
 
 def wall(count, tilted, cut, behind=0.0):
-    """A square of n x n cells; cut 1 has other cells and other diagonals than cut 0, and lies a little aside."""
+    """Returns a square of n x n cells, two triangles each. Cut 1 has other cells and other
+    diagonals than cut 0, and lies a little aside."""
     n = max(4, math.isqrt(count // 2)) - 7 * cut
     shift = 0.0123 * cut
 
@@ -78,12 +85,12 @@ def wall(count, tilted, cut, behind=0.0):
 
 
 def turned(triangles):
-    """The same triangles wound the other way, from another corner."""
+    """Returns the same triangles, wound the other way from another corner."""
     return [(c, b, a) for a, b, c in triangles]
 
 
 def scenes(count):
-    """(name, name of the single scene or None, triangles)"""
+    """Yields (name, name of the single scene or None, triangles) of each scene."""
     for name, make in (("slivers", slivers), ("sphere", sphere)):
         once = make(count)
         yield name, None, once
@@ -97,22 +104,27 @@ def scenes(count):
 
 def measure(overcast, scene, size, folder):
     stats = os.path.join(folder, "stats.json")
-    command = [overcast, "render", scene, "--size", f"{size}x{size}", "--camera", "1.3,1.1,2.2,0.5,0.5,0.5,40",
-               "--light", "3,4,5", "--quiet", "--stats", stats, "-o", os.path.join(folder, "image.png")]
+    command = [overcast, "render", scene, "--size", f"{size}x{size}",
+               "--camera", "1.3,1.1,2.2,0.5,0.5,0.5,40", "--light", "3,4,5", "--quiet",
+               "--stats", stats, "-o", os.path.join(folder, "image.png")]
     start = time.perf_counter()
     done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     seconds = time.perf_counter() - start
     if done.returncode != 0:
-        sys.exit(f"doubles.py: {overcast} failed: {(done.stderr.strip().splitlines() or ['without a word'])[-1]}")
+        said = done.stderr.strip().splitlines() or ["without a word"]
+        sys.exit(f"doubles.py: {overcast} failed: {said[-1]}")
     with open(stats) as file:
         s = json.load(file)
     rays = sum(s["rays"].values())
-    return {"kernel": s["time"]["kernel"], "trace": s["time"]["trace"], "build": s["time"]["level1"] + s["time"]["level2"],
-            "whole": seconds, "flagged": 100 * s["flagged"] / rays, "retraced": 100 * s["retraced"] / rays}
+    return {"kernel": s["time"]["kernel"], "trace": s["time"]["trace"],
+            "build": s["time"]["level1"] + s["time"]["level2"],
+            "whole": seconds, "flagged": 100 * s["flagged"] / rays,
+            "retraced": 100 * s["retraced"] / rays}
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--overcast", default="build/bin/overcast")
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--size", type=int, default=512)
@@ -130,19 +142,24 @@ def main():
                 runs.append(measure(options.overcast, path, options.size, folder))
     median = {name: {key: statistics.median(run[key] for run in runs) for key in runs[0]}
               for name, single, count, path, runs in table}
-    print(f"{options.size} x {options.size}, {options.runs} runs in turn, {os.cpu_count()} threads, medians; "
-          "(times the single scene)")
-    print("| scene | triangles | kernel s | trace s | build s | whole s | flagged % | retraced % |\n" + "|---" * 8 + "|")
+    print(f"{options.size} x {options.size}, {options.runs} runs in turn, "
+          f"{os.cpu_count()} threads, medians; (times the single scene)")
+    print("| scene | triangles | kernel s | trace s | build s | whole s | flagged % "
+          "| retraced % |\n" + "|---" * 8 + "|")
     too_slow = []
     for name, single, count, path, runs in table:
         m = median[name]
-        ratio = {key: m[key] / median[single][key] for key in ("kernel", "trace", "build", "whole")} if single else {}
-        cells = [f"{m[key]:.3f}" + (f" ({ratio[key]:.2f})" if single else "") for key in ("kernel", "trace", "build", "whole")]
-        print(f"| {name} | {count} | " + " | ".join(cells) + f" | {m['flagged']:.2f} | {m['retraced']:.2f} |")
+        ratio = {key: m[key] / median[single][key]
+                 for key in ("kernel", "trace", "build", "whole")} if single else {}
+        cells = [f"{m[key]:.3f}" + (f" ({ratio[key]:.2f})" if single else "")
+                 for key in ("kernel", "trace", "build", "whole")]
+        print(f"| {name} | {count} | " + " | ".join(cells) +
+              f" | {m['flagged']:.2f} | {m['retraced']:.2f} |")
         if single and max(ratio["trace"], ratio["whole"]) > options.most:
             too_slow.append(name)
     if too_slow:
-        sys.exit(f"doubles.py: more than {options.most} times the single scene: {', '.join(too_slow)}")
+        sys.exit(f"doubles.py: more than {options.most} times the single scene: "
+                 f"{', '.join(too_slow)}")
 
 
 if __name__ == "__main__":

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Which pixels of POV-Ray scenes are hit: povray's answer beside ours, scene by scene. docs/design/readers_compared.md says how povray's is had.
+"""Compares which pixels of POV-Ray scenes are hit, by povray and by us, scene by scene.
+docs/design/readers_compared.md says how we learn it from povray.
 
-usage: compare.py [--data DIR] [--index FILE] [--tiers AB] [--only TEXT] [--again TABLE] [--cache DIR] [--build DIR] [--jobs N] [--limit SECONDS]
-                  [--reference-only]
+usage: compare.py [--data DIR] [--index FILE] [--tiers AB] [--only TEXT] [--again TABLE]
+                  [--cache DIR] [--build DIR] [--jobs N] [--limit SECONDS] [--reference-only]
 
-DIR holds, unpacked, pov/ (data/scenes); FILE is pov_tiers.txt. What povray says is kept in --cache and not asked again. TABLE is what a former run
-printed: only scenes that were not imported, or differed, are asked about again.
+DIR holds, unpacked, pov/ (data/scenes); FILE is pov_tiers.txt. --cache keeps povray's answers, so
+that povray runs once for each scene. TABLE is the output of an earlier run, of which only the
+scenes that were not imported, or differed, run again.
 """
 import argparse
 import collections
@@ -33,7 +35,7 @@ def sky(key):
 
 
 def read_ppm(path):
-    """Width x height x 3 numbers of 16 bits, as one bytes object."""
+    """Returns the picture's width x height x 3 numbers of 16 bits, as one bytes object."""
     data = path.read_bytes()
     fields, at = [], 0
     while len(fields) < 4:
@@ -46,28 +48,34 @@ def read_ppm(path):
 
 
 def is_key(pixel):
-    """The key, raised to whatever power the scene's assumed_gamma makes of it."""
+    """Whether the pixel is the key, raised to the power that the scene's assumed_gamma causes."""
     if min(pixel) == 0 or pixel[0] == 65535:
         return False
     power = math.log(pixel[0] / 65535) / math.log(KEY[0])
-    return 0.2 < power < 5 and all(abs(p - 65535 * k ** power) <= 4 + 0.001 * p for p, k in zip(pixel, KEY))
+    return 0.2 < power < 5 and all(abs(p - 65535 * k ** power) <= 4 + 0.001 * p
+                                   for p, k in zip(pixel, KEY))
 
 
 def run_povray(arguments, folder, limit):
-    """Why povray failed; "": it did not."""
+    """Returns why povray failed, or ""."""
     command = ["povray", *arguments, "-D", "-GA", "+WT1", f"+L{folder}"]
     try:
-        done = subprocess.run(command, cwd=folder, capture_output=True, timeout=limit, preexec_fn=lambda: os.nice(10))
+        done = subprocess.run(command, cwd=folder, capture_output=True, timeout=limit,
+                              preexec_fn=lambda: os.nice(10))
     except subprocess.TimeoutExpired:
         return f"more than {limit:g} s"
     text = done.stderr.decode("utf-8", "replace")
-    return "" if done.returncode == 0 else next((line for line in text.splitlines() if "error" in line.lower()), f"exit {done.returncode}")
+    if done.returncode == 0:
+        return ""
+    return next((line for line in text.splitlines() if "error" in line.lower()),
+                f"exit {done.returncode}")
 
 
 def add_choice(parser):
-    """The arguments that say which scenes."""
+    """Adds the arguments that choose the scenes."""
     parser.add_argument("--data", type=pathlib.Path, default=ROOT / "data" / "scenes")
-    parser.add_argument("--index", type=pathlib.Path, default=ROOT.parent / "shared" / "data" / "pov_tiers.txt")
+    parser.add_argument("--index", type=pathlib.Path,
+                        default=ROOT.parent / "shared" / "data" / "pov_tiers.txt")
     parser.add_argument("--tiers", default="AB")
     parser.add_argument("--only", default="")
 
@@ -79,7 +87,7 @@ def chosen_scenes(options):
 
 
 def povray_mask(scene, cache, limit):
-    """Bytes of 0 and 1, one a pixel; or why there are none."""
+    """Returns (a byte a pixel: 0, 1 or BLACK; or None, why there are none)."""
     name = hashlib.sha1(str(scene).encode()).hexdigest()[:16]
     kept, failed = cache / (name + ".mask"), cache / (name + ".failed")
     if kept.exists():
@@ -88,7 +96,8 @@ def povray_mask(scene, cache, limit):
         return None, failed.read_text()
     wrapped, picture = cache / (name + ".pov"), cache / (name + ".ppm")
     wrapped.write_bytes(scene.read_bytes() + sky(KEY).encode())
-    error = run_povray([f"+I{wrapped}", f"+O{picture}", f"+W{WIDTH}", f"+H{HEIGHT}", "+FP16", "File_Gamma=1.0", "-A", "+Q0"], scene.parent, limit)
+    error = run_povray([f"+I{wrapped}", f"+O{picture}", f"+W{WIDTH}", f"+H{HEIGHT}", "+FP16",
+                        "File_Gamma=1.0", "-A", "+Q0"], scene.parent, limit)
     wrapped.unlink()
     if error:
         failed.write_text(error)
@@ -96,25 +105,29 @@ def povray_mask(scene, cache, limit):
     pixels = read_ppm(picture)
     picture.unlink()
     values = [256 * pixels[i] + pixels[i + 1] for i in range(0, len(pixels), 2)]
-    mask = bytes(0 if is_key(values[3 * i:3 * i + 3]) else 1 if any(values[3 * i:3 * i + 3]) else BLACK
-                 for i in range(WIDTH * HEIGHT))
+    mask = bytes(0 if is_key(pixel) else 1 if any(pixel) else BLACK
+                 for pixel in (values[3 * i:3 * i + 3] for i in range(WIDTH * HEIGHT)))
     kept.write_bytes(mask)
     return mask, ""
 
 
 def our_mask(tool, scene, limit):
-    """(mask or None, what was said, seconds)."""
+    """Returns (mask or None, the tool's messages, seconds)."""
     start = time.time()
     try:
-        done = subprocess.run([tool, scene, str(WIDTH), str(HEIGHT)], capture_output=True, timeout=limit,
-                              preexec_fn=lambda: (os.nice(10), resource.setrlimit(resource.RLIMIT_AS, (8 << 30,) * 2)))
+        done = subprocess.run([tool, scene, str(WIDTH), str(HEIGHT)], capture_output=True,
+                              timeout=limit, preexec_fn=lambda: (os.nice(10), resource.setrlimit(
+                                  resource.RLIMIT_AS, (8 << 30,) * 2)))
     except subprocess.TimeoutExpired:
         return None, f"more than {limit} s", limit
     said = done.stderr.decode("utf-8", "replace").strip()
     seconds = time.time() - start
     if done.returncode != 0:
-        lines = [line for line in said.splitlines() if not line.startswith("    ")]  # without the lines of the scene
-        return None, lines[-1] if lines and done.returncode == 1 else f"exit {done.returncode}: {said[-200:]}", seconds
+        # Indented lines quote the scene.
+        lines = [line for line in said.splitlines() if not line.startswith("    ")]
+        if lines and done.returncode == 1:
+            return None, lines[-1], seconds
+        return None, f"exit {done.returncode}: {said[-200:]}", seconds
     return done.stdout, said, seconds
 
 
@@ -127,26 +140,32 @@ def compare(scene, options, tool):
     ours, said, seconds = our_mask(tool, scene, options.limit)
     if ours is None:
         return {"scene": scene, "state": "not imported", "why": said, "seconds": seconds}
-    # What a fisheye leaves out is black in povray's picture, as is a black object.
+    # povray draws the pixels outside a fisheye's circle black, like a black object. There both a
+    # hit of ours and a pixel for which we have no ray are right.
     same = sum(a == b or (a > 0 and b == BLACK) for a, b in zip(ours, theirs)) / len(theirs)
     hit = sum(b > 0 for b in theirs) / len(theirs)
     state = "agrees" if same >= AGREE else "differs"
-    return {"scene": scene, "state": state, "why": "", "same": same, "hit": hit, "seconds": seconds, "said": said}
+    return {"scene": scene, "state": state, "why": "", "same": same, "hit": hit, "seconds": seconds,
+            "said": said}
 
 
 def show(results, data):
     print("| scene | state | hit by povray | same | s | |\n|---|---|---:|---:|---:|---|")
     for r in results:
         numbers = f"{r['hit']:.1%} | {r['same']:.2%}" if "same" in r else " | "
-        print(f"| {r['scene'].relative_to(data)} | {r['state']} | {numbers} | {r.get('seconds', 0):.2f} | {r['why']} |")
+        print(f"| {r['scene'].relative_to(data)} | {r['state']} | {numbers} "
+              f"| {r.get('seconds', 0):.2f} | {r['why']} |")
     counts = collections.Counter(r["state"] for r in results)
     judged = [r for r in results if r["state"] != "povray fails"]
     imported = [r for r in judged if r["state"] in ("agrees", "differs")]
     print("\n" + ", ".join(f"{n} {state}" for state, n in counts.most_common()))
     if judged:
-        print(f"of {len(judged)} that povray renders: {len(imported)} imported ({len(imported) / len(judged):.1%}), "
-              f"{counts['agrees']} agree on {AGREE:.0%} of the pixels ({counts['agrees'] / len(judged):.1%})")
-    reasons = collections.Counter(re.sub(r"^.*?:\d+:\d+: ", "", r["why"]) for r in results if r["state"] == "not imported")
+        print(f"of {len(judged)} that povray renders: "
+              f"{len(imported)} imported ({len(imported) / len(judged):.1%}), "
+              f"{counts['agrees']} agree on {AGREE:.0%} of the pixels "
+              f"({counts['agrees'] / len(judged):.1%})")
+    reasons = collections.Counter(re.sub(r"^.*?:\d+:\d+: ", "", r["why"]) for r in results
+                                  if r["state"] == "not imported")
     for reason, n in reasons.most_common():
         print(f"  {n} x {reason}")
 
@@ -154,8 +173,10 @@ def show(results, data):
 def main():
     parser = argparse.ArgumentParser()
     add_choice(parser)
-    parser.add_argument("--again", type=pathlib.Path, help="the table of a former run: only what failed in it")
-    parser.add_argument("--cache", type=pathlib.Path, default=pathlib.Path("/tmp/overcast-pov-masks"))
+    parser.add_argument("--again", type=pathlib.Path,
+                        help="the table of a former run: only what failed in it")
+    parser.add_argument("--cache", type=pathlib.Path,
+                        default=pathlib.Path("/tmp/overcast-pov-masks"))
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--limit", type=float, default=60, help="seconds for one scene")
@@ -165,7 +186,8 @@ def main():
     data = options.data.resolve()
     scenes = chosen_scenes(options)
     if options.again:
-        rows = [[cell.strip() for cell in line.split("|")[1:3]] for line in options.again.read_text().splitlines() if line.startswith("| pov")]
+        rows = [[cell.strip() for cell in line.split("|")[1:3]]
+                for line in options.again.read_text().splitlines() if line.startswith("| pov")]
         failed = {data / scene for scene, state in rows if state in ("not imported", "differs")}
         scenes = [scene for scene in scenes if scene in failed]
     tool = options.build / "bin" / "pov_mask"

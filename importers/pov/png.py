@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of 8 bits a channel in PNG files: enough for what povray and we write."""
+"""Reads and writes PNG files of 8 bits a channel, as far as povray's pictures and ours need it."""
 import struct
 import zlib
 
@@ -18,13 +18,15 @@ def chunks(data):
 
 
 def nearest(left, up, corner):
-    """Paeth's predictor."""
+    """Returns what Paeth's predictor says."""
     to_left, to_up, to_corner = abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)
-    return left if to_left <= to_up and to_left <= to_corner else up if to_up <= to_corner else corner
+    if to_left <= to_up and to_left <= to_corner:
+        return left
+    return up if to_up <= to_corner else corner
 
 
 def unfiltered(kind, row, above, step):
-    """Adds to each byte what its neighbours predict, in place."""
+    """Adds to each byte, in place, the value that its neighbours predict; returns the row."""
     for i in range(len(row) if kind else 0):
         left = row[i - step] if i >= step else 0
         if kind == 1:
@@ -40,13 +42,18 @@ def unfiltered(kind, row, above, step):
 
 
 def read_png(path):
-    """(width, height, width x height x 3 bytes); alpha is dropped."""
+    """Returns (width, height, width x height x 3 bytes), without alpha.
+
+    Raises ValueError for a file that is no PNG, is interlaced, has a palette or other than 8 bits
+    a channel.
+    """
     packed = b""
     for kind, data in chunks(path.read_bytes()):
         if kind == b"IHDR":
             width, height, depth, color, _, _, interlaced = struct.unpack(">IIBBBBB", data)
             if depth != 8 or color not in CHANNELS or interlaced:
-                raise ValueError(f"{path}: found a PNG of another form, expected 8 bits a channel, not interlaced")
+                raise ValueError(f"{path}: found a PNG of another form, expected 8 bits a channel, "
+                                 "not interlaced")
         elif kind == b"IDAT":
             packed += data
     step = CHANNELS[color]
@@ -64,9 +71,10 @@ def read_png(path):
 
 
 def write_png(path, width, height, pixels):
-    """pixels: width x height x 3 bytes."""
+    """Writes a picture of 8 bits a channel. pixels: width x height x 3 bytes."""
     def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        size, checksum = struct.pack(">I", len(data)), struct.pack(">I", zlib.crc32(kind + data))
+        return size + kind + data + checksum
     rows = b"".join(b"\0" + pixels[at:at + 3 * width] for at in range(0, len(pixels), 3 * width))
     path.write_bytes(MAGIC + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
                      chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))

@@ -1,9 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: AGPL-3.0-or-later
-# Builds povray-overcast: Debian's source package of POV-Ray 3.7 with povray.patch and the overcast_*.cpp beside this script.
-# usage: build.sh FOLDER        FOLDER/povray-overcast; the sources and objects go to FOLDER/povray-source
-# JOBS: how many compilers at once (nproc). CXX: such as "ccache g++". Takes some 12 minutes of one core the first time.
-# Exit 77: the source package, or what it needs to be built, is not to be had here; the last line says what is missing.
+# Builds povray-overcast: Debian's source package of POV-Ray 3.7 with povray.patch and the
+# overcast_*.cpp beside this script.
+# usage: build.sh FOLDER        FOLDER/povray-overcast; the sources and objects go to
+#                               FOLDER/povray-source
+# JOBS: how many compilers run at once (nproc). CXX: such as "ccache g++". The first build takes
+# some 12 minutes of one core.
+# Exit 77: the source package, or a package that it is built with, is not to be had here; the last
+# line says what is missing.
 set -euo pipefail
 
 version=3.7.0.10
@@ -11,7 +15,7 @@ here=$(cd "$(dirname "$(readlink -f "$0")")" && pwd)
 root=$(cd "$here/../../.." && pwd)
 
 usage() {
-    sed -n '3,6s/^# \{0,1\}//p' "$0"
+    sed -n '3,10s/^# \{0,1\}//p' "$0"
 }
 
 cannot() {
@@ -19,22 +23,27 @@ cannot() {
     exit 77
 }
 
-# Debian's source package, from where apt is told to take source packages.
+# Downloads Debian's source package from wherever apt is told to take source packages.
 fetch_source() {
     local apt=(apt-get -qq)
-    command -v apt-get >/dev/null && command -v dpkg-source >/dev/null || cannot "apt-get and dpkg-source are needed; as root, run: apt-get install dpkg-dev"
-    [[ $(id -u) -ne 0 ]] || apt+=(-o APT::Sandbox::User=root) # whose user may not write here
-    "${apt[@]}" source --download-only --only-source "povray=1:$version-2" && touch fetched && return
+    command -v apt-get >/dev/null && command -v dpkg-source >/dev/null ||
+        cannot "apt-get and dpkg-source are needed; as root, run: apt-get install dpkg-dev"
+    # As root, apt downloads as its own user, who may not write here.
+    [[ $(id -u) -ne 0 ]] || apt+=(-o APT::Sandbox::User=root)
+    "${apt[@]}" source --download-only --only-source "povray=1:$version-2" &&
+        touch fetched && return
+    local missing="apt has no source package of povray 1:$version-2 (deb-src); as root, run:"
     local sources=/etc/apt/sources.list.d/debian.sources
     if [[ -f $sources ]]; then
-        cannot "apt has no source package of povray 1:$version-2 (deb-src); as root, run: sed -i 's/^Types: deb\$/Types: deb deb-src/' $sources && apt-get update"
+        cannot "$missing sed -i 's/^Types: deb\$/Types: deb deb-src/' $sources && apt-get update"
     fi
-    cannot "apt has no source package of povray 1:$version-2 (deb-src); as root, run: sed -n 's/^deb /deb-src /p' /etc/apt/sources.list > /etc/apt/sources.list.d/deb-src.list && apt-get update"
+    cannot "$missing sed -n 's/^deb /deb-src /p' /etc/apt/sources.list\
+ > /etc/apt/sources.list.d/deb-src.list && apt-get update"
 }
 
-# As debian/rules does, but for documents and packaging.
+# Configures as debian/rules does, without documents and packaging.
 configure() {
-    mv libraries libraries.donotuse # Debian's own are used instead
+    mv libraries libraries.donotuse # Debian's own libraries are used instead.
     local macro
     for macro in unix/config/*.m4; do
         if [[ ! -h $macro && -f /usr/share/aclocal/${macro##*/} ]]; then
@@ -42,12 +51,13 @@ configure() {
         fi
     done
     (cd unix && ./prebuild.sh)
-    ./configure --prefix=/usr --sysconfdir=/etc --disable-dependency-tracking --disable-optimiz --disable-strip \
-        --with-boost-thread=boost_thread COMPILED_BY="the Overcast project, with povray.patch" \
+    ./configure --prefix=/usr --sysconfdir=/etc --disable-dependency-tracking --disable-optimiz \
+        --disable-strip --with-boost-thread=boost_thread \
+        COMPILED_BY="the Overcast project, with povray.patch" \
         CPPFLAGS="-I$root" CXXFLAGS=-O3 LIBS="$PWD/../libovercast_mesh.a -ldl"
 }
 
-# Our own files, a library beside POV-Ray's sources: quick to make anew each time.
+# Makes a library of our own files beside POV-Ray's sources, anew each time, because that is quick.
 compile_ours() {
     local source
     rm -f libovercast_mesh.a
@@ -68,14 +78,15 @@ mkdir -p "$out/povray-source"
 cd "$out/povray-source"
 compile_ours
 
-# POV-Ray with another patch is built anew.
+# When the patch has changed, POV-Ray is unpacked and configured again.
 stamp=$(sha256sum < "$here/povray.patch")
 if [[ ! -f patched || $(cat patched) != "$stamp" ]]; then
     rm -rf "povray-$version" patched
     [[ -f fetched ]] || fetch_source
     dpkg-source -x "povray_$version-2.dsc" >/dev/null
     missing=$(dpkg-checkbuilddeps "povray-$version/debian/control" 2>&1) ||
-        cannot "${missing#*error: }; as root, run: apt-get build-dep $(printf %q "$PWD/povray-$version")"
+        cannot "${missing#*error: }; as root, run: apt-get build-dep \
+$(printf %q "$PWD/povray-$version")"
     patch -d "povray-$version" -p1 --fuzz=0 < "$here/povray.patch"
     (cd "povray-$version" && configure) > configure.log 2>&1 || {
         tail -n 5 configure.log >&2
@@ -84,7 +95,7 @@ if [[ ! -f patched || $(cat patched) != "$stamp" ]]; then
     }
     echo "$stamp" > patched
 fi
-rm -f "povray-$version/unix/povray" # make does not see that our library is new
+rm -f "povray-$version/unix/povray" # because make does not see that our library is new
 make -C "povray-$version" -j "${JOBS:-$(nproc)}" > make.log 2>&1 || {
     grep -m5 -E 'error|Error' make.log >&2 || tail -n 5 make.log >&2
     echo "build.sh: compiling POV-Ray failed; all it said is in $PWD/make.log" >&2

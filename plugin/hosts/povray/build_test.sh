@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: AGPL-3.0-or-later
-# build.sh ends with 77 and a command to copy where apt has no source package, or packages to build it are missing.
+# Tests that build.sh ends with 77 and a command to copy where apt has no source package, or where
+# packages to build it are missing.
 set -euo pipefail
 
 here=$(cd "$(dirname "$(readlink -f "$0")")" && pwd)
@@ -9,13 +10,13 @@ trap 'rm -rf "$folder"' EXIT
 mkdir "$folder/bin"
 export PATH=$folder/bin:$PATH
 
-# pretend NAME: a program of this name, whose script is read from standard input
+# pretend NAME: makes a program of this name, whose script it reads from standard input.
 pretend() {
     { echo '#!/bin/sh'; cat; } > "$folder/bin/$1"
     chmod +x "$folder/bin/$1"
 }
 
-# expect TEXT: in the last line that build.sh says
+# expect TEXT: runs build.sh, whose last line must contain the text.
 expect() {
     local said code=0
     said=$("$here/build.sh" "$folder/out" 2>&1) || code=$?
@@ -26,10 +27,16 @@ expect() {
     exit 1
 }
 
-pretend compiler <<< 'for word; do case $word in *.cpp) name=${word##*/}; : > "${name%.cpp}.o" ;; esac; done'
+pretend compiler <<'END'
+for word; do case $word in *.cpp) name=${word##*/}; : > "${name%.cpp}.o" ;; esac; done
+END
 export CXX=compiler
 pretend dpkg-source <<< 'mkdir -p povray-3.7.0.10/debian'
-pretend dpkg-checkbuilddeps <<< 'echo "dpkg-checkbuilddeps: error: Unmet build dependencies: libone-dev (>= 2) libtwo | libthree" >&2; exit 1'
+pretend dpkg-checkbuilddeps <<'END'
+missing="libone-dev (>= 2) libtwo | libthree"
+echo "dpkg-checkbuilddeps: error: Unmet build dependencies: $missing" >&2
+exit 1
+END
 
 pretend apt-get <<< 'exit 100'
 expect "deb-src"
