@@ -33,8 +33,8 @@ struct TwoLevelOptions {
 Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
                                const DeviceInfo& device);
 
-/// The max bytes a triangle of a page in which planes cut nothing: a unit, and a node above every
-/// two.
+/// At most so many bytes a triangle has a page in which planes cut nothing: a unit for each, and no
+/// more nodes than units.
 inline constexpr uint64_t kMaxUncutBytesPerTriangle = 128;
 
 /// How a scene is cut where hardly anything fits. Leaves are cut by count (kdtree/partition.h), so
