@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of contenders, who of them was asked for, and how each is built.
+// The table of contenders, the choice among them, and how each is built.
 #include "host/bench/contender.h"
 
 #include "core/text/suggestion.h"
@@ -126,6 +126,7 @@ Result<std::shared_ptr<Backend>> ContenderBuilder::build(const Contender& conten
     case ContenderKind::Embree:
         return shared(make_embree_backend(soup_, contender.embree));
     case ContenderKind::FloatKdTree:
+        assert(tree_);
         return std::shared_ptr<Backend>(make_float_kd_backend(soup_, *tree_));
     case ContenderKind::CpuKdTree:
         break;
@@ -133,7 +134,8 @@ Result<std::shared_ptr<Backend>> ContenderBuilder::build(const Contender& conten
     return reference_;
 }
 
-/// Of a scene cut into as many leaves without a tight budget.
+/// Returns the bytes of all pages, measured by building the scene with these options and the
+/// device's default budget. Each number of leaves is built once.
 Result<uint64_t> ContenderBuilder::all_pages_bytes(BackendOptions options) {
     const auto known = pages_bytes_.find(options.leaves);
     if (known != pages_bytes_.end())
