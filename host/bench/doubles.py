@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What triangles in the same place cost: renders scenes of 200,000 triangles without doubles, and with.
+"""What triangles in the same place cost: renders scenes of 200,000 triangles without doubles, and
+with.
 
-usage: doubles.py [--overcast build/bin/overcast] [--runs 5] [--size 512] [--triangles 200000] [--most 1.5]
+usage: doubles.py [--overcast build/bin/overcast] [--runs 5] [--size 512] [--triangles 200000]
+                  [--most 1.5]
 
-Pairs: slivers strewn at random and a closed sphere, each written twice (as it is, and with the copy wound the
-other way from another corner); two walls along an axis and two tilted ones, cut differently, once one behind the other
-and once in one plane. One light with shadows; runs in turn. Prints a row a
-scene: medians of seconds of the kernel, of tracing, of building and of the whole program, shares of flagged and retraced
-answers; and the ratio of each doubled scene to its single one. Exits with 1 where a whole program or its tracing takes
-more than --most times the single scene's.
+Pairs: slivers strewn at random and a closed sphere, each written twice (as it is, and with the copy
+wound the other way from another corner); two walls along an axis and two tilted ones, cut
+differently, once one behind the other and once in one plane. One light with shadows; runs in turn.
+Prints a row a scene: medians of seconds of the kernel, of tracing, of building and of the whole
+program, shares of flagged and retraced answers; and the ratio of each doubled scene to its single
+one. Exits with 1 where a whole program or its tracing takes more than --most times the single
+scene's.
 """
 import argparse
 import array
@@ -61,7 +64,8 @@ def sphere(count):
 
 
 def wall(count, tilted, cut, behind=0.0):
-    """A square of n x n cells; cut 1 has other cells and other diagonals than cut 0, and lies a little aside."""
+    """Returns a square of n x n cells. Cut 1 has other cells and other diagonals than cut 0, and
+    lies a little aside."""
     n = max(4, math.isqrt(count // 2)) - 7 * cut
     shift = 0.0123 * cut
 
@@ -78,12 +82,12 @@ def wall(count, tilted, cut, behind=0.0):
 
 
 def turned(triangles):
-    """The same triangles wound the other way, from another corner."""
+    """Returns the same triangles wound the other way, from another corner."""
     return [(c, b, a) for a, b, c in triangles]
 
 
 def scenes(count):
-    """(name, name of the single scene or None, triangles)"""
+    """Yields (name, name of the single scene or None, triangles)."""
     for name, make in (("slivers", slivers), ("sphere", sphere)):
         once = make(count)
         yield name, None, once
