@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rounds of calls, and what each took.
+// Calls the contenders in rounds and takes the time of each call.
 #include "host/bench/bench.h"
 
 #include "core/system/parallel.h"
@@ -17,7 +17,7 @@ namespace {
 
 struct Answers {
     std::vector<uint64_t> names;
-    std::vector<double> distances; // none of a frame
+    std::vector<double> distances; // empty for a frame
 };
 
 Answers answers_of(const Workload& workload) {
@@ -25,16 +25,17 @@ Answers answers_of(const Workload& workload) {
 }
 
 uint64_t count_differing(std::span<const uint64_t> a, std::span<const uint64_t> b) {
-    assert(a.size() == b.size());
+    assert(a.size() == b.size()); // both are answers to the same workload
     uint64_t count = 0;
     for (size_t i = 0; i < a.size(); ++i)
         count += a[i] != b[i];
     return count;
 }
 
-/// What the kernel took, without bringing rays and answers. Of one on the CPU, its share of the CPU
-/// time a thread had: as on a machine that has nothing else to do, where that is the share of the
-/// call. A software renderer's kernel comes as CPU time already (gpu/gl/driver_threads.h).
+/// Returns the seconds of the kernel alone, without moving rays and answers. For a tree on the CPU
+/// this is the kernel's share of the call, in CPU seconds a thread: it equals wall time on an idle
+/// machine and is hardly disturbed on a busy one. The kernel time of a software renderer is CPU
+/// time already (gpu/gl/driver_threads.h).
 double kernel_alone(const ovc_statistics& before, const ovc_statistics& after, double seconds,
                     double cpu_seconds) {
     const double kernel = after.seconds_kernel - before.seconds_kernel;
@@ -44,7 +45,7 @@ double kernel_alone(const ovc_statistics& before, const ovc_statistics& after, d
     return share * cpu_seconds / double(thread_count());
 }
 
-/// Runs the workload once; its counters, and the seconds where `timed`.
+/// Runs the workload once and notes its counters in m, and its seconds where `timed`.
 Result<Done> call(const Workload& workload, Backend& backend, bool timed, Measurement& m) {
     const ovc_statistics before = backend.statistics();
     const double cpu_before = process_cpu_seconds();
@@ -83,7 +84,7 @@ public:
                 measurements.push_back({.entrant = e, .workload = w});
     }
 
-    /// False: it was stopped.
+    /// Returns false if the run was stopped.
     Result<bool> warm_up() {
         Answers right;
         for (Measurement& m : measurements) {
@@ -126,7 +127,8 @@ private:
         return Done{};
     }
 
-    /// False: stopped, before the call or in it; a call cut short is not kept.
+    /// Returns false if the run was stopped before or during the call. Such a call is not kept,
+    /// because it may have been cut short.
     Result<bool> step(Measurement& m, bool timed, const std::string& which) {
         if (stop_())
             return false;

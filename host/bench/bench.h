@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bench: contenders do the same workloads in turn, several times, within one process.
+// The bench: contenders take turns at the same workloads, several times, within one process.
 #pragma once
 
 #include "host/bench/contender.h"
@@ -14,36 +14,36 @@
 
 namespace ovc {
 
-/// A contender, built.
+/// A contender that has been built.
 struct Entrant {
     Contender contender;
     std::unique_ptr<Backend> backend;
 };
 
-/// One contender at one workload. Counters are those of its last call.
+/// The calls of one contender at one workload. Counters are those of its last call.
 struct Measurement {
-    size_t entrant = 0;
-    size_t workload = 0;
+    size_t entrant = 0;  // index in BenchResult::entrants
+    size_t workload = 0; // index in BenchResult::workloads
     uint64_t rays = 0;
     uint64_t checksum = 0;
-    uint64_t differing = 0;             // answers unlike the reference's
-    std::optional<DistanceError> error; // of rays; none of a frame
+    uint64_t differing = 0;             // answers that differ from the reference's
+    std::optional<DistanceError> error; // a frame has none
     uint64_t flagged = 0;
     uint64_t retraced = 0;
     uint64_t passes = 0;
     uint64_t bytes_in = 0;
-    std::vector<double> seconds; // from call to return, one a repeat
-    std::vector<double>
-        cpu_seconds; // of all threads: what is left on a machine that others use too
-    std::vector<double> pass_seconds;   // of seconds, passes: ovc_statistics.seconds_pass
-    std::vector<double> kernel_seconds; // the kernel alone; of a CPU tree, what a thread took
+    // One value for each timed call:
+    std::vector<double> seconds;        // wall clock, from call to return
+    std::vector<double> cpu_seconds;    // of all threads; other programs disturb it less
+    std::vector<double> pass_seconds;   // the part of `seconds` in ovc_statistics.seconds_pass
+    std::vector<double> kernel_seconds; // the kernel alone; CPU seconds a thread for a CPU tree
 };
 
 struct BenchEntrant {
     Contender contender;
     std::string renderer;
-    ovc_statistics built{}; // before any ray
-    ovc_statistics after{}; // after the last
+    ovc_statistics built{}; // before the first ray
+    ovc_statistics after{}; // after the last ray
 
     double build_seconds() const { return built.seconds_level1 + built.seconds_level2; }
 };
@@ -56,27 +56,29 @@ struct BenchResult {
     uint32_t threads = 0;
     uint32_t repeats = 0;
     double seconds_import = 0;
-    double load_before = 0; // processes that were running or waiting to, over the last minute
+    double load_before = 0; // the system's load average over one minute
     double load_after = 0;
-    bool complete = false; // false: it was interrupted
+    bool complete = false; // false: the run was interrupted
     std::vector<BenchEntrant> entrants;
     std::vector<std::string> workloads;
-    std::vector<Measurement> measurements; // workload by workload, entrants in order
+    std::vector<Measurement> measurements; // by workload, then in the order of entrants
 };
 
-/// Says what begins: "primary, certified-fragment, 2 of 5".
+/// Is told what begins: "primary, certified-fragment, 2 of 5".
 using BenchObserver = std::function<void(const std::string& what)>;
 
-/// Each entrant first does each workload once untimed, which compiles its kernels and gives its
-/// checksum, then `repeats` times timed, in turn with the others. `reference` says what is right.
-/// stop ends it after the call that is running. result: entrants, workloads, measurements and
-/// complete are filled in, also with what there is when it ends early; measurements without a timed
-/// call are left out. Error: a contender fails.
+/// Runs each workload with each entrant: once untimed, which compiles kernels and yields checksums,
+/// then `repeats` times timed, in turn with the others. `reference` answers first, and entrants'
+/// answers are compared with its answers. When stop() returns true, the run ends after the current
+/// call, whose result is dropped. Fills in entrants, workloads, repeats, measurements and complete
+/// of `result`, in a run that was stopped with the measurements so far; measurements without a
+/// timed call are left out. Error: the reference or a contender fails.
 Result<Done> run_contenders(std::vector<Entrant>& entrants, std::vector<Workload>& workloads,
                             Backend& reference, uint32_t repeats, const StopRequest& stop,
                             const BenchObserver& observe, BenchResult& result);
 
-/// A sentence about certified answers that are not the reference's; empty: there is none.
+/// Returns a sentence about the first certified contender whose answers differ from the
+/// reference's, or an empty string where all agree.
 std::string wrong_answers(const BenchResult& result);
 
 } // namespace ovc

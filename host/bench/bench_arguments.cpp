@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes, contenders, sizes and sweeps.
+// Parses and checks the scenes, contenders, sizes and sweeps that a user asks for.
 #include "host/bench/bench_arguments.h"
 
 #include "core/text/suggestion.h"
@@ -15,7 +15,7 @@
 namespace ovc {
 
 static constexpr const char* kDefaultScene = "knot";
-/// For a sweep: the device's default, which is enough for most scenes.
+/// In a sweep "all" is the device's default budget, which is enough for most scenes.
 static constexpr std::string_view kAll = "all";
 static constexpr std::string_view kAuto = "auto";
 
@@ -25,7 +25,7 @@ static constexpr std::array<std::string_view, 4> kSweeps = {"rays", "triangles",
 
 /// In the order of PicturesBy.
 static constexpr std::array<std::string_view, 2> kPictures = {"samples", "tolerance"};
-/// Beyond it the reference, four times as many, would take more than a picture may.
+/// The reference takes four times as many samples, and more would exceed a picture's limit.
 static constexpr uint64_t kMaxSamples = 1024, kDefaultSamples = 64;
 
 static constexpr std::array<std::string_view, 5> kWorkloads = {"primary", "shadow", "diffuse",
@@ -115,7 +115,7 @@ Result<std::vector<std::string>> parse_list(std::string_view option, std::string
     }
 }
 
-/// A choice for each item of the list; for no list one choice, the default.
+/// Returns a choice for each item of the list, or the default alone where there is no list.
 template <class Choice, class Parse>
 static Result<std::vector<Choice>> parse_sweep(std::string_view option, std::string_view text,
                                                const Parse& parse) {
@@ -206,7 +206,7 @@ static Result<std::vector<std::string>> workloads_of(const std::string& words) {
     return names;
 }
 
-/// The file for JSON can be written and is none of the scenes.
+/// Checks that the file for JSON can be written and is not one of the scenes.
 static Result<Done> check_json(const BenchJob& job) {
     if (job.json.empty() || job.json == "-")
         return Done{};
@@ -215,7 +215,7 @@ static Result<Done> check_json(const BenchJob& job) {
     std::vector<NamedFile> files = {{"JSON", job.json}};
     for (const std::string& scene : job.scenes)
         if (!is_test_scene(scene)) {
-            files.resize(1); // the same scene may come twice
+            files.resize(1); // scenes are not compared with each other: one may come twice
             files.push_back({"input", scene});
             if (const Result<Done> fine = check_distinct(files); !fine)
                 return fine;
@@ -252,7 +252,7 @@ static bool takes_most(const BenchWords& words, BenchKind kind) {
            (kind == BenchKind::Pictures && words.pictures == kPictures[0]);
 }
 
-/// Which of them is asked for, and that what goes with the others is not.
+/// Finds out which kind is asked for, and refuses options that belong to another kind.
 static Result<Done> understand_kind(const BenchWords& words, BenchJob& job) {
     const char* option = words.bars               ? "--bars"
                          : words.programs         ? "--programs"

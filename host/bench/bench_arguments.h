@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `overcast bench` is asked to do, from its words.
+// Turns the command line of `overcast bench` into a job.
 #pragma once
 
 #include "host/arguments/arguments.h"
@@ -11,13 +11,13 @@
 
 namespace ovc {
 
-/// What is measured: contenders over scenes, the table of bars, whole programs, how cost grows, or
-/// what pictures cost and how wrong they are.
+/// What the bench measures: contenders over scenes, the table of bars, whole programs, how cost
+/// grows, or what pictures cost and how wrong they are.
 enum class BenchKind { Contenders, Bars, Programs, Sweep, Pictures };
 enum class SweepOver { Rays, Triangles, Leaves, Budget };
 enum class PicturesBy { Samples, Tolerance };
 
-/// The words as given.
+/// The command line as the user gave it.
 struct BenchWords {
     std::vector<std::string> scenes;
     bool bars = false;
@@ -27,7 +27,7 @@ struct BenchWords {
     std::string most;
     std::string only;
     std::string workloads;
-    std::string size; // empty: 1024x1024, of programs 512x512, of pictures 256x256
+    std::string size; // empty: 1024x1024; 512x512 for programs, 256x256 for pictures
     std::string repeats = "5";
     std::string leaves;
     std::string gpu_memory;
@@ -46,7 +46,7 @@ struct BenchJob {
     BenchKind kind = BenchKind::Contenders;
     SweepOver sweep = SweepOver::Rays;
     PicturesBy pictures = PicturesBy::Samples;
-    uint64_t most = UINT64_MAX;         // of rays, triangles or leaves of a sweep; of samples
+    uint64_t most = UINT64_MAX;         // max rays, triangles or leaves of a sweep, or samples
     std::vector<std::string> workloads; // empty: all but edges
     std::vector<std::string> scenes;
     ImageSize size;
@@ -56,20 +56,22 @@ struct BenchJob {
     std::string json; // a file, "-" for standard output, or empty
 };
 
-/// Everything that can be wrong before a scene is read.
+/// Returns the job, with defaults filled in. Error: a sentence about anything that can be found
+/// wrong before a scene is read.
 Result<BenchJob> understand_bench(const BenchWords& words);
 
-/// "a,b,c" without its commas. Error: an empty item. option: named in the error.
+/// Returns the items of a list such as "a,b,c". Error: an empty item; the sentence names `option`.
 Result<std::vector<std::string>> parse_list(std::string_view option, std::string_view text);
 
-/// "8,32,auto"; auto, and empty: the plugin's own choice.
+/// Returns the choices of a list such as "8,32,auto". The item "auto" is the plugin's own choice,
+/// and so is an empty text.
 Result<std::vector<LeavesChoice>> parse_leaves_sweep(std::string_view text);
 
-/// "all,12M,50%": as `overcast render` takes them, and all for the device's default; empty: that
-/// alone.
+/// Returns the choices of a list such as "all,12M,50%". Sizes are those of `overcast render`; "all"
+/// is the device's default, and so is an empty text.
 Result<std::vector<BudgetChoice>> parse_memory_sweep(std::string_view text);
 
-/// "all,30%": shares of the bytes of all pages.
+/// Returns the choices of a list such as "all,30%", shares of the bytes of all pages.
 Result<std::vector<BudgetChoice>> parse_resident_sweep(std::string_view text);
 
 } // namespace ovc

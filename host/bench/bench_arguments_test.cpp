@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What bench is asked for: names, lists, sweeps, and what is wrong with them.
+// Tests what users ask of bench: names, lists, sweeps, and mistakes in them.
 #include "host/bench/bench_arguments.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command with the plugin: certified contenders answer alike, whatever the sweep.
+// Runs the command with the plugin: certified contenders answer alike, whatever the sweep.
 #include "host/backend/plugin_loader.h"
 #include "host/command/command.h"
 #include "host/terminal/interrupt.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bench for programs: everything that the tables show, and each single time.
+// Writes a bench's result as JSON: everything that the tables show, and each single time.
 #include "host/bench/bench_text.h"
 #include "host/bench/ratios.h"
 

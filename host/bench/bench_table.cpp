@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bench for people: a table of who was built and one a workload.
+// Writes a bench's result for people: a table of what was built and one for each workload.
 #include "host/arguments/memory_size.h"
 #include "host/bench/bench_text.h"
 #include "host/bench/ratios.h"
@@ -117,7 +117,7 @@ bool has_sweep(const BenchResult& r) {
     return false;
 }
 
-/// Empty where nothing was timed.
+/// Returns an empty string where nothing was timed.
 std::string work_table(const BenchResult& r, size_t workload) {
     const bool sweep = has_sweep(r);
     std::vector<TextRow> rows;

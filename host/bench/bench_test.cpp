@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Taking turns, counting what differs, and stopping, with backends that answer what they are told.
+// Tests turns, counts of differing answers and stopping, with backends whose answers are scripted.
 #include "host/bench/bench.h"
 
 #include "core/system/parallel.h"
@@ -80,13 +80,13 @@ TEST_F(RunContenders, TakeTurns) {
         EXPECT_EQ(m.cpu_seconds.size(), 2u);
         EXPECT_THAT(m.pass_seconds, testing::ElementsAre(0.5, 0.5));
         EXPECT_THAT(m.kernel_seconds, testing::ElementsAre(0.25, 0.25));
-        EXPECT_EQ(m.passes, 2u); // of one call, not of all
+        EXPECT_EQ(m.passes, 2u); // those of one call, not the sum
         EXPECT_EQ(m.flagged, 3u);
     }
     EXPECT_EQ(result.entrants[1].renderer, "scripted b");
 }
 
-/// Works for 20 ms on a CPU, and waits for 200, as where others take it.
+/// Works for 20 ms on a CPU and sleeps for 200 ms, as if other programs had taken the CPU.
 class Interrupted final : public Backend {
 public:
     Result<Done> intersect(std::span<const Ray>, std::span<const TriangleId>,
@@ -125,7 +125,7 @@ TEST_F(RunContenders, CountAnswersUnlikeTheReferences) {
     EXPECT_EQ(result.measurements[1].differing, 5u);
     EXPECT_NE(result.measurements[0].checksum, result.measurements[1].checksum);
     EXPECT_EQ(result.measurements[0].checksum, checksum(std::vector<uint64_t>(5, 7)));
-    // Only certified answers are promised.
+    // Only certified answers are promised to be right.
     result.entrants[1].contender.kind = ContenderKind::Embree;
     EXPECT_EQ(wrong_answers(result), "");
     result.entrants[1].contender.kind = ContenderKind::TwoLevel;
@@ -138,7 +138,7 @@ TEST_F(RunContenders, KeepWhatIsDoneWhenStopped) {
     enter("a", 7);
     enter("b", 7);
     workloads.push_back(ray_workload({"rays", RayQuery::Nearest, std::vector<Ray>(3)}));
-    // The call that is running then is not kept: b has one timed call, a two.
+    // The call during which the run is stopped is not kept: a has two timed calls, b has one.
     ASSERT_TRUE(run(5, [&] { return calls.size() >= 7; }));
     EXPECT_FALSE(result.complete);
     ASSERT_EQ(result.measurements.size(), 2u);
@@ -184,7 +184,7 @@ TEST(DistanceError, IsRelativeAndOfWhatBothHit) {
 }
 
 TEST(Checksum, IsFnv1a) {
-    // The 8 bytes of "foobar!!", by a program of a few lines of Python.
+    // The hash of the 8 bytes of "foobar!!" was computed by a few lines of Python.
     EXPECT_EQ(checksum(std::vector<uint64_t>{0x21217261626f6f66u}), 0x745faceb4ecb0edeu);
     EXPECT_EQ(checksum({}), 0xcbf29ce484222325u);
     EXPECT_NE(checksum(std::vector<uint64_t>{1, 2}), checksum(std::vector<uint64_t>{2, 1}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bench's result as tables for people and as JSON for programs (docs/benchmarks.md).
+// Writes a bench's result as tables for people and as JSON for programs (docs/benchmarks.md).
 #pragma once
 
 #include "host/bench/bench.h"
@@ -9,10 +9,11 @@
 
 namespace ovc {
 
-/// Markdown, with a line end.
+/// Returns Markdown that ends with a line end.
 std::string bench_table(const BenchResult& result);
 
-/// One document for all scenes, with a line end. What a contender does not have is null.
+/// Returns one document for all scenes, with a line end. Values that a contender does not have are
+/// null.
 std::string bench_json(std::span<const BenchResult> results);
 
 } // namespace ovc

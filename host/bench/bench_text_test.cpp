@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables and JSON: they say the same, and what the document lists.
+// Tests that tables and JSON agree, and that JSON has the keys that docs/benchmarks.md lists.
 #include "host/bench/bench_text.h"
 #include "host/bench/ratios.h"
 
@@ -50,7 +50,7 @@ BenchResult example() {
     return result;
 }
 
-/// The cells of the lines of a table that begin with a contender's name.
+/// Returns the cells of the table whose first column is headed by `head`, with its header first.
 std::vector<std::vector<std::string>> rows_of(const std::string& text, const std::string& head) {
     std::vector<std::vector<std::string>> rows;
     std::istringstream lines(text);
@@ -70,7 +70,7 @@ std::vector<std::vector<std::string>> rows_of(const std::string& text, const std
     return rows;
 }
 
-/// The cell under `title`, of a row of rows_of; "" where there is no such column.
+/// Returns the cell under `title` in a row of rows_of(), or "" where there is no such column.
 std::string cell(const std::vector<std::vector<std::string>>& rows, size_t row, const char* title) {
     const auto at = std::find(rows[0].begin(), rows[0].end(), title);
     return at == rows[0].end() ? "" : rows[row][size_t(at - rows[0].begin())];
@@ -162,7 +162,7 @@ TEST(BenchText, EveryKeyIsDocumented) {
     const nlohmann::json flat = nlohmann::json::parse(bench_json(std::vector{example()})).flatten();
     for (const auto& [path, value] : flat.items()) {
         std::string key = path;
-        while (std::isdigit(key.back())) // the place in a list
+        while (std::isdigit(key.back())) // the index in a list
             key.resize(key.rfind('/'));
         EXPECT_THAT(text, testing::HasSubstr(fmt::format("`{}`", key.substr(key.rfind('/') + 1))))
             << path;

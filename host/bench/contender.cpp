@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of contenders, who of them was asked for, and how each is built.
+// The table of contenders, the choice among them, and how each is built.
 #include "host/bench/contender.h"
 
 #include "core/text/suggestion.h"
@@ -128,7 +128,8 @@ Result<std::unique_ptr<Backend>> ContenderBuilder::build(const Contender& conten
     return make_cpu_backend(soup_, *tree_, tree_seconds_);
 }
 
-/// Of a scene cut into as many leaves without a tight budget.
+/// Returns the bytes of all pages, measured by building the scene with these options and the
+/// device's default budget. Each number of leaves is built once.
 Result<uint64_t> ContenderBuilder::all_pages_bytes(BackendOptions options) {
     const auto known = pages_bytes_.find(options.leaves);
     if (known != pages_bytes_.end())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contender: who is timed. Two-level in each precision and kernel, under each of the settings that
-// are swept; the systems of the thesis; and the peers on the CPU.
+// A Contender is a backend with settings that the bench times: two-level in each precision and
+// kernel, under each of the settings that are swept; the systems of the thesis; peers on the CPU.
 #pragma once
 
 #include "core/result.h"
@@ -18,15 +18,15 @@ namespace ovc {
 
 enum class ContenderKind { TwoLevel, Thesis, CpuKdTree, FloatKdTree, Embree };
 
-/// A value of a sweep over the plugin's settings, and the words it was asked for with; empty: not
-/// asked.
+/// Values of sweeps over the plugin's settings. `words` is how the user asked for the value; it is
+/// empty where the user asked for none.
 struct LeavesChoice {
     uint32_t leaves = 0;
     std::string words;
 };
 struct BudgetChoice {
     MemorySize memory;      // neither bytes nor share: the device's default
-    double pages_share = 0; // instead, where above 0: of the bytes of all pages
+    double pages_share = 0; // above 0: a share of the bytes of all pages, instead of `memory`
     std::string words;
 };
 
@@ -38,26 +38,26 @@ struct Contender {
     EmbreeMode embree = EmbreeMode::Medium;
     LeavesChoice leaves;
     BudgetChoice budget;
-    BackendKind backend = BackendKind::TwoLevel; // on the GPU: which
+    BackendKind backend = BackendKind::TwoLevel; // read where on_gpu()
 
-    /// The name, and the words of its sweep: "certified-fragment, 8 leaves, budget 12M".
+    /// Returns the name with the values of its sweep: "certified-fragment, 8 leaves, budget 12M".
     std::string label() const;
     bool on_gpu() const { return kind == ContenderKind::TwoLevel || kind == ContenderKind::Thesis; }
     bool certified() const { return on_gpu() && precision == OVC_PRECISION_CERTIFIED; }
 };
 
-/// All names, in the order of the table.
+/// Returns all names, in the order of the table in contender.cpp.
 std::vector<std::string_view> contender_names();
 
-/// only: names, or their first words ("certified", "embree"); empty: all that this program was
-/// built with, but the systems of the thesis, some of which take long to build. Each contender of
-/// two-level comes once for each pair of leaves and budget; both
-/// lists have at least one value. Error: a name that there is none of.
+/// Returns the contenders that `only` asks for, by names or their first words ("certified",
+/// "embree"). An empty `only` asks for all that this program was built with, except the systems of
+/// the thesis, some of which take long to build. Each two-level contender comes once for each pair
+/// of leaves and budget; both lists have at least one value (asserted). Error: an unknown name.
 Result<std::vector<Contender>> choose_contenders(std::span<const std::string> only,
                                                  std::span<const LeavesChoice> leaves,
                                                  std::span<const BudgetChoice> budgets);
 
-/// Builds contenders over one soup, which outlives them.
+/// Builds contenders over one soup, which must outlive them.
 class ContenderBuilder {
 public:
     /// tree: over the soup, for the contenders cpu-kdtree and cpu-float-kdtree, which it outlives;
@@ -78,7 +78,7 @@ private:
     std::map<uint32_t, uint64_t> pages_bytes_; // by leaves
 };
 
-/// Whether this program was built with Embree.
+/// Returns whether this program was built with Embree.
 bool has_embree();
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tree of the CPU KDT, rounded to float32 and packed.
+// Rounds the tree of the CPU KDT to float32, packs it and traverses it.
 #include "host/bench/float_kd_tree.h"
 
 #include "core/system/parallel.h"
@@ -14,11 +14,10 @@ namespace ovc {
 
 namespace {
 
-/// A KdNode in 8 bytes: the plane or the first reference, and the axis (3: a leaf) below the node
-/// above or the count.
+/// A KdNode in 8 bytes.
 struct FloatNode {
-    uint32_t value;
-    uint32_t bits;
+    uint32_t value; // the split plane's float, or a leaf's first reference
+    uint32_t bits;  // low 2 bits: the axis, 3 for a leaf; the rest: the node above, or the count
 
     explicit FloatNode(const KdNode& node) {
         if (node.is_leaf()) {
@@ -70,7 +69,7 @@ public:
             references_.push_back(first_of_mesh[id.mesh] + id.prim);
     }
 
-    /// The nearest hit, or with kAnyHit any.
+    /// Returns the nearest hit, or any hit with kAnyHit.
     template <bool kAnyHit>
     Hit trace(const Ray& from, TriangleId skip) const {
         FloatRay ray(from);
@@ -82,7 +81,7 @@ public:
             uint32_t node;
             float enter, exit;
         };
-        std::array<Entry, 128> stack; // deeper than any tree of kdtree/build.cpp
+        std::array<Entry, 128> stack; // trees of kdtree/build.cpp are at most 96 deep
         int top = 0;
         for (uint32_t node = 0;;) {
             while (!nodes_[node].is_leaf()) {
@@ -108,7 +107,7 @@ public:
                 return hit;
             const Entry next = stack[size_t(--top)];
             if (next.enter > ray.t_max)
-                return hit; // what is left on the stack begins later still
+                return hit; // all other cells on the stack begin later still
             node = next.node;
             enter = next.enter;
             exit = next.exit;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A peer for the bench: a KD-tree as a renderer on the CPU has it, in float32, one ray at a time.
-// Nothing is certified; it is as fast as that is, not as right. Based on: Pharr and Humphreys 2010,
-// section 4.4 (8-byte nodes, traversal); Moeller and Trumbore 1997 (triangles).
+// A peer for the bench: a KD-tree such as renderers on the CPU have, in float32, one ray at a time.
+// It shows how fast such a tree is; its answers are not certified. Based on: Pharr and Humphreys
+// 2010, section 4.4 (8-byte nodes, traversal); Moeller and Trumbore 1997 (triangles).
 #pragma once
 
 #include "host/backend/backend.h"
@@ -9,7 +9,9 @@
 
 namespace ovc {
 
-/// tree: of build_kd_tree() over the soup; it may go afterwards. Its time to build is not counted.
+/// Returns a backend that has copied what it needs of the soup and of `tree`, which
+/// build_kd_tree() made over the soup; neither needs to outlive it. Its statistics count no time to
+/// build.
 std::unique_ptr<Backend> make_float_kd_backend(const Soup& soup, const KdTree& tree);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The float tree misses a hit here and there, and is otherwise the tree in double.
+// Tests that the float tree answers as the tree in double does, except for a few hits.
 #include "host/bench/float_kd_tree.h"
 
 #include "kdtree/build.h"
@@ -37,7 +37,7 @@ TEST(FloatKdTree, AnswersNearlyAsTheTreeInDouble) {
             if (expected[i].id == found[i].id && found[i].is_hit()) {
                 EXPECT_NEAR(expected[i].t, found[i].t, 1e-4) << "ray " << i;
             }
-            skip[i] = expected[i].id; // the second round looks behind the first hit
+            skip[i] = expected[i].id; // rays of the second round go on behind their first hit
         }
         EXPECT_GT(hits, rays.size() / 4) << "round " << round;
         EXPECT_LT(other, rays.size() / 500) << "round " << round;

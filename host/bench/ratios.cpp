@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Medians and their quotients.
+// Takes medians and divides them.
 #include "host/bench/ratios.h"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ double kernel_seconds(const Measurement& m) {
     return kernel > 0 ? kernel : call_seconds(m);
 }
 
-/// At the same workload.
+/// Returns the first measurement of a matching contender at the workload of m, or null.
 static const Measurement* find(const BenchResult& result, const Measurement& m,
                                const std::function<bool(const Contender&)>& matches) {
     for (const Measurement& other : result.measurements)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a bench's seconds mean: medians, rates, and how contenders compare.
+// Computes medians and rates from a bench's seconds, and ratios between contenders.
 #pragma once
 
 #include "host/bench/bench.h"
@@ -11,29 +11,30 @@ namespace ovc {
 
 struct Spread {
     double min = 0;
-    double median = 0; // of an even count the mean of the two in the middle
+    double median = 0; // the mean of the two in the middle where the count is even
     double max = 0;
 };
 
-/// values: at least one (asserted).
+/// Returns min, median and max of `values`, at least one (asserted).
 Spread spread_of(std::span<const double> values);
 
-/// Million rays a second; nothing where no time was taken.
+/// Returns million rays a second, or nothing where `seconds` is not above 0.
 std::optional<double> mrays(const Measurement& m, double seconds);
 
-/// What a contender takes to answer rays that are where it wants them: a median. Of the plugin the
-/// kernel alone, of Embree what its own functions take; of the others the whole call. Of those that
-/// run on the CPU, software renderers included, CPU seconds of a thread.
+/// Returns the median seconds that a contender takes once rays lie where it wants them: the kernel
+/// alone for the plugin, its own functions for Embree, the whole call for others. For contenders on
+/// the CPU, software renderers included, these are CPU seconds of a thread.
 double kernel_seconds(const Measurement& m);
-/// Median of its calls.
+/// Returns the median of the calls' wall-clock seconds.
 double call_seconds(const Measurement& m);
 
-/// The peer's kernel seconds over these, at the same workload. Nothing where the peer did not take
-/// part.
+/// Returns the peer's kernel seconds divided by those of m, at the same workload, or nothing where
+/// the peer did not take part.
 std::optional<double> kernel_speed_to(const BenchResult& result, const Measurement& m,
                                       std::string_view peer);
 
-/// Of medians, at the same workload. Nothing where the other did not take part.
+/// Ratios of medians between contenders at the same workload. A ratio is empty where the other
+/// contender did not take part.
 struct Ratios {
     std::optional<double> call_speed_to_robust; // embree-robust's time over this one's
     std::optional<double> kernel_speed_to_robust;
@@ -41,16 +42,18 @@ struct Ratios {
     std::optional<double> call_time_to_fast; // this one's time over fast's: same kernel, same sweep
     std::optional<double> kernel_time_to_fast;
     std::optional<double> cpu_time_to_fast;
-    std::optional<double> call_time_to_first; // over that of the first values of its sweep
+    std::optional<double> call_time_to_first; // over the time at the first value of its sweep
     std::optional<double> kernel_time_to_first;
 };
 
 Ratios ratios_of(const BenchResult& result, const Measurement& m);
 
-/// Its build time over that of embree-medium.
+/// Returns the entrant's build time divided by that of embree-medium, or nothing where that did not
+/// take part.
 std::optional<double> build_time_to_embree(const BenchResult& result, const BenchEntrant& entrant);
 
-/// Bytes of all pages a triangle; nothing for who has no pages.
+/// Returns the bytes of all pages divided by the triangles, or nothing for a contender without
+/// pages.
 std::optional<double> bytes_a_triangle(const BenchResult& result, const BenchEntrant& entrant);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Medians, rates, and which of two times is divided by which.
+// Tests medians, rates, and which of two times is divided by which.
 #include "host/bench/ratios.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera rays in tiles, and what follows from where they hit.
+// Makes camera rays, and the shadow, diffuse and edge rays that follow from their hits.
 #include "host/bench/ray_sets.h"
 
 #include "core/box.h"
@@ -14,8 +14,7 @@
 
 namespace ovc {
 
-/// How far off the surface rays begin, in diagonals of the scene: about a hundred float32
-/// roundings.
+/// Rays begin so many diagonals of the scene off the surface: about a hundred float32 roundings.
 static constexpr double kLiftOff = 1e-5;
 static constexpr uint64_t kSeed = 1;
 
@@ -29,8 +28,8 @@ static std::vector<Ray> camera_rays(const Camera& camera, uint32_t width, uint32
     return rays;
 }
 
-/// Shirley and Chiu 1997: a point on the unit sphere around the normal's tip is, seen from its
-/// foot, distributed as the cosine.
+/// Returns a direction distributed as the cosine to the normal: a uniform point on the unit sphere
+/// around the normal's tip, seen from its foot (Shirley and Chiu 1997).
 static dvec3 cosine_direction(const dvec3& normal, uint32_t pixel) {
     Random random(kSeed, pixel);
     const dvec3 direction = normal + random.direction();
@@ -65,7 +64,7 @@ Result<std::vector<RaySet>> make_ray_sets(const Scene& scene, const Camera& came
     return std::vector<RaySet>{std::move(primary), std::move(shadow), std::move(diffuse)};
 }
 
-/// A corner, or as often a point between it and the next.
+/// Returns a corner or, as often, a point between a corner and the next.
 static dvec3 target_of(const Triangle& triangle, Random& random) {
     const uint32_t corner = random.below(3);
     const double along = random.chance(0.5) ? 0 : random.uniform();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rays that contenders are timed with: what a renderer would ask first, made once for all.
+// Makes the rays that contenders are timed with: those that a renderer would trace first.
 #pragma once
 
 #include "core/ray.h"
@@ -21,25 +21,24 @@ struct RaySet {
     std::vector<Ray> rays;
 };
 
-/// Three sets, in the order of pixel_order:
+/// Returns three sets, each in the order of pixel_order():
 ///   primary   the nearest hit, one ray through the centre of each pixel;
 ///   shadow    occlusion, one ray from each hit pixel to the scene's first light;
-///   diffuse   the nearest hit, one ray from each hit pixel, distributed as the cosine to its
-///   normal.
-/// `reference` answers the primary rays that the other two begin at. The same scene, camera and
-/// size give the same rays bit for bit. Rays begin a little off the surface, farther than float32
-/// errs, so that no contender needs to be told which triangle to skip. The scene has a light
-/// (asserted).
+///   diffuse   the nearest hit, one ray from each hit pixel, cosine-distributed about the normal.
+/// `reference` answers the primary rays, and the other two sets begin at its hits. The same scene,
+/// camera and size give the same rays bit for bit. Rays begin a little off the surface, farther
+/// than float32 errs, so that no contender needs to be told which triangle to skip. The scene has a
+/// light (asserted). Error: `reference` fails.
 Result<std::vector<RaySet>> make_ray_sets(const Scene& scene, const Camera& camera, uint32_t width,
                                           uint32_t height, Backend& reference);
 
-/// "edges": the nearest hit, one ray from each pixel that hits, from the camera at a corner of the
-/// triangle there or a point of its edges: what falls through where neighbours do not meet. Where
-/// the camera is, and what is said above, hold.
+/// Returns the set "edges": nearest hits of one camera ray for each hit pixel, aimed at a corner of
+/// the triangle there or at a point of its edges. Such rays slip through where neighbouring
+/// triangles do not meet. `reference`, order and determinism are as above; no light is needed.
 Result<RaySet> make_edge_set(const Scene& scene, const Camera& camera, uint32_t width,
                              uint32_t height, Backend& reference);
 
-/// The first of them alone, named after how many rays it has: "primary 1,024".
+/// Returns the primary set alone, named after the number of its rays: "primary 1,024".
 RaySet make_primary_set(const Camera& camera, uint32_t width, uint32_t height);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bench's rays: the same on every run, and where geometry says they must be.
+// Tests that the bench's rays are the same on every run and lie where geometry says.
 #include "host/bench/ray_sets.h"
 #include "host/camera/camera.h"
 #include "host/scene/scene_summary.h"
@@ -69,7 +69,7 @@ TEST(RaySets, ShadowRaysEndAtTheLight) {
     }
 }
 
-/// Whoever leaves a convex body outwards never meets it again, least of all where the ray begins.
+/// A ray that leaves a convex body outwards never meets it again, not even where it begins.
 TEST(RaySets, BouncesLeaveAConvexBody) {
     const Scene scene = lit("sphere-4");
     const RaySet diffuse = std::move(sets_of(scene)[2]);
@@ -79,12 +79,12 @@ TEST(RaySets, BouncesLeaveAConvexBody) {
         EXPECT_FALSE(hits[i].is_hit()) << "ray " << i;
 }
 
-/// How far a ray passes a point.
+/// Returns the distance at which a ray passes a point.
 double distance(const Ray& ray, dvec3 point) {
     return glm::length(glm::cross(glm::normalize(ray.dir), point - ray.org));
 }
 
-/// On a convex body what is aimed at is hit, but for the few edges that it is seen along.
+/// Rays hit the edges of a convex body that they aim at, except a few on its silhouette.
 TEST(RaySets, RaysAtEdgesHitWhatTheyAimAt) {
     const Scene scene = lit("sphere-3");
     const Camera camera = framing_camera(hittable_bounds(scene.soup), kWidth, kHeight);
@@ -112,7 +112,8 @@ TEST(RaySets, RaysAtEdgesHitWhatTheyAimAt) {
     EXPECT_LT(at_corners, hits.size() * 2 / 3);
 }
 
-/// The mean of the cosine, of directions distributed as the cosine, is 2/3; its deviation 0.236.
+/// The cosine of directions that are distributed as the cosine has the mean 2/3 and the standard
+/// deviation 0.236.
 TEST(RaySets, BouncesAreDistributedAsTheCosine) {
     Scene scene;
     scene.add_mesh(

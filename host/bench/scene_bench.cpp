@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the name of a scene to what everyone took.
+// Runs the bench of one scene, from the scene's name to the times of all contenders.
 #include "host/bench/scene_bench.h"
 
 #include "core/system/parallel.h"
@@ -26,7 +26,8 @@ double load_average() {
     return getloadavg(&load, 1) == 1 ? load : 0;
 }
 
-/// The scene's own camera and lights, or those that `overcast render` would add.
+/// Returns the scene's own camera, or the one that `overcast render` would place, and gives the
+/// scene the lights that `overcast render` would use. Error: the camera cannot be used.
 Result<Camera> dress(Scene& scene, const ImageSize& size) {
     const Camera camera =
         scene.camera ? *scene.camera
@@ -65,7 +66,7 @@ Result<std::vector<Workload>> workloads_of(const Scene& scene, const Camera& cam
     return workloads;
 }
 
-/// Fewer than asked for where it was stopped.
+/// Returns the contenders, built; fewer than asked for where the run was stopped.
 Result<std::vector<Entrant>> build_entrants(const SceneBench& job, ContenderBuilder& builder,
                                             const BenchSurroundings& around) {
     std::vector<Entrant> entrants;
@@ -81,7 +82,7 @@ Result<std::vector<Entrant>> build_entrants(const SceneBench& job, ContenderBuil
     return entrants;
 }
 
-/// The CPU KDT and its tree, where it is the reference.
+/// The CPU KDT and its tree; both null where the first contender is the reference.
 struct Reference {
     std::unique_ptr<const KdTree> tree;
     double tree_seconds = 0;
@@ -100,7 +101,7 @@ Reference make_reference(const SceneBench& job, const Soup& soup, const BenchSur
     return reference;
 }
 
-/// The rest, once the scene is there.
+/// Builds the reference and the contenders over the scene and runs them.
 Result<Done> bench_soup(const SceneBench& job, const Scene& scene, const Camera& camera,
                         const BenchSurroundings& around, BenchResult& result) {
     const Reference reference = make_reference(job, scene.soup, around);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bench of one scene: it is read, dressed with a camera and lights, contenders are built over it
-// and asked in turn.
+// Benches one scene: reads it, gives it a camera and lights where it has none, builds contenders
+// over it and times them in turn.
 #pragma once
 
 #include "core/system/log.h"
@@ -14,38 +14,38 @@ namespace ovc {
 
 class TerminalLine;
 
-/// Which rays contenders are asked.
+/// The workloads of a bench.
 struct Asked {
-    /// Keeps those workloads alone that have these names; empty: all that is asked for below.
+    /// The names of workloads to keep of those asked for below; empty: all of them.
     std::vector<std::string> only;
     ImageSize size;
     bool ray_sets = true; // primary, shadow, diffuse
     bool frame = true;
     bool edges = false;                  // rays at edges and corners
-    std::vector<uint32_t> primary_sides; // besides: camera rays of squares of so many pixels a side
+    std::vector<uint32_t> primary_sides; // also camera rays of squares of so many pixels a side
 };
 
 struct SceneBench {
-    std::string scene;
-    std::string model; // of scenes that show one; or empty
+    std::string scene; // a file, or a test scene's name
+    std::string model; // a file, for test scenes that show a model; or empty
     Asked asked;
     uint32_t repeats = 5;
     std::vector<Contender> contenders;
     std::string device;
-    /// The first contender says what is right, instead of the CPU KDT, which takes minutes to build
+    /// The first contender is the reference, instead of the CPU KDT, which takes minutes to build
     /// over tens of millions of triangles.
     bool first_is_reference = false;
 };
 
-/// What a run of the bench has to do with its surroundings.
+/// The ways in which a run of the bench talks to its user.
 struct BenchSurroundings {
     const StopRequest& stop;
     const LogSink& log;
     TerminalLine& progress;
 };
 
-/// complete is false where it was stopped. Error: a scene that cannot be read, a contender that
-/// fails.
+/// Returns the result; `complete` is false where the run was stopped. Error: a scene that cannot be
+/// read, a contender that fails.
 Result<BenchResult> bench_scene(const SceneBench& job, const BenchSurroundings& around);
 
 } // namespace ovc

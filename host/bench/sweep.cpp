@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sweeps as benches whose scenes, rays or contenders grow, and the line through their logarithms.
+// Runs a sweep as benches whose scenes, rays or contenders grow, and fits a line to logarithms.
 #include "host/bench/sweep.h"
 
 #include "host/arguments/memory_size.h"
@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace ovc {
@@ -51,7 +52,7 @@ constexpr uint64_t sphere_triangles(uint32_t n) {
     return uint64_t(20) << 2 * n;
 }
 
-/// A row for each workload, which are named after their rays; a column for each contender.
+/// Returns a row for each workload, which is named after its rays, and a column for each contender.
 Result<Sweep> over_rays(const BenchJob& job, const BenchSurroundings& around) {
     Asked asked{.size = job.size, .ray_sets = false, .frame = false};
     for (const uint32_t side : kSides)
@@ -75,7 +76,8 @@ Result<Sweep> over_rays(const BenchJob& job, const BenchSurroundings& around) {
     return sweep;
 }
 
-/// A row for each entrant; columns: what building made, then the calls.
+/// Returns a row for each entrant. Its columns are the build, the calls of each workload, and the
+/// passes and bytes of the last workload.
 Sweep by_entrant(const BenchResult& r, std::string over,
                  const std::function<double(const BenchEntrant&)>& x) {
     Sweep sweep{r.scene, std::move(over), {"build s"}, {}, r.complete};
@@ -90,7 +92,7 @@ Sweep by_entrant(const BenchResult& r, std::string over,
     for (const Measurement& m : r.measurements) {
         std::vector<std::optional<double>>& values = sweep.rows[m.entrant].values;
         values[1 + m.workload] = call_seconds(m);
-        const size_t passes = values.size() - 2; // of the last workload at last
+        const size_t passes = values.size() - 2; // the last workload overwrites the others' passes
         values[passes] = double(m.passes);
         values[passes + 1] = 1e-6 * double(m.bytes_in);
     }
@@ -126,7 +128,7 @@ Result<Sweep> over_budget(const BenchJob& job, const BenchSurroundings& around) 
                       [](const BenchEntrant& e) { return 100 * e.contender.budget.pages_share; });
 }
 
-/// A row for each sphere.
+/// Returns a row for each sphere.
 Result<Sweep> over_triangles(const BenchJob& job, const BenchSurroundings& around) {
     Sweep sweep{"sphere-N",
                 "triangles",
@@ -145,7 +147,7 @@ Result<Sweep> over_triangles(const BenchJob& job, const BenchSurroundings& aroun
         if (!r)
             return r.error();
         if (r->measurements.empty())
-            break; // it was stopped
+            break; // the run was stopped
         const BenchEntrant& entrant = r->entrants[0];
         sweep.rows.push_back({double(r->triangles),
                               {r->seconds_import, entrant.build_seconds(),
@@ -172,6 +174,7 @@ Result<Sweep> run_sweep(const BenchJob& job, const BenchSurroundings& around) {
 }
 
 std::optional<double> fitted_exponent(const Sweep& sweep, size_t column) {
+    assert(column < sweep.columns.size());
     std::vector<std::pair<double, double>> points;
     for (const SweepRow& row : sweep.rows)
         if (row.x > 0 && row.values[column].value_or(0) > 0)

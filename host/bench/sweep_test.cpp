@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exponent that a sweep's table ends with.
+// Tests the exponent that a sweep's table ends with.
 #include "host/bench/sweep.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays and frames as workloads. Buffers are made once, so that no contender pays for them.
+// Makes workloads of rays and frames. The buffers of rays are allocated once, so that no contender
+// pays for them.
 #include "host/bench/workload.h"
 
 #include "host/render/render.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Workload: something that is timed, the same for every contender: a set of rays to answer, or a
-// whole frame to render.
+// A Workload is a task that every contender is timed at: answering a set of rays, or rendering a
+// whole frame.
 #pragma once
 
 #include "core/scene.h"
@@ -16,37 +16,39 @@ namespace ovc {
 
 struct Workload {
     std::string name;
-    /// What is timed; how many rays it traced.
+    /// Does the work, which is timed, and returns how many rays were traced.
     std::function<Result<uint64_t>(Backend&)> run;
-    /// What the last run answered: a number for each ray or pixel that is equal where the answer
-    /// is.
+    /// Returns a number for each ray or pixel of the last run. Equal answers have equal numbers.
     std::function<std::vector<uint64_t>()> answers;
-    /// And how far along each ray its answer is: t, infinity for a miss; occlusion: 0, or infinity.
-    /// Of a frame there is none.
+    /// Returns how far along each ray of the last run its answer is: t, or infinity for a miss;
+    /// 0 or infinity for occlusion. Empty for a frame.
     std::function<std::vector<double>()> distances;
 };
 
 /// How far distances are from the right ones.
 struct DistanceError {
-    uint64_t missed = 0; // answered as a miss, and the right answer is a hit
-    double largest = 0;  // |t - right t| / |right t| where both hit, whatever triangle
-    double rms = 0;      // its root mean square
+    uint64_t missed = 0; // answered as a miss where the right answer is a hit
+    double largest = 0;  // |t - right t| / |right t| where both hit, even different triangles
+    double rms = 0;      // the root mean square of the same
 };
 
-/// As many of each. A right t of 0 is met or counts as an error of 1.
+/// Returns the errors of `distances`, which has the size of `right` (asserted). Where the right t
+/// is 0, any other t is an error of 1.
 DistanceError distance_error(std::span<const double> distances, std::span<const double> right);
 
-/// True asks a running workload to end early; what it was doing is then lost.
+/// Returns true to ask a running workload to end early, which then loses its work.
 using StopRequest = std::function<bool()>;
 
-/// Its answers are the triangles' names, mesh in the upper half, or 1 and 0 for occlusion.
+/// Returns a workload that answers the rays. Its answers are the triangles' ids, mesh in the upper
+/// half, or 1 and 0 for occlusion.
 Workload ray_workload(RaySet set);
 
-/// render_batched with shadows; its answers are pixels. The scene outlives it.
+/// Returns a workload that renders a frame with shadows; its answers are pixels. `scene` must
+/// outlive it.
 Workload frame_workload(const Scene& scene, const Camera& camera, uint32_t width, uint32_t height,
                         StopRequest stop);
 
-/// FNV-1a of 64 bits over the answers' bytes, least significant first.
+/// Returns the 64-bit FNV-1a hash of the answers' bytes, least significant first.
 uint64_t checksum(std::span<const uint64_t> answers);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines from results. The numbers promised stand here and in docs/benchmarks.md.
+// Computes the bars from results. The numbers promised stand here and in docs/benchmarks.md.
 #include "host/bench/bars/bars.h"
 
 #include "host/bench/ratios.h"
@@ -30,7 +30,7 @@ Bar skipped_bar(std::string what, std::string why) {
 
 namespace {
 
-/// Null where it did not take part, or the run was stopped before.
+/// Returns null where the contender did not take part or the run was stopped before its turn.
 const Measurement* find(const BenchResult& r, std::string_view contender,
                         std::string_view workload) {
     for (const Measurement& m : r.measurements)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bars: how fast and how lean Overcast is promised to be, each line measured and held to it.
+// Bars state how fast and how lean Overcast is promised to be; each is measured and judged.
 #pragma once
 
 #include "host/bench/bench.h"
@@ -19,42 +19,45 @@ enum class Better { More, Less };
 struct Bar {
     std::string what;
     Better better = Better::More;
-    double at_least = 0; // at most, where less is better
+    double at_least = 0; // the maximum where less is better
     double aim = 0;
     std::optional<double> measured;
-    std::string note; // where nothing was measured, why; else what the figure is of
+    std::string note; // the reason where nothing was measured, else what the figure means
 
     bool passed() const;
 };
 
-/// "passed", "failed", or "skipped" where nothing was measured.
+/// Returns "passed", "failed", or "skipped" where nothing was measured.
 std::string_view verdict(const Bar& bar);
 
-/// Kernel seconds of Embree's robust mode and of the CPU KDT in float over ours, the frame in
-/// certified precision over that in fast; of the contenders certified, fast, embree-robust,
-/// cpu-float-kdtree.
+/// Returns the kernel seconds of Embree's robust mode and of the CPU KDT in float divided by ours,
+/// and the time of a frame in certified precision divided by that in fast. Contenders: certified,
+/// fast, embree-robust, cpu-float-kdtree.
 std::vector<Bar> kernel_bars(const BenchResult& mesh);
-/// Kernel seconds of Embree's high quality over ours, a line for each set of rays.
+/// Returns a line for each set of rays: kernel seconds of Embree's high quality divided by ours.
 std::vector<Bar> high_quality_bars(const BenchResult& scene, const std::string& what);
-/// Call seconds over those of one leaf, all sets of rays together; entrants are sweep values of
-/// certified, the first of one leaf.
+/// Returns call seconds, summed over all sets of rays, divided by those of one leaf. Entrants are
+/// certified with several numbers of leaves, the first with one leaf.
 std::vector<Bar> leaves_bars(const BenchResult& sweep);
-/// Kernel seconds over those of one leaf, the worst of all sets of rays; entrants as above.
+/// Returns kernel seconds divided by those of one leaf, for the worst set of rays. Entrants are as
+/// above.
 std::vector<Bar> leaves_of_scene_bars(const BenchResult& sweep, const std::string& what);
-/// Kernel seconds of Embree's robust mode over ours, with the plugin's own choice of leaves.
+/// Returns kernel seconds of Embree's robust mode divided by ours, with the plugin's own choice of
+/// leaves.
 std::vector<Bar> default_leaves_bars(const BenchResult& scene, const std::string& what);
-/// The frame's call seconds under a budget over those with all pages resident.
+/// Returns the frame's call seconds under a budget divided by those with all pages resident.
+/// Entrants: certified with all pages resident, then with the budget.
 Bar budget_bar(const BenchResult& sweep);
 Bar bytes_bar(const BenchResult& scene, const std::string& what, double at_least, double aim);
-/// The worst over all entrants on the GPU: peak less budget, bytes.
+/// Returns by how many bytes the peak exceeds the budget: the worst entrant on the GPU.
 Bar peak_bar(std::span<const BenchResult> results);
 std::vector<Bar> program_bars(const ProgramsResult& programs);
-/// files: with what they are called. The last is the binary PLY file.
+/// files: names and costs; the last is the binary PLY file.
 std::vector<Bar> import_bars(std::span<const std::pair<std::string, ImportCost>> files);
-/// A line that was not measured, and why.
+/// Returns a line that was not measured, with the reason.
 Bar skipped_bar(std::string what, std::string why);
 
-/// Markdown, and a sentence on how many lines hold; with a line end.
+/// Returns Markdown and a sentence on how many lines hold, with a line end.
 std::string bars_table(std::span<const Bar> bars);
 std::string bars_json(std::span<const Bar> bars, std::span<const BenchResult> results,
                       const ProgramsResult* programs);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines that pass, fail and are skipped, and that what is measured is divided the right way round.
+// Tests which lines pass, fail and are skipped, and which time is divided by which.
 #include "host/bench/bars/bars.h"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@ Contender contender(std::string_view name, ContenderKind kind) {
     return {.name = name, .kind = kind};
 }
 
-/// Everyone at everything: certified 1 s a call and half of that in the kernel, the others as told.
+/// Returns times of every contender at every workload, the same at each workload.
 BenchResult example() {
     BenchResult r;
     r.complete = true;
@@ -41,8 +41,8 @@ TEST(Bars, DivideThePeersKernelByOurs) {
     EXPECT_EQ(bars[0].what, "kernel against embree-robust, mesh: primary");
     EXPECT_DOUBLE_EQ(*bars[0].measured, 1.2);
     EXPECT_EQ(verdict(bars[0]), "passed");
-    EXPECT_DOUBLE_EQ(*bars[3].measured, 4); // a call of 2 s, as it knows no kernel
-    EXPECT_EQ(verdict(bars[3]), "passed");  // of 2.5
+    EXPECT_DOUBLE_EQ(*bars[3].measured, 4); // its call of 2 s, since it reports no kernel seconds
+    EXPECT_EQ(verdict(bars[3]), "passed");  // at least 2.5
     EXPECT_DOUBLE_EQ(*bars[6].measured, 2); // the frame: 1 s against 0.5
     EXPECT_EQ(verdict(bars[6]), "failed");
 }
@@ -73,7 +73,7 @@ TEST(Bars, TellTheWorstKernelOfManyLeaves) {
     r.entrants[1].contender.leaves = {14, std::string("14")};
     for (Measurement& m : r.measurements)
         if (m.entrant == 1 && r.workloads[m.workload] == "shadow")
-            m.kernel_seconds = {0.6}; // 0.4 of the others; of one leaf 0.5
+            m.kernel_seconds = {0.6}; // 0.4 at other workloads; 0.5 with one leaf
     const std::vector<Bar> bars = leaves_of_scene_bars(r, "city");
     ASSERT_EQ(bars.size(), 2u);
     EXPECT_EQ(bars[0].what, "kernel in 14 leaves against one, city");

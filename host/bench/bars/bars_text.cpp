@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bars as a table for people and as JSON for programs (docs/benchmarks.md).
+// Writes bars as a table for people and as JSON for programs (docs/benchmarks.md).
 #include "host/bench/bars/bars.h"
 #include "host/bench/bench_text.h"
 #include "host/terminal/text_table.h"
@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-/// As short as the number allows: ratios to a hundredth, bytes and MB/s whole.
+/// Writes ratios to a hundredth, and bytes and MB/s as whole numbers.
 static std::string number(double value) {
     return fmt::format("{:.{}f}", value, value >= 20 ? 0 : 2);
 }

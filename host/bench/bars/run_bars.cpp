@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The runs behind the table, one after the other: import first, while the process is bare.
+// Does the runs behind the table, one after the other. Import comes first, because its child
+// process needs a parent that has run no parallel loop yet.
 #include "host/bench/bars/run_bars.h"
 
 #include "host/bench/programs/run_program.h"
@@ -16,8 +17,8 @@ namespace ovc {
 namespace {
 
 constexpr uint32_t kImports = 9;
-// Of calls that take hundredths of a second, so many times as many are timed: where others use the
-// machine as well, the medians of five lie a tenth apart.
+// Calls of hundredths of a second are repeated so many times as often, because medians of five of
+// them lie a tenth apart where others use the machine as well.
 constexpr uint32_t kOfShortCalls = 3;
 constexpr const char* kSoup = "soup-500";
 constexpr const char* kArchitecture = "powerplant-400000";
@@ -44,7 +45,7 @@ Result<Done> convert(const std::string& from, const std::string& to) {
     return done ? Result<Done>(Done{}) : done.error();
 }
 
-/// A test scene as a file in the folder; a file is one already.
+/// Returns the mesh's path; a test scene is first written to a file in the folder.
 Result<std::string> as_file(const std::string& mesh, const ScratchFolder& folder) {
     if (!is_test_scene(mesh))
         return mesh;
@@ -83,7 +84,7 @@ private:
             result_.bars.push_back(std::move(bar));
     }
 
-    /// The file as given, and as OBJ and binary PLY, which the command itself makes of it.
+    /// Measures the file as given, and as OBJ and binary PLY, which `overcast convert` makes of it.
     Result<Done> import() {
         const Result<ScratchFolder> folder = ScratchFolder::make();
         if (!folder)
@@ -176,7 +177,7 @@ private:
         return Done{};
     }
 
-    /// A promise that holds on one mesh is none.
+    /// Many leaves must be cheap on scenes of every kind, not only on one mesh.
     Result<Done> leaves_of_scenes() {
         std::vector<Contender> contenders;
         for (const uint32_t leaves : {1, 14, 136}) {
@@ -222,7 +223,7 @@ private:
         return Done{};
     }
 
-    /// Both levels against Embree's medium quality, in turn.
+    /// Builds both levels and Embree's tree of medium quality in turn.
     Result<Done> build() {
         Bar bar{"build of both levels against embree-medium",
                 Better::Less,
@@ -265,7 +266,7 @@ private:
         return Done{};
     }
 
-    /// What was measured on the way, and what tests hold.
+    /// Adds the lines that were measured on the way, and those that tests check instead.
     Result<Done> rest() {
         add(bytes_bars_);
         add(import_bars_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signed distances, which are exact for these shapes, and steps along a ray no longer than they
-// are. Based on: Hart, "Sphere Tracing", The Visual Computer 12 (1996).
+// Computes signed distances, which are exact for these shapes, and steps along rays by them. Based
+// on: Hart, "Sphere Tracing", The Visual Computer 12 (1996).
 #include "host/bench/pictures/exact_shapes.h"
 
 #include "core/system/parallel.h"
@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -19,7 +20,7 @@ std::string list(const dvec3& v) {
     return fmt::format("<{},{},{}>", v.x, v.y, v.z);
 }
 
-/// From p to the segment from a to b.
+/// Returns the distance from p to the segment from a to b, which differ.
 double to_segment(const dvec2& p, const dvec2& a, const dvec2& b) {
     const dvec2 along = b - a;
     const double share = std::clamp(glm::dot(p - a, along) / glm::dot(along, along), 0.0, 1.0);
@@ -34,6 +35,7 @@ ExactShape exact_sphere(const dvec3& center, double radius) {
 }
 
 ExactShape exact_cone(const dvec3& base, double base_radius, double height, double top_radius) {
+    assert(base_radius > 0 && height > 0);
     const auto distance = [=](const dvec3& p) {
         // In the half-plane through the axis and p the cone is a trapezoid.
         const dvec2 at(std::hypot(p.x - base.x, p.z - base.z), p.y - base.y);

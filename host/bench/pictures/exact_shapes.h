@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exact shapes: spheres, cones and tori as formulas in double precision, and the same in POV-Ray's
-// words, to tell how far triangles are from what they stand for.
+// language. They tell how far triangles are from the shapes that they approximate.
 #pragma once
 
 #include "core/ray.h"
@@ -14,29 +14,29 @@ namespace ovc {
 
 struct ExactShape {
     std::string name;
-    std::string words; // "sphere { <1,2,3>, 4"; looks and } follow
+    std::string words; // "sphere { <1,2,3>, 4"; the material and } follow
     double radius;     // of its widest circle
-    /// From the point to the surface; below 0 inside.
+    /// Returns the distance from the point to the surface; below 0 inside.
     std::function<double(const dvec3&)> distance;
 };
 
 ExactShape exact_sphere(const dvec3& center, double radius);
-/// Standing upright, with flat ends; the upper may be a point.
+/// Returns an upright cone with flat ends. height and base_radius are above 0 (asserted);
+/// top_radius 0 makes the upper end a point.
 ExactShape exact_cone(const dvec3& base, double base_radius, double height, double top_radius);
-/// Lying flat.
+/// Returns a torus that lies flat.
 ExactShape exact_torus(const dvec3& center, double major, double minor);
 
-/// A sphere, a cone and a torus side by side, and a light by which each throws its shadow on the
-/// next.
+/// Returns a sphere, a cone and a torus side by side.
 std::vector<ExactShape> example_shapes();
-/// The whole scene, for POV-Ray and for our reader of its scenes. Corners have the coordinates of
-/// the shapes.
+/// Returns the whole scene, for POV-Ray and for our reader of its scenes, with a light by which
+/// each of example_shapes() throws its shadow on the next. Our reader keeps the coordinates.
 std::string povray_scene(std::span<const ExactShape> shapes);
 
-/// t where the ray, from the outside, first meets one of them: to 1e-12 of the distance to the
-/// surface. Infinity where none is met within `far` lengths of its direction.
+/// Returns t of the first point on the ray within 1e-12 of a surface, or infinity where there is
+/// none up to t = far. The ray starts outside the shapes.
 double first_hit(std::span<const ExactShape> shapes, const Ray& ray, double far);
-/// Of each of the rays.
+/// Returns first_hit() of each ray.
 std::vector<double> first_hits(std::span<const ExactShape> shapes, std::span<const Ray> rays,
                                double far);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances and first hits against what can be told by hand, and triangles against both.
+// Compares distances and first hits with values computed by hand, and triangles with both.
 #include "host/bench/pictures/exact_shapes.h"
 #include "host/bench/pictures/tessellation.h"
 #include "importers/readers.h"
@@ -18,7 +18,7 @@ TEST(ExactShapes, KnowTheDistanceToThem) {
     const ExactShape torus = exact_torus({0, 1, 0}, 3, 1);
     EXPECT_DOUBLE_EQ(torus.distance({0, 1, 0}), 2);
     EXPECT_DOUBLE_EQ(torus.distance({0, 1, -3}), -1);
-    EXPECT_DOUBLE_EQ(torus.distance({3 + 3, 1 + 4, 0}), 4); // 3, 4, 5
+    EXPECT_DOUBLE_EQ(torus.distance({3 + 3, 1 + 4, 0}), 4); // a triangle of sides 3, 4, 5
     EXPECT_DOUBLE_EQ(torus.radius, 4);
     const ExactShape cone = exact_cone({0, 0, 0}, 4, 3, 0); // its side is 5 long
     EXPECT_DOUBLE_EQ(cone.distance({0, -2, 0}), 2);
@@ -35,7 +35,7 @@ TEST(ExactShapes, KnowTheDistanceToThem) {
 TEST(ExactShapes, AreMetWhereTheFormulaSays) {
     const std::vector<ExactShape> shapes = {exact_sphere({0, 0, 0}, 1)};
     Ray ray;
-    ray.dir = {0, 0, -2}; // t counts in its lengths
+    ray.dir = {0, 0, -2}; // t is in lengths of the direction
     for (const double x : {0.0, 0.3, 0.9, 0.999, 0.999999}) {
         ray.org = {x, 0, 5};
         EXPECT_NEAR(first_hit(shapes, ray, 100), (5 - std::sqrt(1 - x * x)) / 2, 1e-9) << x;
@@ -49,9 +49,9 @@ TEST(ExactShapes, AreMetWhereTheFormulaSays) {
 TEST(ExactShapes, TellHowFarAnswersAreOff) {
     const std::vector<ExactShape> shapes = {exact_sphere({0, 0, 0}, 2), exact_sphere({9, 0, 0}, 1)};
     std::vector<Ray> rays(3);
-    rays[0].org = {0, 0, 10}; // 8 from the first
-    rays[1].org = {9, 0, 10}; // 9 from the second
-    rays[2].org = {5, 0, 10}; // between them
+    rays[0].org = {0, 0, 10}; // hits the first at t = 8
+    rays[1].org = {9, 0, 10}; // hits the second at t = 9
+    rays[2].org = {5, 0, 10}; // passes between them
     for (Ray& ray : rays)
         ray.dir = {0, 0, -1};
     std::vector<Hit> hits(3);
@@ -74,7 +74,7 @@ TEST(ExactShapes, TellHowFarAnswersAreOff) {
     EXPECT_EQ(shape_error(shapes, rays, hits, right).unlike, 2u);
 }
 
-/// Both of one list: what the reader of scenes makes of the words lies on what the formulas say.
+/// The corners that the reader of scenes makes of the words lie on the formulas' surfaces.
 TEST(ExactShapes, AreWhatTheirWordsSay) {
     const std::vector<ExactShape> shapes = example_shapes();
     for (const ExactShape& shape : shapes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Processes, one after the other, and the pictures that they leave.
+// Runs processes one after the other, and reads and compares the pictures that they write.
 #include "host/bench/pictures/picture_race.h"
 
 #include "core/system/parallel.h"
@@ -48,7 +48,7 @@ Result<Image> read_linear_codes(const std::filesystem::path& path) {
     return image;
 }
 
-/// What one process took; its result must be there.
+/// Runs one process; a program that fails is an error.
 Result<ProgramEnd> run_once(const PictureChoice& choice, const StopRequest& stop) {
     Result<ProgramEnd> end =
         watch_program(choice.command, std::numeric_limits<double>::infinity(), stop);
@@ -120,7 +120,7 @@ Result<PictureRace> race_pictures(const PictureChoice& reference,
             cost.seconds.push_back(end->seconds);
             cost.cpu_seconds.push_back(end->cpu_seconds);
             if (run > 0)
-                continue; // the same picture again
+                continue; // later runs draw the same picture again
             read_stats(choices[i], cost);
             const Result<double> rmse = rmse_of(choices[i], *right);
             if (!rmse)
@@ -157,7 +157,7 @@ PictureChoice povray_picture(const std::string& name, const std::filesystem::pat
                       fmt::format("+WT{}", thread_count())};
     if (depth == 1)
         choice.command.push_back("-A");
-    else // a pixel that differs from a neighbour at all gets all rays, on a grid
+    else // a pixel that differs at all from a neighbour gets all rays, on a grid
         choice.command.insert(choice.command.end(),
                               {"+A0.0", "+AM1", fmt::format("+R{}", depth), "-J"});
     return choice;

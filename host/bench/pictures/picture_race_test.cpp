@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs that leave a picture, and how far it is from the right one.
+// Tests programs that write a picture, and how far it is from the reference.
 #include "host/bench/pictures/picture_race.h"
 #include "host/bench/pictures/picture_text.h"
 #include "host/bench/programs/scratch_folder.h"
@@ -14,7 +14,7 @@ namespace {
 
 class PictureRaceTest : public testing::Test {
 protected:
-    /// A command that leaves a picture of one row of gray pixels.
+    /// Returns a command that writes a picture of one row of pixels.
     PictureChoice gray(const std::string& name, const std::string& codes, int pixels = 2) {
         const std::filesystem::path picture = scratch.path() / (name + ".ppm");
         return {name,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows and objects.
+// Makes the rows of tables and the objects of JSON.
 #include "host/bench/pictures/picture_text.h"
 
 #include "host/arguments/memory_size.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pictures cost and how wrong they are, as tables and as JSON (docs/benchmarks.md).
+// Writes what pictures cost and how wrong they are, as tables and as JSON (docs/benchmarks.md).
 #pragma once
 
 #include "host/bench/pictures/picture_race.h"
@@ -13,14 +13,14 @@ namespace ovc {
 
 using Json = nlohmann::ordered_json;
 
-/// A line a choice that ran; with a line end.
+/// Returns a line for each choice that ran, with a line end.
 std::string picture_table(const PictureRace& race);
-/// A sentence, with line ends; empty where nothing is missing.
+/// Returns a sentence that names the programs, with line ends, or nothing where there are none.
 std::string not_installed_text(std::span<const std::string> programs);
 
-/// An object; numbers are null where the choice did not run.
+/// Returns an object; numbers are null where the choice did not run.
 Json picture_json(const PictureCost& cost);
-/// The document, with a line end.
+/// Returns the document with a line end.
 std::string json_text(const Json& document);
 
 } // namespace ovc

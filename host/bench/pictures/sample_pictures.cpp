@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same triangles, camera and light for three programs, and how many rays each takes a pixel.
+// Gives the same triangles, camera and light to three programs, with growing samples a pixel.
 #include "host/bench/pictures/sample_pictures.h"
 
 #include "core/system/parallel.h"
@@ -48,7 +48,7 @@ PictureChoice tachyon_picture(const std::string& name, const fs::path& scene, ui
     return {name,
             {"tachyon", scene, "-numthreads", fmt::format("{}", thread_count()), "-fullshade",
              "-res", std::to_string(size), std::to_string(size), "-aasamples",
-             std::to_string(samples - 1), // besides the one through the middle
+             std::to_string(samples - 1), // Tachyon adds them to the one through the middle
              "-format", "PPM48", "-o", picture},
             picture,
             {}};

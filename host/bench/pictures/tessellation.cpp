@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One scene file, read at several tolerances.
+// Reads one scene file at several tolerances, traces it and draws it.
 #include "host/bench/pictures/tessellation.h"
 
 #include "core/system/stopwatch.h"
@@ -94,7 +94,7 @@ private:
         result_.rays = set.rays.size();
         std::vector<Hit> hits(set.rays.size());
         if (const Result<Done> done = backend.intersect(set.rays, {}, hits); !done)
-            return done; // which compiles the kernel
+            return done; // the first call is not timed, because it compiles the kernel
         const Stopwatch watch;
         if (const Result<Done> done = backend.intersect(set.rays, {}, hits); !done)
             return done;
@@ -134,7 +134,7 @@ private:
     const BenchSurroundings& around_;
     const std::filesystem::path folder_;
     const std::vector<ExactShape> shapes_;
-    std::vector<double> right_; // of the camera's rays
+    std::vector<double> right_; // t of the camera's rays on the exact shapes
     Tessellation result_;
 };
 
@@ -209,7 +209,7 @@ std::string tessellation_table(const Tessellation& r) {
         rows[0].push_back("off the " + shape);
     for (const TessellationRow& row : r.rows) {
         if (row.call_seconds.empty())
-            continue; // it was stopped before
+            continue; // the run was stopped before this row
         rows.push_back({row.name(), human_count(row.triangles),
                         fmt::format("{:.2f}", 1e-6 * double(row.page_bytes)),
                         fmt::format("{:.3f}", spread_of(row.import_seconds).median),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A child process, which reads and tells what it took through a pipe.
+// Forks a child process, which reads the file and reports the cost through a pipe.
 #include "host/bench/programs/import_cost.h"
 
 #include "host/bench/ratios.h"
@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cassert>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -28,7 +29,7 @@ uint64_t soup_bytes(const Scene& scene) {
     return bytes;
 }
 
-/// What the child tells: a cost, or a sentence.
+/// The message that the child sends: a cost, or the reader's sentence where `error` is not empty.
 struct Told {
     ImportCost cost;
     std::array<char, 1000> error{};
@@ -59,6 +60,7 @@ Told read_and_tell(const std::string& path, uint32_t times) {
 } // namespace
 
 Result<ImportCost> measure_import(const std::string& path, uint32_t times) {
+    assert(times > 0);
     std::array<int, 2> ends;
     if (pipe(ends.data()) != 0)
         return Error{fmt::format("{} cannot be measured: {}", path, std::strerror(errno))};
@@ -72,7 +74,7 @@ Result<ImportCost> measure_import(const std::string& path, uint32_t times) {
     }
     close(ends[1]);
     Told told;
-    const ssize_t size = read(ends[0], &told, sizeof(told)); // less than a pipe takes at once
+    const ssize_t size = read(ends[0], &told, sizeof(told)); // small enough to arrive whole
     close(ends[0]);
     while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same mesh, camera and light in three languages, and a stopwatch around each program.
+// Writes the same mesh, camera and light in three programs' languages, and times each program.
 #include "host/bench/programs/programs.h"
 
 #include "core/system/parallel.h"
@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -59,9 +60,10 @@ std::string povray_scene(const Soup& soup, const ProgramShot& shot) {
 
 std::string tachyon_scene(const Soup& soup, const ProgramShot& shot) {
     const auto words = [](const dvec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
-    // Tachyon's coordinates are left-handed: seen in a mirror along z, they are ours.
+    // Tachyon's coordinates are left-handed; negating z makes ours left-handed too.
     const auto mirrored = [](dvec3 v) { return dvec3(v.x, v.y, -v.z); };
-    // Its rays go through the upper right corners of pixels: half a pixel less is their middles.
+    // Its rays go through the upper right corners of pixels, so a frustum that is moved by half a
+    // pixel sends them through the middles.
     const double half = std::tan(shot.fov_degrees * std::numbers::pi / 360);
     const double half_pixel = half / shot.size;
     std::string text;
@@ -163,7 +165,7 @@ Result<ProgramsResult> race_programs(const std::string& mesh, const Soup& soup, 
             if (!result.complete)
                 break;
             const Result<double> seconds = run_program(racer.command);
-            result.complete = !stop(); // Ctrl-C ends the program as well
+            result.complete = !stop(); // Ctrl-C ends the program as well, which is no failure
             if (!result.complete)
                 break;
             if (!seconds)
@@ -177,6 +179,7 @@ Result<ProgramsResult> race_programs(const std::string& mesh, const Soup& soup, 
 }
 
 std::optional<double> times_as_fast(const ProgramsResult& result, std::string_view program) {
+    assert(!result.programs.empty());
     const std::vector<double>& ours = result.programs.front().seconds;
     for (const ProgramTimes& p : result.programs)
         if (p.name == program && !p.seconds.empty() && !ours.empty())

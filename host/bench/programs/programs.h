@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole programs in turn, each from its own file of the same mesh to a PNG: `overcast render`, and
-// povray and tachyon where they are installed.
+// Times whole programs in turn, each from its own file of the same mesh to a PNG: `overcast
+// render`, and povray and tachyon where they are installed.
 #pragma once
 
 #include "core/scene.h"
@@ -15,7 +15,8 @@
 
 namespace ovc {
 
-/// One light with shadows, no antialiasing, as many threads as there are cores.
+/// The picture that every program draws: one light with shadows and no antialiasing, with as many
+/// threads as there are cores.
 struct ProgramShot {
     dvec3 eye, target;
     double fov_degrees;
@@ -26,7 +27,7 @@ struct ProgramShot {
 struct ProgramTimes {
     std::string name;
     std::string reads;           // "mesh2 text"
-    std::vector<double> seconds; // of wall clock, one a run; empty: it is not installed
+    std::vector<double> seconds; // wall clock of each run; empty: the program is not installed
     uint64_t bytes_read = 0;
 };
 
@@ -35,25 +36,26 @@ struct ProgramsResult {
     uint64_t triangles = 0;
     uint32_t size = 0;
     std::vector<ProgramTimes> programs; // overcast first
-    bool complete = false;              // false: it was stopped
+    bool complete = false;              // false: the race was stopped
 };
 
-/// From before the mesh's front and a little above, lit from its upper left.
+/// Returns a camera in front of the bounds and a little above, with a light from their upper left.
 ProgramShot shot_of(const Box& bounds, uint32_t size);
 
-/// A text that POV-Ray and Tachyon read. Vertices of POV-Ray's mesh2 are shared as in a file of
-/// vertices and faces; Tachyon's triangles have none to share.
+/// Return the scene in the language of POV-Ray and of Tachyon. POV-Ray's mesh2 shares vertices, as
+/// a file of vertices and faces does; Tachyon's triangles cannot.
 std::string povray_scene(const Soup& soup, const ProgramShot& shot);
 std::string tachyon_scene(const Soup& soup, const ProgramShot& shot);
 
-/// mesh: a file that `overcast render` takes; soup: what is in it. Each program runs once untimed,
-/// which fills the cache of files, then `runs` times, in turn. Pictures stay in `folder` as
+/// Runs each program once untimed, which fills the file cache, then `runs` times timed, in turn.
+/// mesh: a file that `overcast render` takes. soup: its triangles. Pictures stay in `folder` as
 /// overcast.png, povray.png, tachyon.png. Error: a program that fails, a full disk.
 Result<ProgramsResult> race_programs(const std::string& mesh, const Soup& soup, uint32_t size,
                                      uint32_t runs, const std::filesystem::path& folder,
                                      const StopRequest& stop);
 
-/// Median seconds of a program over those of overcast; nothing where it did not run.
+/// Returns median seconds of a program divided by those of overcast, or nothing where either did
+/// not run. result.programs: overcast first (not empty: asserted).
 std::optional<double> times_as_fast(const ProgramsResult& result, std::string_view program);
 
 std::string programs_table(const ProgramsResult& result);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs that run, fail and are not there; and a mesh in other programs' words.
+// Tests programs that run, fail and are missing, and a mesh in other programs' languages.
 #include "host/bench/programs/programs.h"
 #include "host/bench/programs/run_program.h"
 

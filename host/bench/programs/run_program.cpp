@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// posix_spawn, and a pipe for what goes wrong.
+// Starts a program with posix_spawn and reads its standard error through a pipe.
 #include "host/bench/programs/run_program.h"
 
 #include "core/system/stopwatch.h"
@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -46,15 +47,16 @@ static std::string last_line(const std::string& text) {
 
 namespace {
 
-constexpr double kGrace = 10; // seconds between asking to end and ending
+constexpr double kGrace = 10; // seconds between SIGINT and SIGKILL
 constexpr int kLookMilliseconds = 50;
 
 struct Child {
     pid_t id = 0;
-    int errors = -1; // the end of its standard error that is read
+    int errors = -1; // the reading end of its standard error
 };
 
 Result<Child> start(std::span<const std::string> words) {
+    assert(!words.empty());
     std::vector<char*> arguments;
     for (const std::string& word : words)
         arguments.push_back(const_cast<char*>(word.c_str()));
@@ -79,7 +81,8 @@ Result<Child> start(std::span<const std::string> words) {
     return Error{fmt::format("{} cannot be started: {}", words[0], std::strerror(failed))};
 }
 
-/// False when the other end is closed. Waits no longer than a look.
+/// Appends to `text` what the pipe has, waiting for at most kLookMilliseconds. Returns false when
+/// the other end is closed.
 bool read_some(int pipe, std::string& text) {
     pollfd look{pipe, POLLIN, 0};
     if (poll(&look, 1, kLookMilliseconds) <= 0)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs that end by themselves, and programs that are ended.
+// Tests programs that end by themselves and programs that are made to end.
 #include "host/bench/programs/run_program.h"
 
 #include <gmock/gmock.h>

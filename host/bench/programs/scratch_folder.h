@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ScratchFolder: a folder for files that nobody wants afterwards; it goes with this.
+// ScratchFolder: a folder for temporary files, which the destructor removes.
 #pragma once
 
 #include "core/result.h"
@@ -14,7 +14,7 @@ namespace ovc {
 
 class ScratchFolder {
 public:
-    /// Where TMPDIR says, or in /tmp. Error: it cannot be made.
+    /// Makes a folder in TMPDIR, or in /tmp. Error: it cannot be made.
     static Result<ScratchFolder> make() {
         std::error_code failed;
         std::string path = std::filesystem::temp_directory_path(failed) / "overcast_bench_XXXXXX";

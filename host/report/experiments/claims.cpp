@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The claims, in the order of the documents.
+// The table of claims, in the order of the documents, and how each is measured.
 #include "host/report/experiments/claims.h"
 
 #include "core/system/parallel.h"
@@ -40,7 +40,7 @@ Measure measured_by_bar(const char* line) {
     };
 }
 
-/// A number in the JSON of a run, in units of `unit`.
+/// Takes a number from the JSON of a run, in units of `unit`.
 Measure number_of(const char* run, const char* pointer, double unit = 1) {
     return [=](const ClaimResults& results) -> Json {
         const Json::json_pointer at(pointer);
@@ -49,7 +49,7 @@ Measure number_of(const char* run, const char* pointer, double unit = 1) {
     };
 }
 
-/// The sum over measurements of certified contenders, of all scenes of the bars.
+/// Sums up a key of the measurements of certified contenders, over all scenes of the bars.
 double certified_sum(const Json& bars, const char* key) {
     double sum = 0;
     for (const Json& scene : bars["scenes"])
@@ -66,7 +66,7 @@ double grid_sum(const Json& grid, const char* key) {
     return sum;
 }
 
-/// Certified answers unlike those of double precision, in bars and grid together.
+/// Counts certified answers that differ from double precision's, in bars and grid together.
 Json wrong_answers(const ClaimResults& results) {
     const Json &bars = results.of("bars"), &grid = results.of("grid");
     if (bars.is_null() || grid.is_null())
@@ -79,7 +79,7 @@ Json leaks(const ClaimResults& results) {
     return grid.is_null() ? Json(nullptr) : Json(grid_sum(grid, "leaks"));
 }
 
-/// Answers that doubles chose, of a frame of the mesh.
+/// Returns the percentage of flagged answers in a frame of the mesh.
 Json decided_in_doubles(const ClaimResults& results) {
     if (const Json& bars = results.of("bars"); bars.is_object() && !bars["scenes"].empty())
         for (const Json& one : bars["scenes"][0]["measurements"])
@@ -88,7 +88,7 @@ Json decided_in_doubles(const ClaimResults& results) {
     return nullptr;
 }
 
-/// Pixels of the frame under a budget of 30 % that are not those of all memory.
+/// Counts pixels that differ between the frame under a budget of 30 % and the one with all memory.
 Json pixels_under_a_budget(const ClaimResults& results) {
     double pixels = 0;
     bool any = false;
@@ -128,7 +128,7 @@ Measure seconds_of_program(const char* name) {
     };
 }
 
-/// Of dragonball under a budget.
+/// Divides mixed's number by batched's, for dragonball under a budget.
 Measure mixed_to_batched(const char* pointer) {
     return [=](const ClaimResults& results) -> Json {
         const Json mixed = number_of("passes-mixed", pointer)(results),
@@ -139,7 +139,7 @@ Measure mixed_to_batched(const char* pointer) {
     };
 }
 
-/// Of all cores, from the first ray to the last.
+/// Returns the percentage of all cores' time that was used, from the first ray to the last.
 Json cores_used(const ClaimResults& results) {
     const Json& stats = results.of("cores");
     if (stats.is_null())
@@ -153,7 +153,7 @@ constexpr const char* kPerformance = "docs/guide/performance.md";
 constexpr const char* kBenchmarks = "docs/benchmarks.md";
 constexpr ClaimBar kNone = {true, 0};
 
-/// The claims of a section.
+/// Adds the claims of one section.
 class Section {
 public:
     Section(std::vector<Claim>& claims, const char* document, const char* heading)
@@ -218,8 +218,8 @@ void add_readme(std::vector<Claim>& claims) {
               "single_rays_cost DRAGON --threads 256");
 }
 
-/// What the table says at the 512 bits that the command chooses; the bars themselves are those that
-/// `overcast bench --bars` holds its lines to.
+/// Adds the table's figures at 512 bits, which the command chooses. The bars themselves come from
+/// the results of `overcast bench --bars`.
 void add_bars(std::vector<Claim>& claims) {
     static constexpr std::pair<const char*, const char*> lines[] = {
         {"kernel against embree-robust, mesh: primary", "1.33"},

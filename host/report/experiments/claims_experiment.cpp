@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Claims: a row for each figure and each promise of README.md, docs/guide/performance.md and
-// docs/benchmarks.md, measured here or held by a test that is named.
+// The section on claims has a row for each figure and each promise of README.md,
+// docs/guide/performance.md and docs/benchmarks.md, which is measured here or held by a named test.
 #include "host/report/experiments/claims.h"
 #include "host/report/experiments/experiment_table.h"
 
@@ -38,7 +38,7 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
     runs.push_back(stats_run("cores", {"glass", "--size", "1024x1024", "--mode", "batched"}, 3));
     for (const std::string mode : {"batched", "mixed"}) {
         std::vector<std::string> words{"dragonball", "--size", "512x512", "--mode", mode};
-        // Somewhat more than a third of either scene's pages.
+        // Both budgets are somewhat more than a third of their scene's pages.
         const std::vector<std::string> size =
             plan.quick ? std::vector<std::string>{"--model", "sphere-7", "--gpu-memory", "8M"}
                        : std::vector<std::string>{"--gpu-memory", "110M"};
@@ -48,7 +48,8 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
     return runs;
 }
 
-/// A claim's own bar, or that of the line of `overcast bench --bars` which it is.
+/// Returns the bar of the measured line of `overcast bench --bars` that the claim names, or else
+/// the claim's own bar.
 std::optional<ClaimBar> bar_of(const Claim& claim, const ClaimResults& results) {
     const Json& line = results.bar(claim.what);
     if (line.is_null() || line["measured"].is_null())
@@ -101,7 +102,7 @@ Json figures(std::span<const RawResult> results) {
             {"mesh", mesh}};
 }
 
-/// As gnuplot takes the label of a tic within single quotes: it is a format, too.
+/// Escapes the label of a tic for gnuplot, which reads it within single quotes and as a format.
 std::string tic(const std::string& label) {
     std::string text;
     for (const char c : label)
@@ -109,8 +110,8 @@ std::string tic(const std::string& label) {
     return text;
 }
 
-/// How far above its bar a line of `overcast bench --bars` is; 1: at the bar. Bars of 0 are not
-/// drawn.
+/// Plots how far above its bar each line of `overcast bench --bars` is; 1 is at the bar. Bars of 0
+/// are not drawn.
 Plot reached_plot(const Json& figures) {
     std::string data = "# bar, times the bar\n", tics;
     int place = 0;

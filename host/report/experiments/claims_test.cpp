@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report's claims beside the documents that make them: figures and promises cannot drift apart.
+// Compares the report's claims with the documents, so that figures and promises cannot drift apart.
 #include "host/report/experiments/claims.h"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Without what Markdown adds: emphasis, code, columns.
+/// Returns the line without Markdown's marks for emphasis, code and columns.
 std::string plain(const std::string& line) {
     std::string text;
     for (const char c : line)
@@ -27,7 +27,7 @@ std::string plain(const std::string& line) {
     return text;
 }
 
-/// The lines of each section, by its heading; those before the first by "".
+/// Returns the lines of each section by its heading; lines before the first section have "".
 std::map<std::string, std::vector<std::string>> sections_of(const std::string& document) {
     std::map<std::string, std::vector<std::string>> sections;
     std::string heading;
@@ -41,7 +41,7 @@ std::map<std::string, std::vector<std::string>> sections_of(const std::string& d
     return sections;
 }
 
-/// `words` begin and end where words do, so that 0.5 is not found in 0.55.
+/// Finds `words` where they begin and end as whole words, so that 0.5 is not found in 0.55.
 size_t find_words(const std::string& line, const std::string& words, size_t from) {
     const auto goes_on = [&](size_t at) {
         return at < line.size() && (std::isalnum(static_cast<unsigned char>(line[at])) ||
@@ -72,7 +72,7 @@ TEST(Claims, StandInTheDocuments) {
     }
 }
 
-/// The first cells of the section's tables, without their headers.
+/// Returns the first cells of the section's tables, without their headers.
 std::vector<std::string> first_cells(const std::vector<std::string>& lines) {
     std::vector<std::string> cells;
     bool in_body = false;
@@ -111,12 +111,12 @@ TEST(Claims, AreOfEverySectionOfTheBenchmarks) {
     std::set<std::string> claimed;
     for (const Claim& claim : claims())
         claimed.insert(claim.heading);
-    claimed.insert({"", "Contenders, columns, keys"}); // words, no figures
+    claimed.insert({"", "Contenders, columns, keys"}); // these have no figures
     for (const auto& [heading, lines] : sections_of("docs/benchmarks.md"))
         EXPECT_TRUE(claimed.contains(heading)) << heading;
 }
 
-/// Every TEST(Suite, Name) of the sources, as "Suite.Name".
+/// Returns every TEST(Suite, Name) of the sources as "Suite.Name".
 std::set<std::string> all_tests() {
     std::set<std::string> tests;
     for (const char* folder : {"core", "importers", "kdtree", "gpu", "plugin", "host", "tests"})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dragonball: the size of leaves, as figures 4.7 to 4.9 of the thesis.
+// Dragonball measures what the size of leaves costs, as figures 4.7 to 4.9 of the thesis do.
 #include "host/report/experiments/experiment_table.h"
 #include "host/report/experiments/thesis_runs.h"
 
@@ -13,7 +13,7 @@ namespace dragonball {
 
 constexpr std::string_view kScene = "dragonball";
 constexpr std::string_view kLeafSystems[] = {"batched", "mixed", "product-batched"};
-/// The partition of figure 4.8.
+/// The number of leaves that figure 4.8 has.
 constexpr const char* kFew = "3";
 
 std::vector<const char*> leaf_choices(bool quick) {
@@ -49,7 +49,7 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
     return runs;
 }
 
-/// A row for each partition: leaves are those that were made.
+/// Returns a row for each partition; "leaves" is the number that was made.
 Json rows_of(std::span<const RawResult> results) {
     Json rows = Json::array();
     std::string partition;
@@ -70,8 +70,9 @@ Json rows_of(std::span<const RawResult> results) {
     return rows;
 }
 
-/// Of one system along the rows: its best leaves, those within 5 % of that, and what a further GPU
-/// call costs between the fewest leaves and the most. A thing that is not there is null.
+/// Returns for one system the number of leaves at which it is fastest, the range within 5 % of
+/// that, and the cost of a further GPU call between the min and max number of leaves. Missing
+/// values are null.
 Json best_of(const Json& rows, std::string_view system, const char* cost) {
     constexpr double near = 1.05;
     Json best = {{"key", system},      {"name", thesis_system(system).name},
@@ -193,7 +194,7 @@ Table leaf_table(const Json& figures) {
     return table;
 }
 
-/// Which leaves win, and why, from measurements.
+/// Says from measurements which numbers of leaves are fastest, and why.
 Text leaves_text(const Json& figures) {
     Text text = {"Within a twentieth of its best, by leaves:"};
     for (size_t i = 0; i < figures["best"].size(); ++i) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dragons: more and more of them, as table 4.2 and figures 4.5 and 4.6 of the thesis.
+// Dragons measures scenes of more and more dragons, as table 4.2 and figures 4.5 and 4.6 of the
+// thesis do.
 #include "host/report/experiments/experiment_table.h"
 #include "host/report/experiments/thesis_runs.h"
 
@@ -14,7 +15,7 @@ namespace ovc {
 
 namespace dragons {
 
-/// Table 4.2: MB of textures of 1 to 21 dragons.
+/// Table 4.2 of the thesis: MB of textures for 1 to 21 dragons.
 constexpr std::array<double, 21> kReportedMegabytes = {68.3, 123, 177, 232, 286,  341,  396,
                                                        451,  506, 560, 616, 670,  725,  779,
                                                        834,  890, 944, 970, 1020, 1080, 1130};
@@ -49,7 +50,7 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
             // The CPU KD-tree takes longest to build.
             const double seconds = plan.quick ? 2 : (system.key == "kdt" ? 7 : 2) * n;
             runs.push_back(frames_run(asked.scene, system, asked, seconds));
-            // As the thesis' single texture, ours ends somewhere.
+            // Like the thesis' single texture, ours has a maximum size.
             runs.back().may_refuse = system.key == "single";
         }
     }
@@ -61,7 +62,7 @@ int dragons_in(const RawResult& raw) {
     return std::stoi(scene.substr(kScene.size()));
 }
 
-/// Rows in the order of the runs, which come scene by scene.
+/// Returns rows in the order of the runs, which come scene by scene.
 Json rows_of(std::span<const RawResult> results) {
     Json rows = Json::array();
     for (const RawResult& raw : results) {
@@ -90,7 +91,7 @@ Json rows_of(std::span<const RawResult> results) {
     return rows;
 }
 
-/// Over all rows, the geometric mean of a ratio.
+/// Returns the geometric mean of a ratio over all rows.
 Json mean_ratio(const Json& rows, const char* mean, const char* a, const char* b) {
     double sum = 0, count = 0;
     for (const Json& row : rows)
@@ -101,7 +102,7 @@ Json mean_ratio(const Json& rows, const char* mean, const char* a, const char* b
     return count > 0 ? Json(std::exp(sum / count)) : Json(nullptr);
 }
 
-/// The most dragons that the system rendered.
+/// Returns the dragons of the last row that the system rendered, or null.
 Json max_with(const Json& rows, const char* system) {
     Json most = nullptr;
     for (const Json& row : rows)
@@ -110,7 +111,7 @@ Json max_with(const Json& rows, const char* system) {
     return most;
 }
 
-/// Of the product in a budget.
+/// Returns the MB of the budget that the product ran in.
 Json budget_megabytes(std::span<const RawResult> results) {
     for (const RawResult& raw : results)
         if (split_run_key(raw.run.key).second == "product-budget")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error against run time: every contender of the bench, under several leaves and budgets, against
-// the CPU KD-tree in doubles.
+// Error against run time compares every contender of the bench, under several leaves and budgets,
+// with the CPU KD-tree in doubles.
 #include "host/bench/contender.h"
 #include "host/report/experiments/experiment_table.h"
 #include "host/report/page/frontier.h"
@@ -19,7 +19,7 @@ namespace error {
 
 constexpr std::string_view kDefault = "certified-compute, auto leaves, budget all";
 
-/// What follows after `bench` and the scene, beside what all have.
+/// Returns a run of `bench` on the scene with these contenders and settings.
 ReportRun run_of(const std::string& key, const std::string& scene, const std::string& contenders,
                  const std::vector<std::string>& settings, bool quick, double seconds) {
     ReportRun run{key, {"bench", scene, "--only", contenders}, "bench.json", seconds};
@@ -44,8 +44,8 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
             run_of(fmt::format("scene-{}", runs.size() + 1), scene, "certified,fast" + peers,
                    {"--leaves", plan.quick ? "auto,100" : "auto,16,100", "--resident", "all,30%"},
                    plan.quick, plan.quick ? 75 : 240));
-    // Two of the thesis' systems build a tree by a slow and careful rule: one scene, a small one
-    // in the quick form.
+    // Two of the thesis' systems build a tree by a slow and careful rule, so they get one scene, a
+    // small one in the quick form.
     runs.push_back(
         run_of("systems", plan.quick && plan.scenes.empty() ? std::string("sphere-6") : scenes[0],
                "certified-compute,fast-compute,thesis" + peers,
@@ -87,7 +87,7 @@ const Json& named(const Json& list, const char* key, const Json& name) {
     for (const Json& one : list)
         if (one[key] == name)
             return one;
-    throw std::runtime_error("no contender " + name.dump()); // not a file of the bench
+    throw std::runtime_error("no contender " + name.dump()); // the bench did not write the file
 }
 
 bool is_peer(const Json& choice) {
@@ -123,7 +123,7 @@ Json figures(std::span<const RawResult> results) {
     return {{"same_time_percent", 100 * kSameTime}, {"scenes", scenes}};
 }
 
-/// The series of a choice, which has its own marks.
+/// Returns the index of the series that a choice belongs to.
 size_t family(const std::string& choice) {
     constexpr std::string_view starts[] = {"certified", "fast", "cpu", "embree", "thesis"};
     for (size_t i = 0; i + 1 < std::size(starts); ++i)
@@ -132,7 +132,7 @@ size_t family(const std::string& choice) {
     return std::size(starts) - 1;
 }
 
-/// Series by family.
+/// Plots the choices of a workload, a series for each family.
 Plot plot_of(const std::string& name, const Json& workload, const char* error,
              const std::string& label) {
     std::vector<PlotSeries> series = {

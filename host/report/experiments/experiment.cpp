@@ -29,7 +29,7 @@ Result<const Experiment*> find_experiment(const std::string& name) {
             return &one;
         names.push_back(one.name);
     }
-    names.insert(names.end(), {"stability", "leaks", "grid"}); // tables of their own
+    names.insert(names.end(), {"stability", "leaks", "grid"}); // command_report.cpp has these
     return Error{fmt::format("no report is called '{}'; there are {}{}", name,
                              fmt::join(names, ", "), did_you_mean(name, names))};
 }

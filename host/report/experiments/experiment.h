@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Experiment: something that the report measures, as a pure description: which commands it runs,
-// what it reads out of their JSON, and how that is shown. A new experiment is a file and a row.
+// An Experiment describes something that the report measures: which commands it runs, which numbers
+// it reads from their JSON, and how the page shows them. A new experiment is a file and a row.
 #pragma once
 
 #include "core/result.h"
@@ -16,22 +16,22 @@ namespace ovc {
 struct ReportPlan {
     bool quick = false;
     std::string mesh;                // the file of the Stanford dragon; empty: generated scenes
-    std::vector<std::string> scenes; // instead of the scenes of an experiment; empty: its own
+    std::vector<std::string> scenes; // replace the scenes of each experiment; empty: its own
 };
 
-/// One command of this program. In `words`, "{}" is an empty folder that is its own.
+/// One command of this program. In `words`, "{}" stands for the run's own empty folder.
 struct ReportRun {
     std::string key;                // names its file: letters, digits and dashes
     std::vector<std::string> words; // without the program: "bench", "--json", "{}/bench.json"
-    std::string result;             // the JSON file it leaves in the folder
-    double seconds = 10;            // about so long on two cores
-    bool may_refuse = false;        // its one sentence is a result as well: {"refused": "..."}
-    /// A picture it leaves as well, which is kept: .png; or .exr, of which leaf_patches() is kept.
+    std::string result;             // the JSON file that it writes in the folder
+    double seconds = 10;            // expected on two cores
+    bool may_refuse = false;        // its error is a result as well: {"refused": "..."}
+    /// A picture that it writes as well. A .png is kept as it is, an .exr as leaf_patches() of it.
     std::string picture = {};
     std::vector<std::string> variables = {}; // of its environment: "NAME=VALUE"
 };
 
-/// What a run left behind.
+/// The result of a run.
 struct RawResult {
     ReportRun run;
     Json result;
@@ -43,16 +43,17 @@ struct Experiment {
     std::string_view title; // "Error against run time"
     std::string_view about; // a sentence for --help
     std::vector<ReportRun> (*runs)(const ReportPlan& plan);
-    /// Every number of the section; results in the order of the runs, some of which may be missing.
+    /// Returns every number of the section. results: at least one, in the order of the runs, some
+    /// of which may be missing.
     Json (*figures)(std::span<const RawResult> results);
-    /// From figures alone.
+    /// Returns the section's blocks, made from the figures alone.
     std::vector<Block> (*blocks)(const Json& figures);
 };
 
-/// In the order of the page.
+/// Returns all experiments in the order of the page.
 std::span<const Experiment> experiments();
 
-/// Error: none has this name.
+/// Returns the experiment of this name. Error: there is none.
 Result<const Experiment*> find_experiment(const std::string& name);
 
 } // namespace ovc

@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// The experiments of the report, a file each.
+// The experiments of the report, each in a file of its own.
 #pragma once
 
 #include "host/report/experiments/experiment.h"
 
 namespace ovc {
 
-/// What each choice of precision, kernel, leaves, budget and program costs, and how wrong it is.
+/// Measures what each choice of precision, kernel, leaves, budget and program costs, and how wrong
+/// it is.
 Experiment error_experiment();
-/// Finer triangles against exact round shapes.
+/// Compares finer and finer triangles with exact round shapes.
 Experiment tessellation_experiment();
-/// Errors of pictures by samples a pixel.
+/// Measures errors of pictures by samples a pixel.
 Experiment samples_experiment();
-/// The stability suite, and a grid of scales, offsets and aspects.
+/// Runs the stability suite, and a grid of scales, offsets and aspects.
 Experiment hard_experiment();
-/// Rays, triangles, leaves and budgets from few to many.
+/// Measures cost as rays, triangles, leaves and budgets grow.
 Experiment scale_experiment();
-/// What renderings have no need of.
+/// Measures the savings by leaving out what a rendering does not need.
 Experiment left_out_experiment();
-/// What README.md, docs/guide/performance.md and docs/benchmarks.md claim.
+/// Checks the claims of README.md, docs/guide/performance.md and docs/benchmarks.md.
 Experiment claims_experiment();
-/// Chapter 4 of the thesis, a scene each.
+/// These repeat chapter 4 of the thesis, a scene each.
 Experiment pictures_experiment();
 Experiment dragons_experiment();
 Experiment dragonball_experiment();

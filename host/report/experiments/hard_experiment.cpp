@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stability: the suite as a table, and heat maps over scale, offset and aspect, beside Embree.
+// Shows the stability suite as a table, and heat maps over scale, offset and aspect, beside Embree.
 #include "host/report/experiments/experiment_table.h"
 #include "host/report/stability/stability_grid.h"
 
@@ -42,8 +42,8 @@ Json per_million(const Json& count, const Json& one) {
     return rays > 0 ? Json(1e6 * count.get<double>() / rays) : Json(nullptr);
 }
 
-/// What each program answered of a case; null for one that was not asked, leaks of a case that is
-/// not closed are null too.
+/// Returns the scores of each program in a case. They are null for a program that was not asked,
+/// and leaks are null in a case that is not closed.
 Json case_of(const Json& one) {
     Json object = {{"name", one["name"]},
                    {"triangles", one["triangles"]},
@@ -118,10 +118,10 @@ bool was_asked(const Json& list, const Program& program) {
     return false;
 }
 
-/// Columns of the map: offsets, aspect by aspect; rows: scales.
+/// The axes of a heat map.
 struct MapAxes {
     std::vector<std::pair<int, int>> columns; // aspect, offset
-    std::vector<int> rows;
+    std::vector<int> rows;                    // scales
 };
 
 MapAxes axes_of(const Json& grid) {
@@ -219,7 +219,7 @@ Table cases_of(const Json& figures, const std::string& list, const std::string& 
     return table;
 }
 
-/// Those that are timed against another.
+/// Returns the table of cases that are timed against another case.
 Table costs_of(const Json& figures) {
     Table table;
     table.caption = "What the hardest rays cost: microseconds a ray, from call to return, and how "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leaves to colours, colours to PNG.
+// Turns numbers of leaves into colours, and colours into a PNG file.
 #include "host/report/experiments/leaf_patches.h"
 
 #include "host/diff/channels.h"
@@ -20,7 +20,7 @@ namespace {
 constexpr float kNothing = 0.55f; // readable on light ground and on dark
 constexpr uint32_t kNoLeaf = 0xffffffff;
 
-/// A hue of 0 to 1 with little white in it.
+/// Returns the colour of a hue from 0 to 1, with little white in it.
 PatchColor from_hue(double hue) {
     const auto channel = [&](double shift) {
         const double x = std::abs(std::fmod(hue + shift, 1.0) * 6 - 3) - 1;
@@ -29,7 +29,8 @@ PatchColor from_hue(double hue) {
     return {channel(0), channel(2.0 / 3), channel(1.0 / 3)};
 }
 
-/// Lambert's cosine to a light from above and the side, never dark.
+/// Returns Lambert's cosine to a light above and to the side, with a minimum so that nothing is
+/// dark.
 float shade(float x, float y, float z) {
     return 0.45f + 0.55f * std::abs(0.36f * x + 0.8f * y + 0.48f * z);
 }
@@ -45,7 +46,7 @@ uint16_t sample(float value) {
 } // namespace
 
 PatchColor patch_color(uint32_t leaf) {
-    constexpr double kGolden = 0.6180339887498949; // turns that never come near an earlier one
+    constexpr double kGolden = 0.6180339887498949; // its multiples modulo 1 stay far apart
     return from_hue(std::fmod(kGolden * leaf, 1.0));
 }
 

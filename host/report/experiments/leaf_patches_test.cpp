@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours of leaves.
+// Tests the colours of leaves and files that cannot be read.
 #include "host/report/experiments/leaf_patches.h"
 
 #include <gmock/gmock.h>

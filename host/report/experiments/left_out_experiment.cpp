@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Left out: what a rendering has no need of, and what that saves, by switching it back on.
+// Measures what leaving out the unneeded parts of a rendering saves, by switching them back on.
 #include "host/report/experiments/experiment_table.h"
 #include "host/report/experiments/thesis_runs.h"
 
@@ -11,7 +11,7 @@ namespace ovc {
 
 namespace left_out {
 
-/// Something that is not there unless it is asked for.
+/// A part of the work that is left out unless it is asked for.
 struct Switch {
     const char* key;
     const char* name;
@@ -28,7 +28,7 @@ const std::vector<Switch>& switches() {
     return all;
 }
 
-/// Nothing that was compiled before is there: neither the library's nor Mesa's.
+/// Disables both caches of compiled kernels, the library's and Mesa's.
 const std::vector<std::string> kNothingCompiled = {"OVC_KERNEL_CACHE=off",
                                                    "MESA_SHADER_CACHE_DISABLE=true"};
 constexpr std::string_view kCold = "-cold";
@@ -41,7 +41,8 @@ std::string key_of(const std::string& scene, const Switch& one, bool with, bool 
                        cold ? kCold : "", repeat);
 }
 
-/// One side of a switch. cold: of so few rays that its time is that of compiling.
+/// Returns a run of one side of a switch. cold: the picture has so few rays that compiling takes
+/// the time.
 ReportRun run_of(const std::string& scene, const Switch& one, bool with, bool cold, int repeat,
                  bool quick) {
     ReportRun run{key_of(scene, one, with, cold, repeat),
@@ -60,7 +61,7 @@ ReportRun run_of(const std::string& scene, const Switch& one, bool with, bool co
     return run;
 }
 
-/// Compiling varies little.
+/// Cold runs are not repeated, because the time of compiling varies little.
 int repeats_of(const ReportPlan& plan, bool cold) {
     return cold ? 1 : plan.quick ? 3 : 5;
 }
@@ -79,7 +80,7 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
         for (const Switch& one : switches())
             for (const bool cold : {false, true})
                 for (int repeat = 0; repeat < repeats_of(plan, cold); ++repeat)
-                    for (const bool with : {false, true}) // in turn
+                    for (const bool with : {false, true}) // both sides take turns
                         runs.push_back(run_of(scene, one, with, cold, repeat, plan.quick));
     return runs;
 }
@@ -91,7 +92,7 @@ double rays_of(const Json& stats) {
     return sum;
 }
 
-/// What the runs of one side of a switch left.
+/// The statistics that the runs of one side of a switch wrote.
 struct Side {
     std::vector<const Json*> warm, cold;
 };
@@ -100,7 +101,7 @@ double cpu_ms(const Json& stats) {
     return 1e3 * stats["time"]["cpu"].get<double>();
 }
 
-/// Medians over the repeats.
+/// Returns medians over the repeats.
 Json side_of(const Side& side) {
     const auto median = [](const std::vector<const Json*>& stats, const auto& value) -> Json {
         std::vector<double> values;
@@ -131,7 +132,7 @@ Json row_of(const std::string& scene, const Switch& one, const Side& without, co
     return row;
 }
 
-/// What the program says that it left out of a scene, with bytes; of its first run.
+/// Returns what the scene's first run says that it left out, where that has bytes.
 Json told_of(const std::string& scene, const Json& stats) {
     Json told = Json::array();
     for (const Json& one : stats["left_out"])

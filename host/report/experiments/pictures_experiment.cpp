@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures: the scenes of the thesis, the camera's path, and level 1 as patches of colour, as its
-// figures 3.5, 4.1, 4.2 and 4.3.
+// Draws the scenes of the thesis, the camera's path, and level 1 as patches of colour, as figures
+// 3.5, 4.1, 4.2 and 4.3 of the thesis do.
 #include "host/report/experiments/experiment_table.h"
 #include "host/report/experiments/thesis_runs.h"
 #include "testscenes/catalog.h"
@@ -14,8 +14,8 @@ namespace pictures {
 struct Shot {
     const char* key;
     const char* caption;
-    const char* full; // scene
-    const char* quick;
+    const char* full;  // the scene of the full form
+    const char* quick; // the scene of the quick form
     const char* frame; // of the camera path; empty: the scene's own camera
     bool patches;      // leaves of level 1 instead of the picture
 };
@@ -50,7 +50,7 @@ ReportRun run_of(const Shot& shot, const ReportPlan& plan, const std::string& sc
     run.picture =
         std::string("picture") + (*shot.frame ? "-####" : "") + (shot.patches ? ".exr" : ".png");
     run.words.insert(run.words.end(), {"-o", "{}/" + run.picture});
-    if (*shot.frame) // its name has the frame's number then
+    if (*shot.frame) // then the picture's name has the frame's number
         run.picture.replace(run.picture.find("####"), 4, fmt::format("{:0>4}", shot.frame));
     return run;
 }
@@ -78,7 +78,7 @@ const Shot* shot_of(const std::string& key) {
     return nullptr;
 }
 
-/// Where the camera of figure 4.2 is, frame by frame.
+/// Returns the camera's position for each frame of figure 4.2.
 Json path_of() {
     Json path = Json::array();
     if (const Result<CameraPath> cameras = test_scene_path(kPathScene); cameras)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Raw results as files.
+// Names, reads and writes the files of raw results.
 #include "host/report/experiments/raw_results.h"
 
 #include "core/file/checksum.h"

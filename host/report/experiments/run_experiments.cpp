@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One run after another, with what is left of the time.
+// Executes one run after another and tells how much time is left.
 #include "host/report/experiments/run_experiments.h"
 
 #include "host/bench/programs/run_program.h"
@@ -19,12 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A run may take so many times what is expected, and this at least: machines differ, and are
-/// shared.
+/// A run may take kPatience times its expected time, and kMinLimit seconds in any case, because
+/// machines differ and are shared.
 constexpr double kPatience = 20;
 constexpr double kMinLimit = 300;
 
-/// The empty folder of a run; it goes with this.
+/// The empty folder of a run, which the destructor removes.
 class RunFolder {
 public:
     explicit RunFolder(fs::path path) : path_(std::move(path)) {
@@ -71,7 +71,7 @@ Result<std::string> read_bytes(const fs::path& path) {
                          : std::move(bytes);
 }
 
-/// How far the whole report is, in expected seconds.
+/// Tells how far the whole report is, in expected seconds.
 class Clock {
 public:
     void expect(double seconds) { expected_ += seconds, ++runs_; }
@@ -80,7 +80,7 @@ public:
         taken_ += seconds;
         ++runs_done_;
     }
-    /// "2 of 9 runs, 3 min left": by how long runs took against what was expected.
+    /// Returns "2 of 9 runs, 3 min left", estimated from the time that runs took so far.
     std::string text() const {
         const double pace = expected_done_ > 0 ? taken_ / expected_done_ : 1;
         return fmt::format("{} of {} runs, {}", runs_done_ + 1, runs_,
@@ -102,7 +102,8 @@ public:
                 clock_.expect(run.seconds);
     }
 
-    /// Whether it is done: before, or now where it `may_run`; false as well where it was stopped.
+    /// Returns whether the run is done: earlier, or now where it `may_run`. Returns false where it
+    /// was stopped.
     Result<bool> go(const ReportRun& run, bool may_run, Outcome& outcome) {
         const Experiment& experiment = *outcome.experiment;
         const fs::path path = path_of(experiment, run);
@@ -133,8 +134,8 @@ private:
         return raw_path(around_.folder, experiment, run, around_.build);
     }
 
-    /// A command that found something wrong leaves its result and says so; one that was ended does
-    /// not count, whatever it left.
+    /// Keeps the result of a command that ended by itself, also where it found something wrong and
+    /// says so. The result of a command that was killed does not count.
     Result<bool> keep(const ReportRun& run, const ProgramEnd& end, const fs::path& left,
                       Outcome& outcome) {
         RawResult raw{run, {}};
@@ -158,11 +159,11 @@ private:
         if (end.exit_code == 0)
             return keep(std::move(raw), end.seconds, outcome);
         outcome.remarks.push_back(fmt::format("{}: {}", run.key, end.said));
-        outcome.results.push_back(std::move(raw)); // and run again next time
+        outcome.results.push_back(std::move(raw)); // not saved, so that it runs again next time
         return true;
     }
 
-    /// Beside where its result will be; of an .exr file the patches of leaves.
+    /// Writes the run's picture beside its result, from an .exr file the patches of leaves.
     Result<Done> keep_picture(RawResult& raw, const fs::path& left, const Experiment& experiment) {
         if (raw.run.picture.empty())
             return Done{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Experiments with shell scripts for runs: what is done is kept, what fails is said, what is
-// stopped is as if it had not begun.
+// Tests experiments whose runs are shell scripts: finished runs are kept, failures are reported,
+// and a stopped run is as if it had not begun.
 #include "host/report/experiments/run_experiments.h"
 
 #include "host/bench/programs/scratch_folder.h"
@@ -22,11 +22,11 @@ protected:
         scripts.clear();
     }
 
-    /// In a script, $0 is its own folder; it leaves result.json there.
+    /// Adds a script that writes result.json to its own folder, $0.
     void add(const std::string& key, const std::string& script) {
         scripts.push_back({key, {"-c", script, "{}"}, "result.json", 1});
     }
-    /// Leaves a line in the file `name` for each time it runs.
+    /// Returns a script that also adds a line to the file `name` each time it runs.
     std::string counted(const std::string& name, const std::string& script) const {
         return "echo run >> '" + (scratch.path() / name).string() + "'; " + script;
     }
@@ -50,7 +50,7 @@ protected:
         return outcomes->at(0);
     }
 
-    static std::vector<ReportRun> scripts; // a function of an experiment has no other way to them
+    static std::vector<ReportRun> scripts; // static, because Experiment::runs cannot capture
     ScratchFolder scratch = std::move(*ScratchFolder::make());
 };
 
@@ -93,7 +93,7 @@ TEST_F(RunExperiments, SayWhatFailedAndGoOn) {
     EXPECT_EQ(outcome.results[0].run.key, "good");
 }
 
-/// Commands that find wrong answers leave their figures all the same.
+/// Commands that find wrong answers write their figures all the same.
 TEST_F(RunExperiments, TakeFiguresOfARunThatFoundSomethingWrongAndRunItAgain) {
     add("wrong",
         counted("wrong", "echo '{\"n\": 4}' > $0/result.json; echo 4 are wrong >&2; exit 1"));
@@ -130,7 +130,7 @@ TEST_F(RunExperiments, TakeWhatIsThereOfThoseThatAreNotChosen) {
     EXPECT_EQ(times("two"), 1u);
 }
 
-/// A program that is built anew, or another library in its place, is another build.
+/// A program that is built anew, or that loads another library, is another build.
 TEST(RawResults, AreOfOneBuild) {
     const ScratchFolder scratch = std::move(*ScratchFolder::make());
     const fs::path program = scratch.path() / "program";

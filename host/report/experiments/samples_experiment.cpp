@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples: the error of a picture against time by samples a pixel, beside Embree, povray and
+// Compares the error of a picture with its time, by samples a pixel, beside Embree, povray and
 // tachyon.
 #include "host/report/experiments/experiment_table.h"
 #include "host/report/page/frontier.h"
@@ -19,7 +19,7 @@ struct Program {
     const char* name;
     const char* title;
 };
-/// In the order of the plots' marks.
+/// The programs in the order of the plots' marks.
 constexpr Program kPrograms[] = {{"certified", "certified"},     {"fast", "fast"},
                                  {"cpu-kdtree", "CPU, doubles"}, {"embree", "Embree"},
                                  {"povray", "povray"},           {"tachyon", "tachyon"}};
@@ -41,7 +41,8 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
     return runs;
 }
 
-/// Other programs' pictures come in codes of 16 bits: what is less apart is the same.
+/// Rounds an error to codes of 16 bits, in which other programs' pictures come, so that smaller
+/// differences do not count.
 double in_codes(double rmse) {
     constexpr double codes = 65535;
     return std::round(codes * rmse) / codes;
@@ -114,7 +115,7 @@ Table table_of(const Json& figures, const std::string& at, const Json& scene) {
     return table;
 }
 
-/// One sentence for each program that is missing.
+/// Returns one sentence for each program that is missing.
 Text missing_text(const Json& scene) {
     Text text;
     for (const Json& program : scene["not_installed"])

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scale: what the plugin's work costs as rays, triangles, leaves and the budget grow.
+// Measures what the plugin's work costs as rays, triangles, leaves and the budget grow.
 #include "host/bench/sweep.h"
 #include "host/report/experiments/experiment_table.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <thread>
@@ -32,7 +33,7 @@ ReportRun thread_run(const std::string& scene, uint32_t threads, int repeat, boo
             2};
 }
 
-/// A rendering with 1, 2, 4, ... threads, and with as many as there are cores; three times each.
+/// Returns renderings with 1, 2, 4, ... threads, and with as many as there are cores; three each.
 std::vector<ReportRun> thread_runs(const std::string& scene, bool quick) {
     constexpr int repeats = 3;
     std::vector<ReportRun> runs;
@@ -67,7 +68,7 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
     return runs;
 }
 
-/// As the bench leaves it, but for the folder of its scene.
+/// Returns the bench's JSON, with the scene's name instead of its path.
 Json sweep_of(const Json& result) {
     Json sweep = result;
     const std::string source = result["scene"];
@@ -75,17 +76,18 @@ Json sweep_of(const Json& result) {
     return sweep;
 }
 
-/// "threads-2-0": 2.
+/// Returns 2 for the key "threads-2-0".
 int threads_in(const ReportRun& run) {
     return std::stoi(run.key.substr(std::string_view(kThreads).size()));
 }
 
 Json median_of(std::vector<double> values) {
+    assert(!values.empty());
     std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(values.size() / 2));
     return values[values.size() / 2];
 }
 
-/// A row for each number of threads, medians of its runs.
+/// Returns a row for each number of threads, with medians of its runs.
 Json threads_of(std::span<const RawResult> results) {
     std::map<int, std::vector<const Json*>> times;
     for (const RawResult& raw : results)
@@ -107,7 +109,7 @@ Json threads_of(std::span<const RawResult> results) {
     return rows;
 }
 
-/// Of a column of threads_of(): -1 is perfectly parallel.
+/// Returns the exponent of a column of threads_of(); -1 is perfectly parallel.
 Json threads_exponent(const Json& rows, const char* column) {
     Sweep sweep;
     for (const Json& row : rows)
@@ -122,8 +124,9 @@ struct Projected {
 };
 constexpr Projected kProjected[] = {{1e9, 1}, {1e9, 100}, {1e11, 1}, {1e11, 1000}};
 
-/// The power law of a column through its last row, at x. Building is taken to grow in proportion at
-/// least: small scenes take a part of their time whatever their size.
+/// Returns the value at x of a column's power law through its last row, with an exponent of at
+/// least min_exponent. Small scenes take part of their build time whatever their size, so the
+/// fitted exponent of building is too low.
 Json carried_on(const Json& sweep, const char* column, double x, double min_exponent) {
     const auto found = std::ranges::find(sweep["columns"], column);
     if (found == sweep["columns"].end())
@@ -136,7 +139,7 @@ Json carried_on(const Json& sweep, const char* column, double x, double min_expo
            std::pow(x / last["x"].get<double>(), std::max(min_exponent, exponent.get<double>()));
 }
 
-/// What each of so many machines would take, each with its share of the triangles.
+/// Returns what each of several machines would take, each with its share of the triangles.
 Json projection_of(const Json& sweep) {
     Json rows = Json::array();
     for (const Projected& one : kProjected) {
@@ -177,7 +180,7 @@ bool is_time(const std::string& column) {
     return column.ends_with(" s");
 }
 
-/// Times alone: a row of data for each x, a curve for each column.
+/// Plots the times of a sweep: a row of data for each x, a curve for each column of seconds.
 Plot plot_of(const Json& sweep) {
     const std::string over = sweep["over"];
     const Json& columns = sweep["columns"];
@@ -237,7 +240,7 @@ Plot threads_plot(const Json& figures) {
             "datafile using 1:3 with linespoints ls 2 title 'tracing and shading'\n"};
 }
 
-/// The rows of a list of objects, a column for each key.
+/// Returns a table of a list of objects, with a column for each key.
 Table list_table(const Json& figures, const std::string& list, const std::string& caption,
                  const std::vector<std::string>& header, const std::vector<const char*>& keys) {
     Table table{caption, header, {}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tessellation: what finer triangles cost, against the exact spheres, cones and tori that they
-// stand for, and against povray's picture of these.
+// Measures what finer triangles cost, against the exact spheres, cones and tori that they
+// approximate, and against povray's picture of these.
 #include "host/report/experiments/experiment_table.h"
 #include "host/report/page/frontier.h"
 #include "host/report/page/frontier_plot.h"
@@ -23,7 +23,7 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
              plan.quick ? 8.0 : 90.0}};
 }
 
-/// Its triangles, and how far its rays are from the exact shapes.
+/// Returns a choice's triangles, costs, and how far its hits are from the exact shapes.
 Json shape_choice(const Json& row, double rays) {
     double largest = 0;
     for (const Json& off : row["largest_distance"])
@@ -87,7 +87,7 @@ PlotSeries::Point point_of(const Json& choice, const char* x, const Json& error)
     return {choice[x].get<double>(), error.get<double>(), choice["choice"].get<std::string>()};
 }
 
-/// A line a shape, from few triangles to many.
+/// Plots a line for each shape, from few triangles to many.
 Plot distance_plot(const Json& figures) {
     std::string data = "# triangles, largest distance in radii\n", lines;
     int style = 0;
@@ -114,7 +114,7 @@ Plot distance_plot(const Json& figures) {
                 lines + "\n"};
 }
 
-/// The default has its own mark.
+/// Plots the choices' error against time; the default has its own mark.
 Plot choices_plot(const std::string& name, const std::string& caption, const Json& choices,
                   const char* x, const char* error, const std::string& x_label,
                   const std::string& y_label) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of the thesis' scenes, as figures, tables and plots.
+// Turns frames of the thesis' scenes into figures, tables and plots.
 #include "host/report/experiments/thesis_runs.h"
 
 #include <fmt/format.h>
@@ -199,7 +199,7 @@ Table findings_table(const Json& figures) {
     return table;
 }
 
-/// A cell of a data file; gnuplot leaves out what is no number.
+/// Returns a cell of a data file; gnuplot leaves out NaN.
 static std::string cell(const Json& value) {
     return value.is_null() ? " NaN" : fmt::format(" {:.6g}", value.get<double>());
 }
@@ -231,7 +231,7 @@ Plot frames_plot(const std::string& name, const std::string& caption, const Json
                         curves)};
 }
 
-/// Where the system's object is; nothing: it is not there.
+/// Returns the pointer to the system's object, or nothing where there is none.
 static std::optional<std::string> pointer_to(const Json& figures, const std::string& at,
                                              std::string_view key) {
     const Json& systems = figures.at(Json::json_pointer(at));

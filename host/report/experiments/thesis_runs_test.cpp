@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of the thesis' systems, from statistics as `overcast render` writes them.
+// Tests frames of the thesis' systems, from statistics such as `overcast render` writes.
 #include "host/report/experiments/thesis_runs.h"
 
 #include <gmock/gmock.h>
@@ -7,7 +7,7 @@
 namespace ovc {
 namespace {
 
-/// Two frames of `seconds` and twice that, `cpu` and twice that.
+/// Returns statistics of two frames, of which the second takes twice as much of everything.
 Json stats_of(double seconds, double cpu, int passes) {
     Json stats = {{"level2_bytes", 1000},
                   {"bytes_in", 4e6},
@@ -38,7 +38,7 @@ TEST(FramesOf, HasMeansAndAValueForEachFrame) {
     EXPECT_TRUE(frames_of("kdt", stats_of(2, 3, 10))["mean_calls"].is_null()) << "it has no GPU";
 }
 
-/// Other programs on the machine change seconds, and a GPU's time is nobody's CPU seconds.
+/// Other programs on the machine change wall time, and a GPU's time is not in CPU seconds.
 TEST(CostBy, IsCpuSecondsOnASoftwareRendererAlone) {
     const Json systems = {frames_of("batched", stats_of(2, 3, 10)),
                           frames_of("mixed", stats_of(8, 6, 5))};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plants and power plant: camera paths, frame by frame, as figures 4.10 to 4.15 of the thesis.
+// Measures plants and power plant along camera paths, frame by frame, as figures 4.10 to 4.15 of
+// the thesis do.
 #include "host/report/experiments/experiment_table.h"
 #include "host/report/experiments/thesis_runs.h"
 
@@ -11,14 +12,14 @@ namespace ovc {
 
 namespace {
 
-/// A scene of the thesis, and what it says of it.
+/// A scene of the thesis, with the thesis' figures and results.
 struct Walk {
     const char* name;
-    const char* quick; // scene of the quick form
+    const char* quick; // the scene of the quick form
     const char* full;
     int last_frame;
     const char *time_figure, *calls_figure, *rays_figure, *active_figure;
-    const char *faster_than_kdt, *calls_ratio, *time_ratio; // reported
+    const char *faster_than_kdt, *calls_ratio, *time_ratio; // as the thesis reports them
 };
 
 constexpr Walk kPlants = {"plants", "plants-10", "plants",          254,
@@ -39,7 +40,8 @@ constexpr Walk kPowerplant = {"powerplant",
 constexpr std::string_view kSystems[] = {"kdt", "batched", "mixed", "product-batched",
                                          "product-mixed"};
 
-/// The scene of the family that is asked for; empty: another family's.
+/// Returns the walk's scene, or the one that the plan asks for; empty where the plan asks for other
+/// scenes alone.
 std::string scene_of(const ReportPlan& plan, const Walk& walk) {
     if (plan.scenes.empty())
         return plan.quick ? walk.quick : walk.full;
