@@ -24,7 +24,7 @@ class Local {
 public:
     explicit Local(const Soup& soup, uint32_t chunk = 0)
         : chunk_(soup.chunks[chunk]), mesh_(chunk) {
-        assert(chunk < soup.chunks.size() && size() > 0);
+        assert(chunk < soup.chunks.size());
     }
 
     Triangle triangle(uint32_t prim) const {

@@ -26,7 +26,7 @@ struct Aim {
     double grid = 0; // above 0: origins are multiples of it, so that rays meet vertices exactly
 };
 
-// Functions with a `count` return so many rays at the soup, whose chunk 0 has triangles (asserted).
+// Functions with a `count` return so many rays at the soup, whose chunk 0 has triangles.
 
 /// Every ray passes a point inside the closed mesh in chunk 0, or begins there, so it must hit.
 AimedRays closed_mesh_rays(const Soup& soup, Random& random, size_t count, const Aim& aim);
