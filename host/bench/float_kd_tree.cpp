@@ -17,7 +17,7 @@ namespace {
 /// A KdNode in 8 bytes.
 struct FloatNode {
     uint32_t value; // the split plane's float, or a leaf's first reference
-    uint32_t bits;  // low 2 bits: the axis, 3 for a leaf; the rest: the node above, or the count
+    uint32_t bits;  // low 2 bits: the axis, 3 for a leaf; the rest: the upper child, or the count
 
     explicit FloatNode(const KdNode& node) {
         if (node.is_leaf()) {

@@ -174,11 +174,12 @@ Result<Sweep> run_sweep(const BenchJob& job, const BenchSurroundings& around) {
 }
 
 std::optional<double> fitted_exponent(const Sweep& sweep, size_t column) {
-    assert(column < sweep.columns.size());
     std::vector<std::pair<double, double>> points;
-    for (const SweepRow& row : sweep.rows)
+    for (const SweepRow& row : sweep.rows) {
+        assert(column < row.values.size());
         if (row.x > 0 && row.values[column].value_or(0) > 0)
             points.emplace_back(std::log(row.x), std::log(*row.values[column]));
+    }
     if (points.size() < 2)
         return {};
     double x = 0, y = 0, xx = 0, xy = 0;

@@ -30,8 +30,8 @@ struct Sweep {
 Result<Sweep> run_sweep(const BenchJob& job, const BenchSurroundings& around);
 
 /// Returns k of the power law c x^k nearest to a column, by least squares of logarithms. Returns
-/// nothing where fewer than two rows have a value above 0, or all have the same x. column: below
-/// the number of columns (asserted).
+/// nothing where fewer than two rows have a value above 0, or all have the same x. column: an index
+/// of every row's values (asserted).
 std::optional<double> fitted_exponent(const Sweep& sweep, size_t column);
 
 /// Returns Markdown, one line for each row and the exponents last, with a line end.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Snell's law and mirrors against formulas.
+// Compares refraction and mirrors with formulas.
 #include "host/report/optics/optics_exact.h"
 
 #include "host/shade/refract.h"
@@ -18,14 +18,13 @@ using Wide = long double;
 using WideVec = glm::vec<3, long double>;
 
 constexpr double kUlp = 0x1p-53;
-constexpr uint64_t kRays = 20'000; // of the short form
+constexpr uint64_t kRays = 20'000; // in the short form
 constexpr uint32_t kBounces = 200;
 
-/// The textbook's formula; squared cosine behind the plane, and the direction where that is
-/// positive.
+/// The textbook's formula.
 struct Textbook {
-    Wide square;
-    WideVec dir;
+    Wide square; // of the cosine behind the plane; below 0: total reflection
+    WideVec dir; // set where square is above 0
 
     Textbook(const dvec3& incoming, const dvec3& plane_normal, double from, double to) {
         const WideVec d = glm::normalize(WideVec(incoming));
@@ -37,8 +36,8 @@ struct Textbook {
     }
 };
 
-/// What the roundings of the direction and of a few operations may come to: near the critical angle
-/// a small turn of the light in is a large one out.
+/// Returns the largest error that roundings of the direction and of a few operations explain. Near
+/// the critical angle a small turn of the incoming light is a large turn of the outgoing light.
 double tolerance(double eta, double cosine_in, double cosine_out) {
     return 8 * kUlp * (1 + eta + eta * eta * cosine_in / cosine_out);
 }
@@ -129,7 +128,8 @@ Result<OpticsScore> facing_mirrors(const OpticsOptions& options, const LogSink& 
     }
     for (size_t i = 0; i < count; ++i) {
         score.wrong += bounces[i] != kBounces;
-        // Half the gap to the ceiling, then the whole of it 199 times, the last to the floor.
+        // The ray crosses half the gap to the ceiling, then the whole gap 199 times, at last to
+        // the floor.
         const dvec3 way = (kBounces - 0.5) * first[i].dir;
         const dvec3 end(first[i].org.x + way.x, first[i].org.y + way.y, 0);
         score.error = std::max(score.error, glm::length(rays[i].org - end) / glm::length(way));

@@ -6,17 +6,18 @@
 
 namespace ovc {
 
-/// Random directions through random planes, both ways, against the textbook's formula in long
-/// double. wrong: farther off than roundings explain. error: largest, of a unit direction, where
-/// the refracted ray is steeper than 1e-3.
+/// Refracts random directions at random planes, both ways, and compares them with the textbook's
+/// formula in long double. wrong: farther off than roundings explain. error: largest, of a unit
+/// direction, where the refracted ray is steeper than 1e-3.
 OpticsScore snell(const OpticsOptions& options, double ior);
 
-/// Light that leaves a medium 1e-15 to 1e-6 rad beside the critical angle. wrong: reflected or let
-/// through unlike in long double, where a rounding of the direction does not decide; or no number.
+/// Refracts light that leaves a medium 1e-15 to 1e-6 rad beside the critical angle. wrong: it is
+/// reflected where long double lets it through or the reverse, unless a rounding of the direction
+/// decides, or a direction is not finite.
 OpticsScore critical_angle(const OpticsOptions& options, double ior);
 
-/// Rays between two mirrors, 200 times to and fro. wrong: rays that do not count 200 bounces.
-/// error: of the last point, relative to the way there.
+/// Follows rays between two mirrors for 200 bounces. wrong: rays that do not count 200 bounces.
+/// error: of the last point, relative to the length of the way there.
 Result<OpticsScore> facing_mirrors(const OpticsOptions& options, const LogSink& log);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of glass, compared with pictures that must look the same.
+// Renders pictures of glass and compares them with pictures that must look the same.
 #include "host/report/optics/optics_pictures.h"
 
 #include "host/render/render.h"
@@ -11,9 +11,9 @@ namespace ovc {
 
 namespace {
 
-constexpr uint32_t kSize = 128; // pixels a side of the short form
+constexpr uint32_t kSize = 128; // pixels a side in the short form
 
-/// Squares of 8 x 8 in two colors below the origin, in a scene of its own.
+/// Returns a scene of 16 x 16 squares in two colors, below `place`.
 Scene checked_floor(dvec3 place) {
     Scene scene;
     scene.materials = {{"light", vec3(0.9f), 0}, {"dark", vec3(0.1f, 0.1f, 0.3f), 0}};

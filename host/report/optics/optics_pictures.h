@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The optics table's rows that render: glass that must not show, glass far away, deep mirrors.
+// The optics table's rows that render: glass that must not show, and glass and mirrors far away.
 #pragma once
 
 #include "host/report/optics/optics.h"
 
 namespace ovc {
 
-/// A clear sphere of this index of refraction before a checked floor, against no sphere. wrong:
-/// pixels that differ by more than 1e-6. error: the largest difference of a color.
+/// Compares a picture of a checked floor behind a clear sphere of this index of refraction with one
+/// without the sphere. wrong: pixels that differ by more than 1e-6. error: the largest difference
+/// of a color.
 Result<OpticsScore> unseen_glass(const OpticsOptions& options, const LogSink& log, double ior);
 
-/// The picture of a glass and a mirror sphere at UTM coordinates, against that at the origin.
-/// wrong: pixels that differ by more than 1e-4.
+/// Compares the picture of a glass and a mirror sphere at UTM coordinates with that at the origin.
+/// wrong: pixels that differ by more than 1e-4. error: as above.
 Result<OpticsScore> far_glass(const OpticsOptions& options, const LogSink& log);
 
 } // namespace ovc

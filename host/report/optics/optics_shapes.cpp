@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shapes of the optics table.
+// Makes the shapes of the optics table.
 #include "host/report/optics/optics_shapes.h"
 
 #include "testscenes/corners.h"
@@ -13,9 +13,9 @@ namespace ovc {
 
 namespace {
 
-using Points = std::vector<dvec3>; // three a triangle
+using Points = std::vector<dvec3>; // three for each triangle
 
-/// A turned copy with axes of these lengths.
+/// Returns a turned copy with axes of these lengths.
 Points stretched(Points points, dvec3 lengths, Random& random) {
     const dvec3 x = random.direction(), y = any_perpendicular(x), z = glm::cross(x, y);
     for (dvec3& p : points)
@@ -97,7 +97,7 @@ Shape make_shape(uint32_t i, Random& random) {
         return {stretched(ball(2), blunt, random), true};
     case 2:
         return {lat_long_of(random), false};
-    case 3: // the halves of a side, rounded to float, need not lie in one plane
+    case 3: // not convex, since the halves of a side, rounded to float, need not lie in one plane
         return {stretched(cube(), blunt, random), false};
     case 4:
         return {stretched(cube(), {1, blunt.y, thin}, random), false};
@@ -106,7 +106,7 @@ Shape make_shape(uint32_t i, Random& random) {
     }
 }
 
-/// Wherever the corner's own triangle does not face away.
+/// Returns for each corner a random normal on the outer side of the corner's own triangle.
 std::vector<vec3> wild_normals(const Corners& corners, Random& random) {
     std::vector<vec3> normals;
     for (size_t i = 0; i < corners.size(); ++i) {

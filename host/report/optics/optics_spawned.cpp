@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spawned rays: follows light into closed shapes and out again, and asks at every step whether it
-// meets the side of the surface that it must.
+// Follows light into closed shapes and out again, and checks at every step that it meets the side
+// of the surface that it must.
 #include "host/report/optics/optics_spawned.h"
 
 #include "host/report/optics/optics_shapes.h"
@@ -14,7 +14,7 @@ namespace ovc {
 namespace {
 
 constexpr size_t kBatch = 1 << 16;
-constexpr uint64_t kRaysPerShape = 100; // of the short form, before they spawn
+constexpr uint64_t kRaysPerShape = 100; // in the short form, before they spawn
 constexpr uint32_t kDepth = 6;
 
 /// A ray that left shape `shape`, or, at depth 0, is aimed at it.
@@ -26,7 +26,8 @@ struct SpawnedRay {
     bool inside;
 };
 
-/// Towards a vertex, a point of an edge or of the inside of some triangle, from outside all shapes.
+/// Returns a ray from outside all shapes towards a vertex of a triangle, a point of an edge or of
+/// the inside.
 SpawnedRay aimed(const ShapeField& field, uint32_t shape, Random& random) {
     const Chunk& chunk = field.scene.soup.chunks[shape];
     const Triangle t = field.scene.soup.triangle({shape, random.below(chunk.size())});
@@ -44,7 +45,7 @@ public:
     Follower(const ShapeField& field, Backend& backend, uint64_t seed)
         : field_(field), backend_(backend), random_(seed) {}
 
-    /// Follows the light of kBatch rays or less until it is lost or has met kDepth surfaces.
+    /// Follows the light of one batch of rays until it is lost or has met kDepth surfaces.
     Result<Done> follow(std::vector<SpawnedRay> spawned) {
         while (!spawned.empty()) {
             rays_.clear();
@@ -79,7 +80,7 @@ private:
             const bool again = !ray.inside && field_.convex[ray.shape];
             score_.wrong += again || surface.entering == ray.inside;
         }
-        // Where an aimed ray grazes a corner, the far side may be what it hits.
+        // An aimed ray that grazes a corner may hit the far side instead.
         if (surface.entering != ray.inside && ray.depth < kDepth)
             spawn(ray, hit, surface, next);
     }
@@ -87,7 +88,7 @@ private:
     void spawn(const SpawnedRay& ray, const Hit& hit, const SurfacePoint& surface,
                std::vector<SpawnedRay>& next) {
         const std::optional<Ray> refraction = refracted_ray(ray.ray, surface);
-        // At first both, then the one or the other, or rays would double at each surface.
+        // Only the first surface spawns both rays, because otherwise they would double at each.
         const bool both = ray.depth == 0, through = random_.chance(0.5);
         SpawnedRay spawned{{}, hit.id, ray.shape, ray.depth + 1, ray.inside};
         if (both || !through || !refraction) {

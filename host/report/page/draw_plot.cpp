@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// gnuplot, called with a file.
+// Calls gnuplot with a script file.
 #include "host/report/page/draw_plot.h"
 
 #include "host/bench/programs/run_program.h"
@@ -16,7 +16,7 @@ namespace ovc {
 
 namespace {
 
-// The same script draws both. Sizes are those at which letters stay readable on a phone.
+// The same script draws SVG and PNG. At these sizes letters stay readable on a phone.
 constexpr const char* kScript = R"(datafile = '{0}.dat'
 set encoding utf8
 set key above left samplen 1 width -4 maxcols 2 font ',12'
@@ -54,7 +54,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
     return text;
 }
 
-/// A line that begins with two numbers; NaN is none.
+/// Returns whether any line begins with two finite numbers.
 bool has_points(const std::string& data) {
     std::istringstream lines(data);
     for (std::string line; std::getline(lines, line);) {
@@ -65,13 +65,14 @@ bool has_points(const std::string& data) {
     return false;
 }
 
-/// gnuplot takes letters, digits and underscores in the name of what is in an SVG.
+/// gnuplot allows only letters, digits and underscores in the name of an SVG, so dashes become
+/// underscores.
 std::string script_of(const Plot& plot) {
     return fmt::format(kScript, plot.name, plot.script, replaced(plot.name, "-", "_"), plot.height,
                        2 * plot.height);
 }
 
-/// From <svg on; black becomes the page's colour of text.
+/// Returns the file from <svg on, with black replaced by the page's colour of text.
 std::string for_page(const std::string& svg, const std::string& name) {
     std::string text = svg.substr(svg.find("<svg"));
     for (const char* id : {"gpDot", "gpPt", "textbox_"})

@@ -9,12 +9,13 @@
 
 namespace ovc {
 
-/// Writes NAME.dat, NAME.gp, NAME.svg and NAME.png into the folder, which exists. Returns the SVG,
-/// to stand within HTML: its lines and letters have the colour of the text around, its names are
-/// its own. Error: the plot would be empty, or gnuplot is not installed or refuses.
+/// Returns the plot's SVG, for use within HTML: lines and letters have the colour of the text
+/// around, and ids are unique to the plot. Writes NAME.dat, NAME.gp, NAME.svg and NAME.png into the
+/// folder, which exists. Error: the plot would be empty, gnuplot is not installed or refuses, or a
+/// file cannot be written.
 Result<std::string> draw_plot(const Plot& plot, const std::filesystem::path& folder);
 
-/// Error: gnuplot is not installed, and what to do.
+/// Returns an error that names the package to install where gnuplot is missing.
 Result<Done> check_gnuplot();
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each against each.
+// Compares each choice with each.
 #include "host/report/page/frontier.h"
 
 #include <cassert>
@@ -18,6 +18,7 @@ static bool dominates(const Choice& a, const Choice& b) {
 }
 
 std::optional<size_t> dominating(std::span<const Choice> choices, size_t i) {
+    assert(i < choices.size());
     std::optional<size_t> best;
     for (size_t k = 0; k < choices.size(); ++k)
         if (k != i && dominates(choices[k], choices[i]) &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choices as JSON and as points.
+// Judges choices in JSON and draws them as points.
 #include "host/report/page/frontier_plot.h"
 
 #include "host/report/page/frontier.h"
@@ -24,8 +24,8 @@ std::vector<Point> all_points(const std::vector<PlotSeries>& series) {
     return points;
 }
 
-/// Where no error at all is drawn: below the smallest one, and between two powers of ten, whose
-/// labels it would meet.
+/// Returns the height at which an error of 0 is drawn: below the smallest error, and between two
+/// powers of ten, because its label would overlap theirs.
 double foot_of(const std::vector<Point>& points) {
     double least = std::numeric_limits<double>::infinity();
     for (const Point& point : points)
@@ -34,13 +34,14 @@ double foot_of(const std::vector<Point>& points) {
     return std::pow(10, std::floor(std::log10(std::isfinite(least) ? least : 1)) - 0.5);
 }
 
-/// From a little less to a little more.
+/// Returns a range that is a little wider than [least, most].
 std::pair<double, double> range_of(double least, double most) {
     constexpr double margin = 1.4;
     return {least / margin, most * margin};
 }
 
-/// 1, 2 and 5 times the powers of ten within the range; of a long one these alone.
+/// Returns 1, 2 and 5 times the powers of ten within the range, or the powers alone where it is
+/// long.
 std::string ticks_in(std::pair<double, double> range) {
     const bool is_long = range.second > 1e3 * range.first;
     std::string ticks;
@@ -53,7 +54,7 @@ std::string ticks_in(std::pair<double, double> range) {
     return ticks;
 }
 
-/// The lower left staircase of two costs, point by point.
+/// Returns the points that no other point undercuts in both costs, from left to right.
 std::vector<Point> staircase(std::vector<Point> points) {
     std::ranges::sort(points, [](const Point& a, const Point& b) {
         return std::pair(a.x, a.error) < std::pair(b.x, b.error);
@@ -138,7 +139,7 @@ Plot frontier_plot(const std::string& name, const std::string& caption,
     const auto [fastest, slowest] = std::ranges::minmax(points, {}, &Point::x);
     const auto [rightest, wrongest] = std::ranges::minmax(points, {}, &Point::error);
     const auto xs = range_of(fastest.x, slowest.x);
-    // Up to the power of ten above the foot, also where nothing is wrong.
+    // The axis reaches the power of ten above the foot, also where no choice has an error.
     const auto ys = range_of(rightest.error, std::max(wrongest.error, std::sqrt(10) * foot));
     std::string data = "# x, error (0 at the foot), choice\n", with;
     int block = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choices judged, and drawn.
+// Tests how choices are judged and drawn.
 #include "host/report/page/frontier_plot.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who dominates whom.
+// Tests which choice dominates which.
 #include "host/report/page/frontier.h"
 
 #include <gtest/gtest.h>

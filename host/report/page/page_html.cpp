@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// HTML, with its style and its few lines of script within.
+// Writes HTML, with its style and a few lines of script within.
 #include "host/report/page/page_html.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc {
 
@@ -59,8 +60,8 @@ tr.marked td, tr.marked td:first-child { background: var(--mark); }
 <body>
 )";
 
-// A click on a header sorts by that column; a second click turns it round. Cells without a number
-// sort as text, and last among numbers.
+// A click on a header sorts by that column; a second click reverses the order. Cells without a
+// number sort as text, behind numbers.
 constexpr const char* kFoot = R"(<script>
 for (const head of document.querySelectorAll("thead th"))
   head.addEventListener("click", () => {
@@ -114,7 +115,7 @@ public:
     std::string html() {
         std::string text = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", section_.name,
                                        escaped(section_.title));
-        bool in_plots = false; // plots that follow each other stand side by side
+        bool in_plots = false; // consecutive plots stand side by side
         for (const Block& block : section_.blocks) {
             const bool is_plot =
                 std::holds_alternative<Plot>(block) || std::holds_alternative<PagePicture>(block);
@@ -156,8 +157,10 @@ private:
             html += (of_words(table, c) ? "<th class=\"words\">" : "<th>") +
                     escaped(table.header[c]) + "</th>";
         html += "</tr></thead>\n<tbody>\n";
-        for (size_t r = 0; r < table.rows.size(); ++r)
+        for (size_t r = 0; r < table.rows.size(); ++r) {
+            assert(table.rows[r].size() == table.header.size());
             html += row_of(table.rows[r], r == table.marked);
+        }
         return html + "</tbody></table></div></figure>\n";
     }
 
@@ -165,7 +168,7 @@ private:
         return !cell.empty() && std::holds_alternative<std::string>(cell[0]);
     }
 
-    /// Whether the column has no number.
+    /// Returns whether the column has no number.
     static bool of_words(const Table& table, size_t column) {
         return std::ranges::all_of(table.rows,
                                    [&](const auto& row) { return is_words(row[column]); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page as Markdown.
+// Writes the page as Markdown.
 #include "host/report/page/page_html.h"
 #include "host/terminal/text_table.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as they are shown.
+// Makes the numbers of a page as readers see them.
 #include "host/report/page/page_model.h"
 
 #include "host/arguments/memory_size.h"
@@ -13,7 +13,7 @@
 namespace ovc {
 
 std::string shown_number(double value) {
-    constexpr double most = 1e15; // below it doubles hold whole numbers
+    constexpr double most = 1e15; // doubles below it hold whole numbers exactly
     if (value == std::floor(value) && std::abs(value) < most)
         return fmt::format("{}{}", value < 0 ? "-" : "", human_count(uint64_t(std::abs(value))));
     const double size = std::abs(value);
@@ -23,7 +23,7 @@ std::string shown_number(double value) {
 }
 
 int height_of_bars(size_t lines) {
-    constexpr int rest = 110, line = 17; // its axis and margins; letters of size 11
+    constexpr int rest = 110, line = 17; // axis and margins; a line of letters of size 11
     return std::max(Plot().height, rest + line * int(lines));
 }
 

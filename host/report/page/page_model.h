@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page of the report says, before it is HTML or Markdown: sections of text, tables and
-// plots. Each number in it remembers where in its JSON it stands.
+// The content of the report's page before it is HTML or Markdown: sections of text, tables and
+// plots. Each number remembers its place in the JSON file of its section.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 /// A number of the page.
 struct Number {
     std::string pointer; // RFC 6901, into the figures of its section
-    Json value;          // what stands there; null is shown as "-"
+    Json value;          // at the pointer; null is shown as "-"
     std::string shown;
 };
 
@@ -29,10 +29,10 @@ struct Table {
     std::string caption;
     std::vector<std::string> header;
     std::vector<std::vector<Text>> rows; // each as long as the header; the first cell is a name
-    size_t marked = SIZE_MAX;            // a row to bring out
+    size_t marked = SIZE_MAX;            // index of a row to highlight
 };
 
-/// A picture that gnuplot draws: `script` reads `data`, which lies beside it as NAME.dat.
+/// A picture that gnuplot draws. `script` reads `data`, which lies beside it as NAME.dat.
 struct Plot {
     std::string name; // of its files; one word
     std::string caption;
@@ -41,10 +41,10 @@ struct Plot {
     int height = 440; // in 640ths of its width
 };
 
-/// Of a plot with so many lines of text at its left.
+/// Returns the height of a plot with so many lines of text at its left.
 int height_of_bars(size_t lines);
 
-/// A .png file that is there already.
+/// A .png file that a run has drawn.
 struct PagePicture {
     std::string file; // within the report's folder
     std::string caption;
@@ -55,17 +55,19 @@ using Block = std::variant<Text, Table, Plot, PagePicture>;
 struct Section {
     std::string name; // of its experiment
     std::string title;
-    Json figures; // every number of its blocks is here
+    Json figures; // has every number of the blocks
     std::vector<Block> blocks;
 };
 
-/// Three digits of a fraction, all of a whole number below 1e5: "0", "12,345", "3.1e-07", "0.125".
+/// Returns a whole number below 1e15 with all digits, any other number from 100 to 1e6 rounded to a
+/// whole one, and the rest with three digits: "0", "12,345", "3.1e-07", "0.125".
 std::string shown_number(double value);
 
-/// Bytes as millions of them; null stays null.
+/// Returns bytes in millions; null stays null.
 Json megabytes(const Json& bytes);
 
-/// The one way for a number onto the page. Asserts that the figures have a number or null there.
+/// Returns a number for the page; there is no other way to make one. The figures have a number or
+/// null at the pointer (asserted).
 Piece number(const Json& figures, const std::string& pointer);
 
 } // namespace ovc

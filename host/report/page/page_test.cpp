@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A page from sections: numbers that know where they come from, in HTML and Markdown.
+// Tests a page made of sections, in HTML and Markdown, and that numbers say where they come from.
 #include "host/report/page/page_html.h"
 
 #include <gmock/gmock.h>
@@ -45,7 +45,7 @@ TEST(PageHtml, NumbersSayWhereTheyStand) {
     EXPECT_THAT(html, testing::HasSubstr("by this build: scale, claims."));
 }
 
-/// Works offline: nothing of it is loaded from anywhere.
+/// The page works offline, because it loads nothing.
 TEST(PageHtml, StandsAlone) {
     const std::string html = page_html(example(), {{"a-plot", "<svg/>"}});
     EXPECT_THAT(html, testing::Not(testing::ContainsRegex("(src|href)=\"[^#d\"]")));

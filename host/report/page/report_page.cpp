@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report as a whole.
+// Makes the report as a whole: folders, runs, sections, plots and pages.
 #include "host/report/page/report_page.h"
 
 #include "core/system/parallel.h"
@@ -34,7 +34,7 @@ std::string today() {
     return text;
 }
 
-/// "AMD EPYC 9R14, 2 threads", as Linux names it; elsewhere the threads alone.
+/// Returns "AMD EPYC 9R14, 2 threads", with the name that Linux gives; elsewhere the threads alone.
 std::string machine_text() {
     std::ifstream info("/proc/cpuinfo");
     std::string name;
@@ -45,7 +45,7 @@ std::string machine_text() {
     return fmt::format("{}{} threads", name, thread_count());
 }
 
-/// A section where all was run; troubles where something went wrong.
+/// Adds a section where all runs are done, and troubles where something went wrong.
 void add_section(const Outcome& outcome, ReportPage& page) {
     const Experiment& experiment = *outcome.experiment;
     for (const std::string& failure : outcome.failures)
@@ -66,7 +66,7 @@ void add_section(const Outcome& outcome, ReportPage& page) {
 
 constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// RFC 4648, base 64.
+/// Encodes bytes as base 64 of RFC 4648.
 std::string base64(std::string_view bytes) {
     std::string text;
     for (size_t i = 0; i < bytes.size(); i += 3) {
@@ -79,13 +79,14 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
-/// As what an image's address may be.
+/// Returns the picture as an address that an image in HTML can have.
 std::string data_address(const fs::path& png) {
     std::ifstream file(png, std::ios::binary);
     return "data:image/png;base64," + base64(std::string{std::istreambuf_iterator<char>(file), {}});
 }
 
-/// What a page's plots and pictures are drawn by; what cannot be drawn is a trouble of the page.
+/// Draws all plots and reads all pictures, as page_html() takes them. A plot that cannot be drawn
+/// becomes a trouble of the page.
 std::map<std::string, std::string> draw_all(ReportPage& page, const fs::path& folder) {
     std::map<std::string, std::string> pictures;
     for (const Section& section : page.sections)

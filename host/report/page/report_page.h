@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `overcast report -o DIR`: runs, figures, plots, page.
+// Does `overcast report -o DIR`: executes runs, computes figures, draws plots and writes the page.
 #pragma once
 
 #include "core/result.h"
@@ -14,9 +14,9 @@ struct ReportJob {
 };
 
 /// Writes DIR/index.html, summary.md, NAME.json with the figures of each experiment, plots/, and
-/// raw/ with what the runs left. The page has every experiment whose runs are all there, also from
-/// before, and names the others. Returns an exit code. Error: something cannot be written or drawn,
-/// or a run failed; the page, which says so, is there even then.
+/// raw/ with the results of the runs, and returns an exit code. The page has every experiment whose
+/// runs are all done, now or earlier, and names the others. Error: something cannot be written or
+/// drawn, or a run failed. Where a run or a plot failed, the page is written and says so.
 Result<int> make_report_page(const ReportJob& job);
 
 } // namespace ovc

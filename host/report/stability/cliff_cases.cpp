@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cliffs: the rays that took longest of all.
+// Cliffs are cases of rays that took longest of all.
 #include "host/report/stability/stability_cases.h"
 
 #include "host/report/stability/stability_meshes.h"
@@ -29,7 +29,7 @@ Soup of_doubles(std::vector<dvec3> corners) {
     return soup;
 }
 
-/// `count` triangles round the side from (0, 0, 0) to (0, 0, 1), as pages of a book.
+/// Returns `count` triangles round the side from (0, 0, 0) to (0, 0, 1), like pages of a book.
 Soup book(int count) {
     Corners corners;
     for (int i = 0; i < count; ++i) {
@@ -39,14 +39,15 @@ Soup book(int count) {
     return of_floats(std::move(corners));
 }
 
-/// Large triangles round the z axis with height(x, y), which all overlap at (0.1, 0.2).
+/// Returns large triangles round the z axis with corners at height(x, y, i) for triangle i, which
+/// all overlap at (0.1, 0.2).
 template <class Height>
 Soup stacked(int count, Height&& height) {
     Random random(/* seed= */ 7);
     std::vector<dvec3> corners;
     for (int i = 0; i < 3 * count; ++i) {
         const double a = 2 * pi * (i % 3) / 3;
-        // Few bits, so that heights of planes are exact.
+        // Coordinates have few bits, so that heights of planes are exact.
         const auto rounded = [](double x) { return std::round(x * 1024) / 1024; };
         const double x = rounded(8 * std::cos(a) + random.uniform(-1, 1));
         const double y = rounded(8 * std::sin(a) + random.uniform(-1, 1));
@@ -55,7 +56,7 @@ Soup stacked(int count, Height&& height) {
     return of_doubles(std::move(corners));
 }
 
-/// One triangle, each corner moved by some units in the last place.
+/// Returns copies of one triangle with each corner moved by some units in the last place.
 Soup copies_within_ulps(int count) {
     Random random(/* seed= */ 8);
     const dvec3 triangle[3] = {{-0.8, -0.8, 0.7}, {0.8, -0.8, 0.65}, {0, 0.9, 0.6}};
@@ -65,7 +66,7 @@ Soup copies_within_ulps(int count) {
     return of_doubles(std::move(corners));
 }
 
-/// One triangle of 1e76 and `count` of 1e-71, all round the origin.
+/// Returns one triangle of size 1e76 and `count` of size 1e-71, all round the origin.
 Soup large_and_small(int count) {
     Random random(/* seed= */ 9);
     std::vector<dvec3> corners;
@@ -74,7 +75,7 @@ Soup large_and_small(int count) {
     return of_doubles(std::move(corners));
 }
 
-/// From about so far away at the point.
+/// Makes rays at the point from about so far away.
 auto rays_at(dvec3 point, double far) {
     return [=](const Soup&, Random& random, size_t count) {
         AimedRays set;
@@ -86,7 +87,7 @@ auto rays_at(dvec3 point, double far) {
     };
 }
 
-/// At corners of triangles, from a side of so far away, in units of the length of the direction.
+/// Makes rays at corners of triangles, with unit directions, from so far away.
 auto rays_at_corners(double far) {
     return [=](const Soup& soup, Random& random, size_t count) {
         AimedRays set;
@@ -105,7 +106,7 @@ auto rays_at_corners(double far) {
 std::vector<StabilityCase> cliff_cases() {
     const auto knot = [] { return of_floats(small_knot()); };
     std::vector<StabilityCase> cases = {
-        // Too far for doubles to walk along, so that no kernel has a part in it.
+        // The rays start too far away for doubles to walk along, so no kernel takes part.
         {kTypical, false, 2000, knot, rays_at_corners(1e17), ""}};
     const auto add = [&](std::string name, size_t rays, std::function<Soup()> soup, auto&& aim) {
         cases.push_back({std::move(name), false, rays, std::move(soup), aim, kTypical, 2000});

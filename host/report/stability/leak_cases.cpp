@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes times places.
+// Combines each mesh with each place.
 #include "host/report/stability/leak_cases.h"
 
 #include "host/report/stability/sound_targets.h"
@@ -29,7 +29,7 @@ Soup soup_of(Chunk chunk) {
 }
 
 void add_closed(Cases& cases, const NamedMesh& mesh, const NamedPlace& at) {
-    // Only unscaled is the grid one of floats.
+    // The grid's points are floats only where the mesh is not scaled.
     const double grid = at.scale == 1 ? kStabilityGrid : 0;
     cases.push_back({fmt::format("{} {}", mesh.name, at.name), true, 0,
                      [=] { return soup_of(placed(mesh.make(), at.place, at.scale)); },
@@ -39,7 +39,7 @@ void add_closed(Cases& cases, const NamedMesh& mesh, const NamedPlace& at) {
                      ""});
 }
 
-/// What the rays of a dragon are drawn from: of the case that runs now.
+/// The targets of the dragon's case that runs now, which all its cases share.
 using Targets = std::shared_ptr<std::optional<SoundTargets>>;
 
 void add_dragon(Cases& cases, const std::shared_ptr<const Scene>& dragon, const NamedPlace& at,

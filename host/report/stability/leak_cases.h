@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of `overcast report --only leaks`: rays at edges and vertices that must hit, in large
+// The cases of `overcast report --only leaks`: rays at edges and vertices that must hit, in large
 // numbers.
 #pragma once
 
@@ -7,9 +7,10 @@
 
 namespace ovc {
 
-/// Closed meshes at the origin and at all unpleasant places, without a number of rays. data: as for
-/// stability_cases; the dragon has holes, so rays are aimed at what its triangles surround without
-/// a gap (SoundTargets). Error: there is no dragon in it. The dragon's cases run one at a time.
+/// Returns closed meshes at the origin and at all unpleasant places, without a number of rays; see
+/// share_rays(). data: as for stability_cases(). The dragon has holes, so rays are aimed at the
+/// edges and vertices that its triangles surround without a gap (SoundTargets). The dragon's cases
+/// share state, so only one of them may run at a time. Error: `data` has no dragon.
 Result<std::vector<StabilityCase>> leak_cases(const std::string& data);
 
 /// Gives each case an equal share of `rays`, rounded up.

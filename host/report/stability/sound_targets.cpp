@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adjacency by sorting, and rays at what is sound.
+// Finds adjacency by sorting, and aims rays at sound edges and vertices.
 #include "host/report/stability/sound_targets.h"
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -15,10 +16,10 @@ bool before(const dvec3& a, const dvec3& b) {
     return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
 }
 
-/// One side of a triangle, its ends in order.
+/// One side of a triangle, with its ends in order.
 struct HalfEdge {
     uint32_t low, high;
-    bool forward; // the triangle has it from low to high
+    bool forward; // the triangle goes from low to high
     uint32_t triangle;
 
     bool operator<(const HalfEdge& other) const {
@@ -35,6 +36,7 @@ SoundTargets::SoundTargets(const Soup& soup) {
 }
 
 void SoundTargets::number_corners(const Soup& soup) {
+    assert(!soup.chunks.empty());
     const Chunk& chunk = soup.chunks[0];
     const auto position = [&](uint32_t corner) {
         return chunk.origin() + dvec3(chunk.corners()[corner]);
@@ -83,7 +85,8 @@ void SoundTargets::find_vertices() {
     std::vector<uint32_t> next(first_at_.begin(), first_at_.end() - 1);
     for (uint32_t corner = 0; corner < corners_.size(); ++corner)
         at_[next[corners_[corner]]++] = corner / 3;
-    // A triangle has two edges at a vertex, a sound edge two triangles: as many as triangles, then.
+    // A triangle has two edges at a vertex, and a sound edge has two triangles, so a sound vertex
+    // has as many sound edges as triangles.
     std::vector<uint32_t> sound_at(positions_.size(), 0);
     for (const Edge& edge : edges_) {
         ++sound_at[edge.a];
@@ -98,8 +101,8 @@ std::span<const uint32_t> SoundTargets::triangles_at(uint32_t vertex) const {
     return {at_.data() + first_at_[vertex], at_.data() + first_at_[vertex + 1]};
 }
 
-/// The ray meets all fronts or all backs, none of them so narrow or so steep that the rounding of
-/// the ray matters.
+/// Returns whether the ray sees all fronts or all backs, none of them so narrow or so steep that
+/// the rounding of the ray matters.
 bool SoundTargets::surrounds(std::span<const uint32_t> triangles, const Ray& ray) const {
     double side = 0;
     for (const uint32_t triangle : triangles) {
@@ -110,7 +113,7 @@ bool SoundTargets::surrounds(std::span<const uint32_t> triangles, const Ray& ray
             std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
         const double reach = std::max(max_component(glm::abs(ray.org)), max_component(glm::abs(a)));
         const double facing = glm::dot(normal, ray.dir);
-        // facing / (longest |dir|): the triangle's least height as the ray sees it.
+        // facing / (longest |dir|) is the triangle's min height as the ray sees it.
         if (!(std::abs(facing) > 1e-13 * reach * longest * glm::length(ray.dir)) ||
             side * facing < 0)
             return false;
@@ -123,7 +126,8 @@ AimedRays SoundTargets::rays(Random& random, size_t count) const {
     AimedRays set;
     if (edges_.empty() || vertices_.empty())
         return set;
-    // Far from the origin nearly all triangles may be too narrow for double.
+    // Tries are limited, because far from the origin nearly all triangles may be too narrow for
+    // double.
     for (size_t tries = 0; set.rays.size() < count && tries < 1000 * count; ++tries) {
         const Edge& edge = edges_[random.below(uint32_t(edges_.size()))];
         const bool at_vertex = random.chance(0.5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a case of the stability suite and compares.
+// Runs a case of the stability suite batch by batch and scores the answers of each program.
 #include "host/report/stability/stability.h"
 
 #include "core/exact/triangle.h"
@@ -8,6 +8,7 @@
 #include "kdtree/traverse.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <limits>
 
@@ -26,8 +27,8 @@ bool same_bits(const Hit& a, const Hit& b) {
     return std::memcmp(&a, &b, sizeof(Hit)) == 0;
 }
 
-/// True when double hits the triangle of `answer` at the t of `truth`, so that one name is as good
-/// as the other.
+/// Returns whether double hits the triangle of `answer` at the t of `truth`, so that one id is as
+/// good as the other.
 bool ties(const Soup& soup, const Ray& ray, TriangleId skip, const Hit& answer, const Hit& truth) {
     if (!answer.is_hit() || !truth.is_hit())
         return false;
@@ -44,7 +45,7 @@ double relative_error(double t, double truth) {
 
 enum class Claim { EveryBit, Triangle };
 
-/// A batch of rays and what the reference says of them.
+/// A batch of rays and the reference's hits.
 struct Batch {
     AimedRays set;
     std::vector<Hit> truth;
@@ -54,6 +55,7 @@ struct Batch {
 
 void score(const Batch& batch, const Soup& soup, bool closed, std::span<const Hit> answers,
            Claim claim, StabilityScore& total) {
+    assert(answers.size() == batch.truth.size());
     for (size_t i = 0; i < answers.size(); ++i) {
         const Hit &answer = answers[i], &truth = batch.truth[i];
         total.leaks += closed && !answer.is_hit();
@@ -71,7 +73,7 @@ struct Peer {
     std::optional<StabilityScore> StabilityResult::*score;
 };
 
-/// One case while it runs: the soup and all who answer.
+/// One case while it runs: the soup and all programs that answer.
 class Run {
 public:
     Run(const StabilityCase& stability_case, const StabilityOptions& options)
@@ -122,7 +124,7 @@ private:
         if (!fast)
             return fast.error();
         peers_.push_back({std::move(*fast), &StabilityResult::fast});
-        // Where this program was built without Embree there is none to show.
+        // make_embree_backend() returns null where this program was built without Embree.
         for (const auto& [mode, score_of] :
              {std::pair(EmbreeMode::Robust, &StabilityResult::embree_robust),
               std::pair(EmbreeMode::Medium, &StabilityResult::embree_default)})
@@ -134,7 +136,7 @@ private:
     Result<std::unique_ptr<Backend>> plugin(ovc_precision precision, const LogSink& log) const {
         BackendOptions options = options_.backend;
         if (options.kind == BackendKind::Auto)
-            options.kind = BackendKind::TwoLevel; // and nothing in its place
+            options.kind = BackendKind::TwoLevel; // so that no CPU backend takes its place
         options.precision = precision;
         return make_backend(soup_, options, log);
     }
@@ -170,6 +172,7 @@ private:
 
     Batch make_batch(uint64_t number, size_t count) {
         Batch batch{stability_rays(case_, soup_, number, count), {}};
+        assert(batch.set.skip.empty() || batch.set.skip.size() == batch.set.rays.size());
         batch.truth.resize(batch.set.rays.size());
         intersect(tree_, soup_, batch.set.rays, batch.set.skip, batch.truth);
         result_.rays += batch.truth.size();

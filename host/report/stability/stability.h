@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a case of the stability suite: the plugin, certified and fast, and Embree, against double
-// precision.
+// Runs a case of the stability suite and compares the plugin, certified and fast, and Embree with
+// double precision.
 #pragma once
 
 #include "core/result.h"
@@ -16,16 +16,16 @@ namespace ovc {
 struct StabilityResult;
 
 struct StabilityOptions {
-    BackendOptions backend; // precision is not looked at: both are run
-    uint64_t times = 1;     // how many times the short form's rays
+    BackendOptions backend; // its precision is ignored, because both are run
+    uint64_t times = 1;     // multiplies the short form's rays
     bool peers = true;      // fast mode and Embree too
-    /// Called after each batch of a case with what it is so far; false: stop. Empty: go on.
+    /// Called after each batch of a case with the result so far; false: stop. Empty: go on.
     std::function<bool(const StabilityResult&)> go_on;
 };
 
-/// What one program answered. wrong: for certified any bit that differs from the reference; for
-/// others another triangle than the reference's, unless double hits that one at the same t (to
-/// 2^-40).
+/// The score of one program. An answer of certified is wrong where any bit differs from the
+/// reference. An answer of others is wrong where it names another triangle than the reference,
+/// unless double hits that one at the same t (to 2^-40).
 struct StabilityScore {
     uint64_t wrong = 0;
     uint64_t leaks = 0;
@@ -40,31 +40,32 @@ struct StabilityResult {
     uint64_t rays = 0;
     uint64_t hits = 0;
     uint64_t reference_leaks = 0;  // misses of the reference in a closed case
-    uint64_t wrong_occlusions = 0; // certified: occluded() against the reference's nearest hit
-    uint64_t miscounted =
-        0; // invalid rays and dropped triangles that the statistics have too many or too few
+    uint64_t wrong_occlusions = 0; // certified's occluded() that differ from the nearest hit
+    uint64_t miscounted = 0; // by how many statistics' invalid rays and dropped triangles are off
     uint64_t dropped = 0;
     uint64_t invalid = 0;
     uint64_t flagged = 0;
     uint64_t retraced = 0;
     double microseconds = 0; // per ray, certified nearest hits
-    double time_ratio = 0;   // to the rays of time_as; 0: none
+    double time_ratio = 0;   // to a ray's time in the case time_as; 0: none
     std::string time_as;     // see StabilityCase
     StabilityScore certified;
     std::optional<StabilityScore> fast, embree_robust, embree_default;
 };
 
-/// Error: the plugin failed. Rays come in batches, each drawn from its own seed.
+/// Returns the result of one case, without a time ratio. Rays come in batches, each drawn from its
+/// own seed. Error: the plugin failed.
 Result<StabilityResult> run_stability_case(const StabilityCase& stability_case,
                                            const StabilityOptions& options, const LogSink& log);
 
-/// All cases in turn, time ratios too; the last one in part where go_on ended it. seen: called
-/// after each.
+/// Returns the results of all cases in turn, with time ratios. Where go_on() returned false, the
+/// last result is that of a part of its case. seen: called after each case. Error: the plugin
+/// failed.
 Result<std::vector<StabilityResult>>
 run_stability(std::span<const StabilityCase> cases, const StabilityOptions& options,
               const LogSink& log, const std::function<void(const StabilityResult&)>& seen);
 
-/// The rays of batch `batch`, as run_stability_case draws them.
+/// Returns the rays of batch `batch`, as run_stability_case draws them.
 AimedRays stability_rays(const StabilityCase& stability_case, const Soup& soup, uint64_t batch,
                          size_t count);
 

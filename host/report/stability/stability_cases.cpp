@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of the stability suite.
+// The rows of the stability suite's table.
 #include "host/report/stability/stability_cases.h"
 
 #include "host/report/stability/stability_meshes.h"
@@ -37,7 +37,7 @@ constexpr NamedAim kAims[] = {
     {"edges from outside", {Side::Outside, Target::Edges, kStabilityGrid}},
 };
 
-/// The whole soup of a generator at the origin.
+/// Returns a function that makes the generator's soup at the origin.
 std::function<Soup()> at_origin(Generator make) {
     return [make] { return soup_of(placed(make())); };
 }
@@ -67,14 +67,15 @@ Result<Done> add_dragon(Cases& cases, const std::string& data) {
     const auto at = [scene = *dragon](dvec3 place) {
         return [=] { return soup_of(Chunk::borrowing(place, scene->soup.chunks[0].corners())); };
     };
-    // Not closed: any ray may leave through a hole. What must be hit is in leak_cases.cpp.
+    // The dragon is not closed, so any ray may leave through a hole. leak_cases.cpp has rays that
+    // must hit it.
     cases.push_back({"dragon", false, 2000, at(dvec3(0)), any_closed_mesh_rays, ""});
     cases.push_back({"dragon at UTM (4.5e6, 6e6, 6)", false, 2000, at({4.5e6, 6e6, 6}),
                      any_closed_mesh_rays, ""});
     return Done{};
 }
 
-/// far-terrain moved by `by`.
+/// Returns a function that makes far-terrain, moved by `by`.
 std::function<Soup()> far_terrain(dvec3 by) {
     return [by] {
         Result<Scene> scene = make_test_scene("far-terrain");

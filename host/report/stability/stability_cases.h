@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of the stability suite: what is hard on arithmetic, by name. A new case is one row.
+// The table of the stability suite: cases that are hard on arithmetic, by name. A new case is one
+// row.
 #pragma once
 
 #include "core/result.h"
@@ -13,24 +14,24 @@ namespace ovc {
 
 struct StabilityCase {
     std::string name;
-    /// Every ray must hit: one that does not is a leak.
+    /// Every ray must hit, and one that does not is a leak.
     bool closed;
-    /// Rays of the short form, which the test runs.
+    /// The number of rays in the short form, which the test runs.
     size_t rays;
     std::function<Soup()> soup;
-    /// The same soup, random state and count give the same rays.
+    /// Returns the rays. The same soup, random state and count give the same rays.
     std::function<AimedRays(const Soup&, Random&, size_t)> aim;
-    /// The case whose time per ray this one must stay within so many times of; empty: none.
+    /// A ray may take `within` times as long as one of the case with this name; empty: no limit.
     std::string time_as;
     double within = 2.5;
 };
 
-/// Rays that meet thousands of triangles in one point, or are asked where doubles do not reach:
-/// what one of them costs, next to what a ray costs that is decided exactly.
+/// Returns cases of rays that meet thousands of triangles in one point, or that start beyond the
+/// reach of doubles. Their time is compared with that of a ray that is decided exactly.
 std::vector<StabilityCase> cliff_cases();
 
-/// In the order of the report. data: the folder with meshes/stanford-dragon, or empty. Error: there
-/// is no dragon in it.
+/// Returns all cases in the order of the report. data: the folder with meshes/stanford-dragon, or
+/// empty for no dragon. Error: `data` has no dragon, or it cannot be read.
 Result<std::vector<StabilityCase>> stability_cases(const std::string& data);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A strip of slivers and its rays, scaled by powers of two and moved.
+// Scales a strip of slivers and its rays by powers of two, and moves them.
 #include "host/report/stability/stability_grid.h"
 
 #include "host/report/stability/stability_meshes.h"
@@ -20,7 +20,7 @@ Soup strip(const GridPoint& point, dvec3 place, double scale) {
     return soup;
 }
 
-/// The rays of the strip as it is, scaled and moved as it was.
+/// Returns the rays of the unscaled strip, scaled and moved like the strip.
 AimedRays moved_rays(const GridPoint& point, dvec3 place, double scale, Random& random,
                      size_t count) {
     AimedRays set = strip_rays(strip(point, dvec3(0), 1), random, count);

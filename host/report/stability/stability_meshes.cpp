@@ -55,7 +55,7 @@ Corners lat_long() {
     return corners;
 }
 
-/// A point of the tube round a trefoil, both parameters in turns.
+/// Returns a point of the tube round a trefoil; both parameters are in turns.
 static dvec3 on_knot(double along, double around) {
     const auto centre = [](double turns) {
         const double a = 2 * pi * turns, radius = 1 + 0.42 * std::cos(3 * a);
@@ -138,7 +138,7 @@ Corners box_of_squares() {
     return corners;
 }
 
-/// [0, 1]^2 in n x n squares through `at`.
+/// Returns [0, 1]^2 in n x n squares, mapped by `at`.
 template <class At>
 static Corners squares(int n, const At& at) {
     Corners corners;
@@ -183,7 +183,7 @@ Corners strewn_slivers(double aspect) {
     return corners;
 }
 
-/// Each corner within `size` of `at`.
+/// Adds a triangle with each corner within `size` of `at`.
 static void add_random_triangle(Corners& corners, Random& random, dvec3 at, double size) {
     for (int corner = 0; corner < 3; ++corner)
         corners.push_back(vec3(at + size * random.in_ball()));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rays of the stability suite.
+// Makes the rays of the stability suite.
 #include "host/report/stability/stability_rays.h"
 
 #include "core/exact/triangle.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace ovc {
@@ -18,11 +19,13 @@ dvec3 snapped(dvec3 p, double grid) {
     return grid > 0 ? glm::round(p / grid) * grid : p;
 }
 
-/// One chunk in its own frame.
+/// One chunk in its own coordinates.
 class Local {
 public:
     explicit Local(const Soup& soup, uint32_t chunk = 0)
-        : chunk_(soup.chunks[chunk]), mesh_(chunk) {}
+        : chunk_(soup.chunks[chunk]), mesh_(chunk) {
+        assert(chunk < soup.chunks.size());
+    }
 
     Triangle triangle(uint32_t prim) const {
         const vec3* c = &chunk_.corners()[size_t(prim) * 3];
@@ -31,7 +34,7 @@ public:
     uint32_t size() const { return chunk_.size(); }
     TriangleId id(uint32_t prim) const { return {mesh_, prim}; }
 
-    /// From one local point through another.
+    /// Returns the ray from one local point through another.
     Ray ray(dvec3 from, dvec3 to) const { return towards(from, to - as_float(from)); }
     Ray towards(dvec3 from, dvec3 dir) const {
         Ray ray;
@@ -49,7 +52,7 @@ dvec3 normal_of(const Triangle& t) {
     return glm::cross(t[1] - t[0], t[2] - t[0]);
 }
 
-/// A closed mesh that knows which side of its triangles is in.
+/// A closed mesh that knows which side of its triangles is inside.
 class ClosedMesh : public Local {
 public:
     explicit ClosedMesh(const Soup& soup) : Local(soup) {
@@ -59,7 +62,7 @@ public:
         in_ = volume > 0 ? -1 : 1;
     }
 
-    /// A twentieth of its shortest edge below the middle of the triangle.
+    /// Returns the point a twentieth of the triangle's shortest edge below its middle.
     dvec3 below(uint32_t prim) const {
         const Triangle t = triangle(prim);
         const double edge = std::min(
@@ -86,7 +89,7 @@ double log_uniform(Random& random, double from, double to) {
     return std::pow(10.0, random.uniform(from, to));
 }
 
-/// count rays, each from one call.
+/// Returns `count` rays, each made by one call.
 template <class Make>
 AimedRays collect(size_t count, const Make& make) {
     AimedRays set;
@@ -160,10 +163,11 @@ AimedRays grazing_rays(const Soup& soup, Random& random, size_t count, double he
 
 AimedRays strip_rays(const Soup& soup, Random& random, size_t count) {
     const Local strip(soup);
+    assert(strip.size() > 4);
     const uint32_t inner = strip.size() - 4; // without the first and the last row
     return collect(count, [&] {
         dvec3 target(0);
-        while (target.x == 0 || target.x == 1) // at the rim a rounding may miss
+        while (target.x == 0 || target.x == 1) // at the rim a rounded ray may miss
             target = point_of(strip.triangle(2 + random.below(inner)), random, Target::Any);
         const double y = strip.triangle(random.below(strip.size()))[1].y;
         return strip.ray({random.uniform(), y, random.chance(0.5) ? 1 : -1}, target);
@@ -179,7 +183,7 @@ AimedRays fan_rays(const Soup& soup, Random& random, size_t count) {
     });
 }
 
-/// -0 as often as 0 where a component is zero.
+/// Makes half of the components that are zero -0.
 static Ray with_signed_zeros(Ray ray, Random& random) {
     for (int axis = 0; axis < 3; ++axis)
         if (ray.dir[axis] == 0 && random.chance(0.5))
@@ -227,7 +231,8 @@ AimedRays surface_rays(const Soup& soup, Random& random, size_t count, Start sta
         const dvec3 from = point_of(mesh.triangle(prim), random, target);
         set.rays.push_back(inwards ? mesh.ray(from, mesh.below(random.below(mesh.size())))
                                    : mesh.towards(from, random.direction()));
-        // Past the triangles it starts on, so that the far side must be found.
+        // The range begins behind the triangles that the ray starts on, so that it must find the
+        // far side.
         if (inwards && i % 2)
             set.rays.back().t_min = 0x1p-20;
         if (skip)
@@ -240,7 +245,7 @@ AimedRays range_rays(const Soup& soup, Random& random, size_t count) {
     AimedRays set = rays_at_triangles(soup, random, count);
     const Local mesh(soup);
     for (Ray& ray : set.rays) {
-        // Asked of single triangles until one is hit, so that t is the reference's own.
+        // One triangle is tested by itself, so that t is the reference's own.
         const uint32_t prim = random.below(mesh.size());
         const Triangle local = mesh.triangle(prim);
         ray = mesh.ray(local[0] + 2.0 * random.direction(), (local[0] + local[1] + local[2]) / 3.0);
@@ -275,7 +280,7 @@ AimedRays bad_rays(const Soup& soup, Random& random, size_t count) {
             ray.t_min = bad;
             break;
         case 7:
-            ray.t_max = bad > 0 ? std::nan("") : bad; // an infinite t_max is fine
+            ray.t_max = bad > 0 ? std::nan("") : bad; // an infinite t_max would be valid
             break;
         case 8:
             ray.dir = dvec3(0, -0.0, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stability suite as text.
+// Writes the stability suite as text.
 #include "host/report/stability/stability_table.h"
 
 #include "host/arguments/memory_size.h"
@@ -47,7 +47,7 @@ constexpr PeerColumn kPeers[] = {{"fast", &StabilityResult::fast},
                                  {"Embree robust", &StabilityResult::embree_robust},
                                  {"Embree default", &StabilityResult::embree_default}};
 
-/// Those that were asked anywhere.
+/// Returns the peers that ran in any case.
 std::vector<PeerColumn> peers_of(std::span<const StabilityResult> results) {
     std::vector<PeerColumn> peers;
     for (const PeerColumn& peer : kPeers)
@@ -97,7 +97,7 @@ Row row_of(const StabilityResult& r, std::span<const PeerColumn> peers) {
     return row;
 }
 
-/// Names to the left, numbers to the right.
+/// Aligns the first cell left and the others right.
 std::string line_of(const Row& row, const std::vector<size_t>& widths) {
     std::string line = fmt::format("| {:<{}} |", row[0], widths[0]);
     for (size_t i = 1; i < row.size(); ++i)

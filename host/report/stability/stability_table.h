@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The results of the stability suite, for people (a Markdown table, aligned) and for programs
+// Writes the results of the stability suite for people (an aligned Markdown table) and for programs
 // (JSON).
 #pragma once
 
@@ -11,12 +11,12 @@
 
 namespace ovc {
 
-/// title, what the columns mean, the table, and the sums. Columns of peers that were not asked are
-/// left out.
+/// Returns the title, the legend of the columns, the table, and the sums. Columns of peers that did
+/// not run are left out.
 std::string stability_markdown(const std::string& title, std::span<const StabilityResult> results);
 
-/// {"renderer", "cases": [{...}], "optics": [{...}]}: one object a case, in order. Infinite numbers
-/// are null; without optics cases there is no "optics".
+/// Returns {"renderer", "cases": [{...}], "optics": [{...}]} with one object for each case, in
+/// order. Infinite numbers are null; without optics cases there is no "optics".
 std::string stability_json(std::span<const StabilityResult> results,
                            std::span<const OpticsResult> optics);
 

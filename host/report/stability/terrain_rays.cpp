@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays at far-terrain.
+// Aims rays at far-terrain and keeps those that must hit.
 #include "host/report/stability/terrain_rays.h"
 
 #include <cmath>
@@ -7,7 +7,8 @@
 
 namespace ovc {
 
-/// A point of any triangle of a chunk drawn at random, so that all sizes are as frequent.
+/// Returns a point of a random triangle of a random chunk. The chunk is drawn first, because each
+/// has triangles of another size, and all sizes shall be as frequent.
 static dvec3 target_on(const Soup& soup, Random& random) {
     const Chunk& chunk = soup.chunks[random.below(uint32_t(soup.chunks.size()))];
     const vec3* corner = &chunk.corners()[3 * size_t(random.below(chunk.size()))];
@@ -22,7 +23,7 @@ bool must_hit_ground(const Ray& ray, const Box& bounds) {
             const double face = ray.dir[axis] > 0 ? bounds.hi[axis] : bounds.lo[axis];
             leaves = std::min(leaves, (face - ray.org[axis]) / ray.dir[axis]);
         }
-    // A metre is more than doubles err by.
+    // A metre is more than the error of doubles here.
     return ray.dir.y < 0 && ray.at(leaves).y < bounds.lo.y - 1;
 }
 
