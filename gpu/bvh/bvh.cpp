@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <limits>
 
 namespace ovc {
@@ -134,6 +135,7 @@ private:
 
     /// Fills the node in; true where its items are divided in two.
     bool open(uint32_t node, const Range& range, int depth, Range& left, Range& right) {
+        assert(range.count() > 0 && range.last <= range.end && depth <= kMaxBvhDepth);
         const Extent extent = gathered<Extent>(range.first, range.last);
         nodes_[node].box = extent.bounds.box();
         if (range.count() == 1) {
@@ -141,7 +143,9 @@ private:
             return false;
         }
         divide(range, extent.bounds, extent.centers, depth, left, right);
+        assert(left.count() > 0 && right.count() > 0 && left.end == right.first);
         nodes_[node].right = node + uint32_t(2 * (left.end - left.first));
+        assert(nodes_[node].right < nodes_.size());
         return true;
     }
 

@@ -3,6 +3,7 @@
 #include "gpu/bvh/collapse.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc {
 
@@ -10,12 +11,14 @@ static constexpr uint32_t kParallelWeigh = 16384; // nodes
 
 Collapse::Collapse(const std::vector<BvhNode>& nodes, BuildProgress* progress)
     : nodes_(nodes), costs_(nodes.size()), progress_(progress) {
+    assert(!nodes.empty());
     in_forks([&](const Fork& fork) { weigh(root(), fork); });
 }
 
 /// The cheapest way to put the boxes of an inner node under at most `most` nodes, 2 to 4, other
 /// than itself.
 Collapse::Shares Collapse::shares(uint32_t node, int most) const {
+    assert(most >= 2 && most <= 4 && !nodes_[node].is_leaf());
     const Costs& left = costs_[node + 1];
     const Costs& right = costs_[nodes_[node].right];
     Shares best{1, most - 1, left[0] + right[size_t(most - 2)]};
@@ -55,6 +58,7 @@ void Collapse::collect(Subtree of, int most, Children& children) const {
             return;
         }
     }
+    assert(size_t(children.count) < children.subtree.size());
     children.subtree[size_t(children.count++)] = of;
 }
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -22,6 +23,7 @@ public:
 
     /// nodes: not empty.
     explicit SiblingTree(const std::vector<BvhNode>& nodes) : places_(2), parents_(2, kNone) {
+        assert(!nodes.empty());
         places_.reserve(nodes.size() + 1);
         parents_.reserve(nodes.size() + 1);
         read(nodes, 0, 0);
@@ -60,6 +62,7 @@ public:
     /// both, and what was its sibling takes the place of their parent. Returns by how much the half
     /// areas of all inner nodes, added up, grew. move(from, what its parent was) undoes it.
     float move(uint32_t from, uint32_t to) {
+        assert(can_move(from, to));
         const uint32_t beside = sibling(from), parent = parents_[from];
         const Place left_behind = places_[beside], joined = places_[to];
         const float before = half_area(parent);

@@ -7,6 +7,7 @@
 #include "gpu/gl/gl.h"
 #include "gpu/gl/ledger.h"
 
+#include <cassert>
 #include <cstdint>
 #include <new>
 #include <string_view>
@@ -164,6 +165,7 @@ public:
     GLuint id() const { return handle_.id(); }
     /// offset: a multiple of GL_TEXTURE_BUFFER_OFFSET_ALIGNMENT.
     void show(const Buffer& buffer, GLenum format, uint64_t offset, uint64_t bytes) {
+        assert(offset + bytes <= buffer.bytes());
         glTextureBufferRange(id(), format, buffer.id(), GLintptr(offset), GLsizeiptr(bytes));
     }
     /// RGBA32UI texels, for a kernel to read.

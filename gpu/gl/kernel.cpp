@@ -5,9 +5,11 @@
 #include "core/text/format_text.h"
 #include "gpu/gl/program_store.h"
 #include "gpu/gl/workarounds.h"
+#include "shaders/layout.h"
 #include "shaders/sources.h"
 
 #include <algorithm>
+#include <cassert>
 #include <regex>
 
 namespace ovc {
@@ -124,6 +126,7 @@ bool compiles_fragment_shaders() {
 } // namespace
 
 std::string ShaderConfig::defines() const {
+    assert(pool_buffers > 0 && buffer_bits <= OVC_MAX_BUFFER_BITS && stack_depth > 0 && packet > 0);
     std::string each_buffer;
     for (uint32_t i = 0; i < pool_buffers; ++i)
         each_buffer += format_text("do_with({}) ", i);

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -41,6 +42,7 @@ public:
           below_(nodes.size()) {}
 
     Page pack() {
+        assert(!nodes_.empty());
         const Extent all = measure(collapse_.root());
         page_.texels.assign(size_t(kFirstFree + all.units) * OVC_UNIT_TEXELS, uvec4(0));
         page_.depth = all.depth;
@@ -63,6 +65,7 @@ private:
     };
 
     std::span<uvec4, OVC_UNIT_TEXELS> unit(uint32_t index) {
+        assert(index < page_.units());
         return std::span(page_.texels)
             .subspan(size_t(index) * OVC_UNIT_TEXELS)
             .template first<OVC_UNIT_TEXELS>();

@@ -11,6 +11,7 @@
 #include "shaders/layout.h"
 
 #include <array>
+#include <cassert>
 
 namespace ovc {
 
@@ -90,6 +91,7 @@ bool walk_units(std::span<const uvec4> tree, uint32_t header, std::span<const Pa
             const Interval inside = clip(walked.ray, box.padded(walked.margin), from, limit());
             if (inside.empty())
                 continue;
+            assert(top < stack.size());
             size_t at = top++;
             for (; at > siblings && stack[at - 1].enter < inside.enter; --at)
                 stack[at] = stack[at - 1];
@@ -105,6 +107,7 @@ bool walk_tree(const TopLevel& top, std::span<const Page> pages, const Leaf& sce
                const PreparedRay& p, double from, Visit&& visit, Limit&& limit) {
     const std::span<const uvec4> units = top.tree.view();
     const auto enter = [&](uint32_t number) {
+        assert(number < top.portals.size());
         const Portal& portal = top.portals[number];
         return walk_units(
             units, portal.tree, pages, walked_ray(portal, p), from,

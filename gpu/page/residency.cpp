@@ -90,6 +90,7 @@ bool Residency::admit(uint32_t leaf, uint64_t bytes, uint64_t keep,
         find_cheaper(shelf, bytes, range);
     if (range.use >= keep)
         return false;
+    assert(range.offset % alignment_ == 0);
     std::vector<uint32_t>& leaves = shelves_[range.shelf].leaves;
     for (size_t i = range.first; i < range.last; ++i) {
         slots_[leaves[i]] = {0, 0};

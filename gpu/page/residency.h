@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,6 +22,7 @@ struct PoolLayout {
 
     uint32_t count() const { return bytes == 0 ? 0 : uint32_t((bytes - 1) / buffer_bytes) + 1; }
     uint64_t bytes_of(uint32_t buffer) const {
+        assert(buffer < count());
         return std::min(buffer_bytes, bytes - buffer * buffer_bytes);
     }
     /// Of the number of a unit, those that count within its buffer.
@@ -73,8 +75,11 @@ public:
     /// Pages lie within one of the stretches each, in bytes.
     Residency(std::span<const Stretch> stretches, uint64_t alignment, size_t leaves);
 
-    bool resident(uint32_t leaf) const { return slots_[leaf].bytes != 0; }
-    const Slot& slot(uint32_t leaf) const { return slots_[leaf]; }
+    bool resident(uint32_t leaf) const { return slot(leaf).bytes != 0; }
+    const Slot& slot(uint32_t leaf) const {
+        assert(leaf < slots_.size());
+        return slots_[leaf];
+    }
 
     /// Marks the leaf as used now.
     void touch(uint32_t leaf) { last_use_[leaf] = ++clock_; }

@@ -164,6 +164,7 @@ uint32_t append(TopLevel& top, const TopLevel& part, uint32_t first_page) {
 } // namespace
 
 TopLevel build_top_level(std::span<const Page> pages, size_t max_links) {
+    assert(!pages.empty() && max_links >= pages.size());
     TopLevel top;
     std::vector<Entry> entries;
     if (pages.size() == 1) {
@@ -220,6 +221,7 @@ void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place
 
 TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> pages,
                          size_t max_links) {
+    assert(!parts.pages.empty() && parts.portals.size() >= parts.pages.size());
     TopLevel top;
     top.tree = tree_over(parts.portals, scene);
     const uint32_t depth = top.tree.depth;
@@ -229,8 +231,10 @@ TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> p
         const size_t links = std::max<size_t>(max_links * count / pages.size(), count);
         begins.push_back(append(top, build_top_level(pages.subspan(first, count), links), first));
     }
-    for (Portal& portal : parts.portals)
+    for (Portal& portal : parts.portals) {
+        assert(portal.tree < begins.size());
         portal.tree = begins[portal.tree];
+    }
     top.portals = {portal_into(scene.frame, scene.box)};
     top.portals.insert(top.portals.end(), parts.portals.begin(), parts.portals.end());
     top.depth += depth + 1; // and the word by which a ray comes back

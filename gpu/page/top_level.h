@@ -9,6 +9,7 @@
 #include "gpu/page/portal.h"
 #include "gpu/page/residency.h"
 
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,6 +32,7 @@ struct TopLevel {
 
     bool empty() const { return tree.texels.empty(); }
     std::span<const Link> links_of(uint32_t page) const {
+        assert(page + size_t(1) < first_link.size());
         return std::span(links).subspan(first_link[page], first_link[page + 1] - first_link[page]);
     }
 };

@@ -52,12 +52,14 @@ void AnswerPixels::read(std::span<Answer> answers) {
 
 AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays)
     : rays_(rays), buffer_(ledger, uint64_t(rays) * kAnswerBytes, "answers") {
+    assert(rays == whole_blocks(rays));
     texture_.show(buffer_, GL_R32UI, 0, buffer_.bytes());
     // Stays like this where all pages are resident: no answer names a leaf.
     fill_plane(3, rays_, OVC_NO_LEAF);
 }
 
 void AnswerWords::fill_plane(int number, size_t rays, uint32_t word) const {
+    assert(number >= 0 && size_t(number) < planes_.size() && rays <= rays_);
     glClearNamedBufferSubData(
         buffer_.id(), GL_R32UI, GLintptr(uint64_t(number) * rays_ * sizeof(word)),
         GLsizeiptr(rays * sizeof(word)), GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
@@ -76,6 +78,7 @@ void AnswerWords::dispatch(GLuint program, size_t rays, size_t packet,
 }
 
 std::span<const uint32_t> AnswerWords::plane(int number, size_t first, size_t rays) {
+    assert(number >= 0 && size_t(number) < planes_.size() && first + rays <= rays_);
     std::vector<uint32_t>& words = planes_[size_t(number)];
     words.resize(rays);
     glGetNamedBufferSubData(buffer_.id(),

@@ -4,6 +4,8 @@
 
 #include "gpu/page/top_level.h"
 
+#include <cassert>
+
 namespace ovc {
 
 Pool::Pool(Ledger& ledger, const PoolLayout& layout, size_t leaves, uint64_t begin)
@@ -22,6 +24,7 @@ void Pool::upload(uint64_t offset, const Page& page, uint32_t first_unit) const 
         return;
     const uint32_t buffer = layout_.buffer_of(offset);
     const uint64_t inside = offset - layout_.begin_of(buffer);
+    assert(buffer < buffers_.size() && inside + page.bytes() <= buffers_[buffer].bytes());
     void* const to =
         glMapNamedBufferRange(buffers_[buffer].id(), GLintptr(inside), GLsizeiptr(page.bytes()),
                               GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT);
@@ -33,6 +36,7 @@ void Pool::upload(uint64_t offset, const Page& page, uint32_t first_unit) const 
 
 void Pool::write(uint64_t offset, uint32_t word) const {
     const uint32_t buffer = layout_.buffer_of(offset);
+    assert(buffer < buffers_.size());
     glNamedBufferSubData(buffers_[buffer].id(), GLintptr(offset - layout_.begin_of(buffer)),
                          sizeof(word), &word);
 }

@@ -159,6 +159,7 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
     std::vector<uint32_t> evicted;
     const uint64_t keep = pool_.residency().now();
     for (const uint32_t leaf : wanted) {
+        assert(leaf < page_data_.size());
         const Page& page = page_data_[leaf];
         if (!pool_.residency().admit(leaf, page.bytes(), keep, evicted))
             break;
@@ -228,6 +229,7 @@ void Tracer::upload_local(std::span<const RayState> rays, std::vector<Sent>& sen
 /// Fast precision: hits as Answer has them, where the kernel told t in the frame of the top-level
 /// tree, then u and v.
 void Tracer::come_back(std::span<Answer> answers) const {
+    assert(times_.size() >= answers.size());
     for (size_t i = 0; i < answers.size(); ++i) {
         if (answers[i].prim >= OVC_MAX_TRIANGLES)
             continue;
@@ -264,7 +266,7 @@ ShaderConfig Tracer::shader_config() const {
 }
 
 Result<Done> Tracer::submit(std::span<const RayState> rays) {
-    assert(!rays.empty());
+    assert(!rays.empty() && whole_blocks(rays.size()) * sizeof(RayState) <= ray_buffer_.bytes());
     rays_sent_ = rays.size();
     slots_sent_ = rays.size();
     any_hit_ = std::ranges::all_of(rays, [](const RayState& state) { return state.any_hit(); });
@@ -357,6 +359,7 @@ bool Tracer::go_on_longer() {
 }
 
 Result<Done> Tracer::collect(std::span<Answer> answers) {
+    assert(answers.size() == rays_sent_);
     read(answers);
     while (lost_many(answers) && go_on_longer()) {
         // Where all fit they stay where they are. Others may have been pushed out by now.

@@ -10,8 +10,6 @@
 #include "host/shade/shade.h"
 #include "testscenes/random.h"
 
-#include <cassert>
-
 namespace ovc {
 
 /// Rays begin so many diagonals of the scene off the surface: about a hundred float32 roundings.
@@ -38,7 +36,7 @@ static dvec3 cosine_direction(const dvec3& normal, uint32_t pixel) {
 
 Result<std::vector<RaySet>> make_ray_sets(const Scene& scene, const Camera& camera, uint32_t width,
                                           uint32_t height, Backend& reference) {
-    assert(!scene.lights.empty());
+    const Light light = scene.lights.empty() ? shoulder_light(camera) : scene.lights.front();
     const std::vector<uint32_t> pixels = pixel_order(width, height);
     RaySet primary{"primary", RayQuery::Nearest, camera_rays(camera, width, height, pixels)};
     RaySet shadow{"shadow", RayQuery::Occlusion, {}};
@@ -55,7 +53,7 @@ Result<std::vector<RaySet>> make_ray_sets(const Scene& scene, const Camera& came
         SurfacePoint point = surface_point(scene, primary.rays[i], hits[i]);
         const dvec3 normal(point.geometric_normal);
         point.position += lift * normal;
-        shadow.rays.push_back(shadow_ray(scene.lights.front(), point.position));
+        shadow.rays.push_back(shadow_ray(light, point.position));
         Ray bounce;
         bounce.org = point.position;
         bounce.dir = cosine_direction(normal, pixels[i]);

@@ -23,12 +23,14 @@ struct RaySet {
 
 /// Returns three sets, each in the order of pixel_order():
 ///   primary   the nearest hit, one ray through the centre of each pixel;
-///   shadow    occlusion, one ray from each hit pixel to the scene's first light;
+///   shadow    occlusion, one ray from each hit pixel to the scene's first light, or to one over
+///   the
+///             camera's shoulder where the scene has none;
 ///   diffuse   the nearest hit, one ray from each hit pixel, cosine-distributed about the normal.
 /// `reference` answers the primary rays, and the other two sets begin at its hits. The same scene,
 /// camera and size give the same rays bit for bit. Rays begin a little off the surface, farther
-/// than float32 errs, so that no contender needs to be told which triangle to skip. The scene has a
-/// light (asserted). Error: `reference` fails.
+/// than float32 errs, so that no contender needs to be told which triangle to skip. Error:
+/// `reference` fails.
 Result<std::vector<RaySet>> make_ray_sets(const Scene& scene, const Camera& camera, uint32_t width,
                                           uint32_t height, Backend& reference);
 

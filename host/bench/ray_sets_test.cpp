@@ -33,6 +33,15 @@ std::vector<RaySet> sets_of(const Scene& scene, uint32_t width = kWidth,
     return std::move(*sets);
 }
 
+TEST(RaySets, HaveShadowsWhereTheSceneHasNoLight) {
+    Scene scene = lit("box");
+    scene.lights.clear();
+    const auto sets = make_ray_sets(scene, framing_camera(hittable_bounds(scene.soup), 16, 16), 16,
+                                    16, *make_cpu_backend(scene.soup));
+    ASSERT_TRUE(sets);
+    EXPECT_FALSE((*sets)[1].rays.empty());
+}
+
 TEST(RaySets, AreTheSameOnEveryRun) {
     const Scene scene = lit("sphere-3");
     const std::vector<RaySet> a = sets_of(scene), b = sets_of(scene);

@@ -28,7 +28,8 @@ std::vector<int> dragons_of(const ReportPlan& plan) {
         if (int n = 0;
             scene.starts_with(kScene) &&
             std::from_chars(scene.data() + kScene.size(), scene.data() + scene.size(), n).ec ==
-                std::errc{})
+                std::errc{} &&
+            n > 0)
             dragons.push_back(n);
     if (!plan.scenes.empty())
         return dragons;

@@ -183,9 +183,9 @@ Plot saved_plot(const Json& figures) {
             "What leaving it out saves of the CPU seconds of tracing and shading.", data,
             fmt::format("unset key\nset style fill solid 0.8\nset lmargin at screen 0.42\nset "
                         "ytics ({}) font ',11'\n"
-                        "set yrange [{}.5:-0.5]\nset xlabel 'saved, % of the time with it'\n"
+                        "set yrange [{}:-0.5]\nset xlabel 'saved, % of the time with it'\n"
                         "plot datafile using ($2/2):1:($2/2):(0.35) with boxxyerror ls 1\n",
-                        tics, bar - 1),
+                        tics, double(bar) - 0.5),
             height_of_bars(bar)};
 }
 
