@@ -20,7 +20,8 @@ EXCEPTIONS = {
 }
 # A string or character is matched first, because it may hold what looks like a comment.
 TOKEN = re.compile(r'R"(?P<end>[^()\\\s]*)\(.*?\)(?P=end)"|"(?:\\.|[^"\\\n])*"'
-                   r"|(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])+'|(?P<comment>//[^\n]*|/\*.*?\*/)", re.DOTALL)
+                   r"|(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])+'|(?P<comment>//[^\n]*|/\*.*?\*/)",
+                   re.DOTALL)
 FENCE = re.compile(r"\s*(```+|~~~+)")
 # A table's row, HTML, a heading, a link that is a line by itself and the address of a link.
 NOT_PROSE = re.compile(r"\s*(\||<|#+ |[*-]?\s*!?\[[^\]]*\]\([^)]*\)[.,;:]?$|\[[^\]]*\]:)")

@@ -15,14 +15,16 @@ def wrong_diffs(root, page):
         files = re.findall(r"^\+\+\+ b/(.*)$", diff, re.MULTILINE)
         if not 1 <= len(files) <= 3:
             yield f"{page}: a diff of {len(files)} files"
-        run = subprocess.run(["git", "apply", "--check", "-"], cwd=root, input=diff, capture_output=True, text=True)
+        run = subprocess.run(["git", "apply", "--check", "-"], cwd=root, input=diff,
+                             capture_output=True, text=True)
         if run.returncode != 0:
             yield f"{page}: the diff of {', '.join(files)} does not apply:\n{run.stderr}"
 
 
 def main():
     root = pathlib.Path(sys.argv[1])
-    wrong = [line for page in sorted((root / "docs/design").glob("*.md")) for line in wrong_diffs(root, page)]
+    wrong = [line for page in sorted((root / "docs/design").glob("*.md"))
+             for line in wrong_diffs(root, page)]
     print("\n".join(wrong))
     return 1 if wrong else 0
 

@@ -20,7 +20,8 @@ def prose(document):
 
 
 def anchors(document):
-    """Yields the anchors of the headings that GitHub and mkdocs name alike; links may use only these."""
+    """Yields the anchors of the headings that GitHub and mkdocs name alike; links may use only
+    these."""
     for heading in re.findall(r"^#+ +(.*)$", prose(document), re.MULTILINE):
         words = re.sub(r"[`*]|\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
         name = re.sub(r"[^\w -]", "", words).replace(" ", "-")
@@ -29,7 +30,8 @@ def anchors(document):
 
 
 def wrong_links(document):
-    for words, target, anchor in re.findall(r"\[([^\]]*)\]\(([^)#\s]*)(?:#([^)\s]*))?\)", prose(document)):
+    for words, target, anchor in re.findall(r"\[([^\]]*)\]\(([^)#\s]*)(?:#([^)\s]*))?\)",
+                                            prose(document)):
         if re.match(r"\w+:", target):
             continue
         leads_to = document.parent / target if target else document
@@ -37,7 +39,9 @@ def wrong_links(document):
             yield f"{document}: there is no {target}"
         elif anchor and anchor not in anchors(leads_to):
             yield f"{document}: {target} has no heading #{anchor}"
-        decision, number = re.search(r"(\d{4})-[\w-]*\.md$", target), re.fullmatch(r"decision\s+(\d+)", words, re.IGNORECASE)
+        decision, number = re.search(r"(\d{4})-[\w-]*\.md$",
+                                     target), re.fullmatch(r"decision\s+(\d+)", words,
+                                                           re.IGNORECASE)
         if decision and number and int(decision.group(1)) != int(number.group(1)):
             yield f"{document}: {' '.join(words.split())} leads to {target}"
 
@@ -56,7 +60,8 @@ def wrong_paths(root, document):
 
 
 def wrong_programs(root):
-    built = re.search(r"^cmake --build build(?: --target (.*))?$", (root / "demo.sh").read_text(), re.MULTILINE)
+    built = re.search(r"^cmake --build build(?: --target (.*))?$", (root / "demo.sh").read_text(),
+                      re.MULTILINE)
     targets = built.group(1)
     shown = set(re.findall(r"^build/bin/([\w-]+)", (root / "README.md").read_text(), re.MULTILINE))
     for program in sorted(shown):
@@ -66,7 +71,8 @@ def wrong_programs(root):
 
 def left_out_calls(root):
     """Yields a line for each function of the ABI's table that its reference does not name."""
-    table = re.search(r"typedef struct ovc_api \{.*?^\} ovc_api;", (root / "plugin/overcast.h").read_text(), re.MULTILINE | re.DOTALL).group()
+    table = re.search(r"typedef struct ovc_api \{.*?^\} ovc_api;",
+                      (root / "plugin/overcast.h").read_text(), re.MULTILINE | re.DOTALL).group()
     reference = (root / "docs/reference/abi.md").read_text()
     for call in re.findall(r"\(\*(\w+)\)\(", table):
         if f"`{call}`" not in reference:
@@ -76,12 +82,14 @@ def left_out_calls(root):
 def left_out_pages(root):
     """Yields a line for each decision that the list of decisions lacks, and each other page that
     mkdocs.yml lacks."""
-    site, decisions = (root / "mkdocs.yml").read_text(), (root / "docs/decisions/README.md").read_text()
+    site = (root / "mkdocs.yml").read_text()
+    decisions = (root / "docs/decisions/README.md").read_text()
     for page in sorted((root / "docs").glob("**/*.md")):
         if re.match(r"\d{4}-", page.name):
             if f"({page.name})" not in decisions:
                 yield f"docs/decisions/README.md lacks {page.name}"
-        elif not re.search(rf": {re.escape(str(page.relative_to(root / 'docs')))}$", site, re.MULTILINE):
+        elif not re.search(rf": {re.escape(str(page.relative_to(root / 'docs')))}$", site,
+                           re.MULTILINE):
             yield f"mkdocs.yml lacks {page.relative_to(root)}"
 
 

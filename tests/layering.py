@@ -72,16 +72,21 @@ def check(root, path):
             if name == "plugin/overcast.hpp" and target == "overcast.h":
                 continue
             hosts = "/".join(name.split("/")[:3])
-            if not is_test and hosts.startswith("plugin/hosts/") and target != "plugin/overcast.h" and not target.startswith(hosts):
+            if (not is_test and hosts.startswith("plugin/hosts/")
+                    and target != "plugin/overcast.h" and not target.startswith(hosts)):
                 yield f"{name} includes {target}; a host knows its own folder and plugin/overcast.h"
             part, known = name.rpartition("/")[0], target.rpartition("/")[0]
-            if part in PARTS and not is_test and known != part and known.startswith(folder) and known not in PARTS[part]:
-                yield f"{name} includes {target}; {part} may include {sorted(PARTS[part]) or 'none of its neighbours'}"
+            if (part in PARTS and not is_test and known != part and known.startswith(folder)
+                    and known not in PARTS[part]):
+                yield (f"{name} includes {target}; {part} may include "
+                       f"{sorted(PARTS[part]) or 'none of its neighbours'}")
             if folder == "plugin" and name.endswith("overcast.h"):
                 yield f"{name} includes {target}; the C header includes nothing of ours"
             elif folder not in MAY_INCLUDE or other not in MAY_INCLUDE[folder]:
-                if not (folder in ("shaders", "gpu") and "/" not in target and target.endswith(".h")):
-                    yield f"{name} includes {target}; {folder} may include {sorted(MAY_INCLUDE.get(folder, []))}"
+                if not (folder in ("shaders", "gpu") and "/" not in target
+                        and target.endswith(".h")):
+                    yield (f"{name} includes {target}; {folder} may include "
+                           f"{sorted(MAY_INCLUDE.get(folder, []))}")
         else:
             for pattern, places in PLACES.items():
                 if re.match(pattern, target) and not is_test and not allowed(name, places):

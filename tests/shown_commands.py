@@ -17,7 +17,8 @@ import tempfile
 
 CMAKE = """#!/bin/sh
 case "$*" in
-"--preset "*) '{cmake}' --list-presets | grep -qF "\\"$2\\"" || {{ echo "there is no preset $2"; exit 1; }} ;;
+"--preset "*)
+    '{cmake}' --list-presets | grep -qF "\\"$2\\"" || {{ echo "there is no preset $2"; exit 1; }} ;;
 "--build build") ln -sfn '{build}' build ;;
 *) echo "no test knows: cmake $*"; exit 1 ;;
 esac
@@ -53,7 +54,8 @@ def wrong_runs(root, build):
             if not lines:
                 yield f"{name} shows no command"
             for line in lines:
-                run = subprocess.run(["bash", "-c", line], cwd=tree, env=environment, capture_output=True, text=True)
+                run = subprocess.run(["bash", "-c", line], cwd=tree, env=environment,
+                                     capture_output=True, text=True)
                 if run.returncode != 0:
                     yield f"{name}: {line}\n  exit code {run.returncode}: {run.stdout}{run.stderr}"
 

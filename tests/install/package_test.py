@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Debian package: unpacked, it works where it lies; its Depends are what it needs; lintian has nothing to say."""
+"""Tests the Debian package: unpacked, it works where it lies; its Depends name the libraries that
+it loads; lintian finds no fault."""
 
 import os
 import pathlib
@@ -28,23 +29,29 @@ class DebianPackage(Tree, unittest.TestCase):
         cls.modules = cls.prefix / "lib/python3/dist-packages"
 
     def field(self, name):
-        return [entry.split()[0] for entry in run("dpkg-deb", "--field", self.package, name).split(",")]
+        return [entry.split()[0]
+                for entry in run("dpkg-deb", "--field", self.package, name).split(",")]
 
     def test_depends_are_what_it_loads(self):
         depends = self.field("Depends")
-        for package in ("libc6", "libstdc++6", "libtbb12", "libepoxy0", "libegl1", "libopenexr-3-1-30", "libassimp5"):
+        for package in ("libc6", "libstdc++6", "libtbb12", "libepoxy0", "libegl1",
+                        "libopenexr-3-1-30", "libassimp5"):
             self.assertIn(package, depends)
-        self.assertIn("libopengl0 | libgl1", run("dpkg-deb", "--field", self.package, "Depends"), "what libepoxy loads by itself")
+        self.assertIn("libopengl0 | libgl1", run("dpkg-deb", "--field", self.package, "Depends"),
+                      "what libepoxy loads by itself")
         self.assertEqual([package for package in depends if package.endswith("-dev")], [])
-        self.assertLessEqual({"python3", "python3-numpy", "libgl1-mesa-dri"}, set(self.field("Recommends")))
+        self.assertLessEqual({"python3", "python3-numpy", "libgl1-mesa-dri"},
+                             set(self.field("Recommends")))
 
     def test_programs_that_link_it_will_depend_on_it(self):
         control = self.folder / "control"
         run("dpkg-deb", "--control", self.package, control)
         version = run("dpkg-deb", "--field", self.package, "Version").strip()
         upstream = version.split("-")[0]
-        self.assertEqual((control / "shlibs").read_text(), f"libovercast 1 overcast (>= {upstream})\n")
-        self.assertEqual((control / "symbols").read_text(), f"libovercast.so.1 overcast\n ovc_get_api@Base {upstream}\n")
+        self.assertEqual((control / "shlibs").read_text(),
+                         f"libovercast 1 overcast (>= {upstream})\n")
+        self.assertEqual((control / "symbols").read_text(),
+                         f"libovercast.so.1 overcast\n ovc_get_api@Base {upstream}\n")
         for script in ("postinst", "prerm"):
             run("sh", "-n", control / script)
 
@@ -53,9 +60,11 @@ class DebianPackage(Tree, unittest.TestCase):
         command = re.search("^(cc .* hills\\.c .*)$", tutorial, re.MULTILINE).group(1)
         folder = self.folder / "hills"
         shutil.copytree(self.prefix / "share/doc/overcast/examples", folder)
-        run("sh", "-c", command, cwd=folder, environment={"PKG_CONFIG_PATH": str(self.libraries / "pkgconfig")})
+        run("sh", "-c", command, cwd=folder,
+            environment={"PKG_CONFIG_PATH": str(self.libraries / "pkgconfig")})
         printed = run(folder / "hills", self.libraries / "libovercast.so.1")
-        self.assertIn("\n".join(line.rstrip() for line in printed.splitlines() if line.strip()), tutorial)
+        self.assertIn("\n".join(line.rstrip() for line in printed.splitlines() if line.strip()),
+                      tutorial)
 
     def test_lintian_finds_nothing(self):
         if not shutil.which("lintian"):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""cmake --install into a clean prefix, which is then moved: everything in it still finds everything else."""
+"""Tests cmake --install into a clean prefix, which is then moved: everything in it must still find
+everything else."""
 
 import os
 import pathlib

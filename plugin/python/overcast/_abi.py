@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""plugin/overcast.h in ctypes: the structs and the table, name by name. The header says what they mean."""
+"""plugin/overcast.h in ctypes: the structs and the table, name by name. The header says what they
+mean."""
 
 from __future__ import annotations
 
@@ -17,28 +18,36 @@ LogFunction = c.CFUNCTYPE(None, c.c_void_p, c.c_int, c.c_char_p)
 
 
 class Sized(c.Structure):
-    """A struct whose first field is its size; all others begin as 0."""
+    """A struct whose first field is its size; all other fields begin as 0."""
 
     def __init__(self, **values: object) -> None:
         super().__init__(struct_size=c.sizeof(self), **values)
 
 
 class ovc_device_config(Sized):
-    _fields_ = [("struct_size", c.c_size_t), ("name", c.c_char_p), ("log", LogFunction), ("log_user", c.c_void_p)]
+    _fields_ = [("struct_size", c.c_size_t), ("name", c.c_char_p), ("log", LogFunction),
+                ("log_user", c.c_void_p)]
 
 
 class ovc_device_info(Sized):
-    _fields_ = [("struct_size", c.c_size_t), ("renderer", c.c_char * 128), ("vendor", c.c_char * 64),
-                ("version", c.c_char * 128), ("is_software", c.c_uint32), ("max_texture_size", c.c_uint32),
-                ("max_buffer_texels", c.c_uint64), ("memory_bytes", c.c_uint64), ("default_budget_bytes", c.c_uint64),
+    _fields_ = [("struct_size", c.c_size_t), ("renderer", c.c_char * 128),
+                ("vendor", c.c_char * 64),
+                ("version", c.c_char * 128), ("is_software", c.c_uint32),
+                ("max_texture_size", c.c_uint32),
+                ("max_buffer_texels", c.c_uint64), ("memory_bytes", c.c_uint64),
+                ("default_budget_bytes", c.c_uint64),
                 ("is_tested", c.c_uint32), ("reserved", c.c_uint32)]
 
 
 class ovc_scene_config(Sized):
-    _fields_ = [("struct_size", c.c_size_t), ("gpu_memory_bytes", c.c_uint64), ("leaf_triangles", c.c_uint64),
-                ("leaves", c.c_uint32), ("precision", c.c_uint32), ("kernel", c.c_uint32), ("structure", c.c_uint32),
-                ("level1", c.c_uint32), ("level1_build", c.c_uint32), ("progress", ProgressFunction),
-                ("progress_user", c.c_void_p), ("tell_active", c.c_uint32), ("reserved", c.c_uint32),
+    _fields_ = [("struct_size", c.c_size_t), ("gpu_memory_bytes", c.c_uint64),
+                ("leaf_triangles", c.c_uint64),
+                ("leaves", c.c_uint32), ("precision", c.c_uint32), ("kernel", c.c_uint32),
+                ("structure", c.c_uint32),
+                ("level1", c.c_uint32), ("level1_build", c.c_uint32),
+                ("progress", ProgressFunction),
+                ("progress_user", c.c_void_p), ("tell_active", c.c_uint32),
+                ("reserved", c.c_uint32),
                 ("saved", c.c_void_p), ("saved_bytes", c.c_uint64)]
 
 
@@ -47,32 +56,40 @@ MESH_SHARED, MESH_TEMPLATE = 1, 2
 
 class ovc_mesh(Sized):
     _fields_ = [("struct_size", c.c_size_t), ("positions", c.c_void_p), ("stride", c.c_size_t),
-                ("vertex_count", c.c_uint64), ("indices", c.c_void_p), ("triangle_count", c.c_uint64),
+                ("vertex_count", c.c_uint64), ("indices", c.c_void_p),
+                ("triangle_count", c.c_uint64),
                 ("origin", c.c_double * 3), ("flags", c.c_uint32), ("reserved", c.c_uint32),
                 ("positions_double", c.c_void_p), ("transform", c.c_void_p)]
 
 
 class ovc_instance(Sized):
-    _fields_ = [("struct_size", c.c_size_t), ("mesh", c.c_uint32), ("reserved", c.c_uint32), ("transform", c.c_void_p)]
+    _fields_ = [("struct_size", c.c_size_t), ("mesh", c.c_uint32), ("reserved", c.c_uint32),
+                ("transform", c.c_void_p)]
 
 
 class ovc_query(Sized):
-    _fields_ = [("struct_size", c.c_size_t), ("skip", c.c_void_p), ("leaf", c.c_void_p), ("passes", c.c_void_p),
+    _fields_ = [("struct_size", c.c_size_t), ("skip", c.c_void_p), ("leaf", c.c_void_p),
+                ("passes", c.c_void_p),
                 ("flagged", c.c_void_p), ("ray_format", c.c_uint32), ("reserved", c.c_uint32),
                 ("progress", ProgressFunction), ("progress_user", c.c_void_p)]
 
 
 class ovc_plan(Sized):
     _fields_ = [("struct_size", c.c_size_t), ("triangles", c.c_uint64), ("hittable", c.c_uint64),
-                ("leaves", c.c_uint64), ("leaf_references", c.c_uint64), ("level2_bytes", c.c_uint64),
+                ("leaves", c.c_uint64), ("leaf_references", c.c_uint64),
+                ("level2_bytes", c.c_uint64),
                 ("largest_page_bytes", c.c_uint64), ("gpu_budget_bytes", c.c_uint64),
-                ("smallest_budget_bytes", c.c_uint64), ("ray_bytes", c.c_uint64), ("level1_bytes", c.c_uint64),
-                ("pool_bytes", c.c_uint64), ("resident_pages", c.c_uint64), ("host_bytes", c.c_uint64),
-                ("batch_rays", c.c_uint64), ("fits", c.c_uint32), ("reserved", c.c_uint32), ("seconds", c.c_double)]
+                ("smallest_budget_bytes", c.c_uint64), ("ray_bytes", c.c_uint64),
+                ("level1_bytes", c.c_uint64),
+                ("pool_bytes", c.c_uint64), ("resident_pages", c.c_uint64),
+                ("host_bytes", c.c_uint64),
+                ("batch_rays", c.c_uint64), ("fits", c.c_uint32), ("reserved", c.c_uint32),
+                ("seconds", c.c_double)]
 
 
 class ovc_statistics(Sized):
-    _fields_ = [("struct_size", c.c_size_t)] + [(name, getattr(c, kind)) for name, kind in STATISTICS]
+    _fields_ = [("struct_size", c.c_size_t)] + [
+        (name, getattr(c, kind)) for name, kind in STATISTICS]
 
 
 def _call(*arguments: type) -> type:
@@ -83,7 +100,7 @@ _Handle, _Handles, _Pointer = c.c_void_p, c.POINTER(c.c_void_p), c.c_void_p
 
 
 class ovc_api(c.Structure):
-    """The table as far as this module calls it; what it does not call is a bare pointer."""
+    """The table, whose functions that this module does not call are bare pointers."""
 
     _fields_ = [
         ("struct_size", c.c_size_t), ("abi", c.c_uint32), ("version", c.c_uint32),

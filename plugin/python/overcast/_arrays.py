@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What callers hand over as arrays, checked: a wrong type or shape is one sentence that names the argument."""
+"""Checks arguments that callers hand over as arrays: a wrong type or shape raises an exception with
+one sentence that names the argument."""
 
 from __future__ import annotations
 
@@ -11,8 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 
 
 def numbers(name: str, value: ArrayLike, columns: int = 0, kinds: str = "fiu") -> NDArray[Any]:
-    """The value as an array of real numbers, without a copy where it is one; (..., columns), where columns are given."""
-    expected = ("whole numbers" if "f" not in kinds else "real numbers") + (f" of shape (..., {columns})" if columns else "")
+    """Returns the value as an array of real numbers, without a copy where it is one already.
+
+    columns: the shape must be (..., columns); 0: any shape. kinds: the kinds of numbers, as NumPy
+    names them, that are allowed. Raises TypeError or ValueError.
+    """
+    expected = ("whole numbers" if "f" not in kinds
+                else "real numbers") + (f" of shape (..., {columns})" if columns else "")
     try:
         array = np.asarray(value)
     except ValueError:
@@ -27,7 +33,8 @@ def numbers(name: str, value: ArrayLike, columns: int = 0, kinds: str = "fiu") -
 
 
 def as_uint32(name: str, value: ArrayLike, columns: int) -> NDArray[np.uint32]:
-    """Whole numbers of 32 bits, C-contiguous; without a copy where they are that."""
+    """Returns the value, (..., columns) whole numbers, as a C-contiguous array of 32 bits, without
+    a copy where it is one already. Raises ValueError for numbers that do not fit."""
     array = numbers(name, value, columns, "iu")
     if array.dtype != np.uint32 and array.size and (array.min() < 0 or array.max() > 0xFFFFFFFF):
         wrong = array.min() if array.min() < 0 else array.max()
@@ -36,7 +43,7 @@ def as_uint32(name: str, value: ArrayLike, columns: int) -> NDArray[np.uint32]:
 
 
 def count(name: str, value: int, most: int = 2**64 - 1) -> int:
-    """A whole number from 0 to `most`."""
+    """Returns the value, which must be a whole number from 0 to `most`."""
     try:
         number = operator.index(value)
     except TypeError:
@@ -47,7 +54,7 @@ def count(name: str, value: int, most: int = 2**64 - 1) -> int:
 
 
 def choice(name: str, value: str, choices: tuple[str, ...]) -> int:
-    """The value's place among the choices."""
+    """Returns the value's place among the choices."""
     if value not in choices:
         raise ValueError(f"{name} must be {' or '.join(map(repr, choices))}, not {value!r}")
     return choices.index(value)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Python functions that the library calls, and calls that Ctrl-C ends."""
+"""Lets the library call Python functions, and Ctrl-C end calls of the library."""
 
 from __future__ import annotations
 
@@ -15,17 +15,18 @@ from ._library import Error, Result, called_back
 
 
 class Raised:
-    """What a function of ours raised while the library was calling it: it ends the library's call, and is raised by it."""
+    """Carries an exception across the library: a Python function that the library called raised it,
+    the library's call ends because of it, and that call raises it in turn."""
 
     def __init__(self) -> None:
         self.error: BaseException | None = None
 
     def run(self, function: Callable[[], object]) -> int:
-        """0, or 1 where the library is to stop."""
+        """Calls the function; returns 0, or 1 where it raised and the library must stop."""
         called_back.now = True
         try:
             function()
-        except BaseException as error:  # nothing may pass through C
+        except BaseException as error:  # because no exception may pass through C
             self.error = error
         finally:
             called_back.now = False
@@ -33,7 +34,8 @@ class Raised:
 
     @contextlib.contextmanager
     def raising(self) -> Iterator[None]:
-        """Around the library's call: its own error, that it was stopped, gives way to why."""
+        """A context for the library's call: replaces the library's error, that the call was
+        cancelled, by the exception that made run() cancel it."""
         self.error = None
         try:
             yield
@@ -44,21 +46,24 @@ class Raised:
 
 
 class Progress:
-    """ovc_scene_config.progress."""
+    """A function for ovc_scene_config.progress and ovc_query.progress."""
 
     def __init__(self) -> None:
         self._told: Callable[[float, str], object] | None = None
         raised = self._raised = Raised()
 
         def tell(_user: int, done: float, stage: bytes) -> int:
-            return raised.run(lambda: self._told and self._told(done, stage.decode(errors="replace")))
+            return raised.run(lambda: self._told
+                              and self._told(done, stage.decode(errors="replace")))
 
         self.function = _abi.ProgressFunction(tell)
 
-    def watch(self, call: Callable[[], object], told: Callable[[float, str], object] | None = None) -> None:
+    def watch(self, call: Callable[[], object],
+              told: Callable[[float, str], object] | None = None) -> None:
         """Runs a call of the library, which calls told(done, stage); Ctrl-C stops it.
 
-        Python delivers Ctrl-C on the main thread alone, and not within C; so there the call runs beside it.
+        Python delivers Ctrl-C only to the main thread, and not while that is in C. A call from the
+        main thread therefore runs on a second thread, while the main thread waits.
         """
         self._told = told
         with self._raised.raising():
@@ -84,13 +89,14 @@ def _run(call: Callable[[], object], outcome: concurrent.futures.Future[None]) -
 
 
 class Writer:
-    """ovc_write_function into a file."""
+    """An ovc_write_function that writes to a file."""
 
     def __init__(self, file: BinaryIO) -> None:
         raised = self._raised = Raised()
 
         def write(_user: int, data: int, size: int) -> int:
-            return raised.run(lambda: file.write(memoryview((ctypes.c_char * size).from_address(data))))
+            return raised.run(
+                lambda: file.write(memoryview((ctypes.c_char * size).from_address(data))))
 
         self.function = _abi.WriteFunction(write)
         self.raising = raised.raising

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finding libovercast.so, loading it once, and turning its codes into exceptions."""
+"""Finds libovercast.so, loads it once, and turns its codes into exceptions."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ class Result(enum.IntEnum):
 
 
 class Error(Exception):
-    """A call that failed: str() is the library's sentence, `code` its Result, or None where the library could not be asked."""
+    """A call that failed: str() is the library's sentence, `code` its Result, or None where this
+    module found the error, for example because it could not load the library."""
 
     def __init__(self, sentence: str, code: Result | None = None) -> None:
         super().__init__(sentence)
@@ -41,7 +42,8 @@ class Error(Exception):
 
 
 def _path() -> str:
-    """The file that OVC_PLUGIN names; else the one built or installed with this module; else what the system's loader finds."""
+    """Returns the file that OVC_PLUGIN names; else the one built or installed with this module;
+    else the name that the system's loader looks for."""
     if named := os.environ.get("OVC_PLUGIN"):
         return named
     ours = pathlib.Path(__file__).resolve().parent / LIBRARY_FOLDER / SONAME
@@ -50,12 +52,13 @@ def _path() -> str:
 
 @functools.cache
 def api() -> _abi.ovc_api:
-    """The library's table. Loaded by the first who asks, and never unloaded."""
+    """Returns the library's table. The first call loads the library, which is never unloaded."""
     path = _path()
     try:
         library = ctypes.CDLL(path)
     except OSError as error:
-        raise Error(f"cannot load the library: {error}; the environment variable OVC_PLUGIN may name its file") from None
+        raise Error(f"cannot load the library: {error}; "
+                    "the environment variable OVC_PLUGIN may name its file") from None
     try:
         get_api = library.ovc_get_api
     except AttributeError:
@@ -64,29 +67,37 @@ def api() -> _abi.ovc_api:
     get_api.argtypes = [ctypes.c_uint32]
     table = get_api(_abi.ABI_VERSION)
     if not table:
-        raise Error(f"the library '{path}' does not speak version {_abi.ABI_VERSION} of the interface")
+        raise Error(f"the library '{path}' does not speak "
+                    f"version {_abi.ABI_VERSION} of the interface")
     if table.contents.struct_size < ctypes.sizeof(_abi.ovc_api):
-        raise Error(f"the library '{path}' is older than this module: its table has {table.contents.struct_size} bytes, "
+        raise Error(f"the library '{path}' is older than this module: "
+                    f"its table has {table.contents.struct_size} bytes, "
                     f"{ctypes.sizeof(_abi.ovc_api)} are needed")
     contents: _abi.ovc_api = table.contents
     return contents
 
 
 def check(result: int, device: int | None = None) -> None:
-    """Raises what the library says of the call that has just failed on this device, or, with None, without one."""
+    """Raises Error with the library's sentence where a call's result is not OVC_OK.
+
+    device: the handle on which this thread has just made the call; None: a call without a device.
+    """
     if result:
         sentence = api().last_error(device).decode(errors="replace")
         raise Error(sentence or f"the library failed with code {result}", Result(result))
 
 
 called_back = threading.local()
-"""`now` is set on a thread on which the library calls a function of ours, which may not call the library in turn."""
+"""`now` is True on a thread while the library calls a Python function there. Such a function may
+not use the library's handles."""
 
 
 class Handle:
-    """A device or a scene of the library. Destroyed once: by close(), when nobody refers to it any more, or at the end of the program."""
+    """Owns a device or a scene of the library, and destroys it once: in close(), when nobody refers
+    to the handle any more, or at the end of the program. `kept_alive` live until then."""
 
-    def __init__(self, what: str, value: int | None, destroy: Callable[[int | None], None], *kept_alive: object) -> None:
+    def __init__(self, what: str, value: int | None, destroy: Callable[[int | None], None],
+                 *kept_alive: object) -> None:
         self._what = what
         self._value = value
         self._process = os.getpid()
@@ -95,12 +106,15 @@ class Handle:
 
     @contextlib.contextmanager
     def use(self) -> Iterator[int | None]:
-        """The handle for a call; close() waits until the call is over."""
+        """A context that gives the handle for a call. One call runs at a time, and close() waits
+        for it. Raises Error after close(), in a fork, and in a function that the library calls."""
         if self._process != os.getpid():
-            raise Error(f"the {self._what} was opened by process {self._process} and does not live on in its fork; "
+            raise Error(f"the {self._what} was opened by process {self._process} "
+                        "and does not live on in its fork; "
                         "open one in the process that uses it")
         if getattr(called_back, "now", False):
-            raise Error(f"a progress function may not use the {self._what}: the call that it tells of is still running")
+            raise Error(f"a progress function may not use the {self._what}: "
+                        "the call that it tells of is still running")
         with self._turn:
             if not self._end.alive:
                 raise Error(f"the {self._what} is closed")
@@ -111,6 +125,7 @@ class Handle:
             self._end()
 
 
-def _destroy_here(process: int, destroy: Callable[[int | None], None], value: int | None, _kept_alive: tuple[object, ...]) -> None:
-    if process == os.getpid():  # the library's threads are not in a fork
+def _destroy_here(process: int, destroy: Callable[[int | None], None], value: int | None,
+                  _kept_alive: tuple[object, ...]) -> None:
+    if process == os.getpid():  # because a fork lacks the library's threads
         destroy(value)

@@ -18,7 +18,7 @@ _LOG_LEVELS = (logging.ERROR, logging.WARNING, logging.INFO)
 
 @dataclasses.dataclass(frozen=True)
 class DeviceInfo:
-    """What a device is and can."""
+    """The properties and limits of a device."""
 
     renderer: str
     vendor: str
@@ -30,19 +30,21 @@ class DeviceInfo:
     memory_bytes: int
     """Free GPU memory as the driver reports it; 1 GiB on a software renderer."""
     default_budget_bytes: int
-    """What gpu_memory=0 means."""
+    """The budget of a scene with gpu_memory=0."""
     is_tested: bool
     """Whether all of Overcast's tests have run on a driver of this kind."""
 
     @classmethod
     def _of(cls, info: _abi.ovc_device_info) -> DeviceInfo:
-        renderer, vendor, version = (text.decode(errors="replace") for text in (info.renderer, info.vendor, info.version))
-        return cls(renderer, vendor, version, bool(info.is_software), info.max_texture_size, info.max_buffer_texels, info.memory_bytes,
-                   info.default_budget_bytes, bool(info.is_tested))
+        renderer, vendor, version = (text.decode(errors="replace")
+                                     for text in (info.renderer, info.vendor, info.version))
+        return cls(renderer, vendor, version, bool(info.is_software), info.max_texture_size,
+                   info.max_buffer_texels, info.memory_bytes, info.default_budget_bytes,
+                   bool(info.is_tested))
 
 
 def devices() -> list[DeviceInfo]:
-    """The devices there are, by number: Device("0") opens the first."""
+    """Returns all devices, in the order of their numbers: Device("0") opens the first."""
     count = ctypes.c_uint32()
     check(api().list_devices(None, 0, count))
     infos = (_abi.ovc_device_info * count.value)()
@@ -55,8 +57,8 @@ def devices() -> list[DeviceInfo]:
 class Device:
     """An open device, with a thread of its own: your OpenGL context is left alone.
 
-    name: a number as listed by devices(), or a part of the renderer's name in any case; None: the first GPU, else the software
-    renderer. Raises Error where there is none.
+    name: a number as listed by devices(), or a part of the renderer's name in any case; None: the
+    first GPU, else the software renderer. Raises Error where there is none.
     """
 
     def __init__(self, name: str | int | None = None) -> None:
@@ -67,7 +69,7 @@ class Device:
 
     @property
     def info(self) -> DeviceInfo:
-        """What it is and can."""
+        """The device's properties and limits."""
         info = _abi.ovc_device_info()
         with self._handle.use() as handle:
             check(api().describe_device(handle, info), handle)
@@ -85,7 +87,7 @@ _log = _abi.LogFunction(_to_logging)
 
 
 def default_device() -> Device:
-    """The device of scenes that name none: opened by the first of them in each process."""
+    """Returns the device of scenes that name none. The first such scene of a process opens it."""
     return _device_of_process(os.getpid())
 
 

@@ -15,11 +15,13 @@ HIT = np.dtype([("t", "f8"), ("u", "f8"), ("v", "f8"), ("mesh", "u4"), ("prim", 
 
 
 class Hits:
-    """Nearest hits, one for each ray, in the rays' shape. All fields are views of `records`, an array of HIT.
+    """Nearest hits, one for each ray, in the rays' shape. All fields are views of `records`, an
+    array of HIT.
 
-    A hit lies at origin + t direction = (1 - u - v) a + u b + v c, where a, b, c are the corners of triangle `prim` of mesh
-    `mesh`. Where hits are equally far, it is the one of the smaller (mesh, prim). A miss has t = inf and mesh = prim = NONE.
-    hits[i], with whatever indexes arrays, are the Hits there.
+    A hit lies at origin + t direction = (1 - u - v) a + u b + v c, where a, b, c are the corners of
+    triangle `prim` of mesh `mesh`. Where hits are equally far, it is the one of the smaller (mesh,
+    prim). A miss has t = inf and mesh = prim = NONE. Hits are indexed like arrays: hits[i] are the
+    Hits of the rays there.
     """
 
     __slots__ = ("records",)
@@ -35,7 +37,7 @@ class Hits:
 
     @property
     def t(self) -> NDArray[np.float64]:
-        """How far, in lengths of the ray's direction; inf: a miss."""
+        """The distance, in lengths of the ray's direction; inf: a miss."""
         return self.records["t"]
 
     @property

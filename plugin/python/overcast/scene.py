@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes: meshes in, commit, rays."""
+"""Scenes, which take meshes, are committed, and then answer rays."""
 
 from __future__ import annotations
 
@@ -23,27 +23,37 @@ from .hits import HIT, Hits
 
 
 class Scene:
-    """Triangles that rays are traced against: add() meshes, commit(), then intersect() and occluded().
+    """Triangles that rays are traced against: add() meshes, commit(), intersect() and occluded().
 
-    device: where; None: the first GPU, else the software renderer, shared by all scenes of this process that name none.
-    gpu_memory: bytes that pages, rays and answers may take on the device together; 0: what the device has free, less headroom.
-        Scenes larger than that are traced in parts. Too small for any: an Error that names the smallest that works.
-    precision: "certified": the answers of double precision, bit for bit; "fast": the kernel's own in float32.
-    leaf_triangles, leaves: into how many parts the scene is cut; 0: as suits the budget. kernel: "auto", "fragment" or "compute".
-    saved: a file that save() wrote of a scene with the same meshes, so that commit need not build.
+    device: the device that traces; None: the first GPU, else the software renderer, shared by all
+        scenes of this process that name none.
+    gpu_memory: bytes that pages, rays and answers may take on the device together; 0: the device's
+        free memory, less headroom. Larger scenes are traced in parts. A budget too small for any
+        part raises an Error that names the smallest that works.
+    precision: "certified": the answers of double precision, bit for bit; "fast": the kernel's own
+        in float32.
+    leaf_triangles, leaves: the max number of triangles in a part of the scene, or instead about how
+        many parts there are; 0: as suits the budget.
+    kernel: "auto", "fragment" or "compute".
+    saved: a file that save() wrote of a scene with the same meshes; commit() then need not build.
 
-    A scene is closed when nobody refers to it any more, at the end of a `with` block, or by close().
+    A scene is closed when nobody refers to it any more, at the end of a `with` block, or by
+    close().
     """
 
-    def __init__(self, device: Device | None = None, *, gpu_memory: int = 0, precision: str = "certified",
-                 leaf_triangles: int = 0, leaves: int = 0, kernel: str = "auto",
-                 saved: str | os.PathLike[str] | None = None) -> None:
+    def __init__(self, device: Device | None = None, *, gpu_memory: int = 0,
+                 precision: str = "certified", leaf_triangles: int = 0, leaves: int = 0,
+                 kernel: str = "auto", saved: str | os.PathLike[str] | None = None) -> None:
         self._progress = Progress()
-        self._kept: list[object] = [self._progress]  # what the library reads until the scene is destroyed
+        # The library reads these until the scene is destroyed.
+        self._kept: list[object] = [self._progress]
         config = _abi.ovc_scene_config(
-            gpu_memory_bytes=count("gpu_memory", gpu_memory), leaf_triangles=count("leaf_triangles", leaf_triangles),
-            leaves=count("leaves", leaves, 2**32 - 1), precision=choice("precision", precision, ("certified", "fast")),
-            kernel=choice("kernel", kernel, ("auto", "fragment", "compute")), progress=self._progress.function)
+            gpu_memory_bytes=count("gpu_memory", gpu_memory),
+            leaf_triangles=count("leaf_triangles", leaf_triangles),
+            leaves=count("leaves", leaves, 2**32 - 1),
+            precision=choice("precision", precision, ("certified", "fast")),
+            kernel=choice("kernel", kernel, ("auto", "fragment", "compute")),
+            progress=self._progress.function)
         if saved is not None:
             mapped = np.memmap(saved, mode="r")
             self._kept.append(mapped)
@@ -61,16 +71,21 @@ class Scene:
         with self._handle.use() as scene:
             check(getattr(api(), function)(scene, *arguments), self._device_handle)
 
-    def add(self, vertices: ArrayLike, triangles: ArrayLike | None = None, *, transform: ArrayLike | None = None,
-            origin: ArrayLike = (0, 0, 0), template: bool = False, shared: bool = False) -> int:
+    def add(self, vertices: ArrayLike, triangles: ArrayLike | None = None, *,
+            transform: ArrayLike | None = None, origin: ArrayLike = (0, 0, 0),
+            template: bool = False, shared: bool = False) -> int:
         """Adds a mesh and returns its number: 0, 1, 2, ...
 
-        vertices: (n, 3) real numbers. float32 is kept as it is, all else as float64, in twice the memory.
-        triangles: (m, 3) whole numbers below n; None: each three vertices are a triangle, and (m, 3, 3) will do as well.
-        transform: (3, 4) or (4, 4), applied to each vertex after `origin` is added to it, all in double precision.
+        vertices: (n, 3) real numbers. float32 is kept as it is, all else as float64, in twice the
+            memory.
+        triangles: (m, 3) whole numbers below n; None: each three vertices are a triangle, and
+            vertices may be (m, 3, 3).
+        transform: (3, 4) or (4, 4), applied to each vertex after `origin` is added to it, all in
+            double precision.
         template: no ray hits the mesh itself; it is there for add_instance().
-        shared: the library reads the array where it lies, C-contiguous and without triangles, instead of a copy; do not change
-            it until the scene is closed.
+        shared: the library reads the array in place instead of a copy. The array must be
+            C-contiguous, float32 or float64, and without triangles; do not change it until the
+            scene is closed.
         """
         flags = _abi.MESH_SHARED * bool(shared) | _abi.MESH_TEMPLATE * bool(template)
         mesh = mesh_of(vertices, triangles, origin, transform, flags)
@@ -81,10 +96,13 @@ class Scene:
         return number.value
 
     def add_instance(self, mesh: int, transform: ArrayLike | None = None) -> int:
-        """Adds a mesh, or an instance, once more, and returns the number of the new one, which its hits tell.
+        """Adds a mesh, or an instance, once more, and returns the new one's number, which is `mesh`
+        in its hits.
 
-        transform: (3, 4) or (4, 4) from where the mesh is; of an instance, after its own. Vertices are kept once for all, but
-            pages are built for each.
+        transform: (3, 4) or (4, 4), applied to the mesh where it is; to an instance after its own
+            transform. All instances share the vertices and pages of their mesh. Instances of small
+            meshes, and with transforms that doubles cannot invert well enough, have pages of their
+            own.
         """
         matrix = transform_of(transform)
         instance = _abi.ovc_instance(mesh=count("mesh", mesh, 2**32 - 1), transform=address(matrix))
@@ -95,47 +113,56 @@ class Scene:
     def commit(self, progress: Callable[[float, str], object] | None = None) -> None:
         """Builds the scene. Afterwards it takes rays and no more meshes.
 
-        progress(done, stage): called up to fifty times a second, from any thread, with done from 0 to 1; it may not use the
-        scene. What it raises ends the commit and is raised here; so does Ctrl-C. The scene may be committed again then.
+        progress(done, stage): called up to fifty times a second, from any thread, with done from 0
+        to 1; it may not use the scene. An exception from it ends the commit and is raised here; so
+        does Ctrl-C. Afterwards the scene may be committed again.
         """
         self._progress.watch(lambda: self._call("commit"), progress)
 
-    def intersect(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_max: ArrayLike = math.inf, *,
-                  skip: Hits | ArrayLike | None = None, out: Hits | None = None) -> Hits:
+    def intersect(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0,
+                  t_max: ArrayLike = math.inf, *, skip: Hits | ArrayLike | None = None,
+                  out: Hits | None = None) -> Hits:
         """Finds the nearest hit of each ray origins + t directions, t_min <= t <= t_max.
 
-        origins, directions: (..., 3) real numbers; t_min, t_max: (...). Each is broadcast: one origin serves all directions.
-        skip: the triangle that each ray starts on and does not see: Hits, or (..., 2) of mesh and prim; NONE, NONE: none.
-        out: Hits of an earlier call on as many rays, to be written again.
+        origins, directions: (..., 3) real numbers; t_min, t_max: (...). Each is broadcast: one
+            origin serves all directions.
+        skip: the triangle that each ray starts on and does not see: Hits, or (..., 2) of mesh and
+            prim; NONE, NONE: none.
+        out: Hits of the rays' shape, for example of an earlier call, which this call overwrites.
         Returns Hits in the rays' shape.
         """
         return self.intersect_rays(rays(origins, directions, t_min, t_max), skip=skip, out=out)
 
-    def intersect_rays(self, rays: NDArray[np.void], *, skip: Hits | ArrayLike | None = None, out: Hits | None = None) -> Hits:
+    def intersect_rays(self, rays: NDArray[np.void], *, skip: Hits | ArrayLike | None = None,
+                       out: Hits | None = None) -> Hits:
         """intersect() of rays in records (see overcast.rays): nothing is copied."""
         rays = as_rays(rays)
         hits = Hits(np.empty(rays.shape, HIT)) if out is None else out
         answers = getattr(hits, "records", None)
-        if not isinstance(answers, np.ndarray) or (answers.dtype, answers.shape) != (HIT, rays.shape):
+        if (not isinstance(answers, np.ndarray)
+                or (answers.dtype, answers.shape) != (HIT, rays.shape)):
             raise ValueError(f"out must be Hits of the rays' shape {rays.shape}, not {out!r}")
         if not answers.flags.carray:
             raise ValueError("out must be Hits whose records are contiguous and writeable")
         self._trace("intersect", rays, answers, skip)
         return hits
 
-    def occluded(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0, t_max: ArrayLike = math.inf, *,
-                 skip: Hits | ArrayLike | None = None) -> NDArray[np.bool_]:
-        """Tells which rays hit anything: True or False for each, in the rays' shape. Arguments are those of intersect()."""
+    def occluded(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0,
+                 t_max: ArrayLike = math.inf, *, skip: Hits | ArrayLike | None = None) -> NDArray[np.bool_]:
+        """Tells which rays hit anything: True or False for each, in the rays' shape. The arguments
+        are those of intersect()."""
         return self.occluded_rays(rays(origins, directions, t_min, t_max), skip=skip)
 
-    def occluded_rays(self, rays: NDArray[np.void], *, skip: Hits | ArrayLike | None = None) -> NDArray[np.bool_]:
+    def occluded_rays(self, rays: NDArray[np.void], *,
+                      skip: Hits | ArrayLike | None = None) -> NDArray[np.bool_]:
         """occluded() of rays in records (see overcast.rays): nothing is copied."""
         rays = as_rays(rays)
         answers = np.empty(rays.shape, np.bool_)
         self._trace("occluded", rays, answers, skip)
         return answers
 
-    def _trace(self, function: str, rays: NDArray[np.void], answers: NDArray[Any], skip: Hits | ArrayLike | None) -> None:
+    def _trace(self, function: str, rays: NDArray[np.void], answers: NDArray[Any],
+               skip: Hits | ArrayLike | None) -> None:
         query = _abi.ovc_query(ray_format=FORMATS.index(rays.dtype))
         if skip is not None:
             query.names = names_of(skip, rays.shape)  # lives as long as the query
@@ -151,22 +178,23 @@ class Scene:
             progress.watch(call)
 
     def plan(self) -> dict[str, int | float]:
-        """Tells what commit() makes of the meshes added so far, without making it: leaves, bytes, the smallest budget that works,
-        whether it fits; ovc_plan of the C header says what each number is."""
+        """Forecasts what commit() would build of the meshes added so far, without building it:
+        leaves, bytes, the smallest budget that works, whether it fits. ovc_plan of the C header
+        says what each number is."""
         plan = _abi.ovc_plan()
         self._progress.watch(lambda: self._call("plan", plan))
         return _as_dict(plan)
 
     def statistics(self) -> dict[str, int | float]:
-        """What was built and what rays took, in all since commit(): triangles, bytes, passes, seconds; ovc_statistics of the C
-        header says what each number is."""
+        """Returns what commit() built and what all rays since have cost: triangles, bytes, passes,
+        seconds. ovc_statistics of the C header says what each number is."""
         statistics = _abi.ovc_statistics()
         self._call("statistics", statistics)
         return _as_dict(statistics)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes what commit() has built to a file, for Scene(saved=path) with the same meshes. A file that is there is replaced
-        when all is written."""
+        """Writes what commit() has built to a file, for Scene(saved=path) with the same meshes.
+        Replaces an existing file only when all is written."""
         unfinished = f"{os.fspath(path)}.unfinished"
         try:
             with open(unfinished, "wb") as file:
@@ -183,7 +211,8 @@ class Scene:
         self._call("purge")
 
     def close(self) -> None:
-        """Frees all that the scene holds; waits for a call that is still running. A closed scene answers no more calls."""
+        """Frees all that the scene holds; waits for a call that is still running. A closed scene
+        answers no more calls."""
         self._handle.close()
 
     def __enter__(self) -> Scene:
@@ -194,17 +223,21 @@ class Scene:
 
 
 _WORTH_WATCHING = 100_000
-"""Rays: fewer are answered before anyone could press Ctrl-C, and a thread more would be felt."""
+"""In rays. Smaller batches end before anyone could press Ctrl-C, and starting a thread to watch for
+it would take noticeably long."""
 
 
 def names_of(skip: Hits | ArrayLike, shape: tuple[int, ...]) -> NDArray[np.uint32]:
-    """(*shape, 2): the mesh and the prim that each ray skips."""
-    names = np.stack([skip.mesh, skip.prim], axis=-1) if isinstance(skip, Hits) else as_uint32("skip", skip, 2)
+    """Returns (*shape, 2): the mesh and the prim that each ray skips."""
+    names = (np.stack([skip.mesh, skip.prim], axis=-1) if isinstance(skip, Hits)
+             else as_uint32("skip", skip, 2))
     try:
         return np.ascontiguousarray(np.broadcast_to(names, (*shape, 2)))
     except ValueError:
-        raise ValueError(f"skip names triangles for rays of shape {names.shape[:-1]}, not {shape}") from None
+        raise ValueError(f"skip names triangles for rays of shape {names.shape[:-1]}, "
+                         f"not {shape}") from None
 
 
 def _as_dict(struct: ctypes.Structure) -> dict[str, int | float]:
-    return {name: getattr(struct, name) for name, *_ in struct._fields_ if name not in ("struct_size", "reserved")}
+    return {name: getattr(struct, name) for name, *_ in struct._fields_
+            if name not in ("struct_size", "reserved")}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The structs in ctypes and the records in NumPy, field by field against the C header: a C compiler is the judge."""
+"""Compares the structs in ctypes and the records in NumPy with the C header, field by field, by
+assertions that a C compiler checks."""
 
 import ctypes
 import os
@@ -12,11 +13,12 @@ from overcast import _abi
 
 COMPILER = os.environ.get("CC", "cc")
 RAY_NAMES = {"origin": "org", "direction": "dir"}
-RECORDS = {"ovc_ray": (overcast.RAY, RAY_NAMES), "ovc_ray_float": (overcast.RAY_FLOAT, RAY_NAMES), "ovc_hit": (overcast.HIT, {})}
+RECORDS = {"ovc_ray": (overcast.RAY, RAY_NAMES), "ovc_ray_float": (overcast.RAY_FLOAT, RAY_NAMES),
+           "ovc_hit": (overcast.HIT, {})}
 
 
 def claims():
-    """What C must agree with."""
+    """Yields (struct, field, offset, size) of every field that the module knows."""
     structs = [_abi.ovc_api] + _abi.Sized.__subclasses__()
     for struct in structs:
         for name, *_ in struct._fields_:
@@ -29,12 +31,14 @@ def claims():
 
 def refused(lines):
     source = '#include "plugin/overcast.h"\n#include <stddef.h>\n' + "\n".join(lines)
-    return subprocess.run([COMPILER, "-std=c11", "-fsyntax-only", "-I", os.environ["OVC_SOURCE_DIR"], "-x", "c", "-"],
+    return subprocess.run([COMPILER, "-std=c11", "-fsyntax-only", "-I",
+                           os.environ["OVC_SOURCE_DIR"], "-x", "c", "-"],
                           input=source, text=True, capture_output=True).stderr
 
 
 def assertion(struct, name, offset, size):
-    return (f'_Static_assert(offsetof({struct}, {name}) == {offset} && sizeof((({struct}*)0)->{name}) == {size}, '
+    return (f'_Static_assert(offsetof({struct}, {name}) == {offset} && '
+            f'sizeof((({struct}*)0)->{name}) == {size}, '
             f'"{struct}.{name} lies elsewhere");')
 
 
@@ -44,15 +48,18 @@ class Layout(unittest.TestCase):
         self.assertEqual(refused(assertion(*claim) for claim in claims()), "")
 
     def test_a_field_elsewhere_would_be_noticed(self):
-        self.assertIn("ovc_mesh.stride lies elsewhere", refused([assertion("ovc_mesh", "stride", 24, 8)]))
+        self.assertIn("ovc_mesh.stride lies elsewhere",
+                      refused([assertion("ovc_mesh", "stride", 24, 8)]))
 
     def test_records_have_the_size_of_c(self):
         for struct, (dtype, _) in RECORDS.items():
-            self.assertEqual(refused([f'_Static_assert(sizeof({struct}) == {dtype.itemsize}, "{struct}");']), "")
+            claim = f'_Static_assert(sizeof({struct}) == {dtype.itemsize}, "{struct}");'
+            self.assertEqual(refused([claim]), "")
 
     def test_results_are_those_of_c(self):
         for result in overcast.Result:
-            self.assertEqual(refused([f'_Static_assert(OVC_ERROR_{result.name} == {result.value}, "{result.name}");']), "")
+            claim = f'_Static_assert(OVC_ERROR_{result.name} == {result.value}, "{result.name}");'
+            self.assertEqual(refused([claim]), "")
 
     def test_the_version_is_that_of_c(self):
         major, minor, patch = map(int, overcast.__version__.split("."))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What callers get wrong: one sentence, and the program goes on."""
+"""Tests that a caller's mistake raises an exception with one sentence, and the program goes on."""
 
 import logging
 import os
@@ -29,7 +29,7 @@ def committed():
 
 
 class Sentences(unittest.TestCase):
-    """(exception, sentence, call): sentences are part of the contract."""
+    """Checks rows of (exception, sentence, call): the sentences are part of the contract."""
 
     def check(self, cases):
         for error, sentence, call in cases:
@@ -47,61 +47,87 @@ class Sentences(unittest.TestCase):
              lambda: scene.intersect([0, 0, 0], 1)),
             (TypeError, "directions must be real numbers of shape (..., 3), not complex128",
              lambda: scene.occluded([0, 0, 0], [0, 0, 1j])),
-            (TypeError, "origins must be real numbers of shape (..., 3), not <U1", lambda: scene.intersect(["x"] * 3, DOWN[1])),
-            (ValueError, "origins must be real numbers of shape (..., 3), not rows of different lengths",
+            (TypeError, "origins must be real numbers of shape (..., 3), not <U1",
+             lambda: scene.intersect(["x"] * 3, DOWN[1])),
+            (ValueError,
+             "origins must be real numbers of shape (..., 3), not rows of different lengths",
              lambda: scene.intersect([[0, 0, 0], [0]], DOWN[1])),
-            (ValueError, "the rays' shapes do not go together: origins (4,) + (3,), directions (5,) + (3,), t_min (), t_max ()",
+            (ValueError,
+             "the rays' shapes do not go together: origins (4,) + (3,), directions (5,) + (3,), "
+             "t_min (), t_max ()",
              lambda: scene.intersect(np.zeros((4, 3)), np.zeros((5, 3)))),
-            (TypeError, "t_max must be real numbers, not object", lambda: scene.intersect(*DOWN, t_max=None)),
-            (TypeError, "rays must be an array of overcast.RAY or RAY_FLOAT, as overcast.rays() makes it, not an array of float64",
+            (TypeError, "t_max must be real numbers, not object",
+             lambda: scene.intersect(*DOWN, t_max=None)),
+            (TypeError,
+             "rays must be an array of overcast.RAY or RAY_FLOAT, as overcast.rays() makes it, "
+             "not an array of float64",
              lambda: scene.intersect_rays(np.zeros((3, 8)))),
-            (TypeError, "rays must be an array of overcast.RAY or RAY_FLOAT, as overcast.rays() makes it, not list",
+            (TypeError,
+             "rays must be an array of overcast.RAY or RAY_FLOAT, as overcast.rays() makes it, "
+             "not list",
              lambda: scene.occluded_rays([1])),
             (TypeError, "skip must be whole numbers of shape (..., 2), not float64",
              lambda: scene.intersect(*DOWN, skip=[0.0, 1.0])),
             (ValueError, "skip names triangles for rays of shape (3,), not ()",
              lambda: scene.intersect(*DOWN, skip=np.zeros((3, 2), int))),
-            (ValueError, "out must be Hits of the rays' shape (), not <overcast.Hits of shape (2,), 1 hit>",
+            (ValueError,
+             "out must be Hits of the rays' shape (), not <overcast.Hits of shape (2,), 1 hit>",
              lambda: scene.intersect(*DOWN, out=two_hits())),
-            (ValueError, "out must be Hits of the rays' shape (), not array(1)", lambda: scene.intersect(*DOWN, out=np.array(1))),
+            (ValueError, "out must be Hits of the rays' shape (), not array(1)",
+             lambda: scene.intersect(*DOWN, out=np.array(1))),
         ])
 
     def test_of_meshes(self):
         scene = overcast.Scene()
         self.check([
-            (ValueError, "vertices must be of shape (n, 3), not (3,)", lambda: scene.add([1, 2, 3])),
+            (ValueError, "vertices must be of shape (n, 3), not (3,)",
+             lambda: scene.add([1, 2, 3])),
             (ValueError, "vertices must be real numbers of shape (..., 3), not of shape (3, 2)",
              lambda: scene.add(TRIANGLE[:, :2])),
-            (TypeError, "vertices must be real numbers of shape (..., 3), not bool", lambda: scene.add(TRIANGLE == 1)),
+            (TypeError, "vertices must be real numbers of shape (..., 3), not bool",
+             lambda: scene.add(TRIANGLE == 1)),
             (TypeError, "triangles must be whole numbers of shape (..., 3), not float64",
              lambda: scene.add(TRIANGLE, [[0, 1, 2.0]])),
-            (ValueError, "triangles must be of shape (m, 3), not (3,)", lambda: scene.add(TRIANGLE, [0, 1, 2])),
+            (ValueError, "triangles must be of shape (m, 3), not (3,)",
+             lambda: scene.add(TRIANGLE, [0, 1, 2])),
             (ValueError, "triangles must be whole numbers from 0 to 4294967295, not -1",
              lambda: scene.add(TRIANGLE, [[0, 1, -1]])),
             (overcast.Error, "ovc_mesh.indices[2] is 3, expected less than vertex_count = 3",
              lambda: scene.add(TRIANGLE, [[0, 1, 3]])),
             (overcast.Error, "ovc_mesh.vertex_count is 2 without indices, expected a multiple of 3",
              lambda: scene.add(TRIANGLE[:2])),
-            (ValueError, "a shared mesh needs C-contiguous float32 or float64 vertices and no triangles",
+            (ValueError,
+             "a shared mesh needs C-contiguous float32 or float64 vertices and no triangles",
              lambda: scene.add(TRIANGLE.astype(int), shared=True)),
-            (ValueError, "transform must be of shape (3, 4), or (4, 4) with the last row 0 0 0 1, not (3, 3)",
+            (ValueError,
+             "transform must be of shape (3, 4), or (4, 4) with the last row 0 0 0 1, not (3, 3)",
              lambda: scene.add(TRIANGLE, transform=np.eye(3))),
-            (ValueError, "transform must be of shape (3, 4), or (4, 4) with the last row 0 0 0 1, not [1. 1. 1. 1.]",
+            (ValueError,
+             "transform must be of shape (3, 4), or (4, 4) with the last row 0 0 0 1, "
+             "not [1. 1. 1. 1.]",
              lambda: scene.add_instance(0, np.ones((4, 4)))),
             (TypeError, "mesh must be a whole number, not str", lambda: scene.add_instance("0")),
-            (ValueError, "origin must be of shape (3,), not (1, 3)", lambda: scene.add(TRIANGLE, origin=[[0, 0, 0]])),
+            (ValueError, "origin must be of shape (3,), not (1, 3)",
+             lambda: scene.add(TRIANGLE, origin=[[0, 0, 0]])),
         ])
         self.assertEqual(scene.add(TRIANGLE), 0, "the scene is as it was")
 
     def test_of_scenes_and_devices(self):
         self.check([
-            (ValueError, "gpu_memory must be from 0 to 18446744073709551615, not -1", lambda: overcast.Scene(gpu_memory=-1)),
-            (TypeError, "gpu_memory must be a whole number, not str", lambda: overcast.Scene(gpu_memory="1G")),
-            (ValueError, "precision must be 'certified' or 'fast', not 'exact'", lambda: overcast.Scene(precision="exact")),
-            (ValueError, "leaves must be from 0 to 4294967295, not 4294967296", lambda: overcast.Scene(leaves=2**32)),
-            (TypeError, "device must be an overcast.Device, not str", lambda: overcast.Scene("llvmpipe")),
+            (ValueError, "gpu_memory must be from 0 to 18446744073709551615, not -1",
+             lambda: overcast.Scene(gpu_memory=-1)),
+            (TypeError, "gpu_memory must be a whole number, not str",
+             lambda: overcast.Scene(gpu_memory="1G")),
+            (ValueError, "precision must be 'certified' or 'fast', not 'exact'",
+             lambda: overcast.Scene(precision="exact")),
+            (ValueError, "leaves must be from 0 to 4294967295, not 4294967296",
+             lambda: overcast.Scene(leaves=2**32)),
+            (TypeError, "device must be an overcast.Device, not str",
+             lambda: overcast.Scene("llvmpipe")),
         ])
-        with self.assertRaisesRegex(overcast.Error, "^a GPU budget of 1 bytes is too small: the smallest that works is"):
+        with self.assertRaisesRegex(overcast.Error,
+                                    "^a GPU budget of 1 bytes is too small: "
+                                    "the smallest that works is"):
             overcast.Scene(gpu_memory=1)
         with self.assertRaisesRegex(overcast.Error, "no device is called 'nonsense'") as raised:
             overcast.Device("nonsense")
@@ -109,11 +135,13 @@ class Sentences(unittest.TestCase):
 
     def test_of_order(self):
         scene = overcast.Scene()
-        self.check([(overcast.Error, "intersect: the scene is not committed yet", lambda: scene.intersect(*DOWN))])
+        self.check([(overcast.Error, "intersect: the scene is not committed yet",
+                     lambda: scene.intersect(*DOWN))])
         scene.commit()
         self.assertFalse(scene.intersect(*DOWN).hit)
         self.check([
-            (overcast.Error, "add_mesh: the scene is committed; it takes no more meshes", lambda: scene.add(TRIANGLE)),
+            (overcast.Error, "add_mesh: the scene is committed; it takes no more meshes",
+             lambda: scene.add(TRIANGLE)),
             (overcast.Error, "commit: the scene is committed already", scene.commit),
         ])
         scene.close()
@@ -150,7 +178,9 @@ class Running(unittest.TestCase):
     def test_progress_may_not_use_the_scene(self):
         scene = overcast.Scene()
         scene.add(TRIANGLE)
-        with self.assertRaisesRegex(overcast.Error, "^a progress function may not use the scene: the call that it tells of is"):
+        with self.assertRaisesRegex(overcast.Error,
+                                    "^a progress function may not use the scene: "
+                                    "the call that it tells of is"):
             scene.commit(lambda done, stage: scene.statistics())
         scene.commit()
         self.assertTrue(scene.intersect(*DOWN).hit)
@@ -179,7 +209,8 @@ class Running(unittest.TestCase):
         scene = overcast.Scene()
         scene.add(soup(1, 100000, 0.01))
         scene.commit()
-        records = np.repeat(overcast.rays(*rays_at_unit_cube(2, 10000)), 500)  # five million: far longer than the signal takes
+        # Tracing five million rays takes far longer than the signal.
+        records = np.repeat(overcast.rays(*rays_at_unit_cube(2, 10000)), 500)
         untouched = 12345
         out = overcast.Hits(np.full(records.shape, untouched, overcast.HIT))
         timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
@@ -245,21 +276,23 @@ class Running(unittest.TestCase):
 
 
 class Programs(unittest.TestCase):
-    """Whole programs, as their ends are where lifetimes go wrong."""
+    """Runs whole programs, because mistakes about lifetimes show at the end of a program."""
 
     def run_program(self, text, **environment):
-        return subprocess.run([sys.executable, "-c", text], env={**os.environ, **environment}, capture_output=True, text=True,
-                              timeout=120)
+        return subprocess.run([sys.executable, "-c", text], env={**os.environ, **environment},
+                              capture_output=True, text=True, timeout=120)
 
     def test_a_program_may_end_with_all_open(self):
-        program = ("import overcast, numpy; device = overcast.Device(); scene = overcast.Scene(device); "
-                   "scene.add(numpy.eye(3)); scene.commit(); print(scene.intersect([1, 1, 1], [-1, -1, -1]).hit)")
+        program = ("import overcast, numpy; device = overcast.Device(); "
+                   "scene = overcast.Scene(device); scene.add(numpy.eye(3)); scene.commit(); "
+                   "print(scene.intersect([1, 1, 1], [-1, -1, -1]).hit)")
         ended = self.run_program(program)
         self.assertEqual((ended.returncode, ended.stdout), (0, "True\n"), ended.stderr)
 
     def test_a_library_that_is_none_is_said_so(self):
         for library, sentence in {"/no/such.so": "cannot load the library: /no/such.so",
-                                  "libm.so.6": "'libm.so.6' is not Overcast's library: it has no ovc_get_api"}.items():
+                                  "libm.so.6": "'libm.so.6' is not Overcast's library: "
+                                               "it has no ovc_get_api"}.items():
             ended = self.run_program("import overcast; overcast.devices()", OVC_PLUGIN=library)
             self.assertEqual(ended.returncode, 1)
             self.assertIn(sentence, ended.stderr)

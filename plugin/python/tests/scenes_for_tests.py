@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests share: soups, rays at them, and every triangle tested in NumPy, in double precision."""
+"""Soups and rays for the tests, and a brute-force tracer in NumPy, in double precision."""
 
 import unittest
 
@@ -9,7 +9,7 @@ import overcast
 
 
 def skip_without_device():
-    """For setUpModule."""
+    """Skips a module's tests where there is no device; the modules call it as setUpModule."""
     try:
         overcast.Scene().close()
     except overcast.Error as error:
@@ -19,21 +19,23 @@ def skip_without_device():
 
 
 def soup(seed, triangles, size=0.1):
-    """Corners (triangles, 3, 3), float32, of small triangles within the unit cube."""
+    """Returns the corners (triangles, 3, 3), float32, of small triangles around points of the unit
+    cube."""
     random = np.random.default_rng(seed)
     centres = random.random((triangles, 1, 3))
     return (centres + size * random.normal(size=(triangles, 3, 3))).astype(np.float32)
 
 
 def rays_at_unit_cube(seed, count):
-    """Origins and directions, (count, 3): from around the cube to points within it."""
+    """Returns origins and directions, (count, 3) each, from around the cube to points within it."""
     random = np.random.default_rng(seed)
     origins = 0.5 + 3 * random.normal(size=(count, 3))
     return origins, random.random((count, 3)) - origins
 
 
 def brute_force(corners, origins, directions, t_min=0.0, t_max=np.inf):
-    """t, u, v and the triangle of each ray's nearest hit, (count): inf, 0, 0, NONE for a miss.
+    """Returns t, u, v and the triangle of each ray's nearest hit, (count) each: inf, 0, 0, NONE for
+    a miss.
 
     Source: Moeller and Trumbore, Fast, Minimum Storage Ray/Triangle Intersection, 1997.
     """
@@ -48,5 +50,6 @@ def brute_force(corners, origins, directions, t_min=0.0, t_max=np.inf):
             v, t = scale * (q @ direction), scale * ((c - a) * q).sum(axis=1)
             t[~((u >= 0) & (v >= 0) & (u + v <= 1) & (t >= t_min) & (t <= t_max))] = np.inf
         nearest = np.argmin(t)
-        answers[:, i] = (t[nearest], u[nearest], v[nearest], nearest) if np.isfinite(t[nearest]) else (np.inf, 0, 0, overcast.NONE)
+        hit = t[nearest], u[nearest], v[nearest], nearest
+        answers[:, i] = hit if np.isfinite(t[nearest]) else (np.inf, 0, 0, overcast.NONE)
     return answers[0], answers[1], answers[2], answers[3].astype(np.uint32)

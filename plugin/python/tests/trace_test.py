@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Answers of the module against every triangle tested in NumPy, however the arrays come."""
+"""Compares the module's answers with a brute-force tracer in NumPy, for every form of arrays."""
 
 import os
 import tempfile
@@ -47,7 +47,8 @@ class Nearest(unittest.TestCase):
                 self.check(scene.intersect(self.origins, self.directions))
 
     def test_vertices_as_they_come(self):
-        """By index, in columns of a wider array, in doubles, backwards, read-only, of too few rows."""
+        """Vertices by index, in columns of a wider array, in doubles, in other byte orders and
+        layouts, backwards, read-only and as lists give the same answers."""
         flat = self.corners.reshape(-1, 3)
         shuffle = np.random.default_rng(3).permutation(len(flat))
         indices = np.argsort(shuffle).reshape(-1, 3)
@@ -55,14 +56,20 @@ class Nearest(unittest.TestCase):
         wide[:, 2:5] = flat
         frozen = flat.copy()
         frozen.flags.writeable = False
-        for name, mesh in {"indexed": (flat[shuffle], indices), "uint32": (flat[shuffle], indices.astype(np.uint32)),
-                           "int16": (flat[shuffle], indices.astype(np.int16)), "columns": (wide[:, 2:5],),
-                           "doubles": (flat.astype(np.float64),), "columns of doubles": (wide.astype(np.float64)[:, 2:5],),
-                           "big-endian": (flat.astype(">f4"),), "fortran": (np.asfortranarray(flat),),
-                           "backwards": (flat[::-1], len(flat) - 1 - np.arange(len(flat)).reshape(-1, 3)),
-                           "read-only": (frozen,), "lists": (flat.tolist(), indices[:0].tolist())}.items():
+        for name, mesh in {"indexed": (flat[shuffle], indices),
+                           "uint32": (flat[shuffle], indices.astype(np.uint32)),
+                           "int16": (flat[shuffle], indices.astype(np.int16)),
+                           "columns": (wide[:, 2:5],),
+                           "doubles": (flat.astype(np.float64),),
+                           "columns of doubles": (wide.astype(np.float64)[:, 2:5],),
+                           "big-endian": (flat.astype(">f4"),),
+                           "fortran": (np.asfortranarray(flat),),
+                           "backwards": (flat[::-1],
+                                         len(flat) - 1 - np.arange(len(flat)).reshape(-1, 3)),
+                           "read-only": (frozen,),
+                           "lists": (flat.tolist(), indices[:0].tolist())}.items():
             with self.subTest(name), scene_of(mesh) as scene:
-                if name == "lists":  # no triangles, though vertices
+                if name == "lists":  # It has vertices, but an empty list of triangles.
                     self.assertFalse(scene.intersect(self.origins, self.directions).hit.any())
                 else:
                     self.check(scene.intersect(self.origins, self.directions))
@@ -81,15 +88,18 @@ class Nearest(unittest.TestCase):
         half = TRIANGLES // 2
         with scene_of([self.corners[:half]], [np.empty((0, 3))], [self.corners[half:]]) as scene:
             self.check(scene.intersect(self.origins, self.directions),
-                       lambda hits: np.where(hits.mesh == 2, hits.prim + half, hits.prim).astype(np.uint32))
+                       lambda hits: np.where(hits.mesh == 2, hits.prim + half,
+                                             hits.prim).astype(np.uint32))
 
     def test_shapes_broadcast(self):
         with scene_of([self.corners]) as scene:
-            hits = scene.intersect(self.origins.reshape(40, -1, 3), self.directions.reshape(40, -1, 3))
+            hits = scene.intersect(self.origins.reshape(40, -1, 3),
+                                   self.directions.reshape(40, -1, 3))
             self.assertEqual(hits.shape, (40, RAYS // 40))
             self.check(overcast.Hits(hits.records.ravel()))
             fan = scene.intersect([0.5, 0.5, -2], self.directions)
-            one_by_one = [scene.intersect([0.5, 0.5, -2], direction) for direction in self.directions[:5]]
+            one_by_one = [scene.intersect([0.5, 0.5, -2], direction)
+                          for direction in self.directions[:5]]
             self.assertEqual([hits.shape for hits in one_by_one], [()] * 5)
             self.assertEqual([hits.records.item() for hits in one_by_one], fan.records[:5].tolist())
             self.assertEqual(scene.intersect(np.empty((0, 3)), [0, 0, 1]).shape, (0,))
@@ -103,7 +113,8 @@ class Nearest(unittest.TestCase):
             limits = t_min, t_max[:500]
             hits = scene.intersect(self.origins[:500], self.directions[:500], *limits)
             np.testing.assert_array_equal(hits.prim, expected)
-            np.testing.assert_array_equal(scene.occluded(self.origins[:500], self.directions[:500], *limits),
+            np.testing.assert_array_equal(scene.occluded(self.origins[:500], self.directions[:500],
+                                                         *limits),
                                           expected != overcast.NONE)
 
     def test_skipped_triangles_are_not_seen(self):
@@ -112,9 +123,11 @@ class Nearest(unittest.TestCase):
             second = scene.intersect(self.origins, self.directions, skip=first)
             self.assertTrue((second.t >= first.t).all())
             self.assertFalse(((second.prim == first.prim) & first.hit).any())
-            by_name = scene.intersect(self.origins, self.directions, skip=np.stack([first.mesh, first.prim], axis=-1))
+            by_name = scene.intersect(self.origins, self.directions,
+                                      skip=np.stack([first.mesh, first.prim], axis=-1))
             np.testing.assert_array_equal(by_name.records, second.records)
-            np.testing.assert_array_equal(scene.occluded(self.origins, self.directions, skip=first), second.hit)
+            np.testing.assert_array_equal(scene.occluded(self.origins, self.directions, skip=first),
+                                          second.hit)
 
     def test_records_are_traced_in_place(self):
         with scene_of([self.corners]) as scene:
@@ -126,7 +139,7 @@ class Nearest(unittest.TestCase):
             self.assertIs(scene.intersect_rays(records, out=out), out)
             self.assertEqual((out.records.ctypes.data, out.hit.any()), (memory, False))
             records["t_max"] = np.inf
-            self.check(scene.intersect_rays(np.repeat(records, 2)[::2]))  # not contiguous: copied
+            self.check(scene.intersect_rays(np.repeat(records, 2)[::2]))  # a copy, as not contiguous
             np.testing.assert_array_equal(scene.occluded_rays(records), self.prim != overcast.NONE)
 
     def test_float_records_are_the_doubles_that_they_are(self):
@@ -134,9 +147,11 @@ class Nearest(unittest.TestCase):
             short = overcast.rays(self.origins, self.directions, dtype=overcast.RAY_FLOAT)
             self.assertEqual(short.nbytes, 32 * RAYS)
             long = overcast.rays(short["origin"], short["direction"])
-            np.testing.assert_array_equal(scene.intersect_rays(short).records, scene.intersect_rays(long).records)
+            np.testing.assert_array_equal(scene.intersect_rays(short).records,
+                                          scene.intersect_rays(long).records)
             np.testing.assert_array_equal(scene.occluded_rays(short), scene.occluded_rays(long))
-            eight = np.hstack([short["origin"], short["t_min"][:, None], short["direction"], short["t_max"][:, None]])
+            eight = np.hstack([short["origin"], short["t_min"][:, None], short["direction"],
+                               short["t_max"][:, None]])
             np.testing.assert_array_equal(eight.view(overcast.RAY_FLOAT)[..., 0], short)
 
     def test_saved_scenes_answer_the_same(self):
@@ -167,16 +182,18 @@ class Nearest(unittest.TestCase):
 class Numbers(unittest.TestCase):
     def test_doubles_far_from_the_origin_keep_their_detail(self):
         far = np.array([4.5e6, 6e6, 10])
-        corners = soup(5, 300).astype(np.float64) + far  # rounded to doubles
+        corners = soup(5, 300).astype(np.float64) + far
         origins, directions = rays_at_unit_cube(6, 1000)
-        origins += far  # all of these lie on the doubles there, so that taking `far` away again is exact
+        # These sums are rounded to the doubles there, so that subtracting `far` again is exact.
+        origins += far
         t, _, _, prim = brute_force(corners - far, origins - far, directions)
         with scene_of([corners]) as scene:
             hits = scene.intersect(origins, directions)
         np.testing.assert_array_equal(hits.prim, prim)
         np.testing.assert_allclose(hits.t, t, rtol=1e-10)
         with scene_of([(corners - far).astype(np.float32)]) as scene:
-            self.assertTrue((scene.intersect(origins - far, directions).t != t).any(), "floats would not do")
+            self.assertTrue((scene.intersect(origins - far, directions).t != t).any(),
+                            "floats would not do")
 
     def test_plan_and_statistics_count(self):
         corners = soup(1, 500)
@@ -189,7 +206,8 @@ class Numbers(unittest.TestCase):
         scene.occluded([0, 0, 0], [0, 0, 1])
         scene.intersect([[0, 0, np.nan], [0, 0, 0]], [0, 0, 1])
         statistics = scene.statistics()
-        self.assertEqual((statistics["dropped_not_finite"], statistics["nearest_rays"], statistics["occlusion_rays"],
+        self.assertEqual((statistics["dropped_not_finite"], statistics["nearest_rays"],
+                          statistics["occlusion_rays"],
                           statistics["invalid_rays"]), (1, 2, 1, 1))
         self.assertLessEqual(statistics["gpu_peak_bytes"], 1 << 20)
 
@@ -231,5 +249,6 @@ class Instances(unittest.TestCase):
             before = scene.intersect(self.origins, self.directions)
             scene.purge()
             self.assertEqual(scene.statistics()["gpu_bytes"], 0)
-            np.testing.assert_array_equal(scene.intersect(self.origins, self.directions).records, before.records)
+            np.testing.assert_array_equal(scene.intersect(self.origins, self.directions).records,
+                                          before.records)
             self.assertGreater(scene.statistics()["gpu_bytes"], 0)
