@@ -27,17 +27,25 @@ std::string plain(const std::string& line) {
     return text;
 }
 
-/// Returns the lines of each section by its heading; lines before the first section have "".
+/// Returns the rows of tables and the paragraphs, each as one line, of each section by its heading;
+/// those before the first section have "".
 std::map<std::string, std::vector<std::string>> sections_of(const std::string& document) {
     std::map<std::string, std::vector<std::string>> sections;
     std::string heading;
     std::ifstream file(fs::path(OVC_SOURCE_DIR) / document);
     EXPECT_TRUE(file) << document;
-    for (std::string line; std::getline(file, line);)
+    bool in_paragraph = false;
+    for (std::string line; std::getline(file, line);) {
+        const bool begins = line.empty() || line.starts_with("|") || line.starts_with("#") ||
+                            line.starts_with("* ") || line.starts_with("- ");
         if (line.starts_with("## "))
             heading = line.substr(3);
+        else if (in_paragraph && !begins)
+            sections[heading].back().append(" ").append(line, line.find_first_not_of(' '));
         else
             sections[heading].push_back(line);
+        in_paragraph = !line.empty() && !line.starts_with("|") && !line.starts_with("#");
+    }
     return sections;
 }
 
