@@ -3,6 +3,7 @@
 // first to go, so that children end before their parents' siblings begin and few rays wait.
 #pragma once
 
+#include "core/exclusions.h"
 #include "core/stream.h"
 
 #include <algorithm>
@@ -17,6 +18,10 @@ public:
         tokens_.insert(tokens_.end(), pushed.tokens.begin(), pushed.tokens.end());
         skip_.insert(skip_.end(), pushed.skip.begin(), pushed.skip.end());
         skip_.resize(rays_.size());
+        const size_t before = rays_.size() - pushed.rays.size();
+        append(after_, pushed.after, before, kBeforeAll);
+        append(masks_, pushed.masks, before, 0u);
+        append<HitFilter*>(filters_, pushed.filters, before, nullptr);
     }
 
     size_t size() const { return rays_.size(); }
@@ -24,19 +29,46 @@ public:
     /// The last `count`, in the order they came; until the next push().
     StreamRays last(size_t count) const {
         const size_t first = size() - count;
-        return {false, std::span(rays_).subspan(first), std::span(skip_).subspan(first),
-                std::span(tokens_).subspan(first)};
+        return {false,
+                std::span(rays_).subspan(first),
+                std::span(skip_).subspan(first),
+                std::span(tokens_).subspan(first),
+                last_of(after_, first),
+                last_of(masks_, first),
+                last_of(filters_, first)};
     }
     void drop_last(size_t count) {
         rays_.resize(size() - count);
         skip_.resize(rays_.size());
         tokens_.resize(rays_.size());
+        after_.resize(std::min(after_.size(), rays_.size()));
+        masks_.resize(std::min(masks_.size(), rays_.size()));
+        filters_.resize(std::min(filters_.size(), rays_.size()));
     }
 
 private:
+    /// Brings `all` to one per ray, unless none has one: `other` for those without, among the first
+    /// `before` rays. pushed: those of the rays behind these, or one for all of them.
+    template <class T>
+    void append(std::vector<T>& all, std::span<const T> pushed, size_t before, const T& other) {
+        if (pushed.empty() && all.empty())
+            return;
+        all.resize(before, other);
+        all.insert(all.end(), pushed.begin(), pushed.end());
+        all.resize(rays_.size(), pushed.empty() ? other : pushed.front());
+    }
+    template <class T>
+    static std::span<const T> last_of(const std::vector<T>& all, size_t first) {
+        return all.empty() ? std::span<const T>() : std::span(all).subspan(first);
+    }
+
     std::vector<Ray> rays_;
     std::vector<TriangleId> skip_; // one per ray, as tokens
     std::vector<uint64_t> tokens_;
+    // One per ray, or empty where no ray that waits has one.
+    std::vector<Hit> after_;
+    std::vector<uint32_t> masks_;
+    std::vector<HitFilter*> filters_;
 };
 
 } // namespace ovc

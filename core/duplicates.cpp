@@ -78,14 +78,9 @@ std::vector<Suspect> suspects(const Part& part, std::span<const TriangleId> tria
     return found;
 }
 
-/// What is known of some duplicates.
-struct Found {
+/// Returns the duplicates among those that may be some.
+std::vector<Duplicates::Pair> compared(const Soup& soup, std::vector<Suspect> all) {
     std::vector<Duplicates::Pair> pairs;
-    std::vector<TriangleId> out; // all but the smallest of each set
-};
-
-Found compared(const Soup& soup, std::vector<Suspect> all) {
-    Found found;
     for (auto first = all.begin(); first != all.end();) {
         // The first of what is left stands for its duplicates, which come next, in the order of
         // ids; others of the same hash, hardly ever any, follow.
@@ -101,13 +96,11 @@ Found compared(const Soup& soup, std::vector<Suspect> all) {
         };
         const auto rest = std::stable_partition(std::find_if_not(first + 1, end, is_duplicate), end,
                                                 is_duplicate);
-        if (rest != first + 1)
-            found.pairs.push_back({first->id, (first + 1)->id});
         for (auto duplicate = first + 1; duplicate != rest; ++duplicate)
-            found.out.push_back(duplicate->id);
+            pairs.push_back({first->id, duplicate->id});
         first = rest;
     }
-    return found;
+    return pairs;
 }
 
 std::vector<uint64_t> hashes_of(const Soup& soup, std::span<const TriangleId> triangles,
@@ -140,22 +133,21 @@ Duplicates Duplicates::take_out(const Soup& soup, std::vector<TriangleId>& trian
                                 BuildProgress* progress) {
     assert(std::is_sorted(triangles.begin(), triangles.end()));
     const std::vector<uint64_t> hashes = hashes_of(soup, triangles, progress);
-    std::vector<Found> found(thread_count());
+    std::vector<std::vector<Pair>> found(thread_count());
     parallel_for(found.size(), 1, [&](size_t first, size_t last) {
         for (size_t p = first; p < last; ++p)
             found[p] = compared(soup, suspects({p, found.size()}, triangles, hashes));
     });
     Duplicates duplicates;
-    std::vector<TriangleId> out;
-    for (const Found& part : found) {
-        duplicates.pairs_.insert(duplicates.pairs_.end(), part.pairs.begin(), part.pairs.end());
-        out.insert(out.end(), part.out.begin(), part.out.end());
-    }
-    duplicates.count_ = out.size();
-    if (out.empty())
+    for (const std::vector<Pair>& part : found)
+        duplicates.pairs_.insert(duplicates.pairs_.end(), part.begin(), part.end());
+    if (duplicates.pairs_.empty())
         return duplicates;
-    std::sort(duplicates.pairs_.begin(), duplicates.pairs_.end(),
-              [](const Pair& a, const Pair& b) { return a.smallest < b.smallest; });
+    parallel_sort(duplicates.pairs_.begin(), duplicates.pairs_.end());
+    std::vector<TriangleId> out;
+    out.reserve(duplicates.pairs_.size());
+    for (const Pair& pair : duplicates.pairs_)
+        out.push_back(pair.other);
     parallel_sort(out.begin(), out.end());
     auto next = out.begin();
     std::erase_if(triangles, [&](TriangleId id) {
@@ -177,12 +169,8 @@ Hit as_hit_of(TriangleId id, const Soup& soup, const Hit& hit) {
     return {hit.t, weight(to[1]), weight(to[2]), id};
 }
 
-TriangleId Duplicates::second(TriangleId id) const {
-    const auto at =
-        std::lower_bound(pairs_.begin(), pairs_.end(), id, [](const Pair& pair, TriangleId wanted) {
-            return pair.smallest < wanted;
-        });
-    return at != pairs_.end() && at->smallest == id ? at->second : id;
+std::span<const Duplicates::Pair> Duplicates::of(TriangleId id) const {
+    return std::ranges::equal_range(pairs_, id, {}, &Pair::smallest);
 }
 
 } // namespace ovc

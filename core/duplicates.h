@@ -19,8 +19,8 @@ bool same_corners(const Triangle& a, const Triangle& b);
 Hit as_hit_of(TriangleId id, const Soup& soup, const Hit& hit);
 
 /// The sets of duplicates of a soup. Equal t goes to the smaller id, so the smallest of a set is
-/// the answer wherever one of them is; only a ray that does not see the smallest is answered with
-/// another one, and then with the second smallest.
+/// the answer wherever one of them is; only a ray that does not see the smallest, or whose hits lie
+/// behind it, is answered with another one.
 class Duplicates {
 public:
     /// Takes all but the smallest id of each set out of `triangles`: finite ones, sorted, without
@@ -28,31 +28,29 @@ public:
     static Duplicates take_out(const Soup& soup, std::vector<TriangleId>& triangles,
                                BuildProgress* progress = nullptr);
 
-    /// The second smallest of the set whose smallest is `id`; `id` where there is no such set.
-    TriangleId second(TriangleId id) const;
-
-    /// Triangles taken out.
-    uint64_t count() const { return count_; }
-
-    /// Of a set: what it leaves of itself.
+    /// A triangle that was taken out, and the smallest of its set.
     struct Pair {
         TriangleId smallest;
-        TriangleId second;
+        TriangleId other;
+
+        auto operator<=>(const Pair&) const = default;
     };
 
-    /// All sets, by smallest.
+    /// Returns all triangles that were taken out, sorted.
     std::span<const Pair> pairs() const { return pairs_; }
-    /// As pairs() and count() were; sorted.
-    static Duplicates restored(std::span<const Pair> pairs, uint64_t count) {
+    uint64_t count() const { return pairs_.size(); }
+    /// Returns the set whose smallest is `id`, without that one; empty where there is no such set.
+    std::span<const Pair> of(TriangleId id) const;
+
+    /// pairs: as pairs() returned them.
+    static Duplicates restored(std::span<const Pair> pairs) {
         Duplicates duplicates;
         duplicates.pairs_.assign(pairs.begin(), pairs.end());
-        duplicates.count_ = count;
         return duplicates;
     }
 
 private:
-    std::vector<Pair> pairs_; // sorted by smallest
-    uint64_t count_ = 0;
+    std::vector<Pair> pairs_;
 };
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Duplicates: the smallest of each set stays, and a ray that does not see it meets the second.
+// Duplicates: the smallest of each set stays, and the set names the others.
 #include "core/duplicates.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ Key key_of(const Triangle& triangle) {
     return key;
 }
 
-TEST(Duplicates, KeepTheSmallestOfEachSetAndNameTheSecond) {
+TEST(Duplicates, KeepTheSmallestOfEachSetAndNameTheOthers) {
     for (uint64_t seed = 0; seed < 20; ++seed) {
         const Soup soup = crowded_soup(seed, 50 << (seed % 5));
         const std::vector<TriangleId> before = all_of(soup);
@@ -56,7 +56,10 @@ TEST(Duplicates, KeepTheSmallestOfEachSetAndNameTheSecond) {
         std::vector<TriangleId> smallest;
         for (const auto& [key, set] : sets) {
             smallest.push_back(set[0]);
-            EXPECT_EQ(duplicates.second(set[0]), set.size() > 1 ? set[1] : set[0]);
+            std::vector<TriangleId> found{set[0]};
+            for (const Duplicates::Pair& pair : duplicates.of(set[0]))
+                found.push_back(pair.other);
+            EXPECT_EQ(found, set);
         }
         std::sort(smallest.begin(), smallest.end());
         EXPECT_EQ(kept, smallest) << "seed " << seed;
@@ -77,7 +80,7 @@ TEST(Duplicates, LeaveASoupWithoutThemAlone) {
     const Duplicates duplicates = Duplicates::take_out(soup, kept);
     EXPECT_EQ(kept, before);
     EXPECT_EQ(duplicates.count(), 0u);
-    EXPECT_EQ(duplicates.second(before[0]), before[0]);
+    EXPECT_TRUE(duplicates.of(before[0]).empty());
 }
 
 TEST(Duplicates, CountUAndVFromTheirOwnCorners) {
@@ -90,7 +93,7 @@ TEST(Duplicates, CountUAndVFromTheirOwnCorners) {
                        vec3(corner[order[1]]), vec3(corner[order[2]])}));
         std::vector<TriangleId> kept = all_of(soup);
         const Duplicates duplicates = Duplicates::take_out(soup, kept);
-        const Hit hit = as_hit_of(duplicates.second({0, 0}), soup, {1, 0.25, 0.125, {0, 0}});
+        const Hit hit = as_hit_of(duplicates.of({0, 0})[0].other, soup, {1, 0.25, 0.125, {0, 0}});
         ASSERT_EQ(hit.id, (TriangleId{0, 1}));
         const Triangle t = soup.triangle(hit.id);
         EXPECT_EQ((1 - hit.u - hit.v) * t[0] + hit.u * t[1] + hit.v * t[2], dvec3(1, 0.5, 0));

@@ -45,6 +45,9 @@ public:
     std::span<const vec3> corners() const { return corners_; }
     /// 3 x size() offsets, 24 bytes each; none where they are floats.
     std::span<const dvec3> double_corners() const { return double_corners_; }
+    /// Returns the mask of the mesh (core/sieve.h). 0, as at first: all rays see it.
+    uint32_t mask() const { return mask_; }
+    void set_mask(uint32_t mask) { mask_ = mask; }
     /// Null: the corners are where they are.
     const Transform* transform() const { return transform_.get(); }
     uint32_t size() const { return uint32_t((corners_.size() + double_corners_.size()) / 3); }
@@ -82,6 +85,7 @@ private:
     std::span<const dvec3> double_corners_;
     std::unique_ptr<const Transform> transform_;
     bool plain_; // floats, not placed, and no origin brings them out of range
+    uint32_t mask_ = 0;
 };
 
 /// Chunk m holds the triangles (m, 0) … (m, size - 1).

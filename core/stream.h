@@ -5,6 +5,7 @@
 
 #include "core/ray.h"
 #include "core/result.h"
+#include "core/sieve.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -16,8 +17,14 @@ namespace ovc {
 struct StreamRays {
     bool any_hit = false; // occlusion, not the nearest hit
     std::span<const Ray> rays;
-    std::span<const TriangleId> skip; // empty, or per ray the triangle it does not see
-    std::span<const uint64_t> tokens; // per ray: what its answer is called
+    std::span<const TriangleId> skip;         // empty, or per ray the triangle it does not see
+    std::span<const uint64_t> tokens;         // per ray: what its answer is called
+    std::span<const Hit> after = {};          // empty, or per ray as in Exclusions
+    std::span<const uint32_t> masks = {};     // empty, or per ray
+    std::span<HitFilter* const> filters = {}; // empty, per ray, or one for all
+
+    /// Whether they are no more than rays and the triangles that these do not see.
+    bool are_plain() const { return after.empty() && masks.empty() && filters.empty(); }
 };
 
 /// Where the host's rays go.

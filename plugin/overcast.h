@@ -205,6 +205,8 @@ typedef struct ovc_mesh {
     uint32_t reserved;        /* 0 */
     const double* positions_double; /* instead of positions, which is NULL then: the same in double, stride and address aligned to 8 */
     const double* transform;  /* 12 finite numbers, or NULL: as in ovc_instance; applied after origin is added */
+    uint32_t mask;            /* which rays see the mesh (ovc_query.masks). 0: all */
+    uint32_t reserved1;       /* 0 */
 } ovc_mesh;
 
 /* A mesh placed once more, somewhere else. It has a number of its own, which its hits name, and the
@@ -225,7 +227,16 @@ typedef struct ovc_instance {
     uint32_t mesh;           /* the number of a mesh added before, or of an instance: then that one's transform comes first, in one product of both */
     uint32_t reserved;       /* 0 */
     const double* transform; /* 12 finite numbers, or NULL: where the mesh is. Read during the call */
+    uint32_t mask;           /* as ovc_mesh.mask; that of the mesh does not matter here */
+    uint32_t reserved1;      /* 0 */
 } ovc_instance;
+
+/* Tells which hits count: sets keep[i], which is 1 before, to 0 where hits[i] of ray rays[i] does not. rays: their numbers in the
+ * call, from 0; in a stream their tokens. Returns 0 to go on, anything else to stop the call, which then returns
+ * OVC_ERROR_CANCELLED. It is called from the library's threads, from several at once, beside passes, and at most once for each hit
+ * of a ray; only about hits whose meshes the ray's mask sees. Hits come in the order of t, mesh and prim for each ray. The arrays
+ * are valid during the call only. It must return soon, must not throw and may call last_error and nothing else. */
+typedef int (*ovc_filter_function)(void* user, size_t count, const uint64_t* rays, const ovc_hit* hits, uint8_t* keep);
 
 /* The struct_size of an earlier header is fine. */
 typedef struct ovc_query {
@@ -245,6 +256,19 @@ typedef struct ovc_query {
      * before the first ray only. */
     ovc_progress_function progress;
     void* progress_user;
+    /* ray_count, or NULL: only hits of ray i behind the hit after[i] count, in the order of t, mesh and prim. So the hits of a
+     * ray, those in the same point too, come one after the other: hand in what the call before answered. The place is the exact
+     * one of the hit that is named if its t is the double given; else it is that t itself. u and v do not matter. A t of -infinity: all
+     * hits count; of infinity, as in a miss: none. `after` may be the array of hits that the answers are written to. In
+     * OVC_PRECISION_FAST the order is that of the rounded t, and the triangle that is named does not count. For
+     * OVC_STRUCTURE_TWO_LEVEL, as all that follows. */
+    const ovc_hit* after;
+    /* ray_count, or NULL: ray i sees a mesh where masks[i] and the mesh's mask have a bit in common, or where one of them is 0. */
+    const uint32_t* masks;
+    /* NULL: all hits count. Else it is asked about each hit that a ray would be answered with, or be occluded by; where one does not
+     * count, the ray goes on behind it. So leaves cut out of a texture need no triangles of their own. */
+    ovc_filter_function filter;
+    void* filter_user;
 } ovc_query;
 
 /* The scene that commit would make of the meshes added so far, told without making it. Numbers of
@@ -494,6 +518,13 @@ typedef struct ovc_api {
     ovc_result (*cancel)(ovc_ticket ticket);
     /* Cancels the ticket, waits until it is done, and forgets it. NULL does nothing. */
     void (*release)(ovc_ticket ticket);
+
+    /* Writes the hits of each ray in the order of t, mesh and prim, the first max_hits of them: those of ray i from
+     * hits[i * max_hits] on, and misses where there are fewer. counts: NULL, or ray_count numbers: how many hits the ray has in all.
+     * max_hits may be 0, and hits NULL then. query may be NULL; its `after`, masks and filter tell which hits count. A ray of n hits
+     * takes O(n log n) time, however many of them lie in one point. */
+    ovc_result (*all_hits)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, size_t max_hits, ovc_hit* hits,
+                           uint64_t* counts, const ovc_query* query);
 } ovc_api;
 
 #if defined(_WIN32)

@@ -101,7 +101,7 @@ std::vector<Contender> contenders(const Job& job, const KdTree& tree, const Soup
              return timed([&] {
                  parallel_for(set.rays.size(), kTile, [&](size_t first, size_t last) {
                      for (size_t i = first; i < last; ++i)
-                         hits[i] = two_level.nearest_on_cpu(set.rays[i], {});
+                         hits[i] = two_level.nearest_on_cpu(set.rays[i], {}, {});
                  });
              });
          }},

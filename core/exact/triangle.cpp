@@ -27,6 +27,10 @@ uint32_t shared_support(const Triangle& a, uint32_t support, const Triangle& b) 
     return shared;
 }
 
+int sign_of(TriangleId a, TriangleId b) {
+    return a < b ? -1 : b < a ? 1 : 0;
+}
+
 /// Does the line cross the triangle's plane, for sure?
 bool surely_crosses(const PreparedRay& p, const Triangle& triangle) {
     const dvec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
@@ -57,17 +61,19 @@ std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& t
 }
 
 bool Nearest::offer_neighbour(const Triangle& triangle, TriangleId id) {
-    const uint32_t shared = shared_support(triangle_, best_.support, triangle);
+    const uint32_t shared = shared_support(best_.triangle, best_.found.support, triangle);
     if (shared == 0)
         return false;
-    if (best_.hit.id < id)
+    if (best_.found.hit.id < id)
         return true; // the same point or, seen edge-on, none: it does not win
     if (!surely_crosses(p_, triangle))
         return false;
-    Candidate same = best_; // but for u and v, which hit() computes
+    Candidate same = best_.found; // but for u and v, which hit() computes
     same.hit.id = id;
     same.support = shared;
-    take(same, triangle);
+    if (!counts(same, triangle))
+        return false;
+    best_ = {same, triangle};
     return true;
 }
 
@@ -80,32 +86,58 @@ std::optional<Candidate> Nearest::in_doubt(const Triangle& triangle, TriangleId 
     return exact_candidate(p_, triangle, id);
 }
 
-/// The order of two hits that doubles leave open.
-bool Nearest::wins_closely(Candidate& other, const Triangle& triangle) {
-    const TriangleId id = other.hit.id;
-    if (shared_support(triangle_, best_.support, triangle) != 0 ||
-        surely_coplanar(triangle_, triangle))
-        return id < best_.hit.id;
+/// The order of two hits whose t doubles leave open.
+int ComparedHit::order_closely(const PreparedRay& p, Candidate& other, const Triangle& of_other) {
+    const int by_id = sign_of(other.hit.id, found.hit.id);
+    if (shared_support(triangle, found.support, of_other) != 0 ||
+        surely_coplanar(triangle, of_other))
+        return by_id;
     const auto refine = [&](Candidate& candidate, const Triangle& of) {
         if (candidate.refined)
             return;
-        if (const RefinedAnswer better = refined_candidate(p_, of, candidate.hit.id);
+        if (const RefinedAnswer better = refined_candidate(p, of, candidate.hit.id);
             better.candidate)
             candidate = *better.candidate;
     };
-    refine(best_, triangle_);
-    refine(other, triangle);
-    int order = other.compare_t(best_);
-    if (order == 0) {
-        if (!best_exactly_)
-            best_exactly_.emplace(p_.ray, triangle_);
-        order = ExactSolution(p_.ray, triangle).compare_t(*best_exactly_);
+    refine(found, triangle);
+    refine(other, of_other);
+    int by_t = other.compare_t(found);
+    if (by_t == 0) {
+        if (!exactly)
+            exactly.emplace(p.ray, triangle);
+        by_t = ExactSolution(p.ray, of_other).compare_t(*exactly);
     }
-    return order != 0 ? order < 0 : id < best_.hit.id;
+    return by_t != 0 ? by_t : by_id;
+}
+
+std::optional<Candidate> hit_at(const Ray& ray, const Triangle& triangle, const HitPlace& place) {
+    const PreparedRay p(PreparedRay::behind(ray, place));
+    const std::optional<Candidate> found = candidate(p, triangle, place.id);
+    const bool is_there = found && rounded_hit(p, triangle, place.id, found->support).t == place.t;
+    return is_there ? found : std::nullopt;
+}
+
+Behind::Behind(const PreparedRay& p, const Triangle* triangle) : p_(p) {
+    if (!triangle)
+        return;
+    if (const std::optional<Candidate> found = hit_at(p.ray, *triangle, p.after))
+        place_.emplace(*found, *triangle);
+}
+
+bool Behind::has(Candidate& found, const Triangle& triangle) {
+    const HitPlace& after = p_.after;
+    if (!std::isfinite(after.t) || (place_ && found.hit.id == after.id))
+        return false;
+    if (place_)
+        return place_->order(p_, found, triangle) > 0;
+    const int by_t = found.compare_t(Candidate{{after.t, 0, 0, after.id}});
+    const int exactly = by_t != 0 ? by_t : ExactSolution(p_.ray, triangle).compare_t(after.t);
+    return exactly != 0 ? exactly > 0 : found.hit.id > after.id;
 }
 
 Hit Nearest::hit() const {
-    return is_hit() ? rounded_hit(p_, triangle_, best_.hit.id, best_.support) : Hit{};
+    const Candidate& best = best_.found;
+    return is_hit() ? rounded_hit(p_, best_.triangle, best.hit.id, best.support) : Hit{};
 }
 
 std::optional<Hit> intersect(const PreparedRay& p, const Triangle& triangle, TriangleId id) {

@@ -8,6 +8,7 @@
 
 #include "core/box.h"
 #include "core/exact/exact_solution.h"
+#include "core/exclusions.h"
 #include "core/ray.h"
 #include "core/soup.h"
 
@@ -27,9 +28,11 @@ struct PreparedRay {
     double sx, sy, sz;    // shear and scale of Woop et al. 2013, section 3.1
     dvec3 inv_dir;        // may be infinite
     TriangleId skip;      // a triangle this ray does not see: the one it starts on
+    HitPlace after;       // only hits behind this place count; t_min is not far before it
     double org_error = 0; // how far in each coordinate its line may be from the one that is meant
 
-    explicit PreparedRay(const Ray& r, TriangleId skipped = {}) : ray(r), skip(skipped) {
+    explicit PreparedRay(const Ray& r, const Exclusion& without = {})
+        : ray(behind(r, without.after)), skip(without.skip), after(without.after) {
         // Beyond the largest double no hit can be told.
         ray.t_max = std::min(r.t_max, std::numeric_limits<double>::max());
         kz = major_axis(r.dir);
@@ -39,6 +42,15 @@ struct PreparedRay {
         sy = r.dir[ky] / r.dir[kz];
         sz = 1.0 / r.dir[kz];
         inv_dir = dvec3(1.0) / r.dir;
+    }
+
+    /// Returns the part of the ray that holds all hits behind the place. A t that rounds to that of
+    /// the place may be a little less.
+    static Ray behind(Ray ray, const HitPlace& place) {
+        if (!place.is_before_all())
+            ray.t_min = std::max(ray.t_min,
+                                 std::nextafter(place.t, -std::numeric_limits<double>::infinity()));
+        return ray;
     }
 
     /// More than the rounding error, in each coordinate, of positions along this ray within
@@ -61,6 +73,9 @@ struct Candidate {
         kAllCorners;      // bit i: corner i has a part in the hit. One bit: the hit is that
                           // corner, two: it lies on that side. All where nobody looked
     bool refined = false; // t is as doubled precision has it: no use to ask that again
+
+    /// Returns a t that the hit's is certainly not above.
+    double latest_t() const { return hit.t + (std::abs(t_low) + t_error); }
 
     /// The sign of this t minus the other's, on the same ray; 0 where the errors leave it open.
     int compare_t(const Candidate& other) const {
@@ -136,39 +151,82 @@ inline std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& 
     return candidate(p, triangle, id, exact_candidate);
 }
 
+/// A hit that others of the same ray are compared with, and its triangle.
+struct ComparedHit {
+    Candidate found;
+    Triangle triangle{};
+    std::optional<ExactSolution> exactly; // where a comparison has asked for it
+
+    ComparedHit() = default;
+    ComparedHit(const Candidate& found_, const Triangle& triangle_)
+        : found(found_), triangle(triangle_) {}
+
+    /// Returns the sign of the other hit's place minus this one's in the order of t, mesh and prim,
+    /// as exact arithmetic has it. May make both more precise.
+    int order(const PreparedRay& p, Candidate& other, const Triangle& of_other) {
+        const int by_t = other.compare_t(found);
+        return by_t != 0 ? by_t : order_closely(p, other, of_other);
+    }
+
+private:
+    int order_closely(const PreparedRay& p, Candidate& other, const Triangle& of_other);
+};
+
+/// Returns the hit that the place names: that of its triangle, if its t rounds to that of the
+/// place; nothing where it does not.
+std::optional<Candidate> hit_at(const Ray& ray, const Triangle& triangle, const HitPlace& place);
+
+/// Tells which hits of a ray lie behind the place that it excludes up to.
+class Behind {
+public:
+    /// p, which has such a place, outlives this. triangle: the one that the place names; nullptr
+    /// where there is none.
+    Behind(const PreparedRay& p, const Triangle* triangle);
+
+    bool has(Candidate& found, const Triangle& triangle);
+
+private:
+    const PreparedRay& p_;
+    std::optional<ComparedHit> place_; // where the place is a hit, and not only a t
+};
+
 /// The nearest of the triangles offered, as exact arithmetic would choose: smaller t, equal t to
 /// the smaller id.
 class Nearest {
 public:
-    explicit Nearest(const PreparedRay& p) : p_(p) {}
+    /// triangle_after: the one that p.after names; nullptr where there is none.
+    explicit Nearest(const PreparedRay& p, const Triangle* triangle_after = nullptr) : p_(p) {
+        if (!p.after.is_before_all())
+            behind_.emplace(p, triangle_after);
+    }
 
     /// Tests the triangle. True: it is hit, though perhaps not the nearest, or seen edge-on through
-    /// the nearest hit. False: it is missed, or has lost before.
+    /// the nearest hit. False: it is missed, not behind p.after, or has lost before.
     bool offer(const Triangle& triangle, TriangleId id) {
-        if (id == best_.hit.id)
+        if (id == best_.found.hit.id)
             return is_hit();
-        if (best_.support != Candidate::kAllCorners && id != p_.skip &&
+        if (best_.found.support != Candidate::kAllCorners && id != p_.skip &&
             offer_neighbour(triangle, id))
             return true;
         std::optional<Candidate> found =
             candidate(p_, triangle, id, [&](auto&&...) { return in_doubt(triangle, id); });
-        if (found && (!is_hit() || wins(*found, triangle)))
-            take(*found, triangle);
-        return found.has_value();
+        if (!found || !counts(*found, triangle))
+            return false;
+        if (!is_hit() || best_.order(p_, *found, triangle) < 0)
+            best_ = {*found, triangle};
+        return true;
     }
 
-    bool is_hit() const { return best_.hit.is_hit(); }
+    bool is_hit() const { return best_.found.hit.is_hit(); }
 
     /// The hit, its t, u and v rounded once: the doubles nearest to the exact values.
     Hit hit() const;
     /// The same with t, u and v as they were found: for who asks only whether something is hit.
-    const Hit& unrounded_hit() const { return best_.hit; }
+    const Hit& unrounded_hit() const { return best_.found.hit; }
 
     /// Nothing beyond this t can win any more.
     double limit() const {
-        return is_hit()
-                   ? std::min(best_.hit.t + (std::abs(best_.t_low) + best_.t_error), p_.ray.t_max)
-                   : p_.ray.t_max;
+        return is_hit() ? std::min(best_.found.latest_t(), p_.ray.t_max) : p_.ray.t_max;
     }
 
 private:
@@ -191,21 +249,14 @@ private:
     /// exact_candidate(); but nothing where that was asked before: leaves that overlap offer a
     /// triangle again.
     std::optional<Candidate> in_doubt(const Triangle& triangle, TriangleId id);
-    bool wins(Candidate& other, const Triangle& triangle) {
-        const int order = other.compare_t(best_);
-        return order != 0 ? order < 0 : wins_closely(other, triangle);
-    }
-    bool wins_closely(Candidate& other, const Triangle& triangle);
-    void take(const Candidate& found, const Triangle& triangle) {
-        best_ = found;
-        triangle_ = triangle;
-        best_exactly_.reset();
+    /// Whether the hit lies behind p.after.
+    bool counts(Candidate& found, const Triangle& triangle) {
+        return !behind_ || behind_->has(found, triangle);
     }
 
     const PreparedRay& p_;
-    Candidate best_{};
-    Triangle triangle_{};
-    std::optional<ExactSolution> best_exactly_; // where a tie has asked for it
+    std::optional<Behind> behind_;
+    ComparedHit best_;
     std::optional<Recent> decided_; // triangles that were in doubt, and are the best or none
 };
 

@@ -187,7 +187,7 @@ TEST(Intersect, NegativeTCountsOnlyWhereAskedFor) {
 }
 
 TEST(Intersect, SkipsOnlyTheTriangleItStartsOn) {
-    const PreparedRay ray({dvec3(0.2, 0.2, 0), 0, dvec3(0, 0, 1)}, {3, 7});
+    const PreparedRay ray({dvec3(0.2, 0.2, 0), 0, dvec3(0, 0, 1)}, TriangleId{3, 7});
     EXPECT_FALSE(intersect(ray, kUnit, {3, 7}));
     EXPECT_TRUE(intersect(ray, kUnit, {3, 8}));
     EXPECT_TRUE(intersect(ray, kUnit, {7, 3}));

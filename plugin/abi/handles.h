@@ -8,6 +8,7 @@
 #include "core/text/printable.h"
 #include "gpu/gl/fork_mark.h"
 #include "gpu/gl/gl_thread.h"
+#include "plugin/abi/asked_filter.h"
 #include "plugin/abi/calls_inside.h"
 #include "plugin/abi/float_mode.h"
 #include "plugin/abi/host_function.h"
@@ -77,7 +78,8 @@ class RayStream;
 struct ovc_stream_t {
     std::atomic<uint32_t> magic{0}; // kStreamMagic while stream() runs
     ovc_scene scene = nullptr;
-    ovc::RayStream* rays = nullptr; // set while a function of the host runs
+    ovc::RayStream* rays = nullptr;       // set while a function of the host runs
+    std::deque<ovc::AskedFilter> filters; // of the rays that were pushed
 };
 
 struct ovc_ticket_t {

@@ -57,7 +57,8 @@ ovc_mesh checked(const ovc_mesh* given) {
     if (!mesh.stride)
         mesh.stride = packed;
     check_positions(mesh);
-    if (mesh.flags & ~uint32_t(OVC_MESH_SHARED | OVC_MESH_TEMPLATE) || mesh.reserved)
+    if (mesh.flags & ~uint32_t(OVC_MESH_SHARED | OVC_MESH_TEMPLATE) || mesh.reserved ||
+        mesh.reserved1)
         invalid("ovc_mesh.flags or reserved has bits that this version does not know");
     check_counts(mesh);
     if ((mesh.flags & OVC_MESH_SHARED) && (mesh.stride != packed || mesh.indices))
@@ -130,6 +131,7 @@ ovc_result add_mesh(ovc_scene scene, const ovc_mesh* given, uint32_t* mesh_id) {
         Chunk chunk = chunk_of(mesh);
         if (transform)
             chunk.place(*transform);
+        chunk.set_mask(mesh.mask);
         if (mesh.flags & OVC_MESH_TEMPLATE) {
             scene->templates.emplace(uint32_t(scene->soup.chunks.size()), std::move(chunk));
             chunk = Chunk::owning(dvec3(0), {});
@@ -143,12 +145,12 @@ ovc_result add_instance(ovc_scene scene, const ovc_instance* given, uint32_t* me
         if (!given)
             invalid("add_instance: instance is NULL");
         check_open(scene, "add_instance");
-        const ovc_instance instance = whole("ovc_instance", given);
+        const ovc_instance instance = whole("ovc_instance", given, offsetof(ovc_instance, mask));
         const size_t meshes = scene->soup.chunks.size();
         if (instance.mesh >= meshes)
             invalid(format_text("ovc_instance.mesh is {}, but {} meshes were added so far",
                                 instance.mesh, meshes));
-        if (instance.reserved)
+        if (instance.reserved || instance.reserved1)
             invalid("ovc_instance.reserved has bits that this version does not know");
         const auto transform = transform_of("ovc_instance.transform", instance.transform);
         const auto found = scene->templates.find(instance.mesh);
@@ -157,6 +159,7 @@ ovc_result add_instance(ovc_scene scene, const ovc_instance* given, uint32_t* me
         Chunk chunk = source.instance();
         if (transform)
             chunk.place(*transform);
+        chunk.set_mask(instance.mask);
         add_chunk(scene, std::move(chunk), mesh_id);
     });
 }

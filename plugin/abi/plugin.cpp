@@ -39,6 +39,7 @@ extern "C" const ovc_api* ovc_get_api(uint32_t abi_version) {
         ovc::poll,
         ovc::cancel,
         ovc::release,
+        ovc::all_hits,
     };
     return abi_version == OVC_ABI_VERSION ? &api : nullptr;
 }

@@ -2,8 +2,10 @@
 // Reads ovc_query, of this header or of an earlier one, and the rays in the format that it names.
 #pragma once
 
+#include "core/exclusions.h"
 #include "core/ray_span.h"
 #include "core/text/format_text.h"
+#include "plugin/abi/asked_filter.h"
 #include "plugin/abi/scene_call.h"
 
 #include <algorithm>
@@ -25,7 +27,8 @@ inline ovc_query complete(const ovc_query* query) {
     if (!query)
         return all;
     constexpr size_t sizes[] = {offsetof(ovc_query, leaf), offsetof(ovc_query, flagged),
-                                offsetof(ovc_query, ray_format), sizeof(ovc_query)};
+                                offsetof(ovc_query, ray_format), offsetof(ovc_query, after),
+                                sizeof(ovc_query)};
     if (std::find(std::begin(sizes), std::end(sizes), query->struct_size) == std::end(sizes))
         invalid(format_text("ovc_query.struct_size is {}, expected sizeof(ovc_query) = {}",
                             query->struct_size, sizeof(ovc_query)));
@@ -43,12 +46,35 @@ inline RaySpan rays_of(const ovc_query& query, const ovc_ray* rays, size_t ray_c
     return RaySpan(std::span(reinterpret_cast<const Ray*>(rays), ray_count));
 }
 
-/// Returns the triangle that each ray does not see; empty where there are none.
-inline std::span<const TriangleId> skip_of(const ovc_query& query, size_t ray_count) {
-    if (!query.skip)
-        return {};
-    return {reinterpret_cast<const TriangleId*>(query.skip), ray_count};
+/// Returns the hits that the query excludes, without its filter.
+inline Exclusions exclusions_of(const ovc_query& query, size_t ray_count) {
+    const size_t skipped = query.skip ? ray_count : 0, behind = query.after ? ray_count : 0;
+    Exclusions without(std::span(reinterpret_cast<const TriangleId*>(query.skip), skipped),
+                       std::span(reinterpret_cast<const Hit*>(query.after), behind));
+    without.sieves.masks = {query.masks, query.masks ? ray_count : 0};
+    return without;
 }
+
+/// The filter of a query, for the time of a call.
+class FilterOf {
+public:
+    explicit FilterOf(const ovc_query& query) : asked_(query.filter, query.filter_user) {}
+    FilterOf(const FilterOf&) = delete;
+
+    /// Returns it, or nothing where the query has none.
+    std::span<HitFilter* const> get() const {
+        return {&filter_, asked_.is_there() ? size_t(1) : 0};
+    }
+    /// Throws a Failure where the filter has stopped the call.
+    void check(const char* call) const {
+        if (asked_.stopped())
+            cancelled(call);
+    }
+
+private:
+    AskedFilter asked_;
+    HitFilter* const filter_ = &asked_;
+};
 
 /// Returns the caller's buffers for notes on rays; each of the spans may be empty.
 inline RayNotes notes_of(const ovc_query& query, size_t ray_count) {
@@ -56,6 +82,11 @@ inline RayNotes notes_of(const ovc_query& query, size_t ray_count) {
         return notes ? std::span(notes, ray_count) : std::span<uint32_t>();
     };
     return {span(query.leaf), span(query.passes), span(query.flagged)};
+}
+
+inline void check_structure(const char* call, const ovc_query& query, const Structure& structure) {
+    if ((query.after || query.masks || query.filter) && !structure.takes_after())
+        invalid(format_text("{}: this structure cannot do ovc_query.after, masks or filter", call));
 }
 
 inline void refuse_notes(const char* call, const ovc_query& query) {

@@ -8,6 +8,8 @@
 
 #include <cassert>
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 namespace ovc {
 
@@ -16,8 +18,15 @@ struct RayCall {
     bool any_hit = false;
     ovc_query query{};
     RaySpan rays;
-    std::span<Hit> hits;         // one per ray, unless any_hit
-    std::span<uint8_t> occluded; // one per ray, if any_hit
+    std::span<Hit> hits;            // one per ray, or max_hits, unless any_hit
+    std::span<uint8_t> occluded;    // one per ray, if any_hit
+    std::optional<size_t> max_hits; // of a ray, of which all hits are asked for
+    std::span<uint64_t> counts;     // empty, or one per ray, if so
+
+    bool has_buffers() const {
+        return any_hit ? occluded.size() == rays.size()
+                       : hits.size() == rays.size() * max_hits.value_or(1);
+    }
 };
 
 inline void check_buffers(const char* name, const void* rays, const void* answers, size_t count) {
@@ -49,6 +58,9 @@ inline void check_apart(const char* name, const void* rays, const void* answers,
     const BufferRange buffers[] = {
         {"rays", rays, count * ray_bytes, false},
         {"ovc_query.skip", query.skip, count * sizeof(ovc_triangle), false},
+        {"ovc_query.after", query.after == answers ? nullptr : query.after, count * sizeof(ovc_hit),
+         false},
+        {"ovc_query.masks", query.masks, count * sizeof(uint32_t), false},
         {"the answers' buffer", answers, count * answer_bytes, true},
         {"ovc_query.leaf", query.leaf, notes_bytes, true},
         {"ovc_query.passes", query.passes, notes_bytes, true},
@@ -73,6 +85,31 @@ inline RayCall nearest_call(const char* name, const ovc_ray* rays, size_t count,
             .hits = {reinterpret_cast<Hit*>(hits), count}};
 }
 
+/// Returns a call for all hits of the rays.
+inline RayCall all_hits_call(const ovc_ray* rays, size_t count, size_t max_hits, ovc_hit* hits,
+                             uint64_t* counts, const ovc_query* query) {
+    constexpr const char* kName = "all_hits";
+    constexpr size_t kMaxHits = ~size_t(0) / sizeof(ovc_hit);
+    if (count && max_hits > kMaxHits / count)
+        invalid(format_text("{}: {} rays times max_hits = {} are more than memory can hold", kName,
+                            count, max_hits));
+    check_buffers(kName, rays, max_hits ? static_cast<const void*>(hits) : counts, count);
+    const ovc_query asked = complete(query);
+    refuse_notes(kName, asked);
+    check_apart(kName, rays, max_hits ? hits : nullptr, max_hits * sizeof(ovc_hit), count, asked);
+    check_apart(kName, rays, counts, sizeof(uint64_t), count, asked);
+    const BufferRange first{"hits", hits, count * max_hits * sizeof(ovc_hit), true};
+    const BufferRange second{"counts", counts, count * sizeof(uint64_t), true};
+    if (max_hits && first.overlaps(second))
+        invalid(format_text("{}: hits and counts overlap, expected buffers apart", kName));
+    return {.name = kName,
+            .query = asked,
+            .rays = rays_of(asked, rays, count),
+            .hits = {reinterpret_cast<Hit*>(hits), max_hits ? count * max_hits : 0},
+            .max_hits = max_hits,
+            .counts = {counts, counts ? count : 0}};
+}
+
 inline RayCall occlusion_call(const char* name, const ovc_ray* rays, size_t count,
                               uint8_t* occluded, const ovc_query* query) {
     check_buffers(name, rays, occluded, count);
@@ -95,16 +132,27 @@ inline void check_notes(const RayCall& call, const Structure& structure) {
 /// Answers the call, for a thread that has the scene's turn. watch: nullptr, or asked as the rays
 /// go on. Throws a Failure.
 inline void trace(const RayCall& call, Structure& structure, TraceWatch* watch) {
-    assert((call.any_hit ? call.occluded.size() : call.hits.size()) == call.rays.size());
+    assert(call.has_buffers());
     check_notes(call, structure);
-    const auto skip = skip_of(call.query, call.rays.size());
+    check_structure(call.name, call.query, structure);
+    const size_t count = call.rays.size();
+    Exclusions without = exclusions_of(call.query, count);
+    const FilterOf filter(call.query);
+    without.sieves.filters = filter.get();
+    std::vector<Hit> after; // a copy, where the answers come in its place
+    if (call.query.after && without.after.data() == call.hits.data()) {
+        after.assign(without.after.begin(), without.after.end());
+        without.after = after;
+    }
     const CallWatch::Scope watched(structure.call_watch(), watch);
     if (watch && !watch->goes_on(0))
         cancelled(call.name);
     const Result<Done> done =
-        call.any_hit ? structure.occluded(call.rays, skip, call.occluded)
-                     : structure.intersect_noted(call.rays, skip, call.hits,
-                                                 notes_of(call.query, call.rays.size()));
+        call.any_hit ? structure.occluded(call.rays, without, call.occluded)
+        : call.max_hits
+            ? structure.all_hits(call.rays, without, {*call.max_hits, call.hits, call.counts})
+            : structure.intersect_noted(call.rays, without, call.hits, notes_of(call.query, count));
+    filter.check(call.name);
     if (!done && done.error().kind == ErrorKind::Cancelled)
         cancelled(call.name);
     check(done);

@@ -6,6 +6,7 @@
 #include "plugin/abi/float_mode.h"
 #include "plugin/abi/query_call.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace ovc {
@@ -40,7 +41,8 @@ private:
         stream_.rays = &rays;
         const int stop = mode_.call(function);
         stream_.rays = nullptr;
-        return stop == 0;
+        const auto stopped = [](const AskedFilter& filter) { return filter.stopped(); };
+        return stop == 0 && std::ranges::none_of(stream_.filters, stopped);
     }
 
     ovc_stream_t& stream_;
@@ -59,6 +61,7 @@ public:
     }
     ~Streaming() {
         scene_->stream.magic = 0;
+        scene_->stream.filters.clear();
         scene_->streaming = std::thread::id();
     }
     Streaming(const Streaming&) = delete;
@@ -66,6 +69,20 @@ public:
 private:
     ovc_scene scene_;
 };
+
+} // namespace
+
+namespace {
+
+/// Returns the filter of the query, which lives until the stream ends; null where it has none.
+HitFilter* kept_filter(ovc_stream stream, const ovc_query& query) {
+    if (!query.filter)
+        return nullptr;
+    for (AskedFilter& filter : stream->filters)
+        if (filter.is_of(query.filter, query.filter_user))
+            return &filter;
+    return &stream->filters.emplace_back(query.filter, query.filter_user);
+}
 
 } // namespace
 
@@ -107,11 +124,17 @@ ovc_result push(ovc_stream stream, const ovc_ray* rays, const uint64_t* tokens, 
         const ovc_query asked = complete(query);
         refuse_notes("push", asked);
         refuse_progress("push", asked);
+        check_structure("push", asked, committed(stream->scene, "push"));
+        const Exclusions without = exclusions_of(asked, ray_count);
+        HitFilter* const filter = kept_filter(stream, asked);
         std::vector<Ray> room;
         stream->rays->push({any_hit == 1,
                             rays_of(asked, rays, ray_count).in_double(room),
-                            skip_of(asked, ray_count),
-                            {tokens, ray_count}});
+                            without.skip,
+                            {tokens, ray_count},
+                            without.after,
+                            without.sieves.masks,
+                            {&filter, filter ? size_t(1) : 0}});
     });
 }
 

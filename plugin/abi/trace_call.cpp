@@ -39,9 +39,13 @@ ovc_result single(ovc_scene scene, const char* name, const ovc_ray* ray, const v
         if (!on_cpu)
             return;
         single.ray = rays_of(asked, ray, 1)[0];
-        if (asked.skip)
-            single.skip = skip_of(asked, 1)[0];
+        const FilterOf filter(asked);
+        Exclusions without = exclusions_of(asked, 1);
+        without.sieves.filters = filter.get();
+        single.without = without[0];
+        single.sieve = without.sieves[0];
         call.answer(single);
+        filter.check(name);
     });
     return on_cpu ? done : batch();
 }
@@ -58,6 +62,13 @@ ovc_result occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint
                     const ovc_query* query) {
     return batch_of_rays(scene, "occluded", [&] {
         return occlusion_call("occluded", rays, ray_count, occluded, query);
+    });
+}
+
+ovc_result all_hits(ovc_scene scene, const ovc_ray* rays, size_t ray_count, size_t max_hits,
+                    ovc_hit* hits, uint64_t* counts, const ovc_query* query) {
+    return batch_of_rays(scene, "all_hits", [&] {
+        return all_hits_call(rays, ray_count, max_hits, hits, counts, query);
     });
 }
 

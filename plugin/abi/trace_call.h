@@ -10,6 +10,8 @@ ovc_result intersect(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc
                      const ovc_query* query);
 ovc_result occluded(ovc_scene scene, const ovc_ray* rays, size_t ray_count, uint8_t* occluded,
                     const ovc_query* query);
+ovc_result all_hits(ovc_scene scene, const ovc_ray* rays, size_t ray_count, size_t max_hits,
+                    ovc_hit* hits, uint64_t* counts, const ovc_query* query);
 ovc_result intersect1(ovc_scene scene, const ovc_ray* ray, ovc_hit* hit, const ovc_query* query);
 ovc_result occluded1(ovc_scene scene, const ovc_ray* ray, uint8_t* occluded,
                      const ovc_query* query);

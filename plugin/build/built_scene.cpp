@@ -29,20 +29,51 @@ const SharedMesh* BuiltScene::shared_mesh_of(uint32_t chunk) const {
     return mesh == kNone ? nullptr : &shared[mesh];
 }
 
-TriangleId BuiltScene::second(TriangleId id) const {
-    TriangleId next = id;
-    const auto offer = [&](TriangleId other) { next = next == id ? other : std::min(next, other); };
-    if (const SharedMesh* mesh = shared_mesh_of(id.mesh)) {
-        if (const TriangleId duplicate = mesh->scene.duplicates.second({0, id.prim});
-            duplicate.prim != id.prim)
-            offer({id.mesh, duplicate.prim});
-    } else if (const TriangleId duplicate = duplicates.second(id); duplicate != id) {
-        offer(duplicate);
+TriangleId BuiltScene::next_duplicate(TriangleId id, TriangleId after) const {
+    const SharedMesh* mesh = shared_mesh_of(id.mesh);
+    const auto others = mesh ? mesh->scene.duplicates.of({0, id.prim}) : duplicates.of(id);
+    const auto of_pair = [&](const Duplicates::Pair& pair) {
+        return mesh ? TriangleId{id.mesh, pair.other.prim} : pair.other;
+    };
+    // The first behind `after` of those that are built; those before it may have copies there.
+    const auto next = std::ranges::upper_bound(others, after, {}, of_pair);
+    TriangleId found = next == others.end() ? id : of_pair(*next);
+    const auto offer_copy = [&](TriangleId built) {
+        const auto copy = first_copy_behind(built, after);
+        if (copy && (found == id || *copy < found))
+            found = *copy;
+    };
+    if (!copies.empty()) {
+        offer_copy(id);
+        for (auto other = others.begin(); other != next; ++other)
+            offer_copy(of_pair(*other));
     }
-    const auto copy = std::ranges::lower_bound(copies, id.mesh, {}, &Placed::Copies::first);
-    if (copy != copies.end() && copy->first == id.mesh)
-        offer({copy->second, id.prim});
-    return next;
+    return found;
+}
+
+std::optional<TriangleId> BuiltScene::first_copy_behind(TriangleId built, TriangleId after) const {
+    const auto place = std::ranges::lower_bound(copies, built.mesh, {},
+                                                [](const auto& chunks) { return chunks.front(); });
+    if (place == copies.end() || place->front() != built.mesh)
+        return std::nullopt;
+    const auto chunk = std::ranges::upper_bound(*place, after, {}, [&](uint32_t copy) {
+        return TriangleId{copy, built.prim};
+    });
+    return chunk == place->end() ? std::nullopt : std::optional(TriangleId{*chunk, built.prim});
+}
+
+uint32_t BuiltScene::number_at_place(const Ray& ray, const HitPlace& place) const {
+    const uint32_t number = number_to_skip(place.id);
+    return number != OVC_NO_TRIANGLE && hit_at(ray, soup.triangle(place.id), place)
+               ? number
+               : OVC_NO_TRIANGLE;
+}
+
+bool BuiltScene::offer_behind(Nearest& nearest, const PreparedRay& p, TriangleId id) const {
+    TriangleId next = next_duplicate(id, p.after.id);
+    if (next == p.skip)
+        next = next_duplicate(id, next);
+    return next != id && nearest.offer(soup.triangle(next), next);
 }
 
 uint32_t BuiltScene::page_at(const dvec3& point, TriangleId id) const {
@@ -68,7 +99,7 @@ uint64_t BuiltScene::unique_triangles() const {
     for (const SharedMesh& mesh : shared)
         count -= (mesh.instances.size() - 1) * mesh.soup->triangle_count();
     for (const Placed::Copies& there : copies)
-        count -= uint64_t(there.count - 1) * soup.chunks[there.first].size();
+        count -= (there.size() - 1) * soup.chunks[there.front()].size();
     return count;
 }
 
@@ -77,7 +108,7 @@ uint64_t BuiltScene::duplicate_count() const {
     for (const SharedMesh& mesh : shared)
         count += mesh.scene.duplicates.count() * mesh.instances.size();
     for (const Placed::Copies& there : copies)
-        count += uint64_t(there.count - 1) * soup.chunks[there.first].size();
+        count += (there.size() - 1) * soup.chunks[there.front()].size();
     return count;
 }
 

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace ovc {
@@ -87,13 +88,15 @@ struct BuiltScene {
     double seconds_level1 = 0;
     double seconds_level2 = 0;
 
-    /// Returns the next smallest of the triangles that lie exactly where `id` does, where `id`
-    /// stands for them all; `id` itself where there is none.
-    TriangleId second(TriangleId id) const;
-    bool stands_for_others(TriangleId id) const { return second(id) != id; }
+    /// Returns the smallest of the triangles behind `after`, in the order of ids, that lie exactly
+    /// where `id` does, where `id` stands for them all; `id` itself where there is none.
+    TriangleId next_duplicate(TriangleId id, TriangleId after) const;
+    bool stands_for_others(TriangleId id) const { return next_duplicate(id, id) != id; }
 
     /// Returns the triangle that a ray which does not see `skip` meets in the place of `id`.
-    TriangleId seen(TriangleId id, TriangleId skip) const { return id == skip ? second(id) : id; }
+    TriangleId seen(TriangleId id, TriangleId skip) const {
+        return id == skip ? next_duplicate(id, id) : id;
+    }
     /// The same for the triangle that pages know by `number`.
     TriangleId seen(uint32_t number, TriangleId skip) const {
         return seen(numbers.id(number), skip);
@@ -109,6 +112,13 @@ struct BuiltScene {
     uint32_t number_to_skip(TriangleId id) const {
         return !numbers.has(id) || stands_for_others(id) ? OVC_NO_TRIANGLE : numbers.of(id);
     }
+    /// Returns the same for a ray with these exclusions.
+    uint32_t number_to_skip(const Ray& ray, const Exclusion& without) const {
+        const uint32_t number = number_to_skip(without.skip);
+        return number != OVC_NO_TRIANGLE || without.after.is_before_all()
+                   ? number
+                   : number_at_place(ray, without.after);
+    }
 
     /// Adds the shared mesh of these chunks (not empty), of which nothing is built yet.
     SharedMesh& share(const Placed::Instances& instances);
@@ -118,9 +128,20 @@ struct BuiltScene {
     /// such a page; kNone where the point lies in no page.
     uint32_t page_at(const dvec3& point, TriangleId id) const;
 
-    /// Offers the triangle to `nearest`; see Nearest::offer().
-    bool offer(Nearest& nearest, TriangleId id) const {
-        return nearest.offer(soup.triangle(id), id);
+    /// Returns an empty Nearest for the ray.
+    Nearest nearest_of(const PreparedRay& p) const {
+        if (!numbers.has(p.after.id))
+            return Nearest(p);
+        const Triangle after = soup.triangle(p.after.id);
+        return Nearest(p, &after);
+    }
+    /// Offers a triangle that stands for others as that one of them which the ray sees; see
+    /// Nearest::offer().
+    bool offer(Nearest& nearest, const PreparedRay& p, TriangleId id) const {
+        const TriangleId first = seen(id, p.skip);
+        if (nearest.offer(soup.triangle(first), first))
+            return true;
+        return !p.after.is_before_all() && offer_behind(nearest, p, id);
     }
 
     uint64_t level2_bytes() const { return total_bytes(pages); }
@@ -134,6 +155,16 @@ struct BuiltScene {
     uint64_t duplicate_count() const;
     /// Returns the host memory of level 1, level 2 and the top-level tree.
     uint64_t host_bytes() const;
+
+private:
+    /// Returns number_to_skip() of the triangle that the place names where the place is its hit.
+    uint32_t number_at_place(const Ray& ray, const HitPlace& place) const;
+    /// Offers the next triangle behind p.after, in the order of ids, of those that `id` stands for:
+    /// the ray meets those before it in the same point, which does not count for them.
+    bool offer_behind(Nearest& nearest, const PreparedRay& p, TriangleId id) const;
+    /// Returns the first triangle behind `after`, in the order of ids, of those in copies of the
+    /// chunk of `built` that lie exactly where that one does.
+    std::optional<TriangleId> first_copy_behind(TriangleId built, TriangleId after) const;
 };
 
 /// A mesh that lies in several places, cut and packed by itself.

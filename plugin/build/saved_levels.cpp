@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kKind = "ovc levels";
 /// The version must be raised when a build makes other leaves or pages of the same soup. A change
 /// of layout.h is noticed without that.
-constexpr uint32_t kVersion = 7;
+constexpr uint32_t kVersion = 8;
 
 /// A build makes the same levels where all of its key is the same.
 struct Key {
@@ -37,9 +37,8 @@ struct Key {
 struct SavedCut {
     uint64_t not_finite = 0;
     uint64_t degenerate = 0;
-    uint64_t duplicates = 0;
     // So many of each part of the archive belong to this cut, behind those of the cuts before.
-    uint64_t duplicate_pairs = 0;
+    uint64_t duplicates = 0;
     uint64_t nodes = 0;
     uint64_t leaves = 0;
     uint64_t triangles = 0;
@@ -48,7 +47,7 @@ struct SavedCut {
     Box bounds;
     double padding = 0;
 };
-static_assert(sizeof(SavedCut) == 16 * 8);
+static_assert(sizeof(SavedCut) == 15 * 8);
 
 struct SavedLeaf {
     Box cell;
@@ -145,8 +144,8 @@ bool are_sound(std::span<const Duplicates::Pair> pairs, const Soup& soup) {
         return id.mesh < soup.chunks.size() && id.prim < soup.chunks[id.mesh].size();
     };
     for (size_t i = 0; i < pairs.size(); ++i)
-        if (!exists(pairs[i].smallest) || !exists(pairs[i].second) ||
-            (i > 0 && !(pairs[i - 1].smallest < pairs[i].smallest)))
+        if (!exists(pairs[i].smallest) || !exists(pairs[i].other) ||
+            !(pairs[i].smallest < pairs[i].other) || (i > 0 && !(pairs[i - 1] < pairs[i])))
             return false;
     return true;
 }
@@ -182,10 +181,10 @@ public:
 
 private:
     bool read_duplicates() {
-        const auto pairs = take(arrays_.duplicates, cut_.duplicate_pairs);
+        const auto pairs = take(arrays_.duplicates, cut_.duplicates);
         if (!pairs || !are_sound(*pairs, scene_.soup))
             return false;
-        scene_.duplicates = Duplicates::restored(*pairs, cut_.duplicates);
+        scene_.duplicates = Duplicates::restored(*pairs);
         return true;
     }
 
@@ -304,7 +303,6 @@ SavedCut saved_cut(const BuiltScene& scene) {
     cut.not_finite = scene.dropped.not_finite;
     cut.degenerate = scene.dropped.degenerate;
     cut.duplicates = scene.duplicates.count();
-    cut.duplicate_pairs = scene.duplicates.pairs().size();
     cut.nodes = scene.level1.nodes.size();
     cut.leaves = scene.level1.leaves.size();
     cut.triangles = scene.triangles;

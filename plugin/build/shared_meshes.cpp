@@ -50,17 +50,14 @@ void take_copies_out(const Soup& soup, std::vector<uint32_t>& chunks, Placed& pl
     std::map<decltype(Transform::rows), Placed::Copies> places;
     std::vector<uint32_t> apart;
     for (const uint32_t chunk : chunks) {
-        const auto [place, is_new] = places.try_emplace(
-            or_identity(soup.chunks[chunk].transform()).rows, Placed::Copies{chunk, chunk, 0});
-        Placed::Copies& copies = place->second;
-        if (is_new)
+        Placed::Copies& copies = places[or_identity(soup.chunks[chunk].transform()).rows];
+        if (copies.empty())
             apart.push_back(chunk);
-        if (++copies.count == 2)
-            copies.second = chunk;
+        copies.push_back(chunk);
     }
-    for (const auto& [rows, copies] : places)
-        if (copies.count > 1)
-            placed.copies.push_back(copies);
+    for (auto& [rows, copies] : places)
+        if (copies.size() > 1)
+            placed.copies.push_back(std::move(copies));
     chunks = std::move(apart);
 }
 
@@ -88,7 +85,7 @@ Placed placed_chunks(const Soup& soup) {
             placed.once.insert(placed.once.end(), shared.begin(), shared.end());
     }
     std::ranges::sort(placed.once);
-    std::ranges::sort(placed.copies, {}, &Placed::Copies::first);
+    std::ranges::sort(placed.copies);
     return placed;
 }
 

@@ -12,18 +12,15 @@ namespace ovc {
 
 /// The chunks of a soup, which are named by their numbers, and how each is built.
 struct Placed {
-    /// Chunks of the same mesh that lie exactly in the same place.
-    struct Copies {
-        uint32_t first;
-        uint32_t second; // the next smallest
-        uint32_t count;  // of all copies; only the first is built
-    };
+    /// Chunks of the same mesh that lie exactly in the same place: sorted, at least two. Only the
+    /// first is built.
+    using Copies = std::vector<uint32_t>;
     /// The chunks of one mesh, each in a place of its own.
     using Instances = std::vector<uint32_t>;
 
     std::vector<uint32_t> once;    // sorted; their triangles are cut together
     std::vector<Instances> shared; // in the order of their meshes
-    std::vector<Copies> copies;    // sorted by first
+    std::vector<Copies> copies;    // sorted
 };
 
 /// Returns how the chunks of a soup are built. A mesh that is placed more than once is shared where

@@ -4,6 +4,7 @@
 
 #include "core/result.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cassert>
 #include <cstddef>
@@ -33,6 +34,7 @@ public:
             call.watch_ = watch;
             call.thread_ = std::this_thread::get_id();
             call.share_ = 0;
+            call.begin_part(0, 1);
             call.cancelled_ = false;
         }
         ~Scope() { call_.watch_ = nullptr; }
@@ -44,11 +46,17 @@ public:
 
     bool is_watched() const { return watch_ != nullptr; }
 
-    /// Tells the watch, between passes, how many of the call's rays (> 0) are answered. Error of
+    /// Begins part `part` of `parts` of the call, each of which traces rays.
+    void begin_part(size_t part, size_t parts) {
+        assert(part < parts);
+        part_begin_ = double(part) / double(parts);
+        part_length_ = 1 / double(parts);
+    }
+    /// Tells the watch, between passes, how many of the part's rays (> 0) are answered. Error of
     /// the kind Cancelled: the call is to end.
     Result<Done> go_on(size_t answered, size_t rays) {
         assert(answered <= rays && rays > 0);
-        share_ = double(answered) / double(rays);
+        share_ = std::max(share_, part_begin_ + part_length_ * double(answered) / double(rays));
         keeps_on();
         return unless_cancelled();
     }
@@ -74,6 +82,8 @@ private:
     TraceWatch* watch_ = nullptr;
     std::thread::id thread_;
     double share_ = 0; // the answered part of the call's rays
+    double part_begin_ = 0;
+    double part_length_ = 1;
     mutable std::atomic<bool> cancelled_{false};
 };
 

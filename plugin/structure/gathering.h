@@ -3,7 +3,7 @@
 // traces a batch, the next one fills.
 #pragma once
 
-#include "core/ray.h"
+#include "core/exclusions.h"
 
 #include <cassert>
 #include <condition_variable>
@@ -18,7 +18,8 @@ namespace ovc {
 struct SingleRay {
     bool any_hit = false;
     Ray ray;
-    TriangleId skip;
+    Exclusion without;
+    RaySieve sieve;
     Hit hit{};             // the answer unless any_hit
     bool occluded = false; // the answer if any_hit
 };

@@ -9,6 +9,7 @@
 #include "plugin/structure/structure.h"
 #include "plugin/structure/turn.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cassert>
@@ -54,6 +55,10 @@ public:
         /// Answers a ray; an invalid one misses. Needs a structure that has_cpu_tree().
         void answer(SingleRay& asked) {
             assert(structure_ && structure_->has_cpu_tree());
+            if (!asked.sieve.passes_all()) {
+                answer_on_cpu(asked);
+                return;
+            }
             const FasterWay::Use use = rays_.way_.begin();
             const uint64_t before = use.way == kGathered && rays_.gather(*structure_, asked)
                                         ? add_one(shard_.gathered)
@@ -66,9 +71,9 @@ public:
             if (!asked.ray.valid())
                 add_one(shard_.invalid);
             else if (asked.any_hit)
-                asked.occluded = structure_->occluded_on_cpu(asked.ray, asked.skip);
+                asked.occluded = structure_->occluded_on_cpu(asked.ray, asked.without, asked.sieve);
             else
-                asked.hit = structure_->nearest_on_cpu(asked.ray, asked.skip);
+                asked.hit = structure_->nearest_on_cpu(asked.ray, asked.without, asked.sieve);
             return add_one(asked.any_hit ? shard_.occlusion : shard_.nearest);
         }
 
@@ -129,18 +134,24 @@ private:
         std::vector<SingleRay*> asked;
         std::vector<Ray> rays;
         std::vector<TriangleId> skip;
+        std::vector<Hit> after;
         for (SingleRay* single : batch)
             if (single->any_hit == any_hit) {
                 asked.push_back(single);
                 rays.push_back(single->ray);
-                skip.push_back(single->skip);
+                skip.push_back(single->without.skip);
+                after.push_back(single->without.after.as_hit());
             }
         if (asked.empty())
             return true;
         std::vector<Hit> hits(any_hit ? 0 : asked.size());
         std::vector<uint8_t> occluded(any_hit ? asked.size() : 0);
-        if (!(any_hit ? structure.occluded(rays, skip, occluded)
-                      : structure.intersect(rays, skip, hits)))
+        if (std::ranges::all_of(after,
+                                [](const Hit& hit) { return HitPlace(hit).is_before_all(); }))
+            after.clear();
+        const Exclusions without(skip, after);
+        if (!(any_hit ? structure.occluded(rays, without, occluded)
+                      : structure.intersect(rays, without, hits)))
             return false;
         for (size_t i = 0; i < asked.size(); ++i)
             if (any_hit)

@@ -4,8 +4,10 @@
 // libovercast-thesis.so the structures that two-level is compared with (thesis/).
 #pragma once
 
+#include "core/all_hits.h"
 #include "core/batched_stream.h"
 #include "core/build_progress.h"
+#include "core/exclusions.h"
 #include "core/file/archive.h"
 #include "core/ray_span.h"
 #include "core/result.h"
@@ -31,30 +33,38 @@ public:
     /// supports it. They end with an error of the kind Cancelled when it tells them to stop.
     CallWatch& call_watch() { return watch_; }
 
-    /// Sets hits[i], one per ray, to the nearest hit of rays[i]. skip: empty, or for each ray the
-    /// triangle that it does not see.
-    virtual Result<Done> intersect(RaySpan rays, std::span<const TriangleId> skip,
+    /// Sets hits[i], one per ray, to the nearest hit of rays[i] that is not excluded. Only skipped
+    /// triangles may be excluded, and no sieves be there, unless takes_after().
+    virtual Result<Done> intersect(RaySpan rays, const Exclusions& without,
                                    std::span<Hit> hits) = 0;
-    /// Sets occluded[i], one per ray, to 1 where rays[i] hits anything, else to 0.
-    virtual Result<Done> occluded(RaySpan rays, std::span<const TriangleId> skip,
+    virtual bool takes_after() const { return false; }
+    /// Writes all hits that are not excluded. Needs takes_after().
+    virtual Result<Done> all_hits(RaySpan, const Exclusions&, const AllHits&) {
+        return Error{"this structure cannot tell all hits of a ray"};
+    }
+    /// Sets occluded[i], one per ray, to 1 where rays[i] hits anything that is not excluded, else
+    /// to 0.
+    virtual Result<Done> occluded(RaySpan rays, const Exclusions& without,
                                   std::span<uint8_t> occluded) = 0;
     /// Traces the rays that the host pushes until there are no more. Error of the kind Cancelled:
     /// the host stopped it. This default traces batch after batch.
     virtual Result<Done> stream(StreamHost& host) { return stream_in_batches(*this, host); }
     /// As intersect(), and fills in the notes, which are empty unless takes_notes().
-    virtual Result<Done> intersect_noted(RaySpan rays, std::span<const TriangleId> skip,
+    virtual Result<Done> intersect_noted(RaySpan rays, const Exclusions& without,
                                          std::span<Hit> hits,
                                          [[maybe_unused]] const RayNotes& notes) {
         assert(!notes.any());
-        return intersect(rays, skip, hits);
+        return intersect(rays, without, hits);
     }
     virtual bool takes_notes() const { return false; }
     /// Whether the next two functions answer single rays, which must be valid, on the CPU. They may
     /// be called from any thread and beside all other calls, and answer the same bits as
     /// intersect() and occluded() in certified precision.
     virtual bool has_cpu_tree() const { return false; }
-    virtual Hit nearest_on_cpu(const Ray&, TriangleId) const { return {}; }
-    virtual bool occluded_on_cpu(const Ray&, TriangleId) const { return false; }
+    virtual Hit nearest_on_cpu(const Ray&, const Exclusion&, const RaySieve&) const { return {}; }
+    virtual bool occluded_on_cpu(const Ray&, const Exclusion&, const RaySieve&) const {
+        return false;
+    }
     /// Counts the pages that rays were traced through since the last call of this. Error: the
     /// structure cannot tell, or was not asked to when it was built.
     virtual Result<ovc_active> take_active() {

@@ -123,6 +123,10 @@ private:
         });
     }
 
+    PreparedRay prepared(size_t i) const {
+        return PreparedRay(query_.rays[first_ + i], query_.without[first_ + i]);
+    }
+
     /// Makes the ray a miss until more is known, and takes it into the frame.
     void enter(size_t i) {
         query_.set_miss(first_ + i);
@@ -132,7 +136,7 @@ private:
             return;
         }
         bool decidable = true;
-        PreparedRay p = prepare(query_, first_ + i);
+        PreparedRay p = prepared(i);
         if (c_.scene_.stands_for_others(p.skip))
             p.skip = {}; // the others are to be found
         if (c_.runner_)
@@ -144,7 +148,7 @@ private:
         const FrameAnswer& answer = answers_[i];
         if (decidable_[i] && rays_[i].t_end < 0)
             return; // invalid, or past the scene
-        const PreparedRay p = prepare(query_, first_ + i);
+        const PreparedRay p = prepared(i);
         capped_ += decidable_[i] && answer.prim == OVC_CAPPED;
         const bool named = decidable_[i] && answer.prim != OVC_FLAGGED && answer.prim != OVC_CAPPED;
         if (!named || !resolve_candidates(i, p, answer)) {
@@ -168,7 +172,7 @@ private:
             return true;
         }
         Nearest nearest(p);
-        if (!found.offer_to(nearest, c_.scene_, p.skip))
+        if (!found.offer_to(nearest, p, c_.scene_))
             return false;
         query_.set(first_ + i, nearest);
         flagged_ += found.has_further(); // retrace() counts the others
@@ -201,8 +205,7 @@ private:
         }
         each_ray([&](size_t i) {
             if (retrace_[i])
-                query_.set(first_ + i,
-                           trace_exactly<Query::kAnyHit>(scene, prepare(query_, first_ + i)));
+                query_.set(first_ + i, trace_exactly<Query::kAnyHit>(scene, prepared(i)));
         });
         flagged_ += retraced_;
     }
@@ -235,14 +238,13 @@ Result<Done> Comparison::trace(const Query& query) {
     return Done{};
 }
 
-Result<Done> Comparison::intersect(RaySpan rays, std::span<const TriangleId> skip,
-                                   std::span<Hit> hits) {
-    return trace(NearestQuery{rays, skip, hits});
+Result<Done> Comparison::intersect(RaySpan rays, const Exclusions& without, std::span<Hit> hits) {
+    return trace(NearestQuery{rays, without, hits});
 }
 
-Result<Done> Comparison::occluded(RaySpan rays, std::span<const TriangleId> skip,
+Result<Done> Comparison::occluded(RaySpan rays, const Exclusions& without,
                                   std::span<uint8_t> occluded) {
-    return trace(OcclusionQuery{rays, skip, occluded});
+    return trace(OcclusionQuery{rays, without, occluded});
 }
 
 } // namespace ovc::thesis

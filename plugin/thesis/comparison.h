@@ -20,9 +20,8 @@ public:
                                                     BuildProgress* progress = nullptr);
     ~Comparison() override;
 
-    Result<Done> intersect(RaySpan rays, std::span<const TriangleId> skip,
-                           std::span<Hit> hits) override;
-    Result<Done> occluded(RaySpan rays, std::span<const TriangleId> skip,
+    Result<Done> intersect(RaySpan rays, const Exclusions& without, std::span<Hit> hits) override;
+    Result<Done> occluded(RaySpan rays, const Exclusions& without,
                           std::span<uint8_t> occluded) override;
     ovc_statistics report() const override { return statistics_; }
 

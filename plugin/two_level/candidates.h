@@ -20,15 +20,15 @@ struct Candidates {
     /// The kernel is certain that something is hit; nothing is left to decide for an occlusion ray.
     bool is_certain_hit() const { return certain != OVC_MISS && !has_further(); }
 
-    /// Offers all of them, each as a ray sees it that does not see `skip`. Returns false where
-    /// exact arithmetic does not confirm the certain hit: then the kernel's answer cannot be
-    /// trusted, and the ray goes to the exact fallback.
-    bool offer_to(Nearest& nearest, const BuiltScene& scene, TriangleId skip) const {
-        if (certain != OVC_MISS && !scene.offer(nearest, scene.seen(certain, skip)))
+    /// Offers all of them to `nearest`, which is of the ray p. Returns false where exact arithmetic
+    /// does not confirm the certain hit, or that is not behind p.after: then farther hits may have
+    /// been left out, and the ray goes to the exact fallback.
+    bool offer_to(Nearest& nearest, const PreparedRay& p, const BuiltScene& scene) const {
+        if (certain != OVC_MISS && !scene.offer(nearest, p, scene.numbers.id(certain)))
             return false;
         for (const uint32_t number : further)
             if (number != OVC_NO_TRIANGLE)
-                scene.offer(nearest, scene.seen(number, skip));
+                scene.offer(nearest, p, scene.numbers.id(number));
         return true;
     }
 };

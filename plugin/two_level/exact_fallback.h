@@ -14,15 +14,14 @@ namespace ovc {
 /// Returns the nearest hit of a valid ray, or with kAnyHit some hit. Any thread.
 template <bool kAnyHit>
 Hit trace_exactly(const BuiltScene& scene, const PreparedRay& p) {
-    Nearest nearest(p);
+    Nearest nearest = scene.nearest_of(p);
     Approach approach(p, scene.level1.bounds);
     const auto limit = [&] { return approach.limit(nearest); };
     const auto test = [&](uint32_t number) {
-        const TriangleId id = scene.seen(number, p.skip);
-        const Triangle triangle = scene.soup.triangle(id);
-        const bool hit = nearest.offer(triangle, id);
+        const TriangleId id = scene.numbers.id(number);
+        const bool hit = scene.offer(nearest, p, id);
         if (hit)
-            approach.note_hit(triangle);
+            approach.note_hit(scene.soup.triangle(id));
         return hit && kAnyHit;
     };
     if (!scene.pages.empty())

@@ -36,6 +36,8 @@ public:
         grow(under_way() + count);
         assert(free_.size() >= count);
         const StreamRays rays = backlog_.last(count);
+        if (!rays.are_plain() && places_.empty())
+            make_room_for_exclusions();
         const std::vector<uint32_t> slots(free_.end() - ptrdiff_t(count), free_.end());
         free_.resize(free_.size() - count);
         parallel_for(count, kGrain, [&](size_t first, size_t last) {
@@ -43,6 +45,8 @@ public:
                 rays_[slots[i]] = rays.rays[i];
                 skip_[slots[i]] = rays.skip[i];
                 tokens_[slots[i]] = rays.tokens[i];
+                if (!places_.empty())
+                    exclude(slots[i], rays, i);
             }
         });
         backlog_.drop_last(count);
@@ -87,10 +91,32 @@ private:
         results_.resize(now);
         for (size_t slot = now; slot-- > before;)
             free_.push_back(uint32_t(slot));
+        if (!places_.empty())
+            make_room_for_exclusions();
+        show();
+    }
+
+    /// Gives each slot a place, a mask and a filter, from the first ray on that has one of them.
+    void make_room_for_exclusions() {
+        places_.resize(rays_.size(), kBeforeAll);
+        masks_.resize(rays_.size());
+        filters_.resize(rays_.size());
+        show();
+    }
+
+    void exclude(uint32_t slot, const StreamRays& rays, size_t i) {
+        places_[slot] = rays.after.empty() ? kBeforeAll : rays.after[i];
+        masks_[slot] = rays.masks.empty() ? 0 : rays.masks[i];
+        filters_[slot] = rays.filters.empty() ? nullptr : rays.filters[i];
+    }
+
+    void show() {
         Query query{};
         query.rays = rays_;
-        query.skip = skip_;
+        query.without = {skip_, places_};
+        query.without.sieves = {masks_, filters_, tokens_};
         query.results = results_;
+        query.may_pass_by(places_);
         wave_.show(query);
     }
 
@@ -99,6 +125,10 @@ private:
     std::vector<TriangleId> skip_;
     std::vector<uint64_t> tokens_;
     std::vector<Result> results_;
+    // Per slot, or empty as long as there were only plain rays.
+    std::vector<Hit> places_;
+    std::vector<uint32_t> masks_;
+    std::vector<HitFilter*> filters_;
     std::vector<uint32_t> free_;
     Wave<Query> wave_;
 };
@@ -110,10 +140,16 @@ public:
           host_(host),
           nearest_(tracing, passes),
           any_(tracing, passes),
-          round_(tracing, passes, any_.wave(), nearest_.wave()) {}
+          sieved_any_(tracing, passes),
+          round_(tracing, passes, any_.wave(), sieved_any_.wave(), nearest_.wave()) {}
 
     void push(const StreamRays& rays) override {
-        rays.any_hit ? any_.push(rays) : nearest_.push(rays);
+        if (!rays.any_hit)
+            nearest_.push(rays);
+        else if (rays.are_plain())
+            any_.push(rays);
+        else
+            sieved_any_.push(rays);
     }
 
     /// The host gets the answers of a pass while the next one runs. Where pages are to be moved
@@ -123,13 +159,13 @@ public:
         bool goes_on = true;
         while (goes_on && fill()) {
             start();
-            if (nearest_.empty() && any_.empty())
+            if (nearest_.empty() && any_.empty() && sieved_any_.empty())
                 return Done{};
-            const size_t ready = any_.wave().ready() + nearest_.wave().ready();
-            const bool beside = any_.wave().waiting() + nearest_.wave().waiting() == 0;
+            const size_t ready = sum([](auto& lane) { return lane.wave().ready(); });
+            const bool beside = sum([](auto& lane) { return lane.wave().waiting(); }) == 0;
             if (ready == 0 || !beside) {
                 goes_on = deliver();
-                if (!goes_on || nearest_.can_start() || any_.can_start())
+                if (!goes_on || sum([](auto& lane) { return lane.can_start(); }) > 0)
                     continue;
             }
             if (ready == 0 && beside)
@@ -147,23 +183,30 @@ public:
     }
 
 private:
+    /// Returns the sum of what count(lane) returns of all lanes.
+    template <class Count>
+    size_t sum(Count&& count) {
+        return size_t(count(nearest_)) + size_t(count(any_)) + size_t(count(sieved_any_));
+    }
+
     /// Asks the host for more rays where fewer than half of the slots are taken. Returns false
     /// where the host stops the stream.
     bool fill() {
         const size_t under_way = nearest_.under_way() + nearest_.backlog();
         if (!more_ || under_way > Lane<NearestQuery>::kSlots / 2)
             return true;
-        const size_t before = nearest_.backlog() + any_.backlog();
+        const auto backlog = [&] { return sum([](auto& lane) { return lane.backlog(); }); };
+        const size_t before = backlog();
         if (!host_.more(*this, Lane<NearestQuery>::kSlots - under_way))
             return false;
-        more_ = nearest_.backlog() + any_.backlog() > before;
+        more_ = backlog() > before;
         return true;
     }
 
     void start() {
         const Stopwatch watch;
         const size_t nearest = nearest_.start();
-        const size_t any = any_.start();
+        const size_t any = any_.start() + sieved_any_.start();
         statistics_.nearest_rays += nearest;
         statistics_.occlusion_rays += any;
         statistics_.seconds_trace += watch.seconds();
@@ -174,19 +217,28 @@ private:
     static constexpr size_t kPassRays = size_t(1) << 17;
 
     bool deliver() {
-        return any_.deliver([&](std::span<const uint64_t> tokens,
-                                std::span<const uint8_t> occluded) {
+        const auto occlusions = [&](std::span<const uint64_t> tokens,
+                                    std::span<const uint8_t> occluded) {
             return host_.occlusions(*this, tokens, occluded);
-        }) && nearest_.deliver([&](std::span<const uint64_t> tokens, std::span<const Hit> hits) {
-            return host_.hits(*this, tokens, hits);
-        });
+        };
+        const auto as_occlusions = [&](std::span<const uint64_t> tokens,
+                                       std::span<const Hit> hits) {
+            std::vector<uint8_t> occluded(hits.size());
+            std::ranges::transform(hits, occluded.begin(), &Hit::is_hit);
+            return occlusions(tokens, occluded);
+        };
+        return any_.deliver(occlusions) && sieved_any_.deliver(as_occlusions) &&
+               nearest_.deliver([&](std::span<const uint64_t> tokens, std::span<const Hit> hits) {
+                   return host_.hits(*this, tokens, hits);
+               });
     }
 
     ovc_statistics& statistics_;
     StreamHost& host_;
     Lane<NearestQuery> nearest_;
     Lane<OcclusionQuery> any_;
-    WaveRound<OcclusionQuery, NearestQuery> round_;
+    Lane<NearestQuery> sieved_any_; // occlusion of rays that are not plain: any hit may not count
+    WaveRound<OcclusionQuery, NearestQuery, NearestQuery> round_;
     bool more_ = true;
 };
 

@@ -21,7 +21,7 @@ namespace ovc {
 /// The rays of a pass, and their answers.
 struct Batch {
     std::vector<uint32_t> rays;       // their numbers in the query
-    std::array<size_t, 2> of_waves{}; // the rays of each wave, which lie together
+    std::array<size_t, 3> of_waves{}; // the rays of each wave, which lie together
     std::vector<RayState> states;     // at least one per ray, in whole blocks, as the next
     std::vector<Answer> answers;
 

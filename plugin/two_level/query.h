@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/exact/triangle.h"
+#include "core/exclusions.h"
 #include "core/ray_span.h"
 
 #include <algorithm>
@@ -15,17 +16,19 @@ namespace ovc {
 struct NearestQuery {
     static constexpr bool kAnyHit = false;
     RaySpan rays;
-    std::span<const TriangleId> skip; // empty, or one per ray
+    Exclusions without;
     std::span<Hit> results;
     std::span<uint32_t> passes;  // empty, or counts those of each ray
     std::span<uint32_t> flagged; // empty, or becomes 1 for flagged rays
+    std::span<Hit> places;       // what without.after refers to, where rays have sieves
 
-    TriangleId skipped(size_t i) const { return skip.empty() ? TriangleId{} : skip[i]; }
     NearestQuery part(size_t first, size_t count) const {
-        return {rays.subspan(first, count), skip.empty() ? skip : skip.subspan(first, count),
+        return {rays.subspan(first, count),
+                without.subspan(first, count),
                 results.subspan(first, count),
                 passes.empty() ? passes : passes.subspan(first, count),
-                flagged.empty() ? flagged : flagged.subspan(first, count)};
+                flagged.empty() ? flagged : flagged.subspan(first, count),
+                places.empty() ? places : places.subspan(first, count)};
     }
     void count_pass(size_t i) const {
         if (!passes.empty())
@@ -40,17 +43,20 @@ struct NearestQuery {
     void set(size_t i, const Nearest& nearest) const { results[i] = nearest.hit(); }
     bool was_hit(size_t i) const { return results[i].is_hit(); }
     const Hit& hit(size_t i) const { return results[i]; }
+    bool has_sieves() const { return !without.sieves.pass_all(); }
+    void may_pass_by(std::span<Hit> places_of_rays) { places = places_of_rays; }
+    /// From now on only hits behind the one that was found count.
+    void pass_by(size_t i) const { places[i] = results[i]; }
 };
 
 struct OcclusionQuery {
     static constexpr bool kAnyHit = true;
     RaySpan rays;
-    std::span<const TriangleId> skip;
+    Exclusions without;
     std::span<uint8_t> results;
 
-    TriangleId skipped(size_t i) const { return skip.empty() ? TriangleId{} : skip[i]; }
     OcclusionQuery part(size_t first, size_t count) const {
-        return {rays.subspan(first, count), skip.empty() ? skip : skip.subspan(first, count),
+        return {rays.subspan(first, count), without.subspan(first, count),
                 results.subspan(first, count)};
     }
     void count_pass(size_t) const {}
@@ -60,12 +66,10 @@ struct OcclusionQuery {
     void set(size_t i, const Nearest& nearest) const { results[i] = nearest.is_hit(); }
     bool was_hit(size_t i) const { return results[i] != 0; }
     Hit hit(size_t) const { return {}; } // the triangle is not kept
+    /// Rays that have them ask for their nearest hits instead.
+    bool has_sieves() const { return false; }
+    void may_pass_by(std::span<Hit>) {}
+    void pass_by(size_t) const {}
 };
-
-/// Returns ray i as the host gave it.
-template <class Query>
-PreparedRay prepare(const Query& query, size_t i) {
-    return PreparedRay(query.rays[i], query.skipped(i));
-}
 
 } // namespace ovc

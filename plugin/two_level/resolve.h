@@ -73,7 +73,7 @@ public:
             ++invalid_;
             return false;
         }
-        const PreparedRay p = prepare(query_, i);
+        const PreparedRay p = prepared(i);
         // This comes before the clip: where double cannot walk, rounding may carry a ray past the
         // whole scene.
         if (!can_walk(scene_.level1, p)) {
@@ -87,11 +87,12 @@ public:
     /// RayState::key().
     RayState ray_state(uint32_t i, double t_end, uint32_t key) const {
         query_.count_pass(i);
-        Ray rest = query_.rays[i];
+        const Exclusion without = exclusion(i);
+        Ray rest = PreparedRay::behind(query_.rays[i], without.after);
         rest.t_max = t_end;
         return {rest,
                 {},
-                scene_.number_to_skip(query_.skipped(i)),
+                scene_.number_to_skip(query_.rays[i], without),
                 key | (Query::kAnyHit ? OVC_RAY_ANY_HIT : 0)};
     }
 
@@ -107,12 +108,15 @@ public:
             return;
         HitBatch<size_t> certain; // tagged with the index in `answers`
         std::vector<uint32_t> in_doubt;
-        const auto enter = [&](const Hit& hit, size_t j) {
-            enter_certain(rays[j], answers[j], hit, go_on);
-        };
         const auto look = [&](size_t j) {
             if (!resolve_one(rays[j], answers[j], go_on))
                 in_doubt.push_back(rays[j]);
+        };
+        const auto enter = [&](const Hit& hit, size_t j) {
+            if (hit.t > exclusion(rays[j]).after.t)
+                enter_certain(rays[j], answers[j], hit, go_on);
+            else
+                look(j);
         };
         for (size_t j = 0; j < rays.size(); ++j) {
             fetch_ahead(answers, j);
@@ -122,7 +126,7 @@ public:
                 look(j);
                 continue;
             }
-            const TriangleId id = scene_.seen(answers[j].prim, query_.skipped(rays[j]));
+            const TriangleId id = scene_.seen(answers[j].prim, exclusion(rays[j]).skip);
             certain.add(query_.rays[rays[j]], scene_.soup.triangle(id), id, j);
             if (certain.full())
                 certain.finish(enter, look);
@@ -135,10 +139,21 @@ public:
     /// each ray, because some take a hundred times as long as most.
     void answer_exactly(uint32_t i) {
         if (tracing_.watch.keeps_on())
-            query_.set(i, trace_exactly<Query::kAnyHit>(scene_, prepare(query_, i)));
+            query_.set(i, trace_exactly<Query::kAnyHit>(scene_, prepared(i)));
     }
 
 private:
+    Exclusion exclusion(uint32_t i) const {
+        Exclusion without = query_.without[i];
+        // In fast precision t is not exact enough to tell that a hit is the same as before.
+        if (!tracing_.options.certify && !without.after.is_before_all())
+            without.skip = without.after.id;
+        return without;
+    }
+
+    /// Returns ray i as the host gave it.
+    PreparedRay prepared(uint32_t i) const { return PreparedRay(query_.rays[i], exclusion(i)); }
+
     /// Fetches the triangle of an answer some way behind the j-th, which is to be resolved soon.
     void fetch_ahead(std::span<const Answer> answers, size_t j) const {
         constexpr size_t kAhead = 8;
@@ -172,8 +187,7 @@ private:
             return false;
         if (tracing_.options.certify)
             return resolve_candidates(i, answer, go_on);
-        enter_fast(i, answer, go_on);
-        return true;
+        return enter_fast(i, answer, go_on);
     }
 
     /// Returns false where exact arithmetic does not confirm the certain hit.
@@ -182,15 +196,15 @@ private:
         const Candidates found = candidates_of(answer);
         if (found.is_miss())
             return true;
-        if (Query::kAnyHit && found.is_certain_hit()) {
+        if (Query::kAnyHit && found.is_certain_hit() && query_.without.after.empty()) {
             query_.set(i, Hit{0, 0, 0, scene_.numbers.id(found.certain)});
             return true;
         }
-        const PreparedRay p = prepare(query_, i);
-        Nearest nearest(p);
+        const PreparedRay p = prepared(i);
+        Nearest nearest = scene_.nearest_of(p);
         if (query_.was_hit(i))
-            scene_.offer(nearest, query_.hit(i).id);
-        if (!found.offer_to(nearest, scene_, p.skip))
+            nearest.offer(scene_.soup.triangle(query_.hit(i).id), query_.hit(i).id);
+        if (!found.offer_to(nearest, p, scene_))
             return false;
         if (nearest.is_hit())
             query_.set(i, nearest);
@@ -202,17 +216,22 @@ private:
     }
 
     /// The kernel was asked about the ray up to its hit before, if there was one, so this one is
-    /// nearer.
+    /// nearer. Returns false where it is not behind the place that the ray's hits lie behind.
     template <class GoOn>
-    void enter_fast(uint32_t i, const Answer& answer, GoOn&& go_on) {
+    bool enter_fast(uint32_t i, const Answer& answer, GoOn&& go_on) {
         if (answer.prim == OVC_MISS)
-            return;
+            return true;
         Hit hit{answer.t(), answer.u(), answer.v(), scene_.numbers.id(answer.prim)};
         if (!scene_.top.portals.empty()) // its t was told in the frame of the scene
             hit = in_doubles(hit, query_.rays[i], scene_.soup.triangle(hit.id));
-        query_.set(i, scene_.seen(hit, query_.skipped(i)));
+        const Exclusion without = exclusion(i);
+        hit = scene_.seen(hit, without.skip);
+        if (!without.after.is_before_all() && !without.after.is_before(hit))
+            return false;
+        query_.set(i, hit);
         if (!Query::kAnyHit && answer.where != OVC_NO_LEAF)
             go_on(i, answer.where, hit.t);
+        return true;
     }
 
     /// Runs in parallel where rays are many, because each may take as long as thousands of others.

@@ -5,6 +5,7 @@
 #include "core/system/stopwatch.h"
 #include "plugin/build/build_scene.h"
 #include "plugin/build/saved_levels.h"
+#include "plugin/two_level/all_hits.h"
 #include "plugin/two_level/mixed_stream.h"
 #include "plugin/two_level/one_pass.h"
 #include "plugin/two_level/wave_round.h"
@@ -45,12 +46,13 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
 template <class Query>
 Result<Done> TwoLevel::trace(const Query& query) {
     assert(query.results.size() == query.rays.size());
-    assert(query.skip.empty() || query.skip.size() == query.rays.size());
+    assert(query.without.are_for(query.rays.size()));
     const Stopwatch watch;
     if (Result<Done> ready = passes_.ready(); !ready)
         return ready;
-    const Result<Done> done = passes_.all_resident() ? OnePass(tracing_, passes_, query).run()
-                                                     : trace_in_waves(tracing_, passes_, query);
+    const bool in_one_pass = passes_.all_resident() && !query.has_sieves();
+    const Result<Done> done = in_one_pass ? OnePass(tracing_, passes_, query).run()
+                                          : trace_in_waves(tracing_, passes_, query);
     if (!done)
         return done;
     (Query::kAnyHit ? statistics_.occlusion_rays : statistics_.nearest_rays) += query.rays.size();
@@ -58,22 +60,45 @@ Result<Done> TwoLevel::trace(const Query& query) {
     return watch_.unless_cancelled();
 }
 
-Result<Done> TwoLevel::intersect(RaySpan rays, std::span<const TriangleId> skip,
-                                 std::span<Hit> hits) {
-    return trace(NearestQuery{rays, skip, hits, {}, {}});
+Result<Done> TwoLevel::intersect(RaySpan rays, const Exclusions& without, std::span<Hit> hits) {
+    return trace_nearest({rays, without, hits, {}, {}, {}});
 }
 
-Result<Done> TwoLevel::occluded(RaySpan rays, std::span<const TriangleId> skip,
+Result<Done> TwoLevel::trace_nearest(NearestQuery query) {
+    std::vector<Hit> places;
+    if (query.has_sieves()) {
+        places.assign(query.rays.size(), kBeforeAll);
+        std::ranges::copy(query.without.after, places.begin());
+        query.without.after = query.places = places;
+    }
+    return trace(query);
+}
+
+Result<Done> TwoLevel::all_hits(RaySpan rays, const Exclusions& without, const AllHits& all) {
+    const auto nearest = [this](RaySpan some, const Exclusions& also, std::span<Hit> hits) {
+        return trace_nearest({some, also, hits, {}, {}, {}});
+    };
+    return trace_all_hits(tracing_, nearest, rays, without, all);
+}
+
+Result<Done> TwoLevel::occluded(RaySpan rays, const Exclusions& without,
                                 std::span<uint8_t> occluded) {
-    return trace(OcclusionQuery{rays, skip, occluded});
+    if (without.sieves.pass_all())
+        return trace(OcclusionQuery{rays, without, occluded});
+    // Any hit that the kernel finds may not count, and then tells nothing of those before it.
+    std::vector<Hit> hits(rays.size());
+    if (Result<Done> done = trace_nearest({rays, without, hits, {}, {}, {}}); !done)
+        return done;
+    std::ranges::transform(hits, occluded.begin(), &Hit::is_hit);
+    return Done{};
 }
 
-Result<Done> TwoLevel::intersect_noted(RaySpan rays, std::span<const TriangleId> skip,
-                                       std::span<Hit> hits, const RayNotes& notes) {
+Result<Done> TwoLevel::intersect_noted(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
+                                       const RayNotes& notes) {
     assert(notes.leaf.empty() || notes.leaf.size() == rays.size());
     std::fill(notes.passes.begin(), notes.passes.end(), 0);
     std::fill(notes.flagged.begin(), notes.flagged.end(), 0);
-    if (Result<Done> done = trace(NearestQuery{rays, skip, hits, notes.passes, notes.flagged});
+    if (Result<Done> done = trace_nearest({rays, without, hits, notes.passes, notes.flagged, {}});
         !done)
         return done;
     parallel_for(notes.leaf.size(), 1024, [&](size_t first, size_t last) {
@@ -84,14 +109,24 @@ Result<Done> TwoLevel::intersect_noted(RaySpan rays, std::span<const TriangleId>
     return Done{};
 }
 
-Hit TwoLevel::nearest_on_cpu(const Ray& ray, TriangleId skip) const {
+Hit TwoLevel::nearest_on_cpu(const Ray& ray, const Exclusion& without,
+                             const RaySieve& sieve) const {
     assert(ray.valid());
-    return trace_exactly</* kAnyHit= */ false>(scene_, PreparedRay(ray, skip));
+    Exclusion more = without;
+    for (;;) {
+        const Hit hit = trace_exactly</* kAnyHit= */ false>(scene_, PreparedRay(ray, more));
+        if (!hit.is_hit() || sieve.passes_all() || counts(scene_.soup, sieve, hit))
+            return hit;
+        more.after = HitPlace(hit);
+    }
 }
 
-bool TwoLevel::occluded_on_cpu(const Ray& ray, TriangleId skip) const {
+bool TwoLevel::occluded_on_cpu(const Ray& ray, const Exclusion& without,
+                               const RaySieve& sieve) const {
     assert(ray.valid());
-    return trace_exactly</* kAnyHit= */ true>(scene_, PreparedRay(ray, skip)).is_hit();
+    if (!sieve.passes_all())
+        return nearest_on_cpu(ray, without, sieve).is_hit();
+    return trace_exactly</* kAnyHit= */ true>(scene_, PreparedRay(ray, without)).is_hit();
 }
 
 Result<Done> TwoLevel::stream(StreamHost& host) {

@@ -7,6 +7,7 @@
 #include "core/system/log.h"
 #include "plugin/structure/structure.h"
 #include "plugin/two_level/pass_runner.h"
+#include "plugin/two_level/query.h"
 
 #include <memory>
 #include <span>
@@ -25,16 +26,19 @@ public:
                                                    const LogSink& log,
                                                    BuildProgress* progress = nullptr);
 
-    Result<Done> intersect(RaySpan rays, std::span<const TriangleId> skip,
-                           std::span<Hit> hits) override;
-    Result<Done> occluded(RaySpan rays, std::span<const TriangleId> skip,
+    Result<Done> intersect(RaySpan rays, const Exclusions& without, std::span<Hit> hits) override;
+    Result<Done> occluded(RaySpan rays, const Exclusions& without,
                           std::span<uint8_t> occluded) override;
-    Result<Done> intersect_noted(RaySpan rays, std::span<const TriangleId> skip,
-                                 std::span<Hit> hits, const RayNotes& notes) override;
+    Result<Done> intersect_noted(RaySpan rays, const Exclusions& without, std::span<Hit> hits,
+                                 const RayNotes& notes) override;
     bool takes_notes() const override { return true; }
+    bool takes_after() const override { return true; }
     bool has_cpu_tree() const override { return true; }
-    Hit nearest_on_cpu(const Ray& ray, TriangleId skip) const override;
-    bool occluded_on_cpu(const Ray& ray, TriangleId skip) const override;
+    Result<Done> all_hits(RaySpan rays, const Exclusions& without, const AllHits& all) override;
+    Hit nearest_on_cpu(const Ray& ray, const Exclusion& without,
+                       const RaySieve& sieve) const override;
+    bool occluded_on_cpu(const Ray& ray, const Exclusion& without,
+                         const RaySieve& sieve) const override;
     Result<Done> stream(StreamHost& host) override;
     ovc_statistics report() const override; // make_two_level.cpp
     Result<ovc_active> take_active() override;
@@ -52,6 +56,7 @@ private:
 
     template <class Query>
     Result<Done> trace(const Query& query);
+    Result<Done> trace_nearest(NearestQuery query);
 
     const BuiltScene scene_;
     const TwoLevelOptions options_;

@@ -5,6 +5,7 @@
 
 #include "plugin/two_level/pass_runner.h"
 #include "plugin/two_level/resolve.h"
+#include "plugin/two_level/sifting.h"
 #include "plugin/two_level/waiting.h"
 
 #include <algorithm>
@@ -69,7 +70,9 @@ public:
                 resolver_.answer_exactly(rays[j]);
         });
         tracing_.statistics.stragglers += rays.size();
-        finished_.insert(finished_.end(), rays.begin(), rays.end());
+        for (const uint32_t i : rays)
+            states_[i].stage = State::Done;
+        send_on(rays);
     }
 
     /// Returns the rays that were answered since the last call of this.
@@ -124,6 +127,9 @@ private:
     }
 
     void send_on(std::span<const uint32_t> rays) {
+        if (resolver_.query().has_sieves())
+            parallel_for(rays.size(), kRaysPerTask,
+                         [&](size_t from, size_t to) { sift(rays.subspan(from, to - from)); });
         for (const uint32_t i : rays) {
             if (states_[i].stage == State::Ready)
                 ready_.push_back(i);
@@ -131,6 +137,32 @@ private:
                 waiting_.push(leaf_of(states_[i].key), i);
             else
                 finished_.push_back(i);
+        }
+    }
+
+    /// Starts those of the rays anew whose hit does not count, behind that hit.
+    void sift(std::span<const uint32_t> rays) {
+        std::vector<uint32_t> answered(rays.begin(), rays.end());
+        std::vector<Hit> hits;
+        for (;;) {
+            std::erase_if(answered, [&](uint32_t i) {
+                return states_[i].stage != State::Done || !resolver_.query().was_hit(i);
+            });
+            if (answered.empty())
+                return;
+            hits.clear();
+            for (const uint32_t i : answered)
+                hits.push_back(resolver_.query().hit(i));
+            const std::vector<uint8_t> counts = counting_hits(
+                tracing_.scene.soup, resolver_.query().without.sieves, answered, hits);
+            size_t passed_by = 0;
+            for (size_t j = 0; j < answered.size(); ++j)
+                if (!counts[j]) {
+                    resolver_.query().pass_by(answered[j]);
+                    start_one(answered[j]); // the exact fallback may answer it at once
+                    answered[passed_by++] = answered[j];
+                }
+            answered.resize(passed_by);
         }
     }
 

@@ -317,7 +317,7 @@ private:
         std::memcpy(static_cast<void*>(&asked), &ray, sizeof asked);
         if (!asked.valid())
             return {};
-        const PreparedRay prepared(asked, {skip.mesh, skip.prim});
+        const PreparedRay prepared(asked, TriangleId{skip.mesh, skip.prim});
         Nearest nearest(prepared);
         for (uint32_t mesh = 0; mesh < slot.soup.chunks.size(); ++mesh)
             for (uint32_t prim = 0; prim < slot.soup.chunks[mesh].size(); ++prim) {

@@ -294,6 +294,24 @@ std::vector<Mesh> instances(Random& random) {
     return meshes;
 }
 
+/// Large enough for their pages to be shared, some in the same place, with duplicates in the mesh.
+std::vector<Mesh> shared_instances(Random& random) {
+    Mesh mesh;
+    for (int i = 0; i < 100; ++i) {
+        const Corner at = random.lattice();
+        for (int k = 0; k < 3; ++k)
+            mesh.corners.push_back(at + 0.5 * random.lattice());
+    }
+    for (size_t i = 0; i < 90; ++i) // each other triangle again, wound the other way
+        mesh.corners.push_back(mesh.corners[6 * (i / 3) + 2 - i % 3]);
+    for (int i = 0; i < 8; ++i) {
+        const double shift = double(random.below(2));
+        const double turned = random.below(3) == 0 ? -1 : 1;
+        mesh.instances.push_back({turned, 0, 0, shift, 0, turned, 0, 0, 0, 0, 1, 0});
+    }
+    return {mesh};
+}
+
 constexpr Case kCases[] = {
     {"soup", soup, aimed},
     {"soup, ends of rays", soup, with_ends},
@@ -313,6 +331,7 @@ constexpr Case kCases[] = {
     {"copies a rounding apart", copies, aimed},
     {"instances", instances, aimed},
     {"instances, ends of rays", instances, with_ends},
+    {"shared instances", shared_instances, aimed},
 };
 
 } // namespace

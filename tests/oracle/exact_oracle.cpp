@@ -128,17 +128,6 @@ bool certainly_out(const ovc_ray& ray, const Triangle& t, Long limit, Long& t_bo
     return false;
 }
 
-struct ExactHit {
-    Integer t, u, v, det; // det > 0
-    ovc_triangle id;
-
-    bool before(const ExactHit& other) const {
-        const int order = Integer(t * other.det).compare(Integer(other.t * det));
-        return order != 0 ? order < 0
-                          : std::pair(id.mesh, id.prim) < std::pair(other.id.mesh, other.id.prim);
-    }
-};
-
 /// The sign of t / det 2^exponent - end.
 int compare(const Integer& t, const Integer& det, int exponent, double end) {
     const int bit = std::min(exponent, end == 0 ? exponent : lowest_bit(end));
@@ -146,6 +135,44 @@ int compare(const Integer& t, const Integer& det, int exponent, double end) {
 }
 
 } // namespace
+
+constexpr ovc_hit kMiss = {std::numeric_limits<double>::infinity(), 0, 0, OVC_NONE, OVC_NONE};
+
+struct Oracle::ExactHit {
+    Integer t, u, v, det; // det > 0
+    ovc_triangle id;
+
+    bool operator<(const ExactHit& other) const {
+        const int order = Integer(t * other.det).compare(Integer(other.t * det));
+        return order != 0 ? order < 0
+                          : std::pair(id.mesh, id.prim) < std::pair(other.id.mesh, other.id.prim);
+    }
+    ovc_hit rounded(int exponent) const {
+        return {oracle::rounded(t, det, exponent), oracle::rounded(u, det, 0),
+                oracle::rounded(v, det, 0), id.mesh, id.prim};
+    }
+};
+
+/// A ray in whole numbers.
+struct Oracle::ExactRay {
+    ExactRay(const ovc_ray& ray, int lowest_bit_of_corners)
+        : length_bit(lowest_bit_of_corners), t_min(ray.t_min) {
+        int dir_bit = std::numeric_limits<int>::max() / 2;
+        for (int axis = 0; axis < 3; ++axis) {
+            length_bit = std::min(length_bit, lowest_bit(ray.org[axis]));
+            dir_bit = std::min(dir_bit, lowest_bit(ray.dir[axis]));
+        }
+        exponent = length_bit - dir_bit; // t counts in lengths by directions
+        // No hit is told beyond the largest double.
+        t_max = std::min(ray.t_max, std::numeric_limits<double>::max());
+        org = wholes(ray.org, length_bit);
+        dir = wholes(ray.dir, dir_bit);
+    }
+
+    int length_bit, exponent;
+    double t_min, t_max;
+    IntegerVec org, dir;
+};
 
 Oracle::Oracle(std::vector<Triangle> triangles) {
     lowest_bit_ = std::numeric_limits<int>::max() / 2;
@@ -163,17 +190,9 @@ Oracle::Oracle(std::vector<Triangle> triangles) {
 }
 
 ovc_hit Oracle::nearest(const ovc_ray& ray, ovc_triangle skip) const {
-    int length_bit = lowest_bit_, dir_bit = std::numeric_limits<int>::max() / 2;
-    for (int axis = 0; axis < 3; ++axis) {
-        length_bit = std::min(length_bit, lowest_bit(ray.org[axis]));
-        dir_bit = std::min(dir_bit, lowest_bit(ray.dir[axis]));
-    }
-    const int exponent = length_bit - dir_bit; // t counts in lengths by directions
-    // No hit is told beyond the largest double.
-    const double t_max = std::min(ray.t_max, std::numeric_limits<double>::max());
+    const ExactRay exact(ray, lowest_bit_);
     std::optional<ExactHit> best;
-    Long limit = t_max;
-    const IntegerVec org = wholes(ray.org, length_bit), dir = wholes(ray.dir, dir_bit);
+    Long limit = exact.t_max;
     std::vector<const Triangle*> left;
     for (const Triangle& triangle : triangles_) {
         Long t_bound = 0;
@@ -187,32 +206,73 @@ ovc_hit Oracle::nearest(const ovc_ray& ray, ovc_triangle skip) const {
         Long t_bound = 0;
         if (certainly_out(ray, *triangle, limit, t_bound))
             continue;
-        ++exact_tests_;
-        const IntegerVec a = wholes(triangle->corners[0].data(), length_bit);
-        const IntegerVec ab = minus(wholes(triangle->corners[1].data(), length_bit), a);
-        const IntegerVec ac = minus(wholes(triangle->corners[2].data(), length_bit), a);
-        const IntegerVec s = minus(org, a), p = cross(dir, ac), q = cross(s, ab);
-        ExactHit hit{dot(ac, q), dot(s, p), dot(dir, q), dot(ab, p), triangle->id};
-        if (hit.det == 0)
-            continue;
-        if (hit.det < 0) {
-            hit.t = -hit.t;
-            hit.u = -hit.u;
-            hit.v = -hit.v;
-            hit.det = -hit.det;
-        }
-        if (hit.u < 0 || hit.v < 0 || Integer(hit.u + hit.v) > hit.det)
-            continue;
-        if (compare(hit.t, hit.det, exponent, ray.t_min) < 0 ||
-            compare(hit.t, hit.det, exponent, t_max) > 0)
-            continue;
-        if (!best || hit.before(*best))
+        const std::optional<ExactHit> hit = meet(exact, *triangle);
+        if (hit && (!best || *hit < *best))
             best = hit;
     }
-    if (!best)
-        return {std::numeric_limits<double>::infinity(), 0, 0, OVC_NONE, OVC_NONE};
-    return {rounded(best->t, best->det, exponent), rounded(best->u, best->det, 0),
-            rounded(best->v, best->det, 0), best->id.mesh, best->id.prim};
+    return best ? best->rounded(exact.exponent) : kMiss;
+}
+
+std::vector<ovc_hit> Oracle::all_hits(const ovc_ray& ray) const {
+    const ExactRay exact(ray, lowest_bit_);
+    std::vector<ovc_hit> hits;
+    for (const ExactHit& hit : sorted_hits(ray, exact))
+        hits.push_back(hit.rounded(exact.exponent));
+    return hits;
+}
+
+ovc_hit Oracle::next(const ovc_ray& ray, const ovc_hit& after) const {
+    const ExactRay exact(ray, lowest_bit_);
+    const std::vector<ExactHit> hits = sorted_hits(ray, exact);
+    const auto is_named = [&](const ExactHit& hit) {
+        return hit.id.mesh == after.mesh && hit.id.prim == after.prim &&
+               hit.rounded(exact.exponent).t == after.t;
+    };
+    const auto is_behind = [&](const ExactHit& hit) {
+        if (!std::isfinite(after.t))
+            return after.t < 0;
+        const int order = compare(hit.t, hit.det, exact.exponent, after.t);
+        return order != 0 ? order > 0
+                          : std::pair(hit.id.mesh, hit.id.prim) > std::pair(after.mesh, after.prim);
+    };
+    auto found = std::find_if(hits.begin(), hits.end(), is_named);
+    found = found != hits.end() ? found + 1 : std::find_if(hits.begin(), hits.end(), is_behind);
+    return found != hits.end() ? found->rounded(exact.exponent) : kMiss;
+}
+
+std::vector<Oracle::ExactHit> Oracle::sorted_hits(const ovc_ray& ray, const ExactRay& exact) const {
+    std::vector<ExactHit> found;
+    for (const Triangle& triangle : triangles_) {
+        Long t_bound = 0;
+        if (certainly_out(ray, triangle, exact.t_max, t_bound))
+            continue;
+        if (std::optional<ExactHit> hit = meet(exact, triangle))
+            found.push_back(std::move(*hit));
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+std::optional<Oracle::ExactHit> Oracle::meet(const ExactRay& ray, const Triangle& triangle) const {
+    ++exact_tests_;
+    const IntegerVec a = wholes(triangle.corners[0].data(), ray.length_bit);
+    const IntegerVec ab = minus(wholes(triangle.corners[1].data(), ray.length_bit), a);
+    const IntegerVec ac = minus(wholes(triangle.corners[2].data(), ray.length_bit), a);
+    const IntegerVec s = minus(ray.org, a), p = cross(ray.dir, ac), q = cross(s, ab);
+    ExactHit hit{dot(ac, q), dot(s, p), dot(ray.dir, q), dot(ab, p), triangle.id};
+    if (hit.det == 0)
+        return std::nullopt;
+    if (hit.det < 0) {
+        hit.t = -hit.t;
+        hit.u = -hit.u;
+        hit.v = -hit.v;
+        hit.det = -hit.det;
+    }
+    if (hit.u < 0 || hit.v < 0 || Integer(hit.u + hit.v) > hit.det ||
+        compare(hit.t, hit.det, ray.exponent, ray.t_min) < 0 ||
+        compare(hit.t, hit.det, ray.exponent, ray.t_max) > 0)
+        return std::nullopt;
+    return hit;
 }
 
 } // namespace ovc::oracle

@@ -30,11 +30,20 @@ public:
     /// The answer that overcast.h promises: t, u and v are the exact values, each rounded to the
     /// nearest double. skip: a triangle that the ray does not see.
     ovc_hit nearest(const ovc_ray& ray, ovc_triangle skip = {OVC_NONE, OVC_NONE}) const;
+    /// All hits of the ray, in the order of exact t, mesh and prim, rounded likewise.
+    std::vector<ovc_hit> all_hits(const ovc_ray& ray) const;
+    /// The first hit behind the place `after`, as ovc_query.after says.
+    ovc_hit next(const ovc_ray& ray, const ovc_hit& after) const;
 
     size_t triangle_count() const { return triangles_.size(); }
     uint64_t exact_tests() const { return exact_tests_; }
 
 private:
+    struct ExactRay;
+    struct ExactHit;
+    std::vector<ExactHit> sorted_hits(const ovc_ray& ray, const ExactRay& exact) const;
+    std::optional<ExactHit> meet(const ExactRay& ray, const Triangle& triangle) const;
+
     std::vector<Triangle> triangles_;
     int lowest_bit_ = 0; // all corners are multiples of 2^lowest_bit_
     mutable uint64_t exact_tests_ = 0;

@@ -44,12 +44,12 @@ uint32_t QueuedRays::slot() {
     return i;
 }
 
-void QueuedRays::add(bool any_hit, const RaySpan& rays, std::span<const TriangleId> skip,
+void QueuedRays::add(bool any_hit, const RaySpan& rays, const Exclusions& without,
                      std::span<const uint64_t> tokens) {
     assert(under_way() + rays.size() <= kMax);
     for (size_t i = 0; i < rays.size(); ++i) {
         const uint32_t at = slot();
-        states_[at] = {rays[i], skip.empty() ? TriangleId{} : skip[i], tokens[i], any_hit};
+        states_[at] = {rays[i], without[i].skip, tokens[i], any_hit};
         level1_queue_.push_back(at);
     }
     (any_hit ? s_.statistics.occlusion_rays : s_.statistics.nearest_rays) += rays.size();
@@ -174,8 +174,8 @@ bool QueuedRays::resolve_candidates(QueuedRay& state, const FrameAnswer& answer)
     const PreparedRay p(state.ray, state.skip);
     Nearest nearest(p);
     if (state.hit.is_hit())
-        s_.built.offer(nearest, state.hit.id);
-    if (!found.offer_to(nearest, s_.built, p.skip))
+        s_.built.offer(nearest, p, state.hit.id);
+    if (!found.offer_to(nearest, p, s_.built))
         return false;
     flagged_ += found.has_further(); // fall_back() counts the others
     state.hit = state.any_hit ? nearest.unrounded_hit() : nearest.hit();

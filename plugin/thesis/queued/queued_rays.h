@@ -39,7 +39,7 @@ public:
 
     /// Puts rays into the queue of level 1; with those under way, at most kMax. skip: empty, or
     /// one per ray, as the tokens.
-    void add(bool any_hit, const RaySpan& rays, std::span<const TriangleId> skip,
+    void add(bool any_hit, const RaySpan& rays, const Exclusions& without,
              std::span<const uint64_t> tokens);
     size_t under_way() const { return states_.size() - free_.size(); }
     static constexpr size_t kMax = size_t(1) << 20; // some 200 bytes each

@@ -132,7 +132,8 @@ Result<Done> QueuedTwoLevel::trace(const Query& query) {
     for (size_t first = 0; first < query.rays.size(); first += QueuedRays::kMax) {
         const size_t count = std::min(QueuedRays::kMax, query.rays.size() - first);
         const Query part = query.part(first, count);
-        states.add(Query::kAnyHit, part.rays, part.skip, std::span(tokens).subspan(first, count));
+        states.add(Query::kAnyHit, part.rays, part.without,
+                   std::span(tokens).subspan(first, count));
         if (Result<Done> done = trace_in_rounds(states); !done)
             return done;
         states.take_answered([&](const QueuedRay& state) { query.set(state.token, state.hit); });
@@ -141,14 +142,14 @@ Result<Done> QueuedTwoLevel::trace(const Query& query) {
     return Done{};
 }
 
-Result<Done> QueuedTwoLevel::intersect(RaySpan rays, std::span<const TriangleId> skip,
+Result<Done> QueuedTwoLevel::intersect(RaySpan rays, const Exclusions& without,
                                        std::span<Hit> hits) {
-    return trace(NearestQuery{rays, skip, hits});
+    return trace(NearestQuery{rays, without, hits});
 }
 
-Result<Done> QueuedTwoLevel::occluded(RaySpan rays, std::span<const TriangleId> skip,
+Result<Done> QueuedTwoLevel::occluded(RaySpan rays, const Exclusions& without,
                                       std::span<uint8_t> occluded) {
-    return trace(OcclusionQuery{rays, skip, occluded});
+    return trace(OcclusionQuery{rays, without, occluded});
 }
 
 Result<Done> QueuedTwoLevel::stream(StreamHost& host) {

@@ -14,9 +14,8 @@ class QueuedTwoLevel final : public Structure {
 public:
     explicit QueuedTwoLevel(std::unique_ptr<QueuedScene> scene) : scene_(std::move(scene)) {}
 
-    Result<Done> intersect(RaySpan rays, std::span<const TriangleId> skip,
-                           std::span<Hit> hits) override;
-    Result<Done> occluded(RaySpan rays, std::span<const TriangleId> skip,
+    Result<Done> intersect(RaySpan rays, const Exclusions& without, std::span<Hit> hits) override;
+    Result<Done> occluded(RaySpan rays, const Exclusions& without,
                           std::span<uint8_t> occluded) override;
     Result<Done> stream(StreamHost& host) override;
     ovc_statistics report() const override { return scene_->statistics; }
