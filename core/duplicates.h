@@ -5,45 +5,53 @@
 
 #include "core/soup.h"
 
+#include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace ovc {
 
-/// Do both have the same three corners, in any order and either winding? 0 equals -0.
+/// Returns whether both triangles have the same three corners, in any order and either winding. 0
+/// equals -0.
 bool same_corners(const Triangle& a, const Triangle& b);
 
-/// The hit as one of `id`, whose corners are those of the triangle that was hit: u and v then count
-/// from its own.
+/// Returns the hit as one of triangle `id`, which has the same corners as the triangle that was
+/// hit: u and v then count from the corners of `id`.
 Hit as_hit_of(TriangleId id, const Soup& soup, const Hit& hit);
 
-/// The sets of duplicates of a soup. Equal t goes to the smaller id, so the smallest of a set is
-/// the answer wherever one of them is; only a ray that does not see the smallest is answered with
-/// another one, and then with the second smallest.
+/// The sets of duplicates of a soup. At equal t the smaller id wins, so the smallest id of a set
+/// answers for all of it. Only a ray that skips the smallest is answered with another one, the
+/// second smallest.
 class Duplicates {
 public:
-    /// Takes all but the smallest id of each set out of `triangles`: finite ones, sorted, without
-    /// repetition, and so they stay. A triangle is a unit of progress.
+    /// Takes all ids but the smallest of each set out of `triangles`, and returns the sets. The
+    /// triangles are finite, sorted and without repetition, and stay so. A triangle is a unit of
+    /// progress.
     static Duplicates take_out(const Soup& soup, std::vector<TriangleId>& triangles,
                                BuildProgress* progress = nullptr);
 
-    /// The second smallest of the set whose smallest is `id`; `id` where there is no such set.
+    /// Returns the second smallest id of the set whose smallest is `id`, or `id` where there is no
+    /// such set.
     TriangleId second(TriangleId id) const;
 
-    /// Triangles taken out.
+    /// Returns how many triangles were taken out.
     uint64_t count() const { return count_; }
 
-    /// Of a set: what it leaves of itself.
+    /// The two ids of a set that can be answers.
     struct Pair {
         TriangleId smallest;
         TriangleId second;
     };
 
-    /// All sets, by smallest.
+    /// Returns all sets, sorted by smallest.
     std::span<const Pair> pairs() const { return pairs_; }
-    /// As pairs() and count() were; sorted.
+    /// Returns the duplicates that once had these pairs(), sorted by smallest, and this count().
     static Duplicates restored(std::span<const Pair> pairs, uint64_t count) {
+        assert(std::is_sorted(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
+            return a.smallest < b.smallest;
+        }));
         Duplicates duplicates;
         duplicates.pairs_.assign(pairs.begin(), pairs.end());
         duplicates.count_ = count;

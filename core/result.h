@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-/// What a caller may want to tell apart; most errors are for people alone.
+/// The kinds of error that a caller may want to tell apart; most errors are for people alone.
 enum class ErrorKind {
     Other,
     InvalidArgument,
@@ -20,7 +20,8 @@ enum class ErrorKind {
     Cancelled
 };
 
-/// One sentence: which file, line or argument, what was found, what was expected.
+/// One sentence that names the file, line or argument, and says what was found and what was
+/// expected.
 struct Error {
     std::string message;
     ErrorKind kind = ErrorKind::Other;
@@ -58,7 +59,7 @@ private:
     std::variant<T, Error> state_;
 };
 
-/// The Result of something that has no value: Done{} or an Error.
+/// The value of a Result that has no value: Result<Done> is Done{} or an Error.
 struct Done {};
 
 } // namespace ovc
