@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU KDT: leaves visited by walk.h, triangles tested by core/exact/triangle.h.
+// The CPU KDT: walk.h visits leaves, and core/exact/triangle.h tests their triangles.
 #include "kdtree/traverse.h"
 
 #include "core/system/parallel.h"
