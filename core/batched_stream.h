@@ -66,7 +66,7 @@ private:
         return Done{};
     }
 
-    static constexpr size_t kMaxAtOnce = size_t(1) << 20; // rays a batch
+    static constexpr size_t kMaxAtOnce = size_t(1) << 20; // rays per batch
 
     Batches& batches_;
     StreamHost& host_;

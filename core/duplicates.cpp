@@ -16,7 +16,7 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kHashGrain = 4096; // triangles a task
+constexpr size_t kHashGrain = 4096; // triangles per task
 
 /// A table of one bit per hash, which the bits of the hash above `shift` select.
 class BitTable {

@@ -26,7 +26,7 @@ inline double fresnel_mean(double ior) {
     assert(ior > 0);
     if (ior < 1) // n^2 (1 - F) of the other side passes, total reflection included
         return 1 - (1 - fresnel_mean(1 / ior)) * ior * ior;
-    if (ior < 1 + 1e-4) // the formula cancels
+    if (ior < 1 + 1e-4) // the formula's terms cancel
         return 0;
     const double n = ior, n2 = n * n, n4 = n2 * n2;
     return 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +

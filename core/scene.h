@@ -229,13 +229,13 @@ struct Scene {
     std::vector<Light> lights;
     bool may_add_light = true;         // without lights the host adds one beside the camera
     std::optional<Camera> camera;      // none: the host frames the bounds
-    std::optional<ImageSize> size;     // of the picture that the file asks for
+    std::optional<ImageSize> size;     // of the picture, where the file asks for one
     std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's
     Background background;
     float exposure = 1; // lights, background and emission were multiplied by it to fit a picture
     /// POV-Ray's assumed_gamma: a rendered value ^ gamma is linear light. Or kSrgbGamma.
     double gamma = 1;
-    std::optional<Instancing> instancing; // none: every triangle is its own
+    std::optional<Instancing> instancing; // none: the file has no instances
     std::vector<MappedFile> files;        // hold the bytes of borrowing chunks and of `saved`
     Bytes saved; // levels that the plugin saved (ovc_scene_config.saved), or empty
 

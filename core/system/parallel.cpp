@@ -115,7 +115,7 @@ void start_threads() {
         try_threads(thread_count() - 1);
         try {
             gather_threads(thread_count());
-        } catch (const std::runtime_error&) { // so oneTBB reports the same
+        } catch (const std::runtime_error&) { // oneTBB's report of the same failure
             throw std::system_error(
                 std::make_error_code(std::errc::resource_unavailable_try_again));
         }

@@ -62,7 +62,7 @@ uint64_t BoundedPasses::run(GLuint kernel, GLuint retire, uint32_t rows) const {
     glClearNamedFramebufferfv(depth_only_.id(), GL_DEPTH, 0, &far);
     glDepthMask(GL_FALSE);
     glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS); // at the one depth of all drawing, a written pixel passes no more
+    glDepthFunc(GL_LESS); // all is drawn at one depth, so a written pixel fails
     uint64_t passes = 0;
     for (uint64_t left = uint64_t(width_) * rows; left > 0; ++passes) {
         const State& from = states_[passes % 2];

@@ -16,7 +16,7 @@ namespace ovc::thesis {
 static constexpr double kFastSlack = 0x1p-20;
 namespace {
 
-constexpr size_t kQueueGrain = 256; // rays a task
+constexpr size_t kQueueGrain = 256; // rays per task
 
 /// Returns the part of the ray that is still of interest.
 PreparedRay rest_of(const QueuedRay& state) {

@@ -14,7 +14,7 @@
 namespace ovc::thesis {
 namespace {
 
-constexpr uint64_t kPagesAtOnce = 3;    // a page takes at most this share of the pool
+constexpr uint64_t kPagesAtOnce = 3;    // the pool holds so many of the largest pages
 constexpr uint64_t kDefaultLeaves = 10; // thesis, section 4
 
 /// The bytes of a triangle in a page where most triangles pair up; soups without shared edges take
