@@ -10,8 +10,7 @@
 
 namespace ovc {
 
-/// Batches is a class with intersect() and occluded() as plugin/structure/structure.h declares
-/// them.
+/// Batches has intersect() and occluded() as plugin/structure/structure.h declares them.
 template <class Batches>
 class BatchedStream final : public RayStream {
 public:

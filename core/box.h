@@ -28,8 +28,7 @@ struct BoxT {
     Vec extent() const { return hi - lo; }
     Vec center() const { return lo + (hi - lo) * T(0.5); }
 
-    /// Returns half the surface area, which the surface-area heuristic compares; 0 when the box is
-    /// empty.
+    /// Returns half the surface area, for the surface-area heuristic; 0 when the box is empty.
     T half_area() const {
         if (empty())
             return T(0);
@@ -44,8 +43,7 @@ struct BoxT {
                max_component(glm::max(glm::abs(lo), glm::abs(hi)));
     }
 
-    /// Returns the box enlarged by `margin` on each side, or made smaller where that is negative.
-    /// Each bound is rounded to nearest.
+    /// Returns the box larger by `margin` on each side (smaller where that is negative), rounded.
     BoxT padded(T margin) const { return {lo - Vec(margin), hi + Vec(margin)}; }
 
     /// Returns the common part, which is empty when the boxes are apart.

@@ -63,8 +63,7 @@ std::vector<Suspect> suspects(const Part& part, std::span<const TriangleId> tria
                               std::span<const uint64_t> hashes) {
     assert(hashes.size() == triangles.size() && part.number < part.count);
     const size_t some = std::max<size_t>(triangles.size() / part.count, 64);
-    // The tables use different bits of the hash, so two hashes that collide in one hardly ever do
-    // in the other.
+    // The tables use different bits of the hash: hashes that collide in one hardly ever do in both.
     BitTable came(16 * some, 0), came_again(some, 24);
     // The loop does not branch on whether a hash is in the part, because no CPU could predict that.
     for (const uint64_t h : hashes) {

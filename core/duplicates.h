@@ -13,8 +13,7 @@
 
 namespace ovc {
 
-/// Returns whether both triangles have the same three corners, in any order and either winding. 0
-/// equals -0.
+/// Returns whether both have the same three corners, in any order and either winding. 0 equals -0.
 bool same_corners(const Triangle& a, const Triangle& b);
 
 /// Returns the hit as one of triangle `id`, which has the same corners as the triangle that was
@@ -26,14 +25,12 @@ Hit as_hit_of(TriangleId id, const Soup& soup, const Hit& hit);
 /// second smallest.
 class Duplicates {
 public:
-    /// Takes all ids but the smallest of each set out of `triangles`, and returns the sets. The
-    /// triangles are finite, sorted and without repetition, and stay so. A triangle is a unit of
-    /// progress.
+    /// Takes all ids but the smallest of each set out of `triangles`, and returns the sets. The ids
+    /// are of finite triangles, sorted and unique, and stay so. A triangle is a unit of progress.
     static Duplicates take_out(const Soup& soup, std::vector<TriangleId>& triangles,
                                BuildProgress* progress = nullptr);
 
-    /// Returns the second smallest id of the set whose smallest is `id`, or `id` where there is no
-    /// such set.
+    /// Returns the second smallest id of the set whose smallest is `id`; `id` where there is none.
     TriangleId second(TriangleId id) const;
 
     /// Returns how many triangles were taken out.

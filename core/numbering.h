@@ -11,8 +11,7 @@
 
 namespace ovc {
 
-/// Counts the triangles from 0 in the order of their ids. The soup must have fewer than 2^32 of
-/// them.
+/// Counts triangles from 0 in the order of their ids. The soup must have fewer than 2^32 of them.
 class Numbering {
 public:
     Numbering() = default;
@@ -39,8 +38,7 @@ public:
 
     TriangleId id(uint32_t number) const {
         assert(!first_.empty() && number < first_.back());
-        // The triangle is in the last chunk that begins at or before the number; empty chunks
-        // before it begin at the same number.
+        // The last chunk that begins at or before the number holds it; empty ones may precede.
         const auto after = std::upper_bound(first_.begin(), first_.end(), number);
         const uint32_t mesh = uint32_t(after - first_.begin()) - 1;
         return {mesh, number - first_[mesh]};

@@ -15,8 +15,7 @@ namespace ovc {
 /// The mesh and the prim of no triangle.
 inline constexpr uint32_t kNone = 0xffffffffu;
 
-/// Names a triangle: `mesh` is the mesh in the order of adding, `prim` the triangle in it. Ids are
-/// ordered by mesh, then prim.
+/// Names a triangle by the number of its mesh and its own number in it. Ordered by mesh, then prim.
 struct TriangleId {
     uint32_t mesh = kNone;
     uint32_t prim = kNone;
@@ -55,16 +54,14 @@ struct Hit {
 
     bool is_hit() const { return id.mesh != kNone; }
 
-    /// Returns whether this hit wins over another hit of the same ray: by smaller t, ties by the
-    /// smaller (mesh, prim).
+    /// Returns whether this hit of a ray wins: by smaller t, ties by the smaller (mesh, prim).
     bool nearer_than(const Hit& other) const {
         return t < other.t || (t == other.t && id < other.id);
     }
 };
 static_assert(sizeof(Hit) == 32 && offsetof(Hit, id) == 24);
 
-/// Notes that two-level can write about rays besides their hits. Each span is empty, or has one
-/// entry per ray.
+/// Two-level's notes on rays besides their hits. Each span is empty, or has an entry per ray.
 struct RayNotes {
     std::span<uint32_t> leaf;    // the level-1 leaf in which the hit lies; kNone: a miss
     std::span<uint32_t> passes;  // the number of passes that the ray took part in

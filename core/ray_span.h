@@ -31,8 +31,8 @@ public:
 
     size_t size() const { return size_; }
 
-    /// Returns ray i in double. A t_min or t_max of -0 becomes 0, because the kernel uses their
-    /// signs for other things.
+    /// Returns ray i. A t_min or t_max of -0 becomes 0, because the kernel uses their signs for
+    /// other things.
     Ray operator[](size_t i) const {
         assert(i < size_);
         if (!floats_) {
@@ -43,8 +43,7 @@ public:
         return {dvec3(ray.org), ray.t_min + 0.0, dvec3(ray.dir), ray.t_max + 0.0};
     }
 
-    /// Returns the rays themselves where they are doubles; else copies them into `room`, which is
-    /// empty before, and returns that.
+    /// Returns the rays themselves where they are doubles; else a copy in `room`, empty before.
     std::span<const Ray> in_double(std::vector<Ray>& room) const {
         if (!floats_)
             return {doubles_, size_};

@@ -20,8 +20,7 @@ enum class ErrorKind {
     Cancelled
 };
 
-/// One sentence that names the file, line or argument, and says what was found and what was
-/// expected.
+/// One sentence: the file, line or argument, the value found and the value expected.
 struct Error {
     std::string message;
     ErrorKind kind = ErrorKind::Other;
@@ -59,7 +58,7 @@ private:
     std::variant<T, Error> state_;
 };
 
-/// The value of a Result that has no value: Result<Done> is Done{} or an Error.
+/// Stands for the value of a Result that has none: Result<Done> is Done{} or an Error.
 struct Done {};
 
 } // namespace ovc

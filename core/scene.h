@@ -94,8 +94,7 @@ struct Material {
     bool operator==(const Material&) const = default;
 };
 
-/// Returns whether ior is in a range that lies far beyond any material, and within which its square
-/// is a number.
+/// Returns whether ior is in a range that exceeds all materials, and whose squares are numbers.
 inline bool is_usable_ior(double ior) {
     return ior >= 1e-6 && ior <= 1e6;
 }
@@ -108,13 +107,11 @@ struct MeshInfo {
     /// 3 per triangle, unit length; or empty, and then the triangle's own normal shades it.
     std::vector<vec3> normals;
     bool no_shadow = false; // light passes as if the mesh were not there
-    /// The mesh whose normals this one has, in the same order, turned by `turn`; kNone: its own.
-    /// Instances share normals in this way.
+    /// The mesh whose normals this one shares, turned by `turn`; kNone: its own. Instances use it.
     uint32_t normals_from = kNone;
     dmat3 turn{1}; // multiplies those normals, whose length then does not matter
-    /// How many corners have these in the file and not here. Importers leave out normals that
-    /// cannot be used or say nothing new, and all texture coordinates, because no material of ours
-    /// has textures.
+    /// Counts the corners that have these in the file and not here: normals that cannot be used or
+    /// say nothing new, and all texture coordinates, because no material of ours has textures.
     uint64_t normals_left_out = 0;
     uint64_t texture_coordinates_left_out = 0;
 };
@@ -140,9 +137,9 @@ struct Light {
     /// it. Surfaces behind that plane are lit too, as in POV-Ray.
     bool parallel = false;
     bool shadowless = false; // shines through everything, and makes no highlights
-    /// Unless this is 0, the light is multiplied by 2 / (1 + (distance / fade_distance) ^
-    /// fade_power). For light that falls with the square of the distance, take a tiny fade_distance
-    /// D, power 2, and color / (2 D^2).
+    /// Unless 0, the light is multiplied by 2 / (1 + (distance / fade_distance) ^ fade_power).
+    /// Light that falls with the square of the distance has a tiny fade_distance D, power 2, color
+    /// / (2 D^2).
     double fade_distance = 0;
     double fade_power = 0;
     /// The light stands for emitters or the sky, whose light path tracing finds by itself.
@@ -153,9 +150,8 @@ struct Light {
 /// whatever the image's size, and of any handedness. With `orthographic`, rays begin in the
 /// window's plane through the eye, and all go along `direction`.
 struct ImageWindow {
-    /// How the picture is bent, as POV-Ray's cameras of these names do it; Flat does not bend it.
-    /// All others cover `angle` and `vertical_angle`, and take only the shape from `right` and
-    /// `up`.
+    /// How the picture is bent, as by POV-Ray's cameras of these names; Flat is not bent. All
+    /// others cover `angle` and `vertical_angle`, and take only the shape from `right` and `up`.
     enum class Bend {
         Flat,
         Fisheye,
@@ -206,8 +202,7 @@ struct Background {
 /// The Scene::gamma that stands for sRGB's curve instead of a power.
 inline constexpr double kSrgbGamma = 0;
 
-/// Returns the linear light that a color means in a scene with that gamma; a negative color means
-/// 0.
+/// Returns the linear light of a color in a scene with that gamma; a negative color counts as 0.
 inline float linear_light(float color, double gamma) {
     if (gamma != kSrgbGamma)
         return std::pow(std::max(color, 0.0f), float(gamma));
@@ -239,8 +234,7 @@ struct Scene {
     std::vector<MappedFile> files;        // hold the bytes of borrowing chunks and of `saved`
     Bytes saved; // levels that the plugin saved (ovc_scene_config.saved), or empty
 
-    /// Returns 3 normals per triangle, to be turned by MeshInfo::turn; none where the mesh has
-    /// none.
+    /// Returns 3 normals per triangle, to be turned by MeshInfo::turn; none if the mesh has none.
     const std::vector<vec3>& normals_of(const MeshInfo& mesh) const {
         assert(mesh.normals_from == kNone || mesh.normals_from < meshes.size());
         return mesh.normals_from == kNone ? mesh.normals : meshes[mesh.normals_from].normals;

@@ -27,8 +27,7 @@ double in_range(double x) {
     return size > 0x1p256 ? std::numeric_limits<double>::infinity() : x;
 }
 
-/// Returns whether the sum with any finite float is in range: a multiple of 2^-201, and less than
-/// 2^256.
+/// Returns whether each sum with a float is in range: a multiple of 2^-201, less than 2^256.
 bool keeps_floats_in_range(double origin) {
     const double size = std::abs(origin);
     return size == 0 || (size >= 0x1p-149 && size <= 0x1p255);
@@ -125,8 +124,7 @@ static bool on_a_line(const Triangle& t) {
     for (int axis = 0; axis < 3; ++axis) {
         const int j = (axis + 1) % 3, k = (axis + 2) % 3;
         const double left = ab[j] * ac[k], right = ab[k] * ac[j];
-        // Each side rounds three times, in two differences and a product, and their difference once
-        // more.
+        // Each side rounds in two differences and a product, and their difference rounds once more.
         const double error = 5 * v * (std::abs(left) + std::abs(right)) + 0x1p-1060;
         if (std::abs(left - right) > error)
             return false;

@@ -32,8 +32,7 @@ public:
     Chunk instance() const;
     /// Returns the same triangles without the transform. They borrow this chunk's corners.
     Chunk unplaced() const;
-    /// Chunks of the same triangles, placed or not, have equal keys; other chunks have different
-    /// ones.
+    /// Equal for chunks of the same triangles, placed or not, and for no others.
     using MeshKey = std::array<uint64_t, 5>;
     MeshKey mesh_key() const;
     /// Moves the triangles from where they are now, which an earlier transform may have decided.

@@ -33,8 +33,7 @@ inline const Transform& or_identity(const Transform* transform) {
     return transform ? *transform : kIdentity;
 }
 
-/// Returns the rows of the inverse of the matrix, without its shift; none where doubles cannot tell
-/// it.
+/// Returns the rows of the inverse matrix, without shift; none where doubles cannot tell it.
 std::optional<std::array<dvec3, 3>> inverse_matrix(const Transform& transform);
 
 /// Returns the box in the world of everything that lies in `box` before it is placed, roundings

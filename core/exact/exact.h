@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact: sums, differences and products of doubles without a rounding, whatever their exponents.
-// This is the last stage of every decision about a hit; the stages before it leave few numbers to
-// it.
+// Exact: sums, differences and products of doubles without a rounding, whatever their exponents. It
+// is the last stage of every decision about a hit, and earlier stages leave it few numbers.
 #pragma once
 
 #include "core/exact/solution.h"
@@ -47,8 +46,8 @@ private:
     int end() const { return exponent_ + size_; }
     void complement();
     void trim();
-    /// Returns the magnitude as mantissa * 2^exponent, 0.5 <= mantissa < 1, off by at most 2^-62 of
-    /// it. The number is not zero.
+    /// Returns the mantissa of the magnitude (not 0), which is mantissa * 2^exponent up to an error
+    /// of 2^-62 of it; 0.5 <= mantissa < 1.
     double leading(int& exponent) const;
 
     std::array<uint64_t, kMaxLimbs> limbs_; // only the first size_ are set

@@ -17,8 +17,7 @@ public:
     /// Returns whether the line meets the closed triangle: no two weights have opposite signs, and
     /// not all are zero.
     bool inside() const;
-    /// Returns the corners that have a part in the hit, as Candidate::support
-    /// (core/exact/triangle.h). This and all below need inside().
+    /// Returns Candidate::support (core/exact/triangle.h). This and all below need inside().
     uint32_t support() const;
     /// Returns the sign of t - `t`, which is finite.
     int compare_t(double t) const;

@@ -18,8 +18,7 @@ public:
     explicit Numbers(uint64_t seed) : engine_(seed) {}
 
     uint64_t below(uint64_t n) { return engine_() % n; }
-    /// Returns a number with a full mantissa or one of few bits; now and then it has any exponent,
-    /// and may be denormal.
+    /// Returns a full mantissa or few bits; now and then with any exponent, denormals among them.
     double next() {
         const int exponent = below(4) ? int(below(60)) - 30 : int(below(2090)) - 1074;
         const double mantissa = double(engine_() >> 11) * 0x1p-52 - 1;

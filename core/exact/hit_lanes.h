@@ -23,8 +23,7 @@ struct HitLanes {
 /// on every processor.
 void round_hits(HitLanes& lanes);
 
-/// Returns a round_hits() for each width of vectors that the processor has, the widest last: for
-/// tests.
+/// Returns a round_hits() per width of vectors that the processor has, the widest last: for tests.
 using RoundHits = void (*)(HitLanes&);
 std::vector<RoundHits> ways_to_round_hits();
 

@@ -26,8 +26,7 @@ int sign_of(const DoubleDouble& value, double error) {
 
 /// Returns the sign of the quotient minus x; 0 where its error leaves it open.
 int compare(const Quotient<double>& quotient, double x) {
-    // The difference of neighbouring doubles is exact; that of others rounds, which does not
-    // matter.
+    // The difference of neighbouring doubles is exact, and the rounding of others does not matter.
     const double gap = (quotient.value.hi - x) + quotient.value.lo;
     const double error = quotient.error + 0x1p-51 * std::abs(quotient.value.lo);
     return gap > error ? 1 : gap < -error ? -1 : 0;

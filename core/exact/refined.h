@@ -17,8 +17,7 @@ struct RefinedAnswer {
 /// Returns the answer of exact_candidate() for finite corners, where it is known.
 RefinedAnswer refined_candidate(const PreparedRay& p, const Triangle& triangle, TriangleId id);
 
-/// Returns the hit of a triangle that the ray hits, with t, u and v rounded once. support: as in
-/// Candidate.
+/// Returns the hit of a triangle that is hit, t, u and v rounded once. support: as in Candidate.
 Hit rounded_hit(const PreparedRay& p, const Triangle& triangle, TriangleId id, uint32_t support);
 
 } // namespace ovc

@@ -68,8 +68,7 @@ struct Quotient {
     DoubleDoubleOf<V> value;
     V error;
 
-    /// Returns whether every number within the bound rounds to value.hi: nonzero or true where it
-    /// does.
+    /// Returns whether every number within the bound rounds to value.hi: nonzero or true if so.
     OVC_INLINE auto is_rounded() const {
         return (value.hi + (value.lo + error) == value.hi) &
                (value.hi + (value.lo - error) == value.hi);

@@ -31,8 +31,7 @@ OVC_INLINE auto dot(const Vec3Of<A>& a, const Vec3Of<B>& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// Returns the solution for ab = b - a, ac = c - a and from_a = org - a. Number * Component is a
-/// Number.
+/// Solves for ab = b - a, ac = c - a and from_a = org - a. Number * Component is a Number.
 template <class Number, class Component>
 OVC_INLINE Solution<Number> solve(const Vec3Of<Number>& ab, const Vec3Of<Number>& ac,
                                   const Vec3Of<Number>& from_a, const Vec3Of<Component>& dir) {

@@ -62,8 +62,7 @@ struct Candidate {
                           // corner, two: it lies on that side. All where that is not known
     bool refined = false; // t is from doubled precision, which need not be asked again
 
-    /// Returns the sign of this t minus the other's, on the same ray; 0 where the errors leave it
-    /// open.
+    /// Returns the sign of this t minus the other's, on the same ray; 0 where errors leave it open.
     int compare_t(const Candidate& other) const {
         const double low = t_low - other.t_low;
         const double gap = (hit.t - other.hit.t) + low;
@@ -162,8 +161,7 @@ public:
 
     /// Returns the hit, its t, u and v rounded once: the doubles nearest to the exact values.
     Hit hit() const;
-    /// Returns the hit with t, u and v as they were found, for callers that only ask whether
-    /// something is hit.
+    /// Returns the hit as it was found, for callers that only ask whether something is hit.
     const Hit& unrounded_hit() const { return best_.hit; }
 
     /// Returns the t beyond which nothing can win any more.
@@ -187,9 +185,8 @@ private:
         std::array<TriangleId, kSlots> ids_{};
     };
 
-    /// Decides a triangle that shares the corner or the side that the best hit lies on, without
-    /// another exact number, because thousands may share it. Returns false where it decides
-    /// nothing.
+    /// Decides a triangle that shares the corner or side that the best hit lies on, as thousands
+    /// may, without another exact number. Returns false where it decides nothing.
     bool offer_neighbour(const Triangle& triangle, TriangleId id);
     /// Returns exact_candidate(), but nothing for a triangle that was asked before, because leaves
     /// that overlap offer it again.

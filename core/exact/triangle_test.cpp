@@ -129,8 +129,7 @@ TEST_P(Watertight, NoRayFromOutsideSlipsThroughEdgesOrVerticesThatFaceIt) {
     for (uint64_t seed = 0; seed < 50000; ++seed) {
         Random random(seed);
         const dvec3 target = point_to_aim_at(mesh, random);
-        // The ray goes roughly along the normal, and so never near the silhouette, where a miss may
-        // be right.
+        // Roughly along the normal, the ray is far from the silhouette, where a miss may be right.
         const dvec3 org = target + 4.0 * (target - center) + random.in_cube(1.5);
         leaks += !meets(mesh, {org, 0, target - org});
     }
@@ -319,8 +318,7 @@ TEST(Intersect, AgreesWithExactArithmeticAwayFromEdges) {
     EXPECT_GT(misses, 1000);
 }
 
-/// Returns the part of [0, infinity) that a ray spends in a box, without rounding; nothing when it
-/// misses.
+/// Returns the part of [0, infinity) of a ray in a box, without rounding; nothing for a miss.
 std::optional<std::pair<Rational, Rational>> exact_clip(const Ray& ray, const Box& box) {
     Rational enter = 0, exit = 0;
     bool bounded = false;

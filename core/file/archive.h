@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Archive: named parts of bytes one after the other, each with a checksum, made to be mapped into
-// memory. Scene files, the plugin's saved levels, stored programs and unfinished pictures are
-// archives.
+// memory: scene files, the plugin's saved levels, stored programs and unfinished pictures.
 //
 //   header   64 bytes: kind (16 characters), version (u32), a mark of the byte order (u32), 0
 //   parts    each begins at a multiple of 64; zeros in between
@@ -62,8 +61,7 @@ public:
         write(bytes_of(items));
     }
 
-    /// Ends the archive. Call this once, after the last part. Returns false where the sink wanted
-    /// no more.
+    /// Ends the archive; call this once. Returns false where the sink wanted no more.
     bool finish();
 
 private:
@@ -81,20 +79,17 @@ private:
 /// A view of an archive's bytes, which must outlive it.
 class Archive {
 public:
-    /// Returns a view of `bytes`, which begin at a multiple of kPartAlignment. Error: not such an
-    /// archive, another version, or damage to header and table. The sentence goes on from a name:
-    /// "is …".
+    /// Returns a view of `bytes`, which are aligned to kPartAlignment. Error: not such an archive,
+    /// another version, damage to header or table. The sentence goes on from a name: "is …".
     static Result<Archive> open(Bytes bytes, std::string_view kind, uint32_t version);
 
-    /// Returns the part's bytes, whose checksum was found right. Error: none of this name, or
-    /// damage.
+    /// Returns the part's bytes if their checksum is right. Error: none of this name, or damage.
     Result<Bytes> part(std::string_view name) const;
-    /// Returns the part's bytes without checking them, for a part that checks itself. Empty where
-    /// there is none.
+    /// Returns the bytes unchecked, for a part that checks itself; none where there is no such
+    /// part.
     Bytes unchecked(std::string_view name) const;
 
-    /// Returns a part of any number of T, or, with `count`, of so many. Error: as part(), or
-    /// another size.
+    /// Returns a part of any number of T, or of `count`. Error: as part(), or another size.
     template <class T>
     Result<std::span<const T>> items(std::string_view name, uint64_t count = ~uint64_t(0)) const {
         static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kPartAlignment);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Archive: parts come back in place as they were written; any changed bit and any missing byte is
-// noticed.
+// Archive: parts come back as written, in place; changed bits and missing bytes are noticed.
 #include "core/file/archive.h"
 
 #include "core/file/test_archive.h"

@@ -30,8 +30,7 @@ struct Image {
     }
 };
 
-/// The differences over all channels of all pixels. `differing` counts pixels that compare unequal,
-/// as a NaN does with itself.
+/// Covers all channels of all pixels; `differing` counts pixels that compare unequal, as NaN does.
 struct ImageDifference {
     double max = 0;
     double rmse = 0;

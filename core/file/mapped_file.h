@@ -14,8 +14,7 @@ namespace ovc {
 /// faults when touched. Replacing it by another file of its name does neither.
 class MappedFile {
 public:
-    /// Returns the file as memory. Error: there is none, it is no regular file, or it is empty; the
-    /// sentence names it.
+    /// Returns the file as memory. Error, which names the file: none, not regular, or empty.
     static Result<MappedFile> open(const std::filesystem::path& path);
 
     /// Holds no file.
@@ -27,8 +26,7 @@ public:
     }
     ~MappedFile();
 
-    /// Returns the file's bytes, aligned to pages of memory and valid as long as this holds the
-    /// file.
+    /// Returns the file's bytes, aligned to pages of memory; valid as long as this object.
     Bytes bytes() const { return bytes_; }
 
 private:

@@ -29,8 +29,7 @@ void parallel_for(size_t count, size_t grain, FunctionRef<void(size_t, size_t)> 
 void parallel_invoke(FunctionRef<void()> a, FunctionRef<void()> b);
 
 /// Forks of one recursion (in_forks): fork(a, b) runs both, perhaps at the same time. Unlike in
-/// parallel_invoke(), a thread that waits for one of them may take on any other fork of the
-/// recursion.
+/// parallel_invoke(), a thread that waits for one of them may take on another fork of it.
 class Fork {
 public:
     explicit Fork(void* context) : context_(context) {}

@@ -22,8 +22,7 @@ constexpr uint32_t kFlags = 0x3f;
 
 class ParallelMode : public testing::Test {
 protected:
-    /// Runs the host's first loop, and starts its threads, in the host's mode; then takes the
-    /// plugin's mode.
+    /// Starts oneTBB's threads by a loop in the host's mode, then takes the plugin's mode.
     void SetUp() override {
         _mm_setcsr(kOfTheHost);
         oneapi::tbb::parallel_for(0, 64, [](int) { look(); });

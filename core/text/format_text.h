@@ -40,8 +40,7 @@ std::string text_of(double value);
 /// Returns the value in hexadecimal, with zeros in front where it has fewer than `digits`.
 std::string hexadecimal(uint64_t value, size_t digits);
 
-/// Returns the pattern with each {} in turn replaced by one of the values, of which there are as
-/// many.
+/// Returns the pattern with its {} in turn replaced by the values, which are as many.
 std::string fill_in(std::string_view pattern, std::span<const std::string> values);
 
 /// Returns the pattern with each {} in turn replaced by the text of an argument: strings as they

@@ -7,8 +7,7 @@
 
 namespace ovc {
 
-/// Returns how many insertions, deletions, replacements and swaps of two neighbours lead from a to
-/// b.
+/// Counts the insertions, deletions, replacements and swaps of two neighbours from a to b.
 static size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<size_t> before_last, last(b.size() + 1), row(b.size() + 1);
     for (size_t j = 0; j <= b.size(); ++j)

@@ -16,9 +16,8 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
 /// Returns "; did you mean 'render'?", or nothing.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
 
-/// Returns the same for a file that is not there, among those of its folder: "; did you mean
-/// 'dragon.ply'?". Upper and lower case count as equal. Of a folder of very many files only some
-/// are looked at.
+/// Returns the same for a missing file, from its folder: "; did you mean 'dragon.ply'?". Case does
+/// not matter. Of a folder of very many files only some are looked at.
 std::string did_you_mean_file(const std::filesystem::path& missing);
 
 } // namespace ovc
