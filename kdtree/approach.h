@@ -16,8 +16,7 @@ public:
     Approach(const PreparedRay& p, const Box& bounds);
 
     /// Returns the ray to walk along: p where that is near, else the same line to within the ray's
-    /// margin, with a t of its own. Triangles that the walk finds are to be tested against p
-    /// itself.
+    /// margin, with a t of its own. Triangles found on the way must be tested against p itself.
     const PreparedRay& ray() const { return moved_ ? *moved_ : p_; }
 
     /// Notes that p hits the triangle, which may lower the limit.

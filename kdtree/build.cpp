@@ -122,9 +122,8 @@ private:
         const size_t count = fragments.size() * options_.stands_for;
         if (fragments.size() < 2)
             return {};
-        // A build that is stopped by count still cuts a small enough cell where that saves three
-        // quarters of the work. A few far-reaching triangles would otherwise stretch the leaf's box
-        // until the rest is a dot in it.
+        // Level 1 still cuts a small enough cell where that saves three quarters of the work: a few
+        // far-reaching triangles would otherwise stretch its box until the rest is a dot in it.
         const bool stop = options_.max_leaf_triangles != 0;
         const bool enough = stop && count <= options_.max_leaf_triangles;
         if (enough && (count < kWorthIsolating || fragments.size() < kMinToIsolate))
@@ -238,8 +237,7 @@ private:
                 consider(best, cell, axis, x, below, above, n);
             };
             for (size_t i = 0; i < n; ++i) {
-                // Planes just before a fragment's beginning and just after its end cut no more
-                // fragments than they must.
+                // Just before a beginning and just after an end, a plane cuts no more than it must.
                 consider_at(std::nextafter(begin[i], cell.lo[axis]));
                 consider_at(std::nextafter(end[i], cell.hi[axis]));
             }

@@ -15,9 +15,8 @@
 namespace ovc {
 
 struct KdBuildOptions {
-    /// 0: the build splits cells as long as the heuristic says that it pays (the CPU KDT). Else it
-    /// splits cells of more triangles than this as long as a split helps, and smaller ones only
-    /// where that saves three quarters of the work (level 1).
+    /// 0: split as long as the heuristic says that it pays (the CPU KDT). Else: split cells of more
+    /// triangles while a split helps, others where it saves three quarters of the work (level 1).
     uint32_t max_leaf_triangles = 0;
     uint32_t stands_for = 1;    // each given triangle stands for so many; multiplies counts
     double traversal_cost = 15; // Wald and Havran 2006, section 5.1
@@ -29,8 +28,7 @@ struct KdBuildOptions {
 /// Returns the tree over all hittable triangles of the soup.
 KdTree build_kd_tree(const Soup& soup, const KdBuildOptions& options = {});
 
-/// Returns the tree over `triangles` of the soup, which are hittable, within `bounds`; it leaves
-/// out triangles outside.
+/// Returns the tree over hittable `triangles` of the soup, without those outside of `bounds`.
 KdTree build_kd_tree(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                      const KdBuildOptions& options);
 

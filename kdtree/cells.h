@@ -23,8 +23,7 @@ struct Cell {
     Box padded;
 };
 
-/// Returns the cells of the tree over `bounds`, in the order of their nodes. The tree has at least
-/// a root.
+/// Returns the cells of the tree (at least a root) over `bounds`, in the order of their nodes.
 std::vector<Cell> cells_of(std::span<const KdNode> nodes, const Box& bounds, double padding);
 
 /// Finds the cells that triangles touch. Keeps references to the nodes and the cells.

@@ -111,10 +111,9 @@ public:
         level1_.padding = padding_of(bounds);
     }
 
-    /// Appends the tree over `box`, which holds `triangles`, cut by a sample of them. Cells that
-    /// hold more triangles than the sample suggested are cut again by all that they hold.
-    /// finds_far: triangles that reach far may go into a leaf of their own, which is possible only
-    /// before there are other leaves.
+    /// Appends the tree over `box`, which holds `triangles`, by a sample of them. Cells with more
+    /// triangles than the sample suggested are cut again by all they hold. finds_far: triangles
+    /// that reach far may go into a leaf of their own; only where there are no leaves yet.
     void cut(std::span<const TriangleId> triangles, const Box& box, uint32_t most,
              const Sample& drawn = {}, bool finds_far = false) {
         const uint32_t rate = sample_rate(triangles.size(), most);
@@ -299,8 +298,7 @@ double padding_of(const Box& scene) {
 KdTree cut_sample(const Soup& soup, std::span<const TriangleId> sample, uint32_t rate,
                   const Box& box, uint32_t max_leaf_triangles, BuildProgress* progress) {
     KdBuildOptions options;
-    // Random sampling makes a leaf of `most` triangles larger by about the root of their number in
-    // the sample; the limit leaves that much room.
+    // The number of a leaf's triangles in the sample deviates by about its root; this leaves room.
     const double most = double(max_leaf_triangles);
     options.max_leaf_triangles =
         rate == 1 ? max_leaf_triangles : uint32_t(most - std::sqrt(most * rate));

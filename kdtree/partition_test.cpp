@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Level 1: tests leaf sizes, and that walking leaf by leaf finds the hits that testing every
-// triangle finds.
+// Level 1: leaf sizes, and walks leaf by leaf that must find the hits of testing every triangle.
 #include "kdtree/partition.h"
 
 #include "kdtree/restart.h"

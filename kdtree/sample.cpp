@@ -12,9 +12,8 @@
 namespace ovc {
 namespace {
 
-// Measured (docs/benchmarks.md, "The plan"): with this many triangles in a sample, the planes, the
-// number of leaves and the triangles that planes cut stay within a few percent of those of all
-// triangles.
+// Measured (docs/benchmarks.md, "The plan"): this many triangles keep the planes, the number of
+// leaves and the triangles that planes cut within a few percent of those of all triangles.
 constexpr uint64_t kMinInAll = 8192;
 constexpr uint64_t kMinInALeaf = 128;
 constexpr uint64_t kHighestRate = 64; // at higher rates, drawing a sample costs more than using it

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of a soup: enough triangles to choose level 1's planes by, so that not all need be looked
-// at.
+// Samples of a soup, from which level 1's planes are chosen without looking at all triangles.
 #pragma once
 
 #include "core/build_progress.h"
@@ -12,9 +11,8 @@
 
 namespace ovc {
 
-/// Returns how many of `triangles` one triangle of a sample stands for where leaves of at most
-/// leaf_triangles are cut: a power of two, which is 1 (the sample is all of them) where there are
-/// few in all or in a leaf.
+/// Returns the number of `triangles` per triangle of a sample where leaves of at most
+/// leaf_triangles are cut: a power of two; 1, so all, where there are few in all or in a leaf.
 uint32_t sample_rate(uint64_t triangles, uint64_t leaf_triangles);
 
 /// Returns about one in `rate` (a power of two) of the triangles, in order: those that their

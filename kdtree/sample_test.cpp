@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples: tests how many triangles they have, which ones, and that a level 1 cut by them keeps to
-// its count.
+// Samples: their size, their members, and that a level 1 cut by them keeps to its count.
 #include "kdtree/sample.h"
 
 #include "kdtree/partition.h"

@@ -11,15 +11,15 @@
 
 namespace ovc {
 
-/// Returns the nearest hit of one ray, ties to the smaller id; a miss for an invalid ray. skip: the
-/// triangle that the ray does not see.
+/// Returns the nearest hit of one ray, ties to the smaller id; a miss for an invalid ray. The ray
+/// does not see the triangle `skip`.
 Hit intersect(const KdTree& tree, const Soup& soup, const Ray& ray, TriangleId skip = {});
 
 /// Returns true when the ray hits anything; false for an invalid ray.
 bool occluded(const KdTree& tree, const Soup& soup, const Ray& ray, TriangleId skip = {});
 
 /// Writes the nearest hit of rays[i] to hits[i], on all cores. skip: empty, or one triangle per ray
-/// that it does not see.
+/// that the ray does not see.
 void intersect(const KdTree& tree, const Soup& soup, std::span<const Ray> rays,
                std::span<const TriangleId> skip, std::span<Hit> hits);
 

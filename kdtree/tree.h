@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// KdTree: nodes, triangle references and bounds. build.h makes it; traverse.h and restart.h walk
-// it.
+// KdTree: nodes, triangle references, bounds. build.h makes it; traverse.h and restart.h walk it.
 #pragma once
 
 #include "core/box.h"
@@ -54,8 +53,7 @@ public:
         return bits_ >> 2;
     }
 
-    /// Returns the node for a place where the tree's nodes begin at `nodes` and its references at
-    /// `references`.
+    /// Returns the node for a tree whose nodes begin at `nodes` and references at `references`.
     KdNode moved(uint32_t nodes, uint32_t references) const {
         KdNode node = *this;
         node.index_ += is_leaf() ? references : nodes;

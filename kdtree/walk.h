@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Walks a KD-tree front to back along a ray. Split planes are as thick as the ray's rounding
-// margin, so that the walk never passes by a leaf that the exact ray touches; it may visit a leaf
-// too many.
+// margin, so the walk may visit a leaf too many, but passes by none that the exact ray touches.
 #pragma once
 
 #include "core/exact/triangle.h"
