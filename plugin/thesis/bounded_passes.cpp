@@ -39,8 +39,7 @@ bool BoundedPasses::complete() const {
            depth_only_.complete();
 }
 
-/// Returns how many rays have ended in `state` that had not ended before, and marks them in the
-/// depth texture.
+/// Returns how many rays have ended in `state` and not before, and marks them in depth_.
 uint64_t BoundedPasses::retired_since(GLuint retire, const State& state) const {
     glUseProgram(retire);
     glBindFramebuffer(GL_FRAMEBUFFER, depth_only_.id());

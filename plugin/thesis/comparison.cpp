@@ -178,8 +178,7 @@ private:
         return true;
     }
 
-    /// Translates the answer's triangles, which the kernels of the thesis name by their index in
-    /// the one leaf.
+    /// Returns the candidates by number; the kernels of the thesis name them by index in the leaf.
     Candidates candidates(const FrameAnswer& answer) const {
         const auto number = [&](uint32_t index) {
             return index < c_.whole().triangles.size()

@@ -178,8 +178,7 @@ TEST_F(Comparisons, TheSkipPointerBvhTakesMorePassesForLongerWays) {
     }
 }
 
-/// Returns sheets over each other, small beside the whole scene, so that any structure has them in
-/// one place.
+/// Returns sheets over each other, small beside the scene, so in one place of any structure.
 Soup sheets(size_t count) {
     std::vector<vec3> corners = {vec3(500), vec3(501, 500, 500), vec3(500, 501, 500)};
     for (size_t i = 0; i < count; ++i) {

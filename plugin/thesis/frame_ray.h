@@ -21,14 +21,12 @@ struct FrameRay {
 };
 static_assert(sizeof(FrameRay) == 32);
 
-/// An answer in the frame. prim is an index into the triangles of the scene, OVC_MISS, OVC_FLAGGED
-/// or OVC_CAPPED.
+/// prim is an index into the triangles of the scene, OVC_MISS, OVC_FLAGGED or OVC_CAPPED.
 struct FrameAnswer {
     std::array<uint32_t, 3> words;
     uint32_t prim;
 
-    /// Returns the triangles that may be the answer as well, or OVC_NO_TRIANGLE. Only in certified
-    /// precision.
+    /// If certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
     std::array<uint32_t, 2> further() const { return {words[0], words[1]}; }
     /// These return t, u and v. Only in fast precision.
     float t() const { return std::bit_cast<float>(words[0]); }

@@ -49,9 +49,8 @@ struct Planes {
 
 using Cell = std::array<uint32_t, 3>;
 
-/// Appends the cells of the block [from, to] that the triangle touches; it touches the block. It
-/// halves the block, because a large triangle's box holds many cells that the triangle does not
-/// come near.
+/// Appends the cells of the block [from, to] that the triangle touches; it touches the block. The
+/// block is halved, because a large triangle comes near few of its box's cells.
 void find_cells(const Planes& planes, const Triangle& triangle, uint32_t id, const Cell& from,
                 const Cell& to, std::vector<Reference>& out) {
     int axis = 0;

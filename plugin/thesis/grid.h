@@ -15,8 +15,7 @@
 
 namespace ovc::thesis {
 
-/// Returns the number of cells along each axis: about five cells per triangle (> 0), as nearly
-/// cubes as whole numbers allow.
+/// Returns the cells along each axis: about five a triangle (> 0), as nearly cubes as possible.
 std::array<uint32_t, 3> grid_resolution(const dvec3& extent, uint64_t triangles);
 
 /// Returns the grid, which lists every triangle in each cell that it touches when the cell is wider

@@ -31,9 +31,8 @@ struct MemoryPlan {
     uint32_t batch_rays() const;
 };
 
-/// Returns how `texels` (> 0) and rays share the budget. Error: the budget or the textures are too
-/// small; the sentence says what the scene takes and what is allowed, with at_least before what it
-/// takes.
+/// Returns how `texels` (> 0) and rays share the budget. Error: budget or textures are too small;
+/// it tells the scene's bytes, after at_least, and the limit.
 Result<MemoryPlan> plan_memory(const RunnerOptions& options, uint64_t texels,
                                const char* at_least = "");
 

@@ -65,8 +65,7 @@ uint64_t work_of(ovc_structure structure, uint64_t triangles) {
 uint64_t min_bytes(ovc_structure structure, uint64_t triangles) {
     const bool pairs =
         structure == OVC_STRUCTURE_SINGLE_TEXTURE || structure == OVC_STRUCTURE_MULTI_TEXTURE;
-    // A pair of triangles is a unit, and four units have a node; in the others a triangle is three
-    // texels.
+    // A pair is a unit, and four units have a node; in the others a triangle is three texels.
     return pairs ? triangles * OVC_UNIT_BYTES * 5 / 8 : triangles * 3 * sizeof(uvec4);
 }
 

@@ -33,8 +33,7 @@ const char* name_of(ovc_structure structure);
 /// Returns a lower bound of the bytes that the system's texels take for so many triangles.
 uint64_t min_bytes(ovc_structure structure, uint64_t triangles);
 
-/// Returns the system over the triangles of `whole`, which has some. Error: more than its kernel
-/// can count.
+/// Returns the system over `whole`, which has triangles. Error: more than its kernel can count.
 Result<System> build_system(ovc_structure structure, const Soup& soup, const Leaf& whole,
                             BuildProgress* progress = nullptr);
 

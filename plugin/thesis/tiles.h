@@ -13,8 +13,7 @@
 
 namespace ovc::thesis {
 
-/// How texels are tiled: a texture holds 2^bits texels, 2^shift of them in a row; the last texture
-/// has only as many rows as it needs.
+/// A texture holds 2^bits texels, 2^shift of them in a row; the last has only the rows it needs.
 struct TilePlan {
     uint32_t bits = 0;
     uint32_t shift = 0;
@@ -33,7 +32,7 @@ inline constexpr uint32_t kTextureBits = 24; // 4096 x 4096 texels, as the thesi
 inline constexpr uint64_t kTextureBytes = uint64_t(16) << kTextureBits;
 inline constexpr uint32_t kMaxTextures = 8; // the look-up's branches
 
-/// Returns a plan of `texels` (> 0) in at least `textures` (> 0) textures, each within
+/// Returns a plan for `texels` (> 0) in at least `textures` (> 0) textures, each within
 /// kTextureBytes.
 TilePlan plan_tiles(uint64_t texels, uint32_t textures);
 

@@ -55,8 +55,7 @@ public:
     }
 
 private:
-    /// The place where a box goes: among the children of an inner node, or into a new node with a
-    /// leaf.
+    /// A place for a box: among the children of an inner node, or in a new node with a leaf.
     struct Place {
         uint32_t node = 0;
         bool is_leaf = false;
@@ -114,8 +113,7 @@ private:
         ++nodes_[parent].children;
     }
 
-    /// Makes a leaf an inner node that holds it. Returns the inner node's number, which was the
-    /// leaf's.
+    /// Puts a leaf below a new inner node, which takes its number. Returns that number.
     uint32_t split(uint32_t leaf) {
         const uint32_t moved = uint32_t(nodes_.size());
         nodes_.push_back(nodes_[leaf]);

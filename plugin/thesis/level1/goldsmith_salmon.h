@@ -23,8 +23,7 @@ struct InsertionNode {
     uint32_t items;    // leaves below, itself included
 };
 
-/// nodes[0] is the root, which is an inner node even above a single leaf. There are no nodes where
-/// there are no boxes.
+/// nodes[0] is the root, an inner node even above one leaf; without boxes there are no nodes.
 struct InsertionTree {
     std::vector<InsertionNode> nodes;
     /// The mean number of children that a ray which meets the root is tested against. Goldsmith and
@@ -37,8 +36,7 @@ struct InsertionTree {
 InsertionTree insert_in_order(std::span<const Boxf> boxes, std::span<const uint32_t> order,
                               BuildProgress* progress = nullptr);
 
-/// Returns the tree of min cost over `shuffles` (> 0) random orders, which is the same on every
-/// run.
+/// Returns the tree of min cost of `shuffles` (> 0) random orders, the same on every run.
 InsertionTree best_insertion_tree(std::span<const Boxf> boxes, int shuffles,
                                   BuildProgress* progress = nullptr);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The BVH: is cut off by count, flattened and walked.
+// The BVH is cut off by count, flattened and walked.
 #include "plugin/thesis/level1/level1_bvh.h"
 
 #include "plugin/thesis/system.h"
@@ -10,8 +10,7 @@
 namespace ovc::thesis {
 namespace {
 
-/// One shuffle suffices: a better order out of ten changes the tree far below level 1, which is cut
-/// off there.
+/// One suffices: the best order of ten changes the tree far below level 1, which is cut off.
 constexpr int kLevel1Shuffles = 1;
 
 /// A node of the hierarchy that is cut off: a leaf has items, and an inner node has children.
@@ -20,8 +19,7 @@ struct Branch {
     std::vector<Branch> children;
 };
 
-/// Returns the subtree of n leaves at `node`, which takes 2 n - 1 nodes in a row (gpu/bvh/bvh.h),
-/// cut off at leaves of at most `most` items.
+/// Returns the subtree at `node`, whose n leaves take 2 n - 1 nodes in a row (gpu/bvh/bvh.h).
 Branch cut_off(std::span<const BvhNode> nodes, uint32_t node, size_t leaves, uint32_t most) {
     assert(leaves > 0 && most > 0 && node + 2 * leaves - 1 <= nodes.size());
     Branch branch;
@@ -115,8 +113,7 @@ private:
     std::vector<BvhEntry>& entries_;
 };
 
-/// Returns the triangles' boxes in the scene's frame, in float: they only decide which triangles go
-/// together.
+/// Returns boxes in the scene's frame, in float: they only decide which triangles go together.
 std::vector<Boxf> rough_boxes(const Soup& soup, const Leaf& whole) {
     std::vector<Boxf> boxes(whole.triangles.size());
     const std::vector<LocalTriangle> triangles = local_triangles(soup, whole);

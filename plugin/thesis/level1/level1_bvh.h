@@ -24,8 +24,7 @@ struct BvhEntry {
 /// must outlive it.
 class CompleteBvh {
 public:
-    /// Builds the hierarchy: top-down by the surface-area heuristic, bottom-up by Goldsmith and
-    /// Salmon's insertion.
+    /// Top-down, it uses the surface-area heuristic; bottom-up, Goldsmith and Salmon's insertion.
     CompleteBvh(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                 ovc_level1_build build, BuildProgress* progress = nullptr);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid: chooses how fine it is, makes its cells those of a KD-tree of equal parts, and goes
-// from cell to cell.
+// The grid: its fineness, its cells as those of a KD-tree of equal parts, and its walk.
 #include "plugin/thesis/level1/level1_grid.h"
 
 #include <algorithm>
@@ -63,8 +62,7 @@ Grid choose_grid(const Soup& soup, std::span<const TriangleId> triangles, const 
     return grid;
 }
 
-/// Appends the tree that halves the block of cells [from, to], and the block's cells in the tree's
-/// order.
+/// Appends the tree that halves the block of cells [from, to], and its cells in that order.
 void halve(const Grid& grid, const Place& from, const Place& to, std::vector<KdNode>& nodes,
            std::vector<uint32_t>& cells) {
     int axis = 0;

@@ -32,9 +32,8 @@ struct Grid {
 };
 
 /// Makes a grid over `triangles` of the soup, which lie in `bounds`, and returns its cells as
-/// leaves of at most max_leaf_triangles (> 0). The grid is the coarsest whose cells all hold at
-/// most so many triangles, counted by their centres. Where triangles crowd, it has kMaxCellsPerLeaf
-/// cells for each leaf that would do.
+/// leaves of at most max_leaf_triangles (> 0). It is the coarsest whose cells all hold so few, by
+/// their centres; where triangles crowd, it has kMaxCellsPerLeaf cells for each leaf that would do.
 Level1 cut_into_grid(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                      uint32_t max_leaf_triangles, Grid& grid);
 

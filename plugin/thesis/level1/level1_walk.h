@@ -31,8 +31,8 @@ struct RayPlace {
 };
 
 /// Returns the next leaf of the ray whose box it meets, and moves `place` past it; leaf == kNone
-/// when there is none. Each leaf comes once; a BVH's leaves do not come in the order of the ray. A
-/// walk starts with {{t_min}}. Needs can_walk().
+/// when there is none. Each leaf comes once, a BVH's in any order. Start with {{t_min}}. Needs
+/// can_walk().
 Visit next_leaf(const Level1Walk& walk, const Level1& level1, const PreparedRay& p,
                 RayPlace& place);
 
@@ -42,8 +42,8 @@ Visit next_leaf_in_cell(const Level1& level1, const PreparedRay& p, RayPlace& pl
 /// Builds level 1. It keeps whatever serves all sizes of leaves: a complete tree, to be merged.
 class Level1Builder {
 public:
-    /// Prepares level 1 over `triangles` of the soup, which lie in `bounds`; all three must outlive
-    /// this. A grid can only be built top-down.
+    /// `triangles` of the soup lie in `bounds`; all three must outlive it. Grids are built
+    /// top-down.
     Level1Builder(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                   ovc_level1 kind, ovc_level1_build build, BuildProgress* progress = nullptr);
 

@@ -39,8 +39,7 @@ std::vector<uint32_t> leaves_along(const Built& built, const Ray& ray) {
     return leaves;
 }
 
-/// Traces as the queues do: after a hit, it visits no leaf beyond it, and after a hit in a cell
-/// only the leaves of that cell.
+/// Traces as the queues do: after a hit no leaf beyond it, after one in a cell only that cell's.
 Hit trace(const Built& built, const Soup& soup, const Ray& ray) {
     PreparedRay rest(ray);
     Nearest nearest(rest);

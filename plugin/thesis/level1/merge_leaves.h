@@ -10,9 +10,8 @@
 
 namespace ovc::thesis {
 
-/// Returns the nodes of `full`, with each subtree of at most `most` (> 0) different triangles
-/// merged into one leaf node. The ranges that leaf nodes name mean nothing: fill_cells() of
-/// kdtree/partition.h fills them anew.
+/// Returns the nodes of `full`, each subtree of at most `most` (> 0) different triangles merged
+/// into one leaf node. Leaf nodes name nothing: fill_cells() of kdtree/partition.h does that anew.
 std::vector<KdNode> merge_leaves(const KdTree& full, uint32_t most);
 
 } // namespace ovc::thesis

@@ -8,8 +8,7 @@
 
 namespace ovc::thesis {
 
-/// Returns the triangles of the scene that can be hit, without duplicates. Counts in `statistics`
-/// those left out, and warns of those that can never be hit.
+/// Returns the triangles to build over; counts in `statistics` those left out, and warns of them.
 Hittable take_hittable(BuiltScene& scene, ovc_statistics& statistics, const LogSink& log,
                        BuildProgress* progress = nullptr);
 

@@ -25,9 +25,8 @@ struct LeafPass {
 /// All calls need the context current.
 class LeafPasses {
 public:
-    /// Returns passes over `pages`, which must outlive them. plan counts kBytesPerRay per ray, and
-    /// its pool holds the largest page. certify = false: fast precision. Error: GL refuses a
-    /// texture or a buffer.
+    /// `pages` must outlive the passes. plan counts kBytesPerRay a ray, and its pool holds the
+    /// largest page. certify = false: fast precision. Error: GL refuses a texture or a buffer.
     static Result<std::unique_ptr<LeafPasses>> create(const ovc::MemoryPlan& plan,
                                                       const DeviceInfo& device,
                                                       std::span<const Page> pages, bool certify);

@@ -275,8 +275,7 @@ TEST_F(Queued, MovesPagesOnlyWhereTheyDoNotAllFit) {
     }
 }
 
-/// Returns a stack of sheets, each a leaf: a ray that passes all of them is in one queue after
-/// another.
+/// Returns sheets, each a leaf: a ray that passes all of them is in one queue after another.
 TEST_F(Queued, ARayIsInOneQueueAfterAnother) {
     std::vector<vec3> corners;
     for (int sheet = 0; sheet < 8; ++sheet)

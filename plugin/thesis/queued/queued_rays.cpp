@@ -203,9 +203,8 @@ void QueuedRays::enter_fast(QueuedRay& state, const FrameAnswer& answer) {
     end_at(state, p, state.hit.t + slack / std::abs(p.ray.dir[p.kz]), 2 * slack);
 }
 
-/// Notes that the ray was hit, not beyond `end` however t is rounded. The ray is in its last cell
-/// if `end` lies in the leaf's cell, larger by `slack`: then no hit in later cells is nearer, nor
-/// as near.
+/// Notes a hit that is not beyond `end` however t is rounded. If `end` lies in the leaf's cell,
+/// larger by `slack`, the ray is in its last cell: later ones hold no hit as near.
 void QueuedRays::end_at(QueuedRay& state, const PreparedRay& p, double end, double slack) {
     state.t_end = std::min(state.t_end, end);
     const Box cell = s_.built.level1.leaves[state.leaf].cell.padded(slack);
