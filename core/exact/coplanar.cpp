@@ -65,8 +65,6 @@ bool share_axis_plane(const Triangle& a, const Triangle& b) {
 } // namespace
 
 bool surely_coplanar(const Triangle& a, const Triangle& b) {
-    assert(is_finite(a[0]) && is_finite(a[1]) && is_finite(a[2]));
-    assert(is_finite(b[0]) && is_finite(b[1]) && is_finite(b[2]));
     if (share_axis_plane(a, b))
         return true;
     const dvec3 ab = a[1] - a[0], ac = a[2] - a[0];
