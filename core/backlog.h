@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Backlog: rays that a host pushed into a stream and nobody traces yet. The last to come are the
-// first to go, so that children end before their parents' siblings begin and few rays wait.
+// Backlog: the rays that a host has pushed into a stream and that are not traced yet. The newest
+// rays leave first, so that children end before their parents' siblings begin and few rays wait.
 #pragma once
 
 #include "core/exclusions.h"
 #include "core/stream.h"
 
 #include <algorithm>
+#include <cassert>
 #include <vector>
 
 namespace ovc {
@@ -14,6 +15,8 @@ namespace ovc {
 class Backlog {
 public:
     void push(const StreamRays& pushed) {
+        assert(pushed.tokens.size() == pushed.rays.size());
+        assert(pushed.skip.empty() || pushed.skip.size() == pushed.rays.size());
         rays_.insert(rays_.end(), pushed.rays.begin(), pushed.rays.end());
         tokens_.insert(tokens_.end(), pushed.tokens.begin(), pushed.tokens.end());
         skip_.insert(skip_.end(), pushed.skip.begin(), pushed.skip.end());
@@ -26,8 +29,10 @@ public:
 
     size_t size() const { return rays_.size(); }
 
-    /// The last `count`, in the order they came; until the next push().
+    /// Returns the last `count` rays (at most size()), in the order in which they were pushed. The
+    /// spans are valid until the next push() or drop_last().
     StreamRays last(size_t count) const {
+        assert(count <= size());
         const size_t first = size() - count;
         return {false,
                 std::span(rays_).subspan(first),
@@ -38,6 +43,7 @@ public:
                 last_of(filters_, first)};
     }
     void drop_last(size_t count) {
+        assert(count <= size());
         rays_.resize(size() - count);
         skip_.resize(rays_.size());
         tokens_.resize(rays_.size());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stream over what only knows batches: all that is pushed is traced in turn.
+// BatchedStream: a stream over a structure that only knows batches. It traces whatever was pushed,
+// one batch after the other.
 #pragma once
 
 #include "core/backlog.h"
@@ -9,7 +10,7 @@
 
 namespace ovc {
 
-/// Batches: has intersect() and occluded() as plugin/structure/structure.h declares them.
+/// Batches has intersect() and occluded() as plugin/structure/structure.h declares them.
 template <class Batches>
 class BatchedStream final : public RayStream {
 public:
@@ -27,7 +28,7 @@ public:
             }
             if (nearest_.size() + any_.size() == 0)
                 return Done{};
-            // Occlusion first: its rays have no children.
+            // Occlusion rays go first, because they have no children.
             if (any_.size() > 0) {
                 if (Result<Done> done = trace_any(); !done)
                     return done;
@@ -64,7 +65,7 @@ private:
         return Done{};
     }
 
-    static constexpr size_t kMaxAtOnce = size_t(1) << 20; // rays a batch
+    static constexpr size_t kMaxAtOnce = size_t(1) << 20; // rays per batch
 
     Batches& batches_;
     StreamHost& host_;
@@ -74,7 +75,8 @@ private:
     std::vector<uint8_t> occluded_;
 };
 
-/// Traces what the host pushes until there is no more. Error of the kind Cancelled: it stopped.
+/// Traces the rays that the host pushes until it has no more. Error: that of the batch that failed,
+/// or one of the kind Cancelled where the host stopped the stream.
 template <class Batches>
 Result<Done> stream_in_batches(Batches& batches, StreamHost& host) {
     return BatchedStream<Batches>(batches, host).run();

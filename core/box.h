@@ -28,7 +28,7 @@ struct BoxT {
     Vec extent() const { return hi - lo; }
     Vec center() const { return lo + (hi - lo) * T(0.5); }
 
-    /// Half the surface area: what the surface-area heuristic compares. 0 when empty.
+    /// Returns half the surface area, for the surface-area heuristic; 0 when the box is empty.
     T half_area() const {
         if (empty())
             return T(0);
@@ -36,17 +36,17 @@ struct BoxT {
         return d.x * d.y + d.y * d.z + d.z * d.x;
     }
 
-    /// At least what its coordinates round by when something small is added to them. Far from the
-    /// origin it may be more than the box is large.
+    /// Returns an upper bound of the rounding error when something small is added to the box's
+    /// coordinates. Far from the origin it may exceed the size of the box.
     T rounding() const {
         return std::numeric_limits<T>::epsilon() *
                max_component(glm::max(glm::abs(lo), glm::abs(hi)));
     }
 
-    /// This box, larger by `margin` (>= 0) on each side; to the next number that there is.
+    /// Returns the box larger by `margin` on each side (smaller where that is negative), rounded.
     BoxT padded(T margin) const { return {lo - Vec(margin), hi + Vec(margin)}; }
 
-    /// The common part; empty when the boxes are apart.
+    /// Returns the common part, which is empty when the boxes are apart.
     BoxT intersection(const BoxT& b) const { return {glm::max(lo, b.lo), glm::min(hi, b.hi)}; }
 
     /// True when the closed boxes share at least a point.

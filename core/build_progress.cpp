@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// When to report, and what.
+// BuildProgress: it decides when to report, and what.
 #include "core/build_progress.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc {
 namespace {
@@ -12,6 +13,7 @@ constexpr std::chrono::milliseconds kBetweenReports{20};
 } // namespace
 
 void BuildProgress::begin(const char* stage, double share, uint64_t work) {
+    assert(stage);
     const std::lock_guard lock(mutex_);
     before_ += share_;
     share_ = share;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// BuildProgress: how far the building of a structure has come, told to whoever waits for it, who
-// may also stop it.
+// BuildProgress: tells the caller of a build how far the build has come, and lets the caller stop
+// it.
 #pragma once
 
 #include <atomic>
+#include <cassert>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -11,27 +12,30 @@
 
 namespace ovc {
 
-/// Thrown through a build that was told to stop. What it had made is freed on the way.
+/// Thrown through a build that its caller has stopped. Unwinding frees whatever the build had made.
 struct Cancelled {};
 
-/// Stages in a row, each a share of the whole and so many units of work. Functions that build take
-/// a pointer to one; null: nobody waits.
+/// The stages of a build in a row: each is a share of the whole and takes a number of units of
+/// work. Functions that build take a pointer to one; null means that nobody wants reports.
 class BuildProgress {
 public:
-    /// Called fifty times a second at most, from any thread, but never from two at once. done: from
-    /// 0 to 1, never less than before. stage: what is being done, a literal. false: stop.
+    /// Called at the beginning of each stage, at the end, and in between at most fifty times a
+    /// second; from any thread, but never from two at once. done goes from 0 to 1 and never
+    /// decreases. stage is a string literal that names the work under way. Returning false stops
+    /// the build.
     using Report = std::function<bool(double done, const char* stage)>;
 
-    explicit BuildProgress(Report report) : report_(std::move(report)) {}
+    explicit BuildProgress(Report report) : report_(std::move(report)) { assert(report_); }
 
-    /// Begins the next stage. Throws Cancelled when told to stop. Not while others call add().
+    /// Begins the next stage, which is `share` of the whole and takes `work` units. Throws
+    /// Cancelled when told to stop. No other thread may call add() meanwhile.
     void begin(const char* stage, double share, uint64_t work);
 
-    /// So many units of the stage are done. Any thread. Throws Cancelled when told to stop, in
-    /// every thread that calls it.
+    /// Counts `units` of the stage as done. Any thread may call this. Throws Cancelled when told to
+    /// stop, in every thread that calls it.
     void add(uint64_t units);
 
-    /// All is done, whatever was left.
+    /// Reports that all is done, whatever units were left. Throws Cancelled when told to stop.
     void finish();
 
 private:
@@ -40,9 +44,9 @@ private:
     void tell(double done, const char* stage);
 
     const Report report_;
-    std::mutex mutex_; // of the report, and of what is below it
+    std::mutex mutex_; // guards the report and the next four members
     const char* stage_ = "";
-    double before_ = 0; // what the stages before took of the whole
+    double before_ = 0; // the share of the stages before this one
     double share_ = 0;
     double told_ = 0;
     std::atomic<uint64_t> work_{1};
@@ -61,18 +65,19 @@ inline void add(BuildProgress* progress, uint64_t units) {
         progress->add(units);
 }
 
-/// Looks whether to stop every `step` rounds of a loop on one thread, and counts them.
+/// Counts the rounds of a loop on one thread, and every kStep rounds adds them to the progress and
+/// so looks whether to stop.
 class LoopProgress {
 public:
     explicit LoopProgress(BuildProgress* progress) : progress_(progress) {}
 
-    /// After every round.
+    /// Call this after every round.
     void step() {
         if (++rounds_ == kStep)
             finish();
     }
 
-    /// After the last one.
+    /// Call this after the last round.
     void finish() {
         add(progress_, rounds_);
         rounds_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// BuildProgress: what is told, how often, and that it stops every thread.
+// BuildProgress: tests what it reports, how often, and that it stops every thread.
 #include "core/build_progress.h"
 
 #include "core/system/parallel.h"
@@ -21,7 +21,7 @@ TEST(BuildProgress, GoesFromStageToStageAndNeverBack) {
     progress.begin("first", 0.25, 10);
     progress.add(10);
     progress.begin("second", 0.5, 10);
-    progress.begin("second", 0.5, 10); // once more, as where a build begins anew
+    progress.begin("second", 0.5, 10); // once more, as when a build begins anew
     progress.begin("third", 0.5, 10);
     progress.finish();
     ASSERT_EQ(told.size(), 5u) << "nothing is told twice within a moment";

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Duplicates are found by a hash of their corners: a table of bits tells the few triangles whose
 // hash may come twice, and only those are sorted and compared. Each thread has its part of the
-// hashes, and a table of its own: shared, its lines would go from core to core for every other
-// triangle.
+// hashes and a table of its own, because the cache lines of a shared table would go from core to
+// core for every other triangle.
 #include "core/duplicates.h"
 
 #include "core/corner_hash.h"
@@ -16,15 +16,15 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kHashGrain = 4096; // triangles a task
+constexpr size_t kHashGrain = 4096; // triangles per task
 
-/// A bit a hash, by those of the hash's bits that lie above `shift`.
+/// A table of one bit per hash, which the bits of the hash above `shift` select.
 class BitTable {
 public:
     BitTable(size_t bits, int shift)
         : words_(std::bit_ceil(bits) / 64), mask_(std::bit_ceil(bits) - 1), shift_(shift) {}
 
-    /// Sets the bit where `really`, and tells whether it was set before.
+    /// Sets the bit if `really`, and returns whether it was set before.
     bool set(uint64_t hash, bool really = true) {
         const uint64_t at = hash >> shift_ & mask_;
         const uint64_t before = words_[at / 64];
@@ -57,14 +57,15 @@ struct Part {
     bool has(uint64_t hash) const { return (hash >> 32) * count >> 32 == number; }
 };
 
-/// Of this part, the triangles that may be one of a set, by hash and then id: all duplicates, and
-/// of other triangles about one in sixteen. hashes: of `triangles`.
+/// Returns the triangles of this part that may belong to a set, sorted by hash and then id: all
+/// duplicates, and about one in sixteen of the others. hashes[i] is that of triangles[i].
 std::vector<Suspect> suspects(const Part& part, std::span<const TriangleId> triangles,
                               std::span<const uint64_t> hashes) {
+    assert(hashes.size() == triangles.size() && part.number < part.count);
     const size_t some = std::max<size_t>(triangles.size() / part.count, 64);
-    // By other bits of the hash: what comes twice in one table hardly ever does in the other.
+    // The tables use different bits of the hash: hashes that collide in one hardly ever do in both.
     BitTable came(16 * some, 0), came_again(some, 24);
-    // No branch on what is in the part: no CPU can tell beforehand.
+    // The loop does not branch on whether a hash is in the part, because no CPU could predict that.
     for (const uint64_t h : hashes) {
         const bool mine = part.has(h);
         if (mine & came.set(h, mine))
@@ -82,8 +83,8 @@ std::vector<Suspect> suspects(const Part& part, std::span<const TriangleId> tria
 std::vector<Duplicates::Pair> compared(const Soup& soup, std::vector<Suspect> all) {
     std::vector<Duplicates::Pair> pairs;
     for (auto first = all.begin(); first != all.end();) {
-        // The first of what is left stands for its duplicates, which come next, in the order of
-        // ids; others of the same hash, hardly ever any, follow.
+        // The first triangle left stands for its duplicates, which come next, in the order of ids.
+        // Others of the same hash, of which there are hardly any, follow.
         const auto end =
             std::find_if(first, all.end(), [&](const Suspect& s) { return s.hash != first->hash; });
         if (end == first + 1) {
@@ -155,6 +156,7 @@ Duplicates Duplicates::take_out(const Soup& soup, std::vector<TriangleId>& trian
         next += is_out;
         return is_out;
     });
+    assert(triangles.size() + out.size() == hashes.size());
     return duplicates;
 }
 

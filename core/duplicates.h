@@ -5,26 +5,28 @@
 
 #include "core/soup.h"
 
+#include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace ovc {
 
-/// Do both have the same three corners, in any order and either winding? 0 equals -0.
+/// Returns whether both have the same three corners, in any order and either winding. 0 equals -0.
 bool same_corners(const Triangle& a, const Triangle& b);
 
-/// The hit as one of `id`, whose corners are those of the triangle that was hit: u and v then count
-/// from its own.
+/// Returns the hit as one of triangle `id`, which has the same corners as the triangle that was
+/// hit: u and v then count from the corners of `id`.
 Hit as_hit_of(TriangleId id, const Soup& soup, const Hit& hit);
 
-/// The sets of duplicates of a soup. Equal t goes to the smaller id, so the smallest of a set is
-/// the answer wherever one of them is; only a ray that does not see the smallest, or whose hits lie
-/// behind it, is answered with another one.
+/// The sets of duplicates of a soup. At equal t the smaller id wins, so the smallest id of a set
+/// answers for all of it. Only a ray that skips the smallest, or whose hits must lie behind it, is
+/// answered with another one.
 class Duplicates {
 public:
-    /// Takes all but the smallest id of each set out of `triangles`: finite ones, sorted, without
-    /// repetition, and so they stay. A triangle is a unit of progress.
+    /// Takes all ids but the smallest of each set out of `triangles`, and returns the sets. The ids
+    /// are of finite triangles, sorted and unique, and stay so. A triangle is a unit of progress.
     static Duplicates take_out(const Soup& soup, std::vector<TriangleId>& triangles,
                                BuildProgress* progress = nullptr);
 

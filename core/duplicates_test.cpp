@@ -11,8 +11,8 @@
 namespace ovc {
 namespace {
 
-/// Triangles with corners of few values, so that most come several times; in three meshes, one of
-/// them with an origin that puts its triangles where others are.
+/// Returns triangles with corners of few values, so that most come several times, in three meshes.
+/// One of these has an origin that puts its triangles where others are.
 Soup crowded_soup(uint64_t seed, size_t count) {
     std::mt19937_64 draw(seed);
     Soup soup;
@@ -34,7 +34,7 @@ std::vector<TriangleId> all_of(const Soup& soup) {
 
 using Key = std::array<std::array<double, 3>, 3>;
 
-/// The corners in an order of their own, -0 as 0.
+/// Returns the corners in a canonical order, with -0 as 0.
 Key key_of(const Triangle& triangle) {
     Key key;
     for (int i = 0; i < 3; ++i)

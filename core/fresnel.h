@@ -2,12 +2,14 @@
 // Fresnel's equations for a boundary of two clear media, the mean of both polarisations, in double.
 #pragma once
 
+#include <cassert>
 #include <cmath>
 
 namespace ovc {
 
-/// The share of light that is reflected. cosine: to the normal, where it comes from, in [0, 1].
-/// ior: of the medium behind the boundary, in units of the one before it; 1 where all is reflected.
+/// Returns the share of light that the boundary reflects; 1 where it reflects all. cosine: between
+/// the normal and the direction that the light comes from, in [0, 1]. ior: the index of refraction
+/// of the medium behind the boundary, divided by that of the medium before it.
 inline double fresnel(double cosine, double ior) {
     const double square = ior * ior + cosine * cosine - 1; // (ior x the refracted cosine)^2
     if (!(square > 0))
@@ -18,12 +20,13 @@ inline double fresnel(double cosine, double ior) {
     return 0.5 * (s * s + p * p);
 }
 
-/// The share of light from everywhere, as much from each direction, that is reflected; ior: above
-/// 0. Walsh 1926, in the form of Dunkle 1963.
+/// Returns the share of light that the boundary reflects when as much comes from each direction.
+/// ior: above 0. Based on: Walsh 1926, in the form of Dunkle 1963.
 inline double fresnel_mean(double ior) {
-    if (ior < 1) // what total reflection keeps back, too: seen from the other side, n^2 (1 - F)
+    assert(ior > 0);
+    if (ior < 1) // n^2 (1 - F) of the other side passes, total reflection included
         return 1 - (1 - fresnel_mean(1 / ior)) * ior * ior;
-    if (ior < 1 + 1e-4) // the formula cancels
+    if (ior < 1 + 1e-4) // the formula's terms cancel
         return 0;
     const double n = ior, n2 = n * n, n4 = n2 * n2;
     return 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbering: the triangles of a soup by one word each.
+// Numbering: names each triangle of a soup by one 32-bit number.
 #pragma once
 
 #include "core/soup.h"
@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-/// Triangles counted from 0 in the order of their ids. The soup's count must fit 32 bits.
+/// Counts triangles from 0 in the order of their ids. The soup must have fewer than 2^32 of them.
 class Numbering {
 public:
     Numbering() = default;
@@ -25,7 +25,7 @@ public:
         first_.push_back(count);
     }
 
-    /// Whether the soup has such a triangle.
+    /// Returns whether the soup has such a triangle.
     bool has(TriangleId id) const {
         return id.mesh + size_t(1) < first_.size() &&
                id.prim < first_[id.mesh + 1] - first_[id.mesh];
@@ -38,14 +38,14 @@ public:
 
     TriangleId id(uint32_t number) const {
         assert(!first_.empty() && number < first_.back());
-        // The last chunk that begins at or before the number: empty ones before it share its first.
+        // The last chunk that begins at or before the number holds it; empty ones may precede.
         const auto after = std::upper_bound(first_.begin(), first_.end(), number);
         const uint32_t mesh = uint32_t(after - first_.begin()) - 1;
         return {mesh, number - first_[mesh]};
     }
 
 private:
-    std::vector<uint32_t> first_; // per chunk, and behind the last how many there are
+    std::vector<uint32_t> first_; // of each chunk, and behind the last the count of all
 };
 
 } // namespace ovc

@@ -12,10 +12,10 @@
 
 namespace ovc {
 
-/// No mesh, no prim.
+/// The mesh and the prim of no triangle.
 inline constexpr uint32_t kNone = 0xffffffffu;
 
-/// The name of a triangle: which added mesh, which triangle in it. Ordered by mesh, then prim.
+/// Names a triangle by the number of its mesh and its own number in it. Ordered by mesh, then prim.
 struct TriangleId {
     uint32_t mesh = kNone;
     uint32_t prim = kNone;
@@ -23,7 +23,7 @@ struct TriangleId {
     auto operator<=>(const TriangleId&) const = default;
 };
 
-/// The points org + t dir, t_min <= t <= t_max. dir need not be of unit length; t counts in its
+/// The points org + t dir with t_min <= t <= t_max. dir need not be of unit length; t counts in its
 /// lengths.
 struct Ray {
     dvec3 org{0};
@@ -33,9 +33,9 @@ struct Ray {
 
     dvec3 at(double t) const { return org + t * dir; }
 
-    /// False for what no triangle can be asked about: NaN or infinity in org, dir or t_min, NaN in
-    /// t_max, t_min > t_max, a direction that is zero or so short that its reciprocal overflows
-    /// (below 1e-300). Such a ray is a miss.
+    /// Returns false for a ray that no triangle can be tested against: NaN or infinity in org, dir
+    /// or t_min, NaN in t_max, t_min > t_max, a direction that is zero or so short that its
+    /// reciprocal overflows (below 1e-300). Such a ray is a miss.
     bool valid() const {
         const dvec3 length = glm::abs(dir);
         return is_finite(org) && is_finite(dir) && std::isfinite(t_min) && t_min <= t_max &&
@@ -54,17 +54,17 @@ struct Hit {
 
     bool is_hit() const { return id.mesh != kNone; }
 
-    /// The order in which hits of one ray win: smaller t, ties to the smaller (mesh, prim).
+    /// Returns whether this hit of a ray wins: by smaller t, ties by the smaller (mesh, prim).
     bool nearer_than(const Hit& other) const {
         return t < other.t || (t == other.t && id < other.id);
     }
 };
 static_assert(sizeof(Hit) == 32 && offsetof(Hit, id) == 24);
 
-/// What two-level can tell of rays besides their hits. Each is empty, or one per ray.
+/// Two-level's notes on rays besides their hits. Each span is empty, or has an entry per ray.
 struct RayNotes {
-    std::span<uint32_t> leaf;    // of level 1, in which the hit lies; kNone: a miss
-    std::span<uint32_t> passes;  // that the ray took part in
+    std::span<uint32_t> leaf;    // the level-1 leaf in which the hit lies; kNone: a miss
+    std::span<uint32_t> passes;  // the number of passes that the ray took part in
     std::span<uint32_t> flagged; // 1: the kernel left an answer to doubles; else 0
 
     bool any() const { return !leaf.empty() || !passes.empty() || !flagged.empty(); }

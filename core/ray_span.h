@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// RaySpan: somebody else's rays, in doubles or in floats, read as doubles.
+// RaySpan: a view of the caller's rays, which are doubles or floats and are read as doubles.
 #pragma once
 
 #include "core/ray.h"
@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-/// A ray in half the bytes; the same ray in double, for floats are doubles.
+/// A ray in half the bytes. It is the same ray in double, because every float is a double.
 struct FloatRay {
     vec3 org;
     float t_min;
@@ -31,7 +31,8 @@ public:
 
     size_t size() const { return size_; }
 
-    /// A t_min or t_max of -0 is told as 0: the kernel has its signs for other things.
+    /// Returns ray i. A t_min or t_max of -0 becomes 0, because the kernel uses their signs for
+    /// other things.
     Ray operator[](size_t i) const {
         assert(i < size_);
         if (!floats_) {
@@ -42,10 +43,11 @@ public:
         return {dvec3(ray.org), ray.t_min + 0.0, dvec3(ray.dir), ray.t_max + 0.0};
     }
 
-    /// The rays themselves where they are in double; else a copy of them in `room`.
+    /// Returns the rays themselves where they are doubles; else a copy in `room`, empty before.
     std::span<const Ray> in_double(std::vector<Ray>& room) const {
         if (!floats_)
             return {doubles_, size_};
+        assert(room.empty());
         for (size_t i = 0; i < size_; ++i)
             room.push_back((*this)[i]);
         return room;
@@ -59,7 +61,7 @@ public:
 
 private:
     const Ray* doubles_ = nullptr;
-    const FloatRay* floats_ = nullptr; // set: these
+    const FloatRay* floats_ = nullptr; // null: the rays are doubles
     size_t size_ = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-/// What a caller may want to tell apart; most errors are for people alone.
+/// The kinds of error that a caller may want to tell apart; most errors are for people alone.
 enum class ErrorKind {
     Other,
     InvalidArgument,
@@ -20,7 +20,7 @@ enum class ErrorKind {
     Cancelled
 };
 
-/// One sentence: which file, line or argument, what was found, what was expected.
+/// One sentence: the file, line or argument, the value found and the value expected.
 struct Error {
     std::string message;
     ErrorKind kind = ErrorKind::Other;
@@ -58,7 +58,7 @@ private:
     std::variant<T, Error> state_;
 };
 
-/// The Result of something that has no value: Done{} or an Error.
+/// Stands for the value of a Result that has none: Result<Done> is Done{} or an Error.
 struct Done {};
 
 } // namespace ovc

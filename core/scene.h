@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scene: what an importer or a generated test scene hands to the host: soup, materials, lights,
-// cameras.
+// Scene: the soup, materials, lights and camera that an importer or a generated test scene hands to
+// the host.
 #pragma once
 
 #include "core/file/mapped_file.h"
@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -16,10 +17,10 @@
 namespace ovc {
 
 /// How a surface adds up light, as POV-Ray's finish does; shares need not sum to 1. POV-Ray's
-/// pigment is Material::color; a pigment that lets light through has dimmed `ambient` and `diffuse`
-/// already.
+/// pigment is Material::color. Where a pigment lets light through, the importer has dimmed
+/// `ambient` and `diffuse` already.
 struct Finish {
-    vec3 ambient{0};   // x color: what it sends out in the dark, the scene's ambient light in it
+    vec3 ambient{0};   // x color is sent out in the dark; the scene's ambient light is in it
     float diffuse = 1; // x color x the light that arrives x cosine ^ brilliance
     float brilliance = 1;
     float phong = 0; // x the light that arrives x (reflected view . light) ^ phong_size
@@ -27,20 +28,20 @@ struct Finish {
     float specular = 0; // x the light that arrives x (half-way . normal) ^ (1 / roughness)
     float roughness = 0.05f;
     float metallic = 0; // highlights take the color on, more so away from grazing angles
-    /// Reflected: seen head on, at a grazing angle, and the steepness between the two; or, with
-    /// `fresnel`, between them by the material's ior.
+    /// The share that is reflected head on, the one at a grazing angle, and the steepness between
+    /// the two. With `fresnel` the material's ior decides between them instead.
     vec3 reflection{0};
     vec3 grazing_reflection{0};
     float reflection_falloff = 1;
     bool fresnel = false;
     float metallic_reflection = 0; // mirror images take the color on, as highlights do
-    bool conserve_energy = false;  // what is reflected is not let through
+    bool conserve_energy = false;  // reflected light is not let through, too
 
     bool operator==(const Finish&) const = default;
 };
 
-/// The floor that is `color` and `other` by turns, in unit cubes of the space that `to_cubes` (rows
-/// of a 3 x 4 affine matrix) leads to from the world.
+/// A pattern of unit cubes that are Material::color and `other` by turns. `to_cubes` holds the rows
+/// of a 3 x 4 affine matrix from the world to the space of the cubes.
 struct Checker {
     vec3 other{0};
     std::array<dvec4, 3> to_cubes{};
@@ -48,35 +49,37 @@ struct Checker {
     bool operator==(const Checker&) const = default;
 };
 
-/// What a surface is to light where its file says so, as physics has it: path tracing goes by this,
-/// and Whitted's model by the rest of the material. Shares of light, linear RGB in [0, 1].
+/// How a surface treats light physically, where its file says so. Path tracing goes by this, and
+/// Whitted's model by the rest of the material. Shares of light are linear RGB in [0, 1].
 struct Optics {
-    /// What reflects on top. None: nothing. Mirror: `reflection` at any angle. Metal: `reflection`
-    /// head on, and all of it at grazing angles, as Schlick has it. Dielectric: `reflection` x what
-    /// Fresnel's equations say of `ior`. Thin: the same for a pane, both of its sides together.
+    /// The boundary on top, which reflects. None reflects nothing, and Mirror `reflection` at any
+    /// angle. Metal reflects `reflection` head on and all light at grazing angles, by Schlick's
+    /// formula. Dielectric reflects `reflection` x the share that Fresnel's equations give for
+    /// `ior`. Thin does the same for a pane, both of its sides together.
     enum class Boundary : uint8_t { None, Mirror, Metal, Dielectric, Thin };
 
-    vec3 diffuse{0}; // scattered evenly, of what comes below the boundary
+    vec3 diffuse{0}; // scattered evenly, of the light below the boundary
     Boundary boundary = Boundary::None;
     vec3 reflection{1};
-    /// x what the boundary does not reflect goes on; bent by Material::ior, which is 1 but for
-    /// Dielectric.
+    /// The share of the light not reflected by the boundary that goes on through the surface, bent
+    /// by Material::ior, which is 1 for all boundaries except Dielectric.
     vec3 through{0};
     double ior = 1.5;
-    float width = 0;        // of the slopes of microfacets, GGX's alpha; 0: smooth
+    float width = 0;        // GGX's alpha, of the slopes of microfacets; 0: smooth
     vec3 emission{0};       // radiance, in the units of Light::color over distance squared
     bool two_sided = false; // emits from its back too
 
     bool operator==(const Optics&) const = default;
 };
 
-/// Whitted's surface, linear RGB in [0, 1]. Of the light that it sends on, `mirror` is the share
-/// reflected as by a mirror and `transmission` the share let through, tinted by `filter` at every
-/// crossing; the rest, at least 0, is the surface's own color. ior: of the inside of a closed mesh
-/// of outward triangles (counterclockwise seen from outside), usable; the outside has 1. An open
-/// mesh is a boundary between the two, met from either side. With a `finish`, parts are added up
-/// instead of shared out: `mirror` only says whether there is a reflection, and `transmission`
-/// takes nothing from the rest.
+/// A surface of Whitted's model, linear RGB in [0, 1]. Of the light that it sends on, it reflects
+/// the share `mirror` as a mirror does and lets the share `transmission` through, tinted by
+/// `filter` at every crossing; the rest, at least 0, is the surface's own color.
+///
+/// `ior` is that of the inside of a closed mesh of outward triangles (counterclockwise seen from
+/// outside), and usable; the outside has 1. An open mesh is a boundary between the two, met from
+/// either side. With a `finish`, parts are added up instead of shared out: `mirror` only says
+/// whether there is a reflection, and `transmission` takes nothing from the rest.
 struct Material {
     std::string name;
     vec3 color{0.8f};
@@ -91,63 +94,64 @@ struct Material {
     bool operator==(const Material&) const = default;
 };
 
-/// Far beyond any material, and near enough for its square to be a number.
+/// Returns whether ior is in a range that exceeds all materials, and whose squares are numbers.
 inline bool is_usable_ior(double ior) {
     return ior >= 1e-6 && ior <= 1e6;
 }
 
-/// What the host must know of a mesh besides its triangles. Scene::meshes[m] belongs to
+/// The host's knowledge of a mesh besides its triangles. Scene::meshes[m] belongs to
 /// Scene::soup.chunks[m].
 struct MeshInfo {
     std::string name;
     uint32_t material = 0; // index into Scene::materials
-    std::vector<vec3>
-        normals; // 3 per triangle, unit length, or empty: then the triangle's own normal shades it
-    bool no_shadow = false; // light passes as if it were not there
-    /// Instances share normals: this mesh has those of that one, in the same order, turned.
+    /// 3 per triangle, unit length; or empty, and then the triangle's own normal shades it.
+    std::vector<vec3> normals;
+    bool no_shadow = false; // light passes as if the mesh were not there
+    /// The mesh whose normals this one shares, turned by `turn`; kNone: its own. Instances use it.
     uint32_t normals_from = kNone;
-    dmat3 turn{1}; // what `normals` are multiplied by; their length does not matter then
-    /// Corners that have them in the file, and not here: normals that cannot be used or say nothing
-    /// new, and texture coordinates, for no material of ours has textures.
+    dmat3 turn{1}; // multiplies those normals, whose length then does not matter
+    /// Counts the corners that have these in the file and not here: normals that cannot be used or
+    /// say nothing new, and all texture coordinates, because no material of ours has textures.
     uint64_t normals_left_out = 0;
     uint64_t texture_coordinates_left_out = 0;
 };
 
-/// The cone of a spotlight: full light within radius_cosine of the axis, none beyond
-/// falloff_cosine, smooth in between; all of it x cosine ^ tightness. As POV-Ray's.
+/// The cone of a spotlight, as POV-Ray's: the light is full within radius_cosine of the axis, none
+/// beyond falloff_cosine and smooth in between, and all of it is multiplied by cosine ^ tightness.
 struct SpotCone {
     double radius_cosine = 0.866;
     double falloff_cosine = 0.707;
     double tightness = 0;
 };
 
-/// Emits evenly; arrives as color / pi x the cosine, without fall-off, as POV-Ray's light_source
-/// does by default.
+/// A light that emits evenly. Its light arrives as color / pi x the cosine, without fall-off, as
+/// that of POV-Ray's light_source does by default.
 struct Light {
     dvec3 position{0};
     vec3 color{1};
-    bool on_camera = false; // position is where it is mounted: an offset from the eye
-    /// The axis of a spotlight, or the way parallel light goes; unit length.
+    bool on_camera = false; // mounted on the camera: position is an offset from the eye
+    /// The axis of a spotlight, or the direction in which parallel light goes; unit length.
     dvec3 direction{0, 0, -1};
-    std::optional<SpotCone> cone; // a spotlight
-    /// All light goes along `direction`, from the plane through `position` across it; what is
-    /// behind that plane is lit too, as in POV-Ray.
+    std::optional<SpotCone> cone; // of a spotlight
+    /// All light goes along `direction`, from the plane through `position` that is perpendicular to
+    /// it. Surfaces behind that plane are lit too, as in POV-Ray.
     bool parallel = false;
     bool shadowless = false; // shines through everything, and makes no highlights
-    /// Not 0: arrives x 2 / (1 + (distance / fade_distance) ^ fade_power). Light that falls with
-    /// the square of the distance: a tiny fade_distance D, power 2, and color / (2 D^2).
+    /// Unless 0, the light is multiplied by 2 / (1 + (distance / fade_distance) ^ fade_power).
+    /// Light that falls with the square of the distance has a tiny fade_distance D, power 2, color
+    /// / (2 D^2).
     double fade_distance = 0;
     double fade_power = 0;
-    /// Stands for light that path tracing finds by itself: that of emitters and of the sky.
+    /// The light stands for emitters or the sky, whose light path tracing finds by itself.
     bool stand_in = false;
 };
 
-/// The image as a window at the end of `direction` from the eye, `right` wide and `up` high,
-/// whatever the image's size; of any handedness. Orthographic: rays begin in the window's plane
-/// through the eye, and all go along `direction`.
+/// The image is a window at the end of `direction` from the eye, `right` wide and `up` high
+/// whatever the image's size, and of any handedness. With `orthographic`, rays begin in the
+/// window's plane through the eye, and all go along `direction`.
 struct ImageWindow {
-    /// How the picture is bent, as POV-Ray's cameras of these names do it; Flat: not at all. All
-    /// others are seen over `angle` and `vertical_angle` and take `right` and `up` for shape only.
+    /// How the picture is bent, as by POV-Ray's cameras of these names; Flat is not bent. All
+    /// others cover `angle` and `vertical_angle`, and take only the shape from `right` and `up`.
     enum class Bend {
         Flat,
         Fisheye,
@@ -176,8 +180,8 @@ struct Camera {
     dvec3 target{0};
     dvec3 up{0, 1, 0};
     double fov_degrees = 40;
-    /// Decides instead of target, up and fov_degrees, which then say about the same: they are what
-    /// "up" is for the background and where a light over the shoulder stands.
+    /// If set, it decides the view instead of target, up and fov_degrees. Those then hold about the
+    /// same view: the background takes its "up" from them, and a light over the shoulder its place.
     std::optional<ImageWindow> window;
 };
 
@@ -186,8 +190,8 @@ struct ImageSize {
     uint32_t height = 512;
 };
 
-/// What a ray that hits nothing sees: a gradient from horizon to zenith along the camera's up,
-/// linear RGB.
+/// The light that a ray sees where it hits nothing: a gradient from horizon to zenith along the
+/// camera's up, linear RGB.
 struct Background {
     vec3 horizon{0.8f};
     vec3 zenith{0.35f, 0.5f, 0.8f};
@@ -195,10 +199,10 @@ struct Background {
     bool operator==(const Background&) const = default;
 };
 
-/// Scene::gamma: sRGB's curve instead of a power.
+/// The Scene::gamma that stands for sRGB's curve instead of a power.
 inline constexpr double kSrgbGamma = 0;
 
-/// Of a color of a scene with that gamma: the linear light that it means.
+/// Returns the linear light of a color in a scene with that gamma; a negative color counts as 0.
 inline float linear_light(float color, double gamma) {
     if (gamma != kSrgbGamma)
         return std::pow(std::max(color, 0.0f), float(gamma));
@@ -206,7 +210,7 @@ inline float linear_light(float color, double gamma) {
                              : std::pow((color + 0.055f) / 1.055f, 2.4f); // IEC 61966-2-1
 }
 
-/// What a scene was before its instances were expanded.
+/// The size of a scene before its instances were expanded.
 struct Instancing {
     uint64_t unique_triangles = 0;
     uint64_t instances = 0;
@@ -218,20 +222,21 @@ struct Scene {
     std::vector<MeshInfo> meshes;
     std::vector<Material> materials;
     std::vector<Light> lights;
-    bool may_add_light = true;         // where there are none, the host adds one beside the camera
+    bool may_add_light = true;         // without lights the host adds one beside the camera
     std::optional<Camera> camera;      // none: the host frames the bounds
-    std::optional<ImageSize> size;     // of the picture that the file asks for
+    std::optional<ImageSize> size;     // of the picture, where the file asks for one
     std::optional<uint32_t> max_depth; // reflections and refractions in a row; none: the host's
     Background background;
-    float exposure = 1; // what lights, background and emission were multiplied by to fit a picture
-    /// What is rendered ^ gamma is linear light: POV-Ray's assumed_gamma; or kSrgbGamma.
+    float exposure = 1; // lights, background and emission were multiplied by it to fit a picture
+    /// POV-Ray's assumed_gamma: a rendered value ^ gamma is linear light. Or kSrgbGamma.
     double gamma = 1;
-    std::optional<Instancing> instancing; // none: every triangle is its own
-    std::vector<MappedFile> files; // where chunks and `saved` lie that do not own what they show
-    Bytes saved; // what the plugin saved of this soup (ovc_scene_config.saved); empty: nothing
+    std::optional<Instancing> instancing; // none: the file has no instances
+    std::vector<MappedFile> files;        // hold the bytes of borrowing chunks and of `saved`
+    Bytes saved; // levels that the plugin saved (ovc_scene_config.saved), or empty
 
-    /// 3 per triangle, to be turned by MeshInfo::turn; empty: the mesh has none.
+    /// Returns 3 normals per triangle, to be turned by MeshInfo::turn; none if the mesh has none.
     const std::vector<vec3>& normals_of(const MeshInfo& mesh) const {
+        assert(mesh.normals_from == kNone || mesh.normals_from < meshes.size());
         return mesh.normals_from == kNone ? mesh.normals : meshes[mesh.normals_from].normals;
     }
 
@@ -240,6 +245,7 @@ struct Scene {
                       std::vector<vec3> normals = {}) {
         soup.chunks.push_back(std::move(chunk));
         meshes.push_back({std::move(mesh_name), material, std::move(normals)});
+        assert(meshes.size() == soup.chunks.size());
         return uint32_t(meshes.size() - 1);
     }
 };

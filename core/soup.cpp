@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Soup: ownership of chunks, and which triangles can be hit.
+// Soup: who owns the corners of a chunk, and which triangles can be hit.
 #include "core/soup.h"
 
 #include "core/exact/exact.h"
 #include "core/system/parallel.h"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -16,8 +17,9 @@ namespace ovc {
 
 namespace {
 
-/// Within 2^-256 is 0 and beyond 2^256 infinite: so products of three differences, which decide
-/// hits, neither overflow nor lose a bit to underflow (docs/design/numerics.md, "What it covers").
+/// Returns 0 for x within 2^-256, infinity for x beyond 2^256, and else x. So products of three
+/// differences, which decide hits, neither overflow nor lose a bit to underflow
+/// (docs/design/numerics.md, "What it covers").
 double in_range(double x) {
     const double size = std::abs(x);
     if (size < 0x1p-256)
@@ -25,7 +27,7 @@ double in_range(double x) {
     return size > 0x1p256 ? std::numeric_limits<double>::infinity() : x;
 }
 
-/// Whether the sum with any finite float is in range: a multiple of 2^-201, and less than 2^256.
+/// Returns whether each sum with a float is in range: a multiple of 2^-201, less than 2^256.
 bool keeps_floats_in_range(double origin) {
     const double size = std::abs(origin);
     return size == 0 || (size >= 0x1p-149 && size <= 0x1p255);
@@ -122,7 +124,7 @@ static bool on_a_line(const Triangle& t) {
     for (int axis = 0; axis < 3; ++axis) {
         const int j = (axis + 1) % 3, k = (axis + 2) % 3;
         const double left = ab[j] * ac[k], right = ab[k] * ac[j];
-        // Two differences and a product each: three roundings, and one more of their difference.
+        // Each side rounds in two differences and a product, and their difference rounds once more.
         const double error = 5 * v * (std::abs(left) + std::abs(right)) + 0x1p-1060;
         if (std::abs(left - right) > error)
             return false;
@@ -147,6 +149,7 @@ struct Survey {
 
 Survey survey(const Chunk& chunk, uint32_t first, uint32_t last, std::vector<uint8_t>& kept,
               BuildProgress* progress) {
+    assert(last <= kept.size());
     Survey found;
     LoopProgress loop(progress);
     for (uint32_t prim = first; prim < last; ++prim) {
@@ -174,6 +177,7 @@ std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, B
 
 std::vector<TriangleId> hittable_triangles(const Soup& soup, std::span<const uint32_t> chunks,
                                            Dropped* dropped, Box* bounds, BuildProgress* progress) {
+    assert(std::is_sorted(chunks.begin(), chunks.end()));
     std::vector<TriangleId> ids;
     Survey total;
     std::vector<uint8_t> kept;

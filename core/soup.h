@@ -8,6 +8,7 @@
 #include "core/transform.h"
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -18,55 +19,56 @@ namespace ovc {
 
 using Triangle = std::array<dvec3, 3>;
 
-/// The triangles of one mesh: corner i of triangle p lies at origin + corners[3 p + i], added in
-/// double; in an instance, where its transform then puts that. Move-only: the corners are owned, or
-/// borrowed from a caller who keeps them alive and unchanged.
+/// The triangles of one mesh. Corner i of triangle p lies at origin + corners[3 p + i], added in
+/// double; in an instance, the transform then moves that point. A chunk is move-only: it owns its
+/// corners, or borrows them from a caller who keeps them alive and unchanged.
 class Chunk {
 public:
     static Chunk owning(dvec3 origin, std::vector<vec3> corners);
     static Chunk owning_doubles(dvec3 origin, std::vector<dvec3> corners);
     static Chunk borrowing(dvec3 origin, std::span<const vec3> corners);
     static Chunk borrowing_doubles(dvec3 origin, std::span<const dvec3> corners);
-    /// The same triangles once more. Borrows this chunk's corners.
+    /// Returns the same triangles once more, placed alike. They borrow this chunk's corners.
     Chunk instance() const;
-    /// The same where they are without a transform.
+    /// Returns the same triangles without the transform. They borrow this chunk's corners.
     Chunk unplaced() const;
-    /// Chunks of the same triangles, placed or not, have equal keys, and no others have.
+    /// Equal for chunks of the same triangles, placed or not, and for no others.
     using MeshKey = std::array<uint64_t, 5>;
     MeshKey mesh_key() const;
-    /// Moves the triangles from where they are.
+    /// Moves the triangles from where they are now, which an earlier transform may have decided.
     void place(const Transform& transform);
 
     Chunk(Chunk&&) = default;
     Chunk& operator=(Chunk&&) = default;
 
     const dvec3& origin() const { return origin_; }
-    /// 3 x size() offsets, 12 bytes each; none where they are doubles.
+    /// Returns 3 x size() offsets of 12 bytes each; none where they are doubles.
     std::span<const vec3> corners() const { return corners_; }
-    /// 3 x size() offsets, 24 bytes each; none where they are floats.
+    /// Returns 3 x size() offsets of 24 bytes each; none where they are floats.
     std::span<const dvec3> double_corners() const { return double_corners_; }
     /// Returns the mask of the mesh (core/sieve.h). 0, as at first: all rays see it.
     uint32_t mask() const { return mask_; }
     void set_mask(uint32_t mask) { mask_ = mask; }
-    /// Null: the corners are where they are.
+    /// Returns null where the chunk has no transform.
     const Transform* transform() const { return transform_.get(); }
     uint32_t size() const { return uint32_t((corners_.size() + double_corners_.size()) / 3); }
     uint64_t owned_bytes() const {
         return owned_.capacity() * sizeof(vec3) + owned_doubles_.capacity() * sizeof(dvec3);
     }
-    /// Takes the corners out of an owning chunk of floats, which is empty then.
+    /// Takes the corners out of an owning chunk of floats, which is empty afterwards.
     std::vector<vec3> take_corners() {
         corners_ = {};
         return std::exchange(owned_, {});
     }
 
     Triangle triangle(uint32_t prim) const {
+        assert(prim < size());
         if (!plain_) [[unlikely]]
             return placed_triangle(prim);
         const vec3* c = corners_.data() + size_t(prim) * 3;
         return {origin_ + dvec3(c[0]), origin_ + dvec3(c[1]), origin_ + dvec3(c[2])};
     }
-    /// Where triangle() reads.
+    /// Returns the address that triangle() reads from.
     const void* address_of(uint32_t prim) const {
         return double_corners_.empty()
                    ? static_cast<const void*>(corners_.data() + size_t(prim) * 3)
@@ -81,10 +83,10 @@ private:
     dvec3 origin_;
     std::vector<vec3> owned_; // its heap block survives a move, so corners_ may point into it
     std::vector<dvec3> owned_doubles_;
-    std::span<const vec3> corners_; // these or the next
+    std::span<const vec3> corners_; // empty where the corners are doubles
     std::span<const dvec3> double_corners_;
     std::unique_ptr<const Transform> transform_;
-    bool plain_; // floats, not placed, and no origin brings them out of range
+    bool plain_; // floats without a transform, which the origin keeps in range
     uint32_t mask_ = 0;
 };
 
@@ -93,17 +95,20 @@ struct Soup {
     std::vector<Chunk> chunks;
 
     uint64_t triangle_count() const;
-    Triangle triangle(TriangleId id) const { return chunks[id.mesh].triangle(id.prim); }
+    Triangle triangle(TriangleId id) const {
+        assert(id.mesh < chunks.size());
+        return chunks[id.mesh].triangle(id.prim);
+    }
 };
 
 /// Why a triangle can never be hit.
 enum class TriangleFault { None, NotFinite, Degenerate };
 
-/// NotFinite: a NaN or infinite corner. Degenerate: no area, the corners on one line, decided
-/// exactly.
+/// Returns NotFinite for a NaN or infinite corner, and Degenerate for corners on one line, which
+/// have no area; that is decided exactly.
 TriangleFault triangle_fault(const Triangle& triangle);
 
-/// Triangles left out of a structure, by reason.
+/// Counts the triangles that are left out of a structure, by reason.
 struct Dropped {
     uint64_t not_finite = 0;
     uint64_t degenerate = 0;
@@ -111,13 +116,12 @@ struct Dropped {
     uint64_t total() const { return not_finite + degenerate; }
 };
 
-/// The ids of all triangles that can be hit, in order, and the box of each is left to the caller.
-/// dropped, bounds: optional, receive what was left out and the box of what was kept. A triangle is
-/// a unit of progress.
+/// Returns the ids of all triangles that can be hit, sorted. dropped, bounds: optional, receive how
+/// many were left out and the box of the others. A triangle is a unit of progress.
 std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, Box* bounds,
                                            BuildProgress* progress = nullptr);
 
-/// Those of some chunks alone, by their numbers, which rise.
+/// Does the same for some chunks alone, by their numbers, which rise.
 std::vector<TriangleId> hittable_triangles(const Soup& soup, std::span<const uint32_t> chunks,
                                            Dropped* dropped, Box* bounds,
                                            BuildProgress* progress = nullptr);

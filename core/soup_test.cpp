@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Soup: who owns the corners, where they lie, and which triangles can be hit.
+// Soup: tests who owns the corners, where they lie, and which triangles can be hit.
 #include "core/soup.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Products and inverses of transforms, and what their rounding makes of a mesh.
+// Products and inverses of transforms, and how far their rounding moves a mesh.
 #include "core/transform.h"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ bool is_well_placed(const Box& box, const Transform* transform) {
     if (!inverted || box.empty() || !(size >= 1 / kWithinRange))
         return false;
     const dvec3 farthest = glm::max(glm::abs(box.lo), glm::abs(box.hi));
-    dvec3 reach; // of placed corners, and of what their sums are made of
+    dvec3 reach; // bounds placed corners, and the terms of their sums
     for (int i = 0; i < 3; ++i) {
         const auto& r = m[size_t(i)];
         reach[i] = std::abs(r[0]) * farthest.x + std::abs(r[1]) * farthest.y +

@@ -10,8 +10,8 @@
 
 namespace ovc {
 
-/// Three rows of four: p comes to lie at ((r0 x + r1 y) + r2 z) + r3 for each row r. In doubles,
-/// each operation rounded: the formula is part of the ABI, and needs -ffp-contract=off.
+/// Three rows of four: each row r takes a point p to ((r0 x + r1 y) + r2 z) + r3, in doubles with
+/// each operation rounded. The formula is part of the ABI, and needs -ffp-contract=off.
 struct Transform {
     std::array<std::array<double, 4>, 3> rows;
 
@@ -23,25 +23,25 @@ struct Transform {
     }
 };
 
-/// `first`, then `second`, as one map: their product in doubles.
+/// Returns `first`, then `second`, as one map: their product in doubles.
 Transform then(const Transform& first, const Transform& second);
 
 inline constexpr Transform kIdentity{{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
 
-/// null: where a mesh lies by itself.
+/// Returns the identity for null, which stands for a mesh that lies by itself.
 inline const Transform& or_identity(const Transform* transform) {
     return transform ? *transform : kIdentity;
 }
 
-/// The rows of the inverse of the matrix, without its shift; none where doubles cannot tell it.
+/// Returns the rows of the inverse matrix, without shift; none where doubles cannot tell it.
 std::optional<std::array<dvec3, 3>> inverse_matrix(const Transform& transform);
 
-/// The box in the world of what lies in `box` before it is placed. transform: null where it is in
-/// the world.
+/// Returns the box in the world of everything that lies in `box` before it is placed, roundings
+/// included. transform: null where that is in the world already.
 Box placed_box(const Box& box, const Transform* transform);
 
-/// Whether what doubles round of corners that are placed, and of rays that are brought to the mesh,
-/// is less than 2^-30 of the mesh: 1/64 of what float32 rounds there. box: of the mesh before it is
+/// Returns whether rounding in doubles moves placed corners, and rays that are brought to the mesh,
+/// by less than 2^-30 of the mesh: 1/64 of what float32 rounds there. box: of the mesh before it is
 /// placed.
 bool is_well_placed(const Box& box, const Transform* transform);
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Approach: exact arithmetic moves a far ray's origin beside the scene.
 #include "kdtree/approach.h"
 
 #include "core/exact/exact.h"
 #include "kdtree/partition.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -23,9 +25,11 @@ double up(double x) {
     return std::nextafter(x, kLargest);
 }
 
-/// A t at which coordinate `axis` of the ray is within `error` of `goal`, as a sum of doubles: one
-/// has too few bits where the ray comes from afar. Nothing where it lies beyond all doubles.
+/// Returns a t at which coordinate `axis` of the ray is within `error` of `goal`, as a sum of
+/// doubles, because one double has too few bits where the ray comes from afar. Returns nothing
+/// where that t lies beyond all doubles.
 std::optional<Exact> t_at(const Ray& ray, int axis, double goal, double error) {
+    assert(ray.dir[axis] != 0 && error >= 0);
     constexpr int kMaxSteps = 64; // each adds 52 bits, of 2,100 that doubles span
     const Exact dir(ray.dir[axis]);
     Exact t, rest = Exact(goal) - Exact(ray.org[axis]);
@@ -40,7 +44,7 @@ std::optional<Exact> t_at(const Ray& ray, int axis, double goal, double error) {
     return std::nullopt;
 }
 
-/// The direction without components that do not move the ray within a scene.
+/// Returns the direction without the components that do not move the ray within a scene.
 dvec3 main_direction(const dvec3& dir) {
     dvec3 kept = dir;
     for (int axis = 0; axis < 3; ++axis)
@@ -78,7 +82,7 @@ void Approach::note_hit(const Triangle& triangle) {
     if (!moved_)
         return;
     const Ray& ray = moved_->ray;
-    double latest = -kLargest; // of the corners, so of any point of the triangle
+    double latest = -kLargest; // t of the corners, and so of any point of the triangle
     for (const dvec3& corner : triangle)
         latest = std::max(latest, (corner[p_.kz] - ray.org[p_.kz]) / ray.dir[p_.kz]);
     const double margin = moved_->margin(bounds_of(triangle)) / std::abs(ray.dir[p_.kz]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Approach: a ray from far away, begun anew beside the scene, so that doubles suffice to walk a
-// tree along it. Without that the rounding of a position along it may be larger than the scene, and
-// every triangle would have to be asked.
+// Approach: begins a ray from far away anew beside the scene, so that doubles suffice to walk a
+// tree along it. Without that, the rounding of a position along the ray may be larger than the
+// scene, and the ray would have to be tested against every triangle.
 #pragma once
 
 #include "core/exact/triangle.h"
@@ -12,17 +12,17 @@ namespace ovc {
 
 class Approach {
 public:
-    /// p, which outlives this, on its way to a scene in `bounds`.
+    /// Begins the approach of ray p, which must outlive this, to a scene in `bounds`.
     Approach(const PreparedRay& p, const Box& bounds);
 
-    /// The ray to walk along: p where it is near. Else the same line to within the margin of the
-    /// ray, with a t of its own; and what the walk finds is tested against p itself.
+    /// Returns the ray to walk along: p where that is near, else the same line to within the ray's
+    /// margin, with a t of its own. Triangles found on the way must be tested against p itself.
     const PreparedRay& ray() const { return moved_ ? *moved_ : p_; }
 
-    /// p hits the triangle.
+    /// Notes that p hits the triangle, which may lower the limit.
     void note_hit(const Triangle& triangle);
 
-    /// Nothing beyond this t of ray() can win any more.
+    /// Returns the t of ray() beyond which nothing can win any more.
     double limit(const Nearest& nearest) const { return moved_ ? limit_ : nearest.limit(); }
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays from far away are answered exactly, and without asking every triangle.
+// Rays from far away are answered exactly, and without testing every triangle.
 #include "kdtree/approach.h"
 
 #include "kdtree/build.h"
@@ -33,7 +33,7 @@ protected:
         tree = build_kd_tree(soup, ids, bounds, {});
     }
 
-    /// Aimed at a vertex, as well as doubles can.
+    /// Returns a ray aimed at a vertex, as well as doubles can.
     Ray ray_of(const FarRays& far, test::Random& random) const {
         const dvec3 target = soup.triangle(ids[random.below(ids.size())])[random.below(3)];
         dvec3 away = random.point(-1, 1);

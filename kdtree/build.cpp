@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The KD-tree builder: binned surface-area heuristic over fragments (a triangle's box within the
-// current cell).
+// The KD-tree builder: it cuts by the binned surface-area heuristic over fragments. A fragment is a
+// triangle's box within the current cell.
 #include "kdtree/build.h"
 
 #include "core/system/parallel.h"
@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -17,12 +18,12 @@ namespace {
 constexpr int kBins = 32;
 constexpr int kMaxDepth = 96;
 constexpr size_t kWorthIsolating = 64;  // triangles
-constexpr size_t kMinToIsolate = 16;    // of a sample: fewer say nothing of where the others are
-constexpr double kMaxReferences = 24;   // a triangle, over the whole tree
-constexpr size_t kParallelBuild = 8192; // fragments; below, a task costs more than it saves
+constexpr size_t kMinToIsolate = 16;    // of a sample: fewer do not tell where the others are
+constexpr double kMaxReferences = 24;   // per triangle, over the whole tree
+constexpr size_t kParallelBuild = 8192; // fragments; with fewer, a task costs more than it saves
 
-/// A triangle within a cell: the box of the part inside. In double, because a float cannot tell the
-/// millimetres of a scene of many kilometres apart.
+/// The box of the part of a triangle inside a cell. It is in double, because a float cannot tell
+/// the millimetres of a scene of many kilometres apart.
 struct Fragment {
     Box box;
     TriangleId id;
@@ -32,12 +33,12 @@ struct Split {
     double cost = std::numeric_limits<double>::infinity();
     int axis = -1;
     double position = 0;
-    size_t below = 0, above = 0; // fragments, at most
+    size_t below = 0, above = 0; // upper bounds of the fragments
 
     bool found() const { return axis >= 0; }
 };
 
-/// Counts of fragments that begin and end in each of kBins slices of the cell, per axis.
+/// Counts the fragments that begin and end in each of kBins slices of the cell, per axis.
 struct Bins {
     std::array<std::array<uint32_t, kBins>, 3> begin{};
     std::array<std::array<uint32_t, kBins>, 3> end{};
@@ -62,9 +63,9 @@ public:
                          ? kMaxDepth
                          : std::min(kMaxDepth, int(8 + 1.3 * std::log2(double(triangles) + 1)))) {}
 
-    /// Appends the subtree over `fragments` in `cell` to `tree`. references: how many it may have
-    /// where nothing but the heuristic stops it: all triangles may overlap in a plane, where each
-    /// cut would pay and double them.
+    /// Appends the subtree over `fragments` in `cell` to `tree`. references: how many references
+    /// the subtree may have where only the heuristic would stop it. All triangles may overlap in a
+    /// plane, and there each cut would pay and double them.
     void build(std::vector<Fragment> fragments, const Box& cell, int depth, double references,
                KdTree& tree, const Fork& fork) const {
         tree.depth = std::max(tree.depth, depth);
@@ -121,7 +122,7 @@ private:
         const size_t count = fragments.size() * options_.stands_for;
         if (fragments.size() < 2)
             return {};
-        // Stopped by count, a leaf is still cut where that saves three quarters of the work: a few
+        // Level 1 still cuts a small enough cell where that saves three quarters of the work: a few
         // far-reaching triangles would otherwise stretch its box until the rest is a dot in it.
         const bool stop = options_.max_leaf_triangles != 0;
         const bool enough = stop && count <= options_.max_leaf_triangles;
@@ -136,7 +137,8 @@ private:
         return split.cost < worth ? split : Split{};
     }
 
-    /// The heuristic's cost of cutting `cell` there; infinite when neither side gets smaller.
+    /// Makes this cut the best one where the heuristic says that it costs less. A cut that makes
+    /// neither side smaller is never taken.
     void consider(Split& best, const Box& cell, int axis, double position, size_t below,
                   size_t above, size_t total) const {
         if (!(position > cell.lo[axis] && position < cell.hi[axis]))
@@ -196,12 +198,12 @@ private:
                          below, above, fragments.size());
             }
         }
-        // Bins may all hold everything while the fragments' own bounds still cut: coincident
-        // centres, thin shells.
+        // All bins may hold everything, as with coincident centres or thin shells, while the
+        // fragments' own bounds still allow a cut.
         return best.found() ? best : best_hull(fragments, cell);
     }
 
-    /// Cuts off the empty space around all fragments, if there is any.
+    /// Returns the best cut of empty space around all fragments, if there is any.
     Split best_hull(const std::vector<Fragment>& fragments, const Box& cell) const {
         Box hull;
         for (const Fragment& fragment : fragments)
@@ -216,6 +218,7 @@ private:
 
     Split best_exact(const std::vector<Fragment>& fragments, const Box& cell) const {
         const size_t n = fragments.size();
+        assert(n <= kBins);
         std::array<double, kBins> begin, end;
         Split best;
         for (int axis = 0; axis < 3; ++axis) {
@@ -225,7 +228,7 @@ private:
             }
             std::sort(begin.begin(), begin.begin() + n);
             std::sort(end.begin(), end.begin() + n);
-            // A fragment that only touches the plane is on both sides: cells are closed.
+            // A fragment that only touches the plane is on both sides, because cells are closed.
             const auto consider_at = [&](double x) {
                 const size_t below =
                     std::upper_bound(begin.begin(), begin.begin() + n, x) - begin.begin();
@@ -234,7 +237,7 @@ private:
                 consider(best, cell, axis, x, below, above, n);
             };
             for (size_t i = 0; i < n; ++i) {
-                // Just before a beginning and just after an end nothing more is cut than must be.
+                // Just before a beginning and just after an end, a plane cuts no more than it must.
                 consider_at(std::nextafter(begin[i], cell.lo[axis]));
                 consider_at(std::nextafter(end[i], cell.hi[axis]));
             }
@@ -242,10 +245,11 @@ private:
         return best;
     }
 
-    /// Leaves what reaches below the plane in `fragments`, returns what reaches above it; both
-    /// reduced to their cells.
+    /// Leaves the fragments that reach below the plane in `fragments`, and returns those that reach
+    /// above it; both are reduced to their cells.
     std::vector<Fragment> divide(std::vector<Fragment>& fragments, const Split& split,
                                  const Box& below_cell, const Box& above_cell) const {
+        assert(split.found());
         std::vector<Fragment> above;
         above.reserve(
             size_t(std::count_if(fragments.begin(), fragments.end(), [&](const Fragment& f) {
@@ -287,6 +291,7 @@ private:
 
 KdTree build_kd_tree(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                      const KdBuildOptions& options) {
+    assert(options.stands_for > 0);
     KdTree tree;
     tree.bounds = bounds;
     if (triangles.empty() || bounds.empty())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the builder promises: completeness, the stop by count, bounded size on inputs that cannot be
-// cut.
+// The builder's promises: completeness, the stop by count, and a bounded size on inputs that cannot
+// be cut.
 #include "kdtree/build.h"
 
 #include "kdtree/clip.h"
@@ -73,7 +73,7 @@ TEST(KdTreeBuild, ReferencesStayBoundedWhereNothingCanBeCut) {
     }
 }
 
-/// Large triangles in one flat box: every cut across it pays, and cuts nearly all of them.
+/// Returns large triangles in one flat box: every cut across it pays, and cuts nearly all of them.
 TEST(KdTreeBuild, ReferencesStayBoundedWhereAllOverlapInAPlane) {
     test::Random random(5);
     std::vector<vec3> corners;

@@ -9,20 +9,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace ovc {
 
-/// A leaf node of the tree, the closed cell it stands for, and the cell with its padding.
+/// A leaf node of the tree, its closed cell, and the cell with its padding.
 struct Cell {
     uint32_t node;
     Box box;
     Box padded;
 };
 
-/// The cells of the tree over `bounds`, in the order of their nodes.
+/// Returns the cells of the tree (at least a root) over `bounds`, in the order of their nodes.
 std::vector<Cell> cells_of(std::span<const KdNode> nodes, const Box& bounds, double padding);
 
 /// Finds the cells that triangles touch. Keeps references to the nodes and the cells.
@@ -30,11 +31,12 @@ class CellFinder {
 public:
     CellFinder(std::span<const KdNode> nodes, std::span<const Cell> cells, double padding)
         : nodes_(nodes), cells_(cells), padding_(padding), cell_of_node_(nodes.size()) {
+        assert(cells.size() <= nodes.size());
         for (uint32_t i = 0; i < cells.size(); ++i)
             cell_of_node_[cells[i].node] = i;
     }
 
-    /// visit(c) for each cell whose padded box the triangle touches, in the order of cells.
+    /// Calls visit(c) for each cell whose padded box the triangle touches, in the order of cells.
     template <class Visit>
     void find(const Triangle& triangle, Visit&& visit) const {
         if (!nodes_.empty())
@@ -56,6 +58,7 @@ private:
             node = above ? n.above() : node + 1;
         }
         const uint32_t c = cell_of_node_[node];
+        assert(cells_[c].node == node);
         const Box& padded = cells_[c].padded;
         const bool inside = padded.contains(box.lo) && padded.contains(box.hi);
         if (inside || (padded.touches(box) && !clipped_bounds(triangle, padded).empty()))
@@ -68,7 +71,7 @@ private:
     std::vector<uint32_t> cell_of_node_;
 };
 
-/// Triangles are dealt in so many blocks, each with lists of its own, so that the order in which
+/// Triangles are dealt in this many blocks, each with lists of its own, so that the order in which
 /// cells get them never depends on threads.
 inline constexpr size_t kDealtBlocks = 64;
 
@@ -78,6 +81,7 @@ inline constexpr size_t kDealtBlocks = 64;
 template <class Put>
 void deal(const Soup& soup, const CellFinder& finder, std::span<const TriangleId> triangles,
           uint32_t far_cells, BuildProgress* progress, Put&& put) {
+    assert(far_cells > 0);
     const size_t size = triangles.size() / kDealtBlocks + 1;
     parallel_for(kDealtBlocks, 1, [&](size_t first, size_t last) {
         LoopProgress loop(progress);

@@ -9,8 +9,8 @@
 
 namespace ovc {
 
-/// The box of triangle ∩ box, larger by at most a few roundings and never smaller; empty only when
-/// the two are apart.
+/// Returns the box of triangle ∩ box, larger by at most a few roundings and never smaller; it is
+/// empty only when the two are apart.
 inline Box clipped_bounds(const Triangle& triangle, const Box& box) {
     // A triangle cut by six planes has at most nine corners.
     std::array<dvec3, 10> from;
@@ -44,7 +44,7 @@ inline Box clipped_bounds(const Triangle& triangle, const Box& box) {
         bounds.add(from[i]);
     if (bounds.empty())
         return bounds;
-    // The cuts are rounded: a few ulp of the triangle's coordinates cover that.
+    // The cuts are rounded; a few ulp of the triangle's coordinates cover that.
     const Box whole = bounds_of(triangle);
     const double margin = 0x1p-50 * max_component(glm::max(glm::abs(whole.lo), glm::abs(whole.hi)));
     return bounds.padded(margin).intersection(whole).intersection(box);

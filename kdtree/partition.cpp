@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Level 1: the KD-tree over a sample, stopped by count, then every cell padded and all triangles
-// handed to the cells they touch.
+// Level 1: the KD-tree over a sample is stopped by count; then every cell is padded, and all
+// triangles go to the cells that they touch.
 #include "kdtree/partition.h"
 
 #include "core/system/parallel.h"
@@ -16,10 +16,10 @@
 namespace ovc {
 namespace {
 
-/// Of the leaf's largest extent. The kernel sees a ray within the leaf's box and cannot prove a hit
-/// that lies within a rounding of either end. This keeps what is hit in the cell clear of the ends,
-/// even on triangles hundreds of times the size of the leaf, whose roundings are as much larger
-/// (docs/design/numerics.md).
+/// The margin of a leaf's box, as a share of the leaf's largest extent. The kernel traces a ray
+/// within the leaf's box and cannot prove a hit that lies within a rounding of either end. The
+/// margin keeps hits in the cell clear of the ends, even on triangles hundreds of times the size of
+/// the leaf, whose roundings are as much larger (docs/design/numerics.md).
 constexpr double kMargin = 0x1p-10;
 
 void collect_cells(std::span<const KdNode> nodes, uint32_t node, const Box& box, double padding,
@@ -35,8 +35,8 @@ void collect_cells(std::span<const KdNode> nodes, uint32_t node, const Box& box,
     collect_cells(nodes, nodes[node].above(), above, padding, cells);
 }
 
-/// members[c]: the triangles of cell c, in the order of `triangles`; behind all cells those that
-/// touch far_cells of them or more. A triangle is a unit of progress.
+/// Returns members: members[c] are the triangles of cell c, in the order of `triangles`, and the
+/// last entry holds those that touch far_cells cells or more. A triangle is a unit of progress.
 std::vector<std::vector<TriangleId>> gather(const Soup& soup, const CellFinder& finder,
                                             std::span<const TriangleId> triangles,
                                             uint32_t far_cells, BuildProgress* progress) {
@@ -55,10 +55,11 @@ std::vector<std::vector<TriangleId>> gather(const Soup& soup, const CellFinder& 
     return members;
 }
 
-/// Hands `triangles` to leaves of exactly `most` each but for the last: halves by the median of
-/// centres along the axis on which they are most apart.
+/// Hands `triangles` to leaves of exactly `most` each, except for the last, by halving them at the
+/// median of their centres along the axis on which these are farthest apart.
 void halve(const Soup& soup, std::span<TriangleId> triangles, uint32_t most,
            std::vector<std::vector<TriangleId>>& lists) {
+    assert(most > 0);
     if (triangles.size() <= most) {
         lists.emplace_back(triangles.begin(), triangles.end());
         std::ranges::sort(lists.back());
@@ -81,17 +82,18 @@ void halve(const Soup& soup, std::span<TriangleId> triangles, uint32_t most,
 }
 
 Frame frame_of(const Box& box, double reach) {
-    // A triangle may reach far out of its leaf; 2^40 leaf sizes still leave the kernel's cubes of
-    // coordinates finite.
+    // A triangle may reach far out of its leaf. At up to 2^40 leaf sizes the kernel's cubes of
+    // coordinates are still finite.
     const double size = std::max(max_component(box.extent()) * 0.5, reach * 0x1p-40);
     int exponent = 0;
     std::frexp(size, &exponent);
     return {box.center(), size > 0 ? std::ldexp(1.0, -exponent) : 1.0};
 }
 
-/// The triangles of a cell that cannot be cut, for several leaves in one place.
+/// Returns the triangles of a cell that cannot be cut, for several leaves in one place.
 std::vector<std::vector<TriangleId>> in_parts(std::span<const TriangleId> triangles,
                                               uint32_t most) {
+    assert(most > 0);
     std::vector<std::vector<TriangleId>> parts;
     for (size_t at = 0; at < triangles.size(); at += most) {
         const auto part = triangles.subspan(at, std::min<size_t>(most, triangles.size() - at));
@@ -100,7 +102,7 @@ std::vector<std::vector<TriangleId>> in_parts(std::span<const TriangleId> triang
     return parts;
 }
 
-/// Writes down a level 1 node by node, in depth-first order.
+/// Builds a Level1 node by node, in depth-first order.
 class Partitioner {
 public:
     Partitioner(const Soup& soup, const Box& bounds, BuildProgress* progress)
@@ -109,9 +111,9 @@ public:
         level1_.padding = padding_of(bounds);
     }
 
-    /// Appends the tree over `box`, which holds `triangles`, by a sample of them. Cells that hold
-    /// more than the sample made believe are cut again by all they hold. finds_far: triangles that
-    /// reach far may go into a leaf of their own; only where there are no leaves yet.
+    /// Appends the tree over `box`, which holds `triangles`, by a sample of them. Cells with more
+    /// triangles than the sample suggested are cut again by all they hold. finds_far: triangles
+    /// that reach far may go into a leaf of their own; only where there are no leaves yet.
     void cut(std::span<const TriangleId> triangles, const Box& box, uint32_t most,
              const Sample& drawn = {}, bool finds_far = false) {
         const uint32_t rate = sample_rate(triangles.size(), most);
@@ -122,7 +124,7 @@ public:
                 finds_far);
     }
 
-    /// A node for a cell of so many leaves; none where it is empty.
+    /// Appends a node for a cell, with a leaf for each list; no list stands for an empty cell.
     void add_leaves(const Box& padded_cell, std::vector<std::vector<TriangleId>> lists) {
         const uint32_t first = leaves();
         for (std::vector<TriangleId>& list : lists)
@@ -130,20 +132,21 @@ public:
         level1_.nodes.push_back(KdNode::leaf(first, leaves() - first));
     }
 
-    /// A leaf in no cell, before all that lie in cells.
+    /// Appends a leaf that is in no cell. It must come before all leaves that are in cells.
     void add_far_leaf(std::vector<TriangleId> triangles) {
+        assert(leaves() == level1_.far_leaves);
         leaves_.push_back({level1_.bounds.padded(level1_.padding), std::move(triangles)});
         level1_.far_leaves += 1;
     }
 
     uint32_t leaves() const { return uint32_t(leaves_.size()); }
 
-    /// Appends `nodes`, a tree over `box`; put_cell(cell, node) appends what stands for a leaf
+    /// Appends `nodes`, a tree over `box`; put_cell(cell, node) appends whatever replaces a leaf
     /// node.
     template <class PutCell>
     void copy(std::span<const KdNode> nodes, const Box& box, PutCell&& put_cell) {
         const std::vector<Cell> cells = cells_of(nodes, box, level1_.padding);
-        std::vector<uint32_t> now_at(nodes.size()); // where each node is, in level1_.nodes
+        std::vector<uint32_t> now_at(nodes.size()); // the place of each node in level1_.nodes
         auto cell = cells.begin();
         for (uint32_t node = 0; node < nodes.size(); ++node) {
             now_at[node] = uint32_t(level1_.nodes.size());
@@ -170,7 +173,7 @@ public:
     }
 
     /// Appends `nodes`, a tree over `box`, which holds `triangles`; put_cell(cell, inside) appends
-    /// what stands for a cell that those of them touch.
+    /// whatever replaces a cell that the triangles `inside` touch.
     template <class PutCell>
     void fill(std::span<const KdNode> nodes, const Box& box, std::span<const TriangleId> triangles,
               PutCell&& put_cell) {
@@ -295,7 +298,7 @@ double padding_of(const Box& scene) {
 KdTree cut_sample(const Soup& soup, std::span<const TriangleId> sample, uint32_t rate,
                   const Box& box, uint32_t max_leaf_triangles, BuildProgress* progress) {
     KdBuildOptions options;
-    // Of so many in a leaf, chance alone makes more by the root of the number: room for that.
+    // The number of a leaf's triangles in the sample deviates by about its root; this leaves room.
     const double most = double(max_leaf_triangles);
     options.max_leaf_triangles =
         rate == 1 ? max_leaf_triangles : uint32_t(most - std::sqrt(most * rate));
@@ -309,6 +312,7 @@ KdTree cut_sample(const Soup& soup, std::span<const TriangleId> sample, uint32_t
 }
 
 std::vector<Cell> cells_of(std::span<const KdNode> nodes, const Box& bounds, double padding) {
+    assert(!nodes.empty());
     std::vector<Cell> cells;
     collect_cells(nodes, 0, bounds, padding, cells);
     return cells;
@@ -332,7 +336,7 @@ Level1 partition(const Soup& soup, std::span<const TriangleId> triangles, const 
     assert(max_leaf_triangles > 0);
     if (triangles.empty())
         return Level1{.bounds = bounds};
-    if (triangles.size() <= max_leaf_triangles) { // a sample might make believe they are more
+    if (triangles.size() <= max_leaf_triangles) { // a sample might suggest that they are more
         Level1 level1{
             .nodes = {KdNode::leaf(0, 1)}, .bounds = bounds, .padding = padding_of(bounds)};
         level1.leaves.push_back(whole_leaf(soup, triangles, bounds));
@@ -367,6 +371,7 @@ Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const
 }
 
 uint32_t leaf_at(const Level1& level1, const dvec3& point, TriangleId id) {
+    assert(!level1.nodes.empty());
     uint32_t node = 0;
     while (!level1.nodes[node].is_leaf()) {
         const KdNode& n = level1.nodes[node];
@@ -386,7 +391,7 @@ Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most
                  std::vector<uint32_t>& was, BuildProgress* progress) {
     assert(most.size() == level1.leaves.size());
     was.clear();
-    std::vector<uint32_t> of; // per leaf: one whose frame it keeps; kNone: it has its own
+    std::vector<uint32_t> of; // per new leaf: the old one whose frame it keeps; kNone: its own
     Partitioner partitioner(soup, level1.bounds, progress);
     for (uint32_t i = 0; i < level1.far_leaves; ++i) {
         std::vector<std::vector<TriangleId>> lists;
@@ -425,6 +430,7 @@ Level1 cut_again(const Soup& soup, Level1 level1, std::span<const uint32_t> most
         of.resize(partitioner.leaves(), share_frame ? first : kNone);
     });
     Level1 cut = partitioner.finish();
+    assert(was.size() == cut.leaves.size() && of.size() == cut.leaves.size());
     cut.shares_frame = level1.shares_frame;
     for (size_t i = 0; i < cut.leaves.size(); ++i) {
         if (of[i] == kNone)

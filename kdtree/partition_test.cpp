@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Level 1: leaf sizes, and that walking leaf by leaf finds what testing every triangle finds.
+// Level 1: leaf sizes, and walks leaf by leaf that must find the hits of testing every triangle.
 #include "kdtree/partition.h"
 
 #include "kdtree/restart.h"
@@ -18,8 +18,8 @@ Level1 cut(const Soup& soup, uint32_t most) {
     return partition(soup, ids, bounds, most);
 }
 
-/// Leaf by leaf, all triangles of each tested; after the first hit only the leaves of its cell are
-/// left.
+/// Traces leaf by leaf and tests all triangles of each; after the first hit only the leaves of its
+/// cell are left.
 Hit trace(const Level1& level1, const Soup& soup, const Ray& ray) {
     if (!ray.valid())
         return {};

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kd-restart on level 1.
+// Kd-restart on level 1: finds the cell behind a t, and the leaves of cells.
 #include "kdtree/restart.h"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -10,12 +11,12 @@ namespace {
 
 struct CellVisit {
     const KdNode* cell = nullptr;
-    double exit = 0; // of the ray from the cell
+    double exit = 0; // t at which the ray leaves the cell
 };
 
-/// The cell that holds the ray just after t. Planes are met at times that are computed in one way
-/// only, so a restart at the exit of a cell always lands in the next: t grows with every cell, and
-/// no cell comes twice.
+/// Returns the cell that holds the ray just after t. The t of a plane is always computed in the
+/// same way, so a restart at the exit of a cell always lands in the next: t grows with every cell,
+/// and no cell comes twice.
 CellVisit cell_after(const Level1& level1, const PreparedRay& p, double t) {
     double exit = p.ray.t_max;
     uint32_t node = 0;
@@ -52,6 +53,7 @@ bool can_walk(const Level1& level1, const PreparedRay& p) {
 Visit next_leaf_in_cell(const Level1& level1, const PreparedRay& p, RayPosition& position) {
     while (position.next < position.end) {
         const uint32_t leaf = position.next++;
+        assert(leaf < level1.leaves.size());
         const Interval inside = clip(p, level1.leaves[leaf].box, p.ray.t_min, p.ray.t_max);
         if (!inside.empty())
             return {leaf, inside};

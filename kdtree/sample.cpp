@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rate, and the hash.
+// Samples: chooses the rate, and draws triangles by their hash.
 #include "kdtree/sample.h"
 
 #include "core/corner_hash.h"
@@ -12,11 +12,11 @@
 namespace ovc {
 namespace {
 
-// Measured (docs/benchmarks.md, "The plan"): so many keep planes, and with them the number of
-// leaves and the triangles that planes cut, within a few percent of those of all triangles.
+// Measured (docs/benchmarks.md, "The plan"): this many triangles keep the planes, the number of
+// leaves and the triangles that planes cut within a few percent of those of all triangles.
 constexpr uint64_t kMinInAll = 8192;
 constexpr uint64_t kMinInALeaf = 128;
-constexpr uint64_t kHighestRate = 64; // beyond, a sample costs less than looking for it
+constexpr uint64_t kHighestRate = 64; // at higher rates, drawing a sample costs more than using it
 
 } // namespace
 
@@ -31,7 +31,7 @@ std::vector<TriangleId> sample_triangles(const Soup& soup, std::span<const Trian
     assert(std::has_single_bit(rate));
     if (rate == 1)
         return {triangles.begin(), triangles.end()};
-    // Blocks with lists of their own, so that the order never depends on threads.
+    // Each block has a list of its own, so that the order never depends on threads.
     constexpr size_t kBlock = 1 << 16;
     std::vector<std::vector<TriangleId>> parts(triangles.size() / kBlock + 1);
     parallel_for(parts.size(), 1, [&](size_t first, size_t last) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples: how many, which, and that a level 1 cut by them keeps to its count.
+// Samples: their size, their members, and that a level 1 cut by them keeps to its count.
 #include "kdtree/sample.h"
 
 #include "kdtree/partition.h"
@@ -24,7 +24,7 @@ TEST(Sample, TakesAllOfAFewAndOneInManyOfMany) {
     EXPECT_EQ(sample_triangles(soup, ids, 1), ids);
     for (const uint32_t rate : {2u, 8u, 64u}) {
         const auto sample = sample_triangles(soup, ids, rate);
-        // By chance: the root of the number, four times.
+        // Chance moves the count by about its root; four times that are allowed.
         const double expected = double(ids.size()) / rate;
         EXPECT_NEAR(double(sample.size()), expected, 4 * std::sqrt(expected)) << rate;
         EXPECT_TRUE(std::is_sorted(sample.begin(), sample.end()));
@@ -46,7 +46,7 @@ TEST(Sample, HasAllDuplicatesOrNone) {
         EXPECT_EQ(prims.count((prim + 5000) % 10000), 1u);
 }
 
-/// Many small triangles, and some that reach across all of them.
+/// Returns many small triangles, and some that reach across all of them.
 Soup large_soup() {
     const Soup small = test::closed_grid(250), large = test::random_soup(5, 40, 2);
     std::vector<vec3> corners(small.chunks[0].corners().begin(), small.chunks[0].corners().end());
@@ -67,7 +67,7 @@ TEST(Sample, LeavesKeepToTheCountAndHoldEveryTriangleThatTouchesThem) {
             references += leaf.triangles.size();
         }
         EXPECT_LT(double(references), 1.5 * double(ids.size())) << most;
-        // Every triangle, at every corner of it, is in the leaf around that corner.
+        // At each of its corners, a triangle is in the leaf around that corner.
         std::vector<std::set<TriangleId>> inside;
         for (const Leaf& leaf : level1.leaves)
             inside.emplace_back(leaf.triangles.begin(), leaf.triangles.end());

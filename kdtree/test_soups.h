@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small soups and rays for tests of acceleration structures, and the answer by testing every
+// Small soups and rays for tests of acceleration structures, and their answers by testing every
 // triangle.
 #pragma once
 
@@ -17,7 +17,7 @@ struct NamedSoup {
     Soup soup;
 };
 
-/// Uniform in [lo, hi), from raw bits so that it is the same everywhere.
+/// Returns uniform numbers in [lo, hi), made from raw bits so that they are the same everywhere.
 class Random {
 public:
     explicit Random(uint64_t seed) : engine_(seed) {}
@@ -40,7 +40,7 @@ inline Soup one_chunk(std::vector<vec3> corners, dvec3 origin = dvec3(0)) {
     return soup;
 }
 
-/// Triangles of `size` strewn over the unit cube.
+/// Returns triangles of `size` strewn over the unit cube.
 inline Soup random_soup(uint64_t seed, size_t count, double size, dvec3 origin = dvec3(0)) {
     Random random(seed);
     std::vector<vec3> corners;
@@ -52,7 +52,7 @@ inline Soup random_soup(uint64_t seed, size_t count, double size, dvec3 origin =
     return one_chunk(std::move(corners), origin);
 }
 
-/// A closed n x n torus-like sheet of quads: shared edges and vertices everywhere.
+/// Returns a closed n x n torus-like sheet of quads, which share edges and vertices everywhere.
 inline Soup closed_grid(int n, dvec3 origin = dvec3(0)) {
     const auto at = [&](int i, int j) {
         const double a = 6.283185307179586 * (i % n) / n;
@@ -69,7 +69,7 @@ inline Soup closed_grid(int n, dvec3 origin = dvec3(0)) {
     return one_chunk(std::move(corners), origin);
 }
 
-/// A closed grid that dips into a floor of two triangles, twenty times as wide.
+/// Returns a closed grid that dips into a floor of two triangles, twenty times as wide.
 inline Soup grid_on_floor(int n) {
     Soup soup = closed_grid(n);
     const std::vector<vec3> floor{{-14, -14, -0.3f}, {14, -14, -0.3f}, {14, 14, -0.3f},
@@ -78,7 +78,7 @@ inline Soup grid_on_floor(int n) {
     return soup;
 }
 
-/// The soups every structure must get right: ordinary, and unpleasant.
+/// Returns the soups that every structure must get right: ordinary and unpleasant ones.
 inline std::vector<NamedSoup> unpleasant_soups() {
     std::vector<NamedSoup> soups;
     soups.push_back({"empty", one_chunk({})});
@@ -112,8 +112,8 @@ inline std::vector<NamedSoup> unpleasant_soups() {
     return soups;
 }
 
-/// Rays at, into, along and past the soup; some at vertices, edges, along axes, in planes, some
-/// invalid.
+/// Returns rays at, into, along and past the soup. Some aim at vertices and edges, some go along
+/// axes or in planes, and some are invalid.
 inline std::vector<Ray> unpleasant_rays(const Soup& soup, uint64_t seed, size_t count) {
     Random random(seed);
     Box bounds;
@@ -168,7 +168,7 @@ inline std::vector<Ray> unpleasant_rays(const Soup& soup, uint64_t seed, size_t 
     return rays;
 }
 
-/// Every triangle tested.
+/// Returns the nearest hit, found by testing every triangle.
 inline Hit brute_force(const Soup& soup, const std::vector<TriangleId>& ids, const Ray& ray,
                        TriangleId skip = {}) {
     if (!ray.valid())

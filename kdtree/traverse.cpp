@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU KDT: leaves visited by walk.h, triangles tested by core/exact/triangle.h.
+// The CPU KDT: walk.h visits leaves, and core/exact/triangle.h tests their triangles.
 #include "kdtree/traverse.h"
 
 #include "core/system/parallel.h"
@@ -36,7 +36,7 @@ Hit trace(const KdTree& tree, const Soup& soup, const Ray& ray, TriangleId skip)
     return kAnyHit ? nearest.unrounded_hit() : nearest.hit();
 }
 
-constexpr size_t kGrain = 64; // rays a task
+constexpr size_t kGrain = 64; // rays per task
 
 TriangleId skip_of(std::span<const TriangleId> skip, size_t i) {
     return skip.empty() ? TriangleId{} : skip[i];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU KDT answers, bit for bit, what testing every triangle answers.
+// The CPU KDT gives, bit for bit, the answers of testing every triangle.
 #include "kdtree/traverse.h"
 
 #include "kdtree/build.h"

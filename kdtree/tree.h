@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// KdTree: nodes, triangle references, bounds. Made by build.h, walked by traverse.h and restart.h.
+// KdTree: nodes, triangle references, bounds. build.h makes it; traverse.h and restart.h walk it.
 #pragma once
 
 #include "core/box.h"
@@ -12,8 +12,8 @@
 
 namespace ovc {
 
-/// An inner node cuts its cell at `split` along `axis`: below is the next node in memory, above
-/// lies anywhere later. A leaf node names a range of references.
+/// An inner node cuts its cell at `split` along `axis`. The node below is the next one in memory,
+/// and the node above lies anywhere later. A leaf node names a range of references.
 class KdNode {
 public:
     static KdNode inner(int axis, double split) {
@@ -53,7 +53,7 @@ public:
         return bits_ >> 2;
     }
 
-    /// The same node where its nodes begin at `nodes` and its references at `references`.
+    /// Returns the node for a tree whose nodes begin at `nodes` and references at `references`.
     KdNode moved(uint32_t nodes, uint32_t references) const {
         KdNode node = *this;
         node.index_ += is_leaf() ? references : nodes;
@@ -72,8 +72,8 @@ private:
 };
 static_assert(sizeof(KdNode) == 16);
 
-/// nodes[0] is the root; no nodes: no triangles. Every triangle that touches a leaf's closed cell
-/// is referenced there.
+/// nodes[0] is the root; there are no nodes where there are no triangles. Every triangle that
+/// touches a leaf's closed cell is referenced there.
 struct KdTree {
     std::vector<KdNode> nodes;
     std::vector<TriangleId> references;
@@ -81,6 +81,7 @@ struct KdTree {
     int depth = 0;
 
     std::span<const TriangleId> triangles(const KdNode& leaf) const {
+        assert(leaf.first() + size_t(leaf.count()) <= references.size());
         return {references.data() + leaf.first(), leaf.count()};
     }
 };

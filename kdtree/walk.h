@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walks a KD-tree front to back along a ray. Split planes are taken as thick as the ray's rounding
-// margin, so that a leaf the exact ray touches is never passed by; a leaf too many is.
+// Walks a KD-tree front to back along a ray. Split planes are as thick as the ray's rounding
+// margin, so the walk may visit a leaf too many, but passes by none that the exact ray touches.
 #pragma once
 
 #include "core/exact/triangle.h"
 #include "kdtree/tree.h"
 
 #include <array>
+#include <cassert>
 #include <limits>
 
 namespace ovc {
 
 /// Calls visit(node, enter, exit) -> bool (true: stop) for each leaf along the ray, in order of
-/// entry. limit() is the largest t still of interest; it may shrink from call to call.
+/// entry. limit() returns the largest t that is still of interest; it may shrink from call to call.
 template <class Visit, class Limit>
 void walk(std::span<const KdNode> nodes, const Box& bounds, const PreparedRay& p, Visit&& visit,
           Limit&& limit) {
@@ -47,8 +48,8 @@ void walk(std::span<const KdNode> nodes, const Box& bounds, const PreparedRay& p
             } else {
                 const double a = (distance - margin) * p.inv_dir[axis];
                 const double b = (distance + margin) * p.inv_dir[axis];
-                // Comparisons with NaN are false: both sides are then visited over the whole
-                // interval.
+                // Comparisons with NaN are false, so that both sides are then visited over the
+                // whole interval.
                 near_exit = std::max(a, b) < exit ? std::max(a, b) : exit;
                 far_enter = std::min(a, b) > enter ? std::min(a, b) : enter;
             }
@@ -59,8 +60,10 @@ void walk(std::span<const KdNode> nodes, const Box& bounds, const PreparedRay& p
                 enter = far_enter;
                 continue;
             }
-            if (far_enter <= exit)
+            if (far_enter <= exit) {
+                assert(top < int(stack.size()));
                 stack[top++] = {far, far_enter, exit};
+            }
             node = near;
             exit = near_exit;
         }

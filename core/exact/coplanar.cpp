@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes of tetrahedra in integers of 128 bits, which wrap around: one that is 0 there is 0 if
-// doubles say that it is small.
+// Computes volumes of tetrahedra in integers of 128 bits, which wrap around: a volume that is 0
+// there is 0 if doubles say that it is small.
 #include "core/exact/coplanar.h"
 
 #include "core/exact/double_parts.h"
@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -17,7 +18,7 @@ namespace {
 __extension__ using Wide = unsigned __int128;
 using Integer3 = std::array<int64_t, 3>;
 
-/// The power of two that all coordinates are multiples of; one at least is not 0.
+/// Returns the largest power of two that all coordinates are multiples of. At least one is not 0.
 int unit_of(const Triangle& a, const Triangle& b) {
     int unit = std::numeric_limits<int>::max();
     for (const Triangle* triangle : {&a, &b})
@@ -25,10 +26,11 @@ int unit_of(const Triangle& a, const Triangle& b) {
             for (int axis = 0; axis < 3; ++axis)
                 if (const DoubleParts x(corner[axis]); x.mantissa != 0)
                     unit = std::min(unit, x.power + std::countr_zero(x.mantissa));
+    assert(unit != std::numeric_limits<int>::max());
     return unit;
 }
 
-/// x / 2^unit, an integer, modulo 2^64.
+/// Returns x / 2^unit, an integer, modulo 2^64.
 uint64_t wrapped(double x, int unit) {
     const DoubleParts parts(x);
     const int shift = parts.power - unit;
@@ -38,7 +40,7 @@ uint64_t wrapped(double x, int unit) {
     return x < 0 ? 0 - magnitude : magnitude;
 }
 
-/// (to - from) / 2^unit, which is less than 2^58 in each coordinate.
+/// Returns (to - from) / 2^unit, which is less than 2^58 in each coordinate.
 Integer3 difference(const dvec3& to, const dvec3& from, int unit) {
     Integer3 result;
     for (size_t i = 0; i < 3; ++i)
@@ -71,8 +73,8 @@ bool surely_coplanar(const Triangle& a, const Triangle& b) {
     for (const dvec3& corner : b)
         reach = std::max(reach, max_component(glm::abs(corner - a[0])));
     if (!(reach > 1e-90 && reach < 1e90))
-        return false; // volumes might not be doubles
-    // Six products of three, of which doubles lose less than 2^-49 each.
+        return false; // volumes might overflow or underflow
+    // A volume is a sum of six products of three, of each of which doubles lose less than 2^-49.
     const double error = 6 * 0x1p-49 * reach * reach * reach;
     for (const dvec3& corner : b)
         if (!(std::abs(glm::dot(normal, corner - a[0])) <= error))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Planes in integers that wrap around, against exact arithmetic.
+// Compares surely_coplanar(), whose integers wrap around, with exact arithmetic.
 #include "core/exact/coplanar.h"
 
 #include "core/exact/exact.h"
@@ -32,7 +32,7 @@ bool exactly_coplanar(const Triangle& a, const Triangle& b) {
     return true;
 }
 
-/// Six corners of the plane z = m x + n y, for which these are exact.
+/// Returns six corners of the plane z = m x + n y, which are exact.
 struct Plane {
     double m, n, size;
     int bits; // of x and y
@@ -93,7 +93,7 @@ TEST(Coplanar, AxisPlanesAreFoundAtAnySize) {
     }
 }
 
-/// Volumes that are not zero, but a multiple of 2^128 units.
+/// Tests volumes that are not zero, but a multiple of 2^128 units.
 TEST(Coplanar, WrappedVolumesAreNotTakenForZero) {
     const double far = 0x1p43; // the volume is 6 * 2^129 units
     const Triangle a = {dvec3(0), dvec3(far, 0, 0), dvec3(0, far, 0)};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // DoubleDouble: a sum of two doubles, about 106 bits. Based on: Dekker 1971, "A Floating-Point
 // Technique for Extending the Available Precision"; error bounds as in Joldes, Muller and Popescu
-// 2017, with simpler constants. v is 2^-53; all bounds hold as long as nothing overflows, but for
-// 2^-1074 where a product underflows. V is double, or a vector of doubles
+// 2017, with simpler constants. v is 2^-53. All bounds hold as long as nothing overflows; a product
+// that underflows adds 2^-1074. V is double, or a vector of doubles
 // (core/exact/hit_lanes_kernel.h); everything is inlined, because the latter is compiled for
 // several processors.
 #pragma once
@@ -13,8 +13,8 @@
 
 namespace ovc {
 
-/// What vectors have no operators for. product_error(a, b, product): a b - product, exactly, where
-/// product is a b rounded. magnitude(x): |x|.
+/// The operations that vectors have no operators for. product_error(a, b, product) is a b -
+/// product, exactly, where product is a b rounded; magnitude(x) is |x|.
 template <class V>
 struct Lanes;
 
@@ -26,7 +26,7 @@ struct Lanes<double> {
     OVC_INLINE static double magnitude(double x) { return std::abs(x); }
 };
 
-/// hi + lo, where hi is that sum rounded to double.
+/// The number hi + lo, where hi is that sum rounded to double.
 template <class V>
 struct DoubleDoubleOf {
     V hi;
@@ -34,7 +34,7 @@ struct DoubleDoubleOf {
 };
 using DoubleDouble = DoubleDoubleOf<double>;
 
-/// a + b, exactly.
+/// Returns a + b, exactly.
 template <class V>
 OVC_INLINE DoubleDoubleOf<V> two_sum(V a, V b) {
     const V sum = a + b;
@@ -45,13 +45,13 @@ template <class V>
 OVC_INLINE DoubleDoubleOf<V> two_difference(V a, V b) {
     return two_sum(a, -b);
 }
-/// The same for |a| >= |b|, or a = 0.
+/// Returns a + b, exactly, where |a| >= |b| or a = 0.
 template <class V>
 OVC_INLINE DoubleDoubleOf<V> fast_two_sum(V a, V b) {
     const V sum = a + b;
     return {sum, b - (sum - a)};
 }
-/// a b, exactly.
+/// Returns a b, exactly.
 template <class V>
 OVC_INLINE DoubleDoubleOf<V> two_product(V a, V b) {
     const V product = a * b;
@@ -62,7 +62,7 @@ template <class V>
 OVC_INLINE DoubleDoubleOf<V> operator-(const DoubleDoubleOf<V>& a) {
     return {-a.hi, -a.lo};
 }
-/// Off by at most 4 v^2 (|a| + |b|).
+/// Returns the sum, off by at most 4 v^2 (|a| + |b|).
 template <class V>
 OVC_INLINE DoubleDoubleOf<V> operator+(const DoubleDoubleOf<V>& a, const DoubleDoubleOf<V>& b) {
     const DoubleDoubleOf<V> sum = two_sum(a.hi, b.hi);
@@ -72,13 +72,13 @@ template <class V>
 OVC_INLINE DoubleDoubleOf<V> operator-(const DoubleDoubleOf<V>& a, const DoubleDoubleOf<V>& b) {
     return a + -b;
 }
-/// Off by at most 4 v^2 |a b|.
+/// Returns the product, off by at most 4 v^2 |a b|.
 template <class V>
 OVC_INLINE DoubleDoubleOf<V> operator*(const DoubleDoubleOf<V>& a, V b) {
     const DoubleDoubleOf<V> product = two_product(a.hi, b);
     return fast_two_sum(product.hi, product.lo + a.lo * b);
 }
-/// Off by at most 9 v^2 |a b|.
+/// Returns the product, off by at most 9 v^2 |a b|.
 template <class V>
 OVC_INLINE DoubleDoubleOf<V> operator*(const DoubleDoubleOf<V>& a, const DoubleDoubleOf<V>& b) {
     const DoubleDoubleOf<V> product = two_product(a.hi, b.hi);

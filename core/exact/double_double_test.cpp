@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// DoubleDouble keeps the bounds its header states, against rational arithmetic.
+// DoubleDouble keeps the bounds that its header states, compared with rational arithmetic.
 #include "core/exact/double_double.h"
 
 #include "tests/exact.h"
@@ -17,7 +17,7 @@ Rational exact(const DoubleDouble& x) {
     return Rational(x.hi) + Rational(x.lo);
 }
 
-/// Doubles of many magnitudes and few, so that sums cancel.
+/// Makes doubles of many magnitudes, often with few bits, so that sums cancel.
 class Numbers {
 public:
     double next() {
@@ -25,7 +25,7 @@ public:
         return std::ldexp(engine_() % 4 ? mantissa : std::round(mantissa * 8) / 8,
                           int(engine_() % 60) - 30);
     }
-    /// hi + lo; now and then close to minus `other`.
+    /// Returns hi + lo, which now and then is close to minus `other`.
     DoubleDouble near(const DoubleDouble& other) {
         if (engine_() % 3)
             return two_sum(next(), next() * 0x1p-50);

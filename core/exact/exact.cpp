@@ -24,7 +24,7 @@ Exact::Exact(double x) {
     const DoubleParts parts(x);
     if (parts.mantissa == 0)
         return;
-    const int power = parts.power + 17 * kLimbBits; // above 0, where / and % round down
+    const int power = parts.power + 17 * kLimbBits; // above 0, so that / and % round down
     exponent_ = power / kLimbBits - 17;
     const Wide shifted = Wide(parts.mantissa) << power % kLimbBits;
     negative_ = x < 0;
@@ -63,7 +63,7 @@ void Exact::trim() {
         limbs_[size_t(i)] = limbs_[size_t(i + zeros)];
 }
 
-/// 2^(64 size) - this, of a magnitude that a subtraction has borrowed for.
+/// Replaces a magnitude that a subtraction has borrowed for by 2^(64 size) minus it.
 void Exact::complement() {
     uint64_t carry = 1;
     for (int i = 0; i < size_; ++i) {
@@ -122,6 +122,7 @@ Exact Exact::operator*(const Exact& other) const {
 }
 
 double Exact::leading(int& exponent) const {
+    assert(size_ > 0);
     const double top = std::ldexp(double(limbs_[size_t(size_ - 1)]), kLimbBits) +
                        (size_ > 1 ? double(limbs_[size_t(size_ - 2)]) : 0.0);
     const double mantissa = std::frexp(top, &exponent);
@@ -139,8 +140,8 @@ double Exact::quotient(const Exact& numerator, const Exact& denominator) {
     int up = 0, down = 0;
     const double ratio = n.leading(up) / d.leading(down);
     double rounded = std::min(std::ldexp(ratio, up - down), largest);
-    // That is within some units in the last place. Whether the quotient is nearer to a neighbour is
-    // told by their middle: twice the quotient is compared with their sum.
+    // That is within some units in the last place. To tell whether the quotient is nearer to a
+    // neighbour, twice the quotient is compared with the sum of the two.
     const auto nearer_to = [&](double neighbour) {
         const int side = (n + n - d * (Exact(rounded) + Exact(neighbour))).sign();
         const bool odd = std::bit_cast<uint64_t>(rounded) & 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact: sums, differences and products of doubles without a rounding, whatever their exponents.
-// The last stage of every decision about a hit; the stages before it leave few numbers to it.
+// Exact: sums, differences and products of doubles without a rounding, whatever their exponents. It
+// is the last stage of every decision about a hit, and earlier stages leave it few numbers.
 #pragma once
 
 #include "core/exact/solution.h"
@@ -16,7 +16,7 @@ namespace ovc {
 class Exact {
 public:
     Exact() = default;
-    /// x, which is finite.
+    /// x is finite.
     Exact(double x);
     Exact(const Exact& other) { *this = other; }
     Exact& operator=(const Exact& other);
@@ -29,13 +29,13 @@ public:
     /// -1, 0 or 1.
     int sign() const { return size_ == 0 ? 0 : negative_ ? -1 : 1; }
 
-    /// numerator / denominator (not zero), rounded once, to the nearest double, ties to even; the
-    /// largest double where the quotient lies beyond it.
+    /// Returns numerator / denominator (not zero), rounded once, to the nearest double, ties to
+    /// even; the largest double where the quotient lies beyond it.
     static double quotient(const Exact& numerator, const Exact& denominator);
 
 private:
-    // What two solutions make of corners, origin and direction that span all doubles: a difference
-    // takes 34 limbs, a determinant three times as many, and two of them are multiplied.
+    // Enough for two determinants multiplied, of corners, origin and direction that span all
+    // doubles: a difference takes 34 limbs, and a determinant three times as many.
     static constexpr int kMaxLimbs = 34 * 6 + 4;
 
     Exact sum(const Exact& other, bool other_negative) const;
@@ -46,10 +46,11 @@ private:
     int end() const { return exponent_ + size_; }
     void complement();
     void trim();
-    /// The magnitude as mantissa * 2^exponent, 0.5 <= mantissa < 1, off by at most 2^-62 of it.
+    /// Returns the mantissa of the magnitude (not 0), which is mantissa * 2^exponent up to an error
+    /// of 2^-62 of it; 0.5 <= mantissa < 1.
     double leading(int& exponent) const;
 
-    std::array<uint64_t, kMaxLimbs> limbs_; // the first size_ of them
+    std::array<uint64_t, kMaxLimbs> limbs_; // only the first size_ are set
     int size_ = 0;
     int exponent_ = 0;
     bool negative_ = false;

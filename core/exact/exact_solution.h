@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a ray meets a triangle, without a rounding.
+// ExactSolution: where a ray meets a triangle, without a rounding.
 #pragma once
 
 #include "core/exact/exact.h"
@@ -14,17 +14,17 @@ public:
     /// The corners are finite, and the ray is valid.
     ExactSolution(const Ray& ray, const Triangle& triangle);
 
-    /// Whether the line meets the closed triangle: no two weights have opposite signs, and not all
-    /// are zero.
+    /// Returns whether the line meets the closed triangle: no two weights have opposite signs, and
+    /// not all are zero.
     bool inside() const;
-    /// As in Candidate (core/exact/triangle.h). Needs inside(), as all below.
+    /// Returns Candidate::support (core/exact/triangle.h). This and all below need inside().
     uint32_t support() const;
-    /// The sign of t - `t`, which is finite.
+    /// Returns the sign of t - `t`, which is finite.
     int compare_t(double t) const;
-    /// The sign of t - other's t, on the same ray.
+    /// Returns the sign of t - other's t, on the same ray.
     int compare_t(const ExactSolution& other) const;
 
-    /// Rounded once each.
+    /// These return t, u and v, rounded once each.
     double t() const { return Exact::quotient(s_.t, s_.det); }
     double u() const { return Exact::quotient(s_.u, s_.det); }
     double v() const { return Exact::quotient(s_.v, s_.det); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact against rational arithmetic, over all exponents that doubles have.
+// Compares Exact with rational arithmetic, over all exponents that doubles have.
 #include "core/exact/exact.h"
 
 #include "tests/exact.h"
@@ -18,7 +18,7 @@ public:
     explicit Numbers(uint64_t seed) : engine_(seed) {}
 
     uint64_t below(uint64_t n) { return engine_() % n; }
-    /// Of a full mantissa or of few bits; now and then of any exponent, denormals among them.
+    /// Returns a full mantissa or few bits; now and then with any exponent, denormals among them.
     double next() {
         const int exponent = below(4) ? int(below(60)) - 30 : int(below(2090)) - 1074;
         const double mantissa = double(engine_() >> 11) * 0x1p-52 - 1;

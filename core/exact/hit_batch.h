@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// HitBatch: hits that are known to be the nearest, and whose t, u and v are still to be computed,
-// several at once.
+// HitBatch: collects hits that are known to be the nearest, to compute t, u and v of several at
+// once.
 #pragma once
 
 #include "core/exact/hit_lanes.h"
@@ -8,18 +8,20 @@
 #include "core/soup.h"
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 
 namespace ovc {
 
-/// Tag: what the caller knows of a ray.
+/// Tag: whatever the caller wants back with each hit.
 template <class Tag>
 class HitBatch {
 public:
     bool full() const { return count_ == HitLanes::kCount; }
 
-    /// The ray hits the triangle of that name. Needs room: not full().
+    /// Adds a ray and the triangle that it hits. Needs room: not full().
     void add(const Ray& ray, const Triangle& triangle, TriangleId id, const Tag& tag) {
+        assert(!full());
         put(lanes_.a, triangle[0]);
         put(lanes_.b, triangle[1]);
         put(lanes_.c, triangle[2]);
@@ -28,9 +30,9 @@ public:
         entries_[size_t(count_++)] = {ray.t_min, ray.t_max, id, tag};
     }
 
-    /// Empties the batch: calls found(hit, tag) for each hit, t, u and v rounded once; or
-    /// unclear(tag) where exact arithmetic must tell them, or where the ray does not seem to hit
-    /// the triangle.
+    /// Empties the batch. Calls found(hit, tag) for each hit, t, u and v rounded once; or
+    /// unclear(tag) where only exact arithmetic can tell them, or where the ray does not seem to
+    /// hit the triangle.
     template <class Found, class Unclear>
     void finish(Found&& found, Unclear&& unclear) {
         if (count_ == 0)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// round_hits() for any processor, and the choice among them.
+// round_hits() for any processor, and the choice of the widest vectors.
 #include "core/exact/hit_lanes.h"
 
 #include "core/exact/hit_lanes_kernel.h"
@@ -16,7 +16,7 @@ using TwoWords = long long __attribute__((vector_size(16)));
 
 } // namespace
 
-/// Without a fused operation: based on Dekker 1971, with Veltkamp's splitting.
+/// Computes the error without a fused operation. Based on: Dekker 1971, with Veltkamp's splitting.
 template <>
 struct Lanes<Two> {
     OVC_INLINE static Two product_error(Two a, Two b, Two product) {
@@ -30,7 +30,7 @@ struct Lanes<Two> {
     }
 
 private:
-    /// The upper 26 bits.
+    /// Returns the upper 26 bits of x.
     OVC_INLINE static Two high(Two x) {
         const Two scaled = 134217729.0 * x; // 2^27 + 1
         return scaled - (scaled - x);

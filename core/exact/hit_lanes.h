@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// HitLanes: t, u and v of several hits at once, rounded once, by the widest vectors that the
-// processor has.
+// HitLanes: computes t, u and v of several hits at once, rounded once, by the widest vectors that
+// the processor has.
 #pragma once
 
 #include <vector>
@@ -14,16 +14,16 @@ struct HitLanes {
 
     alignas(64) Vec a, b, c, org, dir;
     alignas(64) double t[kCount], u[kCount], v[kCount];
-    /// Not 0: t, u and v are the exact values, rounded to nearest. Else doubled precision does not
-    /// tell how they round, and they are anything.
+    /// Not 0: t, u and v are the exact values, rounded to nearest. 0: doubled precision cannot tell
+    /// how they round, and they may be anything.
     alignas(64) long long known[kCount];
 };
 
-/// Fills in t, u, v and known of all lanes, whatever those hold that are not used. The same bits on
-/// every processor.
+/// Fills in t, u, v and known of all lanes; unused lanes may hold anything. The bits are the same
+/// on every processor.
 void round_hits(HitLanes& lanes);
 
-/// The same by each width of vectors that the processor has, the widest last: for tests.
+/// Returns a round_hits() per width of vectors that the processor has, the widest last: for tests.
 using RoundHits = void (*)(HitLanes&);
 std::vector<RoundHits> ways_to_round_hits();
 

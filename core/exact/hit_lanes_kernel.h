@@ -21,7 +21,7 @@ OVC_INLINE Vec3Of<V> load(const HitLanes::Vec& from, int lane) {
     return {load<V>(from[0] + lane), load<V>(from[1] + lane), load<V>(from[2] + lane)};
 }
 
-/// V: a vector of some of the lanes.
+/// V is a vector of some of the lanes.
 template <class V>
 OVC_INLINE void round_hits_by(HitLanes& lanes) {
     for (int lane = 0; lane < HitLanes::kCount; lane += int(sizeof(V) / sizeof(double))) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// round_hits() against rational arithmetic: what it calls known is the exact value rounded.
+// Compares round_hits() with rational arithmetic: known values are the exact ones, rounded.
 #include "core/exact/hit_lanes.h"
 
 #include "tests/exact.h"
@@ -37,7 +37,7 @@ void put(HitLanes::Vec& to, int lane, const dvec3& v) {
         to[axis][lane] = v[axis];
 }
 
-/// asked: what `answered` was before round_hits().
+/// asked: the lanes before round_hits() made `answered` of them.
 void expect_every_way_alike(const HitLanes& asked, const HitLanes& answered) {
     for (const RoundHits way : ways_to_round_hits()) {
         HitLanes again = asked;

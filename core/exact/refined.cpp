@@ -5,6 +5,8 @@
 #include "core/exact/exact_solution.h"
 #include "core/exact/rounding.h"
 
+#include <cassert>
+
 namespace ovc {
 namespace {
 
@@ -17,14 +19,14 @@ BoundedSolution<double> solution_of(const PreparedRay& p, const Triangle& triang
                                             vec(p.ray.org), vec(p.ray.dir)});
 }
 
-/// -1 or 1; 0 where it is not known, or is exactly 0.
+/// Returns -1 or 1; 0 where the sign is not known, or the value is exactly 0.
 int sign_of(const DoubleDouble& value, double error) {
     return value.hi > error ? 1 : value.hi < -error ? -1 : 0;
 }
 
-/// The sign of the quotient minus x; 0 where its error leaves it open.
+/// Returns the sign of the quotient minus x; 0 where its error leaves it open.
 int compare(const Quotient<double>& quotient, double x) {
-    // The difference of neighbours is exact; of others its rounding does not matter.
+    // The difference of neighbouring doubles is exact, and the rounding of others does not matter.
     const double gap = (quotient.value.hi - x) + quotient.value.lo;
     const double error = quotient.error + 0x1p-51 * std::abs(quotient.value.lo);
     return gap > error ? 1 : gap < -error ? -1 : 0;
@@ -61,6 +63,7 @@ RefinedAnswer refined_candidate(const PreparedRay& p, const Triangle& triangle, 
 }
 
 Hit rounded_hit(const PreparedRay& p, const Triangle& triangle, TriangleId id, uint32_t support) {
+    assert(support > 0 && support <= Candidate::kAllCorners);
     const BoundedSolution<double> s = solution_of(p, triangle);
     const Quotient<double> t = over_det(s, s.value.t, s.error.t);
     const Quotient<double> u = over_det(s, s.value.u, s.error.u);

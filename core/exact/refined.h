@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays against triangles in doubled precision: what doubles leave in doubt, and t, u and v of a
-// hit, rounded once.
+// Tests rays against triangles in doubled precision, where doubles leave a doubt, and computes t, u
+// and v of a hit, rounded once.
 #pragma once
 
 #include "core/exact/triangle.h"
 
 namespace ovc {
 
-/// Whether the triangle is hit, and where; or (known = false) that it takes exact arithmetic to
-/// say. A candidate's t is off by at most 2^-50 of itself.
+/// Whether the triangle is hit, and where; known = false where only exact arithmetic can say. A
+/// candidate's t is off by at most 2^-50 of itself.
 struct RefinedAnswer {
     bool known = false;
     std::optional<Candidate> candidate;
 };
 
-/// The answer of exact_candidate() for finite corners, where it is known.
+/// Returns the answer of exact_candidate() for finite corners, where it is known.
 RefinedAnswer refined_candidate(const PreparedRay& p, const Triangle& triangle, TriangleId id);
 
-/// A hit of the triangle with t, u and v rounded once. support: as in Candidate.
+/// Returns the hit of a triangle that is hit, t, u and v rounded once. support: as in Candidate.
 Hit rounded_hit(const PreparedRay& p, const Triangle& triangle, TriangleId id, uint32_t support);
 
 } // namespace ovc

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rounding: a solution in doubled precision with bounds of its errors, and t, u and v of a hit
-// rounded once, where the bounds tell how. V is double or a vector of doubles.
+// Rounding: computes a solution in doubled precision with bounds of its errors, and rounds t, u and
+// v of a hit once, where the bounds tell how. V is double or a vector of doubles.
 #pragma once
 
 #include "core/exact/solution.h"
 
 namespace ovc {
 
-/// The corners of triangles, and lines.
+/// Triangles (a, b, c), and the lines org + t dir that may meet them.
 template <class V>
 struct Meeting {
     Vec3Of<V> a, b, c, org, dir;
@@ -46,7 +46,7 @@ OVC_INLINE V total(const Vec3Of<MagnitudeOf<V>>& v) {
 template <class V>
 OVC_INLINE BoundedSolution<V> bounded_solution(const Meeting<V>& m) {
     constexpr double kBound = 0x1p-101;      // 32 v^2
-    constexpr double kUnderflow = 0x1p-1060; // what is lost to it, in products of two
+    constexpr double kUnderflow = 0x1p-1060; // the loss to underflow in products of two
     const Vec3Of<DoubleDoubleOf<V>> ab = exact_difference(m.b, m.a);
     const Vec3Of<DoubleDoubleOf<V>> ac = exact_difference(m.c, m.a);
     const Vec3Of<DoubleDoubleOf<V>> from_a = exact_difference(m.org, m.a);
@@ -61,21 +61,21 @@ OVC_INLINE BoundedSolution<V> bounded_solution(const Meeting<V>& m) {
              kBound * size.v.value + lost, kBound * size.t.value + lost}};
 }
 
-/// A number rounded to double, and by how much the rounded one may be off. The number lies within
-/// `error` of value.hi + value.lo.
+/// A quotient in doubled precision, and its error: the exact number lies within `error` of value.hi
+/// + value.lo.
 template <class V>
 struct Quotient {
     DoubleDoubleOf<V> value;
     V error;
 
-    /// Whether every number within the bound rounds to value.hi: nonzero or true where it does.
+    /// Returns whether every number within the bound rounds to value.hi: nonzero or true if so.
     OVC_INLINE auto is_rounded() const {
         return (value.hi + (value.lo + error) == value.hi) &
                (value.hi + (value.lo - error) == value.hi);
     }
 };
 
-/// numerator / denominator; the errors are bounds. inverse: 1 / denominator.hi.
+/// Returns numerator / denominator, whose errors are bounds. inverse: 1 / denominator.hi.
 template <class V>
 OVC_INLINE Quotient<V> quotient(const DoubleDoubleOf<V>& numerator, V numerator_error,
                                 const DoubleDoubleOf<V>& denominator, V denominator_error,

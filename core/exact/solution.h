@@ -7,9 +7,8 @@
 
 namespace ovc {
 
-/// The line org + t dir meets the plane of (a, b, c) at t / det, in the point
-/// (w a + u b + v c) / det. All are 0 where the line lies in the plane; det alone where it is
-/// parallel to it.
+/// The line org + t dir meets the plane of (a, b, c) at t / det, in the point (w a + u b + v c) /
+/// det. All are 0 where the line lies in the plane; only det is where it is parallel to it.
 template <class Number>
 struct Solution {
     Number det, u, v, t;
@@ -32,7 +31,7 @@ OVC_INLINE auto dot(const Vec3Of<A>& a, const Vec3Of<B>& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// ab and ac: b - a and c - a; from_a: org - a. Number * Component is a Number.
+/// Solves for ab = b - a, ac = c - a and from_a = org - a. Number * Component is a Number.
 template <class Number, class Component>
 OVC_INLINE Solution<Number> solve(const Vec3Of<Number>& ab, const Vec3Of<Number>& ac,
                                   const Vec3Of<Number>& from_a, const Vec3Of<Component>& dir) {
@@ -41,8 +40,8 @@ OVC_INLINE Solution<Number> solve(const Vec3Of<Number>& ab, const Vec3Of<Number>
     return {-dot(ab, p), -dot(from_a, p), dot(q, dir), dot(q, ac)};
 }
 
-/// The sum of the magnitudes of what is added and subtracted, for bounds: Solution<Magnitude>
-/// bounds how far roundings can move a Solution.
+/// Sums the magnitudes of all terms, added or subtracted. Solution<MagnitudeOf<V>> bounds how far
+/// roundings can move a Solution.
 template <class V>
 struct MagnitudeOf {
     V value;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reference where doubles leave a doubt: the same determinants, exactly.
+// The reference where doubles leave a doubt: it computes the same determinants exactly.
 #include "core/exact/triangle.h"
 
 #include "core/exact/coplanar.h"
@@ -7,13 +7,15 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 namespace ovc {
 namespace {
 
-/// Which corners of `b` lie where those of `a` do that `support` names; 0 where not all have one.
-/// Then a ray that meets `a` there meets `b` in the same point, unless it runs along its plane.
+/// Returns which corners of `b` lie where the corners of `a` do that `support` names; 0 where not
+/// all of those have one. A ray that meets `a` there then meets `b` in the same point, unless it
+/// runs along b's plane.
 uint32_t shared_support(const Triangle& a, uint32_t support, const Triangle& b) {
     uint32_t shared = 0;
     for (int i = 0; i < 3; ++i) {
@@ -31,7 +33,7 @@ int sign_of(TriangleId a, TriangleId b) {
     return a < b ? -1 : b < a ? 1 : 0;
 }
 
-/// Does the line cross the triangle's plane, for sure?
+/// Returns whether the line crosses the triangle's plane for sure.
 bool surely_crosses(const PreparedRay& p, const Triangle& triangle) {
     const dvec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0];
     const dvec3 d = p.ray.dir;
@@ -39,7 +41,7 @@ bool surely_crosses(const PreparedRay& p, const Triangle& triangle) {
     const dvec3 right = dvec3(ab.z * ac.y, ab.x * ac.z, ab.y * ac.x);
     const double det = glm::dot(left - right, d);
     const double magnitude = glm::dot(glm::abs(left) + glm::abs(right), glm::abs(d));
-    // Eight roundings in a row, and what underflows.
+    // The bound covers eight roundings in a row, and underflow.
     const double error = 0x1p-49 * magnitude + 1e-300 * (1 + max_component(glm::abs(d)));
     return std::abs(det) > error && std::isfinite(magnitude);
 }
@@ -61,14 +63,15 @@ std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& t
 }
 
 bool Nearest::offer_neighbour(const Triangle& triangle, TriangleId id) {
+    assert(is_hit() && best_.found.support != Candidate::kAllCorners);
     const uint32_t shared = shared_support(best_.triangle, best_.found.support, triangle);
     if (shared == 0)
         return false;
     if (best_.found.hit.id < id)
-        return true; // the same point or, seen edge-on, none: it does not win
+        return true; // it is hit in the same point or, seen edge-on, not at all
     if (!surely_crosses(p_, triangle))
         return false;
-    Candidate same = best_.found; // but for u and v, which hit() computes
+    Candidate same = best_.found; // except u and v, which hit() computes anew
     same.hit.id = id;
     same.support = shared;
     if (!counts(same, triangle))
@@ -86,7 +89,7 @@ std::optional<Candidate> Nearest::in_doubt(const Triangle& triangle, TriangleId 
     return exact_candidate(p_, triangle, id);
 }
 
-/// The order of two hits whose t doubles leave open.
+/// Tells the order of two hits whose t doubles leave open.
 int ComparedHit::order_closely(const PreparedRay& p, Candidate& other, const Triangle& of_other) {
     const int by_id = sign_of(other.hit.id, found.hit.id);
     if (shared_support(triangle, found.support, of_other) != 0 ||

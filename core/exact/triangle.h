@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reference: rays against triangles as exact arithmetic decides, and against boxes. What it
-// answers is what certified mode returns. Based on: Woop, Benthin and Wald 2013, "Watertight
+// The reference: tests rays against triangles as exact arithmetic decides, and against boxes.
+// Certified mode returns its answers. Based on: Woop, Benthin and Wald 2013, "Watertight
 // Ray/Triangle Intersection", section 3; Shewchuk 1997 (doubles first, exact sums where they leave
 // a doubt); Ize 2013, "Robust BVH Ray Traversal", section 3. Needs -ffp-contract=off and rounding
 // to nearest.
@@ -20,8 +20,8 @@
 
 namespace ovc {
 
-/// A ray made ready: the basis that maps it onto the z axis, and the margin that keeps box tests
-/// conservative.
+/// A ray made ready for tests: the basis that maps it onto the z axis, and the margin that keeps
+/// box tests conservative.
 struct PreparedRay {
     Ray ray;
     int kx, ky, kz;       // kz: the major axis of dir
@@ -29,11 +29,11 @@ struct PreparedRay {
     dvec3 inv_dir;        // may be infinite
     TriangleId skip;      // a triangle this ray does not see: the one it starts on
     HitPlace after;       // only hits behind this place count; t_min is not far before it
-    double org_error = 0; // how far in each coordinate its line may be from the one that is meant
+    double org_error = 0; // bounds how far, in each coordinate, the line is from the intended one
 
     explicit PreparedRay(const Ray& r, const Exclusion& without = {})
         : ray(behind(r, without.after)), skip(without.skip), after(without.after) {
-        // Beyond the largest double no hit can be told.
+        // No t beyond the largest double can be told.
         ray.t_max = std::min(r.t_max, std::numeric_limits<double>::max());
         kz = major_axis(r.dir);
         kx = (kz + 1) % 3;
@@ -53,7 +53,7 @@ struct PreparedRay {
         return ray;
     }
 
-    /// More than the rounding error, in each coordinate, of positions along this ray within
+    /// Returns more than the rounding error, in each coordinate, of positions along this ray within
     /// `bounds`.
     double margin(const Box& bounds) const {
         return 0x1p-46 * max_component(glm::max(glm::abs(bounds.lo - ray.org),
@@ -71,13 +71,13 @@ struct Candidate {
     double t_error = 0;
     uint32_t support =
         kAllCorners;      // bit i: corner i has a part in the hit. One bit: the hit is that
-                          // corner, two: it lies on that side. All where nobody looked
-    bool refined = false; // t is as doubled precision has it: no use to ask that again
+                          // corner, two: it lies on that side. All where that is not known
+    bool refined = false; // t is from doubled precision, which need not be asked again
 
     /// Returns a t that the hit's is certainly not above.
     double latest_t() const { return hit.t + (std::abs(t_low) + t_error); }
 
-    /// The sign of this t minus the other's, on the same ray; 0 where the errors leave it open.
+    /// Returns the sign of this t minus the other's, on the same ray; 0 where errors leave it open.
     int compare_t(const Candidate& other) const {
         const double low = t_low - other.t_low;
         const double gap = (hit.t - other.hit.t) + low;
@@ -86,16 +86,16 @@ struct Candidate {
     }
 };
 
-/// What candidate() answers where doubles cannot tell: in doubled precision (core/exact/refined.h),
-/// and exactly where that leaves a doubt.
+/// Returns the answer of candidate() where doubles cannot tell it: in doubled precision
+/// (core/exact/refined.h), and exactly where that leaves a doubt.
 std::optional<Candidate> exact_candidate(const PreparedRay& p, const Triangle& triangle,
                                          TriangleId id);
 
-/// Where the ray meets the closed triangle, t_min <= t <= t_max; nothing where it does not. Decided
-/// as by exact arithmetic: in double with an error bound, and by exact_candidate() where that
-/// leaves a doubt. So a ray never slips between two triangles that share corners bit for bit. A
-/// triangle seen exactly edge-on is not hit. in_doubt(p, triangle, id): instead of
-/// exact_candidate().
+/// Returns where the ray meets the closed triangle, t_min <= t <= t_max; nothing where it does not.
+/// Exact arithmetic would decide the same: doubles with an error bound decide, and
+/// exact_candidate() where they leave a doubt. So a ray never slips between two triangles that
+/// share corners bit for bit. A triangle seen exactly edge-on is not hit. in_doubt(p, triangle, id)
+/// is called instead of exact_candidate().
 template <class InDoubt>
 std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangle, TriangleId id,
                                    InDoubt&& in_doubt) {
@@ -111,8 +111,8 @@ std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangl
         size[i] = std::abs(x[i]) + std::abs(y[i]);
         reach[i] = size[i] + std::abs(z[i]);
     }
-    // docs/design/numerics.md, "The reference": a projected corner is off by 6u reach, an edge
-    // function by what that and its own roundings make.
+    // docs/design/numerics.md, "The reference": a projected corner is off by 6u reach, and an edge
+    // function by what that and its own roundings add up to.
     const auto edge_error = [&](int i, int j) {
         return 12 * u * (reach[i] * size[j] + reach[j] * size[i] + 12 * u * reach[i] * reach[j]) +
                1e-300;
@@ -190,8 +190,8 @@ private:
     std::optional<ComparedHit> place_; // where the place is a hit, and not only a t
 };
 
-/// The nearest of the triangles offered, as exact arithmetic would choose: smaller t, equal t to
-/// the smaller id.
+/// Keeps the nearest of the triangles offered, as exact arithmetic would choose: smaller t wins,
+/// equal t the smaller id. The ray must outlive it.
 class Nearest {
 public:
     /// triangle_after: the one that p.after names; nullptr where there is none.
@@ -200,8 +200,9 @@ public:
             behind_.emplace(p, triangle_after);
     }
 
-    /// Tests the triangle. True: it is hit, though perhaps not the nearest, or seen edge-on through
-    /// the nearest hit. False: it is missed, not behind p.after, or has lost before.
+    /// Tests the triangle. Returns true where it is hit, though perhaps not the nearest, or seen
+    /// edge-on through the nearest hit; false where it is missed, not behind p.after, or has lost
+    /// before.
     bool offer(const Triangle& triangle, TriangleId id) {
         if (id == best_.found.hit.id)
             return is_hit();
@@ -219,18 +220,18 @@ public:
 
     bool is_hit() const { return best_.found.hit.is_hit(); }
 
-    /// The hit, its t, u and v rounded once: the doubles nearest to the exact values.
+    /// Returns the hit, its t, u and v rounded once: the doubles nearest to the exact values.
     Hit hit() const;
-    /// The same with t, u and v as they were found: for who asks only whether something is hit.
+    /// Returns the hit as it was found, for callers that only ask whether something is hit.
     const Hit& unrounded_hit() const { return best_.found.hit; }
 
-    /// Nothing beyond this t can win any more.
+    /// Returns the t beyond which nothing can win any more.
     double limit() const {
         return is_hit() ? std::min(best_.found.latest_t(), p_.ray.t_max) : p_.ray.t_max;
     }
 
 private:
-    /// Triangles of late: a table in which they push each other out.
+    /// The triangles decided of late, in a table in which they push each other out.
     class Recent {
     public:
         void add(TriangleId id) { ids_[slot(id)] = id; }
@@ -243,11 +244,11 @@ private:
         std::array<TriangleId, kSlots> ids_{};
     };
 
-    /// Where the best hit is a corner or on a side that the triangle has as well: thousands may
-    /// have it, and are decided without another exact number. False: nothing is decided.
+    /// Decides a triangle that shares the corner or side that the best hit lies on, as thousands
+    /// may, without another exact number. Returns false where it decides nothing.
     bool offer_neighbour(const Triangle& triangle, TriangleId id);
-    /// exact_candidate(); but nothing where that was asked before: leaves that overlap offer a
-    /// triangle again.
+    /// Returns exact_candidate(), but nothing for a triangle that was asked before, because leaves
+    /// that overlap offer it again.
     std::optional<Candidate> in_doubt(const Triangle& triangle, TriangleId id);
     /// Whether the hit lies behind p.after.
     bool counts(Candidate& found, const Triangle& triangle) {
@@ -257,10 +258,10 @@ private:
     const PreparedRay& p_;
     std::optional<Behind> behind_;
     ComparedHit best_;
-    std::optional<Recent> decided_; // triangles that were in doubt, and are the best or none
+    std::optional<Recent> decided_; // once in doubt; each is the best, or has lost
 };
 
-/// The hit of a single triangle, rounded once.
+/// Returns the hit of a single triangle, rounded once.
 std::optional<Hit> intersect(const PreparedRay& p, const Triangle& triangle, TriangleId id);
 
 /// The part of a ray inside something: empty when enter > exit.
@@ -271,8 +272,8 @@ struct Interval {
     bool empty() const { return !(enter <= exit); }
 };
 
-/// The part of [from, to] that the ray spends in `box`. May be a little too long, never too short,
-/// when the box was padded by PreparedRay::margin.
+/// Returns the part of [from, to] that the ray spends in `box`. It may be a little too long, but is
+/// never too short when the box was padded by PreparedRay::margin.
 inline Interval clip(const PreparedRay& p, const Box& box, double from, double to) {
     for (int axis = 0; axis < 3; ++axis) {
         const double org = p.ray.org[axis];

@@ -19,7 +19,7 @@ public:
         return lo + (hi - lo) * (double(engine_() >> 11) * 0x1p-53);
     }
     dvec3 point() { return {(*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1)}; }
-    /// Few bits, so that exact coincidences happen.
+    /// Returns a point of few bits, so that exact coincidences happen.
     dvec3 lattice() { return glm::round(point() * 8.0) / 2.0; }
     uint64_t below(uint64_t n) { return engine_() % n; }
 

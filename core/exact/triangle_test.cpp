@@ -48,7 +48,7 @@ struct ClosedMesh {
     }
 };
 
-/// An octahedron, subdivided and pushed out to the unit sphere around `center`.
+/// Returns an octahedron, subdivided and pushed out to the unit sphere around `center`.
 ClosedMesh sphere(int subdivisions, dvec3 center) {
     ClosedMesh mesh;
     for (int axis = 0; axis < 3; ++axis)
@@ -83,7 +83,7 @@ ClosedMesh sphere(int subdivisions, dvec3 center) {
     return mesh;
 }
 
-/// True when the ray meets any face.
+/// Returns whether the ray meets any face.
 bool meets(const ClosedMesh& mesh, const Ray& ray) {
     const PreparedRay prepared(ray);
     for (size_t face = 0; face < mesh.faces.size(); ++face)
@@ -92,7 +92,7 @@ bool meets(const ClosedMesh& mesh, const Ray& ray) {
     return false;
 }
 
-/// A point of a random face: on a vertex, on an edge, or inside.
+/// Returns a point of a random face: on a vertex, on an edge, or inside.
 dvec3 point_to_aim_at(const ClosedMesh& mesh, Random& random) {
     const Triangle t = mesh.triangle(random.below(mesh.faces.size()));
     switch (random.below(4)) {
@@ -129,7 +129,7 @@ TEST_P(Watertight, NoRayFromOutsideSlipsThroughEdgesOrVerticesThatFaceIt) {
     for (uint64_t seed = 0; seed < 50000; ++seed) {
         Random random(seed);
         const dvec3 target = point_to_aim_at(mesh, random);
-        // Along the normal, give or take: never near the silhouette, where a miss may be right.
+        // Roughly along the normal, the ray is far from the silhouette, where a miss may be right.
         const dvec3 org = target + 4.0 * (target - center) + random.in_cube(1.5);
         leaks += !meets(mesh, {org, 0, target - org});
     }
@@ -254,7 +254,6 @@ TEST(Ray, KnowsWhatNoTriangleCanBeAskedAbout) {
 }
 
 // --- against exact arithmetic
-// ---------------------------------------------------------------------------------
 
 using ExactVec = std::array<Rational, 3>;
 
@@ -275,7 +274,7 @@ struct ExactHit {
     double t, u, v, w; // of the plane; inside when u, v, w >= 0
 };
 
-/// Möller and Trumbore's test without a rounding, up to the last conversion.
+/// Returns the result of Möller and Trumbore's test without a rounding, up to the last conversion.
 ExactHit exact_hit(const Ray& ray, const Triangle& triangle) {
     const ExactVec a = exact(triangle[0]), org = exact(ray.org), dir = exact(ray.dir);
     const ExactVec ab = exact(triangle[1]) - a, ac = exact(triangle[2]) - a;
@@ -301,8 +300,8 @@ TEST(Intersect, AgreesWithExactArithmeticAwayFromEdges) {
 
         const ExactHit truth = exact_hit(ray, triangle);
         const double least = std::min({truth.u, truth.v, truth.w});
-        // Corners and org are exact inputs; what is left is the rounding of their differences, at
-        // most 10 / 1e-3 in ratio to the triangle's own size.
+        // Corners and org are exact inputs. Only their differences round, by at most 10 / 1e-3 in
+        // ratio to the triangle's own size.
         if (std::abs(least) < 1e-9 || std::abs(truth.t) < 1e-9)
             continue;
         const std::optional<Hit> hit = shoot(ray, triangle);
@@ -319,7 +318,7 @@ TEST(Intersect, AgreesWithExactArithmeticAwayFromEdges) {
     EXPECT_GT(misses, 1000);
 }
 
-/// The part of [0, infinity) a ray spends in a box, without rounding; nothing when it misses.
+/// Returns the part of [0, infinity) of a ray in a box, without rounding; nothing for a miss.
 std::optional<std::pair<Rational, Rational>> exact_clip(const Ray& ray, const Box& box) {
     Rational enter = 0, exit = 0;
     bool bounded = false;
@@ -366,7 +365,7 @@ TEST(Clip, NeverShortensTheRayForAnyDirection) {
         box.add(random.below(5) == 0 ? box.lo : random.in_cube(2)); // a fifth: a point
         Ray ray;
         for (int axis = 0; axis < 3; ++axis) {
-            // Often exactly on a face's plane: there 0 times infinity lurks.
+            // The origin is often exactly on a face's plane, where 0 times infinity may come up.
             const size_t where = random.below(4);
             ray.org[axis] = where == 0   ? box.lo[axis]
                             : where == 1 ? box.hi[axis]
@@ -376,7 +375,7 @@ TEST(Clip, NeverShortensTheRayForAnyDirection) {
         if (!ray.valid())
             continue;
         const auto truth = exact_clip(ray, box);
-        // Beyond the largest double (a denormal direction) no t exists to be right about.
+        // Beyond the largest double (a denormal direction) there is no t to compare with.
         if (!truth || truth->first > Rational(std::numeric_limits<double>::max()))
             continue;
         const PreparedRay prepared(ray);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Archive: writing front to back, and believing nothing when reading.
+// Archive: it writes front to back, and believes nothing when it reads.
 #include "core/file/archive.h"
 
 #include <algorithm>
 #include <cassert>
+#include <cstdint>
 #include <cstring>
 
 namespace ovc {
@@ -42,9 +43,10 @@ Bytes bytes_of_one(const T& value) {
     return std::as_bytes(std::span(&value, 1));
 }
 
-/// Without looking at alignment.
+/// Reads a T at an offset that need not be aligned.
 template <class T>
 T read_at(Bytes bytes, uint64_t offset) {
+    assert(offset <= bytes.size() && sizeof(T) <= bytes.size() - offset);
     T value;
     std::memcpy(&value, bytes.data() + offset, sizeof(T));
     return value;
@@ -74,6 +76,7 @@ void ArchiveWriter::end_part() {
     }
     const std::array<std::byte, kPartAlignment> zeros{};
     pass_on(std::span(zeros).first((kPartAlignment - offset_ % kPartAlignment) % kPartAlignment));
+    assert(offset_ % kPartAlignment == 0);
 }
 
 void ArchiveWriter::begin(std::string_view name) {
@@ -103,6 +106,7 @@ bool ArchiveWriter::finish() {
 }
 
 Result<Archive> Archive::open(Bytes bytes, std::string_view kind, uint32_t version) {
+    assert(reinterpret_cast<uintptr_t>(bytes.data()) % kPartAlignment == 0);
     if (bytes.size() < sizeof(Header) + sizeof(End))
         return Error{"is too short to be whole"};
     const auto header = read_at<Header>(bytes, 0);

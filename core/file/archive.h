@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Archive: named parts of bytes one after the other, each with a checksum, made to be mapped into
-// memory. What the cache file and the saved levels of the plugin are.
+// memory: scene files, the plugin's saved levels, stored programs and unfinished pictures.
 //
 //   header   64 bytes: kind (16 characters), version (u32), a mark of the byte order (u32), 0
 //   parts    each begins at a multiple of 64; zeros in between
@@ -26,7 +26,7 @@ namespace ovc {
 
 using Bytes = std::span<const std::byte>;
 
-/// Takes the next bytes of what is written; false: it wants no more.
+/// Takes the next bytes of an archive that is written. Returns false where it wants no more.
 using ByteSink = std::function<bool(Bytes)>;
 
 template <class T>
@@ -35,7 +35,7 @@ Bytes bytes_of(std::span<const T> items) {
     return std::as_bytes(items);
 }
 
-/// Where parts begin, so that what is in them may be used in place.
+/// Parts begin at multiples of this many bytes, so that their items may be used in place.
 inline constexpr size_t kPartAlignment = 64;
 
 struct ArchivePart {
@@ -46,13 +46,13 @@ struct ArchivePart {
 };
 static_assert(sizeof(ArchivePart) == 40);
 
-/// Writes an archive front to back, so that nobody need hold it whole.
+/// Writes an archive front to back, so that nobody need hold all of it.
 class ArchiveWriter {
 public:
-    /// kind, and a part's name: at most 15 characters.
+    /// kind, and the names of parts, have at most 15 characters.
     ArchiveWriter(ByteSink sink, std::string_view kind, uint32_t version);
 
-    /// What is written from here on belongs to a part of this name.
+    /// Begins a part of this name, to which all that is written next belongs.
     void begin(std::string_view name);
     void write(Bytes bytes);
     template <class T>
@@ -61,7 +61,7 @@ public:
         write(bytes_of(items));
     }
 
-    /// Once, after the last part. False where the sink wanted no more.
+    /// Ends the archive; call this once. Returns false where the sink wanted no more.
     bool finish();
 
 private:
@@ -69,26 +69,27 @@ private:
     void end_part();
 
     ByteSink sink_;
-    Checksum frame_; // of header and table
+    Checksum frame_; // over header and table
     std::vector<ArchivePart> parts_;
     Checksum part_;
     uint64_t offset_ = 0;
     bool wanted_ = true;
 };
 
-/// A view of an archive's bytes, which outlive it.
+/// A view of an archive's bytes, which must outlive it.
 class Archive {
 public:
-    /// Error: not such an archive, another version, or damage to header and table. The sentence
-    /// goes on from a name: "is …".
+    /// Returns a view of `bytes`, which are aligned to kPartAlignment. Error: not such an archive,
+    /// another version, damage to header or table. The sentence goes on from a name: "is …".
     static Result<Archive> open(Bytes bytes, std::string_view kind, uint32_t version);
 
-    /// The part's bytes, their checksum found right. Error: none of this name, or damage.
+    /// Returns the part's bytes if their checksum is right. Error: none of this name, or damage.
     Result<Bytes> part(std::string_view name) const;
-    /// The same, not checked: for a part that checks itself. Empty where there is none.
+    /// Returns the bytes unchecked, for a part that checks itself; none where there is no such
+    /// part.
     Bytes unchecked(std::string_view name) const;
 
-    /// A part of any number of T, or, with `count`, of so many.
+    /// Returns a part of any number of T, or of `count`. Error: as part(), or another size.
     template <class T>
     Result<std::span<const T>> items(std::string_view name, uint64_t count = ~uint64_t(0)) const {
         static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kPartAlignment);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Archive: what was written comes back, in place; any changed bit and any missing byte is noticed.
+// Archive: parts come back as written, in place; changed bits and missing bytes are noticed.
 #include "core/file/archive.h"
 
 #include "core/file/test_archive.h"
@@ -55,7 +55,7 @@ TEST(Archive, OthersAreRefusedWithAReason) {
     EXPECT_EQ(Archive::open({}, "example", 7).error().message, "is too short to be whole");
 }
 
-/// Whether all of it is found to be as it was written.
+/// Returns whether all parts are found to be as they were written.
 bool is_whole(Bytes bytes) {
     const auto archive = Archive::open(bytes, "example", 7);
     return archive && archive->part("numbers") && archive->part("nothing") && archive->part("text");

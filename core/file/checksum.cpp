@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// XXH64, step by step as its description has them. Our own, so that the library builds with three
-// others; checksum_test.cpp compares it with xxHash's.
+// XXH64, step by step as its description has them. It is our own, so that the library builds with
+// only three others; checksum_test.cpp compares it with xxHash's.
 #include "core/file/checksum.h"
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstring>
 
 namespace ovc {
@@ -27,7 +28,7 @@ uint64_t Checksum::round(uint64_t lane, uint64_t word) {
 
 /// Adds whole stripes from the front of `bytes`, and returns what is left.
 std::span<const std::byte> Checksum::add_stripes(std::span<const std::byte> bytes) {
-    std::array<uint64_t, 4> lanes = lanes_; // in registers, which a member need not be
+    std::array<uint64_t, 4> lanes = lanes_; // a copy that stays in registers
     for (; bytes.size() >= kStripe; bytes = bytes.subspan(kStripe))
         for (size_t i = 0; i < lanes.size(); ++i)
             lanes[i] = round(lanes[i], read<uint64_t>(bytes.data() + 8 * i));
@@ -47,6 +48,7 @@ void Checksum::add(std::span<const std::byte> bytes) {
     }
     bytes_ += bytes.size();
     bytes = add_stripes(bytes);
+    assert(bytes.size() < kStripe);
     std::copy(bytes.begin(), bytes.end(), rest_.begin());
 }
 

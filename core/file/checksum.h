@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checksum: 64 bits that tell damaged or other bytes from the ones there were. It is no protection
+// Checksum: 64 bits that tell damaged or other bytes from the original ones. It is no protection
 // against an adversary.
 // Based on: Collet, "xxHash fast digest algorithm", version 0.1.1 (XXH64).
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace ovc {
 
-/// XXH64, seed 0, of all bytes added, in whatever parts they came: some 7 GB/s.
+/// XXH64 with seed 0 of all bytes added, in whatever parts they came: some 7 GB/s.
 class Checksum {
 public:
     void add(std::span<const std::byte> bytes);
@@ -22,7 +22,7 @@ public:
         add(std::as_bytes(std::span(&value, 1)));
     }
 
-    /// Of what was added so far.
+    /// Returns the checksum of all bytes added so far.
     uint64_t value() const;
 
 private:
@@ -35,7 +35,7 @@ private:
     std::span<const std::byte> add_stripes(std::span<const std::byte> bytes);
 
     std::array<uint64_t, 4> lanes_{kPrimes[0] + kPrimes[1], kPrimes[1], 0, 0 - kPrimes[0]};
-    std::array<std::byte, kStripe> rest_{}; // no whole stripe
+    std::array<std::byte, kStripe> rest_{}; // the bytes behind the last whole stripe
     uint64_t bytes_ = 0;
 };
 

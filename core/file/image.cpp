@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Image: the metric.
+// ImageDifference: the metric.
 #include "core/file/image.h"
 
 #include <algorithm>

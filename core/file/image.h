@@ -4,6 +4,7 @@
 
 #include "core/vec.h"
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -19,18 +20,24 @@ struct Image {
     Image() = default;
     Image(uint32_t w, uint32_t h) : width(w), height(h), pixels(size_t(w) * h, vec4(0)) {}
 
-    vec4& at(uint32_t x, uint32_t y) { return pixels[size_t(y) * width + x]; }
-    const vec4& at(uint32_t x, uint32_t y) const { return pixels[size_t(y) * width + x]; }
+    vec4& at(uint32_t x, uint32_t y) {
+        assert(x < width && y < height);
+        return pixels[size_t(y) * width + x];
+    }
+    const vec4& at(uint32_t x, uint32_t y) const {
+        assert(x < width && y < height);
+        return pixels[size_t(y) * width + x];
+    }
 };
 
-/// Over all channels of all pixels; `differing` counts pixels that are not equal bit for bit.
+/// Covers all channels of all pixels; `differing` counts pixels that compare unequal, as NaN does.
 struct ImageDifference {
     double max = 0;
     double rmse = 0;
     uint64_t differing = 0;
 };
 
-/// The images must be of one size (asserted).
+/// Returns how far two images of one size differ.
 ImageDifference difference(const Image& a, const Image& b);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MappedFile: by mmap.
+// MappedFile: maps a file by mmap.
 #include "core/file/mapped_file.h"
 
 #include "core/text/suggestion.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MappedFile: a file as memory, read by the system when it is touched.
+// MappedFile: a file as memory, which the system reads when it is touched.
 #pragma once
 
 #include "core/file/archive.h"
@@ -10,14 +10,14 @@
 
 namespace ovc {
 
-/// Whoever changes the file's bytes in place changes them here as well; one that is cut shorter
+/// Changing the file's bytes in place changes them here as well, and a file that is cut shorter
 /// faults when touched. Replacing it by another file of its name does neither.
 class MappedFile {
 public:
-    /// Error: none, no regular file, or empty; the sentence names it.
+    /// Returns the file as memory. Error, which names the file: none, not regular, or empty.
     static Result<MappedFile> open(const std::filesystem::path& path);
 
-    /// No file.
+    /// Holds no file.
     MappedFile() = default;
     MappedFile(MappedFile&& other) noexcept : bytes_(std::exchange(other.bytes_, {})) {}
     MappedFile& operator=(MappedFile&& other) noexcept {
@@ -26,7 +26,7 @@ public:
     }
     ~MappedFile();
 
-    /// Aligned to pages of memory.
+    /// Returns the file's bytes, aligned to pages of memory; valid as long as this object.
     Bytes bytes() const { return bytes_; }
 
 private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests and fuzzers: archives in memory, and their checksums made right again after damage, so
-// that what stands behind them is tested as well.
+// Archives in memory for tests and fuzzers. Their checksums can be made right again after damage,
+// so that the checks behind them are tested as well.
 #pragma once
 
 #include "core/file/archive.h"
@@ -11,7 +11,7 @@
 
 namespace ovc::test {
 
-/// Bytes aligned as a mapped file is, of any later size.
+/// Bytes aligned as those of a mapped file, which may grow.
 class ArchiveMemory {
 public:
     ArchiveMemory() = default;
@@ -45,8 +45,8 @@ private:
     size_t size_ = 0;
 };
 
-/// Makes the checksums of an archive right for what its parts now are, as far as header, table and
-/// end still say where they are.
+/// Makes the checksums of an archive right for its parts as they are now, as far as header, table
+/// and end still say where those are.
 inline void reseal(ArchiveMemory& memory) {
     constexpr size_t kEndBytes = 40, kHeaderBytes = 64;
     if (memory.size() < kHeaderBytes + kEndBytes)
@@ -73,8 +73,8 @@ inline void reseal(ArchiveMemory& memory) {
     std::memcpy(end + 16, &sum, 8);
 }
 
-/// Damages an archive as a fuzzer's bytes say: six of them are a place and what is written there;
-/// an odd number cuts it off.
+/// Damages an archive as a fuzzer's bytes say. Six of them name a place and the damage to do there;
+/// an odd number of bytes left cuts the archive off.
 inline void damage(ArchiveMemory& memory, std::span<const uint8_t> orders) {
     constexpr size_t kOrder = 6;
     for (; orders.size() >= kOrder && memory.size() > 8; orders = orders.subspan(kOrder)) {

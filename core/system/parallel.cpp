@@ -9,6 +9,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <atomic>
+#include <cassert>
 #include <chrono>
 #include <latch>
 #include <stdexcept>
@@ -24,8 +25,8 @@ namespace {
 using Context = oneapi::tbb::task_group_context;
 
 /// Calls loop(context) in isolation and in a group of its own. In that context it runs in this
-/// thread's floating-point mode; else it would run in that of the thread on which oneTBB began,
-/// which may be the host's: with subnormals flushed, say.
+/// thread's floating-point mode. Otherwise it would run in the mode of the thread on which oneTBB
+/// began, which may be the host's and flush subnormals, say.
 void isolated(FunctionRef<void(Context&)> loop) {
     oneapi::tbb::this_task_arena::isolate([&] {
         Context context(Context::isolated, Context::default_traits | Context::fp_settings);
@@ -36,6 +37,7 @@ void isolated(FunctionRef<void(Context&)> loop) {
 } // namespace
 
 void parallel_for(size_t count, size_t grain, FunctionRef<void(size_t, size_t)> body) {
+    assert(grain > 0);
     using Range = oneapi::tbb::blocked_range<size_t>;
     isolated([&](Context& context) {
         oneapi::tbb::parallel_for(
@@ -62,7 +64,9 @@ struct ThreadLimit::Limit {
 };
 
 ThreadLimit::ThreadLimit(size_t threads)
-    : limit_(new Limit{{oneapi::tbb::global_control::max_allowed_parallelism, threads}}) {}
+    : limit_(new Limit{{oneapi::tbb::global_control::max_allowed_parallelism, threads}}) {
+    assert(threads > 0);
+}
 
 ThreadLimit::~ThreadLimit() = default;
 
@@ -73,7 +77,7 @@ size_t thread_count() {
 
 namespace {
 
-/// Throws where the system does not allow this process so many threads more.
+/// Throws where the system does not allow this process `count` threads more.
 void try_threads(size_t count) {
     std::latch all_tried(1);
     std::vector<std::thread> threads;
@@ -91,8 +95,8 @@ void try_threads(size_t count) {
         threads.emplace_back([&] { all_tried.wait(); });
 }
 
-/// Runs a loop whose parts wait for each other, so that every thread must come; but not for ever,
-/// because the host may have given oneTBB other work.
+/// Runs a loop whose parts wait for each other, so that every thread must come. They do not wait
+/// for ever, because the host may have given oneTBB other work.
 void gather_threads(size_t count) {
     using Clock = std::chrono::steady_clock;
     const auto until = Clock::now() + std::chrono::milliseconds(20);
@@ -111,7 +115,7 @@ void start_threads() {
         try_threads(thread_count() - 1);
         try {
             gather_threads(thread_count());
-        } catch (const std::runtime_error&) { // oneTBB's word for the same
+        } catch (const std::runtime_error&) { // oneTBB's report of the same failure
             throw std::system_error(
                 std::make_error_code(std::errc::resource_unavailable_try_again));
         }

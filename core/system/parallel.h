@@ -21,25 +21,25 @@
 
 namespace ovc {
 
-/// Calls body(first, last) on disjoint ranges that cover [0, count), of at least `grain` items
-/// where possible, from several threads. What body throws is thrown here.
+/// Calls body(first, last) on disjoint ranges that cover [0, count), of at least `grain` (> 0)
+/// items where possible, from several threads. An exception from body is thrown here.
 void parallel_for(size_t count, size_t grain, FunctionRef<void(size_t, size_t)> body);
 
-/// Runs both, perhaps at the same time. What one of them throws is thrown here.
+/// Runs both, perhaps at the same time. An exception from one of them is thrown here.
 void parallel_invoke(FunctionRef<void()> a, FunctionRef<void()> b);
 
 /// Forks of one recursion (in_forks): fork(a, b) runs both, perhaps at the same time. Unlike in
-/// parallel_invoke(), a thread that waits for one of them may take on any other fork of it.
+/// parallel_invoke(), a thread that waits for one of them may take on another fork of it.
 class Fork {
 public:
     explicit Fork(void* context) : context_(context) {}
     void operator()(FunctionRef<void()> a, FunctionRef<void()> b) const;
 
 private:
-    void* context_; // oneTBB's
+    void* context_; // oneTBB's; null under ThreadSanitizer
 };
 
-/// Calls body. What a fork throws ends them all, and is thrown here.
+/// Calls body. An exception from a fork ends all of them, and is thrown here.
 void in_forks(FunctionRef<void(const Fork&)> body);
 
 /// Folds [0, count) with body(first, last, T) -> T over a fixed sequence of ranges, each of which
@@ -48,7 +48,7 @@ void in_forks(FunctionRef<void(const Fork&)> body);
 template <class T, class Body, class Join>
 T parallel_reduce(size_t count, T identity, Body&& body, Join&& join) {
     constexpr size_t kMinItems = 4096, kMaxRanges = 64;
-    struct Part { // so that those of bool are no bits of one word
+    struct Part { // because elements of vector<bool> would share a word
         T value;
     };
     const size_t ranges = std::clamp<size_t>(count / kMinItems, 1, kMaxRanges);
@@ -66,12 +66,12 @@ T parallel_reduce(size_t count, T identity, Body&& body, Join&& join) {
     return total;
 }
 
-/// Starts the threads that loops run on, once in a process; else they start within the first loops,
-/// and where the system refuses one there, oneTBB throws in the midst of a loop or ends the
-/// process. Throws std::system_error.
+/// Starts the threads that loops run on, once in a process. Otherwise they would start within the
+/// first loops, and where the system refuses one there, oneTBB throws in the midst of a loop or
+/// ends the process. Throws std::system_error where the system refuses one.
 void start_threads();
 
-/// While it lives, loops of the whole process run on at most so many threads.
+/// While it lives, loops of the whole process run on at most `threads` (> 0) threads.
 class ThreadLimit {
 public:
     explicit ThreadLimit(size_t threads);
@@ -82,7 +82,7 @@ private:
     std::unique_ptr<Limit> limit_;
 };
 
-/// On how many threads loops run at most.
+/// Returns the max number of threads that loops run on.
 size_t thread_count();
 
 /// Sorts [first, last) by <. Equal elements come in any order.

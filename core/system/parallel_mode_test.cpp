@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops run in the floating-point mode of whoever starts them, whatever mode the process was in
-// when oneTBB, which hosts use too, began.
+// Loops run in the floating-point mode of the thread that starts them, whatever mode the process
+// was in when oneTBB, which hosts use too, began.
 #include "core/system/parallel.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ constexpr uint32_t kFlags = 0x3f;
 
 class ParallelMode : public testing::Test {
 protected:
-    /// The host's first loop, and its threads, in its mode; then the mode that the plugin takes.
+    /// Starts oneTBB's threads by a loop in the host's mode, then takes the plugin's mode.
     void SetUp() override {
         _mm_setcsr(kOfTheHost);
         oneapi::tbb::parallel_for(0, 64, [](int) { look(); });
@@ -63,7 +63,7 @@ TEST_F(ParallelMode, InvokeRunsInTheModeOfWhoStartsIt) {
     EXPECT_EQ(strange, 0);
 }
 
-/// A number whose comparison looks at the mode.
+/// A number whose comparison checks the mode.
 struct Looking {
     int value;
     bool operator<(const Looking& other) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops of ours inside tasks of a host that uses oneTBB as well.
+// Tests our loops inside tasks of a host that uses oneTBB as well.
 #include "core/system/parallel.h"
 
 #include <gtest/gtest.h>
@@ -24,9 +24,9 @@ void work_for_a_while() {
     std::this_thread::sleep_for(std::chrono::microseconds(300));
 }
 
-/// Runs call() as a host does from many of its tasks, more threads than cores; returns how often a
-/// thread that waited within one call was given another: where a call holds a lock, it would wait
-/// for itself.
+/// Runs call() as a host does from many of its tasks, on more threads than cores. Returns how often
+/// a thread that waited within one call was given another one; if a call holds a lock, that thread
+/// would wait for itself.
 template <class Call>
 size_t calls_within_calls(Call&& call) {
     const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
@@ -123,7 +123,7 @@ TEST(Parallel, RunsWholeWhereTheGroupAroundItIsCancelled) {
     });
 }
 
-/// What one part of a loop throws must not cut short a loop within another part.
+/// An exception from one part of a loop must not cut short a loop within another part.
 TEST(Parallel, ALoopWithinALoopRunsWholeWhereThatOneThrows) {
     const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
                                               4);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loops of parallel.h on plain threads, for ThreadSanitizer: oneTBB's library is not compiled
-// with it, so that what its tasks hand to each other would look like races, and real ones would
-// drown.
+// The loops of parallel.h on plain threads, for ThreadSanitizer. oneTBB's library is not compiled
+// with it, so data that its tasks hand to each other would look like races, and real ones would
+// drown among them.
 #include "core/system/parallel.h"
 
 #ifdef __SANITIZE_THREAD__

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages from the system.
+// SystemPages: maps and unmaps them.
 #include "core/system/system_pages.h"
 
 #include <sys/mman.h>

@@ -7,7 +7,7 @@
 
 namespace ovc {
 
-/// Given back, they leave the process at once. What malloc gets back it may keep.
+/// Gives the pages back, and they leave the process at once. malloc may keep what it gets back.
 struct UnmapPages {
     size_t bytes = 0;
 
@@ -15,8 +15,8 @@ struct UnmapPages {
 };
 using SystemPages = std::unique_ptr<void, UnmapPages>;
 
-/// Zeros, which the system finds on first touch: what is never used costs nothing. At the start of
-/// a page. Throws std::bad_alloc.
+/// Returns zeroed memory that begins at a page. The system finds pages on first touch, so memory
+/// that is never used costs nothing. Throws std::bad_alloc.
 SystemPages map_pages(size_t bytes);
 
 } // namespace ovc

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values as text, and where they stand in a pattern.
+// Turns values into text, and puts them into patterns.
 #include "core/text/format_text.h"
 
+#include <cassert>
 #include <charconv>
 
 namespace ovc {
@@ -23,6 +24,7 @@ std::string fill_in(std::string_view pattern, std::span<const std::string> value
     std::string text;
     for (const std::string& value : values) {
         const size_t place = pattern.find("{}");
+        assert(place != pattern.npos);
         text.append(pattern.substr(0, place)).append(value);
         pattern.remove_prefix(place + 2);
     }

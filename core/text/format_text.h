@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// format_text(): sentences with values in them. The library has nothing else to format, and so it
+// format_text(): writes values into sentences. The library has nothing else to format, and so it
 // needs no library for that, whose headers would take half of its compile time.
 #pragma once
 
@@ -32,19 +32,19 @@ inline std::string text_of(std::string_view value) {
 }
 template <std::integral Integer>
 std::string text_of(Integer value) {
-    return std::to_string(value); // of a bool: 0 or 1
+    return std::to_string(value); // a bool becomes 0 or 1
 }
-/// As few digits as tell the value from its neighbours.
+/// Returns as few digits as tell the value from its neighbours.
 std::string text_of(double value);
 
-/// In hexadecimal, with zeros in front up to `digits` of them.
+/// Returns the value in hexadecimal, with zeros in front where it has fewer than `digits`.
 std::string hexadecimal(uint64_t value, size_t digits);
 
-/// The pattern with each {} in turn replaced by one of the values, as many as there are.
+/// Returns the pattern with its {} in turn replaced by the values, which are as many.
 std::string fill_in(std::string_view pattern, std::span<const std::string> values);
 
-/// The pattern with each {} in turn replaced by the text of an argument: strings as they are,
-/// numbers in decimal.
+/// Returns the pattern with each {} in turn replaced by the text of an argument: strings as they
+/// are, numbers in decimal.
 template <class... Args>
 std::string format_text(FormatPattern<sizeof...(Args)> pattern, const Args&... args) {
     const std::array<std::string, sizeof...(Args)> values{text_of(args)...};

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// UTF-8 as RFC 3629 has it, character by character.
+// Reads UTF-8, as RFC 3629 defines it, character by character.
 #include "core/text/printable.h"
 
+#include <cassert>
 #include <cstdint>
 #include <cstdio>
 
@@ -9,13 +10,14 @@ namespace ovc {
 
 namespace {
 
-/// A character and its bytes; 0 bytes: what stands there is none.
+/// A character and the number of its bytes; 0 bytes where the text does not begin with one.
 struct Character {
     uint32_t code = 0;
     size_t bytes = 0;
 };
 
 Character first_of(std::string_view text) {
+    assert(!text.empty());
     const auto byte = [&](size_t i) { return uint32_t(static_cast<unsigned char>(text[i])); };
     const uint32_t lead = byte(0);
     if (lead < 0x80)

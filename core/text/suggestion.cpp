@@ -7,7 +7,7 @@
 
 namespace ovc {
 
-/// Insertions, deletions, replacements and swaps of two neighbours that lead from a to b.
+/// Counts the insertions, deletions, replacements and swaps of two neighbours from a to b.
 static size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<size_t> before_last, last(b.size() + 1), row(b.size() + 1);
     for (size_t j = 0; j <= b.size(); ++j)
@@ -42,7 +42,7 @@ std::string did_you_mean(std::string_view word, std::span<const std::string_view
     return meant.empty() ? "" : "; did you mean '" + std::string(meant) + "'?";
 }
 
-/// So that a slow disk with a million files is not read for a hint.
+/// A limit, so that no slow disk with a million files is read for a hint.
 static constexpr size_t kMaxFiles = 10000;
 
 static std::string in_small_letters(std::string word) {
@@ -55,7 +55,7 @@ std::string did_you_mean_file(const std::filesystem::path& missing) {
     namespace fs = std::filesystem;
     const std::string word = in_small_letters(missing.filename().string());
     const fs::path folder = missing.has_parent_path() ? missing.parent_path() : fs::path(".");
-    std::vector<std::pair<std::string, std::string>> names; // in small letters, and as it is
+    std::vector<std::pair<std::string, std::string>> names; // each in small letters, and as it is
     std::error_code ec;
     for (fs::directory_iterator at(folder, ec), end; !ec && at != end && names.size() < kMaxFiles;
          at.increment(ec)) {

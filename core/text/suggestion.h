@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Near misses: what a mistyped word or file name was probably meant to be.
+// Suggests what a mistyped word or file name was probably meant to be.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,15 @@
 
 namespace ovc {
 
-/// The candidate that is fewest edits away from `word`, if it is near enough to be meant; else
-/// empty. Of several the first.
+/// Returns the candidate that is fewest edits away from `word`, the first of several; empty where
+/// none is near enough to be meant.
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
 
-/// "; did you mean 'render'?", or nothing.
+/// Returns "; did you mean 'render'?", or nothing.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
 
-/// The same of a file that is not there, among those of its folder: "; did you mean 'dragon.ply'?".
-/// Capitals count for nothing. Of a folder of very many files only some are looked at.
+/// Returns the same for a missing file, from its folder: "; did you mean 'dragon.ply'?". Case does
+/// not matter. Of a folder of very many files only some are looked at.
 std::string did_you_mean_file(const std::filesystem::path& missing);
 
 } // namespace ovc

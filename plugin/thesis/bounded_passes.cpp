@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounded passes: ping-pong, the depth test, the occlusion query.
+// BoundedPasses: ping-pong between textures, the depth test, the occlusion query.
 #include "plugin/thesis/bounded_passes.h"
 
 #include "shaders/layout.h"
+
+#include <cassert>
 
 namespace ovc::thesis {
 
@@ -37,7 +39,7 @@ bool BoundedPasses::complete() const {
            depth_only_.complete();
 }
 
-/// The rays that have ended in `state` and had not before.
+/// Returns how many rays have ended in `state` and not before, and marks them in depth_.
 uint64_t BoundedPasses::retired_since(GLuint retire, const State& state) const {
     glUseProgram(retire);
     glBindFramebuffer(GL_FRAMEBUFFER, depth_only_.id());
@@ -53,12 +55,13 @@ uint64_t BoundedPasses::retired_since(GLuint retire, const State& state) const {
 }
 
 uint64_t BoundedPasses::run(GLuint kernel, GLuint retire, uint32_t rows) const {
+    assert(rows <= rows_);
     constexpr GLfloat far = 1;
     glDepthMask(GL_TRUE);
     glClearNamedFramebufferfv(depth_only_.id(), GL_DEPTH, 0, &far);
     glDepthMask(GL_FALSE);
     glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS); // all is drawn at one depth: who has written it passes no more
+    glDepthFunc(GL_LESS); // all is drawn at one depth, so a written pixel fails
     uint64_t passes = 0;
     for (uint64_t left = uint64_t(width_) * rows; left > 0; ++passes) {
         const State& from = states_[passes % 2];

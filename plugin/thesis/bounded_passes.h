@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Passes of a bounded number of steps, until every ray has ended: what GPUs of 2006 needed, whose
-// fragment programs could not run for long. Based on: thesis, section 3.1 (render to texture,
-// occlusion queries, early z-culling).
+// BoundedPasses: draws passes of a bounded number of steps until every ray has ended. GPUs of 2006
+// needed that, because their fragment programs could not run for long. Based on: thesis, section
+// 3.1 (render to texture, occlusion queries, early z-culling).
 #pragma once
 
 #include "gpu/gl/gl_object.h"
@@ -11,22 +11,24 @@
 
 namespace ovc::thesis {
 
-/// Where each ray stands, in two sets of textures: a pass reads one and writes the other. A depth
-/// texture keeps rays that have ended out of the next pass. Needs the context current.
+/// Keeps where each ray stands in two sets of textures: a pass reads one and writes the other. A
+/// depth texture keeps rays that have ended out of the next pass. All calls need the context
+/// current; the ledger and `answers` must outlive this.
 class BoundedPasses {
 public:
     BoundedPasses(Ledger& ledger, const gl::Texture2D& answers, uint32_t width, uint32_t rows);
 
     bool complete() const;
 
-    /// Draws over the first `rows` rows with `kernel` until no ray is left; `retire` counts the
-    /// rays that have ended. Returns how many passes that took.
+    /// Draws over the first `rows` rows with `kernel` until no ray is left. `retire` is a program
+    /// that discards rays still under way, so that an occlusion query counts those that have ended.
+    /// Returns how many passes that took.
     uint64_t run(GLuint kernel, GLuint retire, uint32_t rows) const;
 
     static constexpr uint64_t kBytesPerRay = 2 * 3 * 16 + 4;
 
 private:
-    static constexpr int kSteps = 128; // a pass: fewer cost more passes, more gain nothing
+    static constexpr int kSteps = 128; // per pass: fewer cost more passes, more gain nothing
 
     struct State {
         std::array<gl::Texture2D, 3> textures;

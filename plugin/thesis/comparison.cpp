@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Comparison: building, and batches of rays into the scene's frame, through the kernel and back.
+// Comparison: builds a system, and takes batches of rays into the scene's frame, through the kernel
+// and back.
 #include "plugin/thesis/comparison.h"
 
 #include "core/system/parallel.h"
@@ -11,11 +12,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 
 namespace ovc::thesis {
 namespace {
 
-constexpr size_t kRayGrain = 256; // rays a task
+constexpr size_t kRayGrain = 256; // rays per task
 
 } // namespace
 
@@ -41,7 +43,7 @@ Result<Done> Comparison::build_system(const Hittable& hittable, BuildProgress* p
     scene_.level1.nodes = {KdNode::leaf(0, 1)};
     scene_.level1.bounds = bounds;
     scene_.level1.leaves = {whole_leaf(scene_.soup, triangles, bounds)};
-    // What cannot fit is not built.
+    // A system that cannot fit is not built.
     const uint64_t least = min_bytes(options_.structure, triangles.size()) / sizeof(uvec4);
     if (const Result<MemoryPlan> plan = plan_memory(options_, least, "at least "); !plan)
         return plan.error();
@@ -52,6 +54,7 @@ Result<Done> Comparison::build_system(const Hittable& hittable, BuildProgress* p
     const Result<MemoryPlan> plan = plan_memory(options_, system->texels.size());
     if (!plan)
         return plan.error();
+    assert(plan->tiles.count() > 0);
     batch_rays_ = plan->batch_rays();
     statistics_.leaves = plan->tiles.count();
     statistics_.leaf_references = system->references;
@@ -138,7 +141,7 @@ private:
         bool decidable = true;
         PreparedRay p = prepared(i);
         if (c_.scene_.stands_for_others(p.skip))
-            p.skip = {}; // the others are to be found
+            p.skip = {}; // because its duplicates can be hit
         if (c_.runner_)
             rays_[i] = frame_ray(c_.whole(), p, decidable);
         decidable_[i] = decidable;
@@ -157,7 +160,7 @@ private:
         }
     }
 
-    /// False where exact arithmetic does not confirm the certain hit.
+    /// Returns false where exact arithmetic does not confirm the certain hit.
     bool resolve_candidates(size_t i, const PreparedRay& p, const FrameAnswer& answer) {
         if (!c_.options_.certify) {
             if (answer.prim != OVC_MISS)
@@ -179,7 +182,7 @@ private:
         return true;
     }
 
-    /// The kernels of the thesis name triangles by their index in the one leaf.
+    /// Returns the candidates by number; the kernels of the thesis name them by index in the leaf.
     Candidates candidates(const FrameAnswer& answer) const {
         const auto number = [&](uint32_t index) {
             return index < c_.whole().triangles.size()
@@ -195,8 +198,8 @@ private:
         return c_.scene_.seen(hit, p.skip);
     }
 
-    /// Builds the page the first time; not within the loop over rays, whose threads would wait for
-    /// it.
+    /// Traces the rays again that are left. The first call builds the page, outside the loop over
+    /// rays, whose threads would wait for it.
     void retrace() {
         BuiltScene& scene = c_.scene_;
         if (scene.pages.empty()) {
@@ -227,6 +230,7 @@ private:
 template <class Query>
 Result<Done> Comparison::trace(const Query& query) {
     const Stopwatch watch;
+    assert(!runner_ || batch_rays_ > 0);
     const size_t most = runner_ ? batch_rays_ : std::max<size_t>(query.rays.size(), 1);
     for (size_t first = 0; first < query.rays.size(); first += most) {
         const size_t count = std::min(most, query.rays.size() - first);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Comparison: a system that two-level is compared with, behind the same interface and with the same
-// answers: the kernel proves what it can, doubles decide the rest.
+// Comparison: a system that two-level is compared with. It has the same interface and the same
+// answers: the kernel proves what it can, and doubles decide the rest.
 #pragma once
 
 #include "plugin/build/built_scene.h"
@@ -37,7 +37,7 @@ private:
     template <class Query>
     Result<Done> trace(const Query& query);
 
-    BuiltScene scene_; // of one leaf, whose page is built when a ray needs the exact fallback
+    BuiltScene scene_; // one leaf; its page is built when a ray needs the exact fallback
     GlThread& gl_;
     RunnerOptions options_;
     uint32_t batch_rays_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rule of equal answers for the systems of the thesis: each answers bit for bit what testing
-// every triangle in double answers.
+// The rule of equal answers for the systems of the thesis: each gives bit for bit the answers of
+// testing every triangle in double.
 #include "gpu/gl/test_gl.h"
 #include "plugin/structure/failure.h"
 #include "plugin/structure/test_structures.h"
@@ -131,7 +131,8 @@ TEST_F(Comparisons, WorkWithinTheSmallestBudgetTheyName) {
         EXPECT_THAT(refused.error().message,
                     HasSubstr("a GPU budget of 100000 bytes is too small"));
         const ovc_statistics whole = build(soup, variant)->report();
-        const auto tight = make(soup, variant, whole.bytes_in + 48 * 1024 - 1); // a ray short
+        const auto tight =
+            make(soup, variant, whole.bytes_in + 48 * 1024 - 1); // too small by a byte
         ASSERT_FALSE(tight) << variant.name;
         const std::string& message = tight.error().message;
         const std::string before = "the smallest that works is ";
@@ -172,12 +173,12 @@ TEST_F(Comparisons, TheSkipPointerBvhTakesMorePassesForLongerWays) {
         ASSERT_TRUE(ok(structure->intersect(rays, {}, hits)));
         EXPECT_GT(structure->report().passes, passes);
         passes = structure->report().passes;
-        // 128 steps a pass, and no ray takes more steps than there are nodes and triangles.
+        // A pass makes 128 steps, and no ray takes more steps than there are nodes and triangles.
         EXPECT_LE(passes, 1 + 2 * triangles / 128);
     }
 }
 
-/// Sheets over each other, small beside the whole scene: in one place of any structure.
+/// Returns sheets over each other, small beside the scene, so in one place of any structure.
 Soup sheets(size_t count) {
     std::vector<vec3> corners = {vec3(500), vec3(501, 500, 500), vec3(500, 501, 500)};
     for (size_t i = 0; i < count; ++i) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Into the scene's frame, in double, then rounded.
+// Rays go into the scene's frame in double, and are then rounded.
 #include "plugin/thesis/frame_ray.h"
 
 #include "shaders/layout.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace ovc::thesis {
@@ -25,7 +26,8 @@ Interval inside(const Leaf& whole, const PreparedRay& p) {
 } // namespace
 
 FrameRay frame_ray(const Leaf& whole, const PreparedRay& p, bool& decidable) {
-    // From too far away even the box may be missed for rounding.
+    assert(whole.frame.scale > 0);
+    // From too far away, rounding may make the ray miss even the box.
     decidable = p.margin(whole.box) <= 0x1p-20 * max_component(whole.box.extent());
     if (!decidable)
         return {};
@@ -37,7 +39,7 @@ FrameRay frame_ray(const Leaf& whole, const PreparedRay& p, bool& decidable) {
     const double reach = max_component(glm::max(glm::abs(from_origin), glm::abs(travelled)));
     const double longest = std::abs(p.ray.dir[p.kz]);
     const double length = (stretch.exit - stretch.enter) * longest * whole.frame.scale;
-    // Written so that a NaN is not decidable either.
+    // The conditions are written so that a NaN is not decidable either.
     decidable = reach * whole.frame.scale <= OVC_MAX_LEAF_SIZES && std::isfinite(length) &&
                 std::isnormal(longest * whole.frame.scale);
     if (!decidable)

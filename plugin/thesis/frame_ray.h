@@ -12,7 +12,7 @@
 
 namespace ovc::thesis {
 
-/// Begins at t = 0.
+/// A ray in the frame, which begins at t = 0.
 struct FrameRay {
     vec3 org{0};
     float t_end = -1;  // negative: no ray
@@ -21,26 +21,26 @@ struct FrameRay {
 };
 static_assert(sizeof(FrameRay) == 32);
 
-/// prim is an index into the triangles of the scene, OVC_MISS or OVC_FLAGGED.
+/// prim is an index into the triangles of the scene, OVC_MISS, OVC_FLAGGED or OVC_CAPPED.
 struct FrameAnswer {
     std::array<uint32_t, 3> words;
     uint32_t prim;
 
-    /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
+    /// If certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
     std::array<uint32_t, 2> further() const { return {words[0], words[1]}; }
-    /// Fast precision.
+    /// These return t, u and v. Only in fast precision.
     float t() const { return std::bit_cast<float>(words[0]); }
     float u() const { return std::bit_cast<float>(words[1]); }
     float v() const { return std::bit_cast<float>(words[2]); }
 };
 static_assert(sizeof(FrameAnswer) == 16);
 
-/// The ray in the scene's frame, from where it enters the scene's box; no ray where it does not.
-/// decidable = false where double precision cannot say where it enters to within 1/64 of a float
-/// rounding (docs/design/numerics.md, "Frames").
+/// Returns the ray in the scene's frame, from where it enters the scene's box; no ray where it does
+/// not. decidable becomes false where double precision cannot say where it enters to within 1/64 of
+/// a float rounding (docs/design/numerics.md, "Frames").
 FrameRay frame_ray(const Leaf& whole, const PreparedRay& p, bool& decidable);
 
-/// The host's t of what the kernel found at t_frame on the ray that frame_ray() made of p.
+/// Returns the host's t of the kernel's t_frame on the ray that frame_ray() made of p.
 double world_t(const Leaf& whole, const PreparedRay& p, float t_frame);
 
 } // namespace ovc::thesis

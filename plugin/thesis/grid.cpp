@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The uniform grid: triangles into cells, cells into texels.
+// The uniform grid: puts triangles into cells, and cells into texels.
 #include "plugin/thesis/grid.h"
 
 #include "kdtree/clip.h"
 #include "plugin/thesis/references.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace ovc::thesis {
 namespace {
 
 constexpr double kCellsPerTriangle = 5;
-constexpr double kMaxCells = 1024; // along an axis: cells stay hundreds of times as wide as kWider
+constexpr double kMaxCells = 1024; // per axis: cells stay hundreds of times as wide as kWider
 
-/// Where the planes are, in the floats and the arithmetic of the kernel.
+/// The places of the planes, in the floats and the arithmetic of the kernel.
 struct Planes {
     vec3 lo;
     vec3 size;
@@ -29,15 +30,16 @@ struct Planes {
     double plane(int axis, uint32_t i) const {
         return double(lo[axis]) + double(i) * double(size[axis]);
     }
-    /// The cell at x, or the nearest one.
+    /// Returns the cell at x, or the nearest one.
     uint32_t cell(int axis, double x) const {
         const double at = std::floor((x - double(lo[axis])) / double(size[axis]));
         return uint32_t(std::clamp(at, 0.0, double(count[axis] - 1)));
     }
     uint32_t index(const std::array<uint32_t, 3>& cell) const {
+        assert(cell[0] < count[0] && cell[1] < count[1] && cell[2] < count[2]);
         return (cell[2] * count[1] + cell[1]) * count[0] + cell[0];
     }
-    /// From the lower corner of cell `from` to the upper one of `to`.
+    /// Returns the box from the lower corner of cell `from` to the upper one of `to`.
     Box block(const std::array<uint32_t, 3>& from, const std::array<uint32_t, 3>& to) const {
         return {{plane(0, from[0]), plane(1, from[1]), plane(2, from[2])},
                 {plane(0, to[0] + 1), plane(1, to[1] + 1), plane(2, to[2] + 1)}};
@@ -47,8 +49,8 @@ struct Planes {
 
 using Cell = std::array<uint32_t, 3>;
 
-/// Appends the cells of the block [from, to] that the triangle touches; it touches the block. By
-/// halves: a large triangle's box holds many cells that it does not come near.
+/// Appends the cells of the block [from, to] that the triangle touches; it touches the block. The
+/// block is halved, because a large triangle comes near few of its box's cells.
 void find_cells(const Planes& planes, const Triangle& triangle, uint32_t id, const Cell& from,
                 const Cell& to, std::vector<Reference>& out) {
     int axis = 0;
@@ -82,6 +84,7 @@ void find_cells(const Planes& planes, const LocalTriangle& local, uint32_t id,
 
 System pack(const Planes& planes, const References& references,
             const std::vector<LocalTriangle>& triangles) {
+    assert(references.first.size() == planes.cells() + 1);
     System system;
     Texels& texels = system.texels;
     texels = {texel(planes.lo),
@@ -107,6 +110,7 @@ System pack(const Planes& planes, const References& references,
 } // namespace
 
 std::array<uint32_t, 3> grid_resolution(const dvec3& extent, uint64_t triangles) {
+    assert(triangles > 0);
     const double volume = extent.x * extent.y * extent.z;
     const double per_length = std::cbrt(kCellsPerTriangle * double(triangles) / volume);
     std::array<uint32_t, 3> cells;

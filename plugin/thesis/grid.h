@@ -15,11 +15,11 @@
 
 namespace ovc::thesis {
 
-/// Cells along each axis: about five a triangle, as nearly cubes as whole numbers allow.
+/// Returns the cells along each axis: about five a triangle (> 0), as nearly cubes as possible.
 std::array<uint32_t, 3> grid_resolution(const dvec3& extent, uint64_t triangles);
 
-/// Every triangle is listed in each cell that it touches when the cell is wider by kWider. Error:
-/// more references than 32 bits count.
+/// Returns the grid, which lists every triangle in each cell that it touches when the cell is wider
+/// by kWider.
 Result<System> build_grid(const Soup& soup, const Leaf& whole, BuildProgress* progress = nullptr);
 
 } // namespace ovc::thesis

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid's resolution, and that each point of a triangle finds it in the cell the point lies in.
+// Tests the grid's resolution, and that the cell around each point of a triangle lists it.
 #include "plugin/thesis/grid.h"
 
 #include "kdtree/test_soups.h"
@@ -19,7 +19,7 @@ TEST(Grid, HasAboutFiveCubesATriangle) {
     EXPECT_GE(flat[2], 1u);
 }
 
-/// The texels of a grid, read as the kernel reads them.
+/// Reads the texels of a grid as the kernel does.
 struct Reader {
     const Texels& texels;
 

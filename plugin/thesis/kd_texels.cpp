@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The KD-tree: planes into the frame, triangles into leaves anew, for the kernel's planes are not
-// where the builder's were.
+// The KD-tree: takes planes into the frame, and puts triangles into leaves anew, because the
+// kernel's planes are not where the builder's were.
 #include "plugin/thesis/kd_texels.h"
 
 #include "kdtree/build.h"
@@ -8,6 +8,7 @@
 #include "plugin/thesis/references.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::thesis {
 namespace {
@@ -35,7 +36,7 @@ public:
         hand_down(triangle, bounds_of(triangle), id, 0, bounds_, out);
     }
 
-    /// The two words of a node; a leaf's from its references.
+    /// Appends the two words of a node; a leaf's come from its references.
     void append_node(size_t n, const References& references, std::vector<uint32_t>& words) const {
         const KdNode& node = nodes_[n];
         const uint32_t first = references.first[n];
@@ -90,6 +91,7 @@ Result<System> build_kd_texels(const Soup& soup, const Leaf& whole, BuildProgres
     if (local.size() >= kMaxCounted || references.triangles.size() >= kMaxCounted)
         return over_budget("the KD-tree has more nodes or references than 30 bits count");
 
+    assert(references.first.size() == local.size() + 1);
     System system;
     Texels& texels = system.texels;
     texels = {uvec4(0)};

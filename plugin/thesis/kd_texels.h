@@ -13,8 +13,9 @@
 
 namespace ovc::thesis {
 
-/// Every triangle is listed in each leaf that it touches when the leaf's cell, between planes
-/// rounded to float, is wider by kWider. Error: more nodes or references than 30 bits count.
+/// Returns the tree, which lists every triangle in each leaf that it touches when the leaf's cell,
+/// between planes rounded to float, is wider by kWider. Error: more nodes or references than 30
+/// bits count.
 Result<System> build_kd_texels(const Soup& soup, const Leaf& whole,
                                BuildProgress* progress = nullptr);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The structures of libovercast-thesis.so.
+// Checks configurations for libovercast-thesis.so, and makes its structures.
 #include "core/text/format_text.h"
 #include "plugin/structure/failure.h"
 #include "plugin/structure/structure.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles lie in which place (a cell of a grid, a leaf of a KD-tree), gathered by many
-// threads and sorted by place.
+// References: which triangles lie in which place (a cell of a grid, a leaf of a KD-tree), gathered
+// by many threads and sorted by place.
 #pragma once
 
 #include "core/soup.h"
@@ -8,6 +8,7 @@
 #include "plugin/thesis/system.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -24,13 +25,13 @@ struct References {
     std::vector<uint32_t> triangles;
 };
 
-/// find(triangle, out) appends the references of one triangle; from several threads at once. A
-/// triangle is a unit of progress.
+/// Returns the references that find(triangle, out) appends for each triangle, with places below
+/// `places`. It is called from several threads at once. A triangle is a unit of progress.
 template <class Find>
 References gather_references(size_t triangles, size_t places, BuildProgress* progress,
                              Find&& find) {
-    constexpr size_t kBlock =
-        4096; // lists of their own, so that the order never depends on threads
+    // Each block has a list of its own, so that the order never depends on threads.
+    constexpr size_t kBlock = 4096;
     std::vector<std::vector<Reference>> blocks((triangles + kBlock - 1) / kBlock);
     parallel_for(blocks.size(), 1, [&](size_t from, size_t to) {
         for (size_t b = from; b < to; ++b) {
@@ -42,8 +43,10 @@ References gather_references(size_t triangles, size_t places, BuildProgress* pro
     References sorted;
     sorted.first.assign(places + 1, 0);
     for (const auto& block : blocks)
-        for (const Reference& r : block)
+        for (const Reference& r : block) {
+            assert(r.place < places);
             ++sorted.first[r.place + 1];
+        }
     for (size_t p = 0; p < places; ++p)
         sorted.first[p + 1] += sorted.first[p];
     sorted.triangles.resize(sorted.first[places]);
@@ -54,7 +57,7 @@ References gather_references(size_t triangles, size_t places, BuildProgress* pro
     return sorted;
 }
 
-/// Appends them four a texel.
+/// Appends the words, four per texel.
 inline void append(Texels& texels, const std::vector<uint32_t>& words) {
     for (size_t i = 0; i < words.size(); i += 4) {
         const auto word = [&](size_t k) { return i + k < words.size() ? words[i + k] : 0u; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runner: rays in by a texture, fragments, answers out by a framebuffer object. Based on: thesis,
-// section 3.1.
+// Runner: rays go in by a texture, fragments trace them, and answers come out by a framebuffer
+// object. Based on: thesis, section 3.1.
 #include "plugin/thesis/runner.h"
 
 #include "core/text/format_text.h"
@@ -15,7 +15,7 @@
 namespace ovc::thesis {
 namespace {
 
-constexpr uint64_t kMaxRows = 512; // half a million rays: beyond, a pass gains nothing more
+constexpr uint64_t kMaxRows = 512; // half a million rays; a pass gains nothing from more
 
 uint64_t row_bytes(ovc_structure structure) {
     const uint64_t state = structure == OVC_STRUCTURE_SKIP_BVH ? BoundedPasses::kBytesPerRay : 0;
@@ -46,6 +46,7 @@ Result<MemoryPlan> plan_memory(const RunnerOptions& options, uint64_t texels,
             "for the scene, which it holds whole, {} for rays and answers)",
             name_of(options.structure), options.budget_bytes, at_least, scene + row, scene, row));
     plan.rows = uint32_t(std::min((options.budget_bytes - scene) / row, kMaxRows));
+    assert(plan.rows > 0);
     return plan;
 }
 
@@ -103,7 +104,7 @@ Result<GLuint> Runner::link(std::optional<gl::Program>& program, const char* fra
 
 Result<uint64_t> Runner::trace(bool any_hit, std::span<const FrameRay> rays,
                                std::span<FrameAnswer> answers) {
-    assert(rays.size() == answers.size() && rays.size() % kRowRays == 0);
+    assert(!rays.empty() && rays.size() == answers.size() && rays.size() % kRowRays == 0);
     const Result<GLuint> kernel =
         link(kernels_[any_hit], bounded_ ? "skip_bvh.frag.glsl" : "thesis.frag.glsl", any_hit);
     if (!kernel)

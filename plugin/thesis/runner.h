@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runner: a system's texels and kernel on the GPU, and batches of rays through them.
+// Runner: keeps a system's texels and kernel on the GPU, and traces batches of rays through them.
 #pragma once
 
 #include "core/result.h"
@@ -23,15 +23,16 @@ struct RunnerOptions {
     bool certify = true;
 };
 
-/// How a budget is used: the scene whole, the rest for rays.
+/// How a budget is used: the GPU holds the whole scene, and the rest is for rays.
 struct MemoryPlan {
     TilePlan tiles;
-    uint32_t rows = 0; // of kRowRays rays
+    uint32_t rows = 0; // of kRowRays rays each
 
     uint32_t batch_rays() const;
 };
 
-/// Error: what the scene takes and what is allowed; at_least stands before what it takes.
+/// Returns how `texels` (> 0) and rays share the budget. Error: budget or textures are too small;
+/// it tells the scene's bytes, after at_least, and the limit.
 Result<MemoryPlan> plan_memory(const RunnerOptions& options, uint64_t texels,
                                const char* at_least = "");
 
@@ -41,14 +42,14 @@ public:
     static Result<std::unique_ptr<Runner>>
     create(const RunnerOptions& options, const MemoryPlan& plan, System system, bool software);
 
-    /// Traces a batch, at most the plan's. Both spans are whole rows: see row_padded(). Returns how
-    /// many passes that took.
+    /// Traces a batch of at most the plan's rays. Both spans are whole rows of the same size: see
+    /// row_padded(). Returns how many passes that took.
     Result<uint64_t> trace(bool any_hit, std::span<const FrameRay> rays,
                            std::span<FrameAnswer> answers);
 
     const Ledger& ledger() const { return *ledger_; }
 
-    static constexpr uint32_t kRowRays = 1024; // rays a texture row
+    static constexpr uint32_t kRowRays = 1024; // rays per texture row
     static size_t row_padded(size_t n) { return (n + kRowRays - 1) / kRowRays * kRowRays; }
 
 private:

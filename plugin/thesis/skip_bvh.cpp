@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth-first packing of the tree by insertion.
+// Packs the tree by insertion depth first.
 #include "plugin/thesis/skip_bvh.h"
 
 #include "plugin/thesis/level1/goldsmith_salmon.h"
+
+#include <cassert>
 
 namespace ovc::thesis {
 namespace {
@@ -16,8 +18,9 @@ public:
         : tree_(tree), triangles_(triangles) {}
 
     Texels pack() {
+        assert(!tree_.nodes.empty());
         texels_ = {uvec4(0)};
-        std::vector<Open> open; // inner nodes above, whose skip pointers wait for their end
+        std::vector<Open> open; // inner nodes above, whose skip pointers are set at their end
         for (uint32_t n = 0; n != kNone || !open.empty();) {
             if (n == kNone) {
                 texels_[open.back().texel].w = uint32_t(texels_.size());

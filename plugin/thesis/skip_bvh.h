@@ -14,7 +14,7 @@ namespace ovc::thesis {
 
 inline constexpr int kShuffles = 10; // thesis, chapter 4
 
-/// Error: more texels than 31 bits count.
+/// Returns the best tree by insertion of kShuffles orders. Error: more texels than 31 bits count.
 Result<System> build_skip_bvh(const Soup& soup, const Leaf& whole,
                               BuildProgress* progress = nullptr);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The systems by their number in the ABI.
+// Systems: chooses among them by their number in the ABI.
 #include "plugin/thesis/system.h"
 
 #include "core/system/parallel.h"
@@ -10,15 +10,19 @@
 #include "plugin/thesis/skip_bvh.h"
 #include "shaders/layout.h"
 
+#include <cassert>
+#include <iterator>
+
 namespace ovc::thesis {
 
 const char* name_of(ovc_structure structure) {
     constexpr const char* names[] = {"two-level",  "single-texture", "multi-texture",   "gpu-grid",
                                      "gpu-kdtree", "skip-bvh",       "thesis-two-level"};
+    assert(size_t(structure) < std::size(names));
     return names[structure];
 }
 
-/// The product's page, over the whole scene.
+/// Returns the product's page over the whole scene.
 static Result<System> build_page_system(const Soup& soup, const Leaf& whole,
                                         BuildProgress* progress) {
     Page page = build_page(soup, whole, progress);
@@ -33,6 +37,7 @@ static Result<System> build_page_system(const Soup& soup, const Leaf& whole,
 
 Result<System> build_system(ovc_structure structure, const Soup& soup, const Leaf& whole,
                             BuildProgress* progress) {
+    assert(!whole.triangles.empty());
     switch (structure) {
     case OVC_STRUCTURE_GPU_GRID:
         return build_grid(soup, whole, progress);
@@ -60,7 +65,7 @@ uint64_t work_of(ovc_structure structure, uint64_t triangles) {
 uint64_t min_bytes(ovc_structure structure, uint64_t triangles) {
     const bool pairs =
         structure == OVC_STRUCTURE_SINGLE_TEXTURE || structure == OVC_STRUCTURE_MULTI_TEXTURE;
-    // A pair is a unit, and four have a node; else a triangle is three texels.
+    // A pair is a unit, and four units have a node; in the others a triangle is three texels.
     return pairs ? triangles * OVC_UNIT_BYTES * 5 / 8 : triangles * 3 * sizeof(uvec4);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// System: what a system of the thesis keeps in texture memory, and what its kernel must know. Each
-// holds the whole scene, in one frame, as one array of texels.
+// System: the texels of a system of the thesis, and the facts that its kernel must know. Each
+// system holds the whole scene, in one frame, as one array of texels.
 #pragma once
 
 #include "core/build_progress.h"
@@ -22,22 +22,22 @@ using Texels = std::vector<uvec4>;
 
 struct System {
     Texels texels;
-    uint64_t references = 0;  // triangles counted once in each place they are listed
+    uint64_t references = 0;  // triangles, each counted once per place that lists it
     uint32_t stack_depth = 4; // of the kernel, where it has a stack
     uint64_t max_rounds = std::numeric_limits<uint64_t>::max(); // of the kernel's loop for any ray
 };
 
-/// Its name on the command line and in messages.
+/// Returns the structure's name on the command line and in messages.
 const char* name_of(ovc_structure structure);
 
-/// Fewer bytes than this the system's texels cannot take for so many triangles.
+/// Returns a lower bound of the bytes that the system's texels take for so many triangles.
 uint64_t min_bytes(ovc_structure structure, uint64_t triangles);
 
-/// Builds it over the triangles of `whole` (not none). Error: more than its kernel can count.
+/// Returns the system over `whole`, which has triangles. Error: more than its kernel can count.
 Result<System> build_system(ovc_structure structure, const Soup& soup, const Leaf& whole,
                             BuildProgress* progress = nullptr);
 
-/// The units of progress it makes of it, about.
+/// Returns about how many units of progress the build makes.
 uint64_t work_of(ovc_structure structure, uint64_t triangles);
 
 /// Boxes, cells and planes are this much wider in the frame, whose half-extent is 1: 2^-18 = 64u.
@@ -46,10 +46,10 @@ uint64_t work_of(ovc_structure structure, uint64_t triangles);
 /// 13u, the difference 2u (docs/design/numerics.md, "Boxes").
 inline constexpr double kWider = 0x1p-18;
 
-/// The triangles of `whole` in its frame, rounded as the kernel sees them.
+/// Returns the triangles of `whole` in its frame, rounded as the kernel sees them.
 std::vector<LocalTriangle> local_triangles(const Soup& soup, const Leaf& whole);
 
-/// Appends the three texels of triangle `id`; mark: bits besides
+/// Appends the three texels of triangle `id`. mark: bits to set besides
 /// (shaders/thesis/single_triangle.glsl).
 void append(Texels& texels, const LocalTriangle& triangle, uint32_t id, uint32_t mark = 0);
 

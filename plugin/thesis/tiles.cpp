@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tiles: how many, how large, filled and bound.
+// Tiles: plans how many there are and how large, fills and binds them.
 #include "plugin/thesis/tiles.h"
 
 #include "core/text/format_text.h"
@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 namespace ovc::thesis {
 
 TilePlan plan_tiles(uint64_t texels, uint32_t textures) {
+    assert(texels > 0 && textures > 0);
     const uint32_t enough = uint32_t(std::bit_width(texels - 1)); // for one texture
     const uint64_t share = std::max<uint64_t>(texels / textures, 1);
     const uint32_t bits = textures == 1 ? enough : uint32_t(std::bit_width(share) - 1);
@@ -22,6 +24,7 @@ TilePlan plan_tiles(uint64_t texels, uint32_t textures) {
 }
 
 uint32_t TilePlan::height(uint32_t tile) const {
+    assert(tile < count());
     const uint64_t rest = texels - (uint64_t(tile) << bits);
     const uint64_t here = std::min(rest, uint64_t(1) << bits);
     return uint32_t((here + width() - 1) >> shift);
@@ -41,6 +44,7 @@ std::string TilePlan::defines() const {
 }
 
 Tiles::Tiles(Ledger& ledger, const TilePlan& plan, Texels texels) {
+    assert(texels.size() == plan.texels);
     texels.resize((texels.size() + plan.width() - 1) >> plan.shift << plan.shift); // whole rows
     for (uint32_t tile = 0; tile < plan.count(); ++tile) {
         const uint32_t height = plan.height(tile);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene's texels in one texture, or tiled over several. Based on: thesis, section 3.2.
+// Tiles: the scene's texels in one texture, or tiled over several. Based on: thesis, section 3.2.
 #pragma once
 
 #include "core/result.h"
@@ -13,7 +13,7 @@
 
 namespace ovc::thesis {
 
-/// A texture holds 2^bits texels, 2^shift of them in a row; the last one as many rows as it needs.
+/// A texture holds 2^bits texels, 2^shift of them in a row; the last has only the rows it needs.
 struct TilePlan {
     uint32_t bits = 0;
     uint32_t shift = 0;
@@ -24,22 +24,23 @@ struct TilePlan {
     uint32_t height(uint32_t tile) const;
     uint64_t tile_bytes(uint32_t tile) const { return uint64_t(width()) * height(tile) * 16; }
     uint64_t bytes() const;
-    /// Of shaders/thesis/scene_texels.glsl.
+    /// Returns the defines of shaders/thesis/scene_texels.glsl.
     std::string defines() const;
 };
 
 inline constexpr uint32_t kTextureBits = 24; // 4096 x 4096 texels, as the thesis has them
 inline constexpr uint64_t kTextureBytes = uint64_t(16) << kTextureBits;
-inline constexpr uint32_t kMaxTextures = 8; // of the look-up's branches
+inline constexpr uint32_t kMaxTextures = 8; // the look-up's branches
 
-/// texels (> 0) in at least `textures` (> 0) textures, each within kTextureBytes.
+/// Returns a plan for `texels` (> 0) in at least `textures` (> 0) textures, each within
+/// kTextureBytes.
 TilePlan plan_tiles(uint64_t texels, uint32_t textures);
 
-/// The textures, filled. Needs the context current.
+/// The textures, filled with texels. All calls need the context current.
 class Tiles {
 public:
     Tiles(Ledger& ledger, const TilePlan& plan, Texels texels);
-    /// Binds them from unit OVC_BINDING_SCENE on.
+    /// Binds the textures to units from OVC_BINDING_SCENE on.
     void bind() const;
 
 private:

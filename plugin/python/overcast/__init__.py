@@ -30,11 +30,12 @@ logs warnings and information to logging's logger "overcast".
 from ._abi import NONE
 from ._built import VERSION as __version__
 from ._library import Error, Result
+from ._query import Limits
 from ._rays import RAY, RAY_FLOAT, rays
 from .device import Device, DeviceInfo, devices
 from .hits import HIT, Hits
 from .scene import Scene
 
-__all__ = ["Scene", "Hits", "rays", "Device", "DeviceInfo", "devices", "Error", "Result", "RAY",
+__all__ = ["Scene", "Hits", "Limits", "rays", "Device", "DeviceInfo", "devices", "Error", "Result", "RAY",
            "RAY_FLOAT", "HIT",
            "NONE"]

@@ -14,6 +14,7 @@ NONE = 0xFFFFFFFF
 
 WriteFunction = c.CFUNCTYPE(c.c_int, c.c_void_p, c.c_void_p, c.c_size_t)
 ProgressFunction = c.CFUNCTYPE(c.c_int, c.c_void_p, c.c_double, c.c_char_p)
+FilterFunction = c.CFUNCTYPE(c.c_int, c.c_void_p, c.c_size_t, c.c_void_p, c.c_void_p, c.c_void_p)
 LogFunction = c.CFUNCTYPE(None, c.c_void_p, c.c_int, c.c_char_p)
 
 
@@ -59,19 +60,22 @@ class ovc_mesh(Sized):
                 ("vertex_count", c.c_uint64), ("indices", c.c_void_p),
                 ("triangle_count", c.c_uint64),
                 ("origin", c.c_double * 3), ("flags", c.c_uint32), ("reserved", c.c_uint32),
-                ("positions_double", c.c_void_p), ("transform", c.c_void_p)]
+                ("positions_double", c.c_void_p), ("transform", c.c_void_p),
+                ("mask", c.c_uint32), ("reserved1", c.c_uint32)]
 
 
 class ovc_instance(Sized):
     _fields_ = [("struct_size", c.c_size_t), ("mesh", c.c_uint32), ("reserved", c.c_uint32),
-                ("transform", c.c_void_p)]
+                ("transform", c.c_void_p), ("mask", c.c_uint32), ("reserved1", c.c_uint32)]
 
 
 class ovc_query(Sized):
     _fields_ = [("struct_size", c.c_size_t), ("skip", c.c_void_p), ("leaf", c.c_void_p),
                 ("passes", c.c_void_p),
                 ("flagged", c.c_void_p), ("ray_format", c.c_uint32), ("reserved", c.c_uint32),
-                ("progress", ProgressFunction), ("progress_user", c.c_void_p)]
+                ("progress", ProgressFunction), ("progress_user", c.c_void_p),
+                ("after", c.c_void_p), ("masks", c.c_void_p),
+                ("filter", FilterFunction), ("filter_user", c.c_void_p)]
 
 
 class ovc_plan(Sized):
@@ -122,4 +126,9 @@ class ovc_api(c.Structure):
         ("save", _call(_Handle, WriteFunction, c.c_void_p)),
         ("add_instance", _call(_Handle, c.POINTER(ovc_instance), c.POINTER(c.c_uint32))),
         ("purge", _call(_Handle)),
+        ("intersect1", _Pointer), ("occluded1", _Pointer),
+        ("submit_intersect", _Pointer), ("submit_occluded", _Pointer),
+        ("wait", _Pointer), ("poll", _Pointer), ("cancel", _Pointer), ("release", _Pointer),
+        ("all_hits", _call(_Handle, _Pointer, c.c_size_t, c.c_size_t, _Pointer, _Pointer,
+                           c.POINTER(ovc_query))),
     ]

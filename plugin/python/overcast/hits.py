@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Answers of nearest-hit rays."""
+"""Hits of rays."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ HIT = np.dtype([("t", "f8"), ("u", "f8"), ("v", "f8"), ("mesh", "u4"), ("prim", 
 
 
 class Hits:
-    """Nearest hits, one for each ray, in the rays' shape. All fields are views of `records`, an
+    """Hits, one for each ray, in the rays' shape; of all_hits() several for each. All fields are views of `records`, an
     array of HIT.
 
     A hit lies at origin + t direction = (1 - u - v) a + u b + v c, where a, b, c are the corners of

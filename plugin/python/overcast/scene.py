@@ -7,19 +7,23 @@ import ctypes
 import math
 import os
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _abi
-from ._arrays import as_uint32, choice, count
+from ._arrays import choice, count
 from ._calls import Progress, Writer
 from ._library import Handle, api, check
 from ._mesh import address, mesh_of, transform_of
-from ._rays import FORMATS, as_rays, rays
+from ._query import Limits, Query
+from ._rays import as_rays, rays
 from .device import Device, default_device
 from .hits import HIT, Hits
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 class Scene:
@@ -73,7 +77,7 @@ class Scene:
 
     def add(self, vertices: ArrayLike, triangles: ArrayLike | None = None, *,
             transform: ArrayLike | None = None, origin: ArrayLike = (0, 0, 0),
-            template: bool = False, shared: bool = False) -> int:
+            template: bool = False, shared: bool = False, mask: int = 0) -> int:
         """Adds a mesh and returns its number: 0, 1, 2, ...
 
         vertices: (n, 3) real numbers. float32 is kept as it is, all else as float64, in twice the
@@ -86,16 +90,19 @@ class Scene:
         shared: the library reads the array in place instead of a copy. The array must be
             C-contiguous, float32 or float64, and without triangles; do not change it until the
             scene is closed.
+        mask: which rays see the mesh (see overcast.Limits); 0: all.
         """
         flags = _abi.MESH_SHARED * bool(shared) | _abi.MESH_TEMPLATE * bool(template)
         mesh = mesh_of(vertices, triangles, origin, transform, flags)
+        mesh.mask = count("mask", mask, 2**32 - 1)
         number = ctypes.c_uint32()
         self._call("add_mesh", mesh, number)
         if shared:
             self._kept.append(mesh)
         return number.value
 
-    def add_instance(self, mesh: int, transform: ArrayLike | None = None) -> int:
+    def add_instance(self, mesh: int, transform: ArrayLike | None = None, *,
+                     mask: int = 0) -> int:
         """Adds a mesh, or an instance, once more, and returns the new one's number, which is `mesh`
         in its hits.
 
@@ -103,9 +110,12 @@ class Scene:
             transform. All instances share the vertices and pages of their mesh. Instances of small
             meshes, and with transforms that doubles cannot invert well enough, have pages of their
             own.
+        mask: which rays see the instance (see overcast.Limits); 0: all.
         """
         matrix = transform_of(transform)
-        instance = _abi.ovc_instance(mesh=count("mesh", mesh, 2**32 - 1), transform=address(matrix))
+        instance = _abi.ovc_instance(mesh=count("mesh", mesh, 2**32 - 1),
+                                     transform=address(matrix),
+                                     mask=count("mask", mask, 2**32 - 1))
         number = ctypes.c_uint32()
         self._call("add_instance", instance, number)
         return number.value
@@ -120,21 +130,20 @@ class Scene:
         self._progress.watch(lambda: self._call("commit"), progress)
 
     def intersect(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0,
-                  t_max: ArrayLike = math.inf, *, skip: Hits | ArrayLike | None = None,
-                  out: Hits | None = None) -> Hits:
+                  t_max: ArrayLike = math.inf, *, out: Hits | None = None,
+                  **limits: Unpack[Limits]) -> Hits:
         """Finds the nearest hit of each ray origins + t directions, t_min <= t <= t_max.
 
         origins, directions: (..., 3) real numbers; t_min, t_max: (...). Each is broadcast: one
             origin serves all directions.
-        skip: the triangle that each ray starts on and does not see: Hits, or (..., 2) of mesh and
-            prim; NONE, NONE: none.
         out: Hits of the rays' shape, for example of an earlier call, which this call overwrites.
+        skip, after, masks, filter: which hits count; see overcast.Limits.
         Returns Hits in the rays' shape.
         """
-        return self.intersect_rays(rays(origins, directions, t_min, t_max), skip=skip, out=out)
+        return self.intersect_rays(rays(origins, directions, t_min, t_max), out=out, **limits)
 
-    def intersect_rays(self, rays: NDArray[np.void], *, skip: Hits | ArrayLike | None = None,
-                       out: Hits | None = None) -> Hits:
+    def intersect_rays(self, rays: NDArray[np.void], *, out: Hits | None = None,
+                       **limits: Unpack[Limits]) -> Hits:
         """intersect() of rays in records (see overcast.rays): nothing is copied."""
         rays = as_rays(rays)
         hits = Hits(np.empty(rays.shape, HIT)) if out is None else out
@@ -144,37 +153,65 @@ class Scene:
             raise ValueError(f"out must be Hits of the rays' shape {rays.shape}, not {out!r}")
         if not answers.flags.carray:
             raise ValueError("out must be Hits whose records are contiguous and writeable")
-        self._trace("intersect", rays, answers, skip)
+        self._trace("intersect", rays, limits, answers.ctypes.data)
         return hits
 
     def occluded(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0,
-                 t_max: ArrayLike = math.inf, *, skip: Hits | ArrayLike | None = None) -> NDArray[np.bool_]:
+                 t_max: ArrayLike = math.inf, **limits: Unpack[Limits]) -> NDArray[np.bool_]:
         """Tells which rays hit anything: True or False for each, in the rays' shape. The arguments
         are those of intersect()."""
-        return self.occluded_rays(rays(origins, directions, t_min, t_max), skip=skip)
+        return self.occluded_rays(rays(origins, directions, t_min, t_max), **limits)
 
-    def occluded_rays(self, rays: NDArray[np.void], *,
-                      skip: Hits | ArrayLike | None = None) -> NDArray[np.bool_]:
+    def occluded_rays(self, rays: NDArray[np.void], **limits: Unpack[Limits]) -> NDArray[np.bool_]:
         """occluded() of rays in records (see overcast.rays): nothing is copied."""
         rays = as_rays(rays)
         answers = np.empty(rays.shape, np.bool_)
-        self._trace("occluded", rays, answers, skip)
+        self._trace("occluded", rays, limits, answers.ctypes.data)
         return answers
 
-    def _trace(self, function: str, rays: NDArray[np.void], answers: NDArray[Any],
-               skip: Hits | ArrayLike | None) -> None:
-        query = _abi.ovc_query(ray_format=FORMATS.index(rays.dtype))
-        if skip is not None:
-            query.names = names_of(skip, rays.shape)  # lives as long as the query
-            query.skip = query.names.ctypes.data
+    def all_hits(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = 0.0,
+                 t_max: ArrayLike = math.inf, *, max_hits: int | None = None,
+                 **limits: Unpack[Limits]) -> tuple[Hits, NDArray[np.uint64]]:
+        """Finds the hits of each ray, in the order of t, mesh and prim.
+
+        max_hits: how many of a ray are returned; None: as many as the ray with the most has, for
+            which rays may be traced, and a filter asked, a second time.
+        All else is as in intersect().
+        Returns Hits of shape (..., max_hits), with misses where a ray has fewer, and how many hits
+        each ray has in all.
+        """
+        return self.all_hits_of_rays(rays(origins, directions, t_min, t_max), max_hits=max_hits,
+                                     **limits)
+
+    def all_hits_of_rays(self, rays: NDArray[np.void], *, max_hits: int | None = None,
+                         **limits: Unpack[Limits]) -> tuple[Hits, NDArray[np.uint64]]:
+        """all_hits() of rays in records (see overcast.rays): nothing is copied."""
+        rays = as_rays(rays)
+        counts = np.zeros(rays.shape, np.uint64)
+
+        def find(most: int) -> Hits:
+            hits = Hits(np.empty((*rays.shape, most), HIT))
+            self._trace("all_hits", rays, limits, most, hits.records.ctypes.data,
+                        counts.ctypes.data)
+            return hits
+        if max_hits is not None:
+            return find(count("max_hits", max_hits)), counts
+        hits = find(_FIRST_HITS)
+        most = int(counts.max(initial=0))
+        return (hits[..., :most] if most <= _FIRST_HITS else find(most)), counts
+
+    def _trace(self, function: str, rays: NDArray[np.void], limits: Limits,
+               *answers: int) -> None:
+        query = Query(rays, **limits)
 
         def call() -> None:
-            self._call(function, rays.ctypes.data, rays.size, answers.ctypes.data, query)
+            with query.raising():
+                self._call(function, rays.ctypes.data, rays.size, *answers, query.struct)
         if rays.size < _WORTH_WATCHING:
             call()
         else:
             progress = Progress()
-            query.progress = progress.function
+            query.struct.progress = progress.function
             progress.watch(call)
 
     def plan(self) -> dict[str, int | float]:
@@ -226,16 +263,8 @@ _WORTH_WATCHING = 100_000
 """In rays. Smaller batches end before anyone could press Ctrl-C, and starting a thread to watch for
 it would take noticeably long."""
 
-
-def names_of(skip: Hits | ArrayLike, shape: tuple[int, ...]) -> NDArray[np.uint32]:
-    """Returns (*shape, 2): the mesh and the prim that each ray skips."""
-    names = (np.stack([skip.mesh, skip.prim], axis=-1) if isinstance(skip, Hits)
-             else as_uint32("skip", skip, 2))
-    try:
-        return np.ascontiguousarray(np.broadcast_to(names, (*shape, 2)))
-    except ValueError:
-        raise ValueError(f"skip names triangles for rays of shape {names.shape[:-1]}, "
-                         f"not {shape}") from None
+_FIRST_HITS = 8
+"""For all_hits() without max_hits, which asks again where a ray has more."""
 
 
 def _as_dict(struct: ctypes.Structure) -> dict[str, int | float]:

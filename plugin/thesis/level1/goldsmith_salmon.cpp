@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Goldsmith and Salmon's insertion, and the choice among shuffled orders.
+// Goldsmith and Salmon's insertion, and the choice among trees by shuffled orders.
 #include "plugin/thesis/level1/goldsmith_salmon.h"
 
 #include "core/ray.h"
 #include "core/system/parallel.h"
 
+#include <cassert>
 #include <limits>
 #include <mutex>
 #include <numeric>
@@ -16,8 +17,8 @@ namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-/// Not in the paper: without it triangles in one place all become children of one node, and n of
-/// them take n * n steps.
+/// This limit is not in the paper. Without it triangles in one place all become children of one
+/// node, and n of them take n * n steps.
 constexpr uint32_t kMaxChildren = 8;
 
 Boxf joined(Boxf a, const Boxf& b) {
@@ -33,6 +34,7 @@ public:
     }
 
     void insert(uint32_t item) {
+        assert(item < boxes_.size() && !boxes_[item].empty());
         const Place place = best_place(boxes_[item]);
         const uint32_t leaf = uint32_t(nodes_.size());
         nodes_.push_back({boxes_[item], kNone, kNone, kNone, 0, item, 1});
@@ -53,23 +55,23 @@ public:
     }
 
 private:
-    /// Where a box goes: among the children of an inner node, or into a new node with a leaf.
+    /// A place for a box: among the children of an inner node, or in a new node with a leaf.
     struct Place {
         uint32_t node = 0;
         bool is_leaf = false;
     };
 
-    /// What the children of an inner node cost more when the box is put below it.
+    /// Returns how much more the children of an inner node cost when the box is put below it.
     float growth(const InsertionNode& node, const Boxf& box) const {
         return float(node.children) * (joined(node.box, box).half_area() - node.box.half_area());
     }
 
-    /// Goldsmith and Salmon 1987: down the path of least growth; of all places beside it, the one
-    /// that makes the tree's cost least.
+    /// Goldsmith and Salmon 1987: goes down the path that grows least, and returns the one of all
+    /// places beside it that adds least to the tree's cost.
     Place best_place(const Boxf& box) const {
         Place best;
         float best_cost = kInfinite;
-        float inherited = 0; // what growing the nodes above costs, wherever below them the box goes
+        float inherited = 0; // cost of growing the nodes above, wherever below them the box goes
         const auto consider = [&](float cost, Place place) {
             if (cost < best_cost) {
                 best_cost = cost;
@@ -91,8 +93,8 @@ private:
                     continue;
                 }
                 const float cost = growth(child, box);
-                // Where several grow alike, the smallest family: a chain would be as good, but
-                // long.
+                // Where several grow alike, the smallest family is taken: a chain would be as good,
+                // but long.
                 if (cost < least || (cost == least && child.items < nodes_[next].items)) {
                     least = cost;
                     next = c;
@@ -104,13 +106,14 @@ private:
     }
 
     void adopt(uint32_t parent, uint32_t child) {
+        assert(nodes_[parent].item == kNone && parent != child);
         nodes_[child].parent = parent;
         nodes_[child].next_sibling = nodes_[parent].first_child;
         nodes_[parent].first_child = child;
         ++nodes_[parent].children;
     }
 
-    /// Makes a leaf an inner node that holds it. Returns its number, which is the leaf's old one.
+    /// Puts a leaf below a new inner node, which takes its number. Returns that number.
     uint32_t split(uint32_t leaf) {
         const uint32_t moved = uint32_t(nodes_.size());
         nodes_.push_back(nodes_[leaf]);
@@ -125,7 +128,7 @@ private:
     std::vector<InsertionNode> nodes_;
 };
 
-/// The same on every machine: std::shuffle need not be.
+/// Returns a shuffled order that is the same on every machine; std::shuffle need not be.
 std::vector<uint32_t> shuffled(size_t count, uint32_t seed) {
     std::vector<uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
@@ -153,6 +156,7 @@ InsertionTree insert_in_order(std::span<const Boxf> boxes, std::span<const uint3
 
 InsertionTree best_insertion_tree(std::span<const Boxf> boxes, int shuffles,
                                   BuildProgress* progress) {
+    assert(shuffles > 0);
     InsertionTree best;
     size_t best_seed = 0;
     std::mutex mutex;

@@ -25,7 +25,7 @@ bool contains(const Boxf& outer, const Boxf& inner) {
     return outer.contains(inner.lo) && outer.contains(inner.hi);
 }
 
-/// Depth of the tree below n; counts items into `seen`.
+/// Returns the depth of the tree below n, and counts items into `seen`.
 size_t check(const InsertionTree& tree, uint32_t n, const std::vector<Boxf>& boxes,
              std::vector<int>& seen) {
     const InsertionNode& node = tree.nodes[n];
@@ -74,7 +74,7 @@ TEST(GoldsmithSalmon, CostsLessThanOneListAndThanHalvesInTheOrderOfTheFile) {
     const std::vector<Boxf> boxes = boxes_of(test::random_soup(4, 2000, 0.02));
     std::vector<uint32_t> order(boxes.size());
     std::iota(order.begin(), order.end(), 0u);
-    // Testing all 2000 costs 2000; halves by count over unsorted boxes hardly less.
+    // Testing all 2000 costs 2000, and halving unsorted boxes by count costs hardly less.
     EXPECT_LT(insert_in_order(boxes, order).cost, 100);
 }
 

@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// The BVH: cut off by count, flattened, walked.
+// The BVH is cut off by count, flattened and walked.
 #include "plugin/thesis/level1/level1_bvh.h"
 
 #include "plugin/thesis/system.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::thesis {
 namespace {
 
-/// One: a better order of ten changes the leaves far below level 1, where it has none.
+/// One suffices: the best order of ten changes the tree far below level 1, which is cut off.
 constexpr int kLevel1Shuffles = 1;
 
-/// A leaf has items, an inner node children.
+/// A node of the hierarchy that is cut off: a leaf has items, and an inner node has children.
 struct Branch {
     std::vector<uint32_t> items;
     std::vector<Branch> children;
 };
 
-/// The subtree of n leaves at `node`, which takes 2 n - 1 nodes in a row (gpu/bvh/bvh.h).
+/// Returns the subtree at `node`, whose n leaves take 2 n - 1 nodes in a row (gpu/bvh/bvh.h).
 Branch cut_off(std::span<const BvhNode> nodes, uint32_t node, size_t leaves, uint32_t most) {
+    assert(leaves > 0 && most > 0 && node + 2 * leaves - 1 <= nodes.size());
     Branch branch;
     if (leaves <= most) {
         for (const BvhNode& n : nodes.subspan(node, 2 * leaves - 1))
@@ -51,7 +53,7 @@ Branch merge(const InsertionTree& tree, uint32_t node, uint32_t most) {
         collect(tree, node, branch.items);
         return branch;
     }
-    std::vector<uint32_t> together; // siblings that make one leaf
+    std::vector<uint32_t> together; // the items of siblings that make one leaf
     for (uint32_t child = tree.nodes[node].first_child; child != kNone;
          child = tree.nodes[child].next_sibling) {
         if (tree.nodes[child].items > most) {
@@ -67,7 +69,7 @@ Branch merge(const InsertionTree& tree, uint32_t node, uint32_t most) {
     return branch;
 }
 
-/// Appends the branch to the array, and its leaves to level 1.
+/// Appends branches to the array, and their leaves to level 1.
 class Flattener {
 public:
     Flattener(const Soup& soup, std::span<const TriangleId> triangles, Level1& level1,
@@ -111,7 +113,7 @@ private:
     std::vector<BvhEntry>& entries_;
 };
 
-/// In the scene's frame, in float: they decide who goes with whom, no more.
+/// Returns boxes in the scene's frame, in float: they only decide which triangles go together.
 std::vector<Boxf> rough_boxes(const Soup& soup, const Leaf& whole) {
     std::vector<Boxf> boxes(whole.triangles.size());
     const std::vector<LocalTriangle> triangles = local_triangles(soup, whole);
@@ -136,6 +138,7 @@ CompleteBvh::CompleteBvh(const Soup& soup, std::span<const TriangleId> triangles
 }
 
 Level1 CompleteBvh::cut(uint32_t max_leaf_triangles, std::vector<BvhEntry>& entries) const {
+    assert(max_leaf_triangles > 0);
     entries.clear();
     Level1 level1;
     level1.bounds = bounds_;

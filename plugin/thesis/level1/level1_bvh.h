@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A BVH as level 1: an array in depth-first order, of which a ray keeps the entry it has come to.
-// It is not walked along the ray. Based on: thesis, sections 3.3 and 3.4.
+// A BVH as level 1: it is an array in depth-first order, and a ray keeps the entry that it has
+// reached. Its leaves do not come in the order of the ray. Based on: thesis, sections 3.3 and 3.4.
 #pragma once
 
 #include "gpu/bvh/bvh.h"
@@ -21,16 +21,16 @@ struct BvhEntry {
 };
 
 /// A complete hierarchy over the triangles of a soup, to be cut off at any size of leaves. The soup
-/// outlives it.
+/// must outlive it.
 class CompleteBvh {
 public:
-    /// Top-down: by the surface-area heuristic. Bottom-up: by insertion, Goldsmith and Salmon's.
+    /// Top-down, it uses the surface-area heuristic; bottom-up, Goldsmith and Salmon's insertion.
     CompleteBvh(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                 ovc_level1_build build, BuildProgress* progress = nullptr);
 
-    /// Leaves of at most max_leaf_triangles (> 0), each triangle in one of them. Bottom-up,
-    /// siblings that are small enough together become one. The nodes of level 1 are one cell that
-    /// names all leaves.
+    /// Returns level 1 with leaves of at most max_leaf_triangles (> 0), each triangle in one of
+    /// them, and fills `entries`. Bottom-up, siblings that are small enough together become one
+    /// leaf. The nodes of level 1 are one cell that names all leaves.
     Level1 cut(uint32_t max_leaf_triangles, std::vector<BvhEntry>& entries) const;
 
 private:
@@ -41,8 +41,8 @@ private:
     InsertionTree insertion_;    // bottom-up
 };
 
-/// The next leaf whose boxes the ray meets, from entry `index` on, which is moved past it; leaf ==
-/// kNone when there is none. Start with 0. Needs can_walk().
+/// Returns the next leaf whose boxes the ray meets, from entry `index` on, and moves `index` past
+/// it; leaf == kNone when there is none. A walk starts with 0. Needs can_walk().
 Visit next_in_bvh(std::span<const BvhEntry> entries, const PreparedRay& p, uint32_t& index);
 
 } // namespace ovc::thesis

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid: how fine, its cells as those of a KD-tree of equal parts, and from cell to cell.
+// The grid: its fineness, its cells as those of a KD-tree of equal parts, and its walk.
 #include "plugin/thesis/level1/level1_grid.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -22,7 +23,7 @@ uint32_t number_of(const Grid& grid, const Place& at) {
     return (at[2] * grid.count[1] + at[1]) * grid.count[0] + at[0];
 }
 
-/// One cell more along the axis on which cells are longest, until there are so many.
+/// Adds cells, one at a time along the axis on which cells are longest, until there are `cells`.
 void refine(Grid& grid, uint64_t cells) {
     const dvec3 extent = grid.bounds.extent();
     const auto length = [&](int axis) { return extent[axis] / grid.count[axis]; };
@@ -35,7 +36,7 @@ void refine(Grid& grid, uint64_t cells) {
     }
 }
 
-/// Triangles in the fullest cell, by the centres of their boxes.
+/// Returns the number of triangles in the fullest cell, by the centres of their boxes.
 uint32_t fullest(const Grid& grid, std::span<const dvec3> centers) {
     std::vector<uint32_t> counts(grid.cell_count());
     for (const dvec3& center : centers)
@@ -61,7 +62,7 @@ Grid choose_grid(const Soup& soup, std::span<const TriangleId> triangles, const 
     return grid;
 }
 
-/// Appends the tree that halves the block of cells [from, to], and its cells in the tree's order.
+/// Appends the tree that halves the block of cells [from, to], and its cells in that order.
 void halve(const Grid& grid, const Place& from, const Place& to, std::vector<KdNode>& nodes,
            std::vector<uint32_t>& cells) {
     int axis = 0;
@@ -87,6 +88,7 @@ void halve(const Grid& grid, const Place& from, const Place& to, std::vector<KdN
 } // namespace
 
 double Grid::plane(int axis, uint32_t i) const {
+    assert(axis >= 0 && axis < 3 && i <= count[axis]);
     if (i == count[axis])
         return bounds.hi[axis];
     return bounds.lo[axis] + bounds.extent()[axis] * (double(i) / count[axis]);
@@ -96,7 +98,7 @@ uint32_t Grid::cell_at(const dvec3& point) const {
     Place at{};
     for (int axis = 0; axis < 3; ++axis) {
         if (count[axis] == 1)
-            continue; // perhaps without extent
+            continue; // the box may have no extent along this axis
         const double i = (point[axis] - bounds.lo[axis]) / bounds.extent()[axis] * count[axis];
         at[axis] = uint32_t(std::clamp(std::floor(i), 0.0, double(count[axis] - 1)));
     }
@@ -105,6 +107,7 @@ uint32_t Grid::cell_at(const dvec3& point) const {
 
 Level1 cut_into_grid(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                      uint32_t max_leaf_triangles, Grid& grid) {
+    assert(max_leaf_triangles > 0);
     if (triangles.empty())
         return {};
     grid = choose_grid(soup, triangles, bounds, max_leaf_triangles);
@@ -112,6 +115,7 @@ Level1 cut_into_grid(const Soup& soup, std::span<const TriangleId> triangles, co
     std::vector<uint32_t> order;
     halve(grid, {0, 0, 0}, {grid.count[0] - 1, grid.count[1] - 1, grid.count[2] - 1}, nodes, order);
     Level1 level1 = fill_cells(soup, triangles, bounds, std::move(nodes), max_leaf_triangles);
+    assert(order.size() == grid.cell_count());
     grid.cells.resize(order.size());
     size_t next = 0;
     for (const KdNode& node : level1.nodes)
@@ -125,9 +129,10 @@ uint32_t next_cell(const Grid& grid, double padding, const PreparedRay& p, uint3
         const Interval inside = clip(p, grid.bounds.padded(padding), p.ray.t_min, p.ray.t_max);
         return inside.empty() ? kBehindGrid : grid.cell_at(p.ray.org + inside.enter * p.ray.dir);
     }
+    assert(cell < grid.cell_count());
     Place at = place_of(grid, cell);
-    // Planes are met at times that are computed in one way only, so the ray passes each once, and
-    // the padding of cells makes up for what such a time is off by.
+    // The t of a plane is always computed in the same way, so the ray passes each plane once, and
+    // the padding of cells makes up for the error of t.
     double exit = std::numeric_limits<double>::infinity();
     int through = -1;
     for (int axis = 0; axis < 3; ++axis) {

@@ -13,8 +13,8 @@
 namespace ovc::thesis {
 
 struct Grid {
-    /// Leaves [first, end) of level 1: none where the cell is empty, several where it holds more
-    /// triangles than a leaf may.
+    /// The leaves [first, end) of level 1: none where the cell is empty, several where it holds
+    /// more triangles than a leaf may.
     struct Cell {
         uint32_t first = 0;
         uint32_t end = 0;
@@ -25,15 +25,15 @@ struct Grid {
     std::vector<Cell> cells;                // x fastest
 
     uint32_t cell_count() const { return count[0] * count[1] * count[2]; }
-    /// Where cell i of an axis begins, and cell i - 1 ends.
+    /// Returns where cell i of an axis begins and cell i - 1 ends.
     double plane(int axis, uint32_t i) const;
-    /// The cell that holds a point, or the nearest one.
+    /// Returns the number of the cell that holds a point, or of the nearest one.
     uint32_t cell_at(const dvec3& point) const;
 };
 
-/// A grid over `triangles` of the soup, which lie in `bounds`, and its cells as leaves of at most
-/// max_leaf_triangles (> 0). The coarsest whose cells all hold so few, counted by their centres;
-/// or, where triangles crowd, of kMaxCellsPerLeaf cells for each leaf that would do.
+/// Makes a grid over `triangles` of the soup, which lie in `bounds`, and returns its cells as
+/// leaves of at most max_leaf_triangles (> 0). It is the coarsest whose cells all hold so few, by
+/// their centres; where triangles crowd, it has kMaxCellsPerLeaf cells for each leaf that would do.
 Level1 cut_into_grid(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                      uint32_t max_leaf_triangles, Grid& grid);
 
@@ -42,8 +42,8 @@ inline constexpr uint64_t kMaxCellsPerLeaf = 64;
 inline constexpr uint32_t kBeforeGrid = 0xffffffffu; // the ray has not begun
 inline constexpr uint32_t kBehindGrid = 0xfffffffeu; // no cell is left
 
-/// The first cell of the ray where `cell` is kBeforeGrid, else the one behind `cell`. Needs
-/// can_walk().
+/// Returns the first cell of the ray where `cell` is kBeforeGrid, else the one behind `cell`;
+/// kBehindGrid when there is none. Needs can_walk().
 uint32_t next_cell(const Grid& grid, double padding, const PreparedRay& p, uint32_t cell);
 
 } // namespace ovc::thesis

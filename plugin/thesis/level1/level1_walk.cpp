@@ -19,6 +19,7 @@ Visit next_in_grid(const Grid& grid, const Level1& level1, const PreparedRay& p,
         place.index = next_cell(grid, level1.padding, p, place.index);
         if (place.index == kBehindGrid)
             return {};
+        assert(place.index < grid.cells.size());
         const Grid::Cell& cell = grid.cells[place.index];
         place.cells.next = cell.first;
         place.cells.end = cell.end;
@@ -64,6 +65,7 @@ Level1Builder::Level1Builder(const Soup& soup, std::span<const TriangleId> trian
 }
 
 Level1 Level1Builder::cut(uint32_t max_leaf_triangles, Level1Walk& walk) const {
+    assert(max_leaf_triangles > 0);
     walk.kind = kind_;
     if (kind_ == OVC_LEVEL1_GRID)
         return cut_into_grid(soup_, triangles_, bounds_, max_leaf_triangles, walk.grid);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Level 1 of every kind: leaves keep to the count, every triangle is in a leaf wherever it is, and
-// a walk leaf by leaf finds what testing every triangle finds.
+// Level 1 of every kind: leaves keep to the count, every triangle is in the leaves wherever it
+// lies, and a walk leaf by leaf finds the hits that testing every triangle finds.
 #include "plugin/thesis/level1/level1_walk.h"
 
 #include "kdtree/build.h"
@@ -29,7 +29,7 @@ struct Built {
     bool can_walk(const Ray& ray) const { return ovc::can_walk(level1, PreparedRay(ray)); }
 };
 
-/// All leaves on the ray's way, in order.
+/// Returns all leaves on the ray's way, in order.
 std::vector<uint32_t> leaves_along(const Built& built, const Ray& ray) {
     const PreparedRay p(ray);
     RayPlace place{{ray.t_min}};
@@ -39,7 +39,7 @@ std::vector<uint32_t> leaves_along(const Built& built, const Ray& ray) {
     return leaves;
 }
 
-/// As the queues do it: after a hit, no leaf beyond it; after one in a cell, only that cell's.
+/// Traces as the queues do: after a hit no leaf beyond it, after one in a cell only that cell's.
 Hit trace(const Built& built, const Soup& soup, const Ray& ray) {
     PreparedRay rest(ray);
     Nearest nearest(rest);
@@ -124,7 +124,7 @@ TEST(Level1, WalkingLeavesFindsWhatBruteForceFinds) {
     }
 }
 
-/// Leaves of the same cells, so both walks come to the same leaves in the same order.
+/// Both have leaves of the same cells, so both walks come to the same leaves in the same order.
 TEST(Level1, TheGridsWalkIsThatOfRestartsInTheSameCells) {
     const Soup soup = test::random_soup(4, 5000, 0.02);
     const Built grid(soup, {"", OVC_LEVEL1_GRID, OVC_LEVEL1_BUILD_TOP_DOWN}, 30);
@@ -141,7 +141,7 @@ TEST(Level1, TheGridsWalkIsThatOfRestartsInTheSameCells) {
     EXPECT_GT(longest, 5u);
 }
 
-/// No leaf whose inside the ray passes through is left out, whatever the kind.
+/// The walk leaves out no leaf whose inside the ray passes through, whatever the kind.
 TEST(Level1, NoRayMissesALeaf) {
     for (const auto& [name, soup] : test::unpleasant_soups())
         for (const Kind& kind : kinds()) {
@@ -155,7 +155,7 @@ TEST(Level1, NoRayMissesALeaf) {
                 EXPECT_EQ(met.size(), leaves.size()) << "a leaf twice";
                 const PreparedRay p(rays[i]);
                 for (uint32_t l = 0; l < built.level1.leaves.size(); ++l) {
-                    // The unpadded cell, less what double rounds.
+                    // The unpadded cell, made smaller by the roundings of doubles.
                     const Leaf& leaf = built.level1.leaves[l];
                     const Box inner = leaf.cell.padded(-2 * built.level1.padding);
                     const Interval inside =

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Merging: two leaves side by side become one as long as together they hold few enough triangles.
+// Merging: two leaves side by side become one if they hold few enough triangles together.
 #include "plugin/thesis/level1/merge_leaves.h"
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <optional>
 
 namespace ovc::thesis {
 namespace {
 
-/// Sorted, none twice.
+/// The triangles of a leaf, sorted and without repetition.
 using Members = std::vector<TriangleId>;
 
 class Merger {
@@ -23,8 +24,7 @@ public:
     }
 
 private:
-    /// Appends what is left of the subtree. Returns its triangles where that is one leaf that may
-    /// still grow.
+    /// Appends the merged subtree. Returns its triangles where it is one leaf that may still grow.
     std::optional<Members> merge(uint32_t node) {
         const KdNode& n = full_.nodes[node];
         const size_t at = nodes_.size();
@@ -65,6 +65,7 @@ private:
 } // namespace
 
 std::vector<KdNode> merge_leaves(const KdTree& full, uint32_t most) {
+    assert(most > 0);
     return Merger(full, most).run();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Level 1 from the bottom up: the leaves of a complete KD-tree merged until they are as large as
+// Level 1 from the bottom up: merges the leaves of a complete KD-tree until they are as large as
 // leaves may be. Based on: thesis, section 3.3.
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace ovc::thesis {
 
-/// The nodes of `full`, each subtree of at most `most` (> 0) different triangles merged into one
-/// leaf node. What leaf nodes name means nothing: fill_cells() of kdtree/partition.h says it anew.
+/// Returns the nodes of `full`, each subtree of at most `most` (> 0) different triangles merged
+/// into one leaf node. Leaf nodes name nothing: fill_cells() of kdtree/partition.h does that anew.
 std::vector<KdNode> merge_leaves(const KdTree& full, uint32_t most);
 
 } // namespace ovc::thesis

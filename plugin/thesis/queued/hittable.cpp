@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is never hit is left out, and counted.
+// Leaves out triangles that can never be hit, and counts them.
 #include "plugin/thesis/queued/hittable.h"
 
 #include "core/text/format_text.h"

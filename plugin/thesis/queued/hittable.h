@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The triangles of a soup that a structure is built over, and the count of those left out.
+// Finds the triangles of a soup that a structure is built over, and counts those left out.
 #pragma once
 
 #include "core/system/log.h"
@@ -8,7 +8,7 @@
 
 namespace ovc::thesis {
 
-/// The triangles of the scene; counts in `statistics` what is left out, and warns of it.
+/// Returns the triangles to build over; counts in `statistics` those left out, and warns of them.
 Hittable take_hittable(BuiltScene& scene, ovc_statistics& statistics, const LogSink& log,
                        BuildProgress* progress = nullptr);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// LeafPasses: the page into the pool, rays in by a texture, answers out by a framebuffer object.
-// Based on: thesis, sections 3.1 and 3.4.
+// LeafPasses: the page goes into the pool, rays go in by a texture, and answers come out by a
+// framebuffer object. Based on: thesis, sections 3.1 and 3.4.
 #include "plugin/thesis/queued/leaf_passes.h"
 
 #include "core/system/stopwatch.h"
@@ -16,7 +16,7 @@
 namespace ovc::thesis {
 namespace {
 
-/// Of uniforms in leaf.frag.glsl.
+/// The locations of uniforms in leaf.frag.glsl.
 constexpr GLint kPageUnit = 0;
 constexpr GLint kFirstOcclusionRay = 1;
 
@@ -51,7 +51,7 @@ Result<std::unique_ptr<LeafPasses>> LeafPasses::create(const ovc::MemoryPlan& pl
     return passes;
 }
 
-/// One for all pages: compiled for the deepest.
+/// Returns the one kernel for all pages, which is compiled for the deepest page.
 Result<GLuint> LeafPasses::kernel() {
     if (kernel_)
         return kernel_->id();
@@ -74,15 +74,16 @@ Result<GLuint> LeafPasses::kernel() {
     return kernel_.emplace(std::move(*linked)).id();
 }
 
-/// Bytes moved.
+/// Makes the leaf's page resident. Returns how many bytes were moved for that.
 uint64_t LeafPasses::bring(uint32_t leaf) {
+    assert(leaf < pages_.size());
     Residency& residency = pool_.residency();
     if (residency.resident(leaf)) {
         residency.touch(leaf);
         return 0;
     }
     std::vector<uint32_t> evicted;
-    residency.admit(leaf, pages_[leaf].bytes(), residency.now(), evicted); // keeps nobody
+    residency.admit(leaf, pages_[leaf].bytes(), residency.now(), evicted); // any page may go
     pool_.upload(pool_.residency().slot(leaf).offset, pages_[leaf]);
     return pages_[leaf].bytes();
 }
@@ -90,6 +91,7 @@ uint64_t LeafPasses::bring(uint32_t leaf) {
 Result<LeafPass> LeafPasses::run(uint32_t leaf, std::span<const FrameRay> rays,
                                  size_t first_occlusion, std::span<FrameAnswer> answers) {
     assert(!rays.empty() && rays.size() == answers.size() && rays.size() % kRowRays == 0);
+    assert(first_occlusion <= rays.size());
     const Stopwatch watch;
     const Result<GLuint> program = kernel();
     if (!program)

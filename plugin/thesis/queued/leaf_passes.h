@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// LeafPasses: the pool of pages, and passes of the kernel over the queue of one leaf, within a
-// budget of GPU bytes.
+// LeafPasses: keeps the pool of pages, and runs passes of the kernel over the queue of one leaf,
+// within a budget of GPU bytes.
 #pragma once
 
 #include "core/result.h"
@@ -25,8 +25,8 @@ struct LeafPass {
 /// All calls need the context current.
 class LeafPasses {
 public:
-    /// pages outlive it. plan: of kBytesPerRay. Its pool holds the largest. certify = false: fast
-    /// precision.
+    /// `pages` must outlive the passes. plan counts kBytesPerRay a ray, and its pool holds the
+    /// largest page. certify = false: fast precision. Error: GL refuses a texture or a buffer.
     static Result<std::unique_ptr<LeafPasses>> create(const ovc::MemoryPlan& plan,
                                                       const DeviceInfo& device,
                                                       std::span<const Page> pages, bool certify);
@@ -34,8 +34,8 @@ public:
     bool resident(uint32_t leaf) const { return pool_.residency().resident(leaf); }
 
     /// Traces rays in the leaf's frame (at most plan.batch_rays) through its page, which is moved
-    /// in if need be. Rays from first_occlusion on are occlusion rays. Both spans are whole rows:
-    /// see row_padded().
+    /// in if it is not resident. Rays from first_occlusion on are occlusion rays. Both spans are
+    /// whole rows of the same size: see row_padded().
     Result<LeafPass> run(uint32_t leaf, std::span<const FrameRay> rays, size_t first_occlusion,
                          std::span<FrameAnswer> answers);
 

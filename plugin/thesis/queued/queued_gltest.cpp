@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two-level as the thesis has it answers bit for bit what testing every triangle in double answers,
-// whatever its level 1, the size of leaves, the budget, in batches and in streams.
+// Two-level as the thesis has it gives bit for bit the answers of testing every triangle in double,
+// whatever its level 1, the size of leaves and the budget, in batches and in streams.
 #include "gpu/gl/test_gl.h"
 #include "plugin/structure/failure.h"
 #include "plugin/structure/test_structures.h"
@@ -89,8 +89,8 @@ TEST_F(Queued, AStreamAnswersEveryRayOnceAsABatchDoes) {
         }
 }
 
-/// Rays that are reflected from hit to hit, and a shadow ray from each. Generation after generation
-/// by batches, or all together by a stream.
+/// Traces rays that are reflected from hit to hit, and a shadow ray from each: generation after
+/// generation by batches, or all together by a stream.
 class Reflections final : public StreamHost {
 public:
     static constexpr size_t kGenerations = 5;
@@ -148,7 +148,7 @@ public:
     }
 
 private:
-    /// Into another direction that depends on the hit alone.
+    /// Returns a ray into another direction, which depends on the hit alone.
     static Ray reflect(const Ray& ray, const Hit& hit) {
         return {ray.at(hit.t), 0, dvec3(ray.dir.y, -ray.dir.z, ray.dir.x)};
     }
@@ -161,9 +161,9 @@ private:
     std::vector<std::pair<Ray, size_t>> paths_; // by token
 };
 
-/// In one leaf, so that a pass takes all rays there are: by batches one for each kind of ray and
-/// generation; by a stream, whose queue holds shadow rays and the next generation together, one for
-/// each generation and one for the last shadows.
+/// The scene is one leaf, so that a pass takes all rays that there are. Batches take a pass for
+/// each kind of ray and generation. A stream, whose queue holds shadow rays and the next generation
+/// together, takes one for each generation and one for the last shadows.
 TEST_F(Queued, AStreamTracesShadowsAndReflectionsTogether) {
     const Soup soup = test::closed_grid(100);
     for (const Kind& kind : kinds()) {
@@ -275,7 +275,7 @@ TEST_F(Queued, MovesPagesOnlyWhereTheyDoNotAllFit) {
     }
 }
 
-/// A stack of sheets, each a leaf: a ray that passes all of them is in one queue after another.
+/// Returns sheets, each a leaf: a ray that passes all of them is in one queue after another.
 TEST_F(Queued, ARayIsInOneQueueAfterAnother) {
     std::vector<vec3> corners;
     for (int sheet = 0; sheet < 8; ++sheet)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// QueuedRays: from level 1 into a queue, through a pass, and back; what the kernel leaves is
-// resolved.
+// QueuedRays: a ray goes from level 1 into a queue, through a pass, and back. Candidates that the
+// kernel leaves open are resolved.
 #include "plugin/thesis/queued/queued_rays.h"
 
 #include "core/system/parallel.h"
@@ -12,13 +12,13 @@
 
 namespace ovc::thesis {
 
-/// Fast precision: of a leaf, by how much a hit may lie beyond the cell; 16 roundings.
+/// In fast precision, how far a hit may lie beyond the cell, as a share of the leaf: 16 roundings.
 static constexpr double kFastSlack = 0x1p-20;
 namespace {
 
-constexpr size_t kQueueGrain = 256; // rays a task
+constexpr size_t kQueueGrain = 256; // rays per task
 
-/// What is left of it.
+/// Returns the part of the ray that is still of interest.
 PreparedRay rest_of(const QueuedRay& state) {
     Ray rest = state.ray;
     rest.t_max = state.t_end;
@@ -47,6 +47,7 @@ uint32_t QueuedRays::slot() {
 void QueuedRays::add(bool any_hit, const RaySpan& rays, const Exclusions& without,
                      std::span<const uint64_t> tokens) {
     assert(under_way() + rays.size() <= kMax);
+    assert(tokens.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
     for (size_t i = 0; i < rays.size(); ++i) {
         const uint32_t at = slot();
         states_[at] = {rays[i], without[i].skip, tokens[i], any_hit};
@@ -81,6 +82,7 @@ void QueuedRays::find_leaf(QueuedRay& state) {
 }
 
 void QueuedRays::begin(QueuedRay& state) {
+    assert(state.step == QueuedRay::New);
     state.step = QueuedRay::Answered;
     if (!state.ray.valid()) {
         ++invalid_;
@@ -96,6 +98,7 @@ void QueuedRays::begin(QueuedRay& state) {
 }
 
 Result<Done> QueuedRays::trace_next_leaf() {
+    assert(waiting());
     const uint32_t leaf =
         queues_.choose([&](uint32_t l) { return s_.passes->resident(l); }, s_.built.pages);
     const std::vector<uint32_t> queue = queues_.take(leaf);
@@ -109,6 +112,7 @@ Result<Done> QueuedRays::trace_next_leaf() {
 }
 
 Result<Done> QueuedRays::pass(uint32_t leaf, std::span<const uint32_t> queued) {
+    assert(!queued.empty() && queued.size() <= s_.plan.batch_rays);
     std::vector<uint32_t> batch(queued.begin(), queued.end());
     const auto occlusion = std::stable_partition(batch.begin(), batch.end(),
                                                  [&](uint32_t i) { return !states_[i].any_hit; });
@@ -133,7 +137,7 @@ Result<Done> QueuedRays::pass(uint32_t leaf, std::span<const uint32_t> queued) {
     return Done{};
 }
 
-/// The rays in the leaf's frame.
+/// Fills rays_ with the batch in the leaf's frame.
 void QueuedRays::load(uint32_t leaf, std::span<const uint32_t> batch) {
     rays_.assign(LeafPasses::row_padded(batch.size()), FrameRay{});
     answers_.resize(rays_.size());
@@ -160,8 +164,8 @@ void QueuedRays::resolve(QueuedRay& state, const FrameAnswer& answer, bool decid
         fall_back(state);
 }
 
-/// Enters the kernel's candidates of the leaf, as exact arithmetic decides them. False where it
-/// does not confirm the certain hit.
+/// Enters the kernel's candidates of the leaf, as exact arithmetic decides them. Returns false
+/// where it does not confirm the certain hit.
 bool QueuedRays::resolve_candidates(QueuedRay& state, const FrameAnswer& answer) {
     const Candidates found{answer.prim, answer.further()};
     if (found.is_miss())
@@ -194,13 +198,13 @@ void QueuedRays::enter_fast(QueuedRay& state, const FrameAnswer& answer) {
         s_.built.seen({t, answer.u(), answer.v(), s_.built.numbers.id(answer.prim)}, state.skip);
     if (hit.nearer_than(state.hit))
         state.hit = hit;
-    // t is as good as float is: what lies on the cell's last plane may come out behind it.
+    // t is only as good as float, so a hit on the cell's last plane may come out behind it.
     const double slack = kFastSlack / leaf.frame.scale;
     end_at(state, p, state.hit.t + slack / std::abs(p.ray.dir[p.kz]), 2 * slack);
 }
 
-/// The ray was hit, not beyond `end` however t is rounded. It is in its last cell where that lies
-/// in the leaf's cell, larger by `slack`: then nothing of later cells is nearer, nor as near.
+/// Notes a hit that is not beyond `end` however t is rounded. If `end` lies in the leaf's cell,
+/// larger by `slack`, the ray is in its last cell: later ones hold no hit as near.
 void QueuedRays::end_at(QueuedRay& state, const PreparedRay& p, double end, double slack) {
     state.t_end = std::min(state.t_end, end);
     const Box cell = s_.built.level1.leaves[state.leaf].cell.padded(slack);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// QueuedRays: rays under way between level 1 on the CPU and the queues of its leaves; the steps
-// that algorithms 3, 4 and 6 of the thesis are made of.
+// QueuedRays: the rays under way between level 1 on the CPU and the queues of its leaves, and the
+// steps that algorithms 3, 4 and 6 of the thesis are made of.
 #pragma once
 
 #include "core/exact/triangle.h"
@@ -22,7 +22,7 @@ struct QueuedRay {
     TriangleId skip;
     uint64_t token = 0;
     bool any_hit = false;
-    /// In its last cell: its hit lies there, so only leaves of that cell may hold a nearer one.
+    /// InLastCell: the ray's hit lies in this cell, so only leaves of it may hold a nearer one.
     enum : uint8_t { New, Walking, InLastCell, Answered } step = New;
     uint32_t leaf = kNone; // whose queue it is in
     RayPlace place;
@@ -37,25 +37,25 @@ public:
     ~QueuedRays();
     QueuedRays(const QueuedRays&) = delete;
 
-    /// Puts rays into the queue of level 1; with those under way, at most kMax. skip: empty, or
-    /// one per ray, as the tokens.
+    /// Puts rays into the queue of level 1; with those under way they may be at most kMax. Of
+    /// `without` only skipped triangles count.
     void add(bool any_hit, const RaySpan& rays, const Exclusions& without,
              std::span<const uint64_t> tokens);
     size_t under_way() const { return states_.size() - free_.size(); }
     static constexpr size_t kMax = size_t(1) << 20; // some 200 bytes each
 
     /// Sends every ray in the queue of level 1 to the queue of its next leaf (algorithm 4), or to
-    /// those answered, where there is none.
+    /// the answered rays where there is none.
     void walk_level1();
 
-    /// Do rays wait for any leaf?
+    /// Returns whether rays wait for any leaf.
     bool waiting() const { return !queues_.empty(); }
 
     /// Chooses a leaf and traces its queue, a pass for each batch; the rays then stand in the queue
-    /// of level 1. waiting() must hold.
+    /// of level 1. waiting() must hold. Error: that of the pass.
     Result<Done> trace_next_leaf();
 
-    /// Hands each ray that was answered since to hand_over(state), and forgets it.
+    /// Hands each ray that was answered since the last call to hand_over(state), and forgets it.
     template <class HandOver>
     void take_answered(HandOver&& hand_over) {
         for (const uint32_t i : answered_)
@@ -77,7 +77,7 @@ private:
     void fall_back(QueuedRay& state);
 
     QueuedScene& s_;
-    Queues queues_; // of leaves; hold indices of states_, as all below
+    Queues queues_; // of leaves; they hold indices of states_, as all below
     std::vector<QueuedRay> states_;
     std::vector<uint32_t> free_;
     std::vector<uint32_t> level1_queue_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Building: level 1, then a page for each leaf, then the pool.
+// QueuedScene: builds level 1, then a page for each leaf, then the pool.
 #include "plugin/thesis/queued/queued_scene.h"
 
 #include "core/system/parallel.h"
@@ -9,15 +9,16 @@
 #include "shaders/layout.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::thesis {
 namespace {
 
-constexpr uint64_t kPagesAtOnce = 3;    // a page takes at most this share of the pool
+constexpr uint64_t kPagesAtOnce = 3;    // the pool holds so many of the largest pages
 constexpr uint64_t kDefaultLeaves = 10; // thesis, section 4
 
-/// What a triangle takes in a page where most pair up; soups without shared edges take up to twice
-/// as much.
+/// The bytes of a triangle in a page where most triangles pair up; soups without shared edges take
+/// up to twice as much.
 constexpr uint64_t kBytesPerTriangle = 52;
 
 uint64_t max_triangles(const QueuedOptions& options, uint64_t triangles) {
@@ -27,7 +28,7 @@ uint64_t max_triangles(const QueuedOptions& options, uint64_t triangles) {
     return std::max<uint64_t>((triangles + leaves - 1) / leaves, 1);
 }
 
-/// All pages. Returns the number of the largest.
+/// Builds all pages. Returns the number of the largest.
 size_t build_pages(QueuedScene& scene, BuildProgress* progress) {
     std::vector<Page>& pages = scene.built.pages;
     pages.clear();
@@ -39,10 +40,11 @@ size_t build_pages(QueuedScene& scene, BuildProgress* progress) {
     });
     const auto largest = std::max_element(pages.begin(), pages.end(),
                                           [](auto& a, auto& b) { return a.bytes() < b.bytes(); });
+    assert(!pages.empty());
     return size_t(largest - pages.begin());
 }
 
-/// Both levels, again with smaller leaves where a page turns out too large.
+/// Builds both levels, and again with smaller leaves while a page is too large.
 Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint64_t most,
                           BuildProgress* progress) {
     const uint64_t page_bytes = scene.plan.pool_bytes / kPagesAtOnce;
@@ -63,7 +65,7 @@ Result<Done> build_levels(QueuedScene& scene, const Level1Builder& builder, uint
         if (most == 1)
             return over_budget(
                 format_text("a page of one triangle does not fit into {} bytes", page_bytes));
-        // What this page took a triangle, and a little more, tells how many fit.
+        // The bytes per triangle of this page, and a little more, tell how many triangles fit.
         const double triangles = double(scene.built.level1.leaves[largest].triangles.size());
         const uint64_t fit = uint64_t(0.95 * double(page_bytes) / double(bytes) * triangles);
         most = std::clamp<uint64_t>(fit, 1, most - 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What two-level as the thesis has it keeps of a scene: level 1 on the CPU, the pages of its
+// QueuedScene: a scene of two-level as the thesis has it, with level 1 on the CPU, the pages of its
 // leaves, and the pool that they take turns in. Based on: thesis, section 3.3 (algorithm 2).
 #pragma once
 
@@ -17,7 +17,7 @@ namespace ovc::thesis {
 struct QueuedOptions {
     uint64_t budget_bytes = 0;   // 0: the device's default
     uint64_t leaf_triangles = 0; // 0: a tenth of the scene
-    uint64_t leaves = 0;         // instead: about this many
+    uint64_t leaves = 0;         // about this many, where leaf_triangles is 0; 0: ten
     bool certify = true;         // false: fast precision
     ovc_level1 level1 = OVC_LEVEL1_KD_TREE;
     ovc_level1_build build = OVC_LEVEL1_BUILD_TOP_DOWN;
@@ -38,8 +38,8 @@ struct QueuedScene {
     ovc_statistics statistics{sizeof(ovc_statistics)};
 };
 
-/// The soup and the thread must outlive it. Error: a budget too small, with the smallest that
-/// works; GL's refusals.
+/// Returns the scene, which the soup and the thread must outlive. Error: a budget that is too
+/// small, with the smallest that works; too many triangles; GL's refusals.
 Result<std::unique_ptr<QueuedScene>> build_queued_scene(const Soup& soup, GlThread& gl,
                                                         const QueuedOptions& options,
                                                         const LogSink& log,

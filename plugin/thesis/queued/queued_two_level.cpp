@@ -13,7 +13,7 @@
 namespace ovc::thesis {
 namespace {
 
-/// Algorithm 3: all queues of leaves, then level 1 again.
+/// Algorithm 3: traces all queues of leaves, then walks level 1 again.
 Result<Done> trace_in_rounds(QueuedRays& states) {
     while (true) {
         states.walk_level1();
@@ -25,8 +25,8 @@ Result<Done> trace_in_rounds(QueuedRays& states) {
     }
 }
 
-/// Algorithm 6: level 1 after every leaf, for the rays that come from it and those that the host
-/// spawned meanwhile.
+/// Algorithm 6: walks level 1 after every leaf, for the rays that come from it and those that the
+/// host spawned meanwhile.
 class MixedStream final : public RayStream {
 public:
     MixedStream(QueuedScene& scene, StreamHost& host)
@@ -56,7 +56,8 @@ public:
 private:
     size_t backlog() const { return nearest_.size() + any_.size(); }
 
-    /// Asks the host for more where half of what may be under way is missing.
+    /// Asks the host for more rays when at most half of kMax are under way or in the backlog.
+    /// Returns false where the host stops the stream.
     bool fill() {
         const size_t busy = rays_.under_way() + backlog();
         if (!more_ || busy > QueuedRays::kMax / 2)
@@ -68,7 +69,7 @@ private:
         return true;
     }
 
-    /// Is there more to send through level 1 before a leaf is chosen?
+    /// Returns whether there are more rays to send through level 1 before a leaf is chosen.
     bool may_start() const {
         return (backlog() > 0 && rays_.under_way() < QueuedRays::kMax) ||
                (more_ && !rays_.waiting());

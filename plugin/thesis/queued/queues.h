@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rays that wait for each leaf, by their numbers, and which leaf is next. Based on: thesis,
-// sections 3.4 and 3.5.
+// Queues: the rays that wait for each leaf, by their numbers, and the choice of the next leaf.
+// Based on: thesis, sections 3.4 and 3.5.
 #pragma once
 
 #include "core/ray.h"
 #include "gpu/page/page.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -19,20 +20,23 @@ public:
     explicit Queues(size_t leaves) : queues_(leaves) {}
 
     void push(uint32_t leaf, uint32_t ray) {
+        assert(leaf < queues_.size());
         queues_[leaf].push_back(ray);
         ++count_;
     }
     std::vector<uint32_t> take(uint32_t leaf) {
+        assert(leaf < queues_.size() && queues_[leaf].size() <= count_);
         count_ -= queues_[leaf].size();
         return std::exchange(queues_[leaf], {});
     }
     bool empty() const { return count_ == 0; }
 
-    /// The fullest queue, as the thesis chooses, but with an eye on what must be moved: of the
-    /// leaves that are resident, the one with most rays; where there is none, the one with most
-    /// rays per byte of its page. resident(leaf) -> bool. Not when empty().
+    /// Returns the leaf of the fullest queue, as the thesis chooses, but counts the pages to be
+    /// moved: of the leaves that are resident, it takes the one with most rays; where there is
+    /// none, the one with most rays per byte of its page. resident(leaf) -> bool. Not when empty().
     template <class IsResident>
     uint32_t choose(IsResident&& resident, std::span<const Page> pages) const {
+        assert(!empty() && pages.size() == queues_.size());
         uint32_t best = kNone;
         std::pair best_worth(false, 0.0); // resident first
         for (uint32_t leaf = 0; leaf < queues_.size(); ++leaf) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every kind of level 1 that the thesis names, for tests.
+// Lists every kind of level 1 that the thesis names, for tests.
 #pragma once
 
 #include "plugin/overcast.h"
