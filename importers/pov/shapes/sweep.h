@@ -6,6 +6,7 @@
 #include "importers/pov/shapes/facets.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pov {
 
@@ -17,6 +18,7 @@ template <class Placing>
 void sweep(const std::vector<Contour>& contours, bool lids, Placing place, Facets& out) {
     std::vector<dvec2> all;
     for (const Contour& c : contours) {
+        assert(c.size() >= 3);
         all.insert(all.end(), c.begin(), c.end());
         // Outside is to the right of a counterclockwise curve, but to the left where it is a hole.
         const auto depth = std::count_if(contours.begin(), contours.end(), [&](const Contour& o) {
