@@ -370,7 +370,7 @@ ColorMap parse_map(Reader& reader) {
             const bool plain = starts_color(token);
             entries.push_back({at, plain ? parse_color(reader) : parse_entry(reader, ']')});
         }
-        // Old scenes may give more than a color here, such as a second one, which we skip.
+        // More may follow the color, such as a second one. It is skipped.
         while (!reader.peek().is(']'))
             if (const Token rest = reader.next(); rest.kind == TokenKind::End)
                 reader.fail(rest.place, "found no ']' in a map");
@@ -453,8 +453,8 @@ Material parse_material(Reader& reader) {
     return material;
 }
 
-/// Reads `tiles { texture { … } tile2 texture { … } }`, a checker of two textures in old scenes. The
-/// result has the finish of the first.
+/// Reads `tiles { texture { … } tile2 texture { … } }`, a checker of two textures in old scenes.
+/// The result has the finish of the first.
 static Texture parse_tiles(Reader& reader) {
     reader.expect('{', "tiles");
     std::vector<Texture> both;
