@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the fuzzer's seeds cut off everywhere and with changed bytes, which the fuzzer does longer.
+// Reads the fuzzer's seeds cut off everywhere or with changed bytes. The fuzzer does so for longer.
 #include "importers/readers.h"
 #include "importers/test_files.h"
 #include "tests/fuzz/pov.h"

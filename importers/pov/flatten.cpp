@@ -53,7 +53,7 @@ void tell_all(const Notes& notes, const Look& look) {
             look.tell(*note);
 }
 
-/// Adds materials to a scene, each of which is added once.
+/// Adds materials to a scene. Equal ones are added once.
 class MaterialTable {
 public:
     MaterialTable(const Look& look, Scene& scene) : look_(look), scene_(scene) {}

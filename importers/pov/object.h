@@ -26,7 +26,7 @@ struct Shape {
 
 /// An endless plane: the points where normal . p = distance. Points below it are inside.
 struct PlaneShape {
-    dvec3 normal{0, 1, 0}; // parse_plane and placed_plane scale it to length 1
+    dvec3 normal{0, 1, 0}; // of length 1
     double distance = 0;
 };
 

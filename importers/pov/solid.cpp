@@ -337,7 +337,7 @@ std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& rea
     if (box.empty())
         return {};
     Evaluated cut = evaluate_within(solid, fineness, box);
-    std::vector<uint32_t> first; // skin of each leaf
+    std::vector<uint32_t> first; // the number of each leaf's first skin
     uint32_t skins = 0;
     for (const SolidLeaf& leaf : solid.leaves) {
         first.push_back(skins);

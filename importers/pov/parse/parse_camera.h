@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads camera { }. As in POV-Ray the order of its parts does not matter: look_at turns the vectors
+// Reads camera { }. As in POV-Ray, whatever the order of its parts, look_at turns the vectors
 // first, then the angle sets the direction's length, then transformations move them all.
 #pragma once
 

@@ -13,8 +13,7 @@ namespace ovc::pov {
 
 namespace {
 
-/// Returns a picture's average color. Its numbers are sRGB; before version 3.7 they are colors as
-/// they are.
+/// Returns a picture's average color. Before version 3.7 its numbers are not taken for sRGB.
 Color average(const Reader& reader, const Picture& picture) {
     assert(picture.size() > 0 && picture.pixels.size() == picture.size());
     std::array<double, 256> linear;

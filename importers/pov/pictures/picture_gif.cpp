@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the first picture of a GIF file.
-// Based on: "Graphics Interchange Format, Version 89a", CompuServe 1990, appendix F for the
-// packing.
+// Reads the first picture of a GIF file. Based on: "Graphics Interchange Format, Version 89a",
+// CompuServe 1990, appendix F for the packing.
 #include "importers/pov/pictures/picture.h"
 
 #include <algorithm>

@@ -156,9 +156,8 @@ Corner corner_in(const Samples& samples, const Cell& cell) {
 
 } // namespace
 
-// Each cell that the surface crosses gets a corner, and each edge of the grid that it crosses gets
-// a quad of the corners around it. At each face of a cell the quads' edges cancel out, so the
-// surface is closed.
+// Each cell that the surface crosses gets a corner, and each edge of the grid that it crosses a
+// quad of the corners around. At each face of a cell the quads' edges cancel out: it is closed.
 size_t cut_field(const Field& field, const Box& box, int cells, Facets& out) {
     if (box.empty() || !is_finite(box.extent()))
         return 0;

@@ -21,8 +21,7 @@ namespace {
 /// A surface net has about two triangles for each cell that the surface crosses.
 constexpr double kPerSquare = 4;
 
-/// Returns a shape that keeps its triangles, because a shape is cut once to be measured and once to
-/// be drawn.
+/// Returns a shape that keeps its triangles, because it is cut to be measured and to be drawn.
 Shape kept(const Box& box, std::function<void(int segments, bool open, Facets& out)> cut) {
     struct Kept {
         std::mutex mutex;

@@ -6,8 +6,8 @@
 
 namespace ovc::pov {
 
-/// Returns what reads the rest of `sin(1)`, `strlen("a")`, `pi` or `x` after the word, which is the
-/// token; null for a word that stands for no number.
+/// Returns the function that reads the rest of `sin(1)`, `strlen("a")`, `pi` or `x` after the word,
+/// which it gets as a token. Returns null for a word that stands for no number.
 using Builtin = Number (*)(Reader&, const Token&);
 Builtin find_builtin(std::string_view word);
 
@@ -19,8 +19,8 @@ struct FloatFunction {
 /// Returns null where the word is no such function.
 const FloatFunction* find_float_function(std::string_view word);
 
-/// Returns what reads the rest of `concat("a", "b")` after the word; null for a word that is no
-/// function whose result is a text.
+/// Returns the function that reads the rest of `concat("a", "b")` after the word, or null where the
+/// word is no function that gives a text.
 using TextFunction = std::string (*)(Reader&);
 TextFunction find_text_function(std::string_view word);
 

@@ -7,7 +7,7 @@
 namespace ovc::pov {
 
 /// Reads a sum of products: a float, vector or color, up to the first token that cannot continue
-/// it. Here and below ParseError is thrown for anything else than what is read.
+/// it. Like the functions below it throws ParseError where something else comes next.
 Number parse_number(Reader& reader);
 /// Reads an expression as it may stand in parentheses, with comparisons, `&`, `|` and `?:`.
 Number parse_logical(Reader& reader);
@@ -38,7 +38,7 @@ double from_srgb(double c, double gamma);
 /// Reads the indices of an item, from the first [ behind the array's name. The array owns the item.
 Value* parse_item(Reader& reader, Array& array);
 
-/// Returns the number with 1 to 5 components. Throws ParseError where it has too many.
+/// Returns the number with `size` components, which is 1 to 5. Throws ParseError where it has more.
 Number resized(Reader& reader, const Number& number, int size);
 Color color_of(const Number& number);
 dvec3 vector_of(const Number& number);

@@ -104,8 +104,7 @@ public:
     /// Counts bytes before the scene takes them. Throws ParseError once reading has taken more than
     /// half of the memory that was available, because the triangles need the rest.
     void grow(uint64_t bytes);
-    /// Updates the array's depth before `item` goes into it. Throws ParseError beyond
-    /// Limits::chain.
+    /// Updates the array's depth before `item` goes into it. Throws ParseError beyond a limit.
     void count_depth(Array& array, const Value& item) const;
     /// Logs a warning, once for each `kind`.
     void warn(const std::string& kind, const Place& at, const std::string& sentence);
