@@ -31,6 +31,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def sky(key):
+    """Returns the text that gives a scene a sky of the color `key`."""
     return ('\n#version 3.7;\nsky_sphere { pigment { color rgb <%g, %g, %g> } }\n' % key)
 
 
@@ -48,7 +49,7 @@ def read_ppm(path):
 
 
 def is_key(pixel):
-    """Whether the pixel is the key, raised to the power that the scene's assumed_gamma causes."""
+    """Returns whether the pixel is the key raised to the power that assumed_gamma causes."""
     if min(pixel) == 0 or pixel[0] == 65535:
         return False
     power = math.log(pixel[0] / 65535) / math.log(KEY[0])
@@ -57,7 +58,7 @@ def is_key(pixel):
 
 
 def run_povray(arguments, folder, limit):
-    """Returns why povray failed, or ""."""
+    """Runs povray in `folder`. Returns why it failed, or ""."""
     command = ["povray", *arguments, "-D", "-GA", "+WT1", f"+L{folder}"]
     try:
         done = subprocess.run(command, cwd=folder, capture_output=True, timeout=limit,
@@ -81,13 +82,17 @@ def add_choice(parser):
 
 
 def chosen_scenes(options):
+    """Returns the paths of the index's scenes that the options choose."""
     data = options.data.resolve()
     return [data / line.split()[2] for line in options.index.read_text().splitlines()
             if line and line[0] in options.tiers and options.only in line.split()[2]]
 
 
 def povray_mask(scene, cache, limit):
-    """Returns (a byte a pixel: 0, 1 or BLACK; or None, why there are none)."""
+    """Returns (povray's mask or None, why there is none).
+
+    The mask has a byte for each pixel: 0 for no hit, 1 for a hit, BLACK where the pixel is black.
+    """
     name = hashlib.sha1(str(scene).encode()).hexdigest()[:16]
     kept, failed = cache / (name + ".mask"), cache / (name + ".failed")
     if kept.exists():
@@ -112,7 +117,7 @@ def povray_mask(scene, cache, limit):
 
 
 def our_mask(tool, scene, limit):
-    """Returns (mask or None, the tool's messages, seconds)."""
+    """Returns (the mask of pov_mask or None, its messages or why it failed, seconds)."""
     start = time.time()
     try:
         done = subprocess.run([tool, scene, str(WIDTH), str(HEIGHT)], capture_output=True,
@@ -132,6 +137,7 @@ def our_mask(tool, scene, limit):
 
 
 def compare(scene, options, tool):
+    """Returns a row of the table: the scene's path and state, why, and numbers where both drew."""
     theirs, error = povray_mask(scene, options.cache, options.limit)
     if theirs is None:
         return {"scene": scene, "state": "povray fails", "why": error}
@@ -150,6 +156,7 @@ def compare(scene, options, tool):
 
 
 def show(results, data):
+    """Prints the table, the counts of the states and the reasons for failed imports."""
     print("| scene | state | hit by povray | same | s | |\n|---|---|---:|---:|---:|---|")
     for r in results:
         numbers = f"{r['hit']:.1%} | {r['same']:.2%}" if "same" in r else " | "

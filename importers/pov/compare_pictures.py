@@ -89,10 +89,12 @@ def away_from_edges(picture):
 
 
 def colors_at(picture, pixels):
+    """Returns the code values of the pixels with these numbers."""
     return [picture[3 * i + c] for i in pixels for c in range(3)]
 
 
 def compare(scene, options):
+    """Returns a row of the table: the scene's path and state, why, and errors where both drew."""
     warnings, refused = run_overcast(["info", scene], options) if options.plain else ([], "")
     if warnings:
         return {"scene": scene, "state": "approximated", "why": "; ".join(warnings)}
@@ -130,6 +132,7 @@ def of_meshes(options):
 
 
 def percentile(values, share):
+    """Returns the value below which about the share, from 0 to 1, of the values lies."""
     return sorted(values)[min(len(values) - 1, int(share * len(values)))]
 
 
@@ -151,6 +154,7 @@ def summary(results, meshes):
 
 
 def show(results, meshes):
+    """Prints the table and its summary."""
     print("| scene | off | away from edges | |\n|---|---:|---:|---|")
     for r in results:
         numbers = f"{r['rmse']:.2f} | {r['inner']:.2f}" if "rmse" in r else " | "
@@ -160,6 +164,7 @@ def show(results, meshes):
 
 
 def write_page(results, meshes, file):
+    """Writes the page with the pairs of pictures and their differences."""
     rows = []
     for r in results:
         said = html.escape(r["state"] + (": " + r["why"] if r["why"] else ""))

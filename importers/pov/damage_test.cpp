@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fuzzer's seeds, cut off everywhere and with bytes changed: what the fuzzer does for longer.
+// Reads the fuzzer's seeds cut off everywhere or with changed bytes. The fuzzer does so for longer.
 #include "importers/readers.h"
 #include "importers/test_files.h"
 #include "tests/fuzz/pov.h"

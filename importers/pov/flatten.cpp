@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// First every visible shape with what it inherits, then how finely to cut, then the cutting.
+// Gathers every visible shape with what it inherits, chooses how finely to cut, then cuts.
 #include "importers/pov/flatten.h"
 
 #include "core/system/parallel.h"
@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -22,7 +23,8 @@ namespace ovc::pov {
 
 namespace {
 
-/// A placed object takes as much memory as a few triangles; most are cut into more than this.
+/// A placed object takes as much memory as a few triangles. Most objects are cut into more than
+/// this, so max_triangles / kTrianglesAnObject bounds the number of objects.
 constexpr uint64_t kTrianglesAnObject = 20;
 
 /// A shape as it stands in the world.
@@ -34,12 +36,12 @@ struct Placed {
     bool no_shadow;
 };
 
-/// What is handed down from parents.
+/// The state that an object inherits from its parents.
 struct Inherited {
-    dmat4 placed{1};
-    dmat4 in_solid{1}; // within the solid that it is a part of
-    const Texture* texture = nullptr;
-    dmat4 texture_placed{1}; // on top of the texture's own
+    dmat4 placed{1};                  // to the world
+    dmat4 in_solid{1};                // to the space of the solid that contains the object
+    const Texture* texture = nullptr; // null: the scene's default
+    dmat4 texture_placed{1};          // applied after the texture's own transformation
     const Interior* interior = nullptr;
     bool no_shadow = false;
     bool inverse = false;
@@ -51,7 +53,7 @@ void tell_all(const Notes& notes, const Look& look) {
             look.tell(*note);
 }
 
-/// Materials that are alike become one.
+/// Adds materials to a scene. Equal ones are added once.
 class MaterialTable {
 public:
     MaterialTable(const Look& look, Scene& scene) : look_(look), scene_(scene) {}
@@ -65,7 +67,7 @@ public:
         const auto [first, last] = by_color_.equal_range(color_key(material));
         for (auto known = first; known != last; ++known) {
             const ovc::Material& other = scene_.materials[known->second];
-            material.name = other.name; // which alone tells materials that are alike apart
+            material.name = other.name; // the name must not make equal materials differ
             if (material == other)
                 return known->second;
         }
@@ -110,7 +112,7 @@ private:
         return material;
     }
 
-    /// A hash of what materials differ in most often.
+    /// Returns a hash of the color, in which materials usually differ.
     static size_t color_key(const ovc::Material& m) {
         size_t key = 0;
         for (int i = 0; i < 3; ++i)
@@ -120,7 +122,7 @@ private:
 
     const Look& look_;
     Scene& scene_;
-    std::unordered_multimap<size_t, uint32_t> by_color_; // numbers
+    std::unordered_multimap<size_t, uint32_t> by_color_; // numbers of materials
 };
 
 void add_light(const LightSource& source, const dmat4& placed, Scene& scene) {
@@ -158,7 +160,7 @@ public:
 
     std::vector<Placed> placed;
     std::vector<Solid> solids;
-    bool gather_unseen = false; // what no_image hides
+    bool gather_unseen = false; // whether objects with no_image are gathered too
 
 private:
     void inherit(const Object& object, Inherited& from) {
@@ -172,7 +174,7 @@ private:
         from.interior = object.interior ? &*object.interior : from.interior;
         from.no_shadow = from.no_shadow || object.no_shadow;
         from.inverse = from.inverse != object.inverse;
-        // Groups of groups may be more than any memory holds.
+        // A short scene with groups of groups can place more objects than memory holds.
         if (++visited_ > look_.max_triangles / kTrianglesAnObject)
             throw ParseError(object.place,
                              fmt::format("found more than {} objects in the scene, expected at "
@@ -191,12 +193,13 @@ private:
         solid.placed = from.placed * object.placed;
         solid.no_shadow = from.no_shadow || object.no_shadow;
         from.in_solid = glm::inverse(object.placed);
-        from.inverse = false; // turns the whole, which looks the same
+        from.inverse = false; // the inverse of a whole solid has the same surface
         if (gather_node(object, from, solid))
             solids.push_back(std::move(solid));
     }
 
-    /// Adds an object to the solid's tree as its last node; false where nothing of it can be there.
+    /// Adds an object to the solid's tree as its last node. Returns false, and adds none, for a
+    /// light or a group without shapes.
     bool gather_node(const Object& object, Inherited from, Solid& solid) {
         const Inherited outside = from;
         inherit(object, from);
@@ -250,7 +253,7 @@ private:
                     moved(bounds_of(*bound, look_.max_triangles), glm::inverse(object.placed));
                 leaf.bounds.add(moved(box, from.in_solid));
             }
-        for (const ObjectPtr& child : object.children) { // a mesh's, by their textures
+        for (const ObjectPtr& child : object.children) { // a mesh has a child for each texture
             Inherited down = from;
             inherit(*child, down);
             leaf.skins.push_back({child.get(), material_of(down)});
@@ -274,8 +277,10 @@ double triangles_at(const Gatherer& gatherer, int segments) {
     return sum;
 }
 
-/// Facets between steps of angle a both ways lie about 2 (1 - cos(a / 2)) radii off a sphere.
+/// Returns how many segments keep a sphere's facets within `tolerance` radii of it. Facets between
+/// steps of angle a in both directions lie about 2 (1 - cos(a / 2)) radii off the sphere.
 int segments_within(double tolerance) {
+    assert(tolerance > 0);
     return std::max(8, 4 * int(std::ceil(std::numbers::pi / std::sqrt(tolerance) / 4)));
 }
 
@@ -286,6 +291,7 @@ int choose_segments(const Gatherer& gatherer, std::optional<double> tolerance) {
     while (segments > 8 &&
            triangles_at(gatherer, segments) - triangles_at(gatherer, 0) > kMaxRoundTriangles)
         segments = std::max(8, segments * 3 / 4 / 4 * 4);
+    assert(segments >= 8 && segments % 4 == 0);
     return segments;
 }
 
@@ -295,7 +301,7 @@ void require_at_most(uint64_t most, const Gatherer& gatherer, int segments, cons
             at, fmt::format("found about {:.0f} triangles, expected at most {}", count, most));
 }
 
-/// Around all that is not endless, and the middles of solids that are.
+/// Returns a box around all shapes that are not endless and the origins of solids that are.
 Box box_of(const Gatherer& gatherer, int segments) {
     Box box;
     for (const Solid& solid : gatherer.solids) {
@@ -327,10 +333,11 @@ struct Batch {
     bool smooth = false;
 };
 
-/// The triangles of `facets` in the world, wound so that they face outside; every corner has a
-/// normal, of any length.
+/// Calls use(corners) for each triangle of `facets`, moved into the world. Its corners run
+/// counterclockwise seen from outside, and each has a normal of any length.
 template <class Use>
 void for_each_placed(const Facets& facets, const Placed& p, Use use) {
+    assert(facets.corners.size() % 3 == 0);
     const dmat3 turned = glm::transpose(glm::inverse(dmat3(p.placed)));
     const bool mirrored = (glm::determinant(dmat3(p.placed)) < 0) != p.inverse;
     const double outward = p.inverse ? -1 : 1;
@@ -371,7 +378,7 @@ void add_finite(const Facets& facets, const Placed& p, Facets& out) {
     });
 }
 
-/// As it stands in the world, its normal of length 1; nothing where that is not finite.
+/// Returns the plane in the world with a normal of length 1, or nothing where it is not finite.
 std::optional<PlaneShape> placed_plane(const PlaneShape& plane, const Placed& p) {
     const dmat3 turned = glm::transpose(glm::inverse(dmat3(p.placed)));
     const dvec3 normal = glm::normalize(turned * plane.normal) * (p.inverse ? -1.0 : 1.0);
@@ -381,8 +388,8 @@ std::optional<PlaneShape> placed_plane(const PlaneShape& plane, const Placed& p)
     return PlaneShape{normal, glm::dot(normal, on_plane)};
 }
 
-/// Squares around the point of the plane nearest to the scene; that point is a corner of each, so
-/// that floats keep the plane in place there.
+/// Adds a square around the point of the plane nearest to the scene's center. That point is a
+/// corner of all four triangles, so that there the plane keeps its place in floats.
 void add_plane(const Placed& p, const dvec3& center, double reach, Scene& scene) {
     const auto plane = placed_plane(std::get<PlaneShape>(p.object->shape), p);
     if (!plane)
@@ -404,7 +411,7 @@ void add_plane(const Placed& p, const dvec3& center, double reach, Scene& scene)
     scene.meshes[mesh].no_shadow = p.no_shadow;
 }
 
-/// The scene and the camera.
+/// Returns a box around the scene and the camera, which is never empty.
 Box world_of(Box box, const Look& look) {
     if (look.eye)
         box.add(*look.eye);
@@ -417,7 +424,7 @@ double reach_of(const Box& world) {
     return std::max(1.0, 0.5 * glm::length(world.extent()));
 }
 
-/// Where endless solids end.
+/// Returns the box that cuts off endless solids.
 Box reach_of_solids(const Box& world) {
     return Box{world.center(), world.center()}.padded(kPlaneReach * reach_of(world));
 }
@@ -426,7 +433,7 @@ using Batches = std::map<std::pair<uint32_t, bool>, Batch>;
 
 void add_solids(const std::vector<Solid>& solids, int segments, const Box& world,
                 const dvec3& origin, Batches& batches) {
-    constexpr size_t kAtOnce = 64; // so that not all are in memory twice
+    constexpr size_t kAtOnce = 64; // so that not all solids are in memory twice
     const Box reach = reach_of_solids(world);
     const std::vector<std::vector<uint32_t>> groups = alike(solids);
     for (size_t start = 0; start < groups.size(); start += kAtOnce) {
@@ -471,6 +478,7 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
         }
     add_solids(gatherer.solids, segments, world_of(box, look), origin, batches);
     for (auto& [key, batch] : batches) {
+        assert(batch.corners.size() == batch.normals.size());
         if (batch.corners.empty())
             continue;
         if (batch.corners.size() / 3 > kMaxTriangles)
@@ -503,14 +511,14 @@ Box moved(const Box& box, const dmat4& by) {
 
 namespace {
 
-/// An object gathered by itself, what no_image hides included.
+/// An object gathered by itself. no_image does not hide it.
 struct ObjectAlone {
     ObjectAlone(const Object& object, uint64_t max_triangles) {
         look.max_triangles = max_triangles;
         gatherer.gather_unseen = true;
         gatherer.gather(object, {});
     }
-    ObjectAlone(const ObjectAlone&) = delete; // the gatherer keeps their addresses
+    ObjectAlone(const ObjectAlone&) = delete; // the gatherer refers to the other members
 
     Scene scene;
     Look look;

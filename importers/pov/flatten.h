@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From objects to triangles, materials and lights.
+// Turns a scene's objects into triangles, materials and lights.
 #pragma once
 
 #include "importers/importer.h"
@@ -7,27 +7,27 @@
 
 namespace ovc::pov {
 
-/// What a scene says besides its objects, and what its triangles are made with.
+/// The settings of a scene and of the import that its triangles and materials depend on.
 struct Look {
     Texture defaults;
     vec3 ambient_light{1};
     uint64_t max_triangles = kDefaultMostTriangles;
-    std::optional<double> tolerance;       // as ImportOptions has it
-    std::function<void(const Note&)> tell; // of what is to be seen; none: nobody asks
-    std::optional<dvec3> eye;              // planes reach as far as it can see them
+    std::optional<double> tolerance;       // as in ImportOptions
+    std::function<void(const Note&)> tell; // gets the notes of all objects drawn; may be empty
+    std::optional<dvec3> eye;              // planes reach as far as the camera can see them
 };
 
 /// Adds the objects to `scene`: a mesh for each material, one for each plane, and their lights.
-/// Throws ParseError for an object that cannot be cut.
+/// Throws ParseError for an object that cannot be cut and for too many objects or triangles.
 void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& scene);
 
-/// Where no tolerance is asked for, a circle has at most this many straight pieces, fewer where a
-/// scene would come to more than kMaxRoundTriangles triangles; at least 8.
+/// Without a tolerance a circle has this many straight pieces, but fewer, down to 8, where the
+/// scene's round shapes would have more than kMaxRoundTriangles triangles.
 inline constexpr int kMaxSegments = 96;
 inline constexpr double kMaxRoundTriangles = 3e6;
 
-/// A plane reaches this many times as far as the scene and its distance from it: the horizon is low
-/// by the camera's height over that, in radians.
+/// A plane reaches this many times as far as the scene, or as its distance from the scene if that
+/// is larger. The horizon is too low by the camera's height over that reach, in radians.
 inline constexpr double kPlaneReach = 1e4;
 
 } // namespace ovc::pov

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects as a scene states them: shapes that are not cut into triangles yet, under transforms and
-// textures.
+// Objects as a scene states them: shapes with transforms and textures, not yet cut into triangles.
 #pragma once
 
 #include "core/box.h"
@@ -11,31 +10,32 @@ namespace ovc::pov {
 
 /// A shape in its own space.
 struct Shape {
-    /// Cuts it with circles of `segments` straight pieces, a multiple of 4, at least 8; open:
-    /// without the caps at its ends.
+    /// Adds the shape's triangles to `out`. A circle gets `segments` straight pieces, which is a
+    /// multiple of 4 and at least 8. `open` leaves out the caps at the shape's ends.
     std::function<void(int segments, bool open, Facets& out)> cut;
-    /// How many triangles that gives: fixed, or per_segment x segments ^ power.
+    /// The coefficients of triangles(), which estimates how many triangles cut() adds.
     double fixed = 0;
     double per_square = 0; // x segments^2
     double per_segment = 0;
-    std::optional<Box> box; // around it, where cutting it to find out takes long
+    std::optional<Box> box; // bounds the shape; set only where cutting it takes long
 
     double triangles(int segments) const {
         return fixed + segments * (per_segment + segments * per_square);
     }
 };
 
-/// An endless plane: normal . p = distance, below it is inside. normal: of any length but 0.
+/// An endless plane: the points where normal . p = distance. Points below it are inside.
 struct PlaneShape {
-    dvec3 normal{0, 1, 0};
+    dvec3 normal{0, 1, 0}; // of length 1
     double distance = 0;
 };
 
-/// A shape whose end, if it has one, is not known: it is cut in a box.
+/// A shape that may be endless, so it is cut within a box.
 struct EndlessShape {
-    /// What of the box it may be in; empty: nothing.
+    /// Returns the part of the box that the shape may lie in, or an empty box.
     std::function<Box(const Box&)> bounds;
-    /// Closed triangles; as many as it says are of the surface, those behind are not to be seen.
+    /// Adds closed triangles to `out`. Returns how many of them, from the first on, lie on the
+    /// surface; the others only close it and are not drawn.
     std::function<size_t(const Box&, int cells, Facets& out)> cut;
 };
 
@@ -51,24 +51,25 @@ struct Object {
     Place place;
     Caller caller;
     std::variant<std::monostate, Shape, PlaneShape, EndlessShape, LightSource>
-        shape; // none: its children's
+        shape; // a group of children has none
     std::vector<ObjectPtr> children;
-    /// What bounds it where it is seen (clipped_by), and what may be tested first (bounded_by); in
-    /// the space that the object stands in.
+    /// The objects of clipped_by, which cut this one, and of bounded_by, which only bound it. Both
+    /// are in the space of the object's parent.
     std::vector<ObjectPtr> clips, bounds;
-    /// Why it cannot be cut into triangles; empty: it can. Told only where it is to be seen.
+    /// The reason why the object cannot be cut into triangles, or empty. It becomes an error only
+    /// where the object is drawn.
     std::string refused;
     Notes notes; // about the object itself
 
-    dmat4 placed{1};                // from its own space to that of what it is a part of
-    std::optional<Texture> texture; // none: its parent's
+    dmat4 placed{1};                // from the object's own space to its parent's
+    std::optional<Texture> texture; // none: the parent's
     std::optional<Interior> interior;
-    uint32_t depth = 1; // of groups in groups
+    uint32_t depth = 1; // levels of nested groups
     bool no_shadow = false;
     bool no_image = false;
     bool inverse = false;
     bool open = false;
-    bool has_inside = true; // else it is a sheet that solids have no use for
+    bool has_inside = true; // false for a sheet, which cannot take anything away from a solid
 };
 
 } // namespace ovc::pov

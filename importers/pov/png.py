@@ -8,6 +8,7 @@ CHANNELS = {0: 1, 2: 3, 4: 2, 6: 4}
 
 
 def chunks(data):
+    """Yields (kind, data) of each chunk. Raises ValueError for data that is no PNG file."""
     if not data.startswith(MAGIC):
         raise ValueError("no PNG file")
     at = len(MAGIC)
@@ -18,7 +19,7 @@ def chunks(data):
 
 
 def nearest(left, up, corner):
-    """Returns what Paeth's predictor says."""
+    """Returns the value that Paeth's predictor gives."""
     to_left, to_up, to_corner = abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)
     if to_left <= to_up and to_left <= to_corner:
         return left
@@ -26,7 +27,7 @@ def nearest(left, up, corner):
 
 
 def unfiltered(kind, row, above, step):
-    """Adds to each byte, in place, the value that its neighbours predict; returns the row."""
+    """Adds to each byte, in place, the value that its neighbours predict. Returns the row."""
     for i in range(len(row) if kind else 0):
         left = row[i - step] if i >= step else 0
         if kind == 1:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The POV-Ray reader: statements of a scene, and the errors it ends with. docs/reference/pov.md
-// says what is read.
+// The POV-Ray reader: reads the statements of a scene and turns a ParseError into an Error.
+// docs/reference/pov.md says what is read.
 #include "importers/file/text.h"
 #include "importers/pov/flatten.h"
 #include "importers/pov/parse/parse_camera.h"
@@ -20,7 +20,7 @@ namespace ovc::pov {
 
 namespace {
 
-/// #default { texture { … } pigment { … } finish { … } }
+/// Reads the { texture { … } pigment { … } finish { … } } of #default.
 void parse_defaults(Reader& reader) {
     reader.expect('{', "#default");
     while (!reader.take('}')) {
@@ -59,15 +59,15 @@ public:
 
     Scene parse(std::unique_ptr<SourceFile> file) {
         Scene scene;
-        scene.background = {vec3(0), vec3(0)}; // POV-Ray's
-        scene.may_add_light = false;           // without lights there is ambient light and emission
+        scene.background = {vec3(0), vec3(0)}; // POV-Ray's default
+        scene.may_add_light = false;           // a scene without lights has ambient and emission
         reader_.open(std::move(file));
         while (reader_.peek().kind != TokenKind::End)
             parse_statement(scene);
         if (sky_)
             scene.background = background_of(reader_, *sky_, scene.background.horizon, sky_at_);
+        scene.max_depth = trace_level_ - 1; // POV-Ray counts the camera's rays too
         // Before 3.7 scenes made colors for screens, and povray still writes them as they are.
-        scene.max_depth = trace_level_ - 1; // the camera's rays count too
         scene.gamma = gamma_given_ || reader_.has_linear_colors() ? reader_.gamma : kSrgbGamma;
         camera_ = camera_ ? camera_ : std::make_shared<const CameraValue>();
         scene.camera = camera_of(*camera_);
@@ -148,7 +148,7 @@ private:
         }
     }
 
-    /// 480 high, and as wide as the camera's window is.
+    /// Returns a size of 480 rows that has the proportions of the camera's window.
     ImageSize size_of(const CameraValue& camera) const {
         if (!camera.window_given)
             return {640, 480};
@@ -161,7 +161,7 @@ private:
     Reader reader_;
     Look look_;
     std::optional<SkySphere> sky_;
-    Place sky_at_;
+    Place sky_at_; // of sky_
     bool gamma_given_ = false;
     uint32_t trace_level_ = 5;
     std::vector<ObjectPtr> objects_;
@@ -172,13 +172,14 @@ std::string text_of(const Place& place) {
     return fmt::format("{}:{}:{}", place.file->name, place.line, place.column);
 }
 
-/// The line of the place, on lines of its own.
+/// Returns the excerpt at the place, which starts on a new line.
 std::string line_of(const Place& place) {
     const std::string shown = excerpt(place);
     return shown.empty() ? "" : "\n" + shown;
 }
 
-/// "FILE:LINE:COLUMN: sentence", and the line; then the line of the scene that led there.
+/// Returns "FILE:LINE:COLUMN: sentence" and the line, then the line of the scene's own file that
+/// called or included it.
 Error error_of(const ParseError& error, const std::string& scene) {
     if (!error.place.file)
         return {fmt::format("{}: {}", scene, error.what())};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// POV-Ray's scene language: values, directives, errors. importers/pov/compare.py and
-// tests/povray_test.cpp ask POV-Ray itself.
+// Tests POV-Ray's scene language: values, directives and errors. importers/pov/compare.py and
+// tests/povray_test.cpp compare with POV-Ray itself.
 #include "core/system/stopwatch.h"
 #include "importers/readers.h"
 #include "importers/test_files.h"
@@ -16,7 +16,7 @@ Result<Scene> parse(const std::string& text) {
     return parse_pov(text, "x.pov", {});
 }
 
-/// What an expression comes to, as the upper corner of a box says.
+/// Returns an expression's value, which the upper corner of a box tells.
 dvec3 value(const std::string& expression, const std::string& before = "") {
     const Result<Scene> scene = parse(before + "\nbox { -1e6, (" + expression + ") * <1, 1, 1> }");
     if (!scene) {
@@ -74,7 +74,7 @@ TEST(PovExpression, KnowsTheFunctions) {
                  "#declare T = function { transform { rotate -90*z scale 5 } }");
 }
 
-/// As povray 3.7.0.10 prints them; curved surfaces within what their facets leave.
+/// povray 3.7.0.10 prints these values. Ours may differ on curved surfaces because of facets.
 TEST(PovExpression, TraceMeetsSurfacesWherePovRayDoes) {
     const std::string box =
         "#declare N = x; #declare S = box { -1, 1 rotate 90*y scale <1, 1, -2> }";
@@ -94,7 +94,7 @@ TEST(PovExpression, TraceMeetsSurfacesWherePovRayDoes) {
               0.002);
 }
 
-/// What povray 3.7.0.10 prints for #debug str(rand(seed(1)), 0, 9) and the next.
+/// povray 3.7.0.10 prints these values for #debug str(rand(seed(1)), 0, 9) and the next number.
 TEST(PovExpression, RandomNumbersAreThoseOfPovRay) {
     const std::string stream = "#declare R = seed(1);";
     EXPECT_VALUE((1812433253u * 1u + 12345u) / 4294967295.0, "rand(R)", stream);
@@ -102,7 +102,7 @@ TEST(PovExpression, RandomNumbersAreThoseOfPovRay) {
                  stream + "#declare Q = rand(R);");
 }
 
-/// As povray 3.7.0.10 prints them.
+/// povray 3.7.0.10 prints these values.
 TEST(PovExpression, SplinesAreThoseOfPovRay) {
     const auto spline = [](const std::string& kind) {
         return "#declare S = spline { " + kind +
@@ -119,7 +119,7 @@ TEST(PovDirectives, MacrosTakeValuesAndVariables) {
     EXPECT_VALUE(6, "Twice(3)", "#macro Twice(A) (2 * A) #end");
     EXPECT_VALUE(9, "Out", "#macro Set(A, B) #declare A = B * B; #end Set(Out, 3)");
     EXPECT_VALUE(3, "I", "#declare I = 3; #macro M() #local I = 7; #end M()");
-    // The macro still runs when its value is known; it has a Q of its own.
+    // Five() still runs when its value is known, and has a Q of its own.
     EXPECT_VALUE(6, "M()",
                  "#macro Five() #local Q = 5; #if (1) Q; #else 0; #end #end\n"
                  "#macro M() #local Q = 1; #local P = Five() #local Q = Five() (P + 1) #end");
@@ -127,7 +127,7 @@ TEST(PovDirectives, MacrosTakeValuesAndVariables) {
                  "#macro Factorial(N) #if (N <= 1) 1 #else (N * Factorial(N - 1)) #end #end");
 }
 
-/// As povray 3.7.0.10 prints them.
+/// povray 3.7.0.10 prints these values.
 TEST(PovDirectives, MacrosGiveTheirOwnVariablesAsArguments) {
     const std::string macros = "#macro Own(X) #local Q = X; Q #end #macro Of() G #end\n"
                                "#macro Tell(A, B) #declare T = A * B; #end\n"
@@ -173,7 +173,7 @@ TEST(PovDirectives, DeclarationsNeedNoSemicolon) {
     EXPECT_VALUE(1, "1", "declare Old = 3 /* a /* nested */ comment */");
 }
 
-/// As povray 3.7.0.10 has them with `#version 3.1`.
+/// povray 3.7.0.10 gives these values with `#version 3.1`.
 TEST(PovDirectives, EndDeclarationsWithoutSemicolon) {
     EXPECT_VALUE(5, "X", "#declare X = 0 #while (X < 5) #declare X = X + 1 #end");
     EXPECT_VALUE(3, "X",
@@ -228,7 +228,7 @@ TEST(PovDirectives, IncludesAreFoundWhateverTheirLettersAndSlashes) {
     std::filesystem::remove_all(folder / "Geom");
 }
 
-/// Some of them need the names of colors.inc and shapes.inc, for povray too.
+/// Some of the files need the names of colors.inc and shapes.inc, for povray too.
 TEST(PovDirectives, AllIncludeFilesOfPovRayAreRead) {
     const std::filesystem::path library = "/usr/share/povray-3.7/include";
     if (!std::filesystem::exists(library / "colors.inc"))
@@ -243,7 +243,7 @@ TEST(PovDirectives, AllIncludeFilesOfPovRayAreRead) {
     }
 }
 
-/// As povray 3.7.0 prints them: #debug str(f_sphere(.3, .4, 1.2, .5), 0, 12).
+/// povray 3.7.0 prints these values for #debug str(f_sphere(.3, .4, 1.2, .5), 0, 12) and the like.
 TEST(PovExpression, KnowsInternalFunctions) {
     const std::string functions =
         "#declare E = function { internal(17) } #declare P = function { internal(47) } "
@@ -363,7 +363,7 @@ TEST(PovScene, GetsNoLightThatItDoesNotHave) {
     EXPECT_FALSE(scene->may_add_light);
 }
 
-/// The color and finish of a box in the scene, as povray 3.7.0.10 accepts them.
+/// Returns the material of a box with this look, which povray 3.7.0.10 accepts as well.
 Material material_of(const std::string& look) {
     const Result<Scene> scene =
         parse("#declare P = pigment { rgb <1, 0.5, 0> }; #declare F = finish { ambient 0.3 };"
@@ -434,7 +434,7 @@ TEST(PovScene, VersionsMayComeFromOutside) {
     EXPECT_EQ(parse_pov("#version 3.5;" + ball, "x.pov", options)->gamma, kSrgbGamma);
 }
 
-/// As povray 3.7.0.10 shows a plane at z = 0.
+/// povray 3.7.0.10 shows this much of a plane at z = 0.
 TEST(PovScene, OrthographicCamerasShowAsMuchAsPovRay) {
     const struct {
         const char* camera;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What shapes are cut into: closed where they are closed, outward, of the right volume, under any
-// transformation.
+// Tests the triangles that shapes are cut into: closed shapes are closed, face outside and have the
+// right volume, under any transformation.
 #include "importers/readers.h"
 #include "importers/test_files.h"
 
@@ -66,7 +66,7 @@ const Solid kSolids[] = {
 
 class PovSolid : public testing::TestWithParam<Solid> {};
 
-/// The volume; every edge must be met as often one way as the other.
+/// Returns the volume. Expects that every edge is met as often in one direction as in the other.
 double volume_of_closed(const Result<Scene>& scene) {
     using Point = std::array<double, 3>;
     std::map<std::pair<Point, Point>, int> edges;
@@ -98,7 +98,7 @@ TEST_P(PovSolid, NormalsPointOutside) {
             const Triangle t = scene->soup.chunks[m].triangle(uint32_t(i / 3));
             const dvec3 flat = glm::cross(t[1] - t[0], t[2] - t[0]);
             if (glm::length(flat) <= 1e-8)
-                continue; // solids have slivers that floats turn around
+                continue; // rounding to floats may turn a solid's slivers round
             ASSERT_GT(glm::dot(flat, dvec3(scene->meshes[m].normals[i])), 0) << i;
         }
 }
@@ -149,11 +149,11 @@ TEST(PovShapes, PartsOfSolidsKeepTheirLook) {
         const Chunk& chunk = scene->soup.chunks[m];
         for (uint32_t prim = 0; prim < chunk.size(); ++prim) {
             const Triangle t = chunk.triangle(prim);
-            if (is_box) { // its faces look into what it takes away
+            if (is_box) { // the box's faces face into the box, which is taken away
                 const dvec3 flat = glm::cross(t[1] - t[0], t[2] - t[0]);
                 EXPECT_GE(std::min({flat.x, flat.y, flat.z}), -1e-12);
             }
-            for (size_t i = 0; !is_box && i < 3; ++i) // the sphere's, in between its corners
+            for (size_t i = 0; !is_box && i < 3; ++i) // the sphere's normals between its corners
                 EXPECT_GT(
                     glm::dot(dvec3(scene->meshes[m].normals[3 * prim + i]), glm::normalize(t[i])),
                     0.99999);
@@ -167,7 +167,7 @@ TEST(PovShapes, VerticesLieOnTheSphere) {
             ASSERT_NEAR(glm::length(corner), 1, 1e-7);
 }
 
-/// How far the farthest point of a triangle is inside the unit sphere that its corners lie on.
+/// Returns how far the triangles, whose corners lie on the unit sphere, reach inside it.
 double max_off_the_ball(const std::vector<Triangle>& triangles) {
     double most = 0;
     for (const Triangle& t : triangles) {

@@ -7,6 +7,7 @@
 #include "importers/pov/shapes/shape.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <string>
@@ -18,16 +19,17 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Box kEverywhere{dvec3(-kInfinity), dvec3(kInfinity)};
 
-/// An operand's triangles, with what each is of.
+/// An operand's triangles. Each has its normals and its skin.
 struct CutLeaf {
     csg::Operand operand;
-    std::vector<std::array<dvec3, 3>> normals; // 0: the triangle's own
+    std::vector<std::array<dvec3, 3>> normals; // 0 stands for the triangle's normal
     std::vector<uint32_t> skins;
     Box box;
 };
 
-/// Corners that a shape has when it is open, among those that it has when it is closed.
+/// Returns for each triangle of the closed shape whether the open shape lacks it.
 std::vector<uint8_t> hidden_caps(const Shape& shape, int segments, const Facets& closed) {
+    assert(closed.corners.size() % 3 == 0);
     const auto key = [](const Facets& facets, size_t t) {
         std::array<double, 9> all;
         for (size_t i = 0; i < 9; ++i)
@@ -45,8 +47,9 @@ std::vector<uint8_t> hidden_caps(const Shape& shape, int segments, const Facets&
     return hidden;
 }
 
-/// Adds facets as they stand in the solid's space, outward.
+/// Adds facets, moved into the solid's space, to the leaf. Mirrored ones still face outside.
 void add(const Facets& facets, const dmat4& placed, uint32_t skin, CutLeaf& leaf) {
+    assert(facets.corners.size() % 3 == 0);
     const dmat3 turned = glm::transpose(glm::inverse(dmat3(placed)));
     const bool mirrored = glm::determinant(dmat3(placed)) < 0;
     const size_t order[3] = {0, mirrored ? size_t(2) : 1, mirrored ? size_t(1) : 2};
@@ -67,12 +70,13 @@ void add(const Facets& facets, const dmat4& placed, uint32_t skin, CutLeaf& leaf
     }
 }
 
-/// A half-space as far as the box reaches, and beyond: its surface, and walls that are not shown.
+/// Adds a half-space that reaches beyond the box on all sides: two triangles of its surface, then
+/// walls that only close it.
 void cut_plane(const PlaneShape& plane, const Box& box, Facets& out) {
     const dvec3 center = box.center();
     const double far = 2 * std::max(glm::length(box.extent()), 1e-9);
     const dvec3& n = plane.normal;
-    // A plane beyond the box leaves it whole, or nothing of it, wherever it is.
+    // How far a plane lies beyond the box makes no difference, so it is moved nearer.
     const double height = std::clamp(plane.distance - glm::dot(n, center), -far, far);
     const int major = major_axis(n);
     dvec3 u(0);
@@ -89,8 +93,9 @@ void cut_plane(const PlaneShape& plane, const Box& box, Facets& out) {
     out.add_quad(rim[3] + down, rim[2] + down, rim[1] + down, rim[0] + down);
 }
 
-/// A mesh's triangles may run the other way around: outside is where the volume is above 0.
+/// Turns the triangles round where they face inside, as a mesh's may: then its volume is below 0.
 void turn_outward(CutLeaf& leaf) {
+    assert(leaf.normals.size() == leaf.operand.triangles.size());
     double volume = 0;
     const dvec3 center = leaf.box.empty() ? dvec3(0) : leaf.box.center();
     for (const auto& t : leaf.operand.triangles)
@@ -102,9 +107,10 @@ void turn_outward(CutLeaf& leaf) {
         }
 }
 
-/// How finely to cut: pieces of a circle, cells of a field.
+/// How finely shapes are cut.
 struct Fineness {
-    int segments, cells;
+    int segments; // of a circle
+    int cells;    // of a field
 
     explicit Fineness(int pieces) : segments(pieces), cells(field_cells(pieces)) {}
 };
@@ -122,6 +128,7 @@ CutLeaf cut_leaf(const SolidLeaf& leaf, const Fineness& fineness, const Box& rea
         } else if (const auto* endless = std::get_if<EndlessShape>(&skin.object->shape)) {
             const size_t shown =
                 endless->cut(moved(reach, glm::inverse(leaf.placed)), fineness.cells, facets);
+            assert(shown <= facets.corners.size() / 3);
             hidden.resize(shown, 0);
             hidden.resize(facets.corners.size() / 3, 1);
         } else if (const auto* plane = std::get_if<PlaneShape>(&skin.object->shape)) {
@@ -133,6 +140,7 @@ CutLeaf cut_leaf(const SolidLeaf& leaf, const Fineness& fineness, const Box& rea
         hidden.resize(facets.corners.size() / 3, 0);
         cut.operand.hidden.insert(cut.operand.hidden.end(), hidden.begin(), hidden.end());
     }
+    assert(cut.operand.hidden.size() == cut.operand.triangles.size());
     if (leaf.has_inside)
         turn_outward(cut);
     cut.operand.solid = leaf.has_inside;
@@ -140,7 +148,8 @@ CutLeaf cut_leaf(const SolidLeaf& leaf, const Fineness& fineness, const Box& rea
     return cut;
 }
 
-/// A half-space ends on one side where it looks along an axis.
+/// Returns a box around a half-space. It is infinite except on one side, and there as well unless
+/// the plane's normal is along an axis.
 Box bounds_of_plane(const PlaneShape& plane, const SolidLeaf& leaf) {
     const dvec3 n = glm::transpose(glm::inverse(dmat3(leaf.placed))) * plane.normal *
                     (leaf.inverse ? -1.0 : 1.0);
@@ -153,12 +162,16 @@ Box bounds_of_plane(const PlaneShape& plane, const SolidLeaf& leaf) {
 }
 
 Box bounds_of_node(const Solid& solid, uint32_t number, const std::vector<Box>& leaves) {
+    assert(number < solid.nodes.size());
     const csg::Node& node = solid.nodes[number];
-    if (node.kind == csg::Kind::Operand)
+    if (node.kind == csg::Kind::Operand) {
+        assert(node.operand < leaves.size());
         return leaves[node.operand];
+    }
     const bool all = node.kind == csg::Kind::Intersection || node.kind == csg::Kind::Clip;
     Box box = all ? kEverywhere : Box();
     for (const uint32_t child : node.children) {
+        assert(child < number);
         const Box one = bounds_of_node(solid, child, leaves);
         if (all)
             box = box.intersection(one);
@@ -168,7 +181,7 @@ Box bounds_of_node(const Solid& solid, uint32_t number, const std::vector<Box>& 
     return box.empty() ? Box() : box;
 }
 
-/// What reaches as far as this is taken for endless.
+/// A surface that reaches as far as this counts as endless.
 constexpr double kFar = 1e7;
 
 Box without_far_sides(Box box) {
@@ -195,13 +208,14 @@ bool is_finite_box(const Box& box) {
     return is_finite(box.lo) && is_finite(box.hi);
 }
 
-/// The solid in triangles: endless operands are cut where `reach` ends.
+/// A solid cut into triangles.
 struct Evaluated {
     std::vector<CutLeaf> leaves;
     std::vector<csg::Part> parts;
     Box box;
 };
 
+/// Cuts the solid into triangles. Endless operands end where `reach` does.
 Evaluated evaluate_within(const Solid& solid, const Fineness& fineness, const Box& reach) {
     Evaluated result;
     csg::Tree tree;
@@ -225,21 +239,22 @@ bool has_field(const Solid& solid) {
     });
 }
 
-/// Where a field without end is drawn: its cells would otherwise be as large as the scene.
+/// Returns the box in which a field without end is drawn. In all of `reach` its cells would be as
+/// large as the scene.
 Box field_reach(const Solid& solid, const Box& reach) {
     constexpr double kFieldReach = 4 / kPlaneReach;
     Box bounds;
     for (const SolidLeaf& leaf : solid.leaves)
         if (!leaf.bounds.empty())
             bounds.add(leaf.bounds);
-    if (!bounds.empty()) // POV-Ray draws what it comes upon beyond
+    if (!bounds.empty()) // POV-Ray also draws surfaces that it meets outside of bounded_by
         return bounds.padded(0.5 * max_component(bounds.extent()));
     const dvec3 half = kFieldReach * 0.5 * reach.extent();
     return {reach.center() - half, reach.center() + half};
 }
 
-/// Where boxes do not bound a solid, what planes at odd angles leave of it may still be small: that
-/// shows when it is cut coarsely. What is endless ends with the reach.
+/// Returns a box for a solid whose parts' boxes do not bound it. Planes at odd angles may still
+/// leave a small solid, so it is cut coarsely to see where it is. An endless one ends with `reach`.
 Box found_bounds(const Solid& solid, const Box& box, Box reach) {
     if (has_field(solid))
         reach = field_reach(solid, reach);
@@ -254,7 +269,7 @@ Box found_bounds(const Solid& solid, const Box& box, Box reach) {
     return found.padded(0.1 * glm::length(found.extent()));
 }
 
-/// The same for solids of the same tree of the same shapes, placed alike.
+/// Returns a key that is the same for solids whose trees and shapes are the same, placed alike.
 std::string key_of(const Solid& solid) {
     std::string key;
     const auto add = [&key](const auto& value) {
@@ -278,7 +293,8 @@ std::string key_of(const Solid& solid) {
     return key;
 }
 
-/// The normal that a whole triangle has at one of its points.
+/// Returns the normal, of any length, that a triangle before cutting has at one of its points; 0
+/// where it has no normals of its own.
 dvec3 normal_at(const CutLeaf& leaf, uint32_t triangle, const dvec3& p) {
     const auto& t = leaf.operand.triangles[triangle];
     const auto& n = leaf.normals[triangle];
@@ -316,12 +332,12 @@ std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& rea
     Fineness fineness(segments);
     if (!is_finite_box(box)) {
         box = found_bounds(solid, box, reach);
-        fineness.cells *= 3; // what has no end has thin arms, more often than not
+        fineness.cells *= 3; // endless surfaces often have thin arms
     }
     if (box.empty())
         return {};
     Evaluated cut = evaluate_within(solid, fineness, box);
-    std::vector<uint32_t> first; // skin of each leaf
+    std::vector<uint32_t> first; // the number of each leaf's first skin
     uint32_t skins = 0;
     for (const SolidLeaf& leaf : solid.leaves) {
         first.push_back(skins);
@@ -329,7 +345,9 @@ std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& rea
     }
     std::map<uint32_t, Facets> by_skin;
     for (const csg::Part& part : cut.parts) {
+        assert(part.operand < cut.leaves.size());
         const CutLeaf& leaf = cut.leaves[part.operand];
+        assert(part.triangle < leaf.skins.size());
         Facets& facets = by_skin[first[part.operand] + leaf.skins[part.triangle]];
         for (const dvec3& corner : part.corners) {
             const dvec3 n = normal_at(leaf, part.triangle, corner);
@@ -345,8 +363,10 @@ std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& rea
 
 uint32_t material_of(const Solid& solid, uint32_t skin) {
     size_t leaf = 0;
-    for (; skin >= solid.leaves[leaf].skins.size(); ++leaf)
+    for (; skin >= solid.leaves[leaf].skins.size(); ++leaf) {
+        assert(leaf + 1 < solid.leaves.size());
         skin -= uint32_t(solid.leaves[leaf].skins.size());
+    }
     return solid.leaves[leaf].skins[skin].material;
 }
 
@@ -366,8 +386,9 @@ std::vector<std::vector<uint32_t>> alike(const std::vector<Solid>& solids) {
 }
 
 Box bounds_of(const Solid& solid, int segments) {
+    assert(!solid.nodes.empty());
     std::vector<Box> boxes;
-    bool is_open = false; // some may be smaller where the whole is
+    bool is_open = false; // an endless shape may be smaller within a box around the whole
     for (const SolidLeaf& leaf : solid.leaves) {
         const Object& object = *leaf.skins[0].object;
         if (const auto* plane = std::get_if<PlaneShape>(&object.shape))

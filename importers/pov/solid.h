@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Solids: difference, intersection, merge and clipped_by, from objects to triangles.
+// Solids: objects made by difference, intersection, merge or clipped_by are cut into triangles.
 #pragma once
 
 #include "core/box.h"
@@ -8,9 +8,9 @@
 
 namespace ovc::pov {
 
-/// An operand: what stands at a leaf of the tree.
+/// An operand, which is a leaf of the tree.
 struct SolidLeaf {
-    /// A shape and its material; a mesh has one for each texture.
+    /// A shape and its material; a mesh has one skin for each texture.
     struct Skin {
         const Object* object;
         uint32_t material;
@@ -19,43 +19,48 @@ struct SolidLeaf {
     dmat4 placed{1}; // in the solid's space
     bool inverse = false;
     bool has_inside = true;
-    Box bounds; // of its bounded_by, in the solid's space; empty: it has none
+    Box bounds; // of its bounded_by, in the solid's space; empty without bounded_by
 };
 
-/// A tree of operands, before they are cut; its space is that of its object's children.
+/// A tree of operands that are not cut yet. Its space is the one of its object's children. It does
+/// not own the objects, which must outlive it.
 struct Solid {
     const Object* object;
-    dmat4 placed{1}; // from its space to the world
+    dmat4 placed{1}; // from the solid's space to the world
     bool no_shadow = false;
     std::vector<csg::Node> nodes; // children before parents; the last is the root
     std::vector<SolidLeaf> leaves;
 };
 
-/// Whether the object's parts bound each other: it must be evaluated as a whole.
+/// Returns whether the object's parts bound each other, so that it must be evaluated as a whole.
 bool is_solid(const Object& object);
-/// The node's kind, for an object of children; inverse: the complement, by De Morgan's rules.
+/// Returns the kind of the tree's node for an object that has children. `inverse` asks for the
+/// complement, by De Morgan's rules.
 csg::Kind kind_of(const Object& object, bool inverse);
 
 /// The triangles of one material, in the solid's space.
 struct SolidPart {
-    uint32_t skin; // counted through all leaves
+    uint32_t skin; // its number among the skins of all leaves
     Facets facets;
 };
 
-/// The surface of a solid. reach: where it is cut off if it is endless, in its space.
+/// Returns the surface of a solid, one part for each skin that is seen. `reach`, in the solid's
+/// space, cuts off what is endless.
 std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& reach);
 
-/// The material of a skin.
+/// Returns the material of a skin, whose number counts through all leaves.
 uint32_t material_of(const Solid& solid, uint32_t skin);
 
-/// Solids in groups that come out alike, as the copies of a declared one do. Those that are endless
-/// end elsewhere each, and are alone.
+/// Returns the numbers of the solids in groups that have the same triangles in their own spaces, as
+/// copies of a declared object do. An endless solid is alone, because where it is cut off depends
+/// on where it stands.
 std::vector<std::vector<uint32_t>> alike(const std::vector<Solid>& solids);
 
-/// The box around it as POV-Ray has it, from its parts' boxes, in its space; what is endless
-/// reaches to infinity.
+/// Returns a box around the solid, in its space. As in POV-Ray it follows from the boxes of the
+/// solid's parts, and is infinite on the sides where the solid may be endless.
 Box bounds_of(const Solid& solid, int segments);
 
+/// Returns an estimate of how many triangles the operands are cut into. Planes do not count.
 double triangles_of(const Solid& solid, int segments);
 
 } // namespace ovc::pov

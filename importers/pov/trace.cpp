@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: Moller and Trumbore 1997, for the triangles. The boxes are halved by count: scenes ask
-// some thousand times, which such a tree answers before a better one would be built.
+// Based on: Moller and Trumbore 1997, for the triangles. The tree halves the number of triangles:
+// scenes trace some thousand rays, for which a better tree would not pay back its building.
 #include "importers/pov/trace.h"
 
 #include <algorithm>
+#include <cassert>
+#include <iterator>
 #include <numeric>
 
 namespace ovc::pov {
 
 namespace {
 
-/// A meeting is beyond this: what starts on a surface leaves it.
+/// Nearer meetings do not count, so that a ray does not meet the surface that it starts on.
 constexpr double kMinDistance = 1e-6;
 constexpr uint32_t kLeafTriangles = 4;
 
@@ -36,8 +38,8 @@ void meet_plane(const PlaneShape& plane, const dvec3& from, const dvec3& way, Me
         nearest = {t, plane.normal};
 }
 
-/// Whether the box is met before `limit`. A way of 0 along an axis gives infinities, and NaN on a
-/// side of the box, which the comparisons count as met.
+/// Returns whether the ray meets the box before `limit`. A way of 0 along an axis gives infinities,
+/// and NaN for a ray in the plane of a side; the comparisons then count the box as met.
 bool meets(const Box& box, const dvec3& from, const dvec3& inverse_way, double limit) {
     double first = 0, last = limit;
     for (int axis = 0; axis < 3; ++axis) {
@@ -54,6 +56,9 @@ bool meets(const Box& box, const dvec3& from, const dvec3& inverse_way, double l
 } // namespace
 
 TraceTarget::TraceTarget(CutObject object) : object_(std::move(object)) {
+    assert(object_.facets.corners.size() % 3 == 0);
+    assert(std::all_of(object_.facets.corners.begin(), object_.facets.corners.end(),
+                       [](const Corner& corner) { return is_finite(corner.position); }));
     order_.resize(triangle_count());
     std::iota(order_.begin(), order_.end(), 0u);
     if (!order_.empty())
@@ -68,6 +73,7 @@ Box TraceTarget::box_of(uint32_t triangle) const {
 }
 
 void TraceTarget::build(uint32_t first, uint32_t last) {
+    assert(first < last && last <= order_.size());
     const size_t node = nodes_.size();
     nodes_.push_back({{}, first, last, 0});
     Box box;
@@ -105,6 +111,7 @@ Meeting TraceTarget::first_meeting(const dvec3& origin, const dvec3& direction) 
         if (!meets(node.box, origin, inverse_way, nearest.distance))
             continue;
         if (node.second) {
+            assert(count + 2 <= std::size(waiting));
             waiting[count++] = node.second;
             waiting[count++] = at + 1;
             continue;

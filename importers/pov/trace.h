@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene may ask about an object while it is read: the box around it, and where a ray meets
-// it.
+// Answers trace(), with which a scene asks, while it is read, where a ray meets an object.
 #pragma once
 
 #include "core/box.h"
@@ -10,38 +9,40 @@
 
 namespace ovc::pov {
 
-/// Where a ray meets a surface. distance: infinite where it does not. normal: of any length.
+/// Where a ray meets a surface.
 struct Meeting {
-    double distance = std::numeric_limits<double>::infinity();
-    dvec3 normal{0};
+    double distance = std::numeric_limits<double>::infinity(); // infinite: the ray misses
+    dvec3 normal{0};                                           // of any length
 };
 
-/// An object cut into triangles, placed in the space that it stands in.
+/// An object cut into triangles, in its parent's space.
 struct CutObject {
-    Facets facets; // its corners are finite
+    Facets facets; // with finite corners
     std::vector<PlaneShape> planes;
 };
 
-/// As finely as a picture of it would be. Throws ParseError where that comes to more than
-/// max_triangles. flatten.cpp has it.
+/// Returns the object cut as finely as for a picture of it alone. Throws ParseError where it would
+/// have more than max_triangles triangles. flatten.cpp defines it.
 CutObject cut_object(const Object& object, uint64_t max_triangles);
 
-/// An object's triangles under a tree of boxes, and its planes.
+/// An object's triangles under a tree of boxes, and its planes. Several threads may trace it.
 class TraceTarget {
 public:
     explicit TraceTarget(CutObject object);
 
-    /// The first meeting. direction: of length 1, so that distances are lengths.
+    /// Returns the meeting nearest to `origin`, in units of the direction's length, which should
+    /// be 1. The ray does not meet surfaces within 1e-6 of its origin.
     Meeting first_meeting(const dvec3& origin, const dvec3& direction) const;
 
     size_t triangle_count() const { return object_.facets.corners.size() / 3; }
 
 private:
-    /// Triangles [first, last) of order_; inner: its children are the next node and `second`.
+    /// A node with the triangles [first, last) of order_. The children of an inner node are the
+    /// next node and `second`.
     struct Node {
         Box box;
         uint32_t first = 0, last = 0;
-        uint32_t second = 0; // 0: a leaf
+        uint32_t second = 0; // 0 for a leaf
     };
 
     Box box_of(uint32_t triangle) const;

@@ -15,7 +15,7 @@ namespace ovc::pov {
 
 namespace {
 
-/// Turns the view towards a point; lengths and handedness stay.
+/// Turns the view towards a point. The lengths of the vectors and their handedness stay the same.
 void look_at(Reader& reader, CameraValue& camera, const dvec3& target) {
     const double direction_length = glm::length(camera.direction);
     const double up_length = glm::length(camera.up);
@@ -27,7 +27,7 @@ void look_at(Reader& reader, CameraValue& camera, const dvec3& target) {
     camera.distance = glm::length(way);
     camera.direction = glm::normalize(way);
     dvec3 right = glm::cross(camera.sky, camera.direction);
-    if (!(glm::length(right) > 1e-10)) // straight along the sky: what was right stays right
+    if (!(glm::length(right) > 1e-10)) // the camera looks along its sky vector
         right = camera.right;
     right = glm::normalize(right);
     camera.up = glm::cross(camera.direction, right) * up_length;
@@ -51,7 +51,7 @@ void apply(CameraValue& camera, const dmat4& m) {
     camera.location = dvec3(m * dvec4(camera.location, 1));
 }
 
-/// fisheye, cylinder 2 and the like; taken where it is next.
+/// Takes a projection such as `fisheye` or `cylinder 2`. Returns false where none is next.
 bool take_bend(Reader& reader, CameraValue& camera) {
     using Bend = ImageWindow::Bend;
     static constexpr std::pair<std::string_view, Bend> kWords[] = {
@@ -61,6 +61,7 @@ bool take_bend(Reader& reader, CameraValue& camera) {
     for (const auto& [word, bend] : kWords)
         if (reader.take(word)) {
             camera.bend = bend;
+            static_assert(int(Bend::Cylinder4) == int(Bend::Cylinder1) + 3);
             if (bend == Bend::Cylinder1)
                 camera.bend =
                     Bend(int(bend) + parse_int(reader, 1, 4, "the kind of a cylinder") - 1);
@@ -137,8 +138,8 @@ Camera camera_of(const CameraValue& c) {
     camera.window->angle = c.angle > 0 ? c.angle : all_around ? 360 : 90;
     camera.window->vertical_angle =
         c.vertical_angle > 0 ? c.vertical_angle : 0.5 * camera.window->angle;
-    // With an angle, or without a window's size, an orthographic camera shows at look_at what a
-    // perspective one would.
+    // With an angle, or without right and up, an orthographic camera's window is as large as a
+    // perspective camera's view at look_at.
     if (c.orthographic && (c.angle > 0 || !c.window_given) && c.distance) {
         const double scale = *c.distance / glm::length(c.direction);
         camera.window->right *= scale;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// camera { }: its vectors as POV-Ray makes them: whatever the order they are named in, look_at
-// turns them, then the angle sets the direction's length, then transformations move all.
+// Reads camera { }. As in POV-Ray, whatever the order of its parts, look_at turns the vectors
+// first, then the angle sets the direction's length, then transformations move them all.
 #pragma once
 
 #include "importers/pov/values/expression.h"
@@ -11,19 +11,20 @@ struct CameraValue {
     dvec3 location{0};
     dvec3 direction{0, 0, 1};
     dvec3 up{0, 1, 0};
-    dvec3 right{1.33, 0, 0}; // povray's, though its pictures are 4 : 3
+    dvec3 right{1.33, 0, 0}; // povray's default, though its pictures are 4 : 3
     dvec3 sky{0, 1, 0};
-    std::optional<double> distance; // to what it looks at; without look_at that is <0, 0, 1>
-    bool window_given = false;      // right or up
+    std::optional<double> distance; // from the location to look_at, or to <0, 0, 1> without it
+    bool window_given = false;      // whether the scene gives right or up
     bool orthographic = false;
     ImageWindow::Bend bend = ImageWindow::Bend::Flat;
     double vertical_angle = 0;
-    double angle = 0; // of the field of view, degrees; 0: not said
+    double angle = 0; // of the field of view, in degrees; 0 where the scene gives none
 };
 
-/// From the { on.
+/// Reads a camera from its { on.
 std::shared_ptr<const CameraValue> parse_camera(Reader& reader);
 
+/// Returns the camera as hosts get it: as POV-Ray's window, and as eye, target and field of view.
 Camera camera_of(const CameraValue& camera);
 
 } // namespace ovc::pov

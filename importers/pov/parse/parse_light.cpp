@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// light_source: points, spots, parallel light.
+// Reads light_source: points, spots and parallel light.
 #include "importers/pov/parse/parse_object.h"
 #include "importers/pov/parse/texture.h"
 #include "importers/pov/values/transform.h"
@@ -18,7 +18,7 @@ double cosine_of_degrees(double degrees) {
     return std::cos(degrees * std::numbers::pi / 180);
 }
 
-/// What decides about the light once all of it is read.
+/// Parts of a light that take effect once all of them are read.
 struct Words {
     dvec3 point_at{0, 0, 1};
     double radius = 30, falloff = 45, tightness = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mesh and mesh2: triangles grouped by their textures, a child each.
+// Reads mesh and mesh2. The triangles of each texture become a child of the object.
 #include "importers/pov/parse/parse_object.h"
 #include "importers/pov/parse/texture.h"
 #include "importers/pov/shapes/shape.h"
@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pov {
 
@@ -23,7 +24,7 @@ bool same_look(const Texture& a, const Texture& b) {
            a.surface.emission == b.surface.emission;
 }
 
-/// Triangles by texture, in the order of their first use.
+/// Triangles by texture. The textures are in the order of their first use.
 class Groups {
 public:
     Facets& of(const std::optional<Texture>& texture) {
@@ -31,18 +32,19 @@ public:
             return g.texture.has_value() == texture.has_value() &&
                    (!texture || same_look(*g.texture, *texture));
         };
-        // Neighbours are mostly alike.
+        // Most triangles have the texture of the one before.
         if (!groups_.empty() && same(groups_[last_]))
             return groups_[last_].facets;
         const auto at = std::find_if(groups_.begin(), groups_.end(), same);
         last_ = size_t(at - groups_.begin());
         if (at == groups_.end())
             groups_.push_back({texture, {}});
+        assert(last_ < groups_.size());
         return groups_[last_].facets;
     }
 
     void give_to(Object& object) {
-        object.has_inside = false; // unless an inside_vector follows
+        object.has_inside = false; // an inside_vector that follows sets it
         for (Group& group : groups_) {
             auto child = std::make_shared<Object>();
             child->kind = object.kind;
@@ -70,7 +72,7 @@ private:
     size_t last_ = 0;
 };
 
-/// `{ a, na, b, nb, c, nc texture { … } }` of a mesh's triangle.
+/// Reads the `{ a, na, b, nb, c, nc texture { … } }` of a mesh's triangle.
 void parse_mesh_triangle(Reader& reader, bool smooth, Groups& groups) {
     reader.expect('{', "triangle");
     Corner c[3];
@@ -140,7 +142,7 @@ std::vector<Face> parse_faces(Reader& reader) {
         reader.take_comma();
         Face face;
         face.corner = face.normal = parse_indices(reader);
-        // One texture for a face, or one for each corner.
+        // A face has one texture, or one for each corner, of which we keep the first.
         for (int t = 0; t < 3; ++t) {
             reader.take_comma();
             if (reader.peek().is('<') || reader.peek().is('}'))

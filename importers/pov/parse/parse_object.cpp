@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -17,7 +18,7 @@ namespace ovc::pov {
 
 namespace {
 
-/// An object and its shape, less what grows with how it is stated.
+/// The size of an object and its shape without lists such as a polygon's points.
 constexpr uint64_t kObjectBytes = 1000;
 
 using ParseShape = Shape (*)(Reader&);
@@ -39,7 +40,7 @@ const std::unordered_map<std::string_view, ParseShape> kShapes = {
     {"text", parse_text_shape},
     {"height_field", parse_height_field}};
 
-/// Shapes that nothing is inside of.
+/// Shapes that have no inside.
 const std::unordered_set<std::string_view> kSheets = {"disc", "triangle", "smooth_triangle",
                                                       "polygon", "bicubic_patch"};
 
@@ -104,7 +105,7 @@ void parse_group(Reader& reader, Object& object) {
     parse_modifiers(reader, object);
 }
 
-/// object { NAME … } or object { sphere { … } … }.
+/// Reads object { sphere { … } … }. parse_object reads object { NAME … }.
 void parse_wrapped(Reader& reader, Object& object) {
     if (!starts_object(reader.peek()))
         reader.fail_here("an object or the name of one");
@@ -117,8 +118,9 @@ void parse_wrapped(Reader& reader, Object& object) {
     parse_modifiers(reader, object);
 }
 
-/// clipped_by { objects } or clipped_by { bounded_by }, and the other way round.
+/// Reads clipped_by { objects } or clipped_by { bounded_by }, or the same for bounded_by.
 void parse_bounds(Reader& reader, Object& object, std::string_view what) {
+    assert(what == "clipped_by" || what == "bounded_by");
     std::vector<ObjectPtr>& list = what == "clipped_by" ? object.clips : object.bounds;
     reader.expect('{', what);
     Object holder;
@@ -141,7 +143,7 @@ void add_texture(Object& object, const Texture& texture, const Place& at) {
     object.texture = object.texture ? layered(texture, *object.texture, at) : texture;
 }
 
-/// The texture that a pigment or finish of its own changes.
+/// Returns the object's own texture, which its pigment or finish changes.
 Texture& own_texture(Reader& reader, Object& object) {
     if (!object.texture)
         object.texture = reader.defaults;
@@ -209,7 +211,7 @@ void place(Object& object, const dmat4& by) {
         object.texture->pigment.placed = by * object.texture->pigment.placed;
     for (std::vector<ObjectPtr>* list : {&object.clips, &object.bounds})
         for (ObjectPtr& other : *list) {
-            auto moved = std::make_shared<Object>(*other); // others may hold it as well
+            auto moved = std::make_shared<Object>(*other); // other objects may share it
             place(*moved, by);
             other = std::move(moved);
         }
@@ -218,17 +220,18 @@ void place(Object& object, const dmat4& by) {
 ObjectPtr parse_object(Reader& reader) {
     const Deeper deeper(reader);
     const Token keyword = reader.next();
+    assert(starts_object(keyword));
     if (++reader.objects > reader.limits.objects)
         reader.fail(keyword.place, fmt::format("stopped after {} objects: a loop or a macro does "
                                                "not end",
                                                reader.limits.objects));
     reader.grow(kObjectBytes);
     auto object = std::make_shared<Object>();
-    object->kind = keyword.name->text; // names live as long as the reader
+    object->kind = keyword.name->text; // the reader owns the text
     object->place = keyword.place;
     object->caller = reader.caller();
     reader.expect('{', object->kind);
-    // Any kind may begin with the name of an object.
+    // A shape, a mesh, a light or an object { } may start as a copy of a declared object.
     const bool is_group = kWholes.contains(object->kind) && object->kind != "object" &&
                           object->kind != "light_source" && object->kind != "mesh" &&
                           object->kind != "mesh2";
@@ -270,7 +273,7 @@ void parse_modifiers(Reader& reader, Object& object) {
             parse_vector(reader);
             object.has_inside = true;
         } else if (const auto texture = take_named_if<Texture>(reader))
-            add_texture(object, *texture, token.place); // as old scenes have it
+            add_texture(object, *texture, token.place); // old scenes name it without texture { }
         else if (token.kind == TokenKind::Name && token.name->is_keyword && !starts_object(token)) {
             reader.next(); // photons, uv_mapping and the like
             if (token.is("interior_texture") || token.is("cutaway_textures"))

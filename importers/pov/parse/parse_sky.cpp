@@ -16,7 +16,7 @@ SkySphere parse_sky_sphere(Reader& reader) {
         else if (reader.take("pigment"))
             sky.pigments.push_back(parse_pigment(reader, {}));
         else if (take_transform(reader))
-            ; // of one color, it looks the same from everywhere
+            ; // a sky of one color looks the same in all directions
         else if (const Token token = reader.peek(); reader.take("emission")) {
             parse_color(reader);
             reader.warn("sky emission", token.place, "emission of a sky_sphere is left out");

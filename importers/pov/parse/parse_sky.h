@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// sky_sphere { }: what is behind everything.
+// Reads sky_sphere { }, which rays see that hit nothing.
 #pragma once
 
 #include "importers/pov/values/expression.h"
 
 namespace ovc::pov {
 
-/// From the { on.
+/// Reads a sky_sphere from its { on.
 SkySphere parse_sky_sphere(Reader& reader);
 
-/// What is seen of the sky in front of a background of that color; warns where it is not as POV-Ray
-/// draws it. at: of the warning.
+/// Returns the sky as seen in front of a background of the color `behind`. Warns, with the place
+/// `at`, where POV-Ray draws the sky differently.
 Background background_of(Reader& reader, const SkySphere& sky, const vec3& behind, const Place& at);
 
 } // namespace ovc::pov

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <unordered_map>
 
 namespace ovc::pov {
@@ -26,13 +27,16 @@ void fill_item(Reader& reader, Array& array, size_t i) {
     array.items[i] = std::move(value);
 }
 
-/// Making or copying an item takes as long as running over a few words.
+/// Counts the work and memory of making or copying items. An item takes as long as a few words.
 void take_items(Reader& reader, uint64_t count) {
     reader.spend(4 * count);
     reader.grow(count * sizeof(Value));
 }
 
+/// Reads the `{ … }` of one dimension into the `count` items from `first` on.
 void fill(Reader& reader, Array& array, size_t dimension, size_t first, size_t count) {
+    assert(dimension < array.sizes.size() && count % array.sizes[dimension] == 0);
+    assert(first + count <= array.items.size());
     const Deeper deeper(reader);
     reader.expect('{', "an array");
     const size_t size = array.sizes[dimension];
@@ -47,7 +51,7 @@ void fill(Reader& reader, Array& array, size_t dimension, size_t first, size_t c
     reader.expect('}', "the items of an array");
 }
 
-/// Behind the word `array`.
+/// Reads an array from behind the word `array`.
 Value parse_array(Reader& reader) {
     auto array = std::make_shared<Array>();
     double count = 1;
@@ -121,7 +125,8 @@ Value copy_of(Reader& reader, const Array& array) {
     return std::make_shared<Array>(array);
 }
 
-/// The value that a variable or item has, where that is no part of an expression.
+/// Takes a variable or an array's item and returns its value. Takes nothing where the value may be
+/// part of an expression.
 std::optional<Value> take_whole(Reader& reader) {
     const Token token = reader.peek();
     if (token.kind != TokenKind::Name || token.name->is_keyword)
@@ -140,7 +145,7 @@ std::optional<Value> take_whole(Reader& reader) {
             return std::nullopt;
         }
         const Value item = *parse_item(reader, *kept);
-        // A copy, so that an array in another never changes and cannot come to hold that other.
+        // A copy, so that an array in an array never changes and cannot contain itself.
         if (const auto* inner = std::get_if<std::shared_ptr<Array>>(&item))
             return copy_of(reader, **inner);
         return item;

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace ovc::pov {
 
@@ -22,7 +23,7 @@ bool is_one_of(const Token& token, const std::string_view (&words)[N]) {
            std::find(std::begin(words), std::end(words), token.name->text) != std::end(words);
 }
 
-/// Patterns of a list of colors, pigments or textures.
+/// Returns whether the pattern takes a list of colors, pigments or textures.
 bool is_list_pattern(const Token& token) {
     static constexpr std::string_view kWords[] = {"brick",   "checker",    "cubic",
                                                   "hexagon", "square",     "tiles",
@@ -30,7 +31,7 @@ bool is_list_pattern(const Token& token) {
     return is_one_of(token, kWords);
 }
 
-/// Patterns of a map; without one they run from black to white.
+/// Returns whether the pattern takes a map. Without one it runs from black to white.
 bool is_map_pattern(const Token& token) {
     static constexpr std::string_view kWords[] = {
         "agate",    "aoi",          "average",         "boxed",     "bozo",      "bumps",
@@ -43,7 +44,7 @@ bool is_map_pattern(const Token& token) {
     return is_one_of(token, kWords);
 }
 
-/// A word of the language; else the name of something that has no business here, or of nothing.
+/// Returns whether the token is a word of the language, not an identifier.
 bool is_word(const Token& token) {
     return token.kind == TokenKind::Name && token.name->is_keyword;
 }
@@ -54,7 +55,7 @@ bool is_color_map(const Token& token) {
     return is_one_of(token, kWords);
 }
 
-/// Sums up colors by weight.
+/// The weighted mean of colors.
 class Mean {
 public:
     void add(const Color& color, float weight) {
@@ -91,7 +92,8 @@ Notes average_note(const Token& pattern) {
 
 Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end);
 
-/// One color of a list or map, in whatever form it stands.
+/// Reads one color of a list or map: a color, pigment or texture. `end` ends an entry of a map; it
+/// is 0 for a list.
 Color parse_entry(Reader& reader, char end) {
     if (reader.take("pigment"))
         return mean_of(parse_pigment(reader, reader.defaults.pigment));
@@ -104,7 +106,7 @@ Color parse_entry(Reader& reader, char end) {
     return mean_of(parse_pigment_body(reader, reader.defaults.pigment, end));
 }
 
-/// True where a further entry of a list pattern follows.
+/// Returns whether a further entry of a list pattern follows, and takes the comma before it.
 bool list_goes_on(Reader& reader) {
     if (reader.take(','))
         return true;
@@ -152,7 +154,7 @@ void parse_list(Reader& reader, const Token& pattern, Pigment& pigment) {
     pigment.notes = average_note(pattern);
 }
 
-/// What a map pattern stands for until its map comes.
+/// The average color of a map pattern without a map.
 const Color kMiddle{vec3(0.5f)};
 
 void set_plain(Pigment& pigment, const Color& color) {
@@ -237,7 +239,7 @@ bool is_texture_pattern(const Token& token) {
     return is_list_pattern(token) || is_map_pattern(token);
 }
 
-/// diffuse, phong and specular may be given as an albedo.
+/// Reads the amount of diffuse, phong or specular, which may be given as an albedo.
 float parse_share(Reader& reader) {
     reader.take("albedo");
     return float(parse_float(reader));
@@ -301,7 +303,7 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
         surface.ior = parse_float(reader);
     else if (const Token token = reader.peek(); reader.take("refraction")) {
         surface.refraction = std::max(0.0f, float(parse_float(reader)));
-        if (surface.refraction != 1) // in POV-Ray it leaves shadows as they are
+        if (surface.refraction != 1) // in POV-Ray it does not change shadows
             surface.notes.push_back(
                 make_note("refraction", token.place,
                           "refraction of a finish dims light that casts shadows as well"));
@@ -317,6 +319,7 @@ std::shared_ptr<const Note> normal_note(const Token& word) {
 }
 
 std::shared_ptr<const Note> left_out(std::string_view of, const Token& word) {
+    assert(word.name);
     const std::string what = fmt::format("{} of {}", word.name->text, of);
     return make_note(what, word.place, what + " is left out");
 }
@@ -367,7 +370,7 @@ ColorMap parse_map(Reader& reader) {
             const bool plain = starts_color(token);
             entries.push_back({at, plain ? parse_color(reader) : parse_entry(reader, ']')});
         }
-        // What a map's color may be followed by, such as a second one.
+        // More may follow the color, such as a second one. It is skipped.
         while (!reader.peek().is(']'))
             if (const Token rest = reader.next(); rest.kind == TokenKind::End)
                 reader.fail(rest.place, "found no ']' in a map");
@@ -450,8 +453,8 @@ Material parse_material(Reader& reader) {
     return material;
 }
 
-/// `tiles { texture { … } tile2 texture { … } }`: a checker of two textures, as old scenes have it.
-/// It has the finish of the first.
+/// Reads `tiles { texture { … } tile2 texture { … } }`, a checker of two textures in old scenes.
+/// The result has the finish of the first.
 static Texture parse_tiles(Reader& reader) {
     reader.expect('{', "tiles");
     std::vector<Texture> both;

@@ -7,12 +7,15 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+
 namespace ovc::pov {
 
 namespace {
 
-/// Before version 3.7 a picture's numbers are colors as they are; since then they are sRGB.
+/// Returns a picture's average color. Before version 3.7 its numbers are not taken for sRGB.
 Color average(const Reader& reader, const Picture& picture) {
+    assert(picture.size() > 0 && picture.pixels.size() == picture.size());
     std::array<double, 256> linear;
     for (size_t i = 0; i < linear.size(); ++i)
         linear[i] =
@@ -27,7 +30,8 @@ Color average(const Reader& reader, const Picture& picture) {
     return {vec3(sum / count), 0, float(1 - opacity / count)};
 }
 
-/// filter all A, transmit all A: added to the picture's own. Of single colors: passed over.
+/// Reads `all A` behind filter or transmit and adds A to `share`. Without all, it reads and ignores
+/// the number of a color and its amount.
 void parse_through(Reader& reader, float& share) {
     const bool all = reader.take("all");
     if (!all) {
@@ -50,9 +54,9 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
     const Place start = reader.peek().place;
     if (reader.peek().kind == TokenKind::Name && !starts_text(reader, reader.peek()) &&
         reader.peek().name->is_keyword)
-        reader.next(); // png and the like: the file itself tells
+        reader.next(); // png and the like, which the file itself tells
     if (!starts_text(reader, reader.peek())) {
-        skip_block(reader); // function, pigment
+        skip_block(reader); // a function or pigment
         note("image_map", start, "an image_map that is computed is drawn by a middle grey");
         return;
     }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// image_map { }: a picture, drawn by its average color.
+// Reads image_map { }, a picture of which only the average color is kept.
 #pragma once
 
 #include "importers/pov/values/expression.h"
 
 namespace ovc::pov {
 
-/// From the { on: the pigment's color, and notes that say so. A middle grey where there is no
-/// picture.
+/// Reads an image_map from its { on. Sets the pigment's color to the picture's average, or to a
+/// middle grey where the picture cannot be read, and its notes to say so.
 void parse_image_map(Reader& reader, const Token& word, Pigment& pigment);
 
 } // namespace ovc::pov

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cstring>
 #include <fstream>
 
@@ -51,6 +52,7 @@ Result<Picture> read_picture(const std::filesystem::path& path) {
 }
 
 double height_of(const Picture& picture, size_t pixel) {
+    assert(pixel < picture.size());
     if (!picture.indices.empty())
         return picture.indices[pixel] / 256.0;
     const auto& p = picture.pixels[pixel];

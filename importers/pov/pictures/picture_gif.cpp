@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first picture of a GIF file. Based on: "Graphics Interchange Format, Version 89a",
+// Reads the first picture of a GIF file. Based on: "Graphics Interchange Format, Version 89a",
 // CompuServe 1990, appendix F for the packing.
 #include "importers/pov/pictures/picture.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pov {
 
 namespace {
 
-/// Bytes in order; 0 behind the end, which is remembered.
+/// Gives bytes in order. Behind the end it gives 0 and remembers that the file has ended.
 class Input {
 public:
     explicit Input(Bytes file) : file_(file) {}
@@ -35,7 +36,7 @@ void read_table(Input& in, uint32_t flags, Table& table) {
             part = uint8_t(in.byte());
 }
 
-/// Sub-blocks of up to 255 bytes, joined.
+/// Reads sub-blocks of up to 255 bytes each and joins them.
 std::vector<uint8_t> read_blocks(Input& in) {
     std::vector<uint8_t> data;
     while (const uint32_t count = in.byte())
@@ -44,9 +45,10 @@ std::vector<uint8_t> read_blocks(Input& in) {
     return data;
 }
 
-/// Up to `count` indices; fewer where the data is damaged. Each code stands for a code before it
-/// and one index more.
+/// Returns `count` indices, or fewer where the data is damaged. Each code stands for the indices of
+/// an earlier code and one more. min_bits: 1 to 8.
 std::vector<uint8_t> unpack(const std::vector<uint8_t>& data, uint32_t min_bits, size_t count) {
+    assert(min_bits >= 1 && min_bits <= 8);
     constexpr uint32_t kCodes = 4096;
     std::vector<uint8_t> out, backwards;
     std::vector<uint16_t> before(kCodes, 0);
@@ -73,7 +75,7 @@ std::vector<uint8_t> unpack(const std::vector<uint8_t>& data, uint32_t min_bits,
             previous = kCodes;
             continue;
         }
-        // A code that is being made now ends as it begins.
+        // A code that this step completes ends with its own first index.
         backwards.clear();
         for (uint32_t c = code == next ? previous : code;; c = before[c]) {
             backwards.push_back(last[c]);
@@ -96,12 +98,14 @@ std::vector<uint8_t> unpack(const std::vector<uint8_t>& data, uint32_t min_bits,
     return out;
 }
 
-/// The row that comes as the `n`th: every eighth, those between, and so on.
+/// Returns the rows of a picture in the order of an interlaced file: every eighth first, then those
+/// between, and so on.
 std::vector<uint32_t> interlaced_rows(uint32_t height) {
     std::vector<uint32_t> rows;
     for (const auto& [first, step] : {std::pair(0u, 8u), {4u, 8u}, {2u, 4u}, {1u, 2u}})
         for (uint32_t y = first; y < height; y += step)
             rows.push_back(y);
+    assert(rows.size() == height);
     return rows;
 }
 
@@ -120,7 +124,7 @@ Result<Picture> read_gif(Bytes file) {
         in.skip(1);
         read_blocks(in);
     }
-    in.skip(4); // where it stands on the screen
+    in.skip(4); // the picture's place on the screen
     const uint32_t width = in.word(), height = in.word(), flags = in.byte();
     read_table(in, flags, table);
     const uint32_t min_bits = in.byte();

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// JPEG, by libjpeg.
+// Reads JPEG pictures with libjpeg.
 #include "importers/pov/pictures/picture.h"
 
 #include <csetjmp>
 #include <cstdio>
 
-#include <jpeglib.h> // needs FILE before it
+#include <jpeglib.h> // needs FILE of cstdio
 
 namespace ovc::pov {
 
 namespace {
 
-/// All that lives while libjpeg may jump.
+/// The state of reading a file. libjpeg reports errors by a jump, which skips the destructors of
+/// local variables, so whatever needs one is a member.
 struct Reading {
-    jpeg_error_mgr errors{}; // libjpeg hands back a pointer to it
+    jpeg_error_mgr errors{}; // libjpeg keeps a pointer to it
     jpeg_decompress_struct jpeg{};
     std::jmp_buf back;
     std::vector<uint8_t> row;
@@ -59,7 +60,7 @@ Result<Picture> read_jpeg(Bytes file) {
     if (setjmp(reading.back) != 0)
         return Error{"found a damaged JPEG picture"};
     jpeg_create_decompress(&reading.jpeg);
-    reading.jpeg.client_data = &reading; // creating clears it in some versions
+    reading.jpeg.client_data = &reading; // some versions clear it in jpeg_create_decompress
     decode(reading, file);
     return std::move(reading.picture);
 }

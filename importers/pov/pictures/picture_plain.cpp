@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// PGM and PPM (netpbm), TGA (Truevision 1991): numbers one after the other.
+// Reads PGM and PPM (netpbm) and TGA (Truevision 1991), whose pixels are plain numbers in a row.
 #include "importers/pov/pictures/picture.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pov {
 
@@ -21,7 +22,7 @@ public:
         if (most == 0 || most > 65535)
             return Error{"found a PGM or PPM picture whose samples do not go to 1 to 65535"};
         if (!is_text)
-            ++at_; // the one space
+            ++at_; // one space ends the header
         const size_t channels = is_gray ? 1 : 3, bytes = most > 255 ? 2 : 1;
         const size_t least = picture->size() * channels * (is_text ? 1 : bytes);
         if (at_ > file_.size() || file_.size() - at_ < least)
@@ -42,13 +43,14 @@ public:
 
 private:
     uint64_t raw(size_t bytes) {
+        assert(at_ + bytes <= file_.size());
         uint64_t value = 0;
         for (size_t i = 0; i < bytes; ++i)
             value = value << 8 | file_[at_++];
         return value;
     }
 
-    /// 0 where there is none.
+    /// Reads a decimal number. Returns 0 where there is none, and at most 10^9.
     uint64_t number() {
         for (; at_ < file_.size() && !(file_[at_] >= '0' && file_[at_] <= '9'); ++at_)
             if (file_[at_] == '#')
@@ -65,7 +67,7 @@ private:
     char kind_;
 };
 
-/// The bytes of all pixels, unpacked; fewer where the file ends.
+/// Returns the unpacked bytes of all pixels, or fewer where the file ends too early.
 std::vector<uint8_t> tga_pixels(Bytes data, size_t count, size_t bytes, bool packed) {
     const size_t wanted = count * bytes;
     if (!packed)
@@ -88,6 +90,7 @@ std::vector<uint8_t> tga_pixels(Bytes data, size_t count, size_t bytes, bool pac
 } // namespace
 
 Result<Picture> read_pnm(Bytes file) {
+    assert(file.size() >= 2);
     return PnmReader(file).read();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures: what povray writes is read as it is, in every format; damaged ones are refused. Height
-// fields from them stand where povray's trace() meets them.
+// Tests that pictures of povray are read as they are in every format, that damaged ones are
+// refused, and that height fields of them stand where povray's trace() meets them.
 #include "importers/pov/pictures/picture.h"
 
 #include "importers/readers.h"
@@ -16,8 +16,8 @@ namespace {
 
 constexpr const char* kPovRayPictures = "/usr/share/povray-3.7/include/";
 
-/// A picture of 24 x 16 in which no two pixels are alike, drawn by povray in one of its formats;
-/// empty: povray is not installed.
+/// Lets povray draw a picture of 24 x 16 pixels in one of its formats. Returns the picture's path,
+/// or an empty path where povray is not installed.
 std::filesystem::path drawn(const TestFolder& folder, const std::string& format,
                             const std::string& name) {
     const auto scene =
@@ -102,7 +102,7 @@ TEST(PovPicture, IsRefusedWhereverItEndsTooEarly) {
             const auto other = read_picture(folder.write("changed" + extension, changed));
             EXPECT_TRUE(!other || other->pixels.size() == other->size());
         }
-        // libjpeg fills up what is missing; povray's TGA ends with a table that nobody needs.
+        // libjpeg makes up missing pixels, and povray's TGA ends with a table that nobody needs.
         EXPECT_GE(refused, extension == ".jpg"   ? 1
                            : extension == ".tga" ? count / 2
                                                  : count - 8)
@@ -110,7 +110,7 @@ TEST(PovPicture, IsRefusedWhereverItEndsTooEarly) {
     }
 }
 
-/// The height in which a ray down meets the field, x 255.
+/// Returns 255 times the height at which a ray straight down meets the field.
 double height(const std::string& field, const std::string& x_z) {
     const Result<Scene> scene = parse_pov("#declare A = height_field { " + field +
                                               " } #declare N = y; #declare P = trace(A, " + x_z +
@@ -127,7 +127,7 @@ double height(const std::string& field, const std::string& x_z) {
     return 255 * (hi - 1);
 }
 
-/// As povray 3.7.0.10 prints them.
+/// povray 3.7.0.10 prints these heights.
 TEST(PovHeightField, StandsWherePovRayHasIt) {
     const TestFolder folder;
     const std::string gray =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The box around an object: min_extent() and max_extent().
+// Computes the box around an object for min_extent() and max_extent().
 #pragma once
 
 #include "core/box.h"
@@ -7,11 +7,13 @@
 
 namespace ovc::pov {
 
-/// Of its triangles, in the space that it stands in; empty: the box is all of space, as POV-Ray has
-/// it for what is endless. Throws ParseError where it has more parts than so many triangles allow.
+/// Returns the box around the object's triangles, in its parent's space. An endless object gets
+/// POV-Ray's box of 1e10 to each side, one without triangles the origin. Throws ParseError where
+/// the object has more parts than max_triangles allows.
 Box bounds_of(const Object& object, uint64_t max_triangles);
 
-/// Around a box that a transformation has turned; nothing where it is empty or reaches to infinity.
+/// Returns a box around the transformed `box`. Corners that are not finite do not count, so the
+/// result is empty for a box that is empty or reaches to infinity on opposite sides.
 Box moved(const Box& box, const dmat4& by);
 
 } // namespace ovc::pov

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nested contours joined by bridges, so that a polygon's triangulation serves them.
+// Joins nested contours by bridges to one polygon, which importers/mesh/polygon.h triangulates.
 #include "importers/pov/shapes/contour.h"
 
 #include "importers/mesh/polygon.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <numeric>
 
@@ -12,12 +13,13 @@ namespace ovc::pov {
 
 namespace {
 
-/// A contour as numbers of points.
+/// A contour as indices of points.
 using Ring = std::vector<uint32_t>;
 
 /// Joins `hole` (clockwise) to `ring` by a bridge from its rightmost point to the right.
 /// Based on: Eberly, "Triangulation by Ear Clipping", section 4.
 void join(Ring& ring, const Ring& hole, const std::vector<dvec2>& points) {
+    assert(ring.size() >= 3 && hole.size() >= 3);
     const size_t start =
         size_t(std::max_element(hole.begin(), hole.end(),
                                 [&](uint32_t a, uint32_t b) { return points[a].x < points[b].x; }) -
@@ -35,8 +37,8 @@ void join(Ring& ring, const Ring& hole, const std::vector<dvec2>& points) {
             bridge = a.x > b.x ? i : (i + 1) % ring.size();
         }
     }
-    // A point of the ring within the triangle to the edge that was met is in the way: the one at
-    // the smallest angle is seen.
+    // Points of the ring within the triangle between m, the hit and p hide p from m. The one at the
+    // smallest angle is visible, so the bridge goes there.
     const dvec2 p = points[ring[bridge]], hit(nearest, m.y);
     double best = std::numeric_limits<double>::infinity();
     const auto side = [](const dvec2& a, const dvec2& b, const dvec2& c) {
@@ -98,7 +100,7 @@ std::vector<std::array<uint32_t, 3>> cut_contours(const std::vector<Contour>& co
             std::reverse(rings[c].begin(), rings[c].end());
         order[c] = c;
     }
-    // Holes from right to left: each sees the ring or a hole that is joined already.
+    // Holes are joined from right to left: each then sees the ring, or a hole already joined to it.
     const auto rightmost = [&](size_t c) {
         double x = -std::numeric_limits<double>::infinity();
         for (const dvec2& p : contours[c])
@@ -140,7 +142,7 @@ size_t points_of_a_piece(Curve curve) {
 }
 
 dvec2 curve_point(Curve curve, const dvec2* p, double t, dvec2* direction) {
-    // The coefficients of 1, t, t^2, t^3.
+    // d, c, b and a are the coefficients of 1, t, t^2 and t^3.
     dvec2 d = p[0], c = p[1] - p[0], b(0), a(0);
     if (curve == Curve::Quadratic) {
         d = p[1];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contours in a plane: curves of points, and what lies inside an odd number of them.
+// Contours: closed curves in a plane. A point inside an odd number of them is inside the shape.
 #pragma once
 
 #include "core/vec.h"
@@ -14,22 +14,24 @@ namespace ovc::pov {
 /// A closed curve; the first point is not repeated.
 using Contour = std::vector<dvec2>;
 
-/// Triangles, counterclockwise, over the points of all contours in order; contours may lie in each
-/// other but not cross.
+/// Returns counterclockwise triangles, which index the points of all contours in order. Contours
+/// may lie in each other; where they cross, the triangles do not cover the shape exactly.
 std::vector<std::array<uint32_t, 3>> cut_contours(const std::vector<Contour>& contours);
 
-/// By crossings of a line to the right; a point on the contour is on either side.
+/// Returns whether the point is inside, by counting the edges to the right of it. A point on the
+/// contour may count as inside or outside.
 bool is_inside(const dvec2& p, const Contour& contour);
 
-/// Twice the area, above 0 where the contour runs counterclockwise.
+/// Returns twice the area, which is above 0 where the contour runs counterclockwise.
 double doubled_area(const Contour& contour);
 
 enum class Curve { Linear, Quadratic, Cubic, Bezier };
 
-/// How many points a curve takes before it can have a piece.
+/// Returns how many control points one piece of the curve has.
 size_t points_of_a_piece(Curve curve);
 
-/// A point of one piece, t in [0, 1], and its direction: of the points from p on.
+/// Returns the point at t in [0, 1] of the piece whose points_of_a_piece() control points start at
+/// `p`. Stores the derivative in `direction` unless that is null.
 dvec2 curve_point(Curve curve, const dvec2* p, double t, dvec2* direction);
 
 } // namespace ovc::pov

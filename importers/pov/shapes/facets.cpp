@@ -2,14 +2,17 @@
 #include "importers/pov/shapes/facets.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
 namespace ovc::pov {
 
 dvec2 on_circle(int step, int segments) {
+    assert(step >= 0 && segments >= 4 && segments % 4 == 0);
     step %= segments;
-    // The first eighth is computed, the rest mirrored: so points lie in pairs, and on the axes.
+    // Only the first eighth is computed and the rest mirrored, so that opposite points have the
+    // same coordinates, and those on the axes are exact.
     const int quarter = segments / 4;
     const int turns = step / quarter, rest = step % quarter;
     const auto first_quarter = [&](int s) -> dvec2 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facets: what shapes are cut into: triangles with a normal at each corner.
+// Facets: the triangles that a shape is cut into, with a normal at each corner.
 #pragma once
 
 #include "core/vec.h"
@@ -10,15 +10,15 @@ namespace ovc::pov {
 
 struct Corner {
     dvec3 position;
-    dvec3 normal; // of any length; 0: the triangle's own
+    dvec3 normal; // of any length; 0 stands for the triangle's normal
 };
 
-/// Corners counterclockwise seen from outside, three a triangle; normals point outside.
+/// Triangles of three corners each, counterclockwise seen from outside. Normals point outside.
 struct Facets {
     std::vector<Corner> corners;
-    bool smooth = false; // some corner has a normal of its own
+    bool smooth = false; // whether some corner has a normal of its own
 
-    /// Flat. A triangle without area is left out, as a pole's or a seam's is.
+    /// Adds a flat triangle, unless two of its corners are the same, as at a pole or a seam.
     void add(const dvec3& a, const dvec3& b, const dvec3& c) {
         if (a != b && b != c && c != a)
             for (const dvec3& p : {a, b, c})
@@ -40,8 +40,8 @@ struct Facets {
     }
 };
 
-/// The point of the unit circle `step` of `segments` steps from (1, 0) on; exact on the axes, and
-/// the same for steps a whole turn apart.
+/// Returns the point of the unit circle that is `step` of `segments` steps from (1, 0). It is exact
+/// on the axes, and the same for steps a whole turn apart. step: from 0; segments: a multiple of 4.
 dvec2 on_circle(int step, int segments);
 
 } // namespace ovc::pov

@@ -13,14 +13,14 @@ struct Font::Face {
     FT_Face face = nullptr;
 
     ~Face() {
-        FT_Done_Face(face); // null: nothing happens
+        FT_Done_Face(face); // FreeType allows null here and below
         FT_Done_FreeType(library);
     }
 };
 
 namespace {
 
-/// What FreeType tells of an outline, gathered.
+/// Gathers the outlines of a letter, which FreeType gives by callbacks.
 struct Drawing {
     Letter letter;
     double scale = 1;
@@ -45,7 +45,7 @@ struct Drawing {
         self.add(true, self.at, self.at, self.point(to));
         return 0;
     }
-    /// A curve of degree 2, raised to 3.
+    /// Adds a curve of degree 2 as one of degree 3.
     static int conic(const FT_Vector* control, const FT_Vector* to, void* drawing) {
         auto& self = *static_cast<Drawing*>(drawing);
         const dvec2 c = self.point(control), end = self.point(to);
@@ -59,7 +59,7 @@ struct Drawing {
     }
 };
 
-/// Fonts of symbols have their letters here.
+/// Fonts of symbols have the letter with code c at kSymbols + c.
 constexpr char32_t kSymbols = 0xf000;
 
 } // namespace
@@ -74,7 +74,7 @@ Result<std::shared_ptr<Font>> Font::open(const std::filesystem::path& path) {
     if (FT_New_Face(face->library, path.c_str(), 0, &face->face) != 0 ||
         !FT_IS_SCALABLE(face->face) || face->face->units_per_EM == 0)
         return Error{fmt::format("{}: it is no font with outlines", path.string())};
-    if (!face->face->charmap && face->face->num_charmaps > 0) // none is Unicode's
+    if (!face->face->charmap && face->face->num_charmaps > 0) // there is no Unicode charmap
         FT_Set_Charmap(face->face, face->face->charmaps[0]);
     return std::shared_ptr<Font>(new Font(std::move(face)));
 }

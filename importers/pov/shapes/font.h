@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fonts: the outlines of letters, in units of the font's height. font.cpp is the only file that
-// sees FreeType.
+// Fonts: the outlines of letters, in units of the font's height. Only font.cpp includes FreeType.
 #pragma once
 
 #include "core/result.h"
@@ -15,25 +14,26 @@ namespace ovc::pov {
 /// A part of an outline: straight, or a Bezier curve of degree 3.
 struct OutlinePiece {
     bool straight = true;
-    std::array<dvec2, 4> points; // straight: from the first to the last
+    std::array<dvec2, 4> points; // a straight piece runs from the first to the last
 };
 
 struct Letter {
     uint32_t glyph = 0;
     std::vector<std::vector<OutlinePiece>> outlines; // each closed
-    double bearing = 0;                              // from where it begins to its left edge
-    double advance = 0;                              // to where the next letter begins
+    double bearing = 0;                              // from the letter's origin to its left edge
+    double advance = 0;                              // from its origin to the next letter's
 };
 
+/// A font file. One thread at a time may use it.
 class Font {
 public:
-    /// Error: a sentence that names the file.
+    /// Opens a font file. The Error is a sentence that names the file.
     static Result<std::shared_ptr<Font>> open(const std::filesystem::path& path);
     ~Font();
 
-    /// The font's mark for what it lacks where it has no such letter.
+    /// Returns the letter with this Unicode code, or the font's mark for missing letters.
     std::shared_ptr<const Letter> letter(char32_t code);
-    /// What the distance of two letters in a row differs by.
+    /// Returns what to add to the left letter's advance when `right` follows it.
     double kerning(const Letter& left, const Letter& right) const;
 
 private:
@@ -44,7 +44,7 @@ private:
     std::map<char32_t, std::shared_ptr<const Letter>> letters_;
 };
 
-/// UTF-8, and bytes that are none as Latin-1.
+/// Returns the codes of a text in UTF-8. Bytes that are not valid UTF-8 count as Latin-1.
 std::u32string codes_of(std::string_view text);
 
 } // namespace ovc::pov

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace ovc::pov {
@@ -14,14 +15,15 @@ namespace {
 using Cell = std::array<int, 3>;
 using FieldValue = std::function<double(const dvec3&)>;
 
-/// Values at the corners of cubic cells; the outermost are outside, whatever the field says.
+/// The field's values at the corners of cubic cells. The outermost corners always count as outside.
 class Samples {
 public:
-    /// Cells outside of the box, on each side.
+    /// Cells beyond the box on each side.
     static constexpr int kMargin = 2;
 
     Samples(const Field& field, const Box& box, int cells)
         : step_(std::max(max_component(box.extent()), 1e-12) / cells) {
+        assert(cells > 0);
         const dvec3 center = box.center();
         for (int i = 0; i < 3; ++i) {
             const int wanted = int(std::ceil(box.extent()[i] / step_ - 1e-6));
@@ -41,7 +43,7 @@ public:
         return (size_t(c[2]) * size_t(counts_[1] + 1) + size_t(c[1])) * size_t(counts_[0] + 1) +
                size_t(c[0]);
     }
-    /// The field in and around a cell.
+    /// Returns a function with the field's values in and around a cell.
     const FieldValue& value_near(const Cell& cell) const { return field_in_[block_of(cell)]; }
     bool is_outermost(const Cell& cell) const {
         for (size_t i = 0; i < 3; ++i)
@@ -77,7 +79,7 @@ private:
         for (size_t i = 0; i < 3; ++i)
             hi[i] = std::min(lo[i] + kBlock - 1, counts_[i]);
         FieldValue& value = field_in_[block_of(lo)];
-        // Its cells reach a step farther, and corners a little out of them.
+        // The block's cells reach a step farther, and corner_in() moves corners a little further.
         value = field.within ? field.within(Box{place(lo), place(hi)}.padded(1.5 * step_))
                              : field.value;
         Cell c;
@@ -96,7 +98,7 @@ private:
     dvec3 origin_;
     Cell counts_, blocks_{};
     std::vector<double> values_;
-    std::vector<FieldValue> field_in_; // each block
+    std::vector<FieldValue> field_in_; // one for each block
 };
 
 dvec3 gradient(const FieldValue& field, const dvec3& p, double step) {
@@ -109,7 +111,8 @@ dvec3 gradient(const FieldValue& field, const dvec3& p, double step) {
     return g;
 }
 
-/// A point of the surface in the cell, or near the middle of where it runs through.
+/// Returns a point of the surface in or near the cell. Where the search for one fails it is near
+/// the middle of the points where the surface crosses the cell's edges.
 Corner corner_in(const Samples& samples, const Cell& cell) {
     const FieldValue& field = samples.value_near(cell);
     dvec3 sum(0);
@@ -127,6 +130,7 @@ Corner corner_in(const Samples& samples, const Cell& cell) {
             sum += glm::mix(samples.place(a), samples.place(b), va / (va - vb));
             ++count;
         }
+    assert(count > 0);
     dvec3 p = sum / double(count);
     if (samples.is_outermost(cell))
         return {p, dvec3(0)};
@@ -140,7 +144,7 @@ Corner corner_in(const Samples& samples, const Cell& cell) {
         if (!(square > 0) || !std::isfinite(value / square))
             break;
         const dvec3 next = glm::clamp(p - value / square * g, lo, hi);
-        // Where the field is no distance at all a step may lead away.
+        // Where the field is far from a distance, a step may lead away from the surface.
         if (!(std::abs(field(next)) < std::abs(value)))
             break;
         p = next;
@@ -152,9 +156,8 @@ Corner corner_in(const Samples& samples, const Cell& cell) {
 
 } // namespace
 
-// A corner in each cell that the surface runs through, and for each edge of the grid that it
-// crosses a quad of the corners around. Around each face of a cell the quads' edges cancel out, so
-// the surface is closed.
+// Each cell that the surface crosses gets a corner, and each edge of the grid that it crosses a
+// quad of the corners around. At each face of a cell the quads' edges cancel out: it is closed.
 size_t cut_field(const Field& field, const Box& box, int cells, Facets& out) {
     if (box.empty() || !is_finite(box.extent()))
         return 0;
@@ -195,10 +198,11 @@ size_t cut_field(const Field& field, const Box& box, int cells, Facets& out) {
                 Cell at = cell;
                 at[u] -= i == 1 || i == 2;
                 at[v] -= i >= 2;
+                assert(numbers[samples.index(at)] >= 0);
                 around[i] = &corners[size_t(numbers[samples.index(at)])];
                 is_outermost = is_outermost || samples.is_outermost(at);
             }
-            if (!samples.is_inside(cell)) // outside is behind
+            if (!samples.is_inside(cell)) // the surface faces back along the axis
                 std::swap(around[1], around[3]);
             (is_outermost ? closing : out).add_quad(*around[0], *around[1], *around[2], *around[3]);
         }

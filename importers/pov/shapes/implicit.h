@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implicit surfaces: where a field is 0, made triangles.
-// Source: Gibson 1998, "Constrained Elastic Surface Nets"; here vertices are moved onto the
+// Cuts implicit surfaces, on which a field is 0, into triangles.
+// Based on: Gibson 1998, "Constrained Elastic Surface Nets". Here vertices are moved onto the
 // surface along the field's gradient.
 #pragma once
 
@@ -11,22 +11,23 @@
 
 namespace ovc::pov {
 
-/// Below 0 inside.
+/// A function of space that is below 0 inside. Several threads call its functions at once.
 struct Field {
     std::function<double(const dvec3&)> value;
-    /// The same field where it is asked for in this box only, cheaper; empty: value itself.
+    /// Returns a function that has the same values in this box only, but is cheaper. May be empty.
     std::function<std::function<double(const dvec3&)>(const Box&)> within;
 };
 
-/// Cells along the longest side of a closed shape that are as fine as a sphere's segments.
+/// Returns how many cells along its longest side make a closed shape as fine as a sphere of
+/// `segments` segments.
 inline int field_cells(int segments) {
     return segments * 2 / 3;
 }
 
-/// The field's surface in a box of `cells` cells along its longest side, and some way out of it,
-/// where it is closed. Corners lie on the surface and have its normals. Returns the number of
-/// triangles that are of the surface: those behind close it, all of them outside of the box.
-/// What is thinner than a cell may be lost.
+/// Adds the field's surface in the box, which has `cells` > 0 cells along its longest side, to
+/// `out`. Corners lie on the surface and have its normals. Outside the box further triangles close
+/// the surface. Returns the number of triangles up to these, which come last. Parts thinner than a
+/// cell may be lost. An empty or infinite box adds nothing.
 size_t cut_field(const Field& field, const Box& box, int cells, Facets& out);
 
 } // namespace ovc::pov

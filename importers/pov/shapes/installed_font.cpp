@@ -10,10 +10,10 @@ namespace ovc::pov {
 
 namespace fs = std::filesystem;
 
-/// Where fonts are installed, by the Filesystem Hierarchy Standard.
+/// The Filesystem Hierarchy Standard names these folders for fonts.
 static constexpr const char* kFolders[] = {"/usr/share/fonts", "/usr/local/share/fonts"};
 
-/// Plain letters, with and without serifs. POV-Ray's own come first, which are made for its scenes.
+/// Plain fonts, without and with serifs. POV-Ray's own come first, because its scenes expect them.
 static constexpr const char* kSans[] = {"cyrvetic.ttf", "DejaVuSans.ttf",
                                         "LiberationSans-Regular.ttf"};
 static constexpr const char* kSerif[] = {"timrom.ttf", "DejaVuSerif.ttf",
@@ -25,7 +25,7 @@ static std::string lower(std::string text) {
     return text;
 }
 
-/// All font files by their names in small letters.
+/// Returns all installed font files by their names in lower case.
 static const std::map<std::string, fs::path>& installed() {
     static const std::map<std::string, fs::path> fonts = [] {
         std::map<std::string, fs::path> found;

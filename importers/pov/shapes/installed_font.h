@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fonts of this machine, for scenes that name one which they do not bring along.
+// Finds fonts on this machine for scenes that name a font but do not come with its file.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace ovc::pov {
 
-/// The installed font file of this name, in letters of any size; else a plain one that can stand in
-/// for it; empty: no fonts are installed.
+/// Returns the installed font file of this name, regardless of upper and lower case. Without one it
+/// returns a plain font that can stand in for it, or an empty path where no font is installed.
 std::filesystem::path installed_font(const std::string& name);
 
 } // namespace ovc::pov

@@ -2,6 +2,7 @@
 #include "importers/pov/shapes/polynomial.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <queue>
 
@@ -25,7 +26,9 @@ struct Range {
     double lo, hi;
 };
 
+/// Returns the range of x ^ exponent for x in [lo, hi].
 Range power(double lo, double hi, int exponent) {
+    assert(exponent >= 0);
     if (exponent == 0)
         return {1, 1};
     double a = lo, b = hi;
@@ -60,6 +63,7 @@ size_t factors_of(int order) {
 }
 
 Polynomial polynomial_of(int order, const std::vector<double>& factors) {
+    assert(factors.size() == factors_of(order));
     Polynomial polynomial;
     size_t next = 0;
     for (int x = order; x >= 0; --x)
@@ -72,10 +76,11 @@ Polynomial polynomial_of(int order, const std::vector<double>& factors) {
 
 namespace {
 
-/// How far the set below 0 reaches along an axis, at most: boxes are halved, the farthest first,
-/// until that one is small.
+/// Returns an upper bound on how far the set below 0 reaches along an axis, where way is 1 or -1.
+/// Boxes are halved, the farthest first, until the farthest one is small.
 double farthest(const Polynomial& polynomial, const Box& whole, int axis, int way) {
-    constexpr int kMaxBoxes = 400; // of flat surfaces many reach equally far
+    assert(way == 1 || way == -1);
+    constexpr int kMaxBoxes = 400; // along a flat surface many boxes reach equally far
     const auto reach = [&](const Box& box) { return way > 0 ? box.hi[axis] : -box.lo[axis]; };
     const auto nearer = [&](const Box& a, const Box& b) { return reach(a) < reach(b); };
     std::priority_queue<Box, std::vector<Box>, decltype(nearer)> open(nearer);

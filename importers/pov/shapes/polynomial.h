@@ -16,16 +16,18 @@ struct Polynomial {
     std::vector<Term> terms;
 
     double operator()(const dvec3& p) const;
-    /// No value in the box is below this.
+    /// Returns a lower bound on the values in the box.
     double least(const Box& box) const;
 };
 
-/// The terms in POV-Ray's order: by falling powers of x, then y, then z.
+/// Returns the polynomial with factors_of(order) factors, whose terms are in POV-Ray's order: by
+/// falling powers of x, then y, then z.
 Polynomial polynomial_of(int order, const std::vector<double>& factors);
-/// How many factors that takes.
+/// Returns how many terms a polynomial of this order has.
 size_t factors_of(int order);
 
-/// A box, no larger than this one, outside of which within this one the polynomial is above 0.
+/// Returns a part of the box that contains all its points where the polynomial is not above 0, or
+/// an empty box.
 Box tightened(const Polynomial& polynomial, const Box& box);
 
 } // namespace ovc::pov

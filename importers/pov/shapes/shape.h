@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes: what stands between the braces before the modifiers, read and made ready for cutting. One
-// function a kind, from behind the { on.
+// Reads shapes: each function reads one kind, from behind the { up to the modifiers, and returns it
+// ready to be cut into triangles.
 #pragma once
 
 #include "importers/pov/object.h"
@@ -36,7 +36,7 @@ Shape parse_text_shape(Reader& reader);
 // shape_patch.cpp
 Shape parse_bicubic_patch(Reader& reader);
 
-/// How many points a shape says it has; at most what memory is worth.
+/// Reads how many points a shape has, from `least` to 10 million, which bounds the memory it takes.
 int parse_count(Reader& reader, int least);
 
 } // namespace ovc::pov

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes that are flat as they are: nothing of them is rounded.
+// Reads shapes that are flat or have flat sides only, which need no segments.
 #include "importers/pov/shapes/contour.h"
 #include "importers/pov/shapes/shape.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pov {
 
 namespace {
 
-/// Triangles that do not depend on how finely others are cut.
+/// Returns a shape with the same triangles however finely others are cut.
 Shape fixed(Facets facets) {
     Shape shape;
     shape.fixed = double(facets.corners.size() / 3);
@@ -23,7 +24,7 @@ Shape fixed(Facets facets) {
     return shape;
 }
 
-/// Points of a polygon cut at each return to the point that a part began with.
+/// Splits a polygon's points into parts. Each ends where it returns to the point it began with.
 std::vector<std::vector<dvec3>> parts_of(const std::vector<dvec3>& points) {
     std::vector<std::vector<dvec3>> parts;
     for (size_t first = 0; first < points.size();) {
@@ -37,8 +38,9 @@ std::vector<std::vector<dvec3>> parts_of(const std::vector<dvec3>& points) {
     return parts;
 }
 
-/// Newell's normal.
+/// Returns Newell's normal of a polygon.
 dvec3 normal_of(const std::vector<dvec3>& points) {
+    assert(points.size() >= 3);
     dvec3 n(0);
     for (size_t i = 0, j = points.size() - 1; i < points.size(); j = i++)
         n += glm::cross(points[j] - points[0], points[i] - points[0]);
@@ -103,7 +105,7 @@ Shape parse_polygon(Reader& reader) {
     Facets facets;
     if (parts.empty())
         return fixed(std::move(facets));
-    // Seen along the axis that the plane faces most.
+    // The polygon is projected along the axis that its plane faces most.
     const dvec3 normal = normal_of(parts[0]);
     const int axis = major_axis(normal);
     const int x = (axis + 1) % 3, y = (axis + 2) % 3;

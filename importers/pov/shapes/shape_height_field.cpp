@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// height_field: a grid of heights over the square from 0 to 1 in x and z, from a picture or a
+// Reads height_field: a grid of heights over the square from 0 to 1 in x and z, from a picture or a
 // function. The first row lies at z = 1.
 #include "importers/file/text.h"
 #include "importers/pov/pictures/picture.h"
@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pov {
 
@@ -16,11 +17,11 @@ namespace {
 
 struct Grid {
     size_t width = 0, height = 0; // points, each at least 2
-    std::vector<float> heights;   // rows as the picture has them
+    std::vector<float> heights;   // in rows from the top down, as in a picture
     bool smooth = false;
     double water_level = 0;
 
-    /// The corner in column i and row j counted from z = 0.
+    /// Returns the corner in column i and in row j, which counts from z = 0.
     Corner corner(size_t i, size_t j) const {
         const double x = double(i) / double(width - 1), z = double(j) / double(height - 1);
         return {{x, at(i, j), z}, smooth ? normal(i, j) : dvec3(0)};
@@ -29,7 +30,8 @@ struct Grid {
 private:
     double at(size_t i, size_t j) const { return heights[(height - 1 - j) * width + i]; }
 
-    /// By the heights of the neighbors, or of the point itself at the rim.
+    /// Returns the normal that the heights of the neighbours give. At the rim the point itself
+    /// replaces the neighbour that is missing.
     dvec3 normal(size_t i, size_t j) const {
         const size_t i0 = i > 0 ? i - 1 : i, i1 = std::min(i + 1, width - 1);
         const size_t j0 = j > 0 ? j - 1 : j, j1 = std::min(j + 1, height - 1);
@@ -38,7 +40,7 @@ private:
     }
 };
 
-/// Behind the word `function`: WIDTH, HEIGHT { FORMULA }, of x and y from 0 to 1.
+/// Reads WIDTH, HEIGHT { FORMULA }, with x and y from 0 to 1, from behind the word `function`.
 Grid grid_of_function(Reader& reader, const Token& word) {
     const std::shared_ptr<const Function> function = parse_function(reader);
     const double width = function->grid.x, height = function->grid.y;
@@ -57,7 +59,7 @@ Grid grid_of_function(Reader& reader, const Token& word) {
             const double at[3] = {double(i) / double(grid.width - 1),
                                   double(row) / double(grid.height - 1), 0};
             const double y = call(reader, word, *function, at).v[0];
-            grid.heights.push_back(float(y > 0 ? std::min(y, 1.0) : 0.0)); // NaN: 0
+            grid.heights.push_back(float(y > 0 ? std::min(y, 1.0) : 0.0)); // NaN counts as 0
         }
     return grid;
 }
@@ -91,14 +93,14 @@ Grid parse_grid(Reader& reader) {
     const Token token = reader.peek();
     if (reader.take("function"))
         return grid_of_function(reader, token);
-    // The file itself tells what it is.
+    // The name of a format is skipped, because the file itself tells its format.
     if (std::any_of(std::begin(kFormats), std::end(kFormats),
                     [&](std::string_view word) { return token.is(word); }))
         reader.next();
     return grid_of_picture(reader);
 }
 
-/// The triangle's part from the level up.
+/// Adds the part of the triangle at or above the level.
 void add_above(const std::array<Corner, 3>& triangle, double level, Facets& out) {
     std::vector<Corner> kept;
     for (size_t i = 0; i < 3; ++i) {
@@ -114,9 +116,11 @@ void add_above(const std::array<Corner, 3>& triangle, double level, Facets& out)
         out.add(kept[0], kept[i], kept[i + 1]);
 }
 
-/// Two triangles a cell, cut apart from (x + 1, z) to (x, z + 1), as POV-Ray does.
+/// Adds two triangles for each cell, which is cut from (x + 1, z) to (x, z + 1) as in POV-Ray.
 void cut_grid(const Grid& grid, Facets& out) {
-    const bool is_smooth = out.smooth || grid.smooth; // add() of corners says it is
+    assert(grid.width >= 2 && grid.height >= 2);
+    assert(grid.heights.size() == grid.width * grid.height);
+    const bool is_smooth = out.smooth || grid.smooth; // add() of corners sets out.smooth
     for (size_t j = 0; j + 1 < grid.height; ++j)
         for (size_t i = 0; i + 1 < grid.width; ++i) {
             const Corner right = grid.corner(i + 1, j), back = grid.corner(i, j + 1);

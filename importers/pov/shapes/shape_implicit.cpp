@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Implicit shapes: blob, quadric, cubic, quartic, poly, isosurface.
+// Reads implicit shapes: blob, quadric, cubic, quartic, poly and isosurface.
 #include "importers/csg/csg.h"
 #include "importers/pov/parse/parse_object.h"
 #include "importers/pov/shapes/implicit.h"
@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <mutex>
 
@@ -17,10 +18,10 @@ namespace ovc::pov {
 
 namespace {
 
-/// Triangles of a surface net: about two for each of the cells that it runs through.
+/// A surface net has about two triangles for each cell that the surface crosses.
 constexpr double kPerSquare = 4;
 
-/// A field's triangles, kept: a shape is cut once to be measured and once to be drawn.
+/// Returns a shape that keeps its triangles, because it is cut to be measured and to be drawn.
 Shape kept(const Box& box, std::function<void(int segments, bool open, Facets& out)> cut) {
     struct Kept {
         std::mutex mutex;
@@ -47,7 +48,8 @@ Shape kept(const Box& box, std::function<void(int segments, bool open, Facets& o
     return shape;
 }
 
-/// A part of a blob: strength (1 - (d / radius)^2)^2, d the distance from the line a b.
+/// A part of a blob. Its field is strength (1 - (d / radius)^2)^2 at the distance d from the line
+/// segment a b.
 struct Component {
     dvec3 a, b;
     double radius, strength;
@@ -76,7 +78,7 @@ std::function<double(const dvec3&)> blob_value(Components parts, double threshol
     };
 }
 
-/// From behind the word: `{ place, radius, strength … }`.
+/// Reads `{ place, radius, strength … }` from behind the word.
 Component parse_component(Reader& reader, std::string_view kind, Object& holder) {
     reader.expect('{', kind);
     Component part;
@@ -95,6 +97,7 @@ Component parse_component(Reader& reader, std::string_view kind, Object& holder)
 }
 
 void place_component(Component& part, const dmat4& placed) {
+    assert(part.radius > 0);
     part.to_own = glm::inverse(placed);
     for (const dvec3& end : {part.a, part.b})
         for (int i = 0; i < 8; ++i)
@@ -104,8 +107,9 @@ void place_component(Component& part, const dmat4& placed) {
                       1)));
 }
 
-/// As many cells as make small parts round, and as memory is worth.
+/// Returns how many cells make the smallest part round, but at most 256, which bounds the memory.
 int cells_of(const Components& parts, const Box& box, int segments) {
+    assert(!box.empty());
     double smallest = max_component(box.extent());
     for (const Component& part : parts)
         if (part.strength > 0)
@@ -144,7 +148,7 @@ void finish_polynomial(Reader& reader, Object& object, Polynomial polynomial) {
     parse_modifiers(reader, object);
 }
 
-/// What an isosurface is looked for in.
+/// The box or sphere that bounds an isosurface.
 struct Container {
     Shape shape;
     Box box;
@@ -171,7 +175,8 @@ csg::Operand operand_of(const Facets& facets) {
     return operand;
 }
 
-/// The part of the field's surface in the container, and of the container's in the field.
+/// Adds the part of the field's surface in the container and, unless `open`, the part of the
+/// container's surface in the field.
 void cut_contained(const Field& field, const Container& container, int segments, bool open,
                    Facets& out) {
     Facets inside, around;
@@ -187,6 +192,7 @@ void cut_contained(const Field& field, const Container& container, int segments,
         if (open && part.operand == 1)
             continue;
         const Facets& source = part.operand == 0 ? inside : around;
+        assert(3 * size_t(part.triangle) + 2 < source.corners.size());
         const Corner* whole = &source.corners[3 * size_t(part.triangle)];
         const dvec3 flat = glm::cross(whole[1].position - whole[0].position,
                                       whole[2].position - whole[0].position);
@@ -275,7 +281,7 @@ void parse_quadric(Reader& reader, Object& object) {
     finish_polynomial(reader, object, std::move(polynomial));
 }
 
-/// cubic { <…> }, quartic { <…> } and poly { order, <…> }.
+/// Reads cubic { <…> }, quartic { <…> } and poly { order, <…> }.
 void parse_polynomial(Reader& reader, Object& object) {
     int order = object.kind == "cubic" ? 3 : 4;
     if (object.kind == "poly") {

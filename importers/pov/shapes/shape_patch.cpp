@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// bicubic_patch: Bezier's patch of 16 points.
+// Reads bicubic_patch, a Bezier patch of 16 points.
 #include "importers/pov/shapes/shape.h"
 
 #include <algorithm>
 
 namespace ovc::pov {
 
-/// A point of the curve through four, and its derivative.
+/// Returns a point of the Bezier curve of four points and stores the derivative there in `slope`.
 static dvec3 bezier(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d, double t,
                     dvec3* slope) {
     const double s = 1 - t;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of revolution and their kin. Vertices lie on the true surface.
+// Reads surfaces of revolution and superellipsoids. Vertices lie on the true surface.
 #include "importers/pov/shapes/shape.h"
 
 #include <fmt/format.h>
@@ -10,8 +10,8 @@ namespace ovc::pov {
 
 namespace {
 
-/// A grid of corners, `columns` wide and closed around, cut into quads; the first row is the lowest
-/// as seen from outside, columns run counterclockwise seen from above.
+/// Adds a grid of quads whose last column meets its first. at(column, row) gives a corner. Seen
+/// from outside the first row is the lowest; seen from above columns run counterclockwise.
 template <class At>
 void add_grid(int columns, int rows, At&& at, Facets& out) {
     std::vector<Corner> below, above;
@@ -35,7 +35,8 @@ Shape curved(double per_square, double per_segment, std::function<void(int, bool
     return shape;
 }
 
-/// Two unit vectors across `axis`, u x v along it; axes of the world where it is one.
+/// Sets u and v to unit vectors perpendicular to `axis`, with u x v along it. They are axes of the
+/// world where `axis` is one.
 void across(const dvec3& axis, dvec3& u, dvec3& v) {
     const int major = major_axis(axis);
     dvec3 other(0);
@@ -169,7 +170,7 @@ Shape parse_superellipsoid(Reader& reader) {
                     return dvec3(wide * signed_power(around.x, e), wide * signed_power(around.y, e),
                                  signed_power(up.y, n));
                 };
-                // Where an exponent is above 2 the gradient's formula runs to infinity at a ridge.
+                // With an exponent of 2 or more the gradient is infinite, or undefined, at a ridge.
                 const bool ridged = east >= 2 || north >= 2;
                 return {point(east, north), ridged ? dvec3(0) : point(2 - east, 2 - north)};
             },

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A curve swept along y (prism) or around it (lathe, sor).
+// Reads shapes of a curve that is swept along y (prism) or around it (lathe, sor).
 #include "importers/pov/shapes/contour.h"
 #include "importers/pov/shapes/shape.h"
 #include "importers/pov/shapes/sweep.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 
@@ -33,7 +34,7 @@ std::vector<dvec2> parse_points(Reader& reader, int count) {
     return points;
 }
 
-/// Straight pieces of one piece of a curve.
+/// Returns how many straight pieces stand for one piece of a curve.
 int steps_of(Curve curve, int segments) {
     return curve == Curve::Linear ? 1 : std::max(4, segments / 8);
 }
@@ -42,7 +43,7 @@ bool same(const dvec2& a, const dvec2& b) {
     return glm::length(a - b) < 1e-9;
 }
 
-/// The closed curves of a prism, each cut into straight pieces.
+/// Returns the closed curves of a prism as straight pieces.
 std::vector<Contour> prism_contours(Curve curve, const std::vector<dvec2>& points, int segments) {
     std::vector<Contour> contours;
     const size_t stride = curve == Curve::Bezier ? 4 : 1;
@@ -66,9 +67,10 @@ std::vector<Contour> prism_contours(Curve curve, const std::vector<dvec2>& point
     return contours;
 }
 
-/// One point of a profile that is turned around y: (radius, height), and its direction.
+/// A point of a profile that is turned around y.
 struct ProfilePoint {
-    dvec2 at, direction;
+    dvec2 at;        // radius, height
+    dvec2 direction; // of the profile, of any length
 };
 
 void revolve(const std::vector<ProfilePoint>& profile, int segments, Facets& out) {
@@ -153,7 +155,7 @@ Shape parse_sor(Reader& reader) {
         std::vector<ProfilePoint> profile;
         const int steps = steps_of(Curve::Cubic, segments);
         for (size_t i = 0; i + 3 < points.size(); ++i) {
-            // The square of the radius is a cubic of the height.
+            // The square of the radius is a cubic polynomial of the height.
             const dvec2 *p = &points[i], &a = p[1], &b = p[2];
             const double h = b.y - a.y;
             const double m0 = 2 * a.x * (b.x - p[0].x) / (b.y - p[0].y) * h;
@@ -168,6 +170,7 @@ Shape parse_sor(Reader& reader) {
                     {{std::sqrt(square), a.y + t * h}, {slope / 2, std::sqrt(square)}});
             }
         }
+        assert(!profile.empty());
         revolve(profile, segments, out);
         for (int step = 1; !open && step + 1 < segments; ++step)
             for (const bool top : {false, true}) {

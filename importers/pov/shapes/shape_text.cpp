@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// text: letters of a font, swept along z from 0 to their thickness.
+// Reads text: letters of a font, swept along z from 0 to their thickness.
 #include "importers/file/text.h"
 #include "importers/pov/shapes/font.h"
 #include "importers/pov/shapes/installed_font.h"
@@ -19,7 +19,7 @@ struct PlacedLetter {
     dvec2 at;
 };
 
-/// What `internal` numbers, as povray 3.7 shows them.
+/// Returns the font file that povray 3.7 takes for `internal` and a number.
 std::string internal_font(int number) {
     static constexpr const char* kFonts[] = {"timrom.ttf", "cyrvetic.ttf", "crystal.ttf"};
     return number >= 1 && number <= 3 ? kFonts[number - 1] : "povlogo.ttf";
@@ -61,7 +61,7 @@ std::vector<PlacedLetter> set_letters(Font& font, const std::u32string& codes, c
     dvec2 at(0);
     for (const char32_t code : codes) {
         const std::shared_ptr<const Letter> letter = font.letter(code);
-        // As POV-Ray, whose first letter's left edge stands at 0.
+        // As in POV-Ray the left edge of the first letter is at 0.
         at.x += letters.empty() ? -letter->bearing : font.kerning(*letters.back().letter, *letter);
         letters.push_back({letter, at});
         at += step + dvec2(letter->advance, 0);
@@ -99,7 +99,7 @@ Shape parse_text_shape(Reader& reader) {
     reader.take_comma();
     const double thickness = parse_float(reader);
     reader.take_comma();
-    const dvec3 step = parse_vector(reader); // along z it counts for nothing in POV-Ray
+    const dvec3 step = parse_vector(reader); // POV-Ray ignores its z
     reader.spend(codes.size());
     Shape shape;
     const auto letters =

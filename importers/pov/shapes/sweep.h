@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// What contours sweep over.
+// Sweeps contours along a path, for prisms and letters.
 #pragma once
 
 #include "importers/pov/shapes/contour.h"
 #include "importers/pov/shapes/facets.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pov {
 
-/// The sides between contours and their copies, and lids on both ends; closed, and facing outside.
-/// place: where a point stands at the beginning (false) and at the end (true) of the sweep, which
-/// goes against the cross product of the plane's first axis with its second.
+/// Adds the sides between contours and their copies, and with `lids` both ends, to `out`. With lids
+/// the surface is closed, and it faces outside. place(point, false) and place(point, true) give a
+/// point's position at the beginning and at the end of the sweep, which goes against the cross
+/// product of the plane's first axis with its second. contours: each of at least 3 points.
 template <class Placing>
 void sweep(const std::vector<Contour>& contours, bool lids, Placing place, Facets& out) {
     std::vector<dvec2> all;
     for (const Contour& c : contours) {
+        assert(c.size() >= 3);
         all.insert(all.end(), c.begin(), c.end());
-        // Outside is to the right of a counterclockwise curve; a hole's outside is its inside.
+        // Outside is to the right of a counterclockwise curve, but to the left where it is a hole.
         const auto depth = std::count_if(contours.begin(), contours.end(), [&](const Contour& o) {
             return &o != &c && is_inside(c[0], o);
         });

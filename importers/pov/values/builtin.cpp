@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each function of the language as one row of a table.
+// Tables of the language's functions and constants, each in one row.
 #include "importers/pov/values/builtin.h"
 
 #include "importers/file/text.h"
@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <unordered_map>
@@ -64,6 +65,7 @@ const std::unordered_map<std::string_view, FloatFunction> kFloatFunctions = {
     {"tanh", {1, [](Args a) { return std::tanh(a[0]); }}}};
 
 Number call_float_function(Reader& reader, const Token& token) {
+    assert(find_float_function(token.name->text));
     const FloatFunction& function = *find_float_function(token.name->text);
     reader.expect('(', token.name->text);
     double values[2] = {parse_float(reader), 0};
@@ -86,7 +88,7 @@ Number call_float_function(Reader& reader, const Token& token) {
     return Number::of(result);
 }
 
-/// The arguments of a function of vectors.
+/// Reads the arguments, in parentheses, of a function of vectors.
 template <size_t N>
 std::array<dvec3, N> vectors(Reader& reader, const Token& token) {
     std::array<dvec3, N> values;
@@ -128,7 +130,7 @@ Number seed(Reader& reader, const Token& token) {
     return Number::of(double(reader.random_streams.size() - 1));
 }
 
-/// POV-Ray 3.7's generator, number by number.
+/// Gives the same numbers as POV-Ray 3.7's generator.
 Number rand(Reader& reader, const Token& token) {
     reader.expect('(', token.name->text);
     const double stream = parse_float(reader);
@@ -154,7 +156,7 @@ Number select_one(Reader& reader, const Token& token) {
     return sign < 0 ? choices[0] : sign == 0 ? choices[1] : choices.back();
 }
 
-/// defined(NAME).
+/// Reads defined(NAME), whose name need not be declared.
 Number defined(Reader& reader, const Token& token) {
     reader.expect('(', token.name->text);
     const Token name = reader.next();
@@ -163,6 +165,7 @@ Number defined(Reader& reader, const Token& token) {
     return Number::of(slot && !std::holds_alternative<std::monostate>(slot->value));
 }
 
+/// Reads `(` and the name of an array, which its variable owns.
 const Array& parse_array(Reader& reader, const Token& token) {
     reader.expect('(', token.name->text);
     const Token name = reader.next();
@@ -304,7 +307,7 @@ const std::unordered_map<std::string_view, Builtin> kBuiltins = {
     {"inside", refuse},
     {"vturbulence", refuse}};
 
-/// Cuts what a scene might make as long as memory.
+/// A loop of concat() could otherwise fill the memory.
 constexpr size_t kLongestText = size_t(1) << 20;
 
 std::string number_text(double value, int length, int precision) {

@@ -6,19 +6,21 @@
 
 namespace ovc::pov {
 
-/// `sin(1)` after the word `sin`, `pi`, `x`; nothing where the word is none of them. Texts as
-/// arguments included.
+/// Returns the function that reads the rest of `sin(1)`, `strlen("a")`, `pi` or `x` after the word,
+/// which it gets as a token. Returns null for a word that stands for no number.
 using Builtin = Number (*)(Reader&, const Token&);
 Builtin find_builtin(std::string_view word);
 
-/// A function of floats that a function { } may call too; count: of its arguments.
+/// A function of floats that a function { } may call too.
 struct FloatFunction {
-    int count;
+    int count; // of arguments; -1: any number, with which it is called two at a time
     double (*call)(const double* arguments);
 };
+/// Returns null where the word is no such function.
 const FloatFunction* find_float_function(std::string_view word);
 
-/// `concat("a", "b")` after the word; nothing where the word is no such function.
+/// Returns the function that reads the rest of `concat("a", "b")` after the word, or null where the
+/// word is no function that gives a text.
 using TextFunction = std::string (*)(Reader&);
 TextFunction find_text_function(std::string_view word);
 

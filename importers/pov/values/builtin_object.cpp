@@ -7,19 +7,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace ovc::pov {
 
 namespace {
 
-/// So many triangles of objects that were asked about are kept, for the next question.
-constexpr uint64_t kMaxKept = 10'000'000;
-constexpr size_t kMaxTargets = 1000; // that many small objects
-/// Cutting so many takes about as long as running over a word.
+/// Objects that a scene traced are kept for its next rays, up to these numbers.
+constexpr uint64_t kMaxKept = 10'000'000; // triangles of all objects
+constexpr size_t kMaxTargets = 1000;      // objects
+/// Cutting so many triangles takes about as long as reading a word.
 constexpr uint64_t kTrianglesAWord = 16;
 
-/// Finding the box around a shape or two takes about as long as running over so many.
+/// Finding the box around one or two shapes takes about as long as reading so many words.
 constexpr uint64_t kWordsABox = 200;
 
 ObjectPtr parse_object_name(Reader& reader) {
@@ -50,6 +51,7 @@ std::shared_ptr<const TraceTarget> target_of(Reader& reader, const ObjectPtr& ob
 } // namespace
 
 Number parse_extent(Reader& reader, const Token& token) {
+    assert(token.is("min_extent") || token.is("max_extent"));
     reader.expect('(', token.name->text);
     const ObjectPtr object = parse_object_name(reader);
     reader.expect(')', token.name->text);

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions that ask about an object: min_extent, max_extent, trace. Each from the ( on.
+// Reads the functions that ask about an object, min_extent, max_extent and trace, from their ( on.
 #pragma once
 
 #include "importers/pov/values/expression.h"
 
 namespace ovc::pov {
 
-/// (OBJECT): the corner of its box that `token` names.
+/// Reads (OBJECT). Returns the corner of its box that `token`, min_extent or max_extent, names.
 Number parse_extent(Reader& reader, const Token& token);
 
-/// (OBJECT, FROM, DIRECTION [, NORMAL]): where a ray first meets it; the normal of length 1 goes
-/// into the variable NORMAL. Both are 0 where nothing is met.
+/// Reads (OBJECT, FROM, DIRECTION [, NORMAL]). Returns the point where the ray first meets the
+/// object, and puts the normal of length 1 there into the variable NORMAL. Both are 0 where the ray
+/// misses.
 Number parse_trace(Reader& reader, const Token& token);
 
 } // namespace ovc::pov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recursive descent over POV-Ray's expressions.
+// Reads POV-Ray's expressions by recursive descent.
 #include "importers/pov/values/expression.h"
 
 #include "importers/file/text.h"
@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 
@@ -17,9 +18,10 @@ namespace ovc::pov {
 
 namespace {
 
-/// Both of one size: a float stands for all components, a shorter vector is filled with zeros.
+/// Gives both numbers one size. A float counts for all components, a shorter vector gets zeros.
 void make_alike(Number& a, Number& b) {
     const int size = std::max(a.size, b.size);
+    assert(std::min(a.size, b.size) >= 1 && size <= 5);
     for (Number* n : {&a, &b}) {
         if (n->size == 1)
             n->v.fill(n->v[0]);
@@ -44,6 +46,7 @@ double as_float(Reader& reader, const Number& n) {
     return n.v[0];
 }
 
+/// Returns the index of a component such as x or red; -1 for any other name.
 int component(std::string_view name) {
     static constexpr std::string_view kNames[][3] = {{"x", "u", "red"},
                                                      {"y", "v", "green"},
@@ -66,7 +69,7 @@ Number parse_member(Reader& reader, const Number& whole) {
     if (i < 0)
         reader.fail(name.place,
                     fmt::format("found {} after '.', expected a component such as x", found(name)));
-    // The filter of a plain vector is 0; a float is as long as one likes.
+    // The filter of a plain vector is 0, and a float has the same value in all components.
     if (whole.size == 1)
         return Number::of(v[0]);
     return Number::of(i < whole.size ? v[i] : 0);
@@ -121,7 +124,7 @@ Number parse_variable(Reader& reader, const Token& name) {
         reader.expect('(', name.name->text);
         const double clock = parse_float(reader);
         if (reader.take(','))
-            reader.next(); // the kind of spline to take it for
+            reader.next(); // the kind of spline, which we ignore
         reader.expect(')', "the clock of a spline");
         return at(*kept, clock);
     }
@@ -190,7 +193,7 @@ Number parse_product(Reader& reader) {
         if (op.is('*'))
             n = combined(n, right, [](double a, double b) { return a * b; });
         else {
-            // POV-Ray stops at a division by 0, but not where a component is 0 / 0 of a fill.
+            // POV-Ray stops where the divisor is the float 0. A vector's component of 0 gives 0.
             if (right.size == 1 && right.v[0] == 0)
                 reader.fail(op.place, "found a division by zero");
             n = combined(n, right, [](double a, double b) { return b == 0 ? 0 : a / b; });
@@ -204,7 +207,7 @@ bool is_comparison(const Token& token) {
 }
 
 bool holds(char op, double a, double b) {
-    // POV-Ray's equality has a little room; its < and > have none.
+    // POV-Ray's equality has a small tolerance; its < and > have none.
     constexpr double kRoom = 1e-10;
     switch (op) {
     case '<':
@@ -223,7 +226,7 @@ bool holds(char op, double a, double b) {
 }
 
 Number parse_comparison(Reader& reader) {
-    // Texts can be compared too, for being equal.
+    // Texts can only be compared for equality.
     if (starts_text(reader, reader.peek())) {
         const std::string left = parse_text(reader);
         const Token op = reader.next();
@@ -239,7 +242,7 @@ Number parse_comparison(Reader& reader) {
     return left;
 }
 
-/// Both sides are always read.
+/// Reads comparisons joined by & and |. Both sides are always evaluated.
 Number parse_choice_of(Reader& reader) {
     Number left = parse_comparison(reader);
     for (Token op = reader.peek_operator(); op.is('&') || op.is('|'); op = reader.peek_operator()) {
@@ -251,7 +254,7 @@ Number parse_choice_of(Reader& reader) {
     return left;
 }
 
-/// After rgb, rgbf, rgbt, rgbft or their srgb kin.
+/// Reads the number behind `word`: rgb, rgbf, rgbt, rgbft, or one of these with an s in front.
 void parse_rgb(Reader& reader, std::string_view word, Number& color) {
     const bool is_srgb = word[0] == 's';
     const std::string_view kind = word.substr(is_srgb ? 4 : 3);
@@ -263,7 +266,7 @@ void parse_rgb(Reader& reader, std::string_view word, Number& color) {
     color.v[4] = kind == "t" ? n.v[3] : kind == "ft" ? n.v[4] : 0;
 }
 
-/// The place of `red 0.5` and the like; -1: none.
+/// Returns the index of the channel in `red 0.5` and the like; -1 for any other word.
 int channel(const Token& token) {
     static constexpr std::string_view kChannels[] = {"red", "green", "blue", "filter", "transmit"};
     for (int i = 0; i < 5; ++i)
@@ -345,6 +348,7 @@ int parse_int(Reader& reader, int least, int most, std::string_view what) {
 }
 
 Number resized(Reader& reader, const Number& number, int size) {
+    assert(size >= 1 && size <= 5 && number.size >= 1 && number.size <= 5);
     Number n = number;
     if (n.size == 1)
         n.v.fill(n.v[0]);
@@ -446,18 +450,20 @@ Value* parse_item(Reader& reader, Array& array) {
         index = index * size + size_t(i);
         reader.expect(']', "an index");
     }
+    assert(index < array.items.size());
     return &array.items[index];
 }
 
-/// 0 where these are no digits of base 16.
+/// Returns the value of hexadecimal digits, or 0 where there are other letters.
 static uint32_t code_of(std::string_view digits) {
     uint32_t code = 0;
     const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), code, 16);
     return end.ptr == digits.data() + digits.size() ? code : 0;
 }
 
-/// Of a code below 2^16.
+/// Returns the UTF-8 of a code below 2^16.
 static std::string utf8(uint32_t code) {
+    assert(code < 0x10000);
     if (code < 0x80)
         return {char(code)};
     if (code < 0x800)
@@ -480,7 +486,7 @@ static std::string unescaped(std::string_view raw) {
         case 't':
             text += '\t';
             break;
-        case 'u': // four digits of base 16
+        case 'u': // four hexadecimal digits follow
             text += utf8(code_of(raw.substr(i + 1, 4)));
             i += std::min<size_t>(4, raw.size() - i - 1);
             break;

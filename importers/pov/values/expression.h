@@ -1,46 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
-// Expressions: floats, vectors, colors, texts.
+// Reads expressions: floats, vectors, colors and texts.
 #pragma once
 
 #include "importers/pov/words/reader.h"
 
 namespace ovc::pov {
 
-/// A sum of products: of any size. Ends before the first token that cannot go on with it.
+/// Reads a sum of products: a float, vector or color, up to the first token that cannot continue
+/// it. Like the functions below it throws ParseError where something else comes next.
 Number parse_number(Reader& reader);
-/// With comparisons, `&`, `|` and `?:`, as it stands in parentheses.
+/// Reads an expression as it may stand in parentheses, with comparisons, `&`, `|` and `?:`.
 Number parse_logical(Reader& reader);
 
 double parse_float(Reader& reader);
+/// Reads a float from `least` to below `most` + 1 and truncates it. `what` names it in the error.
 int parse_int(Reader& reader, int least, int most, std::string_view what);
-/// A float counts for all components.
+/// Reads a vector. A float counts for all components, here and in the next two functions.
 dvec3 parse_vector(Reader& reader);
 dvec2 parse_vector2(Reader& reader);
 Color parse_color(Reader& reader);
 std::string parse_text(Reader& reader);
-/// `(`, a logical expression, `)`.
+/// Reads `(`, a logical expression and `)`.
 double parse_condition(Reader& reader);
-/// What may follow a word such as `hollow`: on, off, a float; nothing: true.
+/// Reads the on, off or float that may follow a word such as `hollow`; true where there is none.
 bool parse_flag(Reader& reader);
 
-/// Whether an expression may begin with this token.
+/// Returns whether an expression may begin with this token.
 bool starts_number(const Reader& reader, const Token& token);
 bool starts_text(const Reader& reader, const Token& token);
-/// rgb, color, red, …
+/// Returns whether a color may begin with this token: rgb, color, red and the like.
 bool starts_color(const Token& token);
 
-/// A part of an sRGB color as the scene's colors are: light, or light ^ (1 / gamma).
+/// Returns a channel of an sRGB color as the scene's colors are: light ^ (1 / gamma). A gamma of 1
+/// gives light itself, and kSrgbGamma leaves `c` as it is.
 double from_srgb(double c, double gamma);
 
-/// From the first [ behind the array's name on.
+/// Reads the indices of an item, from the first [ behind the array's name. The array owns the item.
 Value* parse_item(Reader& reader, Array& array);
 
-/// Like a vector of `size`, or ParseError.
+/// Returns the number with `size` components, which is 1 to 5. Throws ParseError where it has more.
 Number resized(Reader& reader, const Number& number, int size);
 Color color_of(const Number& number);
 dvec3 vector_of(const Number& number);
 
-/// The object, texture or whatever else `token` names; null: it names nothing of this kind.
+/// Returns the object, texture or other value that `token` names, or null where it names nothing of
+/// this kind. The pointer is valid until the variable changes.
 template <class T>
 const T* named(const Reader& reader, const Token& token) {
     if (token.kind != TokenKind::Name || token.name->is_keyword)
@@ -49,8 +53,9 @@ const T* named(const Reader& reader, const Token& token) {
     return slot ? std::get_if<T>(&slot->value) : nullptr;
 }
 
-/// named() of the next token or, where that is an array, of the item that follows; taken. Nothing
-/// is taken where there is none.
+/// Takes the name of a value of this kind, or the name of an array with an item's indices, and
+/// returns the value. For any other token it takes nothing and returns nothing. Throws ParseError
+/// where the item is of another kind.
 template <class T>
 std::optional<T> take_named(Reader& reader) {
     const Token token = reader.next();
@@ -69,7 +74,7 @@ std::optional<T> take_named(Reader& reader) {
     return std::nullopt;
 }
 
-/// take_named(), but an array of other things is no error: nothing is taken.
+/// Does the same, but an array whose first item is of another kind is no error; nothing is taken.
 template <class T>
 std::optional<T> take_named_if(Reader& reader) {
     const Token token = reader.peek();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formulas become trees of closures.
+// Turns formulas into trees of closures.
 #include "importers/pov/values/function.h"
 
 #include "importers/file/text.h"
@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace ovc::pov {
@@ -23,7 +24,7 @@ public:
     FormulaParser(Reader& reader, std::vector<std::string> parameters)
         : reader_(reader), parameters_(std::move(parameters)) {}
 
-    /// How many closures stand in each other at most, those of functions that it calls included.
+    /// Returns an upper bound on how deep closures call each other, with those of called functions.
     uint32_t depth() const { return operations_ + called_; }
 
     Formula whole() {
@@ -39,8 +40,8 @@ public:
     }
 
 private:
-    /// Running a formula and ending it goes down as deep on the stack as closures stand in each
-    /// other, which is at most one an operation.
+    /// Calling a formula, and destroying it, takes as many stack frames as closures are nested,
+    /// which is at most one for each operation.
     void count_operation() {
         ++operations_;
         if (depth() > reader_.limits.operations)
@@ -154,7 +155,7 @@ private:
             return call_user(token, *function);
         if (find_builtin(text) || named<Number>(reader_, token) ||
             named<std::shared_ptr<Array>>(reader_, token)) {
-            // A constant: pi, a variable, an item, V.x.
+            // A constant: pi, a variable, an array's item or a component such as V.x.
             reader_.put_back(token);
             return constant(parse_constant());
         }
@@ -164,6 +165,7 @@ private:
 
     double parse_constant() {
         const Token token = reader_.next();
+        assert(token.kind == TokenKind::Name);
         Number n;
         if (const Builtin builtin = find_builtin(token.name->text))
             n = builtin(reader_, token);
@@ -200,7 +202,7 @@ private:
             reader_.fail(token.place,
                          fmt::format("found {} arguments to {}, expected {}", given.size(),
                                      token.name->text, any ? 2 : function.count));
-        if (any) // min and max: of two at a time
+        if (any) // min and max take two arguments at a time
             return [given, call = function.call](std::span<const double> x) {
                 double pair[2] = {given[0](x), 0};
                 for (size_t i = 1; i < given.size(); ++i) {
@@ -233,7 +235,7 @@ private:
         called_ = std::max(called_, function->depth);
         count_operation();
         if (reader_.take('.'))
-            reader_.next(); // a component of a pigment's color: what it is called on is refused
+            reader_.next(); // a component of a pigment's color; call() refuses such functions
         return [given, function, token, this_reader = &reader_](std::span<const double> x) {
             std::vector<double> values;
             for (const Formula& formula : given)
@@ -266,7 +268,7 @@ std::vector<std::string> parse_parameters(Reader& reader) {
 
 } // namespace
 
-/// `internal(N)`, as functions.inc has it.
+/// Reads `internal(N)`, with which functions.inc declares its functions.
 static void parse_internal(Reader& reader, Function& function) {
     reader.next();
     reader.expect('(', "internal");
@@ -279,6 +281,7 @@ static void parse_internal(Reader& reader, Function& function) {
         return;
     }
     function.parameters = size_t(internal.count);
+    assert(function.parameters <= 8);
     function.formula = [internal](std::span<const double> x) {
         std::array<double, 8> all{};
         std::copy_n(x.begin(), std::min(x.size(), all.size()), all.begin());
@@ -290,7 +293,7 @@ std::shared_ptr<const Function> parse_function(Reader& reader) {
     auto function = std::make_shared<Function>();
     const std::vector<std::string> parameters = parse_parameters(reader);
     function->parameters = parameters.size();
-    if (!reader.peek().is('{')) { // of an image or a height_field made from it
+    if (!reader.peek().is('{')) { // the grid of an image or a height_field
         function->grid.x = parse_float(reader);
         reader.take_comma();
         function->grid.y = parse_float(reader);
@@ -306,7 +309,7 @@ std::shared_ptr<const Function> parse_function(Reader& reader) {
     else if (first.is("pigment") || first.is("pattern")) {
         function->refused = fmt::format("the function is {} {{ }}, which Overcast does not compute",
                                         first.name->text);
-        skip_block(reader); // up to and with the function's own }
+        skip_block(reader); // takes the function's } too
         return function;
     } else {
         FormulaParser parser(reader, parameters);
@@ -323,6 +326,7 @@ Number call(Reader& reader, const Token& name, const Function& function,
     if (!function.refused.empty())
         reader.fail(name.place, fmt::format("{} cannot be called: {}", ovc::quoted(name.name->text),
                                             function.refused));
+    assert(function.formula || function.spline || function.transform);
     if (function.formula)
         return Number::of(function.formula(arguments));
     if (function.spline)

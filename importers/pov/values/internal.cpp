@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formulas found from the parameters that functions.inc describes, and checked against values that
-// povray 3.7.0 prints (pov_test.cpp).
+// The formulas follow from the parameters that functions.inc describes. pov_test.cpp checks them
+// against values that povray 3.7.0 prints.
 #include "importers/pov/values/internal.h"
 
 #include <algorithm>

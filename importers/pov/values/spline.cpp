@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interpolation as POV-Ray 3.7 does it: cubic_spline is Catmull and Rom's over uneven clocks.
+// Interpolates as POV-Ray 3.7 does. A cubic_spline is Catmull and Rom's spline over uneven clocks.
 #include "importers/pov/values/spline.h"
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 
 namespace ovc::pov {
@@ -44,7 +45,7 @@ struct Point {
     Number value;
 };
 
-/// Lagrange's through three points.
+/// Returns component i at t of Lagrange's polynomial through three points.
 double quadratic(const Point* p, size_t i, double t) {
     double sum = 0;
     for (int a = 0; a < 3; ++a) {
@@ -57,7 +58,8 @@ double quadratic(const Point* p, size_t i, double t) {
     return sum;
 }
 
-/// Hermite's between p[1] and p[2], slopes by the neighbours.
+/// Returns component i at t of Hermite's polynomial between p[1] and p[2], whose slopes follow from
+/// their neighbours.
 double cubic(const Point* p, size_t i, double t) {
     const auto slope = [&](int a, int b) {
         return (p[b].value.v[i] - p[a].value.v[i]) / (p[b].clock - p[a].clock);
@@ -69,9 +71,10 @@ double cubic(const Point* p, size_t i, double t) {
     return v1 + u * (m1 + u * (3 * (v2 - v1) - 2 * m1 - m2 + u * (2 * (v1 - v2) + m1 + m2)));
 }
 
-/// The second derivatives of the natural spline through the points.
+/// Returns the second derivatives of the natural spline through component i of the points.
 std::vector<double> curvatures(const std::vector<Point>& p, size_t i) {
     const size_t n = p.size();
+    assert(n >= 3);
     std::vector<double> m(n, 0), diagonal(n, 1), right(n, 0);
     for (size_t k = 1; k + 1 < n; ++k) {
         const double before = p[k].clock - p[k - 1].clock, after = p[k + 1].clock - p[k].clock;
@@ -100,6 +103,7 @@ double natural(const std::vector<Point>& p, size_t k, size_t i, double t) {
 } // namespace
 
 Number at(const Spline& spline, double clock) {
+    assert(!spline.points.empty());
     std::vector<Point> p;
     int size = 1;
     for (const auto& [t, value] : spline.points) {
@@ -113,7 +117,7 @@ Number at(const Spline& spline, double clock) {
     result.size = size;
     if (clock <= p.front().clock || clock >= p.back().clock)
         return result;
-    size_t k = 0; // the piece: between k and k + 1
+    size_t k = 0; // the piece between points k and k + 1
     while (p[k + 1].clock <= clock)
         ++k;
     Spline::Kind kind = spline.kind;

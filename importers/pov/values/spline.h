@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// spline { }: points by a clock.
+// Reads spline { }, which interpolates points by a clock.
 #pragma once
 
 #include "importers/pov/values/expression.h"
 
 namespace ovc::pov {
 
-/// Behind the word `spline`.
+/// Reads a spline from behind the word `spline`. It has at least one point.
 std::shared_ptr<const Spline> parse_spline(Reader& reader);
 
-/// The point at `clock`; before the first and behind the last it stays there.
+/// Returns the point at `clock`. Before the first point it is the first, behind the last the last.
 Number at(const Spline& spline, double clock);
 
 } // namespace ovc::pov

@@ -22,7 +22,7 @@ dmat4 scaling(const dvec3& by) {
     return m;
 }
 
-/// Exact for whole right angles.
+/// Returns the sine and the cosine, which are exact for multiples of 90 degrees.
 static dvec2 sine_and_cosine(double degrees) {
     const double turns = degrees / 90;
     if (turns == std::floor(turns) && std::abs(turns) < 1e9) {
@@ -63,7 +63,7 @@ dmat4 rotation_about(const dvec3& axis, double radians) {
     return m;
 }
 
-/// matrix <…>: twelve numbers, the rows of POV-Ray's, which are our columns.
+/// Reads the twelve numbers of matrix <…>. POV-Ray's rows are our columns.
 static dmat4 parse_matrix(Reader& reader) {
     reader.expect('<', "matrix");
     dmat4 m(1);

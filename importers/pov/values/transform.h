@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// translate, rotate, scale, matrix, transform: matrices that take a point p to M p.
+// Reads translate, rotate, scale, matrix and transform as matrices M that take a point p to M p.
 #pragma once
 
 #include "importers/pov/values/expression.h"
@@ -8,15 +8,16 @@ namespace ovc::pov {
 
 dmat4 translation(const dvec3& by);
 dmat4 scaling(const dvec3& by);
-/// About x, then y, then z, in degrees.
+/// Returns the rotation about x, then y, then z. It is exact for multiples of 90 degrees.
 dmat4 rotation(const dvec3& degrees);
+/// Returns the rotation about an axis of any length; about 0 it rotates nothing.
 dmat4 rotation_about(const dvec3& axis, double radians);
 
-/// The transformation that comes next, its word included; nothing, and nothing taken, where none
-/// does.
+/// Takes the transformation that comes next, its word included. Takes and returns nothing where
+/// the next token is another word.
 std::optional<dmat4> take_transform(Reader& reader);
 
-/// What stands between `transform {` and its }, both still to come: `{ rotate 90*x inverse }`.
+/// Reads `{ rotate 90*x inverse }`, which stands behind the word transform.
 dmat4 parse_transform_block(Reader& reader);
 
 } // namespace ovc::pov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an identifier of the scene language can stand for.
+// The kinds of value that an identifier of the scene language can have.
 #pragma once
 
 #include "core/scene.h"
@@ -22,8 +22,8 @@ struct Macro;
 struct Function;
 struct Spline;
 
-/// A float (size 1), a vector of 2 to 4, or five: a color (red, green, blue, filter, transmit) or a
-/// vector of five.
+/// A float (size 1), a vector of 2 to 5 components, or a color (size 5: red, green, blue, filter,
+/// transmit).
 struct Number {
     std::array<double, 5> v{};
     int size = 1;
@@ -33,10 +33,9 @@ struct Number {
     static Number of(const dvec3& p) { return {{p.x, p.y, p.z}, 3, false}; }
 };
 
-/// Something about a look that is drawn by an approximation, or left out: a warning where the look
-/// is to be seen. kind: of several alike the first is told.
+/// A part of a look that Overcast approximates or leaves out, which warns where the look is drawn.
 struct Note {
-    std::string kind;
+    std::string kind; // only the first note of a kind becomes a warning
     Place place;
     std::string sentence;
 };
@@ -47,7 +46,7 @@ inline std::shared_ptr<const Note> make_note(std::string kind, const Place& plac
     return std::make_shared<const Note>(Note{std::move(kind), place, std::move(sentence)});
 }
 
-/// A color with what it lets through: light x color x filter + light x transmit.
+/// A color and its transparency: it lets through light x color x filter + light x transmit.
 struct Color {
     vec3 rgb{0};
     float filter = 0;
@@ -60,27 +59,28 @@ struct Color {
 struct Pigment {
     Color color;
     std::optional<Color> other; // of a checker
-    dmat4 placed{1};            // where a checker stands
+    dmat4 placed{1};            // from a checker's space to that of the object's parent
     Notes notes;
 };
 
-/// A finish, and what it is without the scene: ambient and emission are still apart.
+/// A finish as the scene states it. flatten.cpp computes finish.ambient from ambient, emission and
+/// the scene's ambient_light.
 struct Surface {
     Finish finish;
     vec3 ambient{0.1f};
     vec3 emission{0};
-    /// As scenes before interiors came have them: a finish's own, which counts more than that of
-    /// an interior, and what the light that is let through is multiplied by.
+    /// Old scenes give these in a finish. This ior takes precedence over an interior's, and
+    /// refraction is a factor of the light that the surface lets through.
     std::optional<double> ior;
     float refraction = 1;
     Notes notes;
 };
 
-/// All layers of a texture, drawn together.
+/// A texture whose layers are combined into one.
 struct Texture {
     Pigment pigment;
     Surface surface;
-    Notes notes; // of the whole
+    Notes notes; // of the whole texture
 };
 
 struct Interior {
@@ -93,7 +93,7 @@ struct Material {
     std::optional<Interior> interior;
 };
 
-/// A color_map or any other map, drawn together: the average over [0, 1] of its values.
+/// A color_map or any other map, of which only the average over [0, 1] is kept.
 struct ColorMap {
     Color average;
 };
@@ -103,7 +103,7 @@ struct SkySphere {
     std::vector<Pigment> pigments;
 };
 
-/// Something that has a name and is of no use here: a media, a fog, a normal.
+/// A declared value that Overcast does not use: a media, a fog, a normal.
 struct Opaque {
     std::string kind;
 };
@@ -117,21 +117,21 @@ using Value = std::variant<std::monostate, Number, std::string, std::shared_ptr<
                            std::shared_ptr<const Function>, std::shared_ptr<const Spline>,
                            std::shared_ptr<const CameraValue>, std::shared_ptr<DataFile>, Opaque>;
 
-/// "a float", "an object": what a message calls it.
+/// Returns what a message calls the value: "a number", "an object".
 std::string kind_of(const Value& value);
 
-/// A variable. A parameter that a macro takes by reference is bound to the caller's.
+/// A variable. A macro's parameter that is passed by reference shares the caller's slot.
 struct Slot {
     Value value;
 };
 
 struct Array {
     std::vector<size_t> sizes; // of the dimensions
-    std::vector<Value> items;  // the last index counts fastest
-    uint32_t depth = 1;        // of arrays in arrays
+    std::vector<Value> items;  // the last index varies fastest
+    uint32_t depth = 1;        // of nested arrays
 };
 
-/// The tokens [first, last) of a file, run in the place of a call.
+/// A macro, whose body is the tokens [first, last) of a file.
 struct Macro {
     Name* name = nullptr;
     std::vector<Name*> parameters;
@@ -140,7 +140,7 @@ struct Macro {
     size_t last = 0;
 };
 
-/// The points of a spline { }, by their clock.
+/// The points of a spline { } by their clock.
 struct Spline {
     enum class Kind { Linear, Quadratic, Cubic, Natural };
     Kind kind = Kind::Linear;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks that are passed over.
+// Skips blocks that Overcast does not read.
 #pragma once
 
 #include "importers/pov/words/reader.h"
 
 namespace ovc::pov {
 
-/// Passes over everything up to the } that ends the block this stands in; that } is taken.
+/// Skips everything up to the end of the current block and takes its }.
 void skip_block(Reader& reader);
-/// `{ … }`, from the { on.
+/// Skips `{ … }` from its { on. `after` names the word in front of it for messages.
 void skip_braces(Reader& reader, std::string_view after);
 
 } // namespace ovc::pov

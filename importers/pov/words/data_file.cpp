@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <charconv>
 
 namespace ovc::pov {
@@ -26,6 +27,7 @@ std::optional<double> DataFile::read_float() {
 }
 
 std::optional<Value> DataFile::read() {
+    assert(at_ <= text.size() && !writes);
     skip_space();
     std::optional<Value> value;
     if (ended())

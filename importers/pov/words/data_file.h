@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// DataFile: what #fopen opens: values one after the other, read or written. Nothing is written to
-// disk; what a scene writes it can read again.
+// DataFile: a file that #fopen opens, to read or write values one after the other. It is kept in
+// memory only: a scene can read again what it writes, but nothing is written to disk.
 #pragma once
 
 #include "importers/pov/values/value.h"
@@ -12,11 +12,12 @@ struct DataFile {
     std::string text;
     bool writes = false;
 
-    /// The next text, float or vector; nothing where something else stands there. Behind it, spaces
-    /// and a comma are passed over.
+    /// Reads the next text, float or vector, and skips spaces and a comma behind it. Returns
+    /// nothing where something else, or nothing, comes next.
     std::optional<Value> read();
     bool ended() const { return at_ >= text.size(); }
-    /// A text as it is, a float or vector as it is read again. Nothing else: false.
+    /// Appends a text as it is, or a float or vector in the form that read() takes. Returns false
+    /// and writes nothing for any other value.
     bool write(const Value& value);
     void skip_space();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directives: declarations, conditions, loops, includes, macros and messages.
+// Obeys directives: declarations, conditions, loops, includes, macros and messages.
 #include "importers/file/text.h"
 #include "importers/pov/words/files.h"
 #include "importers/pov/words/reader.h"
@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <unordered_map>
 
@@ -92,7 +93,7 @@ void Reader::take_semicolon() {
 void Reader::do_declare(bool local) {
     const Deeper deeper(*this);
     Name* name = raw_name(local ? "#local" : "#declare");
-    if (name->text == "deprecated") { // deprecated once "why" NAME
+    if (name->text == "deprecated") { // the form is: deprecated once "why" NAME
         while (peek_raw().kind == TokenKind::Text || peek_raw().is("once"))
             raw();
         name = raw_name("deprecated");
@@ -112,8 +113,8 @@ void Reader::do_declare(bool local) {
         return take_semicolon();
     }
     raw_expect('=', name->text);
-    // The value may end in a macro that is still running, or behind the end of the one that this
-    // stands in, whose variables are gone.
+    // A macro that gives the value may still run afterwards, and the macro with this directive may
+    // have ended, which removes its variables. So the scope is chosen before.
     const uint32_t scope = scope_of(name, local);
     Value value = hooks_.value(*this);
     if (scope < scopes_.size())
@@ -196,7 +197,7 @@ bool Reader::is_defined() {
 }
 
 std::string_view Reader::skip(bool stop_at_else, bool stop_at_case) {
-    const int64_t brackets = brackets_; // those passed over do not count
+    const int64_t brackets = brackets_; // skipped brackets do not count
     size_t depth = 0;
     for (;;) {
         brackets_ = brackets;
@@ -237,7 +238,7 @@ void Reader::do_else(const Token& at) {
         (frame().open.back().kind == Condition::Kind::If && (d == "case" || d == "range")))
         fail(at.place, fmt::format("found #{} without what it belongs to", d));
     if (frame().open.back().kind == Condition::Kind::Switch) {
-        // What ran before goes on here, as in C.
+        // The case before this one falls through, as in C.
         if (d == "case" || d == "range")
             case_matches(d, 0);
         return;
@@ -293,6 +294,7 @@ void Reader::count_round(Condition& loop) const {
 }
 
 void Reader::test_while(Condition& loop) {
+    assert(loop.kind == Condition::Kind::While);
     if (loop.rounds > 0 && loop.changes == changes_)
         fail(loop.place, "stopped after a round that changed nothing: the loop does not end");
     count_round(loop);
@@ -330,8 +332,9 @@ void Reader::do_for(const Token& at) {
 }
 
 bool Reader::test_for(Condition& loop) const {
+    assert(loop.kind == Condition::Kind::For && loop.counter);
     count_round(loop);
-    // As POV-Ray 3.7: a step that does not divide the range evenly may be off by a rounding.
+    // As in POV-Ray 3.7 the last value may be missed by a rounding error.
     const double at = std::get<Number>(loop.counter->value).v[0];
     const double slack = std::abs(loop.step) * 1e-10;
     return loop.step > 0 ? at <= loop.last + slack : at >= loop.last - slack;
@@ -346,6 +349,7 @@ void Reader::do_switch(const Token& at) {
 }
 
 void Reader::next_case() {
+    assert(!frame().open.empty() && frame().open.back().kind == Condition::Kind::Switch);
     const double value = frame().open.back().value;
     for (;;) {
         const std::string_view stop = skip(/* stop_at_else= */ false, /* stop_at_case= */ true);
@@ -404,10 +408,11 @@ void Reader::do_macro() {
     macro->first = frame().at;
     Condition block{Condition::Kind::If};
     block.place = at;
-    frame().open.push_back(block); // so that skip() can say where it began
+    frame().open.push_back(block); // so that skip() can name its place in an error
     skip(false, false);
     frame().open.pop_back();
     macro->last = frame().at - 1;
+    assert(macro->first <= macro->last);
     declare(macro->name, /* local= */ false).value = std::shared_ptr<const Macro>(macro);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// #fopen, #read, #write, #fclose. A file's name is a variable, undefined once all is read: scenes
-// ask with defined() whether there is more.
+// Obeys #fopen, #read, #write and #fclose. A file's name is a variable, which becomes undefined
+// once all is read: scenes ask with defined() whether there is more.
 #include "importers/file/text.h"
 #include "importers/pov/words/data_file.h"
 #include "importers/pov/words/files.h"
@@ -10,7 +10,7 @@
 
 namespace ovc::pov {
 
-/// What a scene may write in all.
+/// A scene may write this many bytes in all.
 static constexpr size_t kMaxWritten = size_t(64) << 20;
 
 std::shared_ptr<DataFile> Reader::raw_file(std::string_view after, bool writes) {
@@ -62,7 +62,7 @@ void Reader::do_fclose() {
         }
 }
 
-/// #read (FILE, VARIABLE, VARIABLE …)
+/// Reads the (FILE, VARIABLE, VARIABLE …) of #read.
 void Reader::do_read() {
     raw_expect('(', "#read");
     changed();
@@ -92,7 +92,7 @@ void Reader::do_read() {
         undefine(name);
 }
 
-/// #write (FILE, VALUE, VALUE …)
+/// Reads the (FILE, VALUE, VALUE …) of #write.
 void Reader::do_write() {
     raw_expect('(', "#write");
     const std::shared_ptr<DataFile> file = raw_file("#write", /* writes= */ true);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files by name, and their text.
+// Finds files by name and reads their text.
 #include "importers/pov/words/files.h"
 
 #include "importers/file/source.h"
@@ -11,7 +11,7 @@ namespace ovc::pov {
 
 namespace fs = std::filesystem;
 
-/// Where Debian's povray-includes and a build of one's own install them.
+/// Debian's povray-includes and POV-Ray's own build install the include files here.
 static constexpr const char* kLibraries[] = {
     "/usr/share/povray-3.7/include", "/usr/share/povray/include",
     "/usr/local/share/povray-3.7/include", "/usr/local/share/povray-3.8/include"};
@@ -22,7 +22,7 @@ static std::string lower(std::string text) {
     return text;
 }
 
-/// The entry of `folder` that is called `name` in letters of any size.
+/// Returns the entry of `folder` that is called `name`, regardless of upper and lower case.
 static std::optional<fs::path> entry_like(const fs::path& folder, const fs::path& name) {
     std::error_code ec;
     if (name == ".." || fs::exists(folder / name, ec))
@@ -58,7 +58,7 @@ fs::path find_file(std::string name, std::string_view extension,
     places.insert(places.end(), std::begin(kLibraries), std::end(kLibraries));
     std::error_code ec;
     for (const fs::path& path : paths)
-        for (const fs::path& place : places) { // an absolute path stays as it is
+        for (const fs::path& place : places) { // an absolute `path` replaces `place`
             note(files, place / path);
             if (fs::is_regular_file(place / path, ec))
                 return place / path;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words that POV-Ray 3.7 keeps for itself: none of them can be declared.
+// The words that POV-Ray 3.7 reserves: a scene cannot declare them.
 #pragma once
 
 #include <string_view>

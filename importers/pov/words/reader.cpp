@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stream of tokens: frames of files and macros, scopes of variables. directives.cpp obeys.
+// The stream of tokens, with frames of files and macros and scopes of variables. directives.cpp and
+// directives_file.cpp obey directives.
 #include "importers/pov/words/reader.h"
 
 #include "importers/file/available_memory.h"
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pov {
 
@@ -19,6 +21,7 @@ Deeper::Deeper(Reader& reader) : reader_(reader) {
 }
 
 Deeper::~Deeper() {
+    assert(reader_.depth_ > 0);
     --reader_.depth_;
 }
 
@@ -37,10 +40,11 @@ Reader::Reader(Hooks hooks, LogSink log, std::string main_folder, FilesRead* fil
       folder_(std::move(main_folder)),
       files_read_(files_read),
       available_(available_memory()) {
-    push_scope(); // of the scene: what #declare makes
+    push_scope(); // the scene's own scope, for #declare
 }
 
 void Reader::open(std::unique_ptr<SourceFile> file) {
+    assert(file && frames_.empty());
     files_.push_back(std::move(file));
     SourceFile* opened = files_.back().get();
     tokenize(*opened, names_);
@@ -87,11 +91,12 @@ Token Reader::step(bool hold_directives) {
         last_ = token.place;
         if (token.kind == TokenKind::Directive) {
             if (hold_directives && ends_value()) {
+                assert(frame().at > 0);
                 --frame().at;
                 return token;
             }
             obey(token);
-            if (!back_.empty()) // what ended the directive's expression
+            if (!back_.empty()) // the token that ended the directive's expression
                 return next();
             continue;
         }
@@ -113,7 +118,7 @@ void Reader::spend(uint64_t words) {
 }
 
 void Reader::grow(uint64_t bytes) {
-    constexpr uint64_t kBetweenChecks = uint64_t(64) << 20; // asking the system takes a while
+    constexpr uint64_t kBetweenChecks = uint64_t(64) << 20; // bytes; asking the system is slow
     grown_ += bytes;
     unchecked_ += bytes;
     if (unchecked_ < kBetweenChecks)
@@ -143,6 +148,7 @@ Token Reader::raw() {
             return frame().file->tokens.back();
         pop_frame();
     }
+    assert(!frames_.empty());
     const Token& token = frame().file->tokens[frame().at++];
     if (token.is('(') || token.is('[') || token.is('{'))
         ++brackets_;
@@ -157,6 +163,7 @@ const Token& Reader::peek_raw() const {
 }
 
 void Reader::pop_frame() {
+    assert(frames_.size() > 1 && frames_.back().scope + 1 == scopes_.size());
     frames_.pop_back();
     pop_scope();
 }
@@ -178,6 +185,7 @@ Slot* Reader::find(const Name* name) const {
 }
 
 void Reader::bind(Name* name, uint32_t scope, Slot* slot) {
+    assert(scope < scopes_.size() && slot);
     auto at = name->bound.end();
     while (at != name->bound.begin() && (at - 1)->scope > scope)
         --at;
@@ -200,6 +208,7 @@ Slot& Reader::declare(Name* name, bool local) {
 }
 
 Slot& Reader::declare_in(uint32_t scope, Name* name) {
+    assert(scope < scopes_.size());
     changed();
     for (const Name::Bound& bound : name->bound)
         if (bound.scope == scope)
@@ -264,7 +273,7 @@ void Reader::call(const Token& at, const std::shared_ptr<const Macro>& macro) {
         fail(at.place, fmt::format("found macros and includes more than {} deep in each other: "
                                    "{} does not end",
                                    limits.nesting, macro->name->text));
-    const std::shared_ptr<const Macro> kept = macro; // an argument may declare it anew
+    const std::shared_ptr<const Macro> kept = macro; // an argument may redeclare the macro
     const size_t scopes = scopes_.size();
     std::vector<std::pair<Slot*, Value>> arguments;
     expect('(', macro->name->text);
@@ -292,7 +301,7 @@ void Reader::call(const Token& at, const std::shared_ptr<const Macro>& macro) {
 
 std::pair<Slot*, Value> Reader::argument(size_t scopes) {
     const Token first = next();
-    // Where a macro gives the argument, its own variables are gone behind it: their value counts.
+    // A macro within the argument loses its variables when it ends, so they are passed by value.
     const bool is_passing =
         !first.name || (!first.name->bound.empty() && first.name->bound.back().scope >= scopes);
     if (first.kind == TokenKind::Name && !first.name->is_keyword && !is_passing) {

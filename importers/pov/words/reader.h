@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reader: the tokens of a scene in the order in which they count: directives obeyed, includes and
-// macros put in.
+// Reader: the tokens of a scene in the order in which they take effect. It obeys directives itself
+// and inserts the tokens of includes and macros.
 #pragma once
 
 #include "core/scene.h"
@@ -14,27 +14,27 @@
 
 namespace ovc::pov {
 
-/// Bounds on what a scene may make a reader do, each far beyond what scenes do.
+/// Bounds on the work that a scene may cause, each far beyond what real scenes need.
 struct Limits {
-    uint64_t tokens = 0;   // run over in all
+    uint64_t tokens = 0;   // read in all, with those of further rounds and calls
     size_t nesting = 1000; // includes and macros inside each other
-    /// A loop is taken for one that does not end beyond both of these without making anything, and
-    /// a #while beyond `rounds` without reading from a file.
+    /// A loop counts as endless once it has exceeded both of these without making anything, and a
+    /// #while also once it has run `rounds` rounds without reading from a file.
     uint64_t idle_rounds = 100'000, idle_tokens = 15'000'000;
     uint64_t rounds = 1'000'000;
     uint64_t objects = 20'000'000;
     uint64_t triangles = 0; // of an object that the scene asks about
     uint64_t array_items = 2'000'000;
     uint32_t chain = 2000;      // groups in groups, arrays in arrays
-    uint32_t operations = 4000; // of a function and what it calls
-    size_t depth = 400; // blocks and parentheses inside each other: the C++ stack holds as many
+    uint32_t operations = 4000; // of a function and those it calls
+    size_t depth = 400; // blocks and parentheses inside each other, for which the stack has room
 };
 
 class Reader;
 class Font;
 class TraceTarget;
 
-/// Counts how deep the parser stands in itself; throws ParseError beyond Limits::depth.
+/// Counts how deep the parser's functions call each other. Throws ParseError beyond Limits::depth.
 class Deeper {
 public:
     explicit Deeper(Reader& reader);
@@ -46,8 +46,8 @@ private:
     Reader& reader_;
 };
 
-/// A vector is being read: as in parentheses, directives are obeyed wherever they stand. Of '<' the
-/// reader cannot tell by itself that it is a bracket.
+/// Tells the reader that a vector is being read, in which directives are obeyed wherever they
+/// stand, as in parentheses. The reader cannot tell by itself whether a '<' is a bracket.
 class InVector {
 public:
     explicit InVector(Reader& reader);
@@ -61,72 +61,74 @@ private:
 
 class Reader {
 public:
-    /// What directives need of those who parse: expressions.cpp, scene.cpp.
+    /// The parser's functions that directives call: pov.cpp passes those of parse/ and values/.
     struct Hooks {
         std::function<Value(Reader&)> value;
         std::function<double(Reader&)> number;       // a float expression
-        std::function<double(Reader&)> condition;    // one that may compare, between parentheses
-        std::function<Value*(Reader&, Array&)> item; // of an array, from the first [ on
-        std::function<void(Reader&)> defaults;       // of #default
+        std::function<double(Reader&)> condition;    // one that may compare, in parentheses
+        std::function<Value*(Reader&, Array&)> item; // an array's item, from the first [ on
+        std::function<void(Reader&)> defaults;       // the block of #default
     };
 
-    /// files_read: receives what is looked for and read; or null.
+    /// `files_read`, or null, receives every file that is looked for or read.
     Reader(Hooks hooks, LogSink log, std::string main_folder, FilesRead* files_read);
 
-    /// The scene itself.
+    /// Starts with the scene's own file. Must be called once, before anything is read.
     void open(std::unique_ptr<SourceFile> file);
 
-    /// The next token that is no directive; macros are put in. End: the scene is over.
+    /// Takes the next token of the scene, an End where it is over. Directives are obeyed and macros
+    /// replaced by their tokens, so it returns neither.
     Token next();
     const Token& peek();
     void put_back(const Token& token);
-    /// The next token where it may be an operator. A directive ends the value of another one, such
-    /// as #declare, and is not obeyed yet; in brackets, in a macro that gives the value and outside
-    /// of directives it is. Taken by next(), unless it is such a directive.
+    /// Returns the next token where it may be an operator; next() then takes it. A directive ends
+    /// the value of another one, such as #declare: it is returned, but neither obeyed nor taken. In
+    /// brackets, in a macro that gives the value and outside of directives it is obeyed.
     Token peek_operator();
 
-    /// The sign `c`, or ParseError.
+    /// Takes the sign `c`, or throws ParseError.
     void expect(char c, std::string_view after);
-    /// True, and taken, where the next token is that.
+    /// Takes the next token if it is this one, and returns whether it is.
     bool take(char c);
     bool take(std::string_view word);
     void take_comma() { take(','); }
 
     [[noreturn]] void fail(const Place& at, const std::string& sentence) const;
     [[noreturn]] void fail_here(const std::string& expected);
-    /// Work other than running over words, counted in words: what takes about as long.
+    /// Counts work other than reading tokens as the number of words that take about as long to
+    /// read. Throws ParseError beyond Limits::tokens.
     void spend(uint64_t words);
-    /// Something is not as it was: a variable, a random number. A round of a #while without any
-    /// such thing is followed by the same one, for ever.
+    /// Notes that a variable or a random stream has changed. A round of a #while that changes
+    /// nothing would repeat for ever.
     void changed() { ++changes_; }
-    /// Before so many bytes are taken for what the scene makes. Fails once reading has taken more
-    /// than half of the memory there was: the rest is for the triangles.
+    /// Counts bytes before the scene takes them. Throws ParseError once reading has taken more than
+    /// half of the memory that was available, because the triangles need the rest.
     void grow(uint64_t bytes);
-    /// Before `item` becomes one of the array's. ParseError: arrays in arrays, too deep.
+    /// Updates the array's depth before `item` goes into it. Throws ParseError beyond a limit.
     void count_depth(Array& array, const Value& item) const;
-    /// Once for each `kind`.
+    /// Logs a warning, once for each `kind`.
     void warn(const std::string& kind, const Place& at, const std::string& sentence);
 
-    /// The variable, or null.
+    /// Returns the innermost variable of this name, or null. The scope of the variable owns it.
     Slot* find(const Name* name) const;
-    /// A variable in the scope of the running macro or include (local) or of the scene; what was
-    /// there is replaced.
+    /// Returns the variable to assign to: with `local` in the scope of the running macro or
+    /// include, else the innermost one of this name, or a new one of the scene where there is none.
     Slot& declare(Name* name, bool local);
     void undefine(Name* name);
 
-    /// As files.h has it: beside the scene, beside the including files, among POV-Ray's.
+    /// Finds a file as files.h says: beside the scene, beside the including files, among POV-Ray's.
     std::filesystem::path find_file(const std::string& name, std::string_view extension) const;
     Names& names() { return names_; }
     const Place& place() const { return last_; } // of the token read last
-    Caller caller() const;                       // of what is running
+    Caller caller() const;                       // of the code that is running
     double version = 3.7;
-    bool version_given = false; // by some #version; else povray takes the scene for an older one
-    /// Colors are light, not what screens are told.
+    bool version_given = false; // without a #version povray takes the scene for an older one
+    /// Returns whether colors are linear light instead of code values for a screen.
     bool has_linear_colors() const { return version_given && version >= 3.7; }
-    double gamma = 1; // assumed_gamma: what srgb colors are converted to
+    double gamma = 1; // assumed_gamma, to which srgb colors are converted
     ImageSize picture{640, 480};
     Texture defaults; // of #default
-    /// Objects that the scene asked about.
+    /// The objects that the scene asked about with trace().
     std::map<std::shared_ptr<const Object>, std::shared_ptr<const TraceTarget>> targets;
     std::map<std::string, std::shared_ptr<Font>> fonts; // by name
     std::vector<uint32_t> random_streams;
@@ -142,17 +144,17 @@ private:
     struct Condition {
         enum class Kind { If, While, For, Switch };
         Kind kind;
-        size_t start = 0;        // While: of the condition; For: of the body
-        Slot* counter = nullptr; // For
+        size_t start = 0;        // of a While's condition, or of a For's body
+        Slot* counter = nullptr; // of a For
         double last = 0, step = 0;
-        double value = 0; // Switch
+        double value = 0; // of a Switch
         bool matched = false;
         Place place;
-        Progress progress{};  // While, For: when it made something last
-        uint64_t changes = 0; // While: when the round began
+        Progress progress{};  // of a loop, when it last made something
+        uint64_t changes = 0; // of a While, when its round began
         uint64_t rounds = 0, reads = 0, rounds_at_read = 0;
     };
-    /// Where a directive began: how deep in frames, blocks and brackets.
+    /// How deep in frames, blocks and brackets a directive began.
     struct Depth {
         size_t frames, blocks;
         int64_t brackets;
@@ -173,7 +175,7 @@ private:
     Token raw();
     const Token& peek_raw() const;
     Token step(bool hold_directives);
-    /// Whether a directive that comes now ends the value of the one that is being obeyed.
+    /// Returns whether a directive that comes now ends the value of the one that is being obeyed.
     bool ends_value() const;
     Name* raw_name(std::string_view after);
     void raw_expect(char c, std::string_view after);
@@ -188,7 +190,7 @@ private:
     void do_end(const Token& at);
     void do_while(const Token& at);
     void test_while(Condition& loop);
-    /// A further round of a loop begins. ParseError: nothing suggests that it will ever end.
+    /// Counts a further round of a loop. Throws ParseError where nothing suggests that it will end.
     void count_round(Condition& loop) const;
     void do_for(const Token& at);
     bool test_for(Condition& loop) const;
@@ -204,18 +206,19 @@ private:
     void do_fclose();
     void do_read();
     void do_write();
-    /// The open file that is named next.
+    /// Takes the name of an open file and returns the file.
     std::shared_ptr<DataFile> raw_file(std::string_view after, bool writes);
     bool condition();
-    /// Passes over tokens up to the #end that belongs to the innermost open block, or to an #else,
-    /// #elseif, #case or #range of it where that is asked for; that directive is taken. Its name.
+    /// Skips tokens up to the #end of the innermost open block or, where that is asked for, up to
+    /// its next #else, #elseif, #case or #range. Takes that directive and returns its name.
     std::string_view skip(bool stop_at_else, bool stop_at_case);
     void call(const Token& at, const std::shared_ptr<const Macro>& macro);
-    /// Where #declare or #local puts a variable of this name now.
+    /// Returns the scope in which #declare or #local would put a variable of this name now.
     uint32_t scope_of(const Name* name, bool local) const;
     Slot& declare_in(uint32_t scope, Name* name);
     void bind(Name* name, uint32_t scope, Slot* slot);
-    /// The value where it is given, or the caller's variable. scopes: where the call stands.
+    /// Reads an argument. Returns the caller's variable, or null and a value. `scopes` is how many
+    /// scopes there were at the call.
     std::pair<Slot*, Value> argument(size_t scopes);
     Frame& frame() { return frames_.back(); }
     uint32_t push_scope();
@@ -234,14 +237,14 @@ private:
     std::set<std::string> warned_;
     std::map<std::string, std::string> written_; // files of #fopen, by name
     uint64_t written_bytes_ = 0;
-    uint64_t available_; // memory, when reading began
-    uint64_t unchecked_ = 0;
-    uint64_t grown_ = 0;   // bytes, in all
-    uint64_t changes_ = 0; // that changed() was told of
-    uint64_t reads_ = 0;   // #read
+    uint64_t available_;     // bytes of memory when reading began
+    uint64_t unchecked_ = 0; // bytes that grow() has counted since it last checked the memory
+    uint64_t grown_ = 0;     // bytes that grow() has counted in all
+    uint64_t changes_ = 0;   // calls of changed()
+    uint64_t reads_ = 0;     // #read directives
     Place last_;
-    uint64_t run_over_ = 0;
-    int64_t brackets_ = 0;       // open around what is read: ( [ { and vectors
+    uint64_t run_over_ = 0;      // words that spend() has counted
+    int64_t brackets_ = 0;       // open ( [ { and vectors; below 0 after a stray ) ] or }
     std::optional<Depth> obeys_; // the innermost directive that is being obeyed
     size_t depth_ = 0;
 };

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cutting text into tokens.
+// Cuts text into tokens.
 #include "importers/pov/words/token.h"
 
 #include "importers/file/text.h"
 #include "importers/pov/words/keywords.h"
 
 #include <fmt/format.h>
+
+#include <cassert>
 
 namespace ovc::pov {
 
@@ -47,6 +49,7 @@ private:
     }
 
     void advance() {
+        assert(at_ < text_.size());
         // A line ends with LF, CR LF or CR.
         if (text_[at_] == '\n' || (text_[at_] == '\r' && peek(1) != '\n')) {
             ++line_;
@@ -69,7 +72,7 @@ private:
         }
     }
 
-    /// Comments nest.
+    /// Skips a comment, in which others may be nested.
     void skip_comment() {
         const Place start = place();
         int depth = 0;
@@ -85,12 +88,12 @@ private:
         } while (depth > 0);
     }
 
-    /// False: there was none, but a sign that counts for nothing.
+    /// Reads a token. Returns false where there is only a # that means nothing.
     bool read(Token& token) {
         const char c = peek();
         if (is_letter(c)) {
             token.name = read_name();
-            // These need no # in old scenes.
+            // Old scenes write these without a #.
             const std::string& text = token.name->text;
             const bool is_directive = text == "declare" || text == "default" || text == "include";
             token.kind = is_directive ? TokenKind::Directive : TokenKind::Name;
@@ -120,7 +123,7 @@ private:
         const size_t first = at_;
         while (is_digit(peek()))
             ++at_;
-        // V.x is a part of a vector, and so is 3.x not a number with a fraction.
+        // The dot of 3.x, like that of V.x, takes a component and starts no fraction.
         if (peek() == '.' && !is_letter(peek(1))) {
             ++at_;
             while (is_digit(peek()))
@@ -148,7 +151,7 @@ private:
         return text_.substr(first, at_++ - first);
     }
 
-    /// False: a # without a word in its line, which POV-Ray passes over.
+    /// Reads a directive. Returns false for a # without a word behind it, which POV-Ray ignores.
     bool read_directive(Token& token) {
         ++at_;
         while (peek() == ' ' || peek() == '\t')
@@ -192,7 +195,9 @@ Name* Names::intern(std::string_view text) {
 }
 
 void tokenize(SourceFile& file, Names& names) {
+    assert(file.tokens.empty());
     Tokenizer(file, names).run();
+    assert(!file.tokens.empty() && file.tokens.back().kind == TokenKind::End);
 }
 
 std::string found(const Token& token) {
@@ -234,11 +239,12 @@ std::string excerpt(const Place& place) {
         text.remove_prefix(end + (both ? 2 : 1));
     }
     text = text.substr(0, text.find_first_of("\r\n"));
-    // Of a long line, what is around the place.
+    // Only the part of a long line around the place is shown.
     constexpr size_t kBefore = 60, kShown = 100;
     const size_t skipped = place.column > kBefore ? place.column - kBefore : 0;
     if (skipped > text.size())
         return "";
+    assert(place.column > skipped);
     text = text.substr(skipped, kShown);
     std::string shown, caret;
     for (size_t i = 0; i < text.size(); ++i)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tokens of POV-Ray's scene language: a file is cut into them once, however often a loop or a macro
-// runs over them.
+// Tokens of POV-Ray's scene language. A file is cut into tokens once, however often a loop or a
+// macro reads them.
 #pragma once
 
 #include <cstdint>
@@ -17,22 +17,22 @@ namespace ovc::pov {
 struct Slot;
 struct SourceFile;
 
-/// Where a token stands; line and column from 1.
+/// A token's place; line and column count from 1.
 struct Place {
     const SourceFile* file = nullptr;
     uint32_t line = 0;
     uint32_t column = 0;
 };
 
-/// Where the scene's own file calls the macro, or includes the file, in which a place stands; no
-/// file: the place stands in the scene's own file.
+/// The place in the scene's own file that calls the macro, or includes the file, which contains
+/// another place. It has no file where that other place is in the scene's own file.
 struct Caller {
     Place place;
     bool is_macro = false;
 };
 
-/// What is wrong with the scene, thrown inside this folder and caught in pov.cpp: the sentence
-/// alone, and where.
+/// An error in the scene, thrown inside this folder and caught in pov.cpp. what() is the sentence
+/// without the place.
 struct ParseError : std::runtime_error {
     ParseError(const Place& at, const std::string& sentence, const Caller& from = {})
         : std::runtime_error(sentence), place(at), caller(from) {}
@@ -40,9 +40,9 @@ struct ParseError : std::runtime_error {
     Caller caller;
 };
 
-/// An identifier or a keyword; one for each spelling.
+/// An identifier or a keyword. There is one Name for each spelling.
 struct Name {
-    /// A variable of this name: in which scope, the innermost last.
+    /// A variable of this name in one scope. The innermost scope comes last in `bound`.
     struct Bound {
         uint32_t scope;
         Slot* slot;
@@ -65,11 +65,11 @@ enum class TokenKind : uint8_t { End, Name, Number, Text, Sign, Directive };
 
 struct Token {
     TokenKind kind = TokenKind::End;
-    char sign = 0; // of Sign: the character; 'l' <=, 'g' >=, 'n' !=
+    char sign = 0; // of a Sign: the character, or 'l' for <=, 'g' for >=, 'n' for !=
     Place place;
-    Name* name = nullptr;  // of Name and Directive
-    double number = 0;     // of Number
-    std::string_view text; // of Text: between the quotes, as it stands in the file
+    Name* name = nullptr;  // of a Name or Directive
+    double number = 0;     // of a Number
+    std::string_view text; // of a Text: between the quotes, with its escape sequences
 
     bool is(char c) const { return kind == TokenKind::Sign && sign == c; }
     bool is(std::string_view word) const { return kind == TokenKind::Name && name->text == word; }
@@ -82,13 +82,15 @@ struct SourceFile {
     std::vector<Token> tokens; // the last is an End
 };
 
-/// Cuts file.text into file.tokens. Throws ParseError for a text or comment without an end.
+/// Cuts file.text into file.tokens, which point into it. Throws ParseError for a text or comment
+/// without an end.
 void tokenize(SourceFile& file, Names& names);
 
-/// The token as a message shows it.
+/// Returns the token as a message shows it.
 std::string found(const Token& token);
 
-/// The line of the place and, below it, a caret; two lines without an end, or nothing.
+/// Returns the place's line and, below it, a caret, without a line end behind the caret. Returns an
+/// empty text for a place without a file.
 std::string excerpt(const Place& place);
 
 } // namespace ovc::pov
