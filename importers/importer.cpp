@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which reader, which writer: by the extension.
+// load() and save() choose a reader or writer by the file's extension.
 #include "importers/importer.h"
 
 #include "core/text/suggestion.h"
