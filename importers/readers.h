@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers and writers that importer.cpp chooses from; each keeps the promises of load(), save().
+// The readers and writers that importer.cpp chooses from; they keep the promises of load(), save().
 #pragma once
 
 #include "importers/importer.h"
