@@ -118,7 +118,7 @@ void flush_nothing(png_structp) {}
 void say_software(const Writing& w, const std::string& software) {
     png_text text{};
     text.compression = PNG_TEXT_COMPRESSION_NONE;
-    char key[] = "Software"; // libpng only reads both
+    char key[] = "Software"; // libpng only reads the key and the text
     text.key = key;
     text.text = const_cast<char*>(software.c_str());
     text.text_length = software.size();
@@ -130,7 +130,7 @@ void encode(Writing& w, const PngPixels& pixels, const std::string& software) {
     png_set_IHDR(w.png, w.info, pixels.width, pixels.height, pixels.bits, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(w.png, w.info, PNG_sRGB_INTENT_PERCEPTUAL);
-    // 2.5 times as fast as what libpng does by itself; files are 3 % smaller to 7 % larger.
+    // This is 2.5 times as fast as libpng's defaults; files are 3 % smaller to 7 % larger.
     png_set_filter(w.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_set_compression_level(w.png, 4);
     say_software(w, software);

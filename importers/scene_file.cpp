@@ -103,7 +103,7 @@ bool share_out(std::span<const MeshExtent> extents, std::span<const vec3> corner
 
 /// Checks what the host relies on.
 bool is_sound(const Scene& scene) {
-    constexpr uint32_t kMaxPixels = 65535; // a side
+    constexpr uint32_t kMaxPixels = 65535; // per side
     if (!has_sound_meshes(scene))
         return false;
     const auto fits = [](uint32_t side) { return side >= 1 && side <= kMaxPixels; };

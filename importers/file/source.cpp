@@ -18,7 +18,7 @@ namespace {
 
 constexpr size_t kBlockBytes = size_t(1) << 16;    // larger was no faster
 constexpr size_t kUnpackedBytes = size_t(1) << 18; // some 1 ms of work
-/// Far more than any line of a model, and little enough to have in memory whole.
+/// The max bytes of a line: far more than any model has, and little enough to fit into memory.
 constexpr size_t kLongestLine = size_t(1) << 28;
 constexpr uint64_t kLikelyCompression = 12; // models as text reach 3 to 6
 

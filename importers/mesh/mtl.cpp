@@ -16,8 +16,7 @@ namespace ovc {
 
 namespace {
 
-/// "Kd 0.5" is a grey, as the format says; "Kd spectral …" and "Kd xyz …" leave the color as it
-/// was.
+/// "Kd 0.5" is a grey, as the format says. Returns nothing for "Kd spectral …" and "Kd xyz …".
 std::optional<vec3> parse_color(std::string_view text) {
     vec3 color(0);
     int count = 0;

@@ -22,13 +22,13 @@ namespace ovc {
 
 namespace {
 
-/// Beyond this many extents from 0, single precision would cost more than the last digit that files
-/// carry.
+/// Meshes farther from 0 than this many extents get an origin, because single precision would cost
+/// more than the last digit that files carry.
 constexpr double kFar = 16;
 
 struct Corner {
     uint32_t vertex = 0;
-    int64_t normal = -1;     // index; out of range if the file has no such normal
+    int64_t normal = -1;     // index; -1 if none is stated; may be out of range
     bool has_normal = false; // the file states one, though it may not exist
     bool has_texture = false;
 };

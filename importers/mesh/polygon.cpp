@@ -198,7 +198,8 @@ private:
     /// Small polygons may use this much, crossing or not; 256 corners were seen to need 440
     /// thousand.
     static constexpr uint64_t kFreeWork = 1 << 19;
-    /// Up to this many corners nothing is remembered: each is tried again after every cut.
+    /// Polygons of at most this many corners remember nothing: after a cut, each corner is tried
+    /// again.
     static constexpr uint32_t kForgetful = 256;
 
     const std::vector<dvec2>& flat_;

@@ -20,7 +20,7 @@ struct Shape {
 bool is_flipped(const Shape& shape, size_t triangle);
 
 struct Instance {
-    uint32_t object; // index into World::objects; inside an object, one before it
+    uint32_t object; // index into World::objects, below that of an object that contains this
     dmat4 to_parent;
 };
 

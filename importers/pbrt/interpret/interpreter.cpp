@@ -12,7 +12,7 @@
 
 namespace ovc::pbrt {
 
-/// Levels of AttributeBegin in each other; scenes have a few dozen.
+/// The max depth of AttributeBegin and its like; scenes have a few dozen levels.
 static constexpr size_t kDeepest = 10000;
 
 const Interpreter::Directive Interpreter::kDirectives[] = {

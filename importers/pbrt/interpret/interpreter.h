@@ -113,7 +113,7 @@ private:
     std::optional<CameraRequest> camera_;
 
     World world_;
-    std::vector<Object> building_; // the innermost last
+    std::vector<Object> building_; // objects that have begun, the innermost last
     std::unordered_map<std::string, uint32_t> object_ids_;
     struct LateInstance {
         std::string name;
@@ -121,7 +121,7 @@ private:
         Place where;
     };
     std::vector<LateInstance> late_; // instances of objects that were not there yet
-    uint64_t triangles_ = 0;         // in all shapes
+    uint64_t triangles_ = 0;         // of all shapes so far
 };
 
 } // namespace ovc::pbrt

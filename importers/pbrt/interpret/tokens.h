@@ -86,7 +86,7 @@ private:
         const std::string* name;
         std::string_view rest; // the rest of the line
         bool marks_its_end;
-        bool again; // it was read before, or a file that it is included in was
+        bool again; // whether this file, or one that includes it, was read before
     };
 
     bool include(const std::string& name, const Place& place, bool marks_its_end);

@@ -139,7 +139,7 @@ void Lights::finish(const dvec3& view_up, Scene& scene) {
     if (!any_)
         return;
     if (area_lights_.size() > kMaxAreaLights) {
-        // The strongest stay, and take over the light of the others.
+        // The strongest lights stay, and take over the light of the others.
         const auto weight = [](const Light& light) { return mean(light.color); };
         std::stable_sort(area_lights_.begin(), area_lights_.end(),
                          [&](const Light& a, const Light& b) { return weight(a) > weight(b); });

@@ -28,7 +28,7 @@ struct MaterialContext {
 std::optional<Material> material_of(std::string_view type, const MaterialContext& context);
 Material make_matte(const MaterialContext& context);
 
-/// The share of a constant light from everywhere that a surface is taken to see.
+/// The share of a constant light from everywhere that we assume a surface sees.
 inline constexpr float kAmbient = 0.04f;
 
 inline float mean(const vec3& c) {
