@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which reader, which writer: by the extension.
+// load() and save() choose a reader or writer by the file's extension.
 #include "importers/importer.h"
 
 #include "core/text/suggestion.h"
@@ -40,7 +40,7 @@ std::string lower_name(const std::filesystem::path& path) {
     return name;
 }
 
-/// Without the dot: "ply".
+/// Returns the extension without the dot: "ply".
 std::string extension_of(const std::string& name) {
     const size_t dot = name.rfind('.');
     return dot == name.npos ? "" : name.substr(dot + 1);

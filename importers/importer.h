@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Importers: a file in, a Scene out; and back, for `overcast convert`.
+// Importers read files into scenes, and write scenes to files for `overcast convert`.
 #pragma once
 
 #include "core/result.h"
@@ -13,52 +13,52 @@
 
 namespace ovc {
 
-/// What a scene of instances may become where nothing else is said: 3.6 GB of soup.
+/// The default of ImportOptions::max_triangles: 3.6 GB of soup.
 inline constexpr uint64_t kDefaultMostTriangles = 100'000'000;
 
-/// What ImportOptions::tolerance may be: from what a sphere of 1e5 triangles has to an octagon's.
+/// The range of ImportOptions::tolerance: at the min a sphere has 1e5 triangles, at the max a
+/// circle is an octagon.
 inline constexpr double kMinTolerance = 1e-4, kMaxTolerance = 0.5;
 
 struct ImportOptions {
-    LogSink log; // warnings: what a file asks for and Overcast leaves out, one per kind
-    /// Scene descriptions (.pbrt): what is unknown, missing or unusable is an error, not a warning.
+    LogSink log; // receives one warning per kind of thing that Overcast leaves out of a file
+    /// Makes anything unknown, missing or unusable in a scene description (.pbrt) an error instead
+    /// of a warning.
     bool strict = false;
-    /// Scene descriptions: more triangles than this, instances expanded, are refused before they
-    /// are made.
+    /// The max triangles of a scene description. The reader refuses more before it makes them;
+    /// pbrt/census.h says how it counts instances.
     uint64_t max_triangles = kDefaultMostTriangles;
-    /// Scene descriptions: how far a triangle may lie off the round shape it stands for, in the
-    /// shape's radii; from kMinTolerance to kMaxTolerance. Nothing: what the reader has found
-    /// good.
+    /// How far a triangle of a scene description may lie off the round shape it stands for, in the
+    /// shape's radii, from kMinTolerance to kMaxTolerance. Each reader has a default of its own.
     std::optional<double> tolerance = {};
-    /// Of a .pbrt file with several worlds: which, from 1.
+    /// The world to read of a .pbrt file that has several, from 1.
     uint64_t world = 1;
-    /// Of the picture to come, where that is known: scenes of POV-Ray may ask for it.
+    /// The size of the picture to come, if it is known: scenes of POV-Ray may ask for it.
     std::optional<ImageSize> size = {};
-    /// Of scenes of POV-Ray, until they name one themselves: the version of the language.
+    /// The version of POV-Ray's language that a scene is in until it names one itself.
     std::optional<double> pov_version = {};
-    /// Receives every file that is read or looked for in vain; null: nobody asks.
+    /// Receives every file that is read or looked for in vain; may be null.
     FilesRead* files = nullptr;
 };
 
-/// Reads a scene. The reader is chosen by the extension, a trailing .gz taken off first; any case.
-/// A compressed file is recognised by its contents, whatever its name. Never throws on bad input:
-/// the Error is one sentence with file, line or byte, what was found, what was expected. Memory is
-/// bounded by what the file holds, not by what it claims. Polygons are cut into triangles in file
-/// order; a degenerate or non-finite triangle is kept (it is counted and dropped when a structure
-/// is built), so that prim numbers follow the file.
+/// Reads a scene. The extension chooses the reader, in any case and after a trailing .gz is taken
+/// off. A compressed file is recognised by its contents, whatever its name. Never throws on bad
+/// input: the Error is one sentence with file, line or byte, what was found, what was expected.
+/// Memory is bounded by what the file holds, not by what it claims. Polygons are cut into triangles
+/// in file order; a degenerate or non-finite triangle is kept (it is counted and dropped when a
+/// structure is built), so that prim numbers follow the file.
 Result<Scene> load(const std::filesystem::path& path, const ImportOptions& options = {});
 
 /// Writes the triangles of `scene` as .ply (one mesh, binary little endian, double positions where
 /// float would move them) or .obj (an object per mesh); normals and materials are not written.
 /// Corners that agree in every bit become one vertex. load() gives back the same triangles bit for
 /// bit where floats hold them; where only doubles do, offsets are rounded to floats anew, and .obj
-/// keeps the digits but load() takes them for floats unless they are far from 0. Or all of the
-/// scene as .ovc (scene_file.h), which comes back as it is. A file that exists is replaced only
-/// once the new one is complete; what is written is removed where it cannot be.
+/// keeps the digits but load() takes them for floats unless they are far from 0. An .ovc file
+/// (scene_file.h) holds all of the scene, which comes back as it is. A file that exists is replaced
+/// only once the new one is complete; on an error the unfinished file is removed.
 Result<Done> save(const Scene& scene, const std::filesystem::path& path);
 
-/// The extensions load() reads with readers of ours, without the dot ("ply", "obj"); Assimp's are
-/// not listed.
+/// Returns the extensions that load() reads without Assimp, without the dot ("ply", "obj").
 std::vector<std::string> own_extensions();
 
 } // namespace ovc

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// load() and save(): the choice of the reader, gz, Assimp's formats, round trips, what must not be
-// replaced.
+// load() and save() choose readers, unpack gz, ask Assimp, make round trips, and replace no file in
+// vain.
 #include "importers/importer.h"
 
 #include "importers/readers.h"
@@ -209,8 +209,8 @@ TEST(Importer, AssimpsFormatsSurviveDamage) {
     }
 }
 
-/// Triangles with corners out of a few, so that vertices are shared; among them NaN, infinity, -0,
-/// denormals.
+/// Returns triangles whose corners are few, so that they share vertices; among them NaN, infinity,
+/// -0, denormals.
 Scene awkward_scene(dvec3 origin) {
     const float kValues[] = {0.f, -0.f, 1.f, 1e-45f, 3.4e38f, -0.1f, 16777217.f, 1 / 3.f};
     std::mt19937 random(7);
@@ -264,7 +264,7 @@ TEST(Save, KeepsWhatOnlyDoublesHold) {
     EXPECT_NE(folder.read("far.ply").find("property double x"), std::string::npos);
     const auto first = load(folder / "far.ply");
     EXPECT_EQ(triangles_of(first).size(), 100u);
-    // Offsets from the new origin are floats again: half a unit in their last place may go, once.
+    // Offsets from the new origin are rounded to floats once, by half a unit in their last place.
     for (size_t i = 0; i < 100; ++i)
         for (int c = 0; c < 3; ++c)
             EXPECT_LT(glm::distance(triangles_of(first)[i][c], triangles_of(scene)[i][c]), 1.1e-7);
@@ -312,7 +312,7 @@ TEST(Save, ErrorsNameTheFileAndWhatWasExpected) {
 TEST(Save, AFailedWriteLeavesTheOldFileAndNothingElse) {
     const TestFolder folder;
     folder.write("kept.obj", kObj);
-    // A file of more than the limit cannot be written: what a full disk does, too.
+    // Like a full disk, a limit on the size of files makes writes fail.
     std::vector<vec3> corners(300000, vec3(0.5f));
     for (size_t i = 0; i < corners.size(); ++i)
         corners[i].x = float(i);
@@ -332,7 +332,7 @@ TEST(Save, AFailedWriteLeavesTheOldFileAndNothingElse) {
     EXPECT_EQ(folder.read("kept.obj"), kObj);
 }
 
-/// A glTF file of one triangle whose material is the JSON object `material`.
+/// Returns a glTF file of one triangle whose material is the JSON object `material`.
 std::string gltf_with(const std::string& material) {
     return R"({"asset": {"version": "2.0"},
         "extensionsUsed": ["KHR_materials_transmission", "KHR_materials_ior"],

@@ -20,8 +20,7 @@ import tempfile
 MEGABYTE = 1e6
 SLOWEST_SECONDS = 5
 MOST_MEMORY = 20  # times the file ...
-# ... but however small the file is, this much is fine: blocks to read through and the heap's first
-# growth need it.
+# ... but any file may take this much, for the blocks to read through and the heap's first growth.
 MEMORY_FLOOR = 2 << 20
 LEAST_SPEED = 150  # MB/s of binary PLY
 MOST_OF_ASSIMP = 0.5  # of its time for ASCII

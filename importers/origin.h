@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// The origin of the chunks of one file, so that single-precision offsets lose as little as
-// possible.
+// chunk_origin() chooses one origin for the chunks of a file, so that single-precision offsets lose
+// as little as possible.
 #pragma once
 
 #include "core/box.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace ovc {
 
-/// Per axis 0, or the middle of `bounds` where that is farther from 0 than `far` (1 or more) times
-/// the longest extent: not nearer, for coordinates near 0 may be finer than the bounds tell. The
+/// Returns, per axis, the middle of `bounds` if that is farther from 0 than `far` (1 or more) times
+/// the longest extent, else 0, because coordinates near 0 may be finer than the bounds tell. The
 /// middle is rounded to 1/256 of the extent, so that coordinates which are short binary fractions
 /// keep exact offsets. One origin serves a whole file: with two, meshes that share corners would
 /// come apart.
 inline dvec3 chunk_origin(const Box& bounds, double far) {
+    assert(far >= 1);
     const double extent = max_component(bounds.extent());
     if (bounds.empty() || !(extent < 1e300))
         return dvec3(0);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG by libpng, whose errors jump: what lives across a jump stands in a struct outside. The only
-// file that sees libpng. Indexed pictures keep the numbers of colors in their table.
+// PNG by libpng; no other file sees it. Its errors jump, so whatever lives across a jump stands in
+// a struct outside.
 #include "importers/png.h"
 
 #include <png.h>
 
+#include <cassert>
 #include <csetjmp>
 #include <cstring>
 #include <vector>
@@ -13,7 +14,7 @@ namespace ovc {
 
 namespace {
 
-/// All that lives while libpng may jump.
+/// Everything that lives while libpng may jump out of decode().
 struct Reading {
     png_structp png = nullptr;
     png_infop info = nullptr;
@@ -36,13 +37,15 @@ void on_warning(png_structp, png_const_charp) {}
 
 void read_bytes(png_structp png, png_bytep out, size_t count) {
     Reading& reading = *static_cast<Reading*>(png_get_io_ptr(png));
+    assert(reading.at <= reading.file.size());
     if (reading.file.size() - reading.at < count)
         png_error(png, "the file ends too early");
     std::memcpy(out, reading.file.data() + reading.at, count);
     reading.at += count;
 }
 
-/// Rows of 16 bits a sample, high byte first: gray and opacity, or red, green, blue and opacity.
+/// Asks libpng for indices of one byte; or for samples of 16 bits, high byte first: gray and
+/// opacity, or red, green, blue and opacity.
 void decode(Reading& r) {
     png_set_read_fn(r.png, &r, read_bytes);
     png_read_info(r.png, r.info);
@@ -53,7 +56,7 @@ void decode(Reading& r) {
     const int type = png_get_color_type(r.png, r.info);
     const bool indexed = type == PNG_COLOR_TYPE_PALETTE;
     if (indexed)
-        png_set_packing(r.png); // one byte a number
+        png_set_packing(r.png); // one byte per index
     else {
         png_set_expand_16(r.png);
         png_set_add_alpha(r.png, 0xffff, PNG_FILLER_AFTER);
@@ -84,6 +87,7 @@ void decode(Reading& r) {
         return;
     }
     const size_t channels = picture.gray ? 2 : 4;
+    assert(stride >= 2 * channels * picture.width);
     for (size_t i = 0; i < picture.size(); ++i) {
         const uint8_t* p = r.rows[i / picture.width] + 2 * channels * (i % picture.width);
         const auto sample = [&](size_t c) { return uint16_t(p[2 * c] << 8 | p[2 * c + 1]); };
@@ -94,7 +98,7 @@ void decode(Reading& r) {
     }
 }
 
-/// The same for the other way.
+/// Everything that lives while libpng may jump out of encode().
 struct Writing {
     png_structp png = nullptr;
     png_infop info = nullptr;
@@ -114,7 +118,7 @@ void flush_nothing(png_structp) {}
 void say_software(const Writing& w, const std::string& software) {
     png_text text{};
     text.compression = PNG_TEXT_COMPRESSION_NONE;
-    char key[] = "Software"; // libpng only reads both
+    char key[] = "Software"; // libpng only reads the key and the text
     text.key = key;
     text.text = const_cast<char*>(software.c_str());
     text.text_length = software.size();
@@ -126,7 +130,7 @@ void encode(Writing& w, const PngPixels& pixels, const std::string& software) {
     png_set_IHDR(w.png, w.info, pixels.width, pixels.height, pixels.bits, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(w.png, w.info, PNG_sRGB_INTENT_PERCEPTUAL);
-    // 2.5 times as fast as what libpng does by itself; files are 3 % smaller to 7 % larger.
+    // This is 2.5 times as fast as libpng's defaults; files are 3 % smaller to 7 % larger.
     png_set_filter(w.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     png_set_compression_level(w.png, 4);
     say_software(w, software);
@@ -137,7 +141,7 @@ void encode(Writing& w, const PngPixels& pixels, const std::string& software) {
     for (uint32_t y = 0; y < pixels.height; ++y) {
         const uint16_t* from = pixels.samples.data() + y * samples;
         for (size_t i = 0; i < samples; ++i)
-            for (size_t byte = 0; byte < sample_bytes; ++byte) // the high one first
+            for (size_t byte = 0; byte < sample_bytes; ++byte) // high byte first
                 w.row[i * sample_bytes + byte] = uint8_t(from[i] >> (8 - 8 * byte));
         png_write_row(w.png, w.row.data());
     }
@@ -161,6 +165,8 @@ Result<Picture> read_png(std::span<const uint8_t> file) {
 }
 
 Result<std::string> write_png(const PngPixels& pixels, const std::string& software) {
+    assert(pixels.bits == 8 || pixels.bits == 16);
+    assert(pixels.samples.size() == size_t(pixels.width) * pixels.height * 3);
     Writing writing;
     writing.png =
         png_create_write_struct(PNG_LIBPNG_VER_STRING, &writing.error, on_error, on_warning);

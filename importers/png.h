@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG, in and out: pictures of scenes that are read, pictures that are compared, pictures that are
-// rendered.
+// PNG files are read for the pictures in scenes and for comparisons, and written for rendered
+// pictures.
 #pragma once
 
 #include "core/result.h"
@@ -12,20 +12,21 @@
 
 namespace ovc {
 
-/// Any PNG from the whole file's bytes: samples of 8 bits times 257; of indexed ones also the
-/// numbers of colors in their table. Error: a sentence without the file's name.
+/// Reads any PNG from the whole file's bytes. Samples of 8 bits are multiplied by 257; an indexed
+/// picture also keeps its indices. The Error is a sentence without the file's name.
 Result<Picture> read_png(std::span<const uint8_t> file);
 
-/// What is written: rows from the top down of red, green and blue, sRGB codes from 0 to 65535.
+/// The input of write_png(): rows from the top down of red, green and blue, as sRGB codes from 0 to
+/// 65535.
 struct PngPixels {
     uint32_t width = 0;
     uint32_t height = 0;
-    int bits = 8;                      // a sample, 8 or 16; of 8 the codes' upper half is kept
+    int bits = 8;                      // per sample, 8 or 16; 8 keep the codes' upper half
     std::span<const uint16_t> samples; // 3 x width x height
 };
 
-/// The bytes of a file, the same for the same pixels. software: what the file says it was made
-/// with.
+/// Returns the bytes of a file, the same for the same pixels. The file says that `software` made
+/// it.
 Result<std::string> write_png(const PngPixels& pixels, const std::string& software);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG: what is written is read back to the last bit, and is what the format's specification says.
+// A written PNG is read back to the last bit, and follows the format's specification.
 #include "importers/png.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers that importer.cpp chooses from: one function a format, each as load() is documented.
+// The readers and writers that importer.cpp chooses from; they keep the promises of load(), save().
 #pragma once
 
 #include "importers/importer.h"
@@ -8,7 +8,7 @@
 
 namespace ovc {
 
-/// In one mesh: prims are numbered in 32 bits, and kNone is none.
+/// The max triangles of one mesh: prims are numbered in 32 bits, and kNone stands for no prim.
 inline constexpr uint64_t kMaxTriangles = 0xfffffffe;
 
 Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& options);
@@ -18,15 +18,15 @@ Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& 
 Result<Scene> read_pov(const std::filesystem::path& path, const ImportOptions& options);
 Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions& options);
 
-/// More than scenes run over: some twenty seconds of work.
+/// More words than real scenes run over: some twenty seconds of work.
 inline constexpr uint64_t kMaxPovWords = 500'000'000;
 
-/// read_pov() of a text; path: whose it is said to be, and beside which includes are looked for.
-/// max_words: what loops and macros may run over in all.
+/// Reads `text` as read_pov() reads a file. Messages name `path`, and includes are looked for
+/// beside it. Loops and macros may run over `max_words` words in all.
 Result<Scene> parse_pov(std::string text, const std::filesystem::path& path,
                         const ImportOptions& options, uint64_t max_words = kMaxPovWords);
 
-/// Whether Assimp names this extension (without the dot, lower case) as one it reads.
+/// Returns whether Assimp reads files with this extension (without the dot, lower case).
 bool assimp_reads(std::string_view extension);
 
 Result<Done> write_ovc(const Scene& scene, const std::filesystem::path& path);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files from the world: the Stanford models, a kitchen, and the odd ones that torture.tsv lists
-// with what an independent reader made of them.
+// These tests read files from the world: the Stanford models, a kitchen, and the odd files that
+// torture.tsv lists with an independent reader's results.
 #include "importers/readers.h"
 #include "importers/test_files.h"
 #include "tests/real_data.h"
@@ -87,8 +87,8 @@ double largest_difference(const std::vector<Triangle>& a, const std::vector<Tria
     return largest;
 }
 
-/// Assimp reads decimals inexactly, and may cut a quad along its other diagonal: triangles only, to
-/// six digits.
+/// Assimp reads decimals inexactly, and may cut a quad along its other diagonal, so these files
+/// have triangles only, and six digits must agree.
 TEST(RealFiles, AssimpReadsTheSameTriangles) {
     const auto data = real_data();
     if (!data)
@@ -109,7 +109,7 @@ TEST(RealFiles, AssimpReadsTheSameTriangles) {
 
 constexpr long kRejected = -1;
 
-/// Where we differ from the independent reader, and why.
+/// The files for which we differ from the independent reader, and why.
 const struct {
     const char* path;
     long triangles;
@@ -141,7 +141,7 @@ struct TortureRow {
     long expected = kRejected; // triangles
 };
 
-/// The columns path, bytes, my_reader, …; my_reader is "ERR …" or "… tri=N".
+/// Reads the columns path, bytes, my_reader, …; my_reader is "ERR …" or "… tri=N".
 std::vector<TortureRow> torture_rows() {
     std::vector<TortureRow> rows;
     std::ifstream file(real_data_index() / "torture.tsv");
@@ -181,8 +181,8 @@ TEST(RealFiles, OddFilesAreReadOrRejectedAsAnIndependentReaderDoes) {
     }
 }
 
-/// None where floats suffice. Else vertices that no face uses may have moved the origin: half a
-/// unit in the last place of the largest offset.
+/// Returns 0 if floats suffice. Else vertices that no face uses may have moved the origin, which
+/// costs half a unit in the last place of the largest offset.
 double allowed_difference(const Scene& scene) {
     float largest = 0;
     for (const Chunk& chunk : scene.soup.chunks)

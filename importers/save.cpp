@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writers: PLY (binary little endian) and OBJ.
+// Writers of PLY (binary little endian) and OBJ.
 #include "importers/file/output_file.h"
 #include "importers/mesh/unique_vertices.h"
 #include "importers/readers.h"
@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 
 namespace ovc {
@@ -23,7 +24,7 @@ bool is_float(const dvec3& v) {
     return is_float(v.x) && is_float(v.y) && is_float(v.z);
 }
 
-/// The vertices of some chunks, and three of their numbers a triangle.
+/// The vertices of some chunks, and three indices per triangle.
 struct Indexed {
     UniqueVertices unique;
     std::vector<uint32_t> indices;
@@ -50,7 +51,7 @@ void append_number(fmt::memory_buffer& text, double value) {
         fmt::format_to(std::back_inserter(text), " {}", value);
 }
 
-/// On one line: a name must not end its statement.
+/// Keeps the name on one line, because a line end in it would end its statement.
 std::string printable(std::string name) {
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r' || c == '\\'; }, '_');
@@ -61,6 +62,7 @@ void write_mesh(OutputFile& out, const std::string& name, const Chunk& chunk,
                 uint64_t& vertices_above) {
     Indexed mesh;
     mesh.add(chunk);
+    assert(mesh.indices.size() == size_t(chunk.size()) * 3);
     out.write(fmt::format("o {}\n", printable(name)));
     fmt::memory_buffer text;
     const auto flush = [&] {
@@ -120,6 +122,7 @@ Result<Done> write_obj(const Scene& scene, const std::filesystem::path& path) {
     Result<OutputFile> out = OutputFile::create(path);
     if (!out)
         return out.error();
+    assert(scene.meshes.size() == scene.soup.chunks.size()); // every chunk has a name
     uint64_t vertices_above = 0;
     for (size_t m = 0; m < scene.soup.chunks.size(); ++m) {
         const std::string& name = scene.meshes[m].name;

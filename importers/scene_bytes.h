@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values into bytes and back: numbers as they lie in memory, strings and vectors behind their
-// length. Reading believes nothing.
+// ByteWriter and ByteReader turn values into bytes and back: numbers as they lie in memory, strings
+// and vectors behind their length. Reading believes nothing.
 #pragma once
 
 #include "core/file/archive.h"
@@ -70,9 +70,9 @@ public:
     void operator()(T&... values) {
         (take(values), ...);
     }
-    /// Whether there was enough of everything so far, and no flag but 0 and 1.
+    /// Returns whether the bytes sufficed so far and every flag was 0 or 1.
     bool ok() const { return ok_; }
-    /// And nothing is left.
+    /// Returns whether ok() and no byte is left.
     bool done() const { return ok_ && rest_.empty(); }
 
 private:
@@ -110,7 +110,7 @@ private:
         } else if constexpr (kIsVector<T>) {
             uint64_t size = 0;
             take(size);
-            // One by one: the size may claim more than there is.
+            // Grown item by item, because the size may claim more than there is.
             for (value.clear(); ok_ && size > 0; --size)
                 take(value.emplace_back());
         } else if constexpr (requires { each_field(*this, value); }) {

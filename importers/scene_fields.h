@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fields of a scene, named once for writing and for reading: each_field(io, x) calls io(…) with
-// them. What has no each_field is bytes.
+// them. A type without each_field is written as its bytes.
 #pragma once
 
 #include "core/scene.h"
@@ -10,7 +10,7 @@
 
 namespace ovc {
 
-/// T or const T.
+/// Matches T and const T.
 template <class A, class T>
 concept Some = std::same_as<std::remove_const_t<A>, T>;
 
@@ -61,13 +61,13 @@ void each_field(auto& io, Some<Instancing> auto& i) {
     io(i.unique_triangles, i.instances);
 }
 
-/// All but the normals.
+/// Passes all fields except the normals, which are a part of their own in the file.
 void each_field(auto& io, Some<MeshInfo> auto& m) {
     io(m.name, m.material, m.no_shadow, m.normals_from, m.turn, m.normals_left_out,
        m.texture_coordinates_left_out);
 }
 
-/// All but meshes and soup.
+/// Passes all fields except meshes, soup, and what the file's other parts hold.
 void each_field(auto& io, Some<Scene> auto& s) {
     io(s.name, s.materials, s.lights, s.may_add_light, s.camera, s.size, s.max_depth, s.background,
        s.exposure, s.gamma, s.instancing);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene file: an archive of a few thousand bytes of fields, the corners, the normals, and the
+// The scene file is an archive of the fields, the meshes' extents, the corners, the normals and the
 // levels.
 #include "importers/scene_file.h"
 
@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -21,16 +22,16 @@ namespace ovc {
 namespace {
 
 constexpr std::string_view kKind = "ovc scene";
-/// To be raised with every change of scene_fields.h, and where importers make another scene of the
+/// Raise it with every change of scene_fields.h, and when an importer makes another scene of the
 /// same file.
 constexpr uint32_t kVersion = 6;
 
-/// What of a mesh lies in other parts.
+/// Where a mesh's corners and normals lie in the other parts.
 struct MeshExtent {
     dvec3 origin{0};
     uint64_t corners = 0; // its own, in the part "corners"
     uint64_t normals = 0;
-    uint64_t corners_from = kOwnCorners; // else those of this mesh, an earlier one
+    uint64_t corners_from = kOwnCorners; // or an earlier mesh, whose corners this one shares
     uint64_t is_placed = 0;
     Transform transform{};
 
@@ -39,6 +40,7 @@ struct MeshExtent {
 static_assert(sizeof(MeshExtent) == 152);
 
 std::vector<MeshExtent> extents_of(const Scene& scene) {
+    assert(scene.meshes.size() == scene.soup.chunks.size());
     std::vector<MeshExtent> extents;
     std::map<Chunk::MeshKey, size_t> first_of;
     for (size_t m = 0; m < scene.meshes.size(); ++m) {
@@ -58,7 +60,7 @@ std::vector<MeshExtent> extents_of(const Scene& scene) {
     return extents;
 }
 
-/// A mesh's chunk; none where the extent says nothing that can be.
+/// Returns a mesh's chunk; nothing if the extent cannot be true.
 std::optional<Chunk> chunk_of(const MeshExtent& extent, std::span<const vec3> corners,
                               const Soup& before) {
     if (extent.corners > corners.size() || extent.corners % 3 ||
@@ -79,7 +81,8 @@ std::optional<Chunk> chunk_of(const MeshExtent& extent, std::span<const vec3> co
     return chunk;
 }
 
-/// Gives the meshes their corners, in place, and normals; false where they do not come out even.
+/// Gives the meshes their corners, which stay where they are mapped, and their normals. Returns
+/// false if the extents do not use up both exactly.
 bool share_out(std::span<const MeshExtent> extents, std::span<const vec3> corners,
                std::span<const vec3> normals, Scene& scene) {
     if (extents.size() != scene.meshes.size())
@@ -98,9 +101,9 @@ bool share_out(std::span<const MeshExtent> extents, std::span<const vec3> corner
     return corners.empty() && normals.empty();
 }
 
-/// What the host relies on.
+/// Checks what the host relies on.
 bool is_sound(const Scene& scene) {
-    constexpr uint32_t kMaxPixels = 65535; // a side
+    constexpr uint32_t kMaxPixels = 65535; // per side
     if (!has_sound_meshes(scene))
         return false;
     const auto fits = [](uint32_t side) { return side >= 1 && side <= kMaxPixels; };
@@ -213,7 +216,7 @@ Result<SceneFile> read_scene_file(const std::filesystem::path& path) {
     return file;
 }
 
-/// What was said of the scene when it was made is said again.
+/// Repeats the warnings of the time when the scene was made.
 Result<Scene> read_ovc(const std::filesystem::path& path, const ImportOptions& options) {
     note(options.files, path);
     Result<SceneFile> file = read_scene_file(path);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene file, .ovc: everything of core/scene.h, and what the plugin has built of it, mapped
-// into memory when it is read. It is a cache: for this version on this kind of machine.
+// The scene file, .ovc, holds everything of core/scene.h and the levels that the plugin has built
+// of it, and is mapped into memory. It is a cache for this version on this kind of machine.
 #pragma once
 
 #include "core/file/archive.h"
@@ -14,13 +14,13 @@
 
 namespace ovc {
 
-/// What a scene was made from.
+/// The request and the files that a scene was made from, and the warnings they led to.
 struct Provenance {
-    std::string request;          // what was asked for, in any words
-    std::vector<FileStamp> files; // that were read or missed
+    std::string request;          // in the caller's words
+    std::vector<FileStamp> files; // read, or looked for in vain
     std::vector<std::string> warnings;
 
-    /// The first file that is not as it was; null where all are.
+    /// Returns the first file that is not as it was; null if all are.
     const FileStamp* changed_file() const;
 };
 
@@ -29,18 +29,20 @@ struct SceneFile {
     Provenance from;
 };
 
-/// Writes what is saved of the scene's levels, for Scene::saved.
+/// Writes the scene's levels, which come back as Scene::saved.
 using SaveLevels = std::function<Result<Done>(const ByteSink&)>;
 
-/// save_levels: may be empty. The file is replaced only once the new one is complete.
+/// Writes the scene to `path`, which is replaced only once the new file is complete. save_levels
+/// may be empty.
 Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
                               const SaveLevels& save_levels, const std::filesystem::path& path);
 
-/// Of all that a picture of the scene depends on, and names.
+/// Returns a checksum of everything that a picture of the scene depends on, and of its names.
 uint64_t checksum_of(const Scene& scene);
 
-/// Error: damage, another version, no such file; the sentence begins with the path. Everything but
-/// the levels, which the plugin checks, is checked: what comes back is a sound scene.
+/// Reads a scene file and checks everything except the levels, which the plugin checks, so that it
+/// returns a sound scene. An Error tells of damage, another version or no such file; its sentence
+/// begins with the path.
 Result<SceneFile> read_scene_file(const std::filesystem::path& path);
 
 } // namespace ovc

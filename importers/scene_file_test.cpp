@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scene files give back every field; damage is an error, whatever it hits; what has changed since
-// is told.
+// Scene files give back every field; damage is an error, whatever it hits; readers tell which files
+// have changed since.
 #include "importers/scene_file.h"
 
 #include "importers/readers.h"
@@ -14,7 +14,7 @@
 namespace ovc {
 namespace {
 
-/// Every field but the corners, as bytes: alike where the scenes are.
+/// Returns every field except the corners, as bytes, which are equal if the scenes are.
 std::vector<std::byte> fields_of(const Scene& scene) {
     ByteWriter writer;
     writer(scene, scene.meshes);
@@ -62,7 +62,7 @@ TEST(SceneFile, EveryFieldOfAStructIsNamed) {
         writer(value);
         return writer.bytes().size();
     };
-    // Their sizes in memory, less padding, and optionals and strings by their own parts.
+    // These are the sizes in memory without padding; optionals and strings count by their parts.
     EXPECT_EQ(size(Finish{}), sizeof(Finish) - 2 * 3);
     EXPECT_EQ(size(Checker{}), sizeof(vec3) + sizeof(Checker::to_cubes));
     EXPECT_EQ(size(Material{}), 8 + 12 + 4 + 4 + 12 + 8 + 1 + 1 + 1u);
@@ -81,7 +81,8 @@ TEST(SceneFile, EveryFieldOfAStructIsNamed) {
     EXPECT_EQ(sizeof(MeshInfo), 160u) << "a field more: name it in scene_fields.h, and here";
 }
 
-/// In steps, for it goes through files; Archive's own test takes every bit.
+/// The test takes every seventh byte, because it goes through files; Archive's own test takes every
+/// bit.
 TEST(SceneFile, ChangedBytesAndMissingEndsAreErrorsOrHarmless) {
     const TestFolder folder;
     const Scene scene = scene_with_everything();
@@ -99,7 +100,7 @@ TEST(SceneFile, ChangedBytesAndMissingEndsAreErrorsOrHarmless) {
     }
 }
 
-/// What the fuzzer does for longer.
+/// The fuzzer does the same for longer.
 TEST(SceneFile, DamageBehindRightChecksumsIsAnErrorOrASoundScene) {
     for (uint32_t seed = 0; seed < 3000; ++seed) {
         std::mt19937 random(seed);
@@ -148,7 +149,7 @@ TEST(SceneFile, AChangedSourceIsTold) {
     EXPECT_EQ(warnings_now().size(), 2u);
 }
 
-/// All files that a reader opens, and those it would have opened.
+/// Readers note the files that they open, and those that they would have opened.
 TEST(SceneFile, ReadersSayWhatTheyRead) {
     const TestFolder folder;
     folder.write("a.obj", "mtllib a.mtl none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

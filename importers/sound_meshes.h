@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a renderer relies on in the meshes of every scene that was read.
+// has_sound_meshes() checks what a renderer relies on in the meshes of every scene that was read.
 #pragma once
 
 #include "core/scene.h"
 
 namespace ovc {
 
-/// Each chunk has its mesh; materials are there; normals come from an earlier mesh or the mesh
-/// itself, and are none or one a corner.
+/// Returns whether each chunk has its mesh, each mesh has a material that exists, and its normals
+/// come from itself or an earlier mesh and are none or one per corner.
 inline bool has_sound_meshes(const Scene& scene) {
     if (scene.meshes.size() != scene.soup.chunks.size())
         return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files and scenes for the importers' tests.
+// The importers' tests share these helpers for files and scenes.
 #pragma once
 
 #include "importers/importer.h"
@@ -17,7 +17,7 @@
 
 namespace ovc {
 
-/// Of every file in a folder.
+/// Returns the contents of every file in a folder.
 inline std::vector<std::string> contents_of(const std::filesystem::path& folder) {
     std::vector<std::string> contents;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -28,7 +28,7 @@ inline std::vector<std::string> contents_of(const std::filesystem::path& folder)
     return contents;
 }
 
-/// A folder of one test process, gone with it.
+/// A folder of one test process, which the destructor removes.
 class TestFolder {
 public:
     TestFolder()
@@ -52,7 +52,7 @@ public:
         return {std::istreambuf_iterator<char>(file), {}};
     }
 
-    /// An error's message without the folder: the same in every run.
+    /// Returns an error's message without the folder, so that it is the same in every run.
     std::string plain(std::string message) const {
         const std::string prefix = path_.string() + "/";
         for (size_t at; (at = message.find(prefix)) != message.npos;)
@@ -60,7 +60,7 @@ public:
         return message;
     }
 
-    /// load()'s message, or how many triangles it gave where it should have failed.
+    /// Returns load()'s message, or how many triangles it gave if it should have failed.
     std::string failure(const std::string& name) const {
         const auto scene = load(path_ / name);
         if (scene)
@@ -86,7 +86,7 @@ inline std::string gzip(const std::string& text) {
     return packed;
 }
 
-/// The scene's triangles in order; the test fails where there is no scene.
+/// Returns the scene's triangles in order; the test fails if there is no scene.
 inline std::vector<Triangle> triangles_of(const Result<Scene>& scene) {
     std::vector<Triangle> triangles;
     if (!scene) {
@@ -99,7 +99,7 @@ inline std::vector<Triangle> triangles_of(const Result<Scene>& scene) {
     return triangles;
 }
 
-/// Gathers warnings.
+/// Returns options whose log gathers the messages.
 inline ImportOptions gather(std::vector<std::string>& messages) {
     ImportOptions options;
     options.log = [&messages](LogLevel, const std::string& message) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linux: /proc/meminfo, and version 2 of control groups.
+// Linux tells of its memory in /proc/meminfo and in version 2 of control groups.
 #include "importers/file/available_memory.h"
 
 #include <algorithm>

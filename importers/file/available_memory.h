@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much memory a scene may still take.
+// available_memory() estimates how much memory a scene may still take.
 #pragma once
 
 #include <cstdint>
 
 namespace ovc {
 
-/// Bytes the system says can be had without swapping, no more than what this process' control
-/// group leaves it. A guess for refusing what can never fit; huge where nothing is known.
+/// Returns the bytes that the system says it can give without swapping, at most what the control
+/// group leaves this process; the max of uint64_t if neither is known. It is a guess, good for
+/// refusing scenes that can never fit.
 uint64_t available_memory();
 
 } // namespace ovc

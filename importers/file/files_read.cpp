@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// FilesRead: by stat.
+// FilesRead stamps files by stat().
 #include "importers/file/files_read.h"
 
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// FilesRead: which files a scene was made from, and how they were then.
+// FilesRead records the files that a scene was made from, and how they were then.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace ovc {
 
-/// A file at some time. Where there is none, bytes and time are 0.
+/// A file at some time. If it did not exist, bytes and time are 0.
 struct FileStamp {
     std::string path; // absolute
     bool exists = false;
@@ -20,11 +20,11 @@ struct FileStamp {
     bool operator==(const FileStamp&) const = default;
 };
 
-/// Of the file as it is now; folders and devices count as none.
+/// Returns the stamp of the file as it is now; a folder or a device counts as no file.
 FileStamp stamp_of(const std::filesystem::path& path);
 
-/// Files in the order in which they were first looked for, each once, stamped before they were
-/// read.
+/// Lists files in the order in which they were first looked for, each once, stamped before they
+/// were read.
 class FilesRead {
 public:
     void note(const std::filesystem::path& path);
@@ -35,7 +35,7 @@ private:
     std::unordered_set<std::string> known_;
 };
 
-/// Where nobody asks, `files` is null.
+/// Does nothing if `files` is null.
 inline void note(FilesRead* files, const std::filesystem::path& path) {
     if (files)
         files->note(path);

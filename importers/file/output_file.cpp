@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OutputFile: a name nobody else takes, then one rename.
+// OutputFile writes under a name that nobody else takes, then renames once.
 #include "importers/file/output_file.h"
 
 #include <fmt/format.h>
@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cerrno>
 #include <climits>
 #include <csignal>
@@ -20,11 +21,11 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr size_t kBufferBytes = size_t(1) << 18;
-constexpr int kNamesTried = 100; // left behind by processes that were killed
-constexpr int kMaxLinks = 40;    // as the kernel follows
+constexpr int kNamesTried = 100; // killed processes may have left some behind
+constexpr int kMaxLinks = 40;    // the kernel's limit, too
 
-/// What remove_unfinished_output() removes; read by a signal handler. The flag is false while the
-/// name changes.
+/// The file for remove_unfinished_output(), which a signal handler calls. The flag is false while
+/// the name changes.
 char unfinished_name[PATH_MAX];
 volatile std::sig_atomic_t is_unfinished = 0;
 
@@ -35,7 +36,8 @@ void forget_unfinished() {
 
 void remember_unfinished(const fs::path& path) {
     forget_unfinished();
-    // From the root, for the folder may be changed; too long a name is only not removed.
+    // An absolute name survives a change of the working directory. A file whose name is too long is
+    // not removed.
     std::error_code ec;
     const std::string name = fs::absolute(path, ec).string();
     if (ec || name.size() >= sizeof(unfinished_name))
@@ -49,7 +51,7 @@ fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-/// What a path leads to when its last component is a symbolic link, which may dangle.
+/// Follows the path while its last component is a symbolic link, which may dangle.
 fs::path followed(fs::path path) {
     std::error_code ec;
     for (int i = 0; i < kMaxLinks && fs::is_symlink(path, ec); ++i) {
@@ -61,7 +63,7 @@ fs::path followed(fs::path path) {
     return path;
 }
 
-/// The descriptor of standard output or error when it goes to the file of `info`; else -1.
+/// Returns the descriptor of standard output or error that goes to the file of `info`; else -1.
 int standard_descriptor(const struct stat& info) {
     for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) {
         struct stat other;
@@ -81,8 +83,8 @@ struct Temporary {
     std::FILE* file = nullptr; // null: errno says why
 };
 
-/// A new file in the target's folder, for a rename across file systems is none; its name is short,
-/// so that it fits wherever the target's does.
+/// Makes a new file in the target's folder, because rename() does not cross file systems. Its name
+/// is short, so that it fits wherever the target's does.
 Temporary create_beside(const fs::path& final_path) {
     for (int i = 0; i < kNamesTried; ++i) {
         fs::path path = folder_of(final_path) / fmt::format(".ovc{}-{}", getpid(), i);
@@ -109,7 +111,7 @@ Result<Done> OutputFile::check(const fs::path& target) {
     struct stat info;
     if (stat(target.c_str(), &info) == 0 && is_written_through(info))
         return Done{};
-    // Permissions do not tell it all: root may write to /proc, which takes no files.
+    // Permissions do not tell everything: root may write to /proc, which takes no files.
     const Temporary probe = create_beside(followed(target));
     if (!probe.file)
         return folder_refused(target, errno);
@@ -156,7 +158,8 @@ Result<OutputFile> OutputFile::create(const fs::path& target) {
     return OutputFile(target, final_path, std::move(temporary.path), temporary.file);
 }
 
-/// Standard output and error keep their place: opened anew, the file would be emptied.
+/// Duplicates the descriptor of standard output or error, because opening their file anew would
+/// empty it.
 Result<OutputFile> OutputFile::write_through(const fs::path& target) {
     struct stat info;
     std::FILE* file = nullptr;
@@ -185,15 +188,18 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(const void* data, size_t bytes) {
+    assert(file_); // neither committed nor moved from
     if (error_number_ == 0 && std::fwrite(data, 1, bytes, file_.get()) != bytes)
         error_number_ = errno;
 }
 
 Result<Done> OutputFile::commit() {
+    assert(file_);
     if (error_number_ == 0 && std::fflush(file_.get()) != 0)
         error_number_ = errno;
     if (!temporary_.empty()) {
-        // Before the rename: a crash must not leave an empty file in the good one's place.
+        // fsync() comes before the rename, so that a crash leaves no empty file in the good one's
+        // place.
         if (error_number_ == 0 && fsync(fileno(file_.get())) != 0 && errno != EINVAL)
             error_number_ = errno;
         if (error_number_ == 0 && std::rename(temporary_.c_str(), final_path_.c_str()) != 0)

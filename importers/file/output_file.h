@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OutputFile: written beside its target, put in the target's place only once complete.
+// OutputFile is written beside its target and takes the target's place only once it is complete.
 #pragma once
 
 #include "core/file/archive.h"
@@ -12,15 +12,15 @@
 
 namespace ovc {
 
-/// What was not committed is removed. A failed write is kept in mind: commit() reports it. A
-/// symbolic link stays: the file that it leads to is replaced. A character device, a FIFO, and the
-/// file that standard output or error already goes to are written straight through, and stay what
-/// they are.
+/// The destructor removes a file that was not committed. commit() reports the first write that
+/// failed. A symbolic link stays: the file that it leads to is replaced. A character device, a
+/// FIFO, and the file that standard output or error already goes to are written straight through,
+/// and stay what they are.
 class OutputFile {
 public:
-    /// Whether create() would succeed. Makes a file beside the target and removes it again; what is
-    /// at the target is not touched. Refused: a directory, a block device, a socket, a folder that
-    /// does not exist or takes no files, a name the file system cannot hold.
+    /// Checks whether create() would succeed. Makes a file beside the target and removes it again,
+    /// but does not touch the target. Refuses a directory, a block device, a socket, a folder that
+    /// does not exist or takes no files, and a name that the file system cannot hold.
     static Result<Done> check(const std::filesystem::path& target);
 
     static Result<OutputFile> create(const std::filesystem::path& target);
@@ -32,8 +32,8 @@ public:
     void write(const void* data, size_t bytes);
     void write(std::string_view text) { write(text.data(), text.size()); }
 
-    /// Writes what it gets here while this file stays where it is, and always wants more: commit()
-    /// says what went wrong.
+    /// Returns a sink that writes to this file, which must stay where it is in memory. The sink
+    /// always asks for more: commit() reports errors.
     ByteSink sink() {
         return [this](Bytes bytes) {
             write(bytes.data(), bytes.size());
@@ -41,6 +41,7 @@ public:
         };
     }
 
+    /// Puts the file in its place. Nothing may be written after it has succeeded.
     Result<Done> commit();
 
 private:
@@ -55,25 +56,25 @@ private:
           temporary_(std::move(temporary)),
           file_(file) {}
 
-    /// As far as it can be told without writing.
+    /// Does what check() can do without writing.
     static Result<Done> check_place(const std::filesystem::path& target);
     static Result<OutputFile> write_through(const std::filesystem::path& target);
     static Error failed(const std::filesystem::path& target, int error_number);
     static Error folder_refused(const std::filesystem::path& target, int error_number);
 
     std::filesystem::path target_;     // as given, for messages
-    std::filesystem::path final_path_; // what it leads to
+    std::filesystem::path final_path_; // the target with its links followed
     std::filesystem::path temporary_;  // empty: written straight through
     std::unique_ptr<std::FILE, CloseFile> file_;
     int error_number_ = 0; // of the first write that failed
 };
 
-/// True when writing to one path would change what is at the other: the same file, whatever links
-/// and dots lie between. Never for devices and FIFOs, which anything may share.
+/// Returns whether writing to one path would change the file at the other, whatever links and dots
+/// lie between. False for devices and FIFOs, which anything may share.
 bool is_same_output(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// Removes the temporary file of the OutputFile made last, if it is not complete yet. For a signal
-/// handler that ends the process: async-signal-safe.
+/// Removes the temporary file of the OutputFile made last, if it is not complete yet. It is
+/// async-signal-safe, for a signal handler that ends the process.
 void remove_unfinished_output() noexcept;
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OutputFile: what is at the target stays what it is, and appears whole or not at all.
+// OutputFile keeps the kind of its target, and files appear whole or not at all.
 #include "importers/file/output_file.h"
 #include "importers/test_files.h"
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 class OutputFileTest : public testing::Test {
 protected:
-    /// The message; empty when it was written.
+    /// Returns the error's message; empty if the text was written.
     std::string save(const fs::path& path, std::string_view text) const {
         Result<OutputFile> file = OutputFile::create(path);
         if (!file)
@@ -92,7 +92,7 @@ TEST_F(OutputFileTest, IsTriedBeforehandWithoutATrace) {
         EXPECT_TRUE(OutputFile::check(folder / name)) << name;
     EXPECT_EQ(folder.read("old"), "text");
     EXPECT_EQ(file_count(), 2u) << "nothing is left behind";
-    // Root has permission, and still no file can be made.
+    // Root has permission, and still cannot make a file there.
     const Result<Done> refused = OutputFile::check("/proc/a.png");
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message,

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/file/read_ahead.h"
 
+#include <cassert>
 #include <utility>
 
 namespace ovc {
 
 ReadAhead::ReadAhead(std::function<void(Block&)> read)
-    : read_(std::move(read)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+    : read_(std::move(read)), thread_([this](const std::stop_token& stop) { run(stop); }) {
+    assert(read_);
+}
 
 const ReadAhead::Block& ReadAhead::next() {
     std::unique_lock lock(mutex_);
-    ++begun_; // which gives back the block before
+    ++begun_; // gives the block before back to the thread
     changed_.notify_all();
     changed_.wait(lock, [&] { return ended_ || read_blocks_ >= begun_; });
     if (read_blocks_ >= begun_)
@@ -23,7 +26,7 @@ const ReadAhead::Block& ReadAhead::next() {
 void ReadAhead::run(const std::stop_token& stop) {
     for (size_t next = 0;; ++next) {
         {
-            // All blocks but the one that the user has.
+            // The thread may fill all blocks except the one that the user has.
             std::unique_lock lock(mutex_);
             const auto is_free = [&] { return next + 1 < begun_ + kBlocks; };
             if (!changed_.wait(lock, stop, is_free) || stop.stop_requested())
@@ -37,6 +40,7 @@ void ReadAhead::run(const std::stop_token& stop) {
             failure = std::current_exception();
         }
         const std::lock_guard lock(mutex_);
+        assert(read_blocks_ == next && !ended_);
         failure_ = failure;
         read_blocks_ = failure ? next : next + 1;
         ended_ = failure || block.bytes.empty() || !block.damage.empty();

@@ -11,7 +11,7 @@ namespace {
 
 using Block = ReadAhead::Block;
 
-/// Blocks of one byte each: 1, 2, ... `last`, then an empty one.
+/// Makes blocks of one byte each: 1, 2, ... `last`, then an empty one.
 auto counting(int last, std::atomic<int>& calls) {
     return [&calls, last](Block& block) {
         const int number = ++calls;
@@ -40,7 +40,7 @@ TEST(ReadAhead, KeepsABlockAsLongAsItIsUsed) {
     ReadAhead ahead(counting(50, calls));
     for (int i = 1; i <= 20; ++i) {
         const Block& block = ahead.next();
-        // Until the thread has gone as far ahead as it may.
+        // Wait until the thread has gone as far ahead as it may.
         while (calls < i + 3)
             std::this_thread::yield();
         ASSERT_EQ(block.bytes[0], i);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Source: zlib reads both plain and compressed files; the only file that sees it.
+// Source reads plain and compressed files by zlib; no other file sees it.
 #include "importers/file/source.h"
 
 #include "core/text/suggestion.h"
@@ -8,6 +8,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 
@@ -17,12 +18,12 @@ namespace {
 
 constexpr size_t kBlockBytes = size_t(1) << 16;    // larger was no faster
 constexpr size_t kUnpackedBytes = size_t(1) << 18; // some 1 ms of work
-/// Far more than any line of a model, and little enough to have in memory whole.
+/// The max bytes of a line: far more than any model has, and little enough to fit into memory.
 constexpr size_t kLongestLine = size_t(1) << 28;
 constexpr uint64_t kLikelyCompression = 12; // models as text reach 3 to 6
 
-/// What is there instead of a regular file: reading it might block, or never end. Null where
-/// nothing speaks against opening it.
+/// Names a file that is not regular, because reading it might block or never end. Null if nothing
+/// speaks against opening it.
 const char* other_than_a_file(std::filesystem::file_type type) {
     switch (type) {
     case std::filesystem::file_type::directory:
@@ -39,13 +40,14 @@ const char* other_than_a_file(std::filesystem::file_type type) {
     }
 }
 
-/// Of a line: what remains of its end, and the marks that some programs put behind the last one,
-/// NUL (ZBrush) and Ctrl-Z (DOS).
+/// A line may keep a CR of its end, and some programs put marks behind the last line: NUL (ZBrush)
+/// and Ctrl-Z (DOS).
 bool ends_text(char c) {
     return c == '\r' || c == '\0' || c == '\x1a';
 }
 
-/// zlib begins what it says with the file's name; the errors do so themselves.
+/// Removes the file's name that zlib begins its sentence with, because our errors begin with it,
+/// too.
 std::string_view without(const std::string& name, std::string_view reason) {
     const std::string prefix = name + ": ";
     return reason.starts_with(prefix) ? reason.substr(prefix.size()) : reason;
@@ -93,6 +95,7 @@ void Source::find_line_end() {
 }
 
 bool Source::fill(size_t count) {
+    assert(begin_ <= end_ && end_ <= buffer_.size());
     if (begin_ > 0) {
         std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
         dropped_ += begin_;
@@ -105,9 +108,11 @@ bool Source::fill(size_t count) {
     return true;
 }
 
-/// Reads what comes next; how many bytes that were. damage: why there are fewer than asked for.
+/// Reads at most `room` bytes; returns how many. `damage` receives the reason if the file could not
+/// give as many as it should.
 static size_t read_some(gzFile_s* file, unsigned char* to, size_t room, const std::string& name,
                         std::string& damage) {
+    assert(room > 0 && room <= kUnpackedBytes); // zlib counts in int
     const int got = gzread(file, to, unsigned(room));
     if (got < int(room)) {
         int code = Z_OK;
@@ -123,7 +128,7 @@ static size_t read_some(gzFile_s* file, unsigned char* to, size_t room, const st
 }
 
 size_t Source::read() {
-    // Doubling as the bytes arrive, never to what somebody claims there are.
+    // The buffer doubles as the bytes arrive, never to a size that somebody claims.
     if (end_ == buffer_.size())
         buffer_.resize(2 * buffer_.size());
     const size_t got = read_some(file_.get(), buffer_.data() + end_,
@@ -132,7 +137,7 @@ size_t Source::read() {
     return got;
 }
 
-/// Takes a block that was unpacked meanwhile.
+/// Takes a block that the other thread unpacked meanwhile.
 size_t Source::read_ahead() {
     if (!unpacked_)
         unpacked_ = std::make_unique<ReadAhead>([file = file_.get(), name = name_](auto& block) {
@@ -174,6 +179,7 @@ std::optional<std::string_view> Source::line() {
     const char* text = reinterpret_cast<const char*>(buffer_.data() + begin_);
     size_t length = end ? size_t(end - (buffer_.data() + begin_)) : end_ - begin_;
     begin_ += length + (end ? 1 : 0);
+    assert(begin_ <= end_);
     ++line_number_;
     while (length > 0 && ends_text(text[length - 1]))
         --length;

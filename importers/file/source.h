@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Source: a plain or gzip-compressed file read once, front to back, by lines or by bytes.
+// Source reads a plain or gzip-compressed file once, front to back, by lines or by bytes.
 #pragma once
 
 #include "core/result.h"
@@ -18,25 +18,26 @@ struct gzFile_s;
 
 namespace ovc {
 
-/// Memory: one block, and of a compressed file a MiB that another thread unpacks meanwhile; more
-/// only while a single line or read is longer, never more than twice what the file holds.
-/// Compression is told by the file's first bytes, not by its name.
+/// A Source takes the memory of one block, and a MiB that another thread unpacks ahead if the file
+/// is compressed. It takes more only while a single line or read is longer, never more than twice
+/// what the file holds. The file's first bytes, not its name, tell whether it is compressed.
 class Source {
 public:
     enum class Empty { Refused, Fine };
 
     /// Fails on no such file, no regular file (links are followed), no permission, and an empty
-    /// file unless that is fine. files: receives which file that is.
+    /// file unless that is fine. `files` receives the file; it may be null.
     static Result<Source> open(const std::filesystem::path& path, FilesRead* files = nullptr,
                                Empty empty = Empty::Refused);
 
-    /// The next line without its end (LF, CR LF, or CR alone where the first line ends so) and
-    /// without the NULs and Ctrl-Zs that some programs end a text with; nothing at the end of the
-    /// file, and where a line is so long that the file is taken for damaged. Valid until the next
+    /// Returns the next line without its end (LF, CR LF, or CR alone if the first line ends so) and
+    /// without the NULs and Ctrl-Zs that some programs end a text with. Returns nothing at the end
+    /// of the file, and at a line so long that the file counts as damaged. Valid until the next
     /// call.
     std::optional<std::string_view> line();
 
-    /// The next `count` bytes in one piece, valid until the next call; null where fewer are left.
+    /// Returns the next `count` bytes in one piece, valid until the next call; null if fewer are
+    /// left.
     const unsigned char* bytes(size_t count) {
         if (end_ - begin_ < count && !fill(count))
             return nullptr;
@@ -45,30 +46,29 @@ public:
         return at;
     }
 
-    /// False where fewer are left.
+    /// Returns false if fewer bytes are left.
     bool skip(uint64_t count);
-    /// How many bytes that were.
+    /// Returns how many bytes were left.
     uint64_t skip_rest();
 
-    /// Bytes (uncompressed) read so far.
+    /// Returns the number of (uncompressed) bytes given out so far.
     uint64_t offset() const { return dropped_ + begin_; }
-    /// The number of the line that line() gave last, from 1.
+    /// Returns the number of the line that line() returned last, from 1.
     uint64_t line_number() const { return line_number_; }
-    /// A guess, used only to reserve memory: the size of a plain file; of a compressed one, what
-    /// text at most packs to.
+    /// Guesses the uncompressed size, for reserving memory only: the size of a plain file, or the
+    /// max that text of a compressed file's size unpacks to.
     uint64_t likely_bytes() const { return likely_bytes_; }
 
     bool is_compressed() const { return is_compressed_; }
-    /// True where the file could not be read to its end; the errors below say why.
+    /// Returns whether the file could not be read to its end; the errors below say why.
     bool is_damaged() const { return !damage_.empty(); }
 
-    /// "FILE, line 7: sentence"; or, where the file itself could not be read on, what was wrong
-    /// with that.
+    /// Returns "FILE, line 7: sentence"; or, if is_damaged(), a sentence on the damage.
     Error error_at_line(std::string_view sentence) const {
         return error_at_line(line_number_, sentence);
     }
     Error error_at_line(uint64_t line, std::string_view sentence) const;
-    /// "FILE, byte 70: sentence", likewise.
+    /// Returns "FILE, byte 70: sentence", likewise.
     Error error_at_byte(uint64_t byte, std::string_view sentence) const;
     Error error(std::string_view sentence) const;
 
@@ -81,15 +81,15 @@ private:
 
     size_t read();
     size_t read_ahead();
-    /// Makes at least `count` bytes available; false at the end of the file.
+    /// Makes at least `count` bytes available; returns false at the end of the file.
     bool fill(size_t count);
     void find_line_end();
 
     std::string name_;
     std::unique_ptr<gzFile_s, CloseFile> file_;
-    std::unique_ptr<ReadAhead> unpacked_; // uses file_; null of a plain file
+    std::unique_ptr<ReadAhead> unpacked_; // uses file_; null if the file is plain
     std::vector<unsigned char> buffer_;
-    size_t begin_ = 0; // of what is not given out yet
+    size_t begin_ = 0; // of the bytes that are not given out yet
     size_t end_ = 0;
     uint64_t dropped_ = 0; // bytes that left the buffer
     uint64_t line_number_ = 0;

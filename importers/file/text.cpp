@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers by std::from_chars: exact, and blind to the locale.
+// std::from_chars parses numbers exactly, whatever the locale.
 #include "importers/file/text.h"
 
 #include "core/text/printable.h"
@@ -17,7 +17,7 @@ namespace ovc {
 
 namespace {
 
-/// "1.#IND", "1.#QNAN0", "1.#INF": what old Windows runtimes print for numbers that are none.
+/// Old Windows runtimes print "1.#IND", "1.#QNAN0" and "1.#INF" for NaN and infinity.
 template <class T>
 std::optional<T> parse_windows_non_number(std::string_view word) {
     const bool negative = word.starts_with('-');
@@ -37,7 +37,7 @@ std::optional<T> parse_real(std::string_view word) {
     T value{};
     auto [end, ec] = std::from_chars(word.data(), last, value);
     if (ec == std::errc::result_out_of_range) {
-        // Too large becomes infinity, too small zero; from_chars leaves that to us.
+        // A number too large becomes infinity, one too small zero; from_chars leaves that to us.
         long double wide = 0;
         const auto again = std::from_chars(word.data(), last, wide);
         ec = again.ec;
@@ -49,7 +49,8 @@ std::optional<T> parse_real(std::string_view word) {
     return parse_windows_non_number<T>(word);
 }
 
-/// Halfway between two floats, as one text in 2^29 comes out when rounded to double first.
+/// Returns whether the value lies halfway between two floats, as one text in 2^29 does once it is
+/// rounded to double.
 bool is_between_floats(double value) {
     return (std::bit_cast<uint64_t>(value) & 0x1fffffff) == 0x10000000;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words and numbers out of a line of text.
+// These functions take words and numbers out of a line of text.
 #pragma once
 
 #include <charconv>
@@ -23,7 +23,7 @@ inline void skip_blanks(std::string_view& text) {
     text.remove_prefix(n);
 }
 
-/// Takes the next word off `text`; empty at its end.
+/// Takes the next word off `text`; returns an empty word at its end.
 inline std::string_view next_word(std::string_view& text) {
     skip_blanks(text);
     size_t n = 0;
@@ -34,8 +34,8 @@ inline std::string_view next_word(std::string_view& text) {
     return word;
 }
 
-/// Without the comment behind a statement: a # that follows a blank. A number right behind the #
-/// makes it part of a name ("Material #25", as 3ds Max writes).
+/// Returns the text without its comment, which begins with a # at its start or behind a blank. A
+/// digit right behind the # makes it part of a name ("Material #25", as 3ds Max writes).
 inline std::string_view without_comment(std::string_view text) {
     for (size_t i = 0; i < text.size(); ++i) {
         const bool begins = text[i] == '#' && (i == 0 || is_blank(text[i - 1]));
@@ -53,8 +53,7 @@ inline std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// The whole word as a number; nan and inf are numbers. Nothing where it is none, or out of the
-/// range of T.
+/// Returns the whole word as an integer; nothing if it is none or out of the range of T.
 template <std::integral T>
 std::optional<T> parse_number(std::string_view word) {
     if (word.size() > 1 && word[0] == '+')
@@ -66,9 +65,9 @@ std::optional<T> parse_number(std::string_view word) {
     return value;
 }
 
-/// Takes a word of one to nine digits off `text`: what nearly every index is. False, and at most
-/// blanks taken, for any other word. A quarter of the time of reading a PLY file as text was
-/// parse_number.
+/// Takes a word of one to nine digits off `text`, as nearly every index is. Returns false, and
+/// takes at most blanks, for any other word. parse_number() took a quarter of the time of reading a
+/// PLY file as text.
 inline bool take_digits(std::string_view& text, uint32_t& value) {
     skip_blanks(text);
     value = 0;
@@ -81,21 +80,23 @@ inline bool take_digits(std::string_view& text, uint32_t& value) {
     return true;
 }
 
-/// The nearest float or double. A double rounds to the float nearest to the text, not only to the
-/// one nearest to the double, so that a reader may keep doubles until it knows that floats suffice.
+/// Return the float or double nearest to the whole word, infinity and NaN included; nothing if it
+/// is no number. A double rounds to the float nearest to the text, not only to the one nearest to
+/// the double, so that a reader may keep doubles until it knows that floats suffice.
 std::optional<float> parse_float(std::string_view word);
 std::optional<double> parse_double(std::string_view word);
 
-/// The word as a message shows it: in quotes, cut short, printable.
+/// Returns the word as a message shows it: in quotes, cut short, printable.
 std::string quoted(std::string_view word);
 
-/// The word in quotes, behind `what` it is where that is given; or that the line ends there.
+/// Returns the word in quotes, behind `what` if that is given; "the end of the line" if it is
+/// empty.
 std::string found(std::string_view word, std::string_view what = {});
 
-/// "1 row", "2 rows".
+/// Returns "1 row", "2 rows".
 std::string counted(uint64_t count, std::string_view noun);
 
-/// "a, b, c and 5 more": no more than three in full.
+/// Returns "a, b, c and 5 more": at most three in full.
 std::string listed(std::span<const std::string> items);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every other format, by Assimp; the only file that sees it. Never for .ply and .obj: there it
+// Assimp reads every other format; no other file sees it. It never reads .ply and .obj: there it
 // takes many times the memory of the file, and hangs or crashes on some that are damaged.
 #include "importers/file/source.h"
 #include "importers/file/text.h"
@@ -21,15 +21,15 @@ namespace ovc {
 
 namespace {
 
-// Not JoinIdenticalVertices: it merges by distance. After reading, for these steps throw away what
-// the messages tell of.
+// JoinIdenticalVertices is not among them, because it merges by distance. These steps run after
+// reading, because they throw away things that the warnings tell of.
 constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_PreTransformVertices;
 
 vec3 from(const aiVector3D& v) {
     return {v.x, v.y, v.z};
 }
 
-/// glTF's transmission is tinted by the base color; other formats know opacity, which is not.
+/// The base color tints glTF's transmission, but not the opacity that other formats know.
 void let_light_through(const aiMaterial& source, Material& material) {
     ai_real share = 0, opacity = 1, ior = 1;
     source.Get(AI_MATKEY_TRANSMISSION_FACTOR, share);
@@ -63,8 +63,8 @@ bool is_triangle(const aiFace& face, const aiMesh& mesh) {
            face.mIndices[1] < mesh.mNumVertices && face.mIndices[2] < mesh.mNumVertices;
 }
 
-/// Empty where one is missing or not finite, and where all triangles are flat: those say nothing
-/// new.
+/// Returns one normal per corner; none if one is missing or not finite, or if all triangles are
+/// flat, because then they say nothing new.
 std::vector<vec3> normals_from(const aiMesh& mesh) {
     std::vector<vec3> normals;
     bool smooth = false;
@@ -108,8 +108,8 @@ dvec3 through(const aiMatrix4x4& place, const aiVector3D& point) {
     return {moved.x, moved.y, moved.z};
 }
 
-/// Along the shorter side of the picture. Of glTF Assimp 5 tells the upright angle x the shape, of
-/// other formats the whole angle across, whatever its header says.
+/// Returns the angle along the shorter side of the picture. For glTF, Assimp 5 tells the upright
+/// angle times the shape; for other formats the whole angle across, whatever its header says.
 double angle_of_view(const aiCamera& source, bool is_gltf) {
     const double shape = source.mAspect > 1 ? source.mAspect : 1;
     if (is_gltf)
@@ -117,13 +117,13 @@ double angle_of_view(const aiCamera& source, bool is_gltf) {
     return 2 * std::atan(std::tan(double(source.mHorizontalFOV) / 2) / shape);
 }
 
-/// Where its node stands. Nothing of an orthographic one, whose extent not all formats tell, and of
-/// one that sees nothing.
+/// Places the camera where its node stands. Returns nothing for an orthographic camera, whose
+/// extent not all formats tell, and for one that sees nothing.
 std::optional<Camera> camera_from(const aiCamera& source, const aiNode& root, bool is_gltf) {
     aiMatrix4x4 place;
     for (const aiNode* node = root.FindNode(source.mName); node; node = node->mParent)
         place = node->mTransformation * place;
-    // Of glTF Assimp 5 gives the node's own translation once more.
+    // For glTF, Assimp 5 gives the node's own translation once more.
     const aiVector3D at = is_gltf ? aiVector3D() : source.mPosition;
     Camera camera;
     camera.eye = through(place, at);
@@ -136,7 +136,7 @@ std::optional<Camera> camera_from(const aiCamera& source, const aiNode& root, bo
     return sees ? std::optional(camera) : std::nullopt;
 }
 
-/// The first that can be used.
+/// Returns the first camera that can be used.
 std::optional<Camera> camera_of(const aiScene& scene, bool is_gltf) {
     for (unsigned c = 0; c < scene.mNumCameras; ++c)
         if (auto camera = camera_from(*scene.mCameras[c], *scene.mRootNode, is_gltf))
@@ -144,7 +144,8 @@ std::optional<Camera> camera_of(const aiScene& scene, bool is_gltf) {
     return std::nullopt;
 }
 
-/// Each picture once, in the order of the materials; "*0" is the first of those in the file itself.
+/// Lists each picture once, in the order of the materials; "*0" is the first picture in the file
+/// itself.
 std::vector<std::string> textures_of(const aiScene& scene) {
     std::vector<std::string> names;
     for (unsigned m = 0; m < scene.mNumMaterials; ++m)
@@ -161,7 +162,7 @@ std::vector<std::string> textures_of(const aiScene& scene) {
     return names;
 }
 
-/// Points and lines.
+/// Counts points and lines.
 uint64_t other_faces(const aiScene& scene) {
     uint64_t others = 0;
     for (unsigned m = 0; m < scene.mNumMeshes; ++m)
@@ -170,7 +171,7 @@ uint64_t other_faces(const aiScene& scene) {
     return others;
 }
 
-/// What the file has and the scene will not.
+/// Returns a sentence for each kind of thing that the file has and the scene will not.
 std::vector<std::string> left_out_of(const aiScene& found, bool has_camera) {
     std::vector<std::string> sentences;
     const auto leave_out = [&](uint64_t count, const char* what, const std::string& more = {}) {
@@ -186,7 +187,7 @@ std::vector<std::string> left_out_of(const aiScene& found, bool has_camera) {
     return sentences;
 }
 
-/// Opens files for Assimp, and takes down which.
+/// Opens files for Assimp, and notes each one.
 class NotingFiles final : public Assimp::DefaultIOSystem {
 public:
     explicit NotingFiles(FilesRead& files) : files_(files) {}
@@ -200,7 +201,7 @@ private:
     FilesRead& files_;
 };
 
-/// The whole file, uncompressed.
+/// Returns the whole file, uncompressed.
 std::vector<unsigned char> contents(Source& source) {
     constexpr size_t kBlock = size_t(1) << 16;
     std::vector<unsigned char> all;
@@ -222,8 +223,8 @@ bool is_gltf(const std::filesystem::path& path) {
     return extension == ".gltf" || extension == ".glb";
 }
 
-/// Assimp opens a plain file itself, as that may name others beside it; a compressed one it gets
-/// from memory.
+/// Lets Assimp open a plain file itself, because that may name others beside it; a compressed one
+/// is read from memory.
 const aiScene* read(Assimp::Importer& importer, Source& source, const std::filesystem::path& path) {
     if (!source.is_compressed())
         return importer.ReadFile(path.string(), 0);
@@ -245,7 +246,7 @@ Result<Scene> read_assimp(const std::filesystem::path& path, const ImportOptions
         return source.error();
     Assimp::Importer importer;
     if (options.files)
-        importer.SetIOHandler(new NotingFiles(*options.files)); // which it deletes
+        importer.SetIOHandler(new NotingFiles(*options.files)); // the importer deletes it
     const aiScene* found = read(importer, *source, path);
     Scene scene;
     scene.name = path.stem().string();

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks: an array that grows without ever holding its contents twice.
+// Blocks is an array that grows without ever holding its contents twice.
 #pragma once
 
 #include "core/system/system_pages.h"
 
+#include <cassert>
 #include <cstddef>
 #include <cstring>
 #include <type_traits>
@@ -12,14 +13,14 @@
 
 namespace ovc {
 
-/// Append, then take() it as one vector of exactly that capacity. Nothing is copied where reserve()
-/// was told the size; else no more than kBlock items exist twice.
+/// Append items, then take() them as one vector without spare capacity. Nothing is copied if
+/// reserve() was told the size; else at most kBlock items exist twice.
 template <class T>
 class Blocks {
     static_assert(std::is_trivially_copyable_v<T>);
 
 public:
-    /// Memory that is reserved and never used costs nothing: the system finds pages on first touch.
+    /// Reserved memory that is never used costs nothing: the system finds pages on first touch.
     void reserve(size_t count) { first_.reserve(count); }
 
     void push_back(const T& value) {
@@ -33,10 +34,12 @@ public:
         return first_.size() + (later_.empty() ? 0 : (later_.size() - 1) * kBlock + used_);
     }
 
-    /// Leaves nothing behind.
+    /// Returns all items and leaves none behind.
     std::vector<T> take() {
-        if (first_.capacity() == size())
+        if (first_.capacity() == size()) {
+            assert(later_.empty());
             return std::move(first_);
+        }
         std::vector<T> whole;
         whole.reserve(size());
         whole.insert(whole.end(), first_.begin(), first_.end());
@@ -58,6 +61,7 @@ private:
             later_.push_back(map_pages(kBlock * sizeof(T)));
             used_ = 0;
         }
+        assert(used_ < kBlock);
         std::memcpy(static_cast<T*>(later_.back().get()) + used_++, &value, sizeof(T));
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MTL: newmtl, Kd, Ks, Tf, d, Tr, Ni, illum.
+// The reader of MTL understands newmtl, Kd, Ks, Tf, d, Tr, Ni and illum.
 // Based on: Wavefront, "MTL material format", version 4.2 (1995).
 #include "importers/mesh/mtl.h"
 
@@ -9,14 +9,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 
 namespace ovc {
 
 namespace {
 
-/// "Kd 0.5" is a grey, as the format says; "Kd spectral …" and "Kd xyz …" leave the color as it
-/// was.
+/// "Kd 0.5" is a grey, as the format says. Returns nothing for "Kd spectral …" and "Kd xyz …".
 std::optional<vec3> parse_color(std::string_view text) {
     vec3 color(0);
     int count = 0;
@@ -32,15 +32,16 @@ std::optional<vec3> parse_color(std::string_view text) {
     return glm::clamp(color, vec3(0), vec3(1));
 }
 
-/// 3 and up reflect; 9 only lets light through, 10 only casts shadows.
+/// Models from 3 up reflect; 9 only lets light through, and 10 only casts shadows.
 bool reflects(int illumination) {
     return illumination >= 3 && illumination < 9;
 }
 
-/// Whether light passes through; 6 and 7 bend it as well.
 bool refracts(int illumination) {
     return illumination == 6 || illumination == 7;
 }
+
+/// Light passes through in models 4, 6, 7 and 9; 6 and 7 bend it as well.
 bool transmits(int illumination) {
     return illumination == 4 || refracts(illumination) || illumination == 9;
 }
@@ -49,13 +50,13 @@ struct Entry {
     LibraryMaterial read;
     vec3 specular{0};
     std::optional<vec3> filter;
-    std::optional<float> dissolve, transparency; // d and Tr: 1 is opaque, and clear
+    std::optional<float> dissolve, transparency; // d, where 1 is opaque; Tr, where 1 is clear
     double ior = 1;
     int illumination = 0;
 
-    /// The share of the unmirrored light that goes through. Programs write Tr both ways round, so
-    /// d has the last word. The format scales by Tf alone; today's programs leave that out and
-    /// write d.
+    /// Returns the share of the unmirrored light that passes through. Programs write Tr both ways
+    /// round, so d has the last word. The format scales by Tf alone; today's programs leave that
+    /// out and write d.
     float through() const {
         const bool stated = dissolve || transparency;
         const float opaque = dissolve ? *dissolve : 1 - transparency.value_or(0);
@@ -71,6 +72,7 @@ struct Entry {
         if (!transmits(illumination))
             return;
         material.transmission = (1 - material.mirror) * through();
+        assert(material.transmission >= 0 && material.transmission <= 1);
         material.filter = filter.value_or(vec3(1));
         if (refracts(illumination) && is_usable_ior(ior))
             material.ior = ior;
@@ -82,13 +84,14 @@ std::optional<float> parse_share(std::string_view text) {
     return value && std::isfinite(*value) ? std::optional(*value) : std::nullopt;
 }
 
-/// map_aat only switches antialiasing.
+/// map_aat begins like a texture but only switches antialiasing.
 bool is_texture(std::string_view keyword) {
     return (keyword.starts_with("map_") && keyword != "map_aat") || keyword == "bump" ||
            keyword == "disp" || keyword == "decal" || keyword == "refl" || keyword == "norm";
 }
 
-/// The file's name, which stands behind options such as "-s 2 2 1" and may have blanks in it.
+/// Returns the file's name, which stands behind options such as "-s 2 2 1" and may have blanks in
+/// it; behind options only its last word is certain.
 std::string_view picture(std::string_view rest) {
     rest = trimmed(rest);
     return rest.starts_with('-') ? rest.substr(rest.find_last_of(" \t") + 1) : rest;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OBJ: polygons, normals and materials, streamed; one mesh per object, group and material.
+// The OBJ reader streams polygons, normals and materials, and makes one mesh per object, group and
+// material.
 // Source: Wavefront, "Advanced Visualizer" manual, appendix B1 (the Object files format).
 #include "importers/file/source.h"
 #include "importers/file/text.h"
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <set>
 #include <unordered_map>
 #include <unordered_set>
@@ -20,14 +22,14 @@ namespace ovc {
 
 namespace {
 
-/// Beyond this many extents from 0, single precision would cost more than the last digit that files
-/// carry.
+/// Meshes farther from 0 than this many extents get an origin, because single precision would cost
+/// more than the last digit that files carry.
 constexpr double kFar = 16;
 
 struct Corner {
     uint32_t vertex = 0;
-    int64_t normal = -1;     // index, or -1
-    bool has_normal = false; // or states one that is not there
+    int64_t normal = -1;     // index; -1 if none is stated; may be out of range
+    bool has_normal = false; // the file states one, though it may not exist
     bool has_texture = false;
 };
 
@@ -37,7 +39,7 @@ struct Mesh {
     Blocks<vec3> corners;
     Blocks<vec3> normals; // as many as corners, while has_normals
     bool has_normals = true;
-    uint64_t normals_stated = 0, texture_coordinates = 0; // corners with them
+    uint64_t normals_stated = 0, texture_coordinates = 0; // counted in corners
 };
 
 class ObjReader {
@@ -64,7 +66,7 @@ private:
         return false;
     }
 
-    /// Once per kind.
+    /// Says the sentence at the first call with this kind only.
     void warn(const std::string& kind, const std::string& sentence) {
         if (warned_.insert(kind).second)
             say(log_, LogLevel::Warning, source_.error_at_line(sentence).message);
@@ -76,7 +78,7 @@ private:
         return true;
     }
 
-    /// The line and those it goes on in, where it ends in a backslash.
+    /// Returns the line and, while it ends in a backslash, the lines that continue it.
     std::string_view joined(std::string_view line);
     bool read_line(std::string_view line);
     bool read_other(std::string_view keyword, std::string_view rest);
@@ -106,21 +108,21 @@ private:
     std::vector<vec3> normals_;
     bool has_texture_coordinates_ = false;
     Box bounds_;
-    std::optional<dvec3> origin_; // from the vertices that precede the first face
+    std::optional<dvec3> origin_; // chosen from the vertices that precede the first face
     std::vector<Corner> polygon_;
     std::vector<dvec3> outline_;
     std::vector<std::array<uint32_t, 3>> cut_;
 
-    std::vector<LibraryMaterial> materials_{LibraryMaterial{}}; // first, of faces before any usemtl
+    std::vector<LibraryMaterial> materials_{LibraryMaterial{}}; // the first before any usemtl
     std::unordered_map<std::string, uint32_t> material_ids_;
-    std::unordered_set<std::string> libraries_; // that were read
+    std::unordered_set<std::string> libraries_; // paths that were read
     uint32_t material_ = 0;
     std::string object_;
     std::string group_;
     std::vector<Mesh> meshes_;
     std::unordered_map<std::string, size_t> mesh_ids_;
     size_t mesh_ = 0;
-    bool mesh_known_ = false; // false once object, group or material changed
+    bool mesh_known_ = false; // becomes false when object, group or material changes
 };
 
 std::string_view ObjReader::joined(std::string_view line) {
@@ -139,7 +141,7 @@ std::string_view ObjReader::joined(std::string_view line) {
 }
 
 bool ObjReader::read_line(std::string_view line) {
-    if (line.starts_with("\xef\xbb\xbf")) // the mark some editors put before UTF-8
+    if (line.starts_with("\xef\xbb\xbf")) // some editors put this mark before UTF-8
         line.remove_prefix(3);
     const std::string_view keyword = next_word(line);
     if (keyword == "v")
@@ -202,7 +204,7 @@ bool ObjReader::read_normal(std::string_view rest) {
         normal[axis] = *value;
     }
     const float length = glm::length(normal);
-    // Zero marks one that cannot be used.
+    // A zero marks a normal that cannot be used.
     if (!(length > 0) || !std::isfinite(length))
         normal = vec3(0);
     else if (std::abs(length - 1) > 1e-6f)
@@ -224,7 +226,7 @@ bool ObjReader::read_face(std::string_view rest) {
     return true;
 }
 
-/// v, v/vt, v//vn or v/vt/vn.
+/// Reads v, v/vt, v//vn or v/vt/vn.
 bool ObjReader::read_corner(std::string_view word) {
     Corner corner;
     const size_t slash = word.find('/');
@@ -252,7 +254,7 @@ bool ObjReader::fail_index(int64_t index, size_t count) {
                                          : fmt::format("one of the {} above this line", count)));
 }
 
-/// From 1, or from the last backwards from -1.
+/// Reads an index that counts from 1, or backwards from -1, the last vertex so far.
 bool ObjReader::read_index(std::string_view word, std::string_view text, size_t count,
                            uint32_t& index) {
     const auto value = parse_number<int64_t>(text);
@@ -266,7 +268,7 @@ bool ObjReader::read_index(std::string_view word, std::string_view text, size_t 
     return true;
 }
 
-/// One name with blanks in it, or several names; a blank may be written '\ '.
+/// Reads one name with blanks in it, or several names; a blank may be written '\ '.
 void ObjReader::read_libraries(std::string_view rest) {
     for (const std::string_view name : {rest, trimmed(without_comment(rest))})
         if (name.find('\\') == name.npos && read_library(name))
@@ -303,7 +305,7 @@ bool ObjReader::read_library(std::string_view name) {
         if (is_new)
             materials_.emplace_back();
         else if (materials_[at->second].material != Material{called})
-            continue; // else usemtl came before its mtllib
+            continue; // the name is defined; without a definition its usemtl preceded its mtllib
         materials_[at->second] = std::move(read);
     }
     return true;
@@ -340,6 +342,7 @@ Mesh& ObjReader::mesh() {
         mesh_ = at->second;
         mesh_known_ = true;
     }
+    assert(mesh_ < meshes_.size() && meshes_[mesh_].material == material_);
     return meshes_[mesh_];
 }
 
@@ -363,6 +366,7 @@ void ObjReader::add_polygon() {
 }
 
 void ObjReader::add_corner(Mesh& to, const Corner& corner) {
+    assert(origin_ && corner.vertex < vertices_.size());
     to.corners.push_back(vec3(vertices_[corner.vertex] - *origin_));
     to.normals_stated += corner.has_normal;
     to.texture_coordinates += corner.has_texture;
@@ -380,13 +384,14 @@ void ObjReader::add_corner(Mesh& to, const Corner& corner) {
     to.normals = {};
 }
 
-/// Of the materials that some mesh has: a library may serve many files.
+/// Warns of the materials that some mesh has, because a library may serve many files.
 void ObjReader::say_left_out() const {
     std::set<uint32_t> used;
     for (const Mesh& mesh : meshes_)
         used.insert(mesh.material);
     std::vector<std::string> textures, emitters;
     for (const uint32_t m : used) {
+        assert(m < materials_.size());
         for (const std::string& texture : materials_[m].textures)
             if (std::find(textures.begin(), textures.end(), texture) == textures.end())
                 textures.push_back(texture);
@@ -410,6 +415,7 @@ Result<Scene> ObjReader::take() {
     Scene scene;
     scene.name = path_.stem().string();
     for (Mesh& m : meshes_) {
+        assert(m.normals.size() == (m.has_normals ? m.corners.size() : 0));
         if (m.corners.size() / 3 > kMaxTriangles)
             return source_.error(fmt::format("found {} triangles in one mesh, expected at most {}",
                                              m.corners.size() / 3, kMaxTriangles));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OBJ and MTL: statements, meshes, materials, errors by their text, damage.
+// The readers of OBJ and MTL: statements, meshes, materials, errors by their text, damage.
 #include "importers/test_files.h"
 
 #include <sys/stat.h>
@@ -168,7 +168,7 @@ TEST(Obj, TexturesAndLightOfMaterialsInUseAreSaidOnce) {
                                         "a.obj: light from 1 material (Ke) left out: 'b'"}));
 }
 
-/// The material that an MTL file with these statements gives.
+/// Returns the material that an MTL file with these statements gives.
 Material mtl_material(const std::string& statements) {
     const TestFolder folder;
     folder.write("g.mtl", "newmtl glass\n" + statements);
@@ -199,7 +199,7 @@ TEST(Obj, GlassLetsThroughWhatItDoesNotMirror) {
         {"illum 9\nNi 1.5\nKs 0.5\nd 0.5\n", 0, 0.5f, vec3(1), 1},
         {"illum 6\nd -3\nNi 0\n", 0, 1, vec3(1), 1},
         {"illum 6\nd nan\nNi nan\nTf x\n", 0, 1, vec3(1), 1},
-        // What 3ds Max writes for what is opaque.
+        // 3ds Max writes this for an opaque material.
         {"illum 2\nNi 1.5\nd 1\nTr 1\nTf 1 1 1\n", 0, 0, vec3(1), 1},
         {"illum 3\nKs 0.5\nd 0.5\nNi 1.5\n", 0.5f, 0, vec3(1), 1},
     };

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY: ASCII and binary of either byte order, streamed; polygons and triangle strips.
+// The PLY reader streams polygons and triangle strips, in ASCII and in binary of either byte order.
 #include "importers/mesh/blocks.h"
 #include "importers/mesh/ply_rows.h"
 #include "importers/mesh/polygon.h"
 #include "importers/origin.h"
 #include "importers/readers.h"
 
+#include <cassert>
+
 namespace ovc {
 
 namespace {
 
-/// What a row's property is to us.
+/// The use that the reader has for a row's property.
 enum class Role : uint8_t { Skipped, Position, Normal, Indices };
 
 struct Column {
@@ -45,8 +47,8 @@ Layout vertex_layout(const PlyElement& element) {
     return layout;
 }
 
-/// At vertices, under the names that programs give them, or at the corners of faces, as VCGLIB
-/// writes them.
+/// Texture coordinates stand at vertices, under names that differ between programs, or at the
+/// corners of faces, as VCGLIB writes them.
 bool has_texture_coordinates(const PlyHeader& header) {
     constexpr std::array<std::string_view, 2> kNames[] = {
         {"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
@@ -58,7 +60,7 @@ bool has_texture_coordinates(const PlyHeader& header) {
     return faces && faces->find("texcoord") >= 0;
 }
 
-/// The property that holds a polygon's vertices; -1 where there is none.
+/// Returns the property that holds a polygon's vertices; -1 if there is none.
 int index_list(const PlyElement& element) {
     const int list = element.find("vertex_indices");
     return list >= 0 ? list : element.find("vertex_index");
@@ -70,7 +72,7 @@ struct Pending {
     std::vector<uint32_t> lengths;
 };
 
-/// V: vec3 where the coordinates are floats for sure, else dvec3.
+/// V is vec3 if the types in the header hold floats only, else dvec3.
 template <class Rows, class V>
 class PlyReader {
 public:
@@ -90,7 +92,7 @@ public:
     }
 
     const Error& error() const { return rows_.error(); }
-    /// Warnings, after read(); the second once only.
+    /// Return warnings after read(); left_over() does so once only.
     std::optional<Error> surplus() const { return rows_.surplus(); }
     std::optional<Error> left_over() { return rows_.left_over(); }
     uint64_t triangle_count() const { return corners_.size() / 3; }
@@ -119,7 +121,7 @@ private:
             return read_polygons(element, /* strips= */ false);
         if (element.name == "tristrips")
             return read_polygons(element, /* strips= */ true);
-        // A row without properties takes no bytes: there may be any number of them.
+        // Rows without properties take no bytes, so a file may claim any number of them.
         for (uint64_t i = 0; i < element.count && !element.properties.empty(); ++i)
             if (!skip_row(element))
                 return false;
@@ -139,7 +141,7 @@ private:
         return property.is_list ? rows_.skip_list(property) : rows_.skip_scalar(property);
     }
 
-    /// The rows that the rest of the file can hold, whatever it claims.
+    /// Returns how many rows the rest of the file can hold, whatever the file claims.
     size_t plausible_rows(const PlyElement& element, uint64_t row_bytes) const {
         const uint64_t left =
             source_.likely_bytes() - std::min(source_.likely_bytes(), source_.offset());
@@ -253,7 +255,7 @@ private:
                                                : fmt::format("0 to {}", vertex_count_ - 1));
     }
 
-    /// Every other triangle of a strip is wound the other way; kRestart begins a new one.
+    /// Every other triangle of a strip is wound the other way; kRestart begins a new strip.
     void add_strip() {
         uint32_t a = 0, b = 0, length = 0;
         for (const uint32_t c : polygon_) {
@@ -281,6 +283,7 @@ private:
     }
 
     void add_triangles(std::span<const uint32_t> indices) {
+        assert(indices.size() >= 3);
         if (indices.size() == 3) {
             for (const uint32_t index : indices)
                 add_corner(index);
@@ -297,6 +300,8 @@ private:
     }
 
     void add_corner(uint32_t index) {
+        assert(vertices_ready_ && index < vertices_.size());
+        assert(normals_.empty() || normals_.size() == vertices_.size());
         if constexpr (std::same_as<V, dvec3>)
             corners_.push_back(vec3(vertices_[index] - origin_));
         else
@@ -321,7 +326,7 @@ private:
     Blocks<vec3> corner_normals_;
     Pending pending_;
     std::vector<int64_t> row_;      // the row's indices as stored
-    std::vector<uint32_t> polygon_; // and checked
+    std::vector<uint32_t> polygon_; // the same, checked
     std::vector<dvec3> outline_;
     std::vector<std::array<uint32_t, 3>> cut_;
 };
@@ -366,7 +371,7 @@ Result<Scene> read_body(Source& source, const PlyHeader& header, const std::file
     return read_body<Rows, vec3>(source, header, path, log);
 }
 
-/// What the header must have for its file to be a model.
+/// Checks that the header describes a model.
 std::optional<Error> check(const PlyHeader& header, const Source& source) {
     if (const PlyElement* vertices = header.find("vertex"))
         for (const char* axis : {"x", "y", "z"})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY headers: a keyword a line.
+// A PLY header has one keyword per line.
 #include "importers/mesh/ply_header.h"
 
 #include "importers/file/text.h"
@@ -41,8 +41,8 @@ bool is_remark(std::string_view keyword) {
     return keyword == "comment" || keyword == "obj_info" || keyword == "Created";
 }
 
-/// What 32 bits can number: vertices but for one value that marks the end of a strip, and
-/// triangles. Rows of other elements are only skipped.
+/// 32 bits number the vertices, except one value that marks the end of a strip, and the triangles.
+/// Rows of other elements are only skipped.
 uint64_t max_rows(std::string_view element) {
     if (element == "vertex")
         return 0xffffffff;
@@ -61,7 +61,7 @@ public:
 
     Result<PlyHeader> read() {
         std::string_view first = source_.line().value_or("");
-        if (first.starts_with("\xef\xbb\xbf")) // the mark some editors put before UTF-8
+        if (first.starts_with("\xef\xbb\xbf")) // some editors put this mark before UTF-8
             first.remove_prefix(3);
         if (first = trimmed(first); first != "ply")
             return wrong(found(first), "ply");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of a PLY file's elements, value by value: AsciiRows and BinaryRows have the same face.
+// AsciiRows and BinaryRows read the rows of a PLY file's elements, value by value, by the same
+// functions.
 #pragma once
 
 #include "importers/file/text.h"
@@ -9,13 +10,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <concepts>
 #include <cstring>
 #include <limits>
 
 namespace ovc {
 
-/// How many rows of an element have been read.
+/// Counts the rows of an element that have been read.
 struct RowCount {
     const PlyElement* element = nullptr;
     uint64_t done = 0;
@@ -27,13 +29,14 @@ struct RowCount {
     }
 
     std::string end_of_file() const {
+        assert(element);
         return fmt::format("the file ends early: found {} of {} of {}", done,
                            counted(element->count, "row"), element->name);
     }
 };
 
-/// Every call but error(), surplus() and left_over() returns false at an error, which error() then
-/// holds. An element's row is one line; blank lines between rows do not count.
+/// Every call except error(), surplus() and left_over() returns false at an error, which error()
+/// then holds. An element's row is one line; blank lines between rows do not count.
 class AsciiRows {
 public:
     explicit AsciiRows(Source& source) : source_(source) {}
@@ -52,14 +55,15 @@ public:
         return true;
     }
 
-    /// Numbers that the header does not tell of (VCGLIB writes some) are passed over.
+    /// Passes over numbers that the header does not tell of (VCGLIB writes some).
     bool end_row() {
+        assert(rows_.done < rows_.element->count);
         skip_blanks(rest_);
         ++rows_.done;
         return rest_.empty() || pass_over_numbers();
     }
 
-    /// T: float or double. Integer types may be written with a point, too.
+    /// T is float or double. The file may write integer types with a point, too.
     template <class T>
     bool scalar(const PlyProperty& property, T& value) {
         const std::string_view word = next_word(rest_);
@@ -79,7 +83,7 @@ public:
         return !word.empty() || fail_word(word, fmt::format("a value for {}", property.name));
     }
 
-    /// Integers only.
+    /// Reads integers only.
     bool list(const PlyProperty& property, std::vector<int64_t>& values) {
         uint64_t left = 0;
         values.clear();
@@ -110,7 +114,7 @@ public:
 
     const Error& error() const { return error_; }
 
-    /// What rows have more than the header says, as a warning; nothing where none has.
+    /// Returns a warning if rows have more numbers than the header says.
     std::optional<Error> surplus() const {
         if (surplus_rows_ == 0)
             return std::nullopt;
@@ -119,7 +123,7 @@ public:
                                         counted(surplus_rows_, "row")));
     }
 
-    /// What follows the last row, as a warning; nothing where only blank lines do.
+    /// Returns a warning if more than blank lines follow the last row.
     std::optional<Error> left_over() {
         uint64_t first = 0, count = 0;
         while (const auto line = source_.line())
@@ -178,6 +182,7 @@ public:
     }
 
     bool end_row() {
+        assert(rows_.done < rows_.element->count);
         ++rows_.done;
         return true;
     }
@@ -194,7 +199,7 @@ public:
         values.clear();
         if (!count(property, left))
             return false;
-        // By parts: the length may claim more than the file holds.
+        // The values grow part by part, because the length may claim more than the file holds.
         while (left > 0) {
             const auto part = size_t(std::min<uint64_t>(left, 4096));
             const size_t first = values.size();
@@ -218,10 +223,10 @@ public:
 
     const Error& error() const { return error_; }
 
-    /// Bytes are counted, so that no row can have too many.
+    /// Returns nothing: the header fixes the size of a binary row.
     std::optional<Error> surplus() const { return std::nullopt; }
 
-    /// What follows the last row, as a warning.
+    /// Returns a warning if bytes follow the last row.
     std::optional<Error> left_over() {
         const uint64_t first = source_.offset();
         const uint64_t count = source_.skip_rest();
@@ -287,7 +292,7 @@ private:
 
     Source& source_;
     RowCount rows_;
-    uint64_t row_ = 0; // where the row begins
+    uint64_t row_ = 0; // the byte at which the row begins
     Error error_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY: encodings, elements, errors by their text, damage.
+// The reader of PLY: encodings, elements, errors by their text, damage.
 #include "importers/test_files.h"
 
 #include <bit>
@@ -18,7 +18,7 @@ std::string ascii(const std::string& rest) {
     return "ply\nformat ascii 1.0\n" + rest;
 }
 
-/// The value's bytes, last first where `big`.
+/// Returns the value's bytes, last first if `big`.
 template <class T>
 std::string bytes(T value, bool big) {
     std::string text(sizeof(T), '\0');
@@ -78,7 +78,7 @@ TEST(Ply, ExtraPropertiesElementsAndBlanksAreSkipped) {
     EXPECT_EQ(triangles_of(load(path)), kSquare);
 }
 
-/// `value` as a PLY type of this name stores it.
+/// Returns `value` as a PLY type of this name stores it.
 std::string stored(const std::string& type, int value, bool big) {
     if (type == "char" || type == "uchar")
         return std::string(1, char(value));
@@ -121,7 +121,7 @@ TEST(Ply, WholeNumbersMayHaveASignAndLeadingZeros) {
 
 TEST(Ply, ConcavePolygonsAreCutWithoutOverlap) {
     const TestFolder folder;
-    // A staircase of six corners, the reflex one second, in the plane x = 2.
+    // The face is a staircase of six corners in the plane x = 2; the second corner is reflex.
     const auto triangles = triangles_of(load(folder.write(
         "stairs.ply",
         ascii("element vertex 6\nproperty float x\nproperty float y\nproperty float z\n"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons: a fan where that is right, else ear clipping in the plane.
+// A polygon becomes a fan where that is right; else its ears are clipped in the plane.
 // Based on: Meisters 1975, "Polygons have ears"; Newell's normal as in Tampieri 1992, Graphics Gems
 // III, V.5.
 #include "importers/mesh/polygon.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -14,7 +15,7 @@ namespace {
 
 dvec3 newell_normal(std::span<const dvec3> corners) {
     dvec3 normal(0);
-    // Relative to the first corner, so that distance from the world's origin costs no precision.
+    // Edges start at the first corner, so that distance from the world's origin costs no precision.
     for (size_t i = 1; i + 1 < corners.size(); ++i)
         normal += glm::cross(corners[i] - corners[0], corners[i + 1] - corners[0]);
     return normal;
@@ -24,8 +25,9 @@ double turn(const dvec2& a, const dvec2& b, const dvec2& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Drops the normal's major axis; the polygon turns left then.
+/// Drops the normal's major axis, so that the polygon turns left.
 std::vector<dvec2> flattened(std::span<const dvec3> corners, const dvec3& normal) {
+    assert(!corners.empty());
     const int drop = major_axis(normal);
     int u = (drop + 1) % 3, v = (drop + 2) % 3;
     if (normal[drop] < 0)
@@ -45,9 +47,9 @@ bool is_convex(const std::vector<dvec2>& flat) {
     return true;
 }
 
-/// Corners by the cell of a grid they lie in, about two a cell, so that an ear is tested against
-/// those near it only. Without cells for few corners, where one is not finite, or all lie on one
-/// axis.
+/// Sorts corners into the cells of a grid, about two per cell, so that an ear is tested against
+/// corners near it only. The grid has no cells if the corners are few, one is not finite, or all
+/// have the same u or the same v.
 class CornerGrid {
 public:
     explicit CornerGrid(const std::vector<dvec2>& flat) : low_(flat[0]) {
@@ -76,12 +78,13 @@ public:
     void remove(const dvec2& p, uint32_t corner) {
         std::vector<uint32_t>& list = corners_[cell(at(p.x, 0), at(p.y, 1))];
         const auto found = std::find(list.begin(), list.end(), corner);
+        assert(found != list.end());
         *found = list.back();
         list.pop_back();
     }
 
-    /// Whether visit() is true for a corner in the cells that the box touches; `work` counts cells
-    /// and corners.
+    /// Returns whether visit() is true for a corner in the cells that the box touches; `work`
+    /// counts cells and corners.
     template <class Visit>
     bool any(const dvec2& low, const dvec2& high, uint64_t& work, const Visit& visit) const {
         const int x_end = at(high.x, 0), y_end = at(high.y, 1);
@@ -101,7 +104,10 @@ private:
     int at(double x, int axis) const {
         return std::min(int((x - low_[axis]) * scale_[axis]), side_ - 1);
     }
-    size_t cell(int x, int y) const { return size_t(y) * size_t(side_) + size_t(x); }
+    size_t cell(int x, int y) const {
+        assert(x >= 0 && x < side_ && y >= 0 && y < side_);
+        return size_t(y) * size_t(side_) + size_t(x);
+    }
 
     dvec2 low_;
     dvec2 scale_{0}; // cells per unit
@@ -115,6 +121,7 @@ public:
         : flat_(flat),
           grid_(flat),
           max_work_(std::max<uint64_t>(kFreeWork, kWorkPerCorner * flat.size())) {
+        assert(flat.size() > 3);
         const auto n = uint32_t(flat.size());
         next_.resize(n);
         previous_.resize(n);
@@ -130,15 +137,15 @@ public:
         uint32_t left = uint32_t(flat_.size());
         uint32_t at = 0;
         uint32_t tried = 0;
-        bool skipped = false; // one of those tried, for it was known
+        bool skipped = false; // one of the corners tried was known to be no ear
         while (left > 3) {
             if (tried == left && std::exchange(skipped, false)) {
-                // Where corners coincide, one may have become an ear since.
+                // If corners coincide, a skipped one may have become an ear since.
                 std::fill(known_.begin(), known_.end(), char(false));
                 tried = 0;
                 continue;
             }
-            // No corner is an ear: the polygon crosses itself, and any cut is as good.
+            // If no corner is an ear, the polygon crosses itself, and any cut is as good.
             if (tried < left && work_ < max_work_ && (known_[at] || !is_ear(at))) {
                 skipped = skipped || known_[at];
                 known_[at] = remembers_;
@@ -176,8 +183,8 @@ private:
         return true;
     }
 
-    /// Corner k lies in the closed triangle. One that coincides with a corner of it, as at the ends
-    /// of a bridge to a hole, does not count.
+    /// Returns whether corner k lies in the closed triangle. A corner that coincides with one of
+    /// the triangle's, as at the ends of a bridge to a hole, does not count.
     bool blocks(uint32_t k, const dvec2& a, const dvec2& b, const dvec2& c) const {
         const dvec2& p = flat_[k];
         if (p == a || p == b || p == c)
@@ -188,16 +195,18 @@ private:
     /// Beyond this much work any cut is as good. Polygons of 4095 corners that do not cross
     /// themselves were seen to need 10 to 410 a corner (a comb, spirals, stars, arcs).
     static constexpr uint64_t kWorkPerCorner = 512;
-    /// For small ones, crossing or not; 256 corners were seen to need 440 thousand.
+    /// Small polygons may use this much, crossing or not; 256 corners were seen to need 440
+    /// thousand.
     static constexpr uint64_t kFreeWork = 1 << 19;
-    /// Up to this many corners nothing is remembered: each is tried again after every cut.
+    /// Polygons of at most this many corners remember nothing: after a cut, each corner is tried
+    /// again.
     static constexpr uint32_t kForgetful = 256;
 
     const std::vector<dvec2>& flat_;
     CornerGrid grid_;
     std::vector<uint32_t> next_;
     std::vector<uint32_t> previous_;
-    std::vector<char> known_; // to be no ear; forgotten when a neighbour is cut
+    std::vector<char> known_; // a corner known to be no ear, until a neighbour is cut
     bool remembers_ = false;
     uint64_t work_ = 0; // corners and cells looked at
     uint64_t max_work_;

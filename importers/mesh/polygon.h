@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons cut into triangles.
+// triangulate() cuts polygons into triangles.
 #pragma once
 
 #include "core/vec.h"
@@ -14,11 +14,12 @@ namespace ovc {
 /// Appends the triangles of the polygon as indices into `corners`: size - 2 of them, wound as the
 /// polygon is; none for fewer than three corners. A convex polygon becomes the fan of corner 0. A
 /// concave one, holes cut in by a bridge included, is cut without overlap as seen along its normal.
-/// One that crosses itself, or has more than kMaxConcaveCorners and is concave, is cut somehow.
+/// The cut of a polygon that crosses itself or has a NaN, or of a concave one of more than
+/// kMaxConcaveCorners, is not specified.
 void triangulate(std::span<const dvec3> corners, std::vector<std::array<uint32_t, 3>>& triangles);
 
-/// The time a corner takes is bounded: 4096 corners take 1 to 30 ms, whatever they are. One that
-/// crosses itself may use up that bound, and is cut somehow from there on.
+/// Bounds the time: 4096 corners take 1 to 30 ms, whatever they are. A polygon that crosses itself
+/// may use up that bound; the rest of its cut is then arbitrary.
 inline constexpr size_t kMaxConcaveCorners = 4096;
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons: the triangles cover the polygon once, as seen along its normal.
+// The triangles of a polygon cover it once, as seen along its normal.
 #include "importers/mesh/polygon.h"
 
 #include <gtest/gtest.h>

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// UniqueVertices: corners that agree bit for bit become one vertex, in the order of their first
+// UniqueVertices turns corners that agree bit for bit into one vertex, in the order of their first
 // use.
 #pragma once
 
 #include "core/vec.h"
 
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace ovc {
 
 class UniqueVertices {
 public:
-    /// The number of the vertex at `position`.
+    /// Returns the number of the vertex at `position`, which is new at its first use.
     uint32_t add(const dvec3& position) {
         if (2 * (vertices_.size() + 1) > slots_.size())
             grow();
@@ -31,7 +32,7 @@ private:
     static constexpr uint32_t kEmpty = 0xffffffffu;
 
     static bool same(const dvec3& a, const dvec3& b) {
-        // As bits: 0 and -0 differ, a NaN equals itself.
+        // Comparing bits, 0 and -0 differ, and a NaN equals itself.
         return std::bit_cast<uint64_t>(a.x) == std::bit_cast<uint64_t>(b.x) &&
                std::bit_cast<uint64_t>(a.y) == std::bit_cast<uint64_t>(b.y) &&
                std::bit_cast<uint64_t>(a.z) == std::bit_cast<uint64_t>(b.z);
@@ -47,8 +48,10 @@ private:
         return h;
     }
 
-    /// Where the vertex is, or would go. slots_.size() is a power of two, half of it empty.
+    /// Returns the slot of the vertex, or where it would go. At least half of the slots are empty,
+    /// so the search ends.
     size_t slot_of(const dvec3& position) const {
+        assert(std::has_single_bit(slots_.size()) && 2 * vertices_.size() <= slots_.size());
         size_t at = hash(position) & (slots_.size() - 1);
         while (slots_[at] != kEmpty && !same(vertices_[slots_[at]], position))
             at = (at + 1) & (slots_.size() - 1);

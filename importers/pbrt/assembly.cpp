@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Assembly: runs of shapes, their place, their corners.
+// assemble() collects shapes in runs, places them, and writes their corners and normals.
 #include "importers/pbrt/assembly.h"
 
 #include "core/system/parallel.h"
@@ -7,24 +7,26 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace ovc::pbrt {
 
 namespace {
 
-/// Shapes of more triangles stay meshes of their own; and what a mesh of smaller ones grows to.
+/// Shapes of more than kSmall triangles stay meshes of their own; a mesh of smaller ones grows to
+/// at most kLargestRun.
 constexpr uint64_t kSmall = 4096, kLargestRun = uint64_t(1) << 20;
 
 /// Shapes that become one mesh.
 struct Run {
-    size_t first, last; // among the object's shapes
+    size_t first, last; // indices into the object's shapes
     uint32_t triangles = 0;
     uint32_t material = 0;
     bool has_normals = false;
     uint64_t last_size = 0;        // triangles of the last shape
-    uint32_t normals_from = kNone; // the first mesh made of it, where the normals are
-    /// The first meshes made of it, whose corners other instances borrow: as the file has it, and
-    /// with its triangles turned round, for places that mirror.
+    uint32_t normals_from = kNone; // the first mesh made of it, which holds the normals
+    /// The first meshes made of it, whose corners other instances borrow: one as the file has it,
+    /// and one with its triangles turned round, for transforms that mirror.
     std::array<uint32_t, 2> corners_from{kNone, kNone};
     uint64_t normals_left_out = 0, texture_coordinates_left_out = 0; // as in MeshInfo
 
@@ -87,10 +89,10 @@ Box moved(const Box& box, const dmat4& by) {
     return result;
 }
 
-/// How corners in double become offsets in float.
+/// Turns corners in double into offsets in float.
 struct Frame {
     dvec3 origin{0};
-    double lattice = 0; // 0: as floats are
+    double lattice = 0; // the lattice's step; 0: no lattice
 
     vec3 offset(const dvec3& p) const {
         const dvec3 offset = p - origin;
@@ -98,7 +100,7 @@ struct Frame {
     }
 };
 
-/// The size of an instance, the same however it is turned: at least half of any extent.
+/// Returns the size of an instance, the same however it is turned: at least half of any extent.
 double size_of(const Box& local, const dmat4& place) {
     double squares = 0;
     for (int column = 0; column < 3; ++column)
@@ -115,8 +117,8 @@ Frame frame_of(const Box& local, const dmat4& place, const dvec3& common) {
     const dvec3 middle = box.center();
     if (max_component(glm::abs(middle - common)) <= kFar * max_component(box.extent()))
         return shared;
-    // 2^24 steps reach over an offset, which is no larger than `size`. A little more, for instances
-    // whose sizes differ by a rounding.
+    // 2^24 steps reach over an offset, which is no larger than `size`. The size is raised a little,
+    // so that instances whose sizes differ by a rounding have the same lattice.
     const double lattice = std::ldexp(1.0, std::ilogb(size * 1.000001) + 1 - 24);
     return {glm::round(middle / lattice) * lattice, lattice};
 }
@@ -126,12 +128,12 @@ struct PlacedObject {
     dmat4 place;
 };
 
-/// Whether it is a matrix and a shift, as an instance's transform is.
+/// Returns whether the matrix has no projective part, so that it fits into an instance's transform.
 bool is_affine(const dmat4& m) {
     return m[0].w == 0 && m[1].w == 0 && m[2].w == 0 && m[3].w == 1;
 }
 
-/// All instances in all instances, outermost first.
+/// Returns the instances that have shapes, nested ones included, outermost first.
 std::vector<PlacedObject> placed_objects(const World& world, const Census& census) {
     std::vector<PlacedObject> found;
     std::vector<PlacedObject> open;
@@ -151,13 +153,14 @@ std::vector<PlacedObject> placed_objects(const World& world, const Census& censu
     return found;
 }
 
-/// The corners 0, 1, 2, or 0, 2, 1.
+/// Returns corner i of the triangle; if `flipped`, corners 1 and 2 change places.
 size_t nth_corner(size_t triangle, size_t i, bool flipped) {
+    assert(i < 3);
     return 3 * triangle + (flipped && i > 0 ? 3 - i : i);
 }
 
-/// to: three a triangle, from the run's first one on. mirrored_place: where the corners go from
-/// there, triangles are turned round.
+/// Writes three corners per triangle to `to`. If `mirrored_place`, a later transform will mirror
+/// the corners, so triangles are turned round.
 void write_corners(const Shape& shape, const dmat4& place, const Frame& frame, bool mirrored_place,
                    vec3* to) {
     const dmat4 m = place * shape.to_object;
@@ -165,7 +168,7 @@ void write_corners(const Shape& shape, const dmat4& place, const Frame& frame, b
     parallel_for(shape.mesh.size(), 1024, [&](size_t first, size_t last) {
         for (size_t t = first; t < last; ++t) {
             const bool flipped = is_flipped(shape, t) != mirrored;
-            vec3 corners[3]; // the target may be the source
+            vec3 corners[3]; // a copy, because `to` may be the mesh's own corners
             for (size_t i = 0; i < 3; ++i)
                 corners[i] =
                     frame.offset(point_through(m, shape.mesh.corner(nth_corner(t, i, flipped))));
@@ -174,8 +177,9 @@ void write_corners(const Shape& shape, const dmat4& place, const Frame& frame, b
     });
 }
 
-/// In the object's coordinates, in the order of write_corners().
+/// Writes normals in the object's coordinates, in the order of write_corners().
 void write_normals(const Shape& shape, bool mirrored_place, vec3* to) {
+    assert(shape.mesh.size() == 0 || !shape.mesh.normals.empty());
     const dmat3 turn = normal_matrix(shape.to_object);
     const bool mirrored = swaps_handedness(shape.to_object) != mirrored_place;
     const auto usable = [](const dvec3& n) { return ovc::is_finite(n) && glm::dot(n, n) > 0; };
@@ -200,6 +204,7 @@ std::vector<vec3> normals_of(const Object& object, const Run& run, bool mirrored
         write_normals(object.shapes[i], mirrored_place, to);
         to += 3 * object.shapes[i].mesh.size();
     }
+    assert(to == normals.data() + normals.size());
     return normals;
 }
 
@@ -211,6 +216,7 @@ std::vector<vec3> corners_of(const Object& object, const Run& run, const dmat4& 
         write_corners(object.shapes[i], place, frame, mirrored_place, to);
         to += 3 * object.shapes[i].mesh.size();
     }
+    assert(to == corners.data() + corners.size());
     return corners;
 }
 
@@ -219,7 +225,8 @@ const std::string& name_of(const Object& object, const Run& run) {
     return run.last == run.first + 1 && !name.empty() ? name : object.name;
 }
 
-/// Every shape's memory is the soup's, or is given back, before the next is taken.
+/// Adds the world's own shapes. Each run's memory moves to the soup or is given back before the
+/// next run is taken.
 void add_top(Object& top, const Frame& frame, Scene& scene) {
     for (const Run& run : runs_of(top)) {
         std::string name = name_of(top, run);
@@ -241,10 +248,13 @@ void add_top(Object& top, const Frame& frame, Scene& scene) {
     }
 }
 
-/// The run's corners in the object's own coordinates, then placed.
+/// Returns a chunk of the run's corners in the object's own coordinates, placed by the instance's
+/// transform, which must be affine. The first such chunk owns the corners; later ones borrow them.
 Chunk placed_chunk(const Object& object, const Run& run, const PlacedObject& instance,
                    const Frame& frame, bool mirrored, const Scene& scene) {
+    assert(is_affine(instance.place));
     const uint32_t from = run.corners_from[mirrored];
+    assert(from == kNone || from < scene.soup.chunks.size());
     Chunk chunk = from != kNone ? scene.soup.chunks[from].unplaced()
                                 : Chunk::owning(frame.origin,
                                                 corners_of(object, run, dmat4(1), frame, mirrored));
@@ -256,7 +266,8 @@ Chunk placed_chunk(const Object& object, const Run& run, const PlacedObject& ins
     return chunk;
 }
 
-/// frame: of the corners; of the object where they are shared, else of the world.
+/// Adds an instance's meshes. `frame` is that of the corners: the object's if the instances share
+/// them, else one in the world.
 void add_instance(const Object& object, std::vector<Run>& runs, const PlacedObject& instance,
                   const Frame& frame, bool shares_corners, Scene& scene) {
     const bool mirrored = swaps_handedness(instance.place);
@@ -290,6 +301,8 @@ void add_instance(const Object& object, std::vector<Run>& runs, const PlacedObje
 } // namespace
 
 void assemble(World world, const Census& census, Scene& scene) {
+    assert(census.within.size() == world.objects.size());
+    assert(census.shared.size() == world.objects.size());
     const std::vector<PlacedObject> instances = placed_objects(world, census);
     std::vector<Box> boxes;
     std::vector<std::vector<Run>> runs;

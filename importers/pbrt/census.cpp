@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Census: sums along the order in which objects were completed.
+// The census sums triangles along the order in which objects were completed.
 #include "importers/pbrt/census.h"
 
 #include "importers/file/available_memory.h"
@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <limits>
 
 namespace ovc::pbrt {
@@ -15,7 +16,7 @@ namespace {
 
 constexpr uint64_t kSaturated = std::numeric_limits<uint64_t>::max();
 
-/// What the soup takes: a triangle's corners; an instance's chunk, mesh and place.
+/// The memory of a triangle's corners; and of an instance's chunk, mesh and transform.
 constexpr uint64_t kTriangleBytes = 36, kInstanceBytes = 512;
 
 uint64_t plus(uint64_t a, uint64_t b) {
@@ -35,8 +36,10 @@ uint64_t own_triangles(const Object& object) {
 
 uint64_t expanded(const Object& object, const std::vector<uint64_t>& within) {
     uint64_t count = own_triangles(object);
-    for (const Instance& instance : object.instances)
+    for (const Instance& instance : object.instances) {
+        assert(instance.object < within.size());
         count = plus(count, within[instance.object]);
+    }
     return count;
 }
 
@@ -58,8 +61,8 @@ Census take_census(const World& world) {
     census.triangles = expanded(world.top, census.within);
     census.unique = own_triangles(world.top);
 
-    // An object comes before all that contain it: from the last to the first, every count is final
-    // when it is used.
+    // An object comes before all objects that contain it, so from the last to the first every count
+    // is final when it is used.
     std::vector<uint64_t> placed(world.objects.size(), 0);
     place(world.top, 1, placed);
     census.kept = own_triangles(world.top);

@@ -16,9 +16,9 @@ import subprocess
 import sys
 
 TOLERANCE = 1e-5  # of the extent: the other reading has rounded its bounds
-# How many triangles we make of a shape that is not partial; docs/reference/pbrt.md.
+# We make this many triangles of a shape that is not partial; see docs/reference/pbrt.md.
 WHOLE = {"sphere": 1520, "disk": 32, "cylinder": 64}
-# Scenes one of whose shapes is partial: 225 degrees of it, which are 20 of 32 steps.
+# In these scenes one shape is partial: it covers 225 degrees, which are 20 of 32 steps.
 PARTIAL = {
     "pbrt/v1-pharr/cylinders.pbrt": ("cylinder", 40),
     "pbrt/v1-pharr/disks.pbrt": ("disk", 40),  # a ring: two triangles a step

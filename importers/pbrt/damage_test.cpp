@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fuzzer's seeds, cut off everywhere and with bytes changed: what the fuzzer does for longer.
+// These tests cut off the fuzzer's seeds everywhere and change their bytes, as the fuzzer does for
+// longer.
 #include "importers/test_files.h"
 #include "tests/fuzz/pbrt.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of PBRT's materials, spectra, lights, cameras and films.
+// PBRT's materials, spectra, lights, cameras and films become those of our scenes.
 #include "importers/pbrt/look/spectrum.h"
 #include "importers/test_files.h"
 
@@ -89,7 +89,7 @@ TEST(PbrtMapping, SpectraBecomeTheirColors) {
     const vec3 r = color_of_samples(red);
     EXPECT_GT(r.x, 4 * r.y);
     EXPECT_GT(r.x, 4 * r.z);
-    // The black bodies of sRGB's white, and of a candle: Charity, "What color is a blackbody?".
+    // The colors of sRGB's white and of a candle are from Charity, "What color is a blackbody?".
     expect_color(pbrt::black_body(6500), vec3(1.03f, 0.99f, 1.0f), 0.06f, "6500 K");
     const vec3 candle = pbrt::black_body(1900);
     EXPECT_GT(candle.x, 1.8f * candle.y);
@@ -98,11 +98,11 @@ TEST(PbrtMapping, SpectraBecomeTheirColors) {
         const vec3 c = pbrt::black_body(kelvin);
         EXPECT_NEAR(0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z, 1, 0.12) << kelvin;
     }
-    // Gold at 580 nm: Johnson and Christy 1972.
+    // These are gold's at 580 nm, from Johnson and Christy 1972.
     EXPECT_NEAR(pbrt::metal_color(vec3(0.27f), vec3(2.9f)).x, 0.89f, 0.01f);
 }
 
-/// What the light brings to a place whose normal faces it, in W/m2 and its like.
+/// Returns the light that arrives at a place whose normal faces it, in W/m2 or the like.
 double irradiance(const Light& light, const dvec3& at) {
     const dvec3 there = light.parallel ? -light.direction : light.position - at;
     const double distance = glm::length(there);
@@ -116,7 +116,7 @@ double irradiance(const Light& light, const dvec3& at) {
     return share * light.color.x;
 }
 
-/// A camera that sees nothing, so that light is let be.
+/// The camera sees nothing, so that the light gets no exposure.
 TEST(PbrtMapping, LightsBringWhatPbrtsDo) {
     const struct {
         const char* text;
@@ -146,7 +146,7 @@ TEST(PbrtMapping, AreaLightsSendOutTheirLight) {
             total += irradiance(light, at);
         return total;
     };
-    // A disk of radius 1 seen from 10 away: L A / d^2, and nothing behind it.
+    // A disk of radius 1 sends L A / d^2 to a distance of 10, and nothing behind it.
     const std::string disk = "AreaLightSource \"diffuse\" \"rgb L\" [5 5 5] ";
     const Scene one = scene_of(disk + "Shape \"disk\"");
     EXPECT_NEAR(sum(one, {0, 0, 10}), 5 * kPi / 100, 0.005);
@@ -157,13 +157,13 @@ TEST(PbrtMapping, AreaLightsSendOutTheirLight) {
                              "Shape \"disk\""),
                     {0, 0, -10}),
                 5 * kPi / 100, 0.005);
-    // A sphere: L pi r^2 / d^2 all ways; its surface is seen, and casts no shadow of its own.
+    // A sphere sends L pi r^2 / d^2 all ways; its surface is seen, and casts no shadow of its own.
     const Scene ball = scene_of(disk + "Shape \"sphere\"");
     for (const dvec3& at : {dvec3(10, 0, 0), dvec3(0, -10, 0), dvec3(0, 0, 10)})
         EXPECT_NEAR(sum(ball, at), 5 * kPi / 100, 0.005);
     EXPECT_TRUE(ball.meshes[0].no_shadow);
     EXPECT_EQ(ball.materials[ball.meshes[0].material].finish->ambient, vec3(5));
-    // Many of them: few lights, all of the light.
+    // Many spheres become few lights with all of their light.
     std::string many;
     for (int i = 0; i < 100; ++i)
         many += disk + "Translate 0.001 0 0 Shape \"sphere\" \"float radius\" 0.1\n";
@@ -186,7 +186,7 @@ TEST(PbrtMapping, PathTracingKnowsSurfacesAsTheFileHasThem) {
     const Optics coated = optics_of("Material \"coateddiffuse\" \"rgb reflectance\" [.5 1 0] "
                                     "\"bool remaproughness\" false \"float roughness\" 0.05");
     EXPECT_NEAR(coated.width, 0.05f, 1e-6f);
-    // The coat throws 0.596 of what is below back onto it: 1 - (1 - 0.0918) / 1.5^2.
+    // The coat throws 0.596 of the light from below back: 1 - (1 - 0.0918) / 1.5^2.
     expect_color(coated.diffuse, {0.5f * 0.4036f / (1 - 0.5f * 0.5964f), 1, 0}, 1e-3f, "coated");
     const Optics mirror = optics_of("Material \"mirror\" \"rgb Kr\" [.7 .8 .9]");
     EXPECT_EQ(mirror.boundary, Boundary::Mirror);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects: which side of a triangle is out.
+// is_flipped() tells which side of a triangle faces outwards.
 // Based on: pbrt-v4, Triangle::InteractionFromIntersection: normals decide, where there are any.
 #include "importers/pbrt/objects.h"
+
+#include <cassert>
 
 namespace ovc::pbrt {
 
 bool is_flipped(const Shape& shape, size_t triangle) {
     const Mesh& mesh = shape.mesh;
+    assert(triangle < mesh.size());
     if (mesh.normals.empty())
         return shape.reversed;
     const size_t c = 3 * triangle;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects: shapes under a name, placed by instances; the world is one that is placed once.
+// An object is a set of shapes under a name, placed by instances; the world's own shapes are an
+// object, too.
 #pragma once
 
 #include "importers/pbrt/interpret/transform.h"
@@ -9,17 +10,17 @@ namespace ovc::pbrt {
 
 struct Shape {
     Mesh mesh;
-    dmat4 to_object; // where the mesh stands in its object
+    dmat4 to_object; // places the mesh in its object
     uint32_t material = 0;
     bool reversed = false; // ReverseOrientation
 };
 
-/// Whether a triangle's corners run the other way than its normals, or ReverseOrientation, say. A
-/// transform that mirrors turns it round once more.
+/// Returns whether a triangle's corners run the other way than its normals, or ReverseOrientation,
+/// say. The caller must turn it round once more for a transform that mirrors.
 bool is_flipped(const Shape& shape, size_t triangle);
 
 struct Instance {
-    uint32_t object; // index into World::objects; inside an object, one before it
+    uint32_t object; // index into World::objects, below that of an object that contains this
     dmat4 to_parent;
 };
 
@@ -30,7 +31,7 @@ struct Object {
 };
 
 struct World {
-    std::vector<Object> objects; // as they are completed, so that none can contain itself
+    std::vector<Object> objects; // in the order of their ends, so that none can contain itself
     Object top;
 };
 

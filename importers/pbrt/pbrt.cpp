@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// PBRT: the scene descriptions of pbrt-v1 to v4. docs/reference/pbrt.md says what is read and how.
+// The PBRT reader reads the scene descriptions of pbrt-v1 to v4, as docs/reference/pbrt.md says.
 #include "importers/pbrt/assembly.h"
 #include "importers/pbrt/interpret/interpreter.h"
 #include "importers/pbrt/look/exposure.h"
 #include "importers/readers.h"
+#include "importers/sound_meshes.h"
 
 #include <fmt/format.h>
 
+#include <cassert>
+
 namespace ovc {
 
-/// Two includes of the next file in each of forty are 2^40; an include that is worth following as
-/// often as that brings some triangles.
+/// Forty files that each include the next one twice make 2^40 includes. An include that a scene
+/// repeats so often brings some triangles, so their limit bounds the includes as well.
 static constexpr uint64_t kTrianglesOfAnInclude = 100;
 
 Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& options) {
@@ -32,6 +35,7 @@ Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& 
     if (const Result<Done> fine = pbrt::check_census(census, options.max_triangles); !fine)
         return Error{fmt::format("{}: {}", path.string(), fine.error().message)};
     pbrt::assemble(std::move(world), census, scene);
+    assert(has_sound_meshes(scene));
     for (MeshInfo& mesh : scene.meshes) {
         const Material& material = scene.materials[mesh.material];
         mesh.no_shadow = pbrt::is_emitter(material) || pbrt::is_invisible(material);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PBRT: words, files, state, objects; errors and warnings by their text.
+// The reader of PBRT: words, files, state, objects; errors and warnings by their text.
 #include "importers/test_files.h"
 
 namespace ovc {
@@ -14,7 +14,7 @@ Triangle moved(const dvec3& by) {
     return {kOne[0] + by, kOne[1] + by, kOne[2] + by};
 }
 
-/// Appended, for GCC 12 warns of sums of strings.
+/// Appends, because GCC 12 warns of sums of strings.
 std::string numbered(const char* before, int number, const char* after) {
     return std::string(before).append(std::to_string(number)).append(after);
 }
@@ -79,8 +79,8 @@ TEST(Pbrt, TransformsComposeAsPbrtDoes) {
     const TestFolder folder;
     const struct {
         const char* text;
-        dvec3 origin; // where (0,0,0) comes to
-        dvec3 x;      // and (1,0,0)
+        dvec3 origin; // the image of (0,0,0)
+        dvec3 x;      // the image of (1,0,0)
     } cases[] = {
         {"Translate 1 2 3", {1, 2, 3}, {2, 2, 3}},
         {"Translate 1 2 3 Scale 2 1 1", {1, 2, 3}, {3, 2, 3}},
@@ -410,7 +410,7 @@ TEST(Pbrt, UnusableMeshesAreLeftOutWithTheReason) {
 
 TEST(Pbrt, FilesThatMultiplyEndWithAnError) {
     const TestFolder folder;
-    // 2^40 files, each no more than twice the next.
+    // Each file includes the next one twice, which makes 2^40 includes.
     for (int i = 0; i < 40; ++i) {
         const std::string next = numbered("Include \"n", i + 1, ".pbrt\"\n");
         folder.write(numbered("n", i, ".pbrt"), next + next);
@@ -422,7 +422,7 @@ TEST(Pbrt, FilesThatMultiplyEndWithAnError) {
     EXPECT_NE(message.find("found more than 2000 includes in files that are included again"),
               message.npos)
         << message;
-    // In each other, under ever new names.
+    // These files include each other under ever new names.
     for (int i = 0; i < 70; ++i)
         folder.write(numbered("d", i, ".pbrt"), numbered("Include \"d", i + 1, ".pbrt\""));
     EXPECT_EQ(folder.failure("d0.pbrt"), "d63.pbrt:1: found more than 64 files in each other");
@@ -468,7 +468,7 @@ TEST(Pbrt, BombsAreRefusedWithTheirCount) {
 
 TEST(Pbrt, FarInstancesKeepTheirPrecisionAndTheirSeams) {
     const TestFolder folder;
-    // Tiles of 0.1 side by side, a million from the origin, each turned its own way.
+    // Tiles of 0.1 lie side by side, a million from the origin, and every other one is turned.
     std::string text =
         "ObjectBegin \"tile\" Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] "
         "\"point P\" [0 0 0 .1 0 0 .1 .1 0 0 .1 0] ObjectEnd\n" +
@@ -492,7 +492,8 @@ TEST(Pbrt, FarInstancesKeepTheirPrecisionAndTheirSeams) {
     }
 }
 
-/// What a transform is not affine for is expanded; what comes after it has its own corners still.
+/// An instance whose transform is not affine is expanded; later instances still share corners of
+/// the object.
 TEST(Pbrt, AnInstanceThatIsExpandedLendsNobodyItsCorners) {
     const TestFolder folder;
     std::string mesh =

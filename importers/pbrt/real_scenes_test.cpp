@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes of pbrt-v1 to v4 that others made, against an independent program's reading of them.
+// These tests compare scenes of pbrt-v1 to v4 that others made with an independent program's
+// reading of them.
 #include "importers/test_files.h"
 #include "tests/real_data.h"
 
@@ -10,7 +11,7 @@
 namespace ovc {
 namespace {
 
-/// What follows `"key": ` in a line of JSON.
+/// Returns the text behind `"key": ` in a line of JSON.
 std::string_view after(const std::string& line, const std::string& key) {
     const size_t at = line.find("\"" + key + "\": ");
     return at == line.npos ? std::string_view()
@@ -52,7 +53,7 @@ TEST(PbrtRealScenes, AgreeWithAnotherReadingWhereThatIsWhole) {
         name = name.substr(0, name.find('"'));
         std::string_view flat = after(line, "flat_tris"), unique = after(line, "unique_tris");
         const auto flat_count = uint64_t(number_at(flat));
-        // Plants come seven times, alike.
+        // The large scenes of plants come in seven versions, of which one suffices.
         if (!after(line, "not_flattened").starts_with("{}") ||
             (flat_count > 1000000 && name.find("noapple") == name.npos))
             continue;
@@ -75,7 +76,8 @@ TEST(PbrtRealScenes, AgreeWithAnotherReadingWhereThatIsWhole) {
     EXPECT_EQ(largest, 12341853u);
 }
 
-/// The peak is the process's, so this test must not run in one with others: CTest sees to that.
+/// The peak is the process's, so this test must not share one with others; CTest runs each test in
+/// its own.
 TEST(PbrtRealScenes, PlantsPeakAtLittleMoreThanTheirSoup) {
     const auto data = real_data();
     if (!data)

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Diagnostics: once per kind; strict turns what is missing into the error.
+// Diagnostics warns once per kind; under strict, the first missing thing becomes the error.
 #include "importers/pbrt/interpret/diagnostics.h"
 
 #include <fmt/format.h>
 
 namespace ovc::pbrt {
 
-/// Kinds that are told apart, such as the names of missing files: more are only noise.
+/// The max number of warnings. A kind may contain a name, such as a missing file's, and more would
+/// only be noise.
 static constexpr size_t kMaxWarnings = 1000;
 
 Error error_at(const Place& place, std::string_view sentence) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Diagnostics: what a PBRT file asks for and does not get, said once per kind, with its place.
+// Diagnostics warns once per kind of thing that a PBRT file asks for and does not get, with its
+// place.
 #pragma once
 
 #include "core/result.h"
 #include "core/system/log.h"
 
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -13,18 +15,18 @@
 
 namespace ovc::pbrt {
 
-/// A line of a file. The name is the tokens' and outlives them.
+/// A line of a file. Tokens owns the name.
 struct Place {
     const std::string* file = nullptr;
     uint64_t line = 0;
 };
 
-/// "FILE:7: sentence".
+/// Returns "FILE:7: sentence".
 Error error_at(const Place& place, std::string_view sentence);
 
 /// How much a warning matters under --strict.
 enum class Gravity {
-    Missing,    // unknown words, missing files, unusable data: an error when strict
+    Missing,    // unknown words, missing files, unusable data: an error if strict
     Approximate // understood, and shown as nearly as we can: never an error
 };
 
@@ -32,7 +34,7 @@ class Diagnostics {
 public:
     Diagnostics(const LogSink& log, bool strict) : log_(log), strict_(strict) {}
 
-    /// Said at the first call with this kind only.
+    /// Says the sentence at the first call with this kind only.
     void warn(Gravity gravity, const std::string& kind, const Place& place,
               std::string_view sentence);
     void missing(const std::string& kind, const Place& place, std::string_view sentence) {
@@ -42,14 +44,17 @@ public:
         warn(Gravity::Approximate, kind, place, sentence);
     }
 
-    /// The first error wins. Returns false, for `return fail(…)`.
+    /// Keeps the first error. Returns false, for `return fail(…)`.
     bool fail(Error error);
     bool fail(const Place& place, std::string_view sentence) {
         return fail(error_at(place, sentence));
     }
 
     bool failed() const { return error_.has_value(); }
-    const Error& error() const { return *error_; }
+    const Error& error() const {
+        assert(failed());
+        return *error_;
+    }
     const LogSink& log() const { return log_; }
     bool strict() const { return strict_; }
 

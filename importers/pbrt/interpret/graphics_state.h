@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GraphicsState: what the attribute and transform stacks hold.
+// GraphicsState is the state that directives change, and StateStack saves and restores it.
 #pragma once
 
 #include "importers/pbrt/interpret/transform.h"
@@ -35,7 +35,7 @@ struct GraphicsState {
     bool reversed = false;
 };
 
-/// What opened a level, and so closes it.
+/// The kind of directive that opened a level; the same kind closes it.
 enum class Scope { Attribute, Transform, Object, Import };
 
 class StateStack {
@@ -43,8 +43,9 @@ public:
     GraphicsState now;
 
     void push(Scope scope) { saved_.push_back({scope, now}); }
-    /// Back to where `scope` was opened; what was opened since is closed too, but never an object
-    /// or an import. False: none is open.
+    /// Returns to the state where the last level of `scope` was opened. Levels opened since are
+    /// closed, too; but attributes and transforms never close an object or an import. Returns false
+    /// if no such level is open.
     bool pop(Scope scope) {
         size_t i = saved_.size();
         while (i > 0 && saved_[i - 1].scope != scope) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interpreter: which directive does what; scopes, objects and files.
+// The interpreter's table of directives, its arguments, and the directives of scopes, objects and
+// files.
 #include "importers/pbrt/interpret/interpreter.h"
 
 #include "importers/file/text.h"
@@ -7,10 +8,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pbrt {
 
-/// Levels of AttributeBegin in each other; scenes have a few dozen.
+/// The max depth of AttributeBegin and its like; scenes have a few dozen levels.
 static constexpr size_t kDeepest = 10000;
 
 const Interpreter::Directive Interpreter::kDirectives[] = {
@@ -63,6 +65,7 @@ const Interpreter::Directive Interpreter::kDirectives[] = {
 };
 
 bool Interpreter::run() {
+    assert(!at_end_); // not run before
     systems_["world"] = {};
     while (!at_end_)
         if (!directive() || diagnostics_.failed())
@@ -106,7 +109,7 @@ bool Interpreter::directive() {
     return (this->*at->action)();
 }
 
-/// Files are gone into, for they may hold the next world.
+/// Follows includes, because an included file may hold the next world.
 bool Interpreter::pass_over(std::string_view name) {
     if (name == "WorldBegin")
         return world_begin();
@@ -121,6 +124,7 @@ bool Interpreter::pass_over(std::string_view name) {
 }
 
 bool Interpreter::unknown(const std::string& name) {
+    assert(!name.empty());
     const bool looks_like_one =
         name[0] >= 'A' && name[0] <= 'Z' && std::all_of(name.begin(), name.end(), [](char c) {
             return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
@@ -147,7 +151,7 @@ bool Interpreter::pass_over() {
     }
 }
 
-/// In brackets or not.
+/// Reads `count` numbers, in brackets or not.
 bool Interpreter::read_numbers(size_t count, double* to) {
     bool in_brackets = false;
     for (size_t i = 0; i < count;) {
@@ -235,7 +239,7 @@ bool Interpreter::object_end() {
     if (building_.empty())
         return end(Scope::Object, "ObjectEnd");
     end(Scope::Object, "ObjectEnd");
-    // One of that name which is there already stays for those who have it.
+    // An older object of that name stays for the instances that it has.
     object_ids_[building_.back().name] = uint32_t(world_.objects.size());
     world_.objects.push_back(std::move(building_.back()));
     building_.pop_back();
@@ -258,7 +262,7 @@ bool Interpreter::object_instance() {
     return true;
 }
 
-/// v4 looks for objects only once the file is read.
+/// v4 looks for objects only after it has read the file.
 bool Interpreter::bind_late_instances() {
     for (const LateInstance& late : late_) {
         const auto at = object_ids_.find(late.name);
@@ -275,7 +279,7 @@ bool Interpreter::include() {
     return tokens_.include_next(/* marks_its_end= */ false);
 }
 
-/// What an import changes of the state ends with it.
+/// Changes that an import makes to the state end with it.
 bool Interpreter::import() {
     const size_t depth = tokens_.depth();
     if (!tokens_.include_next(/* marks_its_end= */ true))
@@ -299,7 +303,7 @@ bool Interpreter::world_begin() {
     return true;
 }
 
-/// What was defined in the world ends with it; camera and film stay, as in pbrt-v2.
+/// The graphics state ends with the world; camera and film stay, as in pbrt-v2.
 bool Interpreter::world_end() {
     if (state_.depth() > 0)
         diagnostics_.missing(

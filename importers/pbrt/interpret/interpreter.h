@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interpreter: directive after directive, until there is a world.
+// The interpreter executes directive after directive, until there is a world.
 #pragma once
 
 #include "importers/importer.h"
@@ -19,11 +19,12 @@ public:
     Interpreter(Tokens& tokens, Diagnostics& diagnostics, const ImportOptions& options)
         : tokens_(tokens), diagnostics_(diagnostics), options_(options) {}
 
-    /// False: an error, in the diagnostics.
+    /// Reads everything, once. Returns false after an error, which the diagnostics hold.
     bool run();
 
-    /// After run(). The rest of the scene: materials, lights, camera, size; no triangles.
+    /// Returns the world's triangles, after run().
     World take_world() { return std::move(world_); }
+    /// Fills in the rest of the scene, after run(): materials, lights, camera, size.
     void fill(Scene& scene);
 
 private:
@@ -35,10 +36,10 @@ private:
     static const Directive kDirectives[];
 
     bool directive();
-    /// A directive of what is passed over; false as above.
+    /// Handles a directive outside of the world that was asked for; returns false as above.
     bool pass_over(std::string_view name);
     bool unknown(const std::string& name);
-    /// What stands between the directive at hand and the next.
+    /// Skips the arguments of the directive at hand.
     bool pass_over();
 
     // Arguments.
@@ -74,7 +75,7 @@ private:
     bool world_begin();
     bool world_end();
 
-    // What a scene consists of.
+    // Parts of the scene.
     bool shape();
     bool material();
     bool make_named_material();
@@ -86,7 +87,7 @@ private:
     bool film();
     bool medium();
     bool medium_interface();
-    /// What concerns how a picture is computed, not the scene: read and left.
+    /// Skips a directive that says how to compute a picture, not what is in the scene.
     bool setting();
     bool bare_setting();
 
@@ -100,8 +101,8 @@ private:
     Place place_; // of the directive at hand
     bool known_one_ = false;
     bool at_end_ = false;
-    uint64_t worlds_ = 0;       // that have begun
-    bool passing_over_ = false; // worlds that are not asked for, and what follows the one that is
+    uint64_t worlds_ = 0;       // worlds that have begun
+    bool passing_over_ = false; // inside a world that is not asked for, or behind the one that is
 
     StateStack state_;
     std::unordered_map<std::string, Transforms> systems_;
@@ -112,15 +113,15 @@ private:
     std::optional<CameraRequest> camera_;
 
     World world_;
-    std::vector<Object> building_; // the innermost last
+    std::vector<Object> building_; // objects that have begun, the innermost last
     std::unordered_map<std::string, uint32_t> object_ids_;
     struct LateInstance {
         std::string name;
         dmat4 place;
         Place where;
     };
-    std::vector<LateInstance> late_; // of objects that were not there yet
-    uint64_t triangles_ = 0;         // in all shapes
+    std::vector<LateInstance> late_; // instances of objects that were not there yet
+    uint64_t triangles_ = 0;         // of all shapes so far
 };
 
 } // namespace ovc::pbrt

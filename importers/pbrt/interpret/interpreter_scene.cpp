@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interpreter: shapes, materials, lights, camera.
+// The interpreter's directives of shapes, materials, lights and the camera.
 #include "importers/pbrt/interpret/interpreter.h"
 
 #include "importers/file/text.h"
@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pbrt {
 
@@ -161,6 +162,7 @@ bool Interpreter::bare_setting() {
 }
 
 void Interpreter::fill(Scene& scene) {
+    assert(at_end_);
     scene.materials = materials_.take();
     if (film_.has_size)
         scene.size = film_.size;

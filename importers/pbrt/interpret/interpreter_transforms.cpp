@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interpreter: the directives that move things.
+// The interpreter's directives of transforms and coordinate systems.
 #include "importers/pbrt/interpret/interpreter.h"
 
 #include "importers/file/text.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters: declarations of v1 to v4, one value or a list in brackets.
+// Parameters::read() reads the declarations of v1 to v4: one value, or a list in brackets.
 #include "importers/pbrt/interpret/parameters.h"
 
 #include "importers/file/text.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters: what follows a directive, "type name" values, and what is asked of it.
+// Parameters are the "type name" and values behind a directive, and the ways to ask for them.
 #pragma once
 
 #include "core/vec.h"
@@ -13,7 +13,7 @@
 
 namespace ovc::pbrt {
 
-/// What a value is, whatever the version called it: color and rgb are Rgb, point and point3 are
+/// The type of a value, whatever the version called it: color and rgb are Rgb, point and point3 are
 /// Point3.
 enum class Kind {
     Integer,
@@ -47,24 +47,25 @@ struct Parameter {
 
 class Parameters {
 public:
-    /// Reads up to the next directive. Parameters of unknown types are left out with a warning;
-    /// false: an error.
+    /// Reads up to the next directive, and leaves out parameters of unknown types with a warning.
+    /// Returns false after an error.
     bool read(Tokens& tokens, Diagnostics& diagnostics);
 
-    /// Where a name occurs twice the last counts, as in pbrt. Null: there is none of these kinds.
+    /// Returns the last parameter of that name and one of these kinds, as in pbrt; null if there is
+    /// none.
     const Parameter* find(std::string_view name, std::initializer_list<Kind> kinds) const;
-    /// Of any kind.
+    /// Returns the last parameter of that name and any kind; null if there is none.
     const Parameter* find(std::string_view name) const;
 
-    /// A float, or an integer taken for one; `otherwise` where it is missing or empty.
+    /// Returns a float, or an integer as one; `otherwise` if it is missing or empty.
     double number(std::string_view name, double otherwise) const;
     bool flag(std::string_view name, bool otherwise) const;
     std::string text(std::string_view name, std::string_view otherwise = {}) const;
-    /// The numbers of a parameter of one of these kinds; empty where there is none.
+    /// Returns the numbers of a parameter of one of these kinds; none if there is none.
     std::span<const double> numbers(std::string_view name, std::initializer_list<Kind> kinds) const;
-    /// The same, moved out.
+    /// Moves out and returns the numbers of a parameter of one of these kinds.
     std::vector<double> take(std::string_view name, std::initializer_list<Kind> kinds);
-    /// The first three numbers as a point or vector.
+    /// Returns the first three numbers as a point or vector; `otherwise` if there are fewer.
     dvec3 point(std::string_view name, const dvec3& otherwise) const;
 
     std::vector<Parameter>& all() { return list_; }

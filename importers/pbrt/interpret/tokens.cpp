@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tokens: lines cut into words; a stack of files.
+// Tokens cuts lines into words and keeps a stack of files.
 // Based on: the lexer of pbrt-v1 (core/pbrtlex.l), which includes files below its grammar, and the
 // tokenizer of pbrt-v4 (parser.cpp) for escapes in strings.
 #include "importers/pbrt/interpret/tokens.h"
@@ -13,8 +13,8 @@
 
 namespace ovc::pbrt {
 
-/// Files in each other: scenes have a few; beyond that a file includes itself under ever new names.
-/// One after the other there may be any number: some scenes have an include for every leaf.
+/// The max depth of includes. Scenes have a few; beyond that, a file includes itself under ever new
+/// names. Files one after the other may be any number: some scenes have an include for every leaf.
 static constexpr size_t kDeepest = 64;
 
 std::string described(const Token& token) {
@@ -38,8 +38,8 @@ static bool ends_word(char c) {
     return is_blank(c) || c == '\n' || c == '"' || c == '[' || c == ']' || c == '#';
 }
 
-/// Past blanks and comments; false where nothing else is left. A line has line ends in it where CR
-/// and LF are mixed (Source::line()).
+/// Skips blanks and comments; returns false if nothing else is left. A line may contain line ends
+/// if a file mixes CR and LF (Source::line()).
 static bool skip_to_token(std::string_view& rest) {
     for (;;) {
         while (!rest.empty() && (is_blank(rest[0]) || rest[0] == '\n'))
@@ -87,8 +87,9 @@ bool Tokens::next() {
     return rest[0] == '"' ? read_text(rest) : read_word(rest);
 }
 
-/// Also leaves a file that has no more lines.
+/// Reads a line, or leaves a file that has no more lines.
 bool Tokens::next_line() {
+    assert(!files_.empty());
     File& file = files_.back();
     const auto line = file.source.line();
     if (!line) {
@@ -100,11 +101,12 @@ bool Tokens::next_line() {
     }
     file.rest = *line;
     if (file.source.line_number() == 1 && file.rest.starts_with("\xef\xbb\xbf"))
-        file.rest.remove_prefix(3); // the mark some editors put before UTF-8
+        file.rest.remove_prefix(3); // some editors put this mark before UTF-8
     return true;
 }
 
 bool Tokens::read_text(std::string_view& rest) {
+    assert(rest.starts_with('"'));
     token_.kind = TokenKind::Text;
     token_.text.clear();
     for (size_t i = 1; i < rest.size(); ++i) {
@@ -115,7 +117,7 @@ bool Tokens::read_text(std::string_view& rest) {
         }
         if (c == '\\' && i + 1 < rest.size()) {
             constexpr std::string_view kLetters = "bfnrt\\\"'/", kMeanings = "\b\f\n\r\t\\\"'/";
-            // Anything else is a path of Windows'.
+            // Any other backslash separates the folders of a path, as on Windows.
             if (const size_t at = kLetters.find(rest[i + 1]); at != kLetters.npos) {
                 c = kMeanings[at];
                 ++i;
@@ -132,6 +134,7 @@ bool Tokens::read_word(std::string_view& rest) {
     size_t length = 0;
     while (length < rest.size() && !ends_word(rest[length]))
         ++length;
+    assert(length > 0); // next() has handled characters that end a word
     const std::string_view word = rest.substr(0, length);
     rest.remove_prefix(length);
     const char c = word[0];
@@ -200,6 +203,7 @@ bool Tokens::include(const std::string& name, const Place& place, bool marks_its
     if (files_.size() >= kDeepest)
         return diagnostics_.fail(place,
                                  fmt::format("found more than {} files in each other", kDeepest));
+    assert(!files_.empty()); // the name stands in the last one
     if (files_.back().again && ++again_count_ > max_again_)
         return diagnostics_.fail(
             place, fmt::format("found more than {} includes in files that are included again and "

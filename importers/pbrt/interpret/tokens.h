@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tokens: the words of a PBRT file and of the files it includes, one after the other.
+// Tokens returns the words of a PBRT file and of the files it includes, one after the other.
 #pragma once
 
 #include "importers/file/source.h"
 #include "importers/pbrt/interpret/diagnostics.h"
 
+#include <cassert>
 #include <deque>
 #include <filesystem>
 #include <unordered_map>
@@ -19,27 +20,27 @@ enum class TokenKind {
     Number,    // 1, -.5, 1e3
     Open,      // [
     Close,     // ]
-    ImportEnd, // where a file that include() was told to mark ends
-    End        // of the outermost file
+    ImportEnd, // the end of a file that include_next() was told to mark
+    End        // the end of the outermost file
 };
 
 struct Token {
     TokenKind kind = TokenKind::End;
-    std::string text; // of Word and Text
+    std::string text; // for Word and Text
     double number = 0;
     Place place;
 };
 
-/// "'Shape'", "the number 3", "the end of the file": for messages.
+/// Describes a token for messages: "'Shape'", "the number 3", "the end of the file".
 std::string described(const Token& token);
 
-/// Reads front to back in bounded memory. A file is included wherever it is asked for, in the
-/// middle of a parameter list too; then its tokens come first.
+/// Reads front to back in bounded memory. The tokens of an included file come in the place of its
+/// Include, which may stand in the middle of a parameter list.
 class Tokens {
 public:
-    /// Nothing is read yet. root: the folder that names are relative to. files_read: receives what
-    /// is looked for and read; or null. max_again: how many includes of files that are read again
-    /// are followed; those of files that are read once only are followed in any number.
+    /// Reads nothing yet. Names are relative to the folder `root`. `files_read` receives the files
+    /// that are looked for or read; it may be null. At most `max_again` includes are followed in
+    /// files that are read again; files that are read only once may have any number of includes.
     Tokens(std::filesystem::path root, Diagnostics& diagnostics, FilesRead* files_read,
            uint64_t max_again)
         : root_(std::move(root)),
@@ -49,28 +50,32 @@ public:
 
     FilesRead* files_read() const { return files_read_; }
 
-    /// The next token, to be changed by the next call. False: an error, in the diagnostics.
+    /// Reads the next token, which the next call changes. Returns false after an error, which the
+    /// diagnostics hold.
     bool next();
     const Token& token() const { return token_; }
-    /// next() gives the same token again.
-    void again() { again_ = true; }
+    /// Makes next() return the same token again, once.
+    void again() {
+        assert(!again_);
+        again_ = true;
+    }
 
-    /// Begins with this file. False: an error.
+    /// Begins with this file. Returns false after an error.
     bool open(const std::filesystem::path& path);
-    /// The next token is the name of a file: goes on with that, if it can be read; else warns, and
-    /// depth() stays. False: an error.
+    /// Takes the next token for the name of a file and goes on with that. If it cannot be read,
+    /// warns and leaves depth() as it is. Returns false after an error.
     bool include_next(bool marks_its_end);
-    /// How many files are open in each other.
+    /// Returns how many files are open inside each other.
     size_t depth() const { return files_.size(); }
 
-    /// The file of that name: beside the outermost file, else beside the one being read, with .gz
-    /// behind it or without. Nothing where there is none.
+    /// Returns the file of that name, with .gz behind it or without: beside the outermost file,
+    /// else beside the one being read. Returns nothing if there is none.
     std::optional<std::filesystem::path> find(const std::string& name) const;
 
-    /// What to say where there is none.
+    /// Returns the sentence for a name that find() does not find.
     std::string no_file(const std::string& name) const;
 
-    /// Where the next token is looked for.
+    /// Returns the place at which the next token is looked for.
     Place place() const;
 
 private:
@@ -79,9 +84,9 @@ private:
         std::filesystem::path folder;
         std::filesystem::path identity; // the same for all names of one file
         const std::string* name;
-        std::string_view rest; // of the line
+        std::string_view rest; // the rest of the line
         bool marks_its_end;
-        bool again; // it was read before, or a file that it is included in was
+        bool again; // whether this file, or one that includes it, was read before
     };
 
     bool include(const std::string& name, const Place& place, bool marks_its_end);

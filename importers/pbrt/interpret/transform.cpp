@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Transforms: translation, scale, rotation, view.
+// Translation, scale, rotation and view as 4x4 matrices.
 #include "importers/pbrt/interpret/transform.h"
 
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -20,8 +21,9 @@ dmat4 scaling(const dvec3& by) {
     return m;
 }
 
-/// Quarter turns are exact: floors stay level.
+/// Quarter turns are exact, so that floors stay level.
 static dvec2 cosine_and_sine(double degrees) {
+    assert(std::isfinite(degrees));
     const double turns = std::fmod(degrees, 360) / 90;
     if (turns == std::floor(turns)) {
         constexpr dvec2 kQuarters[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
@@ -63,6 +65,7 @@ bool look_at(const dvec3& eye, const dvec3& target, const dvec3& up, dmat4& worl
 }
 
 dmat4 from_file(std::span<const double> numbers) {
+    assert(numbers.size() == 16);
     dmat4 m;
     for (int i = 0; i < 16; ++i)
         m[i / 4][i % 4] = numbers[size_t(i)];

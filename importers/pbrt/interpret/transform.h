@@ -10,12 +10,13 @@ namespace ovc::pbrt {
 
 dmat4 translation(const dvec3& by);
 dmat4 scaling(const dvec3& by);
-/// By `degrees` round `axis`, any length above 0; the identity round none.
+/// Returns a rotation by `degrees` round `axis`, of any length above 0; the identity if the axis
+/// has no length or a number is not finite.
 dmat4 rotation(double degrees, const dvec3& axis);
-/// From the world to a camera at `eye` that looks along +z, with +y up and +x to the right: the
-/// handedness of pbrt. False where the three do not make a view.
+/// Sets the transform from the world to a camera at `eye` that looks along +z, with +y up and +x to
+/// the right: the handedness of pbrt. Returns false if the three vectors do not make a view.
 bool look_at(const dvec3& eye, const dvec3& target, const dvec3& up, dmat4& world_to_camera);
-/// The 16 numbers of a Transform directive: column by column.
+/// Returns the matrix of a Transform directive from its 16 numbers, column by column.
 dmat4 from_file(std::span<const double> numbers);
 
 inline dvec3 point_through(const dmat4& m, const dvec3& p) {
@@ -26,8 +27,8 @@ inline dvec3 vector_through(const dmat4& m, const dvec3& v) {
     return dvec3(m * glm::dvec4(v, 0));
 }
 
-/// What turns normals where `m` moves points: the inverse transposed, up to a positive factor;
-/// taken from cofactors, so that it exists where m is singular.
+/// Returns the matrix that turns normals if `m` moves points: the inverse transposed, up to a
+/// positive factor. It consists of cofactors, so that it exists even if m is singular.
 dmat3 normal_matrix(const dmat4& m);
 
 inline bool swaps_handedness(const dmat4& m) {

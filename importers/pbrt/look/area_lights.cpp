@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Area lights: the surface is halved until there are as many parts as points.
+// The surface of an area light is halved until there are as many parts as points.
 #include "importers/pbrt/look/area_lights.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numbers>
 
 namespace ovc::pbrt {
 
 namespace {
 
-/// How far above its surface a spot stands, in lengths of that: not in it, or it would light it.
+/// The height of a spot above its surface, in square roots of the surface's area. In the surface,
+/// the spot would light it.
 constexpr double kHeight = 1e-4;
 
-/// A triangle as light sees it.
+/// A triangle's middle and area.
 struct Patch {
     dvec3 middle;
     dvec3 area_normal; // its length is the area
@@ -52,8 +54,10 @@ std::vector<Patch> patches_of(const Shape& shape) {
     return patches;
 }
 
-/// Halves the part at the median of its longest side, until `points` are one each.
+/// Halves the part at the median along the longest side of its bounds, until there is one part per
+/// point.
 void split(std::vector<Patch>& patches, Part part, size_t points, std::vector<Part>& parts) {
+    assert(part.first <= part.last && part.last <= patches.size());
     if (points < 2 || part.last - part.first < 2) {
         parts.push_back(part);
         return;
@@ -89,7 +93,7 @@ Surface surface_of(const std::vector<Patch>& patches, Part part) {
     return s;
 }
 
-/// Shines from one side, by the cosine to its normal.
+/// Returns a spot that shines from one side, by the cosine to its normal.
 Light lambert_spot(const Surface& s, const dvec3& normal, const vec3& intensity) {
     Light light;
     light.position = s.middle + kHeight * std::sqrt(s.area) * normal;

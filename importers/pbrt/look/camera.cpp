@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera and film: a window in the camera's own space, which may be of either handedness, or
-// stretched.
+// A camera becomes a window in its own space, which may be of either handedness, or stretched.
 #include "importers/pbrt/look/camera.h"
 
 #include "importers/file/text.h"
@@ -8,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <numbers>
 
 namespace ovc::pbrt {
@@ -31,7 +31,7 @@ Film read_film(const Parameters& parameters) {
 
 namespace {
 
-/// The part of the plane z = 1 that the image shows, before the angle of view; x to the right.
+/// The part of the plane z = 1 that the image shows, before the angle of view, with x to the right.
 struct Screen {
     double left, right, bottom, top;
 };
@@ -64,6 +64,7 @@ bool is_usable(const Camera& camera) {
 
 std::optional<Camera> make_camera(const CameraRequest& request, const Film& film,
                                   Diagnostics& diagnostics) {
+    assert(film.size.width > 0 && film.size.height > 0);
     const bool orthographic = request.type == "orthographic";
     if (!orthographic && request.type != "perspective")
         diagnostics.approximate(

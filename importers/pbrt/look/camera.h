@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera and film: the view that a PBRT file describes.
+// The camera and the film are the view that a PBRT file describes.
 #pragma once
 
 #include "core/scene.h"
@@ -8,16 +8,16 @@
 
 namespace ovc::pbrt {
 
-/// What Film says.
+/// The arguments of the Film directive.
 struct Film {
     ImageSize size{640, 480};
-    bool has_size = false; // the file gave one
-    float exposure = 1;    // what light is multiplied by
+    bool has_size = false; // whether the file gave it
+    float exposure = 1;    // the factor on all light
 };
 
 Film read_film(const Parameters& parameters);
 
-/// What Camera says, to be made a camera once the film is known.
+/// The arguments of the Camera directive, kept until the film is known.
 struct CameraRequest {
     std::string type;
     Parameters parameters;
@@ -25,7 +25,7 @@ struct CameraRequest {
     Place place;
 };
 
-/// Nothing where the file's transform makes no view, which has been said then.
+/// Returns the camera; warns and returns nothing if the file's transform makes no view.
 std::optional<Camera> make_camera(const CameraRequest& request, const Film& film,
                                   Diagnostics& diagnostics);
 

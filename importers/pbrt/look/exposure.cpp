@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exposure: a sample of the triangles in view, weighed by how large they are in the picture.
+// The exposure is a mean over a sample of the triangles in view, weighed by their size in the
+// picture.
 #include "importers/pbrt/look/exposure.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -13,7 +15,7 @@ namespace {
 
 constexpr uint64_t kSamples = 20000;
 
-/// Of the mean radiance: what is let be, and what it is brought to outside of that. A picture of
+/// A mean radiance from kDarkest to kBrightest stays; any other is brought to kWanted. A picture of
 /// mean 0.2 looks like most photographs do.
 constexpr double kDarkest = 0.02, kBrightest = 0.6, kWanted = 0.25;
 
@@ -21,8 +23,9 @@ double luminance(const vec3& c) {
     return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
 }
 
-/// How large the triangle is in the picture, in units of its window; 0 where it is out of view.
+/// Returns the triangle's area in the picture, in units of its window; 0 if it is out of view.
 double weight_in(const Camera& camera, const Triangle& t, const dvec3& middle) {
+    assert(camera.window);
     const ImageWindow& w = *camera.window;
     const dvec3 there = middle - camera.eye;
     const dvec3 forward = glm::normalize(w.direction);
@@ -41,7 +44,7 @@ double weight_in(const Camera& camera, const Triangle& t, const dvec3& middle) {
     return std::min(facing * scale * scale, glm::length(glm::cross(w.right, w.up)));
 }
 
-/// As the host shades it: docs of Light.
+/// Returns the light that arrives, as the host shades it and core/scene.h describes at Light.
 vec3 arriving(const Light& light, const dvec3& at, const dvec3& normal) {
     const dvec3 there = light.parallel ? -light.direction : light.position - at;
     const double distance = glm::length(there);
@@ -60,7 +63,8 @@ vec3 arriving(const Light& light, const dvec3& at, const dvec3& normal) {
     return light.color * float(share * std::numbers::inv_pi);
 }
 
-/// One side of it is lit: the one a camera would choose is not known, so half of them are.
+/// A light lights one side of a triangle, and we do not know which side the camera sees, so we
+/// count half of the light.
 double radiance_of(const Scene& scene, const Material& material, const Triangle& t,
                    const dvec3& middle) {
     const dvec3 across = glm::cross(t[1] - t[0], t[2] - t[0]);
@@ -78,6 +82,7 @@ double radiance_of(const Scene& scene, const Material& material, const Triangle&
 float fitting_exposure(const Scene& scene) {
     if (!scene.camera || !scene.camera->window || scene.lights.empty())
         return 1;
+    assert(scene.meshes.size() == scene.soup.chunks.size());
     const uint64_t step = scene.soup.triangle_count() / kSamples + 1;
     double weights = 0, sum = 0;
     uint64_t number = 0;

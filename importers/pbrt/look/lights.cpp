@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights: point, spot, distant; the sky as a background and some light from above.
+// Point, spot and distant lights keep their kind; the sky becomes a background and some light from
+// above.
 #include "importers/pbrt/look/lights.h"
 
 #include "importers/file/text.h"
@@ -17,18 +18,19 @@ namespace {
 
 using std::numbers::pi;
 
-/// Each costs a shadow ray for every hit.
+/// Limited, because each light costs a shadow ray for every hit.
 constexpr size_t kMaxAreaLights = 32;
 
-/// Of a constant sky: what a surface reflects of it without shadows, and what comes from above and
-/// casts some. An open surface would reflect all; rooms see little of it.
+/// The shares of a constant sky that surfaces reflect without shadows, and that comes from above
+/// and casts some. An open surface would reflect all of it, but rooms see little.
 constexpr float kSkyAmbient = 0.25f, kSkyFromAbove = 0.35f;
 
 double cosine(double degrees) {
     return std::cos(degrees * (pi / 180));
 }
 
-/// v4's "power" of a light that shines all ways; nothing where it is not given.
+/// Returns the intensity of a light that shines all ways with v4's "power"; nothing if the file
+/// does not give it.
 std::optional<float> intensity_of_power(const Parameters& p) {
     const double power = p.number("power", -1);
     return power >= 0 ? std::optional(float(power / (4 * pi))) : std::nullopt;
@@ -101,7 +103,7 @@ void Lights::add_distant(const Parameters& p, const dmat4& to_world) {
     vec3 irradiance = scaled(p, "L", vec3(1));
     if (const double lux = p.number("illuminance", -1); lux >= 0 && mean(irradiance) > 0)
         irradiance *= float(lux) / mean(irradiance);
-    light.color = irradiance; // which arrives over pi, as the BRDF of a matte surface has it
+    light.color = irradiance; // the host divides it by pi, for the BRDF of a matte surface
     lights_.push_back(light);
 }
 
@@ -137,7 +139,7 @@ void Lights::finish(const dvec3& view_up, Scene& scene) {
     if (!any_)
         return;
     if (area_lights_.size() > kMaxAreaLights) {
-        // The strongest stay, and take over the light of the others.
+        // The strongest lights stay, and take over the light of the others.
         const auto weight = [](const Light& light) { return mean(light.color); };
         std::stable_sort(area_lights_.begin(), area_lights_.end(),
                          [&](const Light& a, const Light& b) { return weight(a) > weight(b); });

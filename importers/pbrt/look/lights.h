@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights: pbrt's, mapped to points, spots and parallel light; area lights as points on them.
+// Lights maps pbrt's lights to points, spots and parallel light, and area lights to lights on them.
 #pragma once
 
 #include "core/scene.h"
@@ -8,7 +8,7 @@
 
 namespace ovc::pbrt {
 
-/// What AreaLightSource says of the shapes that follow it.
+/// The emission of the shapes that follow an AreaLightSource.
 struct Emission {
     vec3 radiance{1};
     bool two_sided = false;
@@ -22,10 +22,10 @@ public:
     void add(const std::string& type, const Parameters& parameters, const dmat4& to_world,
              const Place& place);
     std::optional<Emission> emission(const Parameters& parameters) const;
-    /// A shape that emits, in world coordinates.
+    /// Adds an emitting shape, which its transform places in the world.
     void add_area(const Shape& shape, const Emission& emission);
 
-    /// Moves all into the scene. view_up: up in the picture.
+    /// Moves all lights into the scene. view_up is the direction up in the picture.
     void finish(const dvec3& view_up, Scene& scene);
 
 private:
@@ -41,7 +41,7 @@ private:
     std::vector<Light> area_lights_;
     std::optional<Background> sky_;
     vec3 sky_mean_{0};
-    bool any_ = false; // the file has a light of some kind
+    bool any_ = false; // whether the file has a light of any kind
 };
 
 } // namespace ovc::pbrt

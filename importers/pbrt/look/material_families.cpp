@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Material families: one function each; a table of the names that v1 to v4 use for it.
+// Each family of materials has a function; a table maps the names of v1 to v4 to it.
 // Based on: pbrt's materials; Blinn 1977 (a lobe of exponent n); Schlick 1994 (metals).
 #include "importers/pbrt/look/material_families.h"
 
 #include "core/fresnel.h"
+
+#include <cassert>
 
 namespace ovc::pbrt {
 
@@ -12,11 +14,11 @@ namespace {
 /// Surfaces rougher than this show a highlight instead of mirror images.
 constexpr double kMirrorRoughness = 0.1;
 
-/// Of plastic, paint and whatever else does not say.
+/// The index of refraction of plastic, paint and other materials that do not state one.
 constexpr double kPlasticIor = 1.5;
 
-/// The width of the microfacets' slopes, 0 to 1: the root of pbrt's roughness, unless the file says
-/// that it is the width itself.
+/// Returns the width of the microfacets' slopes, 0 to 1: the root of pbrt's roughness, unless the
+/// file says that the roughness is the width itself.
 double roughness_of(const MaterialContext& c, double otherwise) {
     double r = c.number("roughness", otherwise);
     if (c.p.find("uroughness") || c.p.find("vroughness"))
@@ -25,7 +27,7 @@ double roughness_of(const MaterialContext& c, double otherwise) {
     return c.p.flag("remaproughness", true) ? std::sqrt(r) : r;
 }
 
-/// A highlight as strong as that of microfacets which reflect `share`.
+/// Adds a highlight as strong as that of microfacets which reflect `share`.
 void add_highlight(Finish& finish, float share, double width) {
     const double exponent = std::clamp(2 / (width * width + 1e-6) - 2, 1.0, 2000.0);
     finish.specular = share * float((exponent + 2) / 8);
@@ -51,14 +53,14 @@ std::optional<double> stated_ior(const MaterialContext& c) {
     return std::nullopt;
 }
 
-/// Mirror images by Fresnel's equations.
+/// Adds mirror images by Fresnel's equations.
 void add_coat(Material& m, const vec3& color) {
     m.mirror = 1;
     m.finish->fresnel = true;
     m.finish->grazing_reflection = color;
 }
 
-/// reflectance: its name in the version at hand.
+/// Reads the color from the parameter `reflectance`, whose name depends on the version.
 Material matte(const MaterialContext& c, std::string_view reflectance) {
     Material m;
     m.color = c.color(reflectance, 0.5f);
@@ -67,7 +69,7 @@ Material matte(const MaterialContext& c, std::string_view reflectance) {
     return m;
 }
 
-/// Paint of this color below clear varnish which reflects `coat` of Fresnel's share.
+/// Returns paint of this color below clear varnish that reflects `coat` of Fresnel's share.
 Optics varnished(const vec3& color, const vec3& coat, double ior, double width) {
     return {.diffuse = color,
             .boundary = Optics::Boundary::Dielectric,
@@ -76,8 +78,9 @@ Optics varnished(const vec3& color, const vec3& coat, double ior, double width) 
             .width = float(width)};
 }
 
-/// The color that paint has from above where varnish throws part of its light back onto it.
+/// Returns the color that paint has from above if varnish throws part of its light back onto it.
 vec3 below_varnish(const vec3& color, double ior) {
+    assert(ior >= 1);
     const float back = float(1 - (1 - fresnel_mean(ior)) / (ior * ior));
     return color * (1 - back) / (vec3(1) - back * color);
 }
@@ -90,7 +93,7 @@ Material make_matte(const MaterialContext& c) {
 
 namespace {
 
-/// Paint below a coat: plastic, substrate, coateddiffuse.
+/// Plastic and substrate are paint below a coat.
 Material make_plastic(const MaterialContext& c) {
     const bool v4 = c.p.find("reflectance") != nullptr;
     Material m;
@@ -126,7 +129,7 @@ Material make_mirror(const MaterialContext& c) {
     return m;
 }
 
-/// Without thickness: light goes straight on.
+/// If is_thin, the glass has no thickness, and light goes straight on.
 Material make_glass(const MaterialContext& c, bool is_thin) {
     Material m;
     m.color = vec3(0);
@@ -178,7 +181,7 @@ vec3 metal_of(const MaterialContext& c) {
                       vec3(0), vec3(1));
 }
 
-/// The rougher, the less it mirrors and the more it looks like matte paint.
+/// The rougher a metal, the less it mirrors and the more it looks like matte paint.
 Material metal(const vec3& color, double width) {
     Material m;
     m.color = color;
@@ -231,7 +234,7 @@ Material make_uber(const MaterialContext& c) {
         m.transmission = 1;
         m.filter = through;
         m.finish->conserve_energy = true;
-        if (mean(kt) == 0) { // seen through holes, not through glass
+        if (mean(kt) == 0) { // light passes through holes, not through glass
             m.ior = 1;
             m.optics->boundary = Optics::Boundary::None;
         }
@@ -248,7 +251,8 @@ Material make_translucent(const MaterialContext& c) {
     return m;
 }
 
-/// Disney's: its metallic share decides between metal and paint, spectrans between that and glass.
+/// In Disney's material, spectrans decides between glass and the rest, and the metallic share
+/// between metal and paint.
 Material make_disney(const MaterialContext& c) {
     if (c.number("spectrans", 0) > 0.5)
         return make_glass(c, c.p.flag("thin", false));
@@ -261,7 +265,7 @@ Material make_disney(const MaterialContext& c) {
     return m;
 }
 
-/// Tables in files of their own.
+/// These materials are tables in files of their own, or models of hair.
 Material make_tabulated(const MaterialContext& c) {
     c.diagnostics.approximate("tabulated", c.place,
                               "materials from tables and models of hair become matte grey");
@@ -275,7 +279,7 @@ Material make_invisible(const MaterialContext&) {
     return m;
 }
 
-/// What v1 measured: Lafortune's model, of which the diffuse part stays.
+/// v1 has measured materials in Lafortune's model, of which only the diffuse part stays.
 template <int kRed, int kGreen, int kBlue> // in thousandths
 Material make_measured(const MaterialContext&) {
     Material m;

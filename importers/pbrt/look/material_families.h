@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Material families: pbrt's kinds of surface, each as a Whitted material.
+// Each of pbrt's families of materials becomes a Whitted material.
 #pragma once
 
 #include "core/scene.h"
@@ -9,7 +9,7 @@
 
 namespace ovc::pbrt {
 
-/// What a Material directive says.
+/// The arguments of a Material directive.
 struct MaterialContext {
     const Textures& textures;
     const Parameters& p;
@@ -24,11 +24,11 @@ struct MaterialContext {
     }
 };
 
-/// Nothing where the type is unknown; "mix" is not among them.
+/// Returns the material; nothing if the type is unknown or "mix".
 std::optional<Material> material_of(std::string_view type, const MaterialContext& context);
 Material make_matte(const MaterialContext& context);
 
-/// The share of a constant light from everywhere that a surface is taken to see.
+/// The share of a constant light from everywhere that we assume a surface sees.
 inline constexpr float kAmbient = 0.04f;
 
 inline float mean(const vec3& c) {

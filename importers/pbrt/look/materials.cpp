@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials: by name, mixed, and each only once.
+// Materials keeps each material once, finds them by name and mixes them.
 #include "importers/pbrt/look/materials.h"
 
 #include "importers/file/text.h"
@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pbrt {
 
@@ -54,7 +55,7 @@ Material Materials::mapped(const std::string& type, const Parameters& parameters
     return make_matte(context);
 }
 
-/// Part by part; the metal, glass or coat of the larger share decides what cannot be mixed.
+/// Mixes part by part; the material of the larger share decides what cannot be mixed.
 Material Materials::mix(const Parameters& parameters, const Place& place) {
     std::string names[2] = {parameters.text("namedmaterial1"), parameters.text("namedmaterial2")};
     if (const Parameter* p = parameters.find("materials", {Kind::String});
@@ -109,6 +110,7 @@ uint32_t Materials::named(const std::string& name, const Place& place) {
 
 uint32_t Materials::emitter(uint32_t surface, const vec3& radiance, bool two_sided) {
     Material m;
+    assert(surface < all_.size());
     m.optics = all_[surface].optics.value_or(Optics{.diffuse = all_[surface].color});
     m.optics->emission = radiance;
     m.optics->two_sided = two_sided;

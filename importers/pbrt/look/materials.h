@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials: pbrt's, mapped to Whitted's. docs/reference/pbrt.md has the table.
+// Materials maps pbrt's materials to Whitted's, as the table in docs/reference/pbrt.md says.
 #pragma once
 
 #include "core/scene.h"
@@ -14,12 +14,15 @@ public:
     Materials(const Textures& textures, Diagnostics& diagnostics)
         : textures_(textures), diagnostics_(diagnostics) {}
 
-    /// The material of a Material directive, as an index into all(); equal ones are one.
+    /// Returns the material of a Material directive, as an index into all(); equal materials share
+    /// one.
     uint32_t make(const std::string& type, const Parameters& parameters, const Place& place);
-    /// MakeNamedMaterial, and NamedMaterial (which warns where there is none of that name).
+    /// Does what MakeNamedMaterial says.
     void define(const std::string& name, const Parameters& parameters, const Place& place);
+    /// Returns the material of NamedMaterial; warns and returns the first if there is none of that
+    /// name.
     uint32_t named(const std::string& name, const Place& place);
-    /// The material `surface`, sending out light of this radiance.
+    /// Returns the material `surface` with an emission of this radiance.
     uint32_t emitter(uint32_t surface, const vec3& radiance, bool two_sided);
 
     const std::vector<Material>& all() const { return all_; }
@@ -32,14 +35,14 @@ private:
 
     const Textures& textures_;
     Diagnostics& diagnostics_;
-    std::vector<Material> all_{Material{"matte", vec3(0.5f)}}; // the first: before any Material
+    std::vector<Material> all_{Material{"matte", vec3(0.5f)}}; // the first before any Material
     std::unordered_map<std::string, uint32_t> named_;
-    std::unordered_multimap<std::string, uint32_t> by_key_; // of all_, to find equals
+    std::unordered_multimap<std::string, uint32_t> by_key_; // indices into all_, to find equals
 };
 
-/// Whether nothing of it is seen: only the border of a medium.
+/// Returns whether nothing of the material is seen: it is only the border of a medium.
 bool is_invisible(const Material& material);
-/// Whether it sends out light.
+/// Returns whether the material emits light.
 bool is_emitter(const Material& material);
 
 } // namespace ovc::pbrt

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spectra through the CIE 1931 observer.
+// The CIE 1931 observer turns spectra into colours.
 // Based on: Wyman, Sloan and Shirley 2013, "Simple Analytic Approximations to the CIE XYZ Color
 // Matching Functions"; Planck's law; sRGB's matrix (IEC 61966-2-1).
 #include "importers/pbrt/look/spectrum.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace ovc::pbrt {
@@ -29,7 +30,7 @@ dvec3 rgb_of_xyz(const dvec3& c) {
             0.0556434 * c.x - 0.2040259 * c.y + 1.0572252 * c.z};
 }
 
-/// The observer's answer to power(nm).
+/// Returns the observer's answer to power(nm).
 template <class Power>
 dvec3 integrate(Power&& power) {
     dvec3 sum(0);
@@ -47,8 +48,9 @@ struct Metal {
     vec3 color;
 };
 
-// Head on, linear sRGB. Lagarde 2011, "Feeding a Physically Based Shading Model"; brass:
-// physicallybased.info; the oxides from their indices, 1.74 and 2.6.
+// The colours are linear sRGB, seen head on. They are from Lagarde 2011, "Feeding a Physically
+// Based Shading Model"; brass from physicallybased.info; the oxides from their indices, 1.74 and
+// 2.6.
 constexpr Metal kMetals[] = {{"Ag", {0.972f, 0.960f, 0.915f}},  {"Al", {0.913f, 0.921f, 0.925f}},
                              {"Au", {1.000f, 0.766f, 0.336f}},  {"CuZn", {0.887f, 0.789f, 0.434f}},
                              {"Cu", {0.955f, 0.637f, 0.538f}},  {"Cr", {0.550f, 0.556f, 0.554f}},
@@ -67,7 +69,7 @@ bool is_letter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-/// Whether `symbol` stands in the name as a word.
+/// Returns whether `symbol` stands in the name as a word.
 bool names(std::string_view name, std::string_view symbol) {
     for (size_t at = name.find(symbol); at != name.npos; at = name.find(symbol, at + 1)) {
         const size_t end = at + symbol.size();
@@ -90,6 +92,7 @@ vec3 black_body(double kelvin) {
 
 vec3 color_of_samples(std::span<const double> pairs) {
     const size_t count = pairs.size() / 2;
+    assert(count > 0);
     const auto value_at = [&](double nm) {
         size_t i = 0;
         while (i < count && pairs[2 * i] < nm)

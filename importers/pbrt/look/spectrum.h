@@ -1,30 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spectra as linear sRGB: what a colour parameter says, in whatever words.
+// The colour of a parameter as linear sRGB, in whatever way the file states it.
 #pragma once
 
 #include "importers/pbrt/interpret/parameters.h"
 
 namespace ovc::pbrt {
 
-/// Of light or reflectance: rgb; xyz; a black body's temperature in kelvin, and in v2 and v3 a
-/// scale; a spectrum as pairs of wavelength in nm and value, or one value for all. Nothing where it
-/// is a spectrum's name or file.
+/// Returns a colour of light or reflectance. The parameter may be a number; rgb; xyz; a black
+/// body's temperature in kelvin, and in v2 and v3 a scale; or a spectrum as pairs of wavelength in
+/// nm and value, or one value for all. Returns nothing for a spectrum's name or file, and for too
+/// few numbers.
 std::optional<vec3> color_of(const Parameter& parameter);
 
-/// A black body of luminance 1.
+/// Returns the colour of a black body of luminance 1.
 vec3 black_body(double kelvin);
 
-/// A spectrum of pairs (nm, value), linear in between and constant beyond: seen in white light, so
-/// that 1 everywhere is white.
+/// Returns the colour of a spectrum of pairs (nm, value), at least one, which is linear in between
+/// and constant beyond, as seen in white light: 1 everywhere is white.
 vec3 color_of_samples(std::span<const double> pairs);
 
-/// A metal seen head on, by its name in pbrt ("metal-Au-eta", "spds/Au.k.spd"); nothing where that
-/// is not known.
+/// Returns the colour of a metal seen head on, by its name in pbrt ("metal-Au-eta",
+/// "spds/Au.k.spd"); nothing if the name is not known.
 std::optional<vec3> metal_color(std::string_view name);
-/// The same from eta and k.
+/// Returns the same from eta and k.
 vec3 metal_color(const vec3& eta, const vec3& k);
 
-/// "glass-BK7" and its like; nothing where it is not known.
+/// Returns the index of refraction of "glass-BK7" and its like; nothing if the name is not known.
 std::optional<double> glass_ior(std::string_view name);
 
 } // namespace ovc::pbrt

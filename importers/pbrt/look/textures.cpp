@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures: means of constants; a middle grey where the pattern is not known.
+// A texture's mean is exact for constants and their mixtures, and a middle grey for unknown
+// patterns.
 #include "importers/pbrt/look/textures.h"
 
 #include "importers/file/text.h"
@@ -52,7 +53,7 @@ vec3 Textures::color(const Parameters& parameters, std::string_view name,
     const Parameter* p = parameters.find(name);
     if (!p)
         return otherwise;
-    // v1 names a texture where it wants a float or a colour.
+    // v1 may give a texture's name for a float or a colour.
     if (p->kind == Kind::Texture || p->kind == Kind::String) {
         const auto at = p->strings.empty() ? means_.end() : means_.find(p->strings[0]);
         if (at != means_.end())

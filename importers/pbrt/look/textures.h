@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures: each stands for its mean, for no material of ours has a texture.
+// Textures replaces each texture by its mean, because no material of ours has a texture.
 #pragma once
 
 #include "importers/pbrt/look/spectrum.h"
@@ -12,14 +12,16 @@ class Textures {
 public:
     explicit Textures(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
-    /// A Texture directive: its class ("scale"), and what that is made of.
+    /// Adds the texture of a Texture directive, with its class as `type` ("scale").
     void define(const std::string& name, const std::string& type, const Parameters& parameters,
                 const Place& place);
 
-    /// The colour that a parameter gives, itself or by the name of a texture.
+    /// Returns the colour that a parameter states, or the mean of the texture that it names;
+    /// `otherwise` without either.
     vec3 color(const Parameters& parameters, std::string_view name, const vec3& otherwise) const;
     double number(const Parameters& parameters, std::string_view name, double otherwise) const;
-    /// Whether that colour is not the same all over: masks made of patterns are better not used.
+    /// Returns whether the parameter names a texture that is not the same all over. Masks made of
+    /// such patterns are better not used.
     bool is_pattern(const Parameters& parameters, std::string_view name) const;
 
 private:

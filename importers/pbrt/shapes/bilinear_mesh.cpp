@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bilinear patches: two triangles each where they are flat, a grid where they are not.
+// A bilinear patch becomes two triangles if it is flat, else a grid of them.
 #include "importers/pbrt/shapes/shapes.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pbrt {
 
 namespace {
 
-/// Corners at (u, v) = (0,0), (1,0), (0,1), (1,1).
+/// The corners lie at (u, v) = (0,0), (1,0), (0,1), (1,1).
 struct BilinearPatch {
     dvec3 p[4];
 
@@ -23,14 +24,14 @@ struct BilinearPatch {
             box.add(corner);
         return glm::length(box.extent());
     }
-    /// How far the middle lies off either diagonal.
+    /// Returns how far the middle lies off either diagonal.
     double bulge() const { return glm::length(p[0] + p[3] - p[1] - p[2]) / 4; }
 };
 
 constexpr double kMaxPatchSteps = 16;
 
-/// Divided into n x n, a patch lies 1/n^2 of its bulge off its triangles. All are divided alike,
-/// or neighbours would not meet.
+/// Divided into n x n, a patch lies 1/n^2 of its bulge off its triangles. All patches are divided
+/// alike, or neighbours would not meet.
 uint32_t steps_for(const std::vector<BilinearPatch>& patches, double tolerance) {
     double steps = 1;
     for (const BilinearPatch& patch : patches) {
@@ -42,6 +43,7 @@ uint32_t steps_for(const std::vector<BilinearPatch>& patches, double tolerance) 
 }
 
 void add_patch(const BilinearPatch& patch, uint32_t steps, Mesh& mesh) {
+    assert(steps >= 1 && steps <= kMaxPatchSteps);
     const auto first = uint32_t(mesh.positions.size() / 3);
     const uint32_t row = steps + 1;
     for (uint32_t v = 0; v <= steps; ++v)

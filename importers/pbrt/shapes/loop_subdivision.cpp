@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loop subdivision: levels of a triangle mesh, then its limit surface.
+// Loop subdivision refines a triangle mesh level by level, then moves it to its limit surface.
 // Based on: Loop 1987, "Smooth Subdivision Surfaces Based on Triangles"; Hoppe et al. 1994 for
 // boundaries; the weights are pbrt's.
 #include "importers/pbrt/shapes/shapes.h"
@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace ovc::pbrt {
 
@@ -14,18 +15,19 @@ namespace {
 
 struct Edge {
     uint32_t a, b;     // a < b
-    uint32_t opposite; // of the first face
-    uint32_t other;    // of the second
+    uint32_t opposite; // the vertex of the first face that lies off the edge
+    uint32_t other;    // that of the last face
     uint32_t faces;
 };
 
-/// Every edge once, and for each face the edges that leave its corners.
+/// Holds every edge once, and for each corner the edge from it to the face's next one.
 struct Edges {
     std::vector<Edge> edges;
     std::vector<uint32_t> of_corner;
 };
 
 Edges edges_of(const std::vector<uint32_t>& indices) {
+    assert(indices.size() % 3 == 0);
     struct Side {
         uint64_t key;
         uint32_t corner;
@@ -55,7 +57,7 @@ Edges edges_of(const std::vector<uint32_t>& indices) {
     return found;
 }
 
-/// What a vertex is surrounded by.
+/// The neighbours of a vertex.
 struct Ring {
     uint32_t valence = 0;
     uint32_t border_edges = 0; // edges with one face, or more than two
@@ -83,11 +85,12 @@ std::vector<Ring> rings_of(const Level& level, const Edges& edges) {
 }
 
 double beta(uint32_t valence) {
+    assert(valence > 0);
     return valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * valence);
 }
 
-/// Weighs a vertex against its ring; where a border runs through, against its two neighbours there.
-/// Where more than one does, or nothing else is there, it stays.
+/// Weighs a vertex against its ring, or against its two neighbours on the border that runs through
+/// it. A vertex without edges, or with any other number of border edges, stays.
 dvec3 weighed(const dvec3& vertex, const Ring& ring, double weight, double border_weight) {
     if (ring.border_edges == 2)
         return (1 - 2 * border_weight) * vertex + border_weight * ring.border_sum;
@@ -135,7 +138,7 @@ void move_to_limit(Level& level) {
     }
 }
 
-/// The mean of the triangles around each vertex, by their area.
+/// Returns for each vertex the mean normal of the triangles around it, weighed by their areas.
 std::vector<vec3> smooth_normals(const Level& level) {
     std::vector<dvec3> sums(level.vertices.size(), dvec3(0));
     for (size_t f = 0; f < level.indices.size(); f += 3) {

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh: the triangles of one shape in its own coordinates, however they came.
+// Mesh holds the triangles of one shape in its own coordinates, whatever made them.
 #pragma once
 
 #include "core/box.h"
 #include "core/vec.h"
 
+#include <cassert>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace ovc::pbrt {
 
-/// Either indexed, with coordinates in double, three numbers a vertex; or, from a PLY file, three
-/// single-precision corners a triangle that are added to an origin. Normals of any length, or none:
-/// one a vertex where indexed, else one a corner.
+/// A mesh is either indexed, with three doubles per vertex; or, from a PLY file, has three corners
+/// per triangle in single precision, to be added to an origin. It has no normals, or normals of any
+/// length: one per vertex if it is indexed, else one per corner.
 struct Mesh {
     std::string name;
     std::vector<double> positions;
@@ -26,14 +27,19 @@ struct Mesh {
     uint64_t size() const { return (indices.size() + corners.size()) / 3; }
     bool is_indexed() const { return corners.empty(); }
 
-    /// Corner c is that of triangle c / 3.
+    /// Returns corner c, which belongs to triangle c / 3.
     dvec3 corner(size_t c) const {
+        assert(c < 3 * size());
         if (!is_indexed())
             return origin + dvec3(corners[c]);
+        assert(size_t(indices[c]) * 3 + 2 < positions.size());
         const double* p = positions.data() + size_t(indices[c]) * 3;
         return {p[0], p[1], p[2]};
     }
-    vec3 normal(size_t c) const { return normals[is_indexed() ? indices[c] : c]; }
+    vec3 normal(size_t c) const {
+        assert(c < 3 * size() && (is_indexed() ? indices[c] : c) < normals.size());
+        return normals[is_indexed() ? indices[c] : c];
+    }
 
     void add_vertex(const dvec3& p) { positions.insert(positions.end(), {p.x, p.y, p.z}); }
     void add_triangle(uint32_t a, uint32_t b, uint32_t c) {

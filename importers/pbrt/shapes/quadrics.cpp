@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Quadrics: a profile in steps, swept about the z axis in steps, up to phimax.
+// A quadric is a profile in steps, swept about the z axis in steps, up to phimax.
 // Based on: Pharr, Jakob and Humphreys, "Physically Based Rendering", chapter 3 (parametrisations),
 // pbrt-v1 to v3 (cone, paraboloid, hyperboloid).
 #include "importers/pbrt/shapes/shapes.h"
@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <numbers>
 
 namespace ovc::pbrt {
@@ -16,7 +17,7 @@ namespace {
 using std::numbers::pi;
 constexpr double kMaxQuadricSteps = 256;
 
-/// Points at phi = 0, in the order of pbrt's v, and the normals there.
+/// The points at phi = 0, in the order of pbrt's v, and the normals there.
 struct Profile {
     std::vector<dvec3> points;
     std::vector<dvec3> normals;
@@ -28,17 +29,19 @@ struct Profile {
     }
 };
 
-/// How finely curves are divided.
+/// Says how finely curves are divided.
 struct Steps {
-    double tolerance; // as kTolerance
+    double tolerance; // of the ShapeRequest
 
-    /// Round a full circle: a multiple of 4, so that the bounds are exact. A triangle between steps
-    /// of angle a lies 1 - cos(a / 2) radii off a cylinder, about twice that off a sphere.
+    /// Returns the steps round a full circle: a multiple of 4, so that the bounds are exact. A
+    /// triangle between steps of angle a lies 1 - cos(a / 2) radii off a cylinder, about twice that
+    /// off a sphere.
     double round(bool is_curved) const {
         const double steps = pi / std::sqrt(is_curved ? tolerance : 2 * tolerance);
         return 4 * std::ceil(steps / 4);
     }
-    /// From 1 to as many as a circle has, or kMaxQuadricSteps; 1 for what is no number.
+    /// Returns a whole number of steps, from 1 to the larger of a circle's and kMaxQuadricSteps; 1
+    /// for NaN.
     size_t whole(double steps) const {
         const double most = std::max(kMaxQuadricSteps, round(true));
         return steps > 1 ? size_t(std::ceil(std::min(steps, most))) : 1;
@@ -48,8 +51,9 @@ struct Steps {
     }
 };
 
-/// About z; exact at quarter turns.
+/// Turns the point about z, exactly at quarter turns; `turns` lies in [0, 1].
 dvec3 turned(const dvec3& p, double turns) {
+    assert(turns >= 0 && turns <= 1);
     const double quarter = turns * 4;
     double c = std::cos(2 * pi * turns), s = std::sin(2 * pi * turns);
     if (quarter == std::floor(quarter)) {
@@ -64,9 +68,10 @@ bool on_axis(const dvec3& p) {
     return p.x == 0 && p.y == 0;
 }
 
-/// Rows of vertices at each step of phi; a row on the axis is one point, yet has a normal for each
-/// step. Triangles without area at such points are left out.
+/// Makes rows of vertices at each step of phi. A row on the axis is one point, yet has a normal for
+/// each step; triangles without area at such points are left out.
 Mesh sweep(const Profile& profile, double phi_max_degrees, const Steps& fine) {
+    assert(profile.points.size() >= 2 && profile.points.size() == profile.normals.size());
     const double share = std::clamp(phi_max_degrees, 0.0, 360.0) / 360;
     const size_t steps = fine.of(share, profile.is_curved);
     const bool closed = share == 1;
@@ -144,7 +149,7 @@ Profile cone(const Parameters& p, const Steps&) {
     return profile;
 }
 
-/// z grows with the square of the distance from the axis.
+/// On a paraboloid, z grows with the square of the distance from the axis.
 Profile paraboloid(const Parameters& p, const Steps& fine) {
     const double radius = std::abs(p.number("radius", 1));
     const double z0 = p.number("zmin", 0), z1 = p.number("zmax", 1);
@@ -164,7 +169,7 @@ Profile paraboloid(const Parameters& p, const Steps& fine) {
     return profile;
 }
 
-/// A line turned about the axis.
+/// A hyperboloid is a line turned about the axis.
 Profile hyperboloid(const Parameters& p, const Steps& fine) {
     const dvec3 p1 = p.point("p1", {0, 0, 0}), p2 = p.point("p2", {1, 1, 1});
     const auto azimuth = [](const dvec3& v) { return std::atan2(v.y, v.x); };

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes: which maker; meshes as the file has them.
+// The table of shapes, and those whose triangles the file holds itself.
 #include "importers/pbrt/shapes/shapes.h"
 
 #include "importers/file/text.h"
 #include "importers/readers.h"
 
 #include <fmt/format.h>
+
+#include <cassert>
 
 namespace ovc::pbrt {
 
@@ -28,7 +30,7 @@ constexpr Maker kMakers[] = {{"trianglemesh", make_triangle_mesh},
                              {"paraboloid", make_quadric},
                              {"hyperboloid", make_quadric}};
 
-/// One normal a vertex, or none.
+/// Returns one normal per vertex, or none.
 std::vector<vec3> take_normals(ShapeRequest& request, size_t vertices) {
     const std::vector<double> numbers =
         request.parameters.take("N", {Kind::Normal, Kind::Vector3, Kind::Point3});
@@ -46,7 +48,7 @@ std::vector<vec3> take_normals(ShapeRequest& request, size_t vertices) {
     return normals;
 }
 
-/// With what the file states for its vertices and the mesh has no use for.
+/// Notes in the mesh the data of its vertices that it has no use for.
 std::optional<Mesh> told(std::optional<Mesh> mesh, const Parameters& parameters) {
     if (mesh && mesh->normals.empty() && parameters.find("N"))
         mesh->normals_left_out = 3 * mesh->size();
@@ -84,6 +86,7 @@ std::vector<double> take_points(ShapeRequest& request) {
 
 std::optional<std::vector<uint32_t>> take_indices(ShapeRequest& request, size_t vertices,
                                                   size_t group) {
+    assert(vertices > 0 && group > 0);
     std::vector<double> numbers = request.parameters.take("indices", {Kind::Integer});
     if (numbers.size() % group != 0)
         return left_out(request, fmt::format("its indices do not come in groups of {}", group));
@@ -106,7 +109,7 @@ std::optional<Mesh> make_triangle_mesh(ShapeRequest& request) {
     auto indices = take_indices(request, vertices, 3);
     if (!indices)
         return std::nullopt;
-    // v4: one triangle needs none.
+    // In v4, one triangle needs no indices.
     if (indices->empty() && vertices == 3)
         *indices = {0, 1, 2};
     if (indices->empty())
@@ -134,6 +137,7 @@ std::optional<Mesh> make_ply_mesh(ShapeRequest& request) {
     }
     Mesh mesh;
     mesh.name = path->stem().string();
+    assert(scene->soup.chunks.size() == 1 && scene->meshes.size() == 1);
     Chunk& chunk = scene->soup.chunks[0];
     mesh.origin = chunk.origin();
     mesh.corners = chunk.take_corners();
@@ -144,7 +148,7 @@ std::optional<Mesh> make_ply_mesh(ShapeRequest& request) {
     return mesh;
 }
 
-/// Over the unit square, x along a row; heights are z.
+/// The field lies over the unit square with x along a row; its heights are z.
 std::optional<Mesh> make_height_field(ShapeRequest& request) {
     const double across = request.parameters.number("nu", 0);
     const double down = request.parameters.number("nv", 0);

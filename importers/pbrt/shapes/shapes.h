@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes: the Shape directive's kinds, each made into triangles.
+// make_shape() makes each kind of the Shape directive into triangles.
 #pragma once
 
 #include "importers/importer.h"
@@ -15,19 +15,18 @@ struct ShapeRequest {
     Place place;
     const Tokens& tokens; // where files are found
     Diagnostics& diagnostics;
-    uint64_t max_triangles; // what the scene still allows
-    double tolerance;       // as kTolerance
+    uint64_t max_triangles; // the number that the scene still allows
+    double tolerance;       // kTolerance, or another
 };
 
-/// Nothing where the shape is left out: unknown, without its data, or with data that does not fit
-/// together. Why has been said, then.
+/// Returns the shape's triangles. Returns nothing if the shape is unknown, lacks data, or has data
+/// that does not fit together; the diagnostics then hold the reason.
 std::optional<Mesh> make_shape(ShapeRequest& request);
 
-/// How far a triangle may lie off the curved surface that it stands for, in radii, where nothing
-/// else is asked for.
+/// The default of how far a triangle may lie off the curved surface that it stands for, in radii.
 inline constexpr double kTolerance = 1.0 / 160;
 
-// Each as make_shape().
+// Each of these makes shapes as make_shape() does.
 std::optional<Mesh> make_triangle_mesh(ShapeRequest& request);
 std::optional<Mesh> make_ply_mesh(ShapeRequest& request);
 std::optional<Mesh> make_height_field(ShapeRequest& request);
@@ -35,13 +34,14 @@ std::optional<Mesh> make_bilinear_mesh(ShapeRequest& request);
 std::optional<Mesh> make_loop_subdivision(ShapeRequest& request);
 std::optional<Mesh> make_quadric(ShapeRequest& request);
 
-/// The indices of a mesh as the file has them, checked against the number of vertices and to come
-/// in groups. Nothing where they are unusable.
+/// Returns the indices of a mesh as the file has them, all below `vertices` (at least 1) and in
+/// groups of `group`. Returns nothing if they are unusable.
 std::optional<std::vector<uint32_t>> take_indices(ShapeRequest& request, size_t vertices,
                                                   size_t group);
-/// "P" in triples; empty where it is missing or not in triples, which has been said then.
+/// Returns the numbers of "P", three per point; warns and returns none if it is missing or does not
+/// come in triples.
 std::vector<double> take_points(ShapeRequest& request);
-/// Says why the shape is left out.
+/// Warns that the shape is left out, and why.
 std::nullopt_t left_out(ShapeRequest& request, std::string_view why);
 
 } // namespace ovc::pbrt

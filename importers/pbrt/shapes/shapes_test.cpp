@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PBRT's shapes against their equations, their areas and their sides.
+// These tests compare PBRT's shapes with their equations, their areas and their sides.
 #include "importers/pbrt/shapes/shapes.h"
 #include "importers/test_files.h"
 
@@ -33,8 +33,8 @@ Box bounds_of(const std::vector<Triangle>& triangles) {
     return box;
 }
 
-/// How often each edge is there, one way less the other: 0 everywhere is a closed surface, all of
-/// it wound alike.
+/// Counts each edge one way less the other. A count of 0 everywhere means a closed surface whose
+/// triangles are wound alike.
 bool is_closed(const std::vector<Triangle>& triangles) {
     std::map<std::array<double, 6>, int> edges;
     for (const Triangle& t : triangles)
@@ -46,7 +46,7 @@ bool is_closed(const std::vector<Triangle>& triangles) {
     return std::all_of(edges.begin(), edges.end(), [](const auto& e) { return e.second == 0; });
 }
 
-/// Negative inside. Where the gradient is 1 long, a distance.
+/// An equation is negative inside. If its gradient is 1 long, it is a distance.
 using Equation = std::function<double(const dvec3&)>;
 
 void lies_on(const std::vector<Triangle>& triangles, const Equation& f, double tolerance,
@@ -133,7 +133,7 @@ TEST(PbrtShapes, QuadricsHaveTheAreaAndTheBoundsTheyShould) {
     EXPECT_NEAR(area_of(shape("\"cylinder\" \"float zmin\" -2 \"float zmax\" 1")), 6 * kPi,
                 6 * kPi * share);
     EXPECT_NEAR(area_of(shape("\"cone\"")), kPi * std::sqrt(2), kPi * 1.5 * share);
-    // Archimedes: 2/3 of the way in volume; in area pi/6 ((1 + 4)^1.5 - 1).
+    // The area of a paraboloid is pi/6 ((1 + 4)^1.5 - 1).
     EXPECT_NEAR(area_of(shape("\"paraboloid\"")), kPi / 6 * (std::pow(5, 1.5) - 1), 0.1);
 }
 
@@ -165,7 +165,7 @@ TEST(PbrtShapes, LoopSubdivisionQuadruplesAndStaysClosed) {
 }
 
 TEST(PbrtShapes, LoopSubdivisionKeepsAFlatSheetFlat) {
-    // Its corners are creases that shrink, its plane and the straight sides stay.
+    // The sheet's corners are creases that shrink; its plane and the straight sides stay.
     std::string points, indices;
     for (int y = 0; y < 4; ++y)
         for (int x = 0; x < 4; ++x)
