@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ray against the four boxes of a node. Boxes are padded when packed, by more than anything here can round.
-// Based on: Ize 2013, "Robust BVH Ray Traversal"; Ylitie et al. 2017 (quantised boxes folded into the ray).
+// Tests a ray against the four boxes of a node. The packer pads boxes by more than the roundings
+// here.
+// Based on: Ize 2013, "Robust BVH Ray Traversal"; Ylitie et al. 2017 (quantised boxes folded into
+// the ray).
 
-// The ray in grid coordinates: a plane at g, in 65,536ths of a cell from the grid's middle, is met at t = g * scale + offset.
+// The ray in grid coordinates: it meets a plane at g, in 65,536ths of a cell from the grid's
+// middle, at t = g * scale + offset.
 struct GridRay {
     vec3 scale;
     vec3 offset;
 };
 
-// A component below 1e-18 moves the ray by less than any padding over the whole leaf; its reciprocal stays finite.
+// A component below 1e-18 moves the ray by less than any padding over the whole leaf. Replacing it
+// keeps the reciprocal finite.
 vec3 finite_reciprocal(vec3 dir) {
     vec3 tiny = mix(vec3(1e-18), vec3(-1e-18), lessThan(dir, vec3(0.0)));
     return 1.0 / mix(dir, tiny, lessThan(abs(dir), vec3(1e-18)));
@@ -18,11 +22,14 @@ GridRay grid_ray(vec3 org, vec3 inv_dir, vec3 grid_middle, vec3 grid_cell) {
     return GridRay(grid_cell * inv_dir * (1.0 / 65536.0), (grid_middle - org) * inv_dir);
 }
 
-// Four 16-bit coordinates of one side, two to a word. The upper one keeps the lower one as its fraction, which the packer allows for.
-vec4 coordinates(uvec2 words) { return vec4(ivec4(words.x << 16, words.x, words.y << 16, words.y)); }
+// Four 16-bit coordinates of one side, two to a word. The upper one keeps the lower one as its
+// fraction, which the packer allows for.
+vec4 coordinates(uvec2 words) {
+    return vec4(ivec4(words.x << 16, words.x, words.y << 16, words.y));
+}
 
-// A node's four boxes, per axis their near and far planes in grid coordinates: selected by the word, before they are decoded.
-// backward: the direction is negative, hi is the near plane.
+// A node's four boxes: per axis, their near and far planes in grid coordinates. boxes_of() selects
+// whole words before it decodes them. backward: the direction is negative, so hi is the near plane.
 struct Boxes {
     vec4 near[3];
     vec4 far[3];
@@ -37,7 +44,7 @@ Boxes boxes_of(uvec4 x, uvec4 y, uvec4 z, bvec3 backward) {
 }
 
 #if OVC_MAY_WAIT
-#define OVC_EXACTLY precise // the key of a link has the same bits in whichever kernel
+#define OVC_EXACTLY precise // so that the key of a link has the same bits in every kernel
 #else
 #define OVC_EXACTLY
 #endif
@@ -49,12 +56,14 @@ ivec4 when(vec4 planes, float scale, float offset) {
 
 const int OVC_NO_CHILD = 0x7ffffffc;
 const int OVC_NO_END = 0x80000000; // the end of a ray that meets no box
-const float OVC_ENOUGH = -9.4039548065783e-38f; // -2^-123: that of one that looks for nothing any more; near to 0, as layout.h wants
+// -2^-123, the end of a ray that looks for nothing any more. It is near to 0, as layout.h wants.
+const float OVC_ENOUGH = -9.4039548065783e-38f;
 
-// Between which t's the ray is in each of the four boxes, and before `end`, as the bits of floats: it meets a box where `enter` is less
-// than `exit`. Floats that are not negative order as their bits do, and signed integer min and max are one instruction where float ones
-// are three. Negative ones order the other way round: the least entry and the greatest exit of those are taken, so that where a box lies
-// all behind the ray's beginning, its exit comes first.
+// The t's at which the ray enters and leaves each of the four boxes before `end`, as the bits of
+// floats. It meets a box if `enter` is less than `exit`. Floats that are not negative order as
+// their bits do, and signed integer min and max are one instruction where float ones are three.
+// Negative floats order the other way round: min and max then choose the min entry and the max
+// exit, and a box that lies all behind the ray's beginning has its exit first.
 struct Stretches {
     ivec4 enter;
     ivec4 exit;
@@ -71,5 +80,7 @@ Stretches stretches(Boxes boxes, GridRay ray, int end) {
     return Stretches(enter, exit);
 }
 
-// Where the ray enters each of the four children, OVC_NO_CHILD where it misses.
-ivec4 entries(Stretches s) { return mix(ivec4(OVC_NO_CHILD), s.enter, lessThan(s.enter, s.exit)); }
+// Returns where the ray enters each of the four children, OVC_NO_CHILD if it misses.
+ivec4 entries(Stretches s) {
+    return mix(ivec4(OVC_NO_CHILD), s.enter, lessThan(s.enter, s.exit));
+}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The children of a node that a ray, or any ray of a packet, goes down to, and in which order.
+// Decides which children of a node a ray, or any ray of a packet, goes down to, and in which order.
 
 struct Way {
     bool down;  // there is one
@@ -32,7 +32,7 @@ Way way_to(Children children) {
     return Way(list > 1, list & 3, list > 7, list >> 2);
 }
 #else
-// Nearest first: where each is entered, as entries() tells it.
+// The nearest child comes first. A key tells where the ray enters the child, as entries() does.
 struct Children {
     ivec4 keys;
 };
@@ -50,7 +50,7 @@ void order(inout int a, inout int b) {
     a = low;
 }
 
-// By a sorting network of five comparisons; with each child's number in the two lowest bits.
+// Sorts by a network of five comparisons, with each child's number in the two lowest bits.
 Way way_to(Children children) {
     ivec4 k = (children.keys & ~3) | ivec4(0, 1, 2, 3);
     order(k.x, k.y);

@@ -1,55 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every switch of the kernel, with its default. ShaderConfig (gpu/gl/kernel.h) always defines all of them.
+// Every switch of the kernel, with its default. ShaderConfig (gpu/gl/kernel.h) always defines all
+// of them.
 
+// 1: all rays ask whether anything is hit; 0: each ray says what it asks, and those of the thesis
+// ask for the nearest hit.
 #ifndef OVC_ANY_HIT
-#define OVC_ANY_HIT 0 // 1: all rays ask whether anything is hit; 0: each says what it asks, those of the thesis the nearest hit
+#define OVC_ANY_HIT 0
 #endif
+// 0: fast precision gives float32's own answer and flags nothing except rays whose loops were
+// ended.
 #ifndef OVC_CERTIFY
-#define OVC_CERTIFY 1 // 0: fast precision, float32's own answer, nothing flagged but what did not end
+#define OVC_CERTIFY 1
 #endif
+// 1: the top-level tree leads to parts in frames of their own, and rays come in doubles.
 #ifndef OVC_PORTALS
-#define OVC_PORTALS 0 // 1: the top-level tree leads to parts in frames of their own, and rays come in doubles
+#define OVC_PORTALS 0
 #endif
 #ifndef OVC_MAY_WAIT
-#define OVC_MAY_WAIT 0 // 1: a ray waits where a link leads to a page that is not in the pool
+#define OVC_MAY_WAIT 0 // 1: a ray waits if a link leads to a page that is not in the pool
 #endif
 #ifndef OVC_TELL_ACTIVE
-#define OVC_TELL_ACTIVE 0 // 1: pages that rays are traced through are marked
+#define OVC_TELL_ACTIVE 0 // 1: the kernel marks pages that rays are traced through
 #endif
 #ifndef OVC_POOL_BUFFERS
-#define OVC_POOL_BUFFERS 1 // that the pool consists of
+#define OVC_POOL_BUFFERS 1 // the number of buffers of the pool
 #endif
+// Calls the macro do_with with each number below OVC_POOL_BUFFERS.
 #ifndef OVC_EACH_BUFFER
-#define OVC_EACH_BUFFER(do_with) do_with(0) // and with each number below OVC_POOL_BUFFERS
+#define OVC_EACH_BUFFER(do_with) do_with(0)
 #endif
 #ifndef OVC_BUFFER_BITS
-#define OVC_BUFFER_BITS 25 // of a unit's number, those within a buffer; above them the buffer's number
+#define OVC_BUFFER_BITS 25 // low bits of a unit's number; the bits above them name its buffer
 #endif
 #ifndef OVC_LOOSE_PAIRS
-#define OVC_LOOSE_PAIRS 0 // 1: a page may hold two triangles that share no side in a unit
+#define OVC_LOOSE_PAIRS 0 // 1: a unit may hold two triangles that share no side
 #endif
+// Words of the stack; one less than the page's depth loses no ray. Each is a register on llvmpipe
+// and costs 1 % of the time.
 #ifndef OVC_STACK_DEPTH
-#define OVC_STACK_DEPTH 16 // words; one less than the page's depth loses no ray. A register each on llvmpipe: 1 % of the time
+#define OVC_STACK_DEPTH 16
 #endif
+// 1: comparisons select from the stack, for drivers that branch per lane on indexed writes
+// (llvmpipe: 4 to 25 % faster); 0: the stack is a plain array.
 #ifndef OVC_STACK_REGISTERS
-#define OVC_STACK_REGISTERS 1 // 1: the stack is selected from by comparisons, for drivers that branch per lane on
-                              // indexed writes (llvmpipe: 4 to 25 % faster); 0: a plain array
+#define OVC_STACK_REGISTERS 1
 #endif
 #ifndef OVC_PACKET
 #define OVC_PACKET 1 // rays that an invocation traces together
 #endif
+// 1: a subgroup has more rays, or packets, than lanes, and its lanes take them in turn
+// (GL_ARB_shader_ballot).
 #ifndef OVC_REFILL
-#define OVC_REFILL 0 // 1: a subgroup has more rays, or packets, than lanes, which take them in turn (GL_ARB_shader_ballot)
+#define OVC_REFILL 0
 #endif
+// 1: a step runs only the code for its kind of unit; 0: for drivers that run both sides of a branch
+// (llvmpipe).
 #ifndef OVC_BRANCHES
-#define OVC_BRANCHES 0 // 1: a step runs what its unit is for; 0: for drivers that run both sides of a branch (llvmpipe)
+#define OVC_BRANCHES 0
 #endif
+// 1: neighbouring work groups go to different threads of a driver that gives each thread a
+// contiguous share of the dispatch (llvmpipe: 8 % of camera rays). With ray refill there are too
+// few groups for it.
 #ifndef OVC_DEAL_GROUPS
-#define OVC_DEAL_GROUPS 1 // 1: neighbouring work groups go to different threads of a driver that gives each a contiguous share
-                          // of the dispatch (llvmpipe: 8 % of camera rays); with ray refill groups are too few for it
+#define OVC_DEAL_GROUPS 1
 #endif
+// 1: pages, portals and rays are read by imageLoad (inlined on llvmpipe, 5 % faster); 0: by
+// texelFetch.
 #ifndef OVC_BUFFER_IMAGES
-#define OVC_BUFFER_IMAGES 1 // pages, portals, rays: 1: imageLoad (inlined on llvmpipe, 5 % faster); 0: texelFetch
+#define OVC_BUFFER_IMAGES 1
 #endif
 #if OVC_BUFFER_IMAGES
 #define OVC_TEXELS(number) layout(rgba32ui, binding = number) uniform readonly restrict uimageBuffer

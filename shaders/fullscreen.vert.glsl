@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One triangle that covers the viewport; nothing goes in.
+// Makes one triangle that covers the viewport. It takes no inputs.
 #version 450 core
 
 void main() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Units of the pool that pages lie in.
+// The pool, and how the kernel reads units from it.
 #include "unit.glsl"
 
 #if OVC_TELL_ACTIVE
@@ -10,13 +10,15 @@ void mark_active(int leaf) { imageStore(active_leaves, leaf, uvec4(1u)); }
 OVC_TEXELS(OVC_BINDING_POOL) pool[OVC_POOL_BUFFERS];
 
 #define OVC_UNIT_OF(number, at) \
-    Unit(OVC_TEXEL(pool[number], at), OVC_TEXEL(pool[number], at + 1), OVC_TEXEL(pool[number], at + 2), OVC_TEXEL(pool[number], at + 3))
+    Unit(OVC_TEXEL(pool[number], at), OVC_TEXEL(pool[number], at + 1), \
+         OVC_TEXEL(pool[number], at + 2), OVC_TEXEL(pool[number], at + 3))
 
 #if OVC_POOL_BUFFERS == 1
 Unit unit_at(int unit) { return OVC_UNIT_OF(0, unit * OVC_UNIT_TEXELS); }
 #else
-// Each buffer is asked whether the unit is its own, because GLSL lets no two lanes read different ones at once. Written out: a loop
-// would count among those that llvmpipe ends (gpu/gl/workarounds.h, counted-rounds). Based on: thesis, section 3.2 (algorithm 1).
+// Each buffer is asked whether the unit is its own, because GLSL lets no two lanes read different
+// buffers at once. The calls are written out, because a loop would count among those that llvmpipe
+// ends (gpu/gl/workarounds.h, counted-rounds). Based on: thesis, section 3.2 (algorithm 1).
 Unit unit_at(int unit) {
     int own = unit >> OVC_BUFFER_BITS;
     int at = (unit & ((1 << OVC_BUFFER_BITS) - 1)) * OVC_UNIT_TEXELS;

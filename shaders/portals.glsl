@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Portals: where a ray comes to a part in another frame, in doubles, from the world's (docs/design/numerics.md, "Frames").
+// Portals: where a ray comes to a part in another frame. The kernel computes the ray there in
+// doubles, from the ray in the world (docs/design/numerics.md, "Frames").
 
 #if OVC_PORTALS
 OVC_TEXELS(OVC_BINDING_PORTALS) portals;
@@ -22,7 +23,7 @@ WorldRay world_ray(int ray) {
     return WorldRay(dvec3(a, b.x), dvec3(c, d.x), b.y, d.y);
 }
 
-// The map from the world to the frame behind a portal, and what lies there (layout.h).
+// The map from the world to the frame behind a portal, and the part that lies there (layout.h).
 struct Portal {
     dvec3 origin; // in the world; 0 in the frame
     dvec3 rows[3];
@@ -50,7 +51,7 @@ dvec3 times(dvec3 rows[3], dvec3 v) {
 }
 double largest(dvec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 
-// The t's of org + t dir, t_min <= t <= t_max, inside the box; empty where x > y.
+// Returns the t's of org + t dir, t_min <= t <= t_max, inside the box; none if x > y.
 dvec2 inside_box(dvec3 org, dvec3 dir, dvec3 lo, dvec3 hi, double t_min, double t_max) {
     dvec2 inside = dvec2(t_min, t_max);
     bool outside = false;
@@ -64,7 +65,7 @@ dvec2 inside_box(dvec3 org, dvec3 dir, dvec3 lo, dvec3 hi, double t_min, double 
     return outside ? dvec2(1.0, 0.0) : inside;
 }
 
-// Rounded to nearest, whatever the driver's conversion does.
+// Returns d rounded to nearest, whatever the driver's conversion does.
 float nearest_float(double d) {
     precise float rounded = float(d);
     precise float rest = float(d - double(rounded));
@@ -73,13 +74,13 @@ float nearest_float(double d) {
 }
 vec3 nearest_floats(dvec3 d) { return vec3(nearest_float(d.x), nearest_float(d.y), nearest_float(d.z)); }
 
-// A ray in a frame: what the traversal takes, and how to come back.
+// A ray in a frame, as the traversal takes it, and the times that lead back to the world's t.
 struct LocalRay {
     vec3 org; // where it enters the box
     vec3 dir; // the largest component 1 or -1
     float t_end;
     bool meets;     // the box
-    bool decidable; // doubles can say where
+    bool decidable; // doubles can say where it enters
     Times times;
 };
 
@@ -95,19 +96,23 @@ LocalRay local_ray(WorldRay ray, Portal portal) {
     precise dvec3 at = org + dir * inside.x;
     local.org = nearest_floats(at);
     precise dvec3 unit = dir / speed;
-    // Exactly 1 or -1, which the basis builds on and a driver's division need not give.
+    // The largest component is exactly 1 or -1: the basis relies on that, and a driver's division
+    // need not give it.
     vec3 signs = mix(vec3(1.0), vec3(-1.0), lessThan(dir, dvec3(0.0)));
     local.dir = mix(nearest_floats(unit), signs, equal(abs(dir), dvec3(speed)));
     double length = (inside.y - inside.x) * speed;
-    local.t_end = uintBitsToFloat(floatBitsToUint(float(length)) + 2u); // up, past what the conversion may have lost
+    // Rounded up, past the amount that the conversion may have lost.
+    local.t_end = uintBitsToFloat(floatBitsToUint(float(length)) + 2u);
     dvec3 sizes[3] = dvec3[3](abs(portal.rows[0]), abs(portal.rows[1]), abs(portal.rows[2]));
-    double reach = max(largest(times(sizes, abs(from_origin))), largest(times(sizes, abs(ray.dir))) * abs(inside.x));
+    double reach = max(largest(times(sizes, abs(from_origin))),
+                       largest(times(sizes, abs(ray.dir))) * abs(inside.x));
     // Written so that a NaN is not decidable either.
-    local.decidable = reach <= double(OVC_MAX_LEAF_SIZES) && length <= 1.0e30 && speed >= 1.0e-300 && speed <= 1.0e300;
+    local.decidable = reach <= double(OVC_MAX_LEAF_SIZES) && length <= 1.0e30 &&
+                      speed >= 1.0e-300 && speed <= 1.0e300;
     return local;
 }
 
-// Puts a word below those of the part that the ray comes to. It leads to unit 0.
+// Pushes a word that leads to unit 0. It lies below the words of the part that the ray comes to.
 void push_mark(inout Descent d) {
     bool store = !is_none(d.top);
 #if OVC_STACK_REGISTERS
@@ -131,13 +136,15 @@ void push_mark(inout Descent d) {
 void set_local_ray(inout Packet packet, LocalRay local, Tree tree) {
     packet.backward = lessThan(local.dir, vec3(0.0));
     packet.axes = axes_of(local.dir);
-    set_ray(packet, 0, tree, local.org, direction_of(local.dir, packet.axes), packet.skip[0], packet.any_hit[0]);
+    set_ray(packet, 0, tree, local.org, direction_of(local.dir, packet.axes), packet.skip[0],
+            packet.any_hit[0]);
 }
 
-// The ray in the frame of the top-level tree, whose portal is the first.
+// Returns the ray in the frame of the top-level tree, whose portal is the first.
 LocalRay scene_ray(int ray) { return local_ray(world_ray(ray), portal_at(0)); }
 
-// Takes a ray that has come to a portal behind it. False: there was none, or it goes no farther.
+// Takes a ray that has come to a portal behind it. Returns false if there is no portal, or if the
+// ray goes no farther.
 bool enter_portal(int ray, inout Descent d, inout Packet packet, inout Found found) {
     if (d.unit >= 0 || d.lost || found.best_hi < 0.0)
         return false;
@@ -145,10 +152,10 @@ bool enter_portal(int ray, inout Descent d, inout Packet packet, inout Found fou
     LocalRay local = local_ray(world_ray(ray), portal);
     Found there = in_times(found, packet.place.part, local.times, local.t_end);
     bool decidable = local.decidable && there.best_hi != OVC_UNDECIDABLE;
-    d.unit = 0; // where the part has nothing for it, to the next of the stack
+    d.unit = 0; // if the part has nothing for the ray, it goes on to the next of the stack
     if (local.meets && !decidable) {
         found.best_hi = OVC_UNDECIDABLE;
-    } else if (local.meets && there.best_hi >= 0.0) { // else what it hits comes before
+    } else if (local.meets && there.best_hi >= 0.0) { // else its hit comes before the part
         Tree tree = tree_of(portal.tree, 0);
         found = there;
         packet.place.part = local.times;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a ray is, in the frame of the top-level tree or behind a portal, and its t in both.
+// Where a ray is, in the frame of the top-level tree or behind a portal, and its t in both frames.
 
 #if OVC_PORTALS
-// How a frame counts t: that of the ray itself = enter + t / speed.
+// How a frame counts t: the ray's own t = enter + t / speed.
 struct Times {
     double enter;
     double speed;
@@ -10,24 +10,25 @@ struct Times {
 
 struct Place {
     bool behind_portal;
-    Times part;        // of the frame that it was in last, where what it has found is counted
+    Times part;        // of the frame that the ray was in last; Found counts its t's there
     Times scene;       // of the top-level tree
-    GridRay grid;      // there
-    bvec3 backward;    // there
-    float end;         // there
-    vec2 not_after;    // t there is at least x + y t, and
-    vec2 not_before;   // at most this
+    GridRay grid;      // in the top-level tree
+    bvec3 backward;    // in the top-level tree
+    float end;         // in the top-level tree
+    vec2 not_after;    // t in the top-level tree is at least x + y t, and
+    vec2 not_before;   // at most x + y t of this one
 };
 
-const double OVC_LONGEST = 1.0e30; // beyond, a float of one frame may be none of another
+const double OVC_LONGEST = 1.0e30; // a longer float of one frame may have no float in another
 
 double moved(float t, Times from, Times to) {
     precise double there = ((from.enter - to.enter) + double(t) / from.speed) * to.speed;
     return there;
 }
-double moved_error(double t) { return abs(t) * 2.384185791015625e-7 + 3.725290298461914e-9; } // 2^-22, 2^-28
+// 2^-22, 2^-28
+double moved_error(double t) { return abs(t) * 2.384185791015625e-7 + 3.725290298461914e-9; }
 
-// Not later than the same moment in another frame, and not earlier.
+// These return a float that is not later, or not earlier, than the same moment in another frame.
 float earlier(float t, Times from, Times to) {
     double there = moved(t, from, to);
     there -= moved_error(there);
@@ -40,7 +41,8 @@ float later(float t, Times from, Times to) {
     return there > OVC_LONGEST ? OVC_UNDECIDABLE : result;
 }
 
-// The same from a part to the top-level tree, in a step of the traversal: off by more, and always to the same side.
+// Prepares the same from a part to the top-level tree, for a step of the traversal. Its results are
+// off by more, and always to the same side.
 void measure(inout Place place) {
     const float slack = 9.5367431640625e-7; // 2^-20
     precise float offset = float((place.part.enter - place.scene.enter) * place.scene.speed);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compute kernel: an invocation takes rays of the pass, OVC_PACKET at a time, once or with ray refill.
+// The compute kernel: an invocation takes rays of the pass, OVC_PACKET at a time, once or with ray
+// refill.
 #version 450 core
 #include "layout.h"
 #include "config.glsl"
 #if OVC_REFILL
-#extension GL_ARB_gpu_shader_int64 : require // a ballot is one of these
+#extension GL_ARB_gpu_shader_int64 : require // ballotARB() returns a 64-bit integer
 #extension GL_ARB_shader_ballot : require
 #endif
 #include "page.glsl"
@@ -28,7 +29,7 @@ layout(r32ui, binding = OVC_BINDING_ANSWERS) uniform writeonly restrict uimageBu
 layout(location = OVC_LOCATION_PLANE) uniform int plane;
 layout(location = OVC_LOCATION_RAYS) uniform int ray_count;
 
-// The group whose rays this one traces. Slice by slice: one of each slice in turn.
+// Returns the number of the group whose rays this group traces: one of each slice in turn.
 uint dealt_group() {
 #if OVC_DEAL_GROUPS
     uint hand = gl_WorkGroupID.x / OVC_DEALT_GROUPS;
@@ -41,7 +42,7 @@ uint dealt_group() {
 #endif
 }
 
-// A miss is not written: it stands there before (gpu/trace/answers.h).
+// A miss is not written, because the host has put it there before (gpu/trace/answers.h).
 void give(int ray, uvec4 answer) {
     bool more = answer.x != OVC_NO_TRIANGLE || (OVC_MAY_WAIT != 0 && answer.z != OVC_NO_LEAF);
     uint word = answer.w | (more ? OVC_SAYS_MORE : 0u);
@@ -60,7 +61,7 @@ void main() {
     int lane = int(gl_LocalInvocationID.x);
     int ray = (group * OVC_GROUP_SIZE + lane) * OVC_PACKET;
 #if OVC_REFILL
-    // Each group has its share of the pass, and of that each subgroup.
+    // Each group has its share of the pass, and each subgroup its share of the group's.
     int groups = int(gl_NumWorkGroups.x);
     int packets_a_lane = (ray_count / (OVC_GROUP_SIZE * OVC_PACKET) + groups - 1) / groups;
     int lanes = int(gl_SubGroupSizeARB);

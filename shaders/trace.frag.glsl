@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fragment kernel: a pixel is a ray of the pass.
+// The fragment kernel: each pixel traces one ray of the pass.
 #version 450 core
 #include "layout.h"
 #include "config.glsl"

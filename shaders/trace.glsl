@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays through the top-level tree.
+// Traces rays through the top-level tree: takes them from the pass and gives their answers.
 
-// What the wrapper does with the words of an answer.
+// Writes the words of an answer. The wrapper, trace.frag.glsl or trace.comp.glsl, defines it.
 void give(int ray, uvec4 answer);
 
 #if OVC_PORTALS
-// The ray `ray`, in the frame of the top-level tree. Returns whether it is one.
+// Takes the ray `ray` in the frame of the top-level tree. Returns whether there is a ray that can
+// be decided in this frame.
 bool take_rays(int ray, Tree tree, out Packet packet, out Found found[OVC_PACKET]) {
     uvec4 asks = ray_texel(ray * OVC_RAY_TEXELS + 4);
     packet.skip[0] = asks.z;
@@ -15,7 +16,8 @@ bool take_rays(int ray, Tree tree, out Packet packet, out Found found[OVC_PACKET
     packet.links[0].done = int(asks.w & OVC_NO_LEAF);
 #endif
     LocalRay local = scene_ray(ray);
-    found[0] = nothing_found(!local.meets ? OVC_NO_RAY : (local.decidable ? local.t_end : OVC_UNDECIDABLE));
+    found[0] =
+        nothing_found(!local.meets ? OVC_NO_RAY : (local.decidable ? local.t_end : OVC_UNDECIDABLE));
     set_local_ray(packet, local, tree);
     packet.first_number = 0u;
     packet.place.behind_portal = false;
@@ -28,8 +30,9 @@ bool take_rays(int ray, Tree tree, out Packet packet, out Found found[OVC_PACKET
     return local.meets && local.decidable;
 }
 #else
-// The rays from `first` on, in the frame that all pages share. A packet has the octant and the axis of its first ray; the host sees to
-// it, and a ray with others is for doubles to decide. Returns whether any of them is a ray.
+// Takes the rays from `first` on, in the frame that all pages share. A packet has the octant and
+// the axis of its first ray. The host makes packets that way; a ray that differs is left for
+// doubles to decide. Returns whether any of them is a ray.
 bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACKET]) {
     const int texels = OVC_MAY_WAIT == 0 ? OVC_LOCAL_RAY_TEXELS : OVC_RESUMED_RAY_TEXELS;
     bool any = false;
@@ -47,8 +50,8 @@ bool take_rays(int first, Tree tree, out Packet packet, out Found found[OVC_PACK
         bool alike = backward == packet.backward && axes == packet.axes;
         t_end = t_end >= 0.0 && !alike ? OVC_UNDECIDABLE : t_end;
         found[k] = nothing_found(t_end);
-        set_ray(packet, k, tree, uintBitsToFloat(from.xyz), direction_of(dir, packet.axes), to.w & OVC_SKIPS_NONE,
-                OVC_ANY_HIT != 0 || (to.w & OVC_RAY_ANY_HIT) != 0u);
+        set_ray(packet, k, tree, uintBitsToFloat(from.xyz), direction_of(dir, packet.axes),
+                to.w & OVC_SKIPS_NONE, OVC_ANY_HIT != 0 || (to.w & OVC_RAY_ANY_HIT) != 0u);
         packet.links[k] = no_links();
 #if OVC_MAY_WAIT
         packet.links[k].done = int(ray_texel((first + k) * texels + 2).x);
@@ -64,7 +67,7 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended)
     for (int k = 0; k < OVC_PACKET; ++k) {
         uvec4 answer = answer_of(found[k], packet.any_hit[k], OVC_NO_LEAF);
 #if OVC_MAY_WAIT
-        // What lies beyond the best hit is not waited for.
+        // A ray does not wait for a page that lies beyond its best hit.
         int waits = packet.links[k].waits;
         float end = found[k].best_hi < 0.0 ? found[k].best_hi : end_of(packet, found[k], k);
         answer.z = (waits & ~OVC_KEY_LEAF) <= floatBitsToInt(end) ? uint(waits) : answer.z;
@@ -82,8 +85,10 @@ void give_answers(int first, Packet packet, Found found[OVC_PACKET], bool ended)
     }
 }
 
-// Traces on for at least a round, until all rays have their answers or as long as `rounds` is less than max_rounds. True: they have.
-bool trace_on(int first, inout Descent d, inout Packet packet, inout Found found[OVC_PACKET], int max_rounds, inout int rounds) {
+// Traces on for at least one round, until all rays have their answers or `rounds` reaches
+// max_rounds. Returns whether they have.
+bool trace_on(int first, inout Descent d, inout Packet packet, inout Found found[OVC_PACKET],
+              int max_rounds, inout int rounds) {
     bool ended = run(d, found, packet, 0, max_rounds, rounds);
 #if OVC_PORTALS
     ended = ended && !enter_portal(first, d, packet, found[0]);
@@ -107,12 +112,14 @@ void trace_once(int ray) {
     give_answers(ray, packet, found, ended && !d.lost);
 }
 #else
-// Between two looks at which lanes have an answer; more where taking up new rays costs more.
+// Rounds between two looks at which lanes have an answer; more if taking up new rays costs more.
 const int OVC_REFILL_ROUNDS = OVC_PACKET > 1 ? 5 : 3;
 
-// The rays from `begin` to before `end`, by the lanes of a subgroup: now and then those that have an answer go on to the next that
-// nobody has taken, so that they do not wait for each other.
-// Based on: Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs" (replacing terminated rays).
+// Traces the rays from `begin` to before `end` by the lanes of a subgroup. Now and then the lanes
+// that have an answer go on to the next rays that no lane has taken, so that lanes do not wait for
+// each other.
+// Based on: Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs" (replacing
+// terminated rays).
 void trace_with_refill(int begin, int end) {
     Tree tree = tree_of(0, 0);
     Descent d = descent(tree);
@@ -121,7 +128,7 @@ void trace_with_refill(int begin, int end) {
     int ray = begin + int(gl_SubGroupInvocationARB) * OVC_PACKET;
     int next = begin + int(gl_SubGroupSizeARB) * OVC_PACKET; // the same in all lanes
     uint lanes_before = (1u << gl_SubGroupInvocationARB) - 1u;
-    int rounds = 0; // of the subgroup: never less than llvmpipe has counted of its loops
+    int rounds = 0; // of the subgroup: never fewer than llvmpipe has counted of its loops
     d.done = !take_rays(ray, tree, packet, found);
     while (ray < end) {
         bool enough = rounds >= OVC_MAX_ROUNDS;

@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// The traversal of a tree of units. A round is a step to a node, then a step to a node or a triangle pair: where both halves of
-// a step run whatever is asked (llvmpipe), pairs, a seventh of the steps, then cost half the rounds instead of all.
-// Based on: thesis, section 3.1 (a BVH in a texture); Ylitie et al. 2017 (one stack word per node); Laine 2010.
+// The traversal of a tree of units. A round is a step to a node, then a step to a node or a
+// triangle pair. llvmpipe runs both halves of a step whatever is asked; pairs, a seventh of the
+// steps, then cost half the rounds instead of all.
+// Based on: thesis, section 3.1 (a BVH in a texture); Ylitie et al. 2017 (one stack word per node);
+// Laine 2010.
 
-// Of a ray, what is the same in every leaf's frame. dir: the largest component 1 or -1.
+// A ray's direction, which is the same in every leaf's frame; its largest component is 1 or -1.
 struct Direction {
     vec3 inv_dir;
     Axes axes;
     vec2 shear;
 };
 
-Direction direction_of(vec3 dir, Axes axes) { return Direction(finite_reciprocal(dir), axes, by_axis(axes, dir).xy); }
+Direction direction_of(vec3 dir, Axes axes) {
+    return Direction(finite_reciprocal(dir), axes, by_axis(axes, dir).xy);
+}
 Direction direction_of(vec3 dir) { return direction_of(dir, axes_of(dir)); }
 
-// A stack word is a node with children still to come: the unit of the first of its children, and the numbers of those to come in
-// seven bits, two each, the next one lowest, below a 1; 0 is no word.
+// A stack word is a node with children still to come: the unit of its first child, and the numbers
+// of the children to come in seven bits, two each, the next one lowest, below a 1; 0 is no word.
 #if OVC_POOL_BUFFERS == 1
 #define Word uint
 Word word_of(int first_child, int to_come) { return uint(first_child << 7 | to_come); }
@@ -32,18 +36,18 @@ bool is_none(Word word) { return to_come_of(word) == 0u; }
 
 // Where a ray is in the tree.
 struct Descent {
-    int unit;   // where it goes next; under portals 0: back to the top-level tree, and a negative one: behind the portal -unit
+    int unit;   // to go to next; under portals 0: the top-level tree; negative: the portal -unit
     Word top;   // the word on top of the stack; none: the stack is empty
-    int height; // of the words below `top`, less one, where the stack is an array
-    Word stack[OVC_STACK_DEPTH]; // in registers the word below `top` is the first
+    int height; // of the words below `top`, less one, if the stack is an array
+    Word stack[OVC_STACK_DEPTH]; // in registers the first is the word below `top`
     bool done;
-    bool lost; // the stack was too short: what has been found is not all
+    bool lost; // the stack was too short, so the ray may have missed triangles
 };
 
-// Whether the ray goes on by itself: not to a portal.
+// Returns whether the ray goes on in this tree, and not to a portal.
 bool goes_on(Descent d) { return OVC_PORTALS == 0 || d.unit >= 0; }
 
-// Goes down to the first of the children; where there is none, and `leave`, to the next of the stack.
+// Goes down to the first of the children; if there is none, and `leave`, to the next of the stack.
 void advance(inout Descent d, int first_child, Children children, bool leave) {
     Way way = way_to(children);
     bool back = leave && !way.down;
@@ -51,14 +55,15 @@ void advance(inout Descent d, int first_child, Children children, bool leave) {
 
     uint to_come = to_come_of(d.top);
     Word rest = with_to_come(d.top, to_come >> 2);
-    d.unit = way.down ? first_child + way.first : (back ? first_child_of(d.top) + int(to_come & 3u) : d.unit);
+    d.unit = way.down ? first_child + way.first
+                      : (back ? first_child_of(d.top) + int(to_come & 3u) : d.unit);
 
     bool empty = is_none(d.top);
     bool store = way.more && !empty;
     bool pop = back && (to_come & 0x70u) == 0u; // no more than one was to come
     Word below;
 #if OVC_STACK_REGISTERS
-    // All words move: two selections a word and no comparison.
+    // All words move: that takes two selections a word and no comparison.
     below = d.stack[0];
     d.lost = d.lost || (store && !is_none(d.stack[OVC_STACK_DEPTH - 1]));
     Word above = d.top;
@@ -90,8 +95,8 @@ void tell_active(Unit unit, bool here) {
 void tell_active(Unit unit, bool here) {}
 #endif
 
-// Links on a ray's way, by their keys (layout.h): it is done with those below `done`, and waits for the least of the others that leads
-// nowhere.
+// The links on a ray's way, by their keys (layout.h): the ray is done with those below `done`, and
+// waits for the first of the others that leads nowhere.
 struct Links {
     int done;
     int waits;
@@ -100,7 +105,8 @@ struct Links {
 Links no_links() { return Links(0, OVC_NO_CHILD); }
 
 #if OVC_MAY_WAIT
-// The children that a ray goes down to from `unit`: none where it is a link that the ray is done with, or to which it does not come.
+// Returns the children of `unit` that a ray goes down to: none if it is a link that the ray is done
+// with, or one beyond the link that it waits for.
 Children follow(inout Links links, Unit unit, Stretches s, Place place) {
     ivec4 entered = entries(s);
     int first = min(min(entered.x, entered.y), min(entered.z, entered.w));
@@ -116,37 +122,45 @@ Children follow(inout Links links, Unit unit, Stretches s, Place place) {
     return children_met(link && (!open || nowhere) ? ivec4(OVC_NO_CHILD) : entered);
 }
 #else
-Children follow(inout Links links, Unit unit, Stretches s, Place place) { return children_met(s); }
+Children follow(inout Links links, Unit unit, Stretches s, Place place) {
+    return children_met(s);
+}
 #endif
 
-// Rays that go through a tree together, so that a node is fetched, decoded and sorted once for all of them.
+// Rays that go through a tree together, so that the kernel fetches, decodes and sorts a node once
+// for all of them.
 struct Packet {
-    bvec3 backward; // all their directions have the same signs
-    Axes axes;      // all go farthest along the same axis
+    bvec3 backward; // where the directions of all rays are negative
+    Axes axes;      // all rays go farthest along the same axis
     vec3 org[OVC_PACKET]; // by axis
     vec2 shear[OVC_PACKET];
     GridRay grid[OVC_PACKET];
-    uint first_number; // of the triangles of a part: that of its first
+    uint first_number; // of the first triangle of the part
     uint skip[OVC_PACKET];
     bool any_hit[OVC_PACKET];
     Links links[OVC_PACKET];
     Place place;
 };
 
-// Of the page, or of the top-level tree or a part of it, whose header is the pool's unit `page`.
+// The header of a tree: of a page, of the top-level tree, or of a part of it.
 struct Tree {
     vec3 grid_middle;
     vec3 grid_cell;
-    ivec4 start; // fetched, because a compiler that knows the first values splits a loop's variables into masked copies (llvmpipe)
+    // Fetched, because a compiler that knows the first values splits a loop's variables into masked
+    // copies (llvmpipe).
+    ivec4 start;
     int first_unit; // units count from here
 };
 
+// Returns the tree whose header is the pool's unit `page`.
 Tree tree_of(int page, int first_unit) {
     Unit header = unit_at(page);
-    return Tree(uintBitsToFloat(header.x.xyz), uintBitsToFloat(header.y.xyz), ivec4(header.z), first_unit);
+    return Tree(uintBitsToFloat(header.x.xyz), uintBitsToFloat(header.y.xyz), ivec4(header.z),
+                first_unit);
 }
 
-void set_ray(inout Packet packet, int k, Tree tree, vec3 org, Direction direction, uint skip, bool any_hit) {
+void set_ray(inout Packet packet, int k, Tree tree, vec3 org, Direction direction, uint skip,
+             bool any_hit) {
     packet.org[k] = by_axis(packet.axes, org);
     packet.shear[k] = direction.shear;
     packet.grid[k] = grid_ray(org, direction.inv_dir, tree.grid_middle, tree.grid_cell);
@@ -180,14 +194,18 @@ bvec3 backward_of(Packet packet) {
 }
 GridRay grid_of(Packet packet, int k) {
     bool behind = packet.place.behind_portal;
-    return GridRay(behind ? packet.grid[k].scale : packet.place.grid.scale, behind ? packet.grid[k].offset : packet.place.grid.offset);
+    return GridRay(behind ? packet.grid[k].scale : packet.place.grid.scale,
+                   behind ? packet.grid[k].offset : packet.place.grid.offset);
 }
-float end_of(Packet packet, Found found, int k) { return packet.place.behind_portal ? found.best_hi : packet.place.end; }
+float end_of(Packet packet, Found found, int k) {
+    return packet.place.behind_portal ? found.best_hi : packet.place.end;
+}
 
-// A ray is back from a part, where `back`: what it has hit ends it in the top-level tree.
+// Takes a ray back from a part if `back`: its hit there ends it in the top-level tree.
 void leave(inout Place place, Found found, bool back) {
     float end = greater(place.not_before.x + found.best_hi * place.not_before.y, 0.0);
-    place.end = back && place.behind_portal && has_hit(found) ? lesser(place.end, end) : place.end;
+    place.end =
+        back && place.behind_portal && has_hit(found) ? lesser(place.end, end) : place.end;
     place.behind_portal = place.behind_portal && !back;
 }
 #else
@@ -196,23 +214,26 @@ GridRay grid_of(Packet packet, int k) { return packet.grid[k]; }
 float end_of(Packet packet, Found found, int k) { return found.best_hi; }
 #endif
 
-// The children of the node that any ray of the packet meets. Where not `here` the unit is a pair or a header, whose bits mean nothing as
-// boxes.
+// Returns the children of the node that any ray of the packet meets. If not `here`, the unit is a
+// pair or a header, whose bits mean nothing as boxes, and no ray meets any.
 Children children_of(Unit node, inout Packet packet, Found found[OVC_PACKET], bool here) {
     Boxes boxes = boxes_of(node.x, node.y, node.z, backward_of(packet));
     Children children = no_children();
     for (int k = 0; k < OVC_PACKET; ++k) {
         int end = here ? floatBitsToInt(end_of(packet, found[k], k)) : OVC_NO_END;
-        add(children, follow(packet.links[k], node, stretches(boxes, grid_of(packet, k), end), packet.place));
+        add(children,
+            follow(packet.links[k], node, stretches(boxes, grid_of(packet, k), end), packet.place));
     }
     return children;
 }
 
-// Tests the pair with the rays that still look for something, where `here`.
+// If `here`, tests the pair with the rays that still look for something.
 void take_pairs(inout Found found[OVC_PACKET], Unit pair, Packet packet, bool here) {
     for (int k = 0; k < OVC_PACKET; ++k) {
-        bool took = take_pair(found[k], pair.x, pair.y, pair.z, pair.w, here && found[k].best_hi >= 0.0,
-                              Line(packet.axes, packet.org[k], packet.shear[k]), packet.skip[k], packet.first_number);
+        bool took = take_pair(found[k], pair.x, pair.y, pair.z, pair.w,
+                              here && found[k].best_hi >= 0.0,
+                              Line(packet.axes, packet.org[k], packet.shear[k]), packet.skip[k],
+                              packet.first_number);
         found[k].best_hi = packet.any_hit[k] && took ? OVC_ENOUGH : found[k].best_hi;
     }
 }
@@ -224,7 +245,8 @@ bool all_have_enough(Found found[OVC_PACKET]) {
     return all;
 }
 
-// Below the units of a part lies unit 0, a header, by which a ray comes back.
+// Returns whether a ray comes back from a part: it then reaches unit 0, a header, which push_mark()
+// has put below the part's words on the stack.
 bool comes_back(inout Descent d, inout Packet packet, Found found[OVC_PACKET]) {
 #if OVC_PORTALS
     bool back = d.unit == 0;
@@ -235,9 +257,12 @@ bool comes_back(inout Descent d, inout Packet packet, Found found[OVC_PACKET]) {
 #endif
 }
 
-Unit unit_of(Descent d, int first_unit) { return unit_at(OVC_PORTALS == 0 ? first_unit + d.unit : max(d.unit, 0)); }
+Unit unit_of(Descent d, int first_unit) {
+    return unit_at(OVC_PORTALS == 0 ? first_unit + d.unit : max(d.unit, 0));
+}
 
-void go_round(inout Descent d, inout Found found[OVC_PACKET], inout Packet packet, int first_unit) {
+void go_round(inout Descent d, inout Found found[OVC_PACKET], inout Packet packet,
+              int first_unit) {
 #if OVC_BRANCHES
     Unit unit = unit_of(d, first_unit);
     Children children = no_children();
@@ -256,7 +281,7 @@ void go_round(inout Descent d, inout Found found[OVC_PACKET], inout Packet packe
     tell_active(node, here);
     advance(d, int(node.w.x), children_of(node, packet, found, here && !back), here);
 
-    // A ray that is done by now is at unit 0, a header, which has neither pairs nor links.
+    // A ray that is done by now goes to unit 0, a header, which has neither pairs nor links.
     Unit unit = unit_of(d, first_unit);
     bool pair = is_pair(unit);
     back = comes_back(d, packet, found);
@@ -266,7 +291,8 @@ void go_round(inout Descent d, inout Found found[OVC_PACKET], inout Packet packe
     take_pairs(found, unit, packet, pair);
     advance(d, int(unit.w.x), children, goes_on(d));
 #else
-    // Earlier by so much that its way goes on while pairs are tested: 5 % of the time, which two rays do not gain.
+    // One ray knows its way before its pairs are tested, so its next fetch begins while they are.
+    // That saves 5 % of the time; two rays do not gain from it.
     advance(d, int(unit.w.x), children, goes_on(d));
     take_pairs(found, unit, packet, pair);
 #endif
@@ -274,11 +300,14 @@ void go_round(inout Descent d, inout Found found[OVC_PACKET], inout Packet packe
     d.done = d.done || !goes_on(d) || all_have_enough(found);
 }
 
-// Takes into `found` what the rays may hit, for a round at least, until the end or as long as `rounds` is less than max_rounds.
-// True: the end, for good or because something was lost.
-bool run(inout Descent d, inout Found found[OVC_PACKET], inout Packet packet, int first_unit, int max_rounds, inout int rounds) {
-    // Tested at the bottom: where it is at the top, llvmpipe (22.3) goes through the body once more when no lane is left. Of a
-    // ray that was done before, a round finds nothing.
+// Takes into `found` the triangles that the rays may hit: for at least one round, until they are
+// done or `rounds` reaches max_rounds. Returns whether they are done, for good or because the stack
+// lost something.
+bool run(inout Descent d, inout Found found[OVC_PACKET], inout Packet packet, int first_unit,
+         int max_rounds, inout int rounds) {
+    // The loop is tested at the bottom, because llvmpipe (22.3) goes through the body once more
+    // when a test at the top finds no lane left. For a ray that was done before, a round finds
+    // nothing.
     bool on;
     do {
         go_round(d, found, packet, first_unit);
@@ -289,9 +318,11 @@ bool run(inout Descent d, inout Found found[OVC_PACKET], inout Packet packet, in
 }
 
 #if OVC_PACKET == 1
-// A ray by itself, until the end, in the page whose header is the pool's unit `page`; its units count from there. False: it was
-// ended before that, and whoever counts rounds ends as well.
-bool traverse(inout Found found, int page, vec3 org, Direction direction, uint skip, bool any_hit, inout int rounds) {
+// Traces one ray until its end in the page whose header is the pool's unit `page`; units count from
+// there. Returns false if the ray was ended before; `rounds` is then OVC_MAX_ROUNDS, so that the
+// caller's loop ends as well.
+bool traverse(inout Found found, int page, vec3 org, Direction direction, uint skip, bool any_hit,
+              inout int rounds) {
     Tree tree = tree_of(page, page);
     Descent d = descent(tree);
     Packet packet;

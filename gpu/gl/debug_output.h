@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the driver has to say (KHR_debug), into the log.
+// Sends the messages of the driver (KHR_debug) to the log.
 #pragma once
 
 #include "core/system/log.h"
@@ -18,7 +18,7 @@ public:
     DebugOutput& operator=(DebugOutput&&) = default;
 
 private:
-    std::unique_ptr<LogSink> log_; // the driver keeps its address
+    std::unique_ptr<LogSink> log_; // on the heap, because the driver keeps its address
 };
 
 } // namespace ovc

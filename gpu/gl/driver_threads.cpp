@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads by /proc, their clocks by the formula of pthread_getcpuclockid().
+// Finds threads in /proc and reads their clocks by the formula of pthread_getcpuclockid().
 #include "gpu/gl/driver_threads.h"
 
 #include <algorithm>
@@ -63,7 +63,7 @@ void DriverThreads::start() {
 }
 
 std::optional<double> DriverThreads::seconds_each() const {
-    constexpr double kIdle = 1e-3; // what a thread takes to come into being, and more
+    constexpr double kIdle = 1e-3; // more than it costs a thread to start
     double all = 0;
     unsigned workers = 0;
     for (size_t i = 0; i < started_.size(); ++i) {
@@ -73,7 +73,7 @@ std::optional<double> DriverThreads::seconds_each() const {
     }
     // A driver that has threads for each kind of kernel runs one kind at a time.
     workers = std::min(workers, std::max(std::thread::hardware_concurrency(), 1u));
-    if (all <= 0) // the driver works on threads that came after find()
+    if (all <= 0) // the driver works on threads that it started after find()
         return {};
     return all / std::max(workers, 1u);
 }

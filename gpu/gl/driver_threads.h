@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // DriverThreads: the threads on which a software renderer runs kernels, and their clocks. Other
-// work goes on beside a pass on the same cores, so the wall's clock says little of the kernel.
+// work uses the same cores during a pass, so wall time says little about the kernel.
 #pragma once
 
 #include <optional>
@@ -8,23 +8,23 @@
 
 namespace ovc {
 
-/// What the thread that opens devices is called; threads that a driver starts there inherit it,
-/// unless it names them.
+/// The name of the thread that opens devices. Threads that a driver starts from there inherit it,
+/// unless the driver names them.
 inline constexpr const char* kDeviceThreadName = "ovc-device";
 
-/// Calls this thread so.
+/// Gives this thread that name.
 void name_device_thread();
 
 class DriverThreads {
 public:
-    /// Those of this process now; none where the system does not tell (Linux does). Called on a
-    /// thread of that name.
+    /// The driver's threads in this process now; none if the system does not list threads (Linux
+    /// does). Call it on the thread that name_device_thread() has named.
     static DriverThreads find();
 
     void start();
-    /// CPU seconds since start(), shared out evenly among the threads that have had work so far:
-    /// how long the kernel takes where nothing else runs, since work is dealt to whoever is free.
-    /// None where none of them has worked: the driver may have started others since find().
+    /// CPU seconds since start(), shared out evenly among the threads that have had work so far. So
+    /// long the kernel would take if nothing else ran, since a driver deals work to any free
+    /// thread. None if no thread has worked: the driver may have started others since find().
     std::optional<double> seconds_each() const;
 
 private:

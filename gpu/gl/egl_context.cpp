@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// EGL without windows: EGL_EXT_platform_device for each listed device,
-// EGL_MESA_platform_surfaceless where there is none.
+// EGL without windows: EGL_EXT_platform_device for each listed device, or
+// EGL_MESA_platform_surfaceless if none is listed.
 #include "gpu/gl/egl_context.h"
 
 #include "core/text/format_text.h"
@@ -31,11 +31,11 @@ struct EglContext::Platform {
 namespace {
 
 constexpr uint64_t kSoftwareMemory = uint64_t(1) << 30;
-// As many as a stack word can count; and llvmpipe (Mesa 22.3) crashes on larger buffers that are
-// bound as images.
+// A stack word can count no more, and llvmpipe (Mesa 22.3) crashes on larger buffers that are bound
+// as images.
 constexpr uint64_t kMaxBufferTexels = uint64_t(OVC_UNIT_TEXELS) << OVC_MAX_BUFFER_BITS;
 
-/// What most often is behind a display that does not start.
+/// Returns the most frequent cause of a display that does not start.
 std::string likely_cause() {
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
@@ -108,8 +108,8 @@ uint64_t free_memory() {
     return kib > 0 ? uint64_t(kib) * 1024 : kSoftwareMemory;
 }
 
-/// Both kernels' limits: images on a software renderer, else textures
-/// (ShaderConfig::buffer_images).
+/// Returns how many buffers both kernels can read: as images on a software renderer, else as
+/// textures (ShaderConfig::buffer_images).
 uint32_t max_pool_buffers(bool as_images) {
     using Limits = std::array<GLenum, 3>;
     const Limits limits =
@@ -170,8 +170,8 @@ Result<Done> check_egl_environment() {
 }
 
 Result<std::vector<EglContext::Platform>> EglContext::platforms() {
-    // EGL is one for the whole process. What it began before a fork looks open in the child, but
-    // llvmpipe's threads are not there, and libGLX forgets which context is current.
+    // A process has one EGL. If it began before a fork, it looks open in the child, but llvmpipe's
+    // threads do not exist there, and libGLX forgets which context is current.
     static const ForkMark began_here;
     if (began_here.forked())
         return Error{"OpenGL began in the process that this one was forked from, and does not "
@@ -244,7 +244,8 @@ Result<EglContext> EglContext::open(const Platform& platform) {
                                             EGL_TRUE,
 #endif
                                             EGL_NONE};
-    // With word of resets where the driver can give it: else it ends the process, or says nothing.
+    // The first attempt asks for notification of resets. A driver that lacks it ends the process on
+    // a reset, or says nothing.
     context.context_ =
         eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
     if (context.context_ == EGL_NO_CONTEXT)
@@ -310,7 +311,7 @@ Result<EglContext> EglContext::create(const std::string& name, const LogSink& lo
     if (working.empty())
         return Error{"no EGL device works: " + failures};
     if (name.empty()) {
-        say(log, LogLevel::Info, // answers are the same
+        say(log, LogLevel::Info, // not a warning, because answers are the same
             format_text("no GPU found{}; using the software renderer {}",
                         failures.empty() ? "" : " (" + failures + ")", working[0].info().renderer));
         if (!working[0].make_current())
@@ -337,8 +338,8 @@ EglContext& EglContext::operator=(EglContext&& other) noexcept {
 }
 
 EglContext::~EglContext() {
-    // The display stays initialised: EGL shares it with everybody who asked for the same device,
-    // the host among them.
+    // The display stays initialised, because EGL shares it with everyone in the process who asked
+    // for the same device, such as the host.
     if (!context_)
         return;
     if (eglGetCurrentContext() == context_)
@@ -347,8 +348,8 @@ EglContext::~EglContext() {
 }
 
 bool EglContext::alive() const {
-    // Whoever shares the display may have ended it: eglTerminate(). EGL is asked before GL, whose
-    // functions libepoxy may have to look up, which ends the process where there is no context.
+    // Another user of the display may have ended it by eglTerminate(). EGL is asked before GL:
+    // libepoxy may have to look GL's functions up, and without a context that ends the process.
     EGLint type = 0;
     return context_ && eglGetCurrentContext() == context_ &&
            eglQueryContext(display_, context_, EGL_CONTEXT_CLIENT_TYPE, &type) &&

@@ -11,38 +11,39 @@
 
 namespace ovc {
 
-/// What a driver says of itself, after clamping to what was found to work.
+/// A driver's description of itself, with limits clamped to values that are known to work.
 struct DeviceInfo {
     std::string renderer;
     std::string vendor;
     std::string version;
     bool is_software = false;
     bool is_tested = false;   // all our tests have run on a driver of this kind
-    bool has_ballots = false; // lanes of a subgroup can tell each other: GL_ARB_shader_ballot
-    /// A software renderer that uses buffers of the process's own pages where they are:
+    bool has_ballots = false; // lanes of a subgroup can vote: GL_ARB_shader_ballot
+    /// A software renderer can use the process's own pages as buffers, without a copy:
     /// GL_AMD_pinned_memory.
     bool takes_host_pages = false;
     uint32_t max_texture_size = 0;
     uint64_t max_buffer_texels = 0;
-    uint32_t max_pool_buffers = 1;  // that a kernel can read besides its other inputs
+    uint32_t max_pool_buffers = 1;  // that a kernel can read beside its other inputs
     uint64_t buffer_alignment = 16; // bytes, of windows into a buffer
     uint64_t memory_bytes = 0;      // free, as reported; on a software renderer 1 GiB
 
-    /// What a scene may use when nobody says how much: the free memory less an eighth, for the
-    /// driver and others.
+    /// The bytes that a scene may use when the host names no budget: the free memory less an
+    /// eighth, for the driver and other programs.
     uint64_t default_budget_bytes() const { return memory_bytes - memory_bytes / 8; }
 };
 
-/// Error: EGL_PLATFORM is set to what no EGL knows. Overcast opens no window system, but a mistake
-/// is worth saying.
+/// Error: EGL_PLATFORM is set to a name that no EGL knows. Overcast opens no window system, but the
+/// user should hear of the mistake.
 Result<Done> check_egl_environment();
 
-/// A context, with its display. Current on one thread at most; destroyed on the thread it is
-/// current on.
+/// A context with its display. It is current on one thread at most, and must be destroyed on that
+/// thread.
 class EglContext {
 public:
-    /// name: empty for the first GPU, else the software renderer; a number as list() numbers them,
-    /// or part of a renderer's name, any case. Error: what was tried and what EGL said.
+    /// Returns a context that is current on this thread. name: empty for the first GPU, else the
+    /// software renderer; a number as list() numbers devices; or part of a renderer's name, in any
+    /// case. Error: every device that was tried, with EGL's reason.
     static Result<EglContext> create(const std::string& name, const LogSink& log);
 
     /// One entry per device, in the order that numbers name them.
@@ -52,16 +53,17 @@ public:
     EglContext& operator=(EglContext&& other) noexcept;
     ~EglContext();
 
-    /// Makes it current on this thread; create() has done so already.
+    /// Makes the context current on this thread; create() has done so already.
     bool make_current() const;
 
     const DeviceInfo& info() const { return info_; }
 
-    /// False when it is not current on this thread any more, the display was ended by whoever
-    /// shares it, or the driver says that a reset of the GPU has taken it and all that was in it.
+    /// False when the context is not current on this thread any more, when another user of the
+    /// display has ended it, or when the driver reports that a reset of the GPU has taken the
+    /// context with all its objects.
     bool alive() const;
 
-    /// For tests: what a reset does.
+    /// Destroys the context as a reset does. Tests call it, and GlThread does for a dead context.
     void lose();
 
 private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// ForkMark: tells whether this process is the one that made the mark, or was forked from it since:
-// there a device's thread does not exist, nor do a driver's, and who waits for them waits for ever.
+// ForkMark: tells whether this process made the mark, or was forked since from the one that did. In
+// a forked process neither a device's thread nor a driver's threads exist, and waiting for one
+// never ends.
 #pragma once
 
 #include <cstdint>
@@ -31,14 +32,14 @@ public:
     }
     ForkMark(const ForkMark&) = delete;
 
-    /// One load: a page that the kernel wipes in the child. Where it cannot (Linux before 4.14), a
-    /// system call.
+    /// One load from a page that the kernel wipes in the child. A kernel that cannot wipe pages
+    /// (Linux before 4.14) costs a system call.
     bool forked() const {
         return page_ ? *page_ == 0 : getpid() != process_;
     }
 
 private:
-    static constexpr size_t kBytes = 4096; // rounded up to a page where pages are larger
+    static constexpr size_t kBytes = 4096; // the system rounds it up to a page
 
     const pid_t process_ = getpid();
     uint32_t* page_ = nullptr;

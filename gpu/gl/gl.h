@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenGL and EGL, through libepoxy. Nobody else includes <epoxy/…>.
+// OpenGL and EGL, through libepoxy. No other file includes <epoxy/…>.
 #pragma once
 
 #include <epoxy/egl.h>

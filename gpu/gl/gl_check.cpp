@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GL's error flag as a sentence.
+// Turns GL's error flag into a sentence.
 #include "gpu/gl/gl_check.h"
 
 #include "core/text/format_text.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// GL's error flag as a sentence.
+// Turns GL's error flag into a sentence.
 #pragma once
 
 #include "core/result.h"
 
 namespace ovc {
 
-/// Takes the errors that GL has kept since it was last asked. doing: "tracing a pass". Needs the
-/// context current.
+/// Clears GL's error flags. doing: "tracing a pass", for the message. The context must be current.
+/// Error: the first flag; GL_OUT_OF_MEMORY is of the kind OutOfGpuMemory.
 Result<Done> check_gl(const char* doing);
 
 } // namespace ovc

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Empty: it is open, and stays so. Else why not.
+/// Opens a library for good. Returns the reason if that fails, else nothing.
 std::string refusal_of(const char* library) {
     if (dlopen(library, RTLD_LAZY | RTLD_LOCAL))
         return {};
@@ -29,7 +29,7 @@ std::string refusal_of(const char* library) {
     return reason ? reason : "no reason given";
 }
 
-/// dlerror() has no codes; these are the words of glibc and musl where mapping fails.
+/// dlerror() has no codes; these are the words of glibc and musl when they cannot map memory.
 bool is_for_memory(const std::string& reason) {
     for (const char* words : {"annot allocate memory", "failed to map segment", "ut of memory"})
         if (reason.find(words) != std::string::npos)
@@ -99,7 +99,7 @@ Result<Done> reserve_shader_cache_index(const fs::path& folder) {
     fs::create_directories(folder, failed);
     const int file =
         open((folder / "index").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, S_IRUSR | S_IWUSR);
-    if (file < 0) // Mesa gets no further either, and goes without a cache; but a full disk is told
+    if (file < 0) // Mesa cannot open it either, and goes without a cache
         return Done{};
     const int refused = posix_fallocate(file, 0, kIndexBytes);
     close(file);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// GL objects as move-only values: the constructor creates, the destructor deletes, moved-from is id
-// 0. All need the context current.
+// GL objects as move-only values: the constructor creates, the destructor deletes, and a moved-from
+// object has id 0. All calls need the context current.
 #pragma once
 
 #include "core/system/system_pages.h"
@@ -15,11 +15,11 @@
 
 namespace ovc::gl {
 
-/// How many contexts this thread has had (GlThread counts): names of an earlier one mean nothing
-/// now.
+/// How many contexts this thread has had, as GlThread counts them. Names of an earlier context mean
+/// nothing in the present one.
 inline thread_local uint32_t context_generation = 0;
 
-/// Owns one GL name. Delete: void(GLuint). A name that went with its context is forgotten.
+/// Owns one GL name. Delete: void(GLuint). A name whose context is gone is not deleted.
 template <auto Delete>
 class Handle {
 public:
@@ -88,9 +88,10 @@ inline void delete_program(GLuint id) {
 using Shader = Handle<delete_shader>;
 using Program = Handle<delete_program>;
 
-/// Storage of a fixed size, filled by sub-buffer updates or through a map. Where the ledger says so
-/// it is the process's own pages, which the driver reads and writes where they are: none is touched
-/// before it is used. They go with the buffer, so that no pass may be under way then.
+/// Storage of a fixed size, filled by sub-buffer updates or through a map. If the ledger says so,
+/// it consists of the process's own pages, which the driver uses in place; the system provides each
+/// page at its first use. The pages go with the buffer, so no pass may be under way when it is
+/// destroyed.
 class Buffer {
 public:
     Buffer(Ledger& ledger, uint64_t bytes, std::string_view label)
@@ -116,7 +117,7 @@ private:
         glNamedBufferStorage(id(), GLsizeiptr(bytes()), nullptr,
                              GL_DYNAMIC_STORAGE_BIT | GL_MAP_WRITE_BIT);
     }
-    /// False: the system has none.
+    /// Returns false if the system has no pages left.
     bool show_host_pages() {
         try {
             host_pages_ = map_pages(bytes());
@@ -130,7 +131,7 @@ private:
         return true;
     }
 
-    SystemPages host_pages_; // outlive the name
+    SystemPages host_pages_; // declared first, so that the pages outlive the name
     Handle<delete_buffer> handle_;
     Entry entry_;
 };
@@ -158,7 +159,7 @@ private:
     Entry entry_;
 };
 
-/// A window of a buffer, read as texels. Owns no storage.
+/// A window of a buffer, read as texels. It owns no storage.
 class BufferTexture {
 public:
     BufferTexture() : handle_(Texture2D::create(GL_TEXTURE_BUFFER)) {}
@@ -168,7 +169,7 @@ public:
         assert(offset + bytes <= buffer.bytes());
         glTextureBufferRange(id(), format, buffer.id(), GLintptr(offset), GLsizeiptr(bytes));
     }
-    /// RGBA32UI texels, for a kernel to read.
+    /// Binds the window's RGBA32UI texels for a kernel to read.
     void bind(GLuint unit, bool as_image) const {
         if (as_image)
             glBindImageTexture(unit, id(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA32UI);
@@ -230,12 +231,12 @@ private:
     Handle<delete_query> handle_;
 };
 
-/// Measures how long the device works on commands, without what they wait for.
+/// Measures how long the device works on commands, without the time that they wait.
 class TimeQuery {
 public:
     TimeQuery() : handle_(create()) {}
     GLuint id() const { return handle_.id(); }
-    /// Of the commands between glBeginQuery and glEndQuery; waits until they are done.
+    /// Seconds of the commands between glBeginQuery and glEndQuery; waits until they are done.
     double seconds() const {
         GLuint64 nanoseconds = 0;
         glGetQueryObjectui64v(id(), GL_QUERY_RESULT, &nanoseconds);

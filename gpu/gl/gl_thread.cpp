@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GlThread: hand-over of one piece of work at a time.
+// GlThread: hands one piece of work at a time over to the thread.
 #include "gpu/gl/gl_thread.h"
 
 #include "gpu/gl/driver_threads.h"
@@ -9,7 +9,8 @@
 
 namespace ovc {
 
-/// What it throws, for want of memory, would end the process on a thread of its own.
+/// Opens a device. An exception for lack of memory becomes an error, because it would end the
+/// process if it left the thread.
 static Result<EglContext> create_context(const std::string& device, const LogSink& log) {
     try {
         return EglContext::create(device, log);
@@ -37,7 +38,7 @@ GlThread::~GlThread() {
         stop_ = true;
     }
     changed_.notify_all();
-    if (thread_.joinable()) // the system may have refused it
+    if (thread_.joinable()) // false if the system refused to start it
         thread_.join();
 }
 
@@ -48,7 +49,7 @@ void GlThread::execute(const std::function<void(GlState&)>& work) {
     rethrow(job);
 }
 
-/// Until ready(), calling idle() without the lock now and then.
+/// Waits until ready(), and calls idle() without the lock now and then.
 template <class Ready>
 void GlThread::wait_until(std::unique_lock<std::mutex>& lock, const std::function<void()>& idle,
                           Ready&& ready) {
@@ -102,7 +103,7 @@ Result<Done> GlThread::reopen(uint32_t generation) {
     return done;
 }
 
-/// Names in a context that is dead are not deleted: GL would be called without one.
+/// Forgets the names of a dead context. Deleting them would call GL without a context.
 void GlThread::forget_if_dead(GlState& state) {
     if (gl::context_generation != state.generation || state.context.alive())
         return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// GlThread: the one thread on which a device's context is current. The host's own context and
-// threads are left alone.
+// GlThread: the one thread on which a device's context is current. It leaves the host's own context
+// and threads alone.
 #pragma once
 
 #include "gpu/gl/debug_output.h"
@@ -19,7 +19,8 @@
 
 namespace ovc {
 
-/// What lives on the thread: the context, and the programs compiled in it, which go first.
+/// The state that lives on the thread: the context, and the programs compiled in it, which are
+/// destroyed first.
 struct GlState {
     EglContext context;
     DebugOutput debug;
@@ -34,8 +35,8 @@ public:
     ~GlThread();
     GlThread(const GlThread&) = delete;
 
-    /// Runs work(GlState&) there and waits for it; what it throws is thrown here. Callers take
-    /// turns.
+    /// Runs work(GlState&) on the thread, waits for it, and returns its value. An exception that
+    /// work throws is thrown here. Several threads may call; they take turns.
     template <class Work>
     auto run(Work&& work) {
         using Value = std::invoke_result_t<Work, GlState&>;
@@ -48,8 +49,8 @@ public:
         }
     }
 
-    /// Runs work(GlState&) there and meanwhile() here, which may call run() too; waits for both,
-    /// and calls idle() here again and again as it waits.
+    /// Runs work(GlState&) on the thread and meanwhile() here, which may call run() too. Waits for
+    /// both, and calls idle() here again and again while it waits.
     template <class Work, class Meanwhile>
     void run_beside(Work&& work, Meanwhile&& meanwhile, const std::function<void()>& idle) {
         const std::function<void(GlState&)> function = [&](GlState& state) { work(state); };
@@ -59,7 +60,7 @@ public:
             meanwhile();
             wait_for(job, idle);
         } catch (...) {
-            wait_for(job, [] {}); // it refers to what is here
+            wait_for(job, [] {}); // the job refers to variables of this call
             throw;
         }
         rethrow(job);
@@ -67,11 +68,11 @@ public:
 
     const DeviceInfo& info() const { return info_; }
 
-    /// How often the device has been opened. What was made in an earlier context is gone.
+    /// How often the device has been opened. Objects of an earlier context are gone.
     uint32_t generation() const { return generation_; }
 
-    /// After work found the context dead: opens the device again, unless somebody has done so since
-    /// `generation`. Error: it cannot be opened.
+    /// Opens the device again after work has found the context dead, unless another caller has done
+    /// so since `generation`. Error of the kind DeviceLost: the device cannot be opened.
     Result<Done> reopen(uint32_t generation);
 
 private:
@@ -94,9 +95,9 @@ private:
 
     const std::string device_;
     const LogSink log_;
-    std::mutex mutex_; // of what is below
+    std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
-    Job* job_ = nullptr; // to be done, or being done; others wait until it is
+    Job* job_ = nullptr; // waiting or under way; other callers wait until it is done
     std::optional<Result<Done>> started_;
     bool stop_ = false;
     std::atomic<uint32_t> generation_{0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernel: include expansion, compilation, logs that name the file.
+// Kernel: expands includes, compiles, and rewrites logs so that they name the file.
 #include "gpu/gl/kernel.h"
 
 #include "core/text/format_text.h"
@@ -109,7 +109,7 @@ Result<gl::Program> link(const ShaderConfig& config) {
     return link_program(stages, config.defines());
 }
 
-/// The renderer's name as a comment (Workaround::RendererInSources).
+/// Returns the renderer's name as a comment (Workaround::RendererInSources).
 std::string driver_line() {
     if (!needs(Workaround::RendererInSources))
         return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernel: a ShaderConfig made into a program. Programs are kept per configuration.
+// Kernel: turns a ShaderConfig into a program. A cache keeps the programs by their configuration.
 #pragma once
 
 #include "core/result.h"
@@ -13,14 +13,14 @@
 
 namespace ovc {
 
-/// The rounds of an invocation's loops after which it gives its ray up, where the driver would end
-/// them a little later (Workaround::CountedRounds).
+/// The rounds of an invocation's loops after which the kernel gives its ray up, on drivers that
+/// would end the loops a little later (Workaround::CountedRounds).
 inline constexpr uint32_t kMaxCountedRounds = 65000;
 
-/// Which kernel, and every switch of shaders/config.glsl, by value. Derived from what the query and
-/// the pages need, and from the driver.
+/// The choice of a kernel, with every switch of shaders/config.glsl, as a value. The tracer derives
+/// it from what the query, the pages and the driver need.
 struct ShaderConfig {
-    bool compute = false; // which wrapper; no switch of config.glsl
+    bool compute = false; // which wrapper; not a switch of config.glsl
     bool any_hit = false;
     bool certify = true;
     bool portals = false;
@@ -43,13 +43,14 @@ struct ShaderConfig {
     std::string defines() const;
 };
 
-/// A source with its #include lines replaced by the embedded files, and `defines` after the
+/// Returns a source with its #include lines replaced by the embedded files, and `defines` after the
 /// #version line. Lines keep their numbers by #line, whose second number counts the files in
-/// `files`. Error: a file that is not there.
+/// `files`. Error: a file that is not embedded.
 Result<std::string> expand_shader(std::string_view name, const std::string& defines,
                                   std::vector<std::string>& files);
 
-/// A driver's log with "2:57" or "2(57)" at the start of lines turned into "traverse.glsl:57".
+/// Returns a driver's log with "2:57" or "2(57)" at the start of lines turned into
+/// "traverse.glsl:57".
 std::string rewrite_log(const std::string& log, const std::vector<std::string>& files);
 
 struct ShaderStage {
@@ -57,8 +58,8 @@ struct ShaderStage {
     std::string_view source; // "trace.frag.glsl"
 };
 
-/// A program of the stages, each expanded with `defines`. The context must be current. Error: the
-/// driver's log.
+/// Returns a program of the stages, each expanded with `defines`; from the ProgramStore if it is
+/// kept there. The context must be current. Error: the driver's log.
 Result<gl::Program> link_program(std::span<const ShaderStage> stages, const std::string& defines);
 
 class KernelCache {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ledger: how many bytes of GL buffers and textures are alive, and the most there ever were.
+// Ledger: counts the bytes of GL buffers and textures that are alive, and their maximum so far.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,8 @@
 
 namespace ovc {
 
-/// The budget in books: every GL object with storage enters its bytes and takes them out again.
+/// The accounts of a budget: every GL object with storage enters its bytes and takes them out
+/// again.
 struct Ledger {
     uint64_t budget = 0;
     uint64_t in_use = 0;
@@ -16,10 +17,10 @@ struct Ledger {
     /// For tests: a driver that has no more memory than this.
     uint64_t driver_bytes = ~uint64_t(0);
     bool refused = false; // by that driver, or by the system
-    /// Buffers are of the process's own pages: the driver is a part of it.
+    /// Buffers consist of the process's own pages, which a software renderer can use in place.
     bool takes_host_pages = false;
 
-    /// Whether that driver has room for what is entered.
+    /// Whether that driver has room for all bytes entered so far.
     bool driver_has_room() {
         refused = refused || in_use > driver_bytes;
         return !refused;

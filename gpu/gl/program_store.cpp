@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ProgramStore: an archive a program (core/file/archive.h), named after the checksum of all that it
-// follows from.
+// ProgramStore: an archive for each program (core/file/archive.h), named after the checksum of its
+// sources and its driver.
 #include "gpu/gl/program_store.h"
 
 #include "core/file/archive.h"
@@ -24,7 +24,8 @@ constexpr std::string_view kKind = "ovc kernel";
 constexpr uint32_t kVersion = 2;
 constexpr std::string_view kSuffix = ".ovck";
 
-/// Who compiles. llvmpipe's renderer names its vector width, which Mesa's own cache overlooks.
+/// Returns the driver's name. llvmpipe's renderer names its vector width, which Mesa's own cache
+/// overlooks.
 std::string driver() {
     std::string text;
     for (const GLenum name : {GL_VENDOR, GL_RENDERER, GL_VERSION})
@@ -44,7 +45,7 @@ uint64_t key_of(const std::vector<std::string>& sources, const std::string& driv
     return key.value();
 }
 
-/// A driver is asked about its own formats only: another is an error of GL's.
+/// Whether the driver lists the format. Handing it a binary of any other is a GL error.
 bool has_format(GLenum format) {
     GLint count = 0;
     glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &count);
@@ -54,7 +55,7 @@ bool has_format(GLenum format) {
     return std::find(formats.begin(), formats.end(), GLint(format)) != formats.end();
 }
 
-/// All of it, or false.
+/// Writes all bytes to a new file. Returns false if any are missing.
 bool write_file(const fs::path& path, Bytes bytes) {
     const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
     if (file < 0)
@@ -77,7 +78,7 @@ fs::path ProgramStore::default_folder() {
     };
     if (const std::string named = value("OVC_KERNEL_CACHE"); !named.empty())
         return named == "off" ? fs::path() : fs::path(named);
-    // The XDG base directory specification: a relative path is to be ignored.
+    // The XDG base directory specification says that a relative path is to be ignored.
     if (const fs::path cache = value("XDG_CACHE_HOME"); cache.is_absolute())
         return cache / "overcast/kernels";
     if (const fs::path home = value("HOME"); home.is_absolute())
@@ -110,7 +111,7 @@ bool ProgramStore::load(const std::vector<std::string>& sources, GLuint program)
     GLint linked = GL_FALSE;
     glGetProgramiv(program, GL_LINK_STATUS, &linked);
     std::error_code ignored;
-    if (linked) // used now: others go first
+    if (linked) // marks it as used now, so that make_room() removes others first
         fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
     return linked;
 }
@@ -149,7 +150,7 @@ void ProgramStore::keep(const std::vector<std::string>& sources, GLuint program)
     const fs::path temporary = folder_ / format_text(".{}-{}", getpid(), count++);
     if (write_file(temporary, bytes))
         fs::rename(temporary, file_of(key_of(sources, who)), failed);
-    fs::remove(temporary, failed); // where that did not work
+    fs::remove(temporary, failed); // if writing or renaming failed
     make_room();
 }
 
@@ -166,7 +167,7 @@ void ProgramStore::make_room() const {
          at.increment(failed)) {
         if (at->path().extension() != kSuffix)
             continue;
-        std::error_code gone; // another process made room as well
+        std::error_code gone; // another process may have made room as well
         const Kept kept{at->path(), at->last_write_time(gone), at->file_size(gone)};
         if (gone)
             continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A test with a device, skipped where none opens.
+// OnGl: a test fixture with a device, skipped if none opens.
 #pragma once
 
 #include "gpu/gl/gl_thread.h"

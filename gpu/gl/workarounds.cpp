@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which entries of the table a driver matches.
+// Finds which entries of the table a driver matches.
 #include "gpu/gl/workarounds.h"
 
 #include "gpu/gl/gl.h"

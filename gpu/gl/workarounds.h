@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The defects of drivers that Overcast works around, in one table. Limits that a driver tells are
-// not among them, nor what is merely slow on one.
+// The defects of drivers that Overcast works around, in one table. It lists neither limits that a
+// driver reports nor features that are merely slow on one.
 #pragma once
 
 #include <array>
@@ -22,11 +22,11 @@ enum class Workaround {
 struct WorkaroundEntry {
     Workaround which;
     std::string_view name;    // for OVERCAST_NO_WORKAROUNDS
-    std::string_view driver;  // in GL_RENDERER, in any case; empty: whatever the driver
-    std::string_view version; // what GL_VERSION has in it; empty: each
+    std::string_view driver;  // part of GL_RENDERER, in any case; empty: every driver
+    std::string_view version; // part of GL_VERSION; empty: every version
     std::string_view symptom;
-    std::string_view answer; // what we do
-    std::string_view test;   // holds what we do
+    std::string_view answer; // what Overcast does about it
+    std::string_view test;   // the test of that answer
 };
 
 inline constexpr std::array<WorkaroundEntry, 7> kWorkarounds{{
@@ -62,12 +62,12 @@ constexpr const WorkaroundEntry& entry_of(Workaround which) {
     return kWorkarounds[size_t(which)];
 }
 
-/// Whether the driver has the defect, as far as the table knows. renderer, version: what GL says.
+/// Whether the driver has the defect, as far as the table knows. renderer, version: GL's strings.
 bool has_defect(Workaround which, std::string_view renderer, std::string_view version);
 
-/// The same for the driver of the current context, unless the environment's variable
-/// OVERCAST_NO_WORKAROUNDS has the workaround's name among others, with commas between them: to
-/// see whether a later driver still needs it.
+/// The same for the driver of the current context, unless the environment variable
+/// OVERCAST_NO_WORKAROUNDS has the workaround's name in its list, separated by commas. Use it to
+/// see whether a later driver still needs the workaround.
 bool needs(Workaround which);
 
 /// Whether OVERCAST_NO_WORKAROUNDS names it.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pass of two-level as the thesis has it: the queue of one leaf, whose page lies in the pool. A pixel is a ray in the leaf's
-// frame; nearest-hit rays come first, occlusion rays after them. Based on: thesis, section 3.4 (IntersectL2 of algorithm 3).
+// A pass of two-level as the thesis has it: it traces the queue of one leaf, whose page lies in the
+// pool. A pixel is a ray in the leaf's frame; nearest-hit rays come first, occlusion rays after
+// them.
+// Based on: thesis, section 3.4 (IntersectL2 of algorithm 3).
 #version 450 core
 #include "layout.h"
 #include "config.glsl"
@@ -15,7 +17,7 @@
 #include "frame_answer.glsl"
 #include "one_page.glsl"
 
-layout(location = 0) uniform int page_unit; // of the pool, where the leaf's page begins
+layout(location = 0) uniform int page_unit; // where the leaf's page begins in the pool
 layout(location = 1) uniform int first_occlusion_ray;
 
 layout(binding = OVC_BINDING_RAYS) uniform usampler2D rays;
@@ -26,5 +28,6 @@ void main() {
     uvec4 org = texelFetch(rays, ivec2(pixel.x * OVC_FRAME_RAY_TEXELS, pixel.y), 0);
     uvec4 dir = texelFetch(rays, ivec2(pixel.x * OVC_FRAME_RAY_TEXELS + 1, pixel.y), 0);
     bool any_hit = pixel.y * OVC_QUEUE_ROW_RAYS + pixel.x >= first_occlusion_ray;
-    answer = trace_page(page_unit, uintBitsToFloat(org.xyz), uintBitsToFloat(org.w), uintBitsToFloat(dir.xyz), dir.w, any_hit);
+    answer = trace_page(page_unit, uintBitsToFloat(org.xyz), uintBitsToFloat(org.w),
+                        uintBitsToFloat(dir.xyz), dir.w, any_hit);
 }

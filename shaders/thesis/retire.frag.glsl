@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// After a bounded pass: only pixels whose ray has ended write their depth, and are counted by the occlusion query.
+// Runs after a bounded pass: only pixels whose ray has ended write their depth, and the occlusion
+// query counts them.
 #version 450 core
 #include "layout.h"
 #include "config.glsl"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The walks' loop: a few steps from cell to cell, then one triangle. It ends itself before the driver
-// would (OVC_MAX_ROUNDS of config.glsl); the steps count, as the driver counts them.
+// The loop of both walks: a few steps from cell to cell, then one triangle. It ends itself before
+// the driver would (OVC_MAX_ROUNDS of config.glsl); steps count as rounds, as they do for the
+// driver.
 
-const int OVC_WALK_STEPS = 8; // a round, at most
+const int OVC_WALK_STEPS = 8; // the max in a round
 
 bool going_on(bool done, inout int rounds) {
     ++rounds;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene as one array of texels, in one square texture or tiled over several behind one look-up with branches.
+// The scene as one array of texels, in one square texture or tiled over several behind one look-up
+// with branches.
 // Based on: thesis, section 3.2 (algorithm 1).
 #include "unit.glsl"
 
+// The number of textures. Each costs a fetch in every look-up where the lanes of a group fetch
+// together.
 #ifndef OVC_TILES
-#define OVC_TILES 1 // textures. Each costs a fetch a look-up where the lanes of a group fetch together
+#define OVC_TILES 1
 #endif
 #ifndef OVC_TILE_BITS
 #define OVC_TILE_BITS 24 // a texture holds 2^bits texels
@@ -16,7 +19,8 @@
 layout(binding = OVC_BINDING_SCENE) uniform usampler2D scene[OVC_TILES];
 
 uvec4 scene_texel(int i) {
-    ivec2 at = ivec2(i & ((1 << OVC_TILE_SHIFT) - 1), (i & ((1 << OVC_TILE_BITS) - 1)) >> OVC_TILE_SHIFT);
+    ivec2 at = ivec2(i & ((1 << OVC_TILE_SHIFT) - 1),
+                     (i & ((1 << OVC_TILE_BITS) - 1)) >> OVC_TILE_SHIFT);
 #if OVC_TILES > 1
     int tile = i >> OVC_TILE_BITS;
 #define OVC_IN_TILE(n) if (tile == n) return texelFetch(scene[n], at, 0)

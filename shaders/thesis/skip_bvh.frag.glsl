@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bounded pass of the skip-pointer BVH: reads where each ray stands, goes on, writes where it stands then. Rays that
-// have ended do not come here: retire.frag.glsl has put them behind the depth test. Based on: thesis, section 3.1.
+// A bounded pass of the skip-pointer BVH: it reads each ray's place and findings, goes on, and
+// writes them again. Rays that have ended do not come here, because retire.frag.glsl has put them
+// behind the depth test.
+// Based on: thesis, section 3.1.
 #version 450 core
 #include "layout.h"
 #include "config.glsl"
@@ -19,7 +21,7 @@ layout(location = 1) uniform bool first_pass;
 layout(binding = OVC_BINDING_RAYS) uniform usampler2D rays;
 layout(binding = OVC_BINDING_STATE) uniform usampler2D state[3];
 
-layout(location = 0) out uvec4 answer; // right when the ray has ended; until then it is written again
+layout(location = 0) out uvec4 answer; // valid once the ray has ended; until then it is overwritten
 layout(location = 1) out uvec4 place;
 layout(location = 2) out uvec4 further;
 layout(location = 3) out uvec4 others;
@@ -28,15 +30,17 @@ Walk read_walk(ivec2 pixel) {
     uvec4 a = texelFetch(state[0], pixel, 0);
     uvec4 b = texelFetch(state[1], pixel, 0);
     uvec4 c = texelFetch(state[2], pixel, 0);
-    Found found = Found(uintBitsToFloat(a.z), uintBitsToFloat(a.w), a.y, float[2](uintBitsToFloat(b.x), uintBitsToFloat(b.y)),
-                        uint[2](b.z, b.w), uintBitsToFloat(c.x), uintBitsToFloat(c.yz), 8u);
+    Found found = Found(uintBitsToFloat(a.z), uintBitsToFloat(a.w), a.y,
+                        float[2](uintBitsToFloat(b.x), uintBitsToFloat(b.y)), uint[2](b.z, b.w),
+                        uintBitsToFloat(c.x), uintBitsToFloat(c.yz), 8u);
     return Walk(int(a.x), found);
 }
 
 void write_walk(Walk walk) {
     Found found = walk.found;
     place = uvec4(walk.at, found.prim, floatBitsToUint(found.best_lo), floatBitsToUint(found.best_hi));
-    further = uvec4(floatBitsToUint(found.further_lo[0]), floatBitsToUint(found.further_lo[1]), found.further[0], found.further[1]);
+    further = uvec4(floatBitsToUint(found.further_lo[0]), floatBitsToUint(found.further_lo[1]),
+                    found.further[0], found.further[1]);
     others = uvec4(floatBitsToUint(found.others_lo), floatBitsToUint(found.weights), 0u);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The systems that trace a ray in one pass: a pixel is a ray. OVC_STRUCTURE is a value of ovc_structure (overcast.h).
+// The systems of the thesis that trace a ray in one pass: a pixel is a ray. OVC_STRUCTURE is a
+// value of ovc_structure (overcast.h).
 #version 450 core
 #include "layout.h"
 #include "config.glsl"
