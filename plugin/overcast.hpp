@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast.h for C++20: owners for its handles, spans for its buffers, exceptions for its errors.
-// It adds no more than that: overcast.h and docs/reference/abi.md say what a call does and
+// overcast.h for C++17 and later: owners for its handles, spans for its buffers, exceptions for its
+// errors. It adds no more than that: overcast.h and docs/reference/abi.md say what a call does and
 // promises, and any call may be made through the table as well.
 #pragma once
 
@@ -12,14 +12,41 @@
 #include <exception>
 #include <memory>
 #include <new>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#if __cplusplus >= 202002L
+#include <span>
+#endif
+
 namespace overcast {
+
+#if __cplusplus >= 202002L
+template <class T>
+using Span = std::span<T>;
+#else
+/// As much of std::span as is needed here.
+template <class T>
+class Span {
+public:
+    Span() = default;
+    Span(T* data, size_t size) : data_(data), size_(size) {}
+    /// From a vector, an array, or whatever else has data() and size().
+    template <class Range, class = decltype(std::declval<Range&>().data())>
+    Span(Range&& range) : data_(range.data()), size_(range.size()) {}
+
+    T* data() const { return data_; }
+    size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+
+private:
+    T* data_ = nullptr;
+    size_t size_ = 0;
+};
+#endif
 
 /// Thrown for a call that did not return OVC_OK: code() is its result, what() the sentence of
 /// last_error().
@@ -102,7 +129,7 @@ private:
 class Stream {
 public:
     Stream(const Device& device, ovc_stream handle) : device_(device), handle_(handle) {}
-    void push(std::span<const ovc_ray> rays, std::span<const uint64_t> tokens, bool any_hit,
+    void push(Span<const ovc_ray> rays, Span<const uint64_t> tokens, bool any_hit,
               const ovc_query* query = nullptr) {
         if (tokens.size() != rays.size())
             throw Error(OVC_ERROR_INVALID_ARGUMENT, "push: rays and tokens differ in number");
@@ -167,7 +194,7 @@ public:
     /// Returns the number of the mesh. positions: 3 numbers a vertex, float or double. indices: 3 a
     /// triangle; none: three vertices after each other are a triangle.
     template <class Number>
-    uint32_t add(std::span<const Number> positions, std::span<const uint32_t> indices = {},
+    uint32_t add(Span<const Number> positions, Span<const uint32_t> indices = {},
                  uint32_t flags = 0) {
         auto mesh = make<ovc_mesh>();
         if constexpr (std::is_same_v<Number, double>)
@@ -194,19 +221,28 @@ public:
     void commit() { check(api().commit(get())); }
 
     /// hits: as many as rays.
-    void intersect(std::span<const ovc_ray> rays, std::span<ovc_hit> hits,
+    void intersect(Span<const ovc_ray> rays, Span<ovc_hit> hits,
                    const ovc_query* query = nullptr) const {
         same_number("intersect", rays.size(), hits.size());
         check(api().intersect(get(), rays.data(), rays.size(), hits.data(), query));
     }
-    std::vector<ovc_hit> intersect(std::span<const ovc_ray> rays,
+    std::vector<ovc_hit> intersect(Span<const ovc_ray> rays,
                                    const ovc_query* query = nullptr) const {
         std::vector<ovc_hit> hits(rays.size());
         intersect(rays, hits, query);
         return hits;
     }
+    /// hits: max_hits for each ray; counts: one for each ray, or none; see ovc_api.all_hits.
+    void all_hits(Span<const ovc_ray> rays, size_t max_hits, Span<ovc_hit> hits,
+                  Span<uint64_t> counts, const ovc_query* query = nullptr) const {
+        same_number("all_hits", rays.size() * max_hits, hits.size());
+        if (!counts.empty())
+            same_number("all_hits", rays.size(), counts.size());
+        check(api().all_hits(get(), rays.data(), rays.size(), max_hits, hits.data(), counts.data(),
+                             query));
+    }
     /// occluded: as many as rays, 1 or 0.
-    void occluded(std::span<const ovc_ray> rays, std::span<uint8_t> occluded,
+    void occluded(Span<const ovc_ray> rays, Span<uint8_t> occluded,
                   const ovc_query* query = nullptr) const {
         same_number("occluded", rays.size(), occluded.size());
         check(api().occluded(get(), rays.data(), rays.size(), occluded.data(), query));
@@ -224,14 +260,14 @@ public:
     }
 
     /// As intersect(), but returns at once; see ovc_api.submit_intersect.
-    [[nodiscard]] Ticket submit_intersect(std::span<const ovc_ray> rays, std::span<ovc_hit> hits,
+    [[nodiscard]] Ticket submit_intersect(Span<const ovc_ray> rays, Span<ovc_hit> hits,
                                           const ovc_query* query = nullptr) const {
         same_number("submit_intersect", rays.size(), hits.size());
         ovc_ticket ticket = nullptr;
         check(api().submit_intersect(get(), rays.data(), rays.size(), hits.data(), query, &ticket));
         return Ticket(*device_, ticket);
     }
-    [[nodiscard]] Ticket submit_occluded(std::span<const ovc_ray> rays, std::span<uint8_t> occluded,
+    [[nodiscard]] Ticket submit_occluded(Span<const ovc_ray> rays, Span<uint8_t> occluded,
                                          const ovc_query* query = nullptr) const {
         same_number("submit_occluded", rays.size(), occluded.size());
         ovc_ticket ticket = nullptr;

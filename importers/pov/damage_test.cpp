@@ -55,7 +55,16 @@ TEST(PovDamage, LoopsRecursionAndGroupsThatDoNotEndAreStopped) {
          "#declare A = union { object { A } object { A } }\n#declare I = I + 1;\n#end object { A }",
          "found more than 50000 objects in the scene"},
         {"#declare A = sphere { 0, 1 }\n#while (1) #declare A = union { object { A } }\n#end",
-         "found groups more than 2000 deep in each other"},
+         "found objects more than 2000 deep in each other"},
+        {"#declare A = sphere { 0, 1 }\n#while (1) #declare A = sphere { 0, 1 clipped_by { A } }\n"
+         "#end",
+         "found objects more than 2000 deep in each other"},
+        {"#if (0) #elseif (#end 0) #end", "found #end of a block within its condition"},
+        {"#declare N = 0;\n#while (#declare N = N + 1; #if (N < 2) #end #end 0) #end #end",
+         "found #end of a block within its condition"},
+        {"#while (#if (1) #break #end 1) #end", "found #break of a block within its condition"},
+        {"#declare N = 1e308 * 10;\n#declare S = spline { N - N, 1 }",
+         "found a spline's clock that is not a number"},
         {"#declare F = function { x }\n#while (1) #declare F = function { F(x, y, z) + 1 }\n#end",
          "found a function of more than 4000 operations"},
         {"#declare F = function { x }\n#for (I, 1, 60) #declare F = function { F(x, y, z) + F(y, "
@@ -79,6 +88,16 @@ TEST(PovDamage, LoopsRecursionAndGroupsThatDoNotEndAreStopped) {
     for (int i = 0; i < 100'000; ++i)
         deep += "(";
     EXPECT_FALSE(parse_pov(deep, "x.pov", {}));
+}
+
+TEST(PovDamage, SolidsOfNothingAndOfFarPlanesAreRead) {
+    for (const char* text :
+         {"intersection { sphere { 0, 1 } mesh { } }", "difference { sphere { 0, 1 } mesh2 { } }",
+          "intersection { plane { x, 1 } mesh { triangle { <0,1e17,1e17>, <1,1e17,1e17>, "
+          "<2,1e17,1e17> } inside_vector x } }",
+          "blob { threshold 0.5 sphere { 0, 1, 1 } sphere { <1e17,0,0>, 1, 1 } }",
+          "#declare S = spline { 0, 1 } #declare N = 1e308 * 10; sphere { 0, S(N - N) }"})
+        survives(text);
 }
 
 } // namespace

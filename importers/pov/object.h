@@ -64,7 +64,7 @@ struct Object {
     dmat4 placed{1};                // from the object's own space to its parent's
     std::optional<Texture> texture; // none: the parent's
     std::optional<Interior> interior;
-    uint32_t depth = 1; // levels of nested groups
+    uint32_t depth = 1; // levels of objects within objects, as parts, clips or bounds
     bool no_shadow = false;
     bool no_image = false;
     bool inverse = false;

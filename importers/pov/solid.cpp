@@ -72,7 +72,7 @@ void add(const Facets& facets, const dmat4& placed, uint32_t skin, CutLeaf& leaf
 
 /// Adds a half-space that reaches beyond the box on all sides: two triangles of its surface, then
 /// walls that only close it.
-void cut_plane(const PlaneShape& plane, const Box& box, Facets& out) {
+size_t cut_plane(const PlaneShape& plane, const Box& box, Facets& out) {
     const dvec3 center = box.center();
     const double far = 2 * std::max(glm::length(box.extent()), 1e-9);
     const dvec3& n = plane.normal;
@@ -86,11 +86,13 @@ void cut_plane(const PlaneShape& plane, const Box& box, Facets& out) {
     const dvec3 rim[4] = {top + far * (u + v), top + far * (v - u), top - far * (u + v),
                           top + far * (u - v)};
     out.add_quad(rim[0], rim[1], rim[2], rim[3]);
+    const size_t shown = out.corners.size() / 3; // fewer than two where corners round together
     for (int i = 0; i < 4; ++i) {
         const dvec3 &a = rim[i], &b = rim[(i + 1) % 4];
         out.add_quad(a, a + down, b + down, b);
     }
     out.add_quad(rim[3] + down, rim[2] + down, rim[1] + down, rim[0] + down);
+    return shown;
 }
 
 /// Turns the triangles round where they face inside, as a mesh's may: then its volume is below 0.
@@ -132,9 +134,9 @@ CutLeaf cut_leaf(const SolidLeaf& leaf, const Fineness& fineness, const Box& rea
             hidden.resize(shown, 0);
             hidden.resize(facets.corners.size() / 3, 1);
         } else if (const auto* plane = std::get_if<PlaneShape>(&skin.object->shape)) {
-            cut_plane(*plane, moved(reach, glm::inverse(leaf.placed)), facets);
-            hidden.assign(facets.corners.size() / 3, 1);
-            hidden[0] = hidden[1] = 0;
+            const size_t shown = cut_plane(*plane, moved(reach, glm::inverse(leaf.placed)), facets);
+            hidden.resize(shown, 0);
+            hidden.resize(facets.corners.size() / 3, 1);
         }
         add(facets, leaf.placed, uint32_t(&skin - leaf.skins.data()), cut);
         hidden.resize(facets.corners.size() / 3, 0);
@@ -233,10 +235,15 @@ Evaluated evaluate_within(const Solid& solid, const Fineness& fineness, const Bo
     return result;
 }
 
+/// Returns the leaf's shape where it is a T; null where it is another, or a mesh without triangles.
+template <class T>
+const T* shape_of(const SolidLeaf& leaf) {
+    return leaf.skins.empty() ? nullptr : std::get_if<T>(&leaf.skins[0].object->shape);
+}
+
 bool has_field(const Solid& solid) {
-    return std::any_of(solid.leaves.begin(), solid.leaves.end(), [](const SolidLeaf& leaf) {
-        return std::holds_alternative<EndlessShape>(leaf.skins[0].object->shape);
-    });
+    return std::any_of(solid.leaves.begin(), solid.leaves.end(),
+                       [](const SolidLeaf& leaf) { return shape_of<EndlessShape>(leaf); });
 }
 
 /// Returns the box in which a field without end is drawn. In all of `reach` its cells would be as
@@ -390,12 +397,11 @@ Box bounds_of(const Solid& solid, int segments) {
     std::vector<Box> boxes;
     bool is_open = false; // an endless shape may be smaller within a box around the whole
     for (const SolidLeaf& leaf : solid.leaves) {
-        const Object& object = *leaf.skins[0].object;
-        if (const auto* plane = std::get_if<PlaneShape>(&object.shape))
+        if (const auto* plane = shape_of<PlaneShape>(leaf))
             boxes.push_back(bounds_of_plane(*plane, leaf));
         else
             boxes.push_back(leaf.inverse ? kEverywhere : bounds_of_leaf(leaf, segments));
-        is_open = is_open || (std::holds_alternative<EndlessShape>(object.shape) && !leaf.inverse);
+        is_open = is_open || (shape_of<EndlessShape>(leaf) && !leaf.inverse);
     }
     const uint32_t root = uint32_t(solid.nodes.size() - 1);
     Box whole = bounds_of_node(solid, root, boxes);
@@ -403,8 +409,7 @@ Box bounds_of(const Solid& solid, int segments) {
         const Box asked = whole.intersection(Box{dvec3(0), dvec3(0)}.padded(kFar));
         for (size_t i = 0; i < solid.leaves.size(); ++i) {
             const SolidLeaf& leaf = solid.leaves[i];
-            if (const auto* endless = std::get_if<EndlessShape>(&leaf.skins[0].object->shape);
-                endless && !leaf.inverse)
+            if (const auto* endless = shape_of<EndlessShape>(leaf); endless && !leaf.inverse)
                 boxes[i] = without_far_sides(
                     moved(endless->bounds(moved(asked, glm::inverse(leaf.placed))), leaf.placed));
         }

@@ -32,6 +32,50 @@ Misuses misuse_intersect(Subject& s) {
     noted = sized<ovc_query>();
     noted.skip = reinterpret_cast<ovc_triangle*>(&hits[2]);
     wrong.argument("hits over skip", api().intersect(s.field, rays, 4, hits, &noted));
+    noted = sized<ovc_query>();
+    noted.after = &hits[1];
+    wrong.argument("hits over after", api().intersect(s.field, rays, 3, hits, &noted));
+    noted = sized<ovc_query>();
+    noted.masks = reinterpret_cast<uint32_t*>(&hits[2]);
+    wrong.argument("hits over masks", api().intersect(s.field, rays, 4, hits, &noted));
+    return wrong.found();
+}
+ovc_result use_all_hits(Subject& s) {
+    for (uint32_t cell = 0; cell < kCells; ++cell) {
+        const ovc_ray ray = into_cell(cell, 3);
+        ovc_hit hits[2]{};
+        uint64_t count = 0;
+        const ovc_result found = api().all_hits(s.field, &ray, 1, 2, hits, &count, nullptr);
+        if (found != OVC_OK)
+            return found;
+        if (!is_in_cell(hits[0], cell, 3) || count != 1 || hits[1].mesh != OVC_NONE)
+            return OVC_ERROR_INTERNAL;
+    }
+    return OVC_OK;
+}
+Misuses misuse_all_hits(Subject& s) {
+    Wrong wrong(s);
+    const ovc_ray ray = into_cell(0, 1);
+    ovc_hit hits[4];
+    uint64_t count = 0;
+    ovc_query unsized{};
+    uint32_t note = 0;
+    auto noted = sized<ovc_query>();
+    noted.leaf = &note;
+    const auto ask = [&](ovc_scene scene, const ovc_ray* rays, size_t max_hits, ovc_hit* to,
+                         uint64_t* counts, const ovc_query* query) {
+        return api().all_hits(scene, rays, 1, max_hits, to, counts, query);
+    };
+    wrong.without_device("scene NULL", ask(nullptr, &ray, 4, hits, &count, nullptr));
+    wrong.argument("rays NULL", ask(s.field, nullptr, 4, hits, &count, nullptr));
+    wrong.argument("hits NULL", ask(s.field, &ray, 4, nullptr, &count, nullptr));
+    wrong.argument("nothing to write", ask(s.field, &ray, 0, hits, nullptr, nullptr));
+    wrong.argument("too many hits", ask(s.field, &ray, ~size_t(0) / 8, hits, &count, nullptr));
+    wrong.argument("struct_size 0", ask(s.field, &ray, 4, hits, &count, &unsized));
+    wrong.argument("notes", ask(s.field, &ray, 4, hits, &count, &noted));
+    wrong.argument("counts over hits",
+                   ask(s.field, &ray, 4, hits, reinterpret_cast<uint64_t*>(&hits[3]), nullptr));
+    wrong.state("before commit", ask(s.empty, &ray, 4, hits, &count, nullptr));
     return wrong.found();
 }
 Misuses misuse_occluded(Subject& s) {
@@ -188,6 +232,7 @@ constexpr Entry kEntries[] = {
     OVC_ENTRY(occluded, use_rays, misuse_occluded),
     OVC_ENTRY(intersect1, use_single_rays, misuse_intersect1),
     OVC_ENTRY(occluded1, use_single_rays, misuse_occluded1),
+    OVC_ENTRY(all_hits, use_all_hits, misuse_all_hits),
     OVC_ENTRY(stream, use_stream, misuse_stream),
     OVC_ENTRY(push, use_stream, misuse_push),
 };

@@ -250,10 +250,11 @@ ObjectPtr parse_object(Reader& reader) {
         parse_modifiers(reader, *object);
     } else
         kWholes.at(object->kind)(reader, *object);
-    for (const ObjectPtr& child : object->children)
-        object->depth = std::max(object->depth, child->depth + 1);
+    for (const auto* parts : {&object->children, &object->clips, &object->bounds})
+        for (const ObjectPtr& part : *parts)
+            object->depth = std::max(object->depth, part->depth + 1);
     if (object->depth > reader.limits.chain)
-        reader.fail(object->place, fmt::format("found groups more than {} deep in each other",
+        reader.fail(object->place, fmt::format("found objects more than {} deep in each other",
                                                reader.limits.chain));
     return object;
 }

@@ -115,7 +115,9 @@ int cells_of(const Components& parts, const Box& box, int segments) {
         if (part.strength > 0)
             smallest = std::min(smallest, max_component(part.box.extent()));
     const double wanted = 0.25 * segments * max_component(box.extent()) / smallest;
-    return std::clamp(int(wanted), field_cells(segments), 256);
+    constexpr double kMax = 256;
+    const double least = std::min<double>(field_cells(segments), kMax);
+    return wanted > least ? int(std::min(wanted, kMax)) : int(least);
 }
 
 std::vector<double> parse_factors(Reader& reader, int order) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <iterator>
 
 namespace ovc::pov {
@@ -28,7 +29,10 @@ std::shared_ptr<const Spline> parse_spline(Reader& reader) {
     spline->kind = take_kind(reader, spline->kind);
     reader.take_comma();
     while (!reader.take('}')) {
+        const Place at = reader.place();
         const double clock = parse_float(reader);
+        if (std::isnan(clock))
+            reader.fail(at, "found a spline's clock that is not a number");
         reader.take_comma();
         spline->points[clock] = parse_number(reader);
         reader.take_comma();
@@ -115,7 +119,7 @@ Number at(const Spline& spline, double clock) {
             point.value.v.fill(point.value.v[0]);
     Number result = clock <= p.front().clock ? p.front().value : p.back().value;
     result.size = size;
-    if (clock <= p.front().clock || clock >= p.back().clock)
+    if (!(clock > p.front().clock && clock < p.back().clock)) // NaN is in no piece
         return result;
     size_t k = 0; // the piece between points k and k + 1
     while (p[k + 1].clock <= clock)

@@ -173,7 +173,19 @@ std::filesystem::path Reader::find_file(const std::string& name, std::string_vie
 }
 
 bool Reader::condition() {
-    return hooks_.condition(*this) != 0;
+    assert(!frames_.empty());
+    const std::optional<Depth> outer =
+        std::exchange(condition_, Depth{frames_.size(), frame().open.size(), brackets_});
+    const bool holds = hooks_.condition(*this) != 0;
+    condition_ = outer;
+    return holds;
+}
+
+/// Fails where a directive would end the block that a condition under way belongs to, or one around
+/// it. blocks_that_stay: how many of the frame's blocks it leaves open.
+void Reader::check_is_no_condition(const Token& at, size_t blocks_that_stay) {
+    if (condition_ && frames_.size() == condition_->frames && blocks_that_stay < condition_->blocks)
+        fail(at.place, fmt::format("found #{} of a block within its condition", at.name->text));
 }
 
 bool Reader::is_defined() {
@@ -237,6 +249,7 @@ void Reader::do_else(const Token& at) {
         frame().open.back().kind == Condition::Kind::For ||
         (frame().open.back().kind == Condition::Kind::If && (d == "case" || d == "range")))
         fail(at.place, fmt::format("found #{} without what it belongs to", d));
+    check_is_no_condition(at, frame().open.size() - 1);
     if (frame().open.back().kind == Condition::Kind::Switch) {
         // The case before this one falls through, as in C.
         if (d == "case" || d == "range")
@@ -250,6 +263,7 @@ void Reader::do_else(const Token& at) {
 void Reader::do_end(const Token& at) {
     if (frame().open.empty())
         fail(at.place, "found #end without what it ends");
+    check_is_no_condition(at, frame().open.size() - 1);
     Condition& open = frame().open.back();
     if (open.kind == Condition::Kind::While) {
         test_while(open);
@@ -379,11 +393,13 @@ void Reader::do_break(const Token& at) {
     if (loop == open.rend()) {
         if (!frame().is_macro)
             fail(at.place, "found #break outside of #while, #for, #switch and #macro");
+        check_is_no_condition(at, 0);
         open.clear();
         frame().at = frame().end;
         return;
     }
     const size_t blocks = size_t(loop - open.rbegin()) + 1;
+    check_is_no_condition(at, open.size() - blocks);
     for (size_t i = 0; i < blocks; ++i) {
         skip(false, false);
         frame().open.pop_back();

@@ -209,6 +209,7 @@ private:
     /// Takes the name of an open file and returns the file.
     std::shared_ptr<DataFile> raw_file(std::string_view after, bool writes);
     bool condition();
+    void check_is_no_condition(const Token& at, size_t blocks_that_stay);
     /// Skips tokens up to the #end of the innermost open block or, where that is asked for, up to
     /// its next #else, #elseif, #case or #range. Takes that directive and returns its name.
     std::string_view skip(bool stop_at_else, bool stop_at_case);
@@ -243,9 +244,10 @@ private:
     uint64_t changes_ = 0;   // calls of changed()
     uint64_t reads_ = 0;     // #read directives
     Place last_;
-    uint64_t run_over_ = 0;      // words that spend() has counted
-    int64_t brackets_ = 0;       // open ( [ { and vectors; below 0 after a stray ) ] or }
-    std::optional<Depth> obeys_; // the innermost directive that is being obeyed
+    uint64_t run_over_ = 0;          // words that spend() has counted
+    int64_t brackets_ = 0;           // open ( [ { and vectors; below 0 after a stray ) ] or }
+    std::optional<Depth> obeys_;     // the innermost directive that is being obeyed
+    std::optional<Depth> condition_; // the innermost condition that is being read
     size_t depth_ = 0;
 };
 
