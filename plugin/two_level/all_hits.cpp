@@ -13,7 +13,8 @@
 namespace ovc {
 namespace {
 
-/// Hits that are found by passes. Measured: docs/benchmarks.md, "All hits of a ray".
+/// Hits of a ray that are found by passes: few, because each pass begins the ray anew, while the
+/// walk on the CPU finds all that are left at once.
 constexpr size_t kHitsByPasses = 4;
 constexpr size_t kMaxRaysAtOnce = size_t(1) << 20; // some 200 bytes each
 

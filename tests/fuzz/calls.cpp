@@ -98,13 +98,13 @@ public:
 
     void play() {
         static constexpr void (Player::*kCalls[])() = {
-            &Player::create_scene,  &Player::create_scene, &Player::add_mesh,
-            &Player::add_mesh,      &Player::commit,       &Player::commit,
-            &Player::intersect,     &Player::intersect,    &Player::occluded,
-            &Player::tell,          &Player::save,         &Player::stream,
-            &Player::destroy_scene, &Player::ask_device,   &Player::race,
-            &Player::add_instance,  &Player::purge,        &Player::ask_one_by_one,
-            &Player::submit};
+            &Player::create_scene,   &Player::create_scene,  &Player::add_mesh,
+            &Player::add_mesh,       &Player::commit,        &Player::commit,
+            &Player::intersect,      &Player::intersect,     &Player::intersect_behind,
+            &Player::occluded,       &Player::tell,          &Player::save,
+            &Player::stream,         &Player::destroy_scene, &Player::ask_device,
+            &Player::race,           &Player::add_instance,  &Player::purge,
+            &Player::ask_one_by_one, &Player::submit};
         for (int calls = 0; calls < 60 && !choices_.over(); ++calls)
             (this->*kCalls[choices_.below(std::size(kCalls))])();
     }
@@ -312,13 +312,17 @@ private:
     }
 
     /// The answer of a loop over all triangles.
-    static Hit truth(const Slot& slot, const ovc_ray& ray, const ovc_triangle& skip) {
+    static Hit truth(const Slot& slot, const ovc_ray& ray, const ovc_triangle& skip,
+                     const HitPlace& after = {}) {
         Ray asked;
         std::memcpy(static_cast<void*>(&asked), &ray, sizeof asked);
         if (!asked.valid())
             return {};
-        const PreparedRay prepared(asked, TriangleId{skip.mesh, skip.prim});
-        Nearest nearest(prepared);
+        const PreparedRay prepared(asked, {TriangleId{skip.mesh, skip.prim}, after});
+        const bool named = after.id.mesh < slot.soup.chunks.size() &&
+                           after.id.prim < slot.soup.chunks[after.id.mesh].size();
+        const Triangle triangle_after = named ? slot.soup.triangle(after.id) : Triangle();
+        Nearest nearest(prepared, named && is_finite(triangle_after) ? &triangle_after : nullptr);
         for (uint32_t mesh = 0; mesh < slot.soup.chunks.size(); ++mesh)
             for (uint32_t prim = 0; prim < slot.soup.chunks[mesh].size(); ++prim) {
                 const Triangle triangle = slot.soup.triangle({mesh, prim});
@@ -362,6 +366,40 @@ private:
         check(result, spoilt ? OVC_ERROR_INVALID_ARGUMENT : slot.expected(true));
         for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
             check_hit(slot, asked[i], skip[i], hits[i]);
+    }
+
+    /// Asks for one hit behind the other, from a place that may be none, and for all at once.
+    void intersect_behind() {
+        Slot& slot = any_slot();
+        const std::vector<ovc_ray> asked = rays(slot);
+        std::vector<ovc_hit> hits(asked.size(), {-HUGE_VAL, 0, 0, OVC_NONE, OVC_NONE});
+        for (ovc_hit& place : hits)
+            if (choices_.once_in(4))
+                place = {choices_.coordinate(), NAN, 0, choices_.below(4), choices_.below(24)};
+        const std::vector<ovc_hit> begin = hits;
+        auto query = sized<ovc_query>();
+        query.after = begin.data();
+        std::vector<uint64_t> counts(asked.size()), found(asked.size());
+        const ovc_result result = api().all_hits(slot.scene, asked.data(), asked.size(), 0, nullptr,
+                                                 counts.data(), &query);
+        check(result, slot.expected(true));
+        query.after = hits.data(); // in place
+        for (bool more = result == OVC_OK; more;) {
+            const std::vector<ovc_hit> before = hits;
+            check(api().intersect(slot.scene, asked.data(), asked.size(), hits.data(), &query),
+                  OVC_OK);
+            more = false;
+            for (size_t i = 0; i < asked.size(); ++i) {
+                Hit place{before[i].t, 0, 0, {before[i].mesh, before[i].prim}};
+                const Hit expected = truth(slot, asked[i], {OVC_NONE, OVC_NONE}, HitPlace(place));
+                OVC_REQUIRE(hits[i].mesh == expected.id.mesh && hits[i].prim == expected.id.prim);
+                OVC_REQUIRE(std::memcmp(&hits[i].t, &expected.t, sizeof expected.t) == 0);
+                found[i] += expected.is_hit();
+                more = more || expected.is_hit();
+            }
+        }
+        for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
+            OVC_REQUIRE(found[i] == counts[i]);
     }
 
     void occluded() {

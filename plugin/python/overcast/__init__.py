@@ -36,6 +36,5 @@ from .device import Device, DeviceInfo, devices
 from .hits import HIT, Hits
 from .scene import Scene
 
-__all__ = ["Scene", "Hits", "Limits", "rays", "Device", "DeviceInfo", "devices", "Error", "Result", "RAY",
-           "RAY_FLOAT", "HIT",
-           "NONE"]
+__all__ = ["Scene", "Hits", "Limits", "rays", "Device", "DeviceInfo", "devices", "Error", "Result",
+           "RAY", "RAY_FLOAT", "HIT", "NONE"]

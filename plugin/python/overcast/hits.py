@@ -15,8 +15,8 @@ HIT = np.dtype([("t", "f8"), ("u", "f8"), ("v", "f8"), ("mesh", "u4"), ("prim", 
 
 
 class Hits:
-    """Hits, one for each ray, in the rays' shape; of all_hits() several for each. All fields are views of `records`, an
-    array of HIT.
+    """Hits, one for each ray, in the rays' shape; of all_hits() several for each. All fields are
+    views of `records`, an array of HIT.
 
     A hit lies at origin + t direction = (1 - u - v) a + u b + v c, where a, b, c are the corners of
     triangle `prim` of mesh `mesh`. Where hits are equally far, it is the one of the smaller (mesh,

@@ -45,8 +45,8 @@ class RayMeshIntersector:
     def intersects_id(self, ray_origins: ArrayLike, ray_directions: ArrayLike,
                       multiple_hits: bool = True, max_hits: int | None = None,
                       return_locations: bool = False) -> tuple[NDArray[Any], ...]:
-        """Returns the triangle (m,) and the ray (m,) of each hit, by ray and then along it; and with
-        return_locations where it is, (m, 3).
+        """Returns the triangle (m,) and the ray (m,) of each hit, by ray and then along it; with
+        return_locations also where it is, (m, 3).
 
         A ray that meets several triangles in one point, at a side or a corner, hits the first of
         them there. multiple_hits: all hits of a ray, not only the nearest. max_hits: of a ray at
@@ -88,7 +88,8 @@ class RayMeshIntersector:
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Returns whether each of the points (n, 3) is inside the mesh, (n,): a ray from it and the
-        one the other way both hit the mesh an odd number of times. Undefined for points on the mesh.
+        one the other way both hit the mesh an odd number of times. It is undefined for points on
+        the mesh.
 
         Where the rays meet a side or a corner of a triangle, which counts for two, or disagree, as
         they may where the mesh has holes, others are tried.
