@@ -56,7 +56,7 @@ inline std::string_view trimmed(std::string_view text) {
 /// Returns the whole word as an integer; nothing if it is none or out of the range of T.
 template <std::integral T>
 std::optional<T> parse_number(std::string_view word) {
-    if (word.size() > 1 && word[0] == '+')
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-')
         word.remove_prefix(1);
     T value{};
     const auto [end, ec] = std::from_chars(word.data(), word.data() + word.size(), value);

@@ -25,7 +25,7 @@ Film read_film(const Parameters& parameters) {
     const double exposed =
         parameters.number("exposuretime", 1) * parameters.number("iso", 100) / 100;
     const double exposure = scale * exposed;
-    film.exposure = exposure > 0 && exposure < 1e30 ? float(exposure) : 1;
+    film.exposure = exposure > 1e-30 && exposure < 1e30 ? float(exposure) : 1;
     return film;
 }
 

@@ -18,6 +18,7 @@ constexpr uint64_t kSamples = 20000;
 /// A mean radiance from kDarkest to kBrightest stays; any other is brought to kWanted. A picture of
 /// mean 0.2 looks like most photographs do.
 constexpr double kDarkest = 0.02, kBrightest = 0.6, kWanted = 0.25;
+constexpr double kMaxExposure = 1e30; // colors times this are floats
 
 double luminance(const vec3& c) {
     return 0.2126 * double(c.x) + 0.7152 * double(c.y) + 0.0722 * double(c.z);
@@ -106,7 +107,7 @@ float fitting_exposure(const Scene& scene) {
     const double mean = weights > 0 ? sum / weights : 0;
     if (!(mean > 0) || (mean >= kDarkest && mean <= kBrightest))
         return 1;
-    return float(kWanted / mean);
+    return float(std::min(kWanted / mean, kMaxExposure));
 }
 
 void expose(Scene& scene, float exposure) {

@@ -19,12 +19,17 @@ constexpr double kPlasticIor = 1.5;
 
 /// Returns the width of the microfacets' slopes, 0 to 1: the root of pbrt's roughness, unless the
 /// file says that the roughness is the width itself.
+double as_width(const MaterialContext& c, double roughness) {
+    const double r = std::clamp(roughness, 0.0, 1.0);
+    return c.p.flag("remaproughness", true) ? std::sqrt(r) : r;
+}
+
+/// Returns the same for the roughness that most materials have.
 double roughness_of(const MaterialContext& c, double otherwise) {
     double r = c.number("roughness", otherwise);
     if (c.p.find("uroughness") || c.p.find("vroughness"))
         r = 0.5 * (c.number("uroughness", r) + c.number("vroughness", r));
-    r = std::clamp(r, 0.0, 1.0);
-    return c.p.flag("remaproughness", true) ? std::sqrt(r) : r;
+    return as_width(c, r);
 }
 
 /// Adds a highlight as strong as that of microfacets which reflect `share`.
@@ -206,7 +211,7 @@ Material make_metal(const MaterialContext& c) {
 Material make_conductor(const MaterialContext& c) {
     const bool coated = c.p.find("conductor.roughness") != nullptr;
     return metal(metal_of(c),
-                 coated ? std::sqrt(c.number("conductor.roughness", 0)) : roughness_of(c, 0));
+                 coated ? as_width(c, c.number("conductor.roughness", 0)) : roughness_of(c, 0));
 }
 
 Material make_shiny_metal(const MaterialContext& c) {

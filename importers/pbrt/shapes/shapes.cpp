@@ -154,7 +154,7 @@ std::optional<Mesh> make_height_field(ShapeRequest& request) {
     const double down = request.parameters.number("nv", 0);
     const std::vector<double> heights = request.parameters.take("Pz", {Kind::Float, Kind::Integer});
     if (!(across >= 2 && down >= 2 && across * down == double(heights.size())) ||
-        across != std::floor(across))
+        across != std::floor(across) || down != std::floor(down))
         return left_out(request, fmt::format("found {} heights Pz for nu {} and nv {}",
                                              heights.size(), across, down));
     const auto nu = size_t(across), nv = size_t(down);
