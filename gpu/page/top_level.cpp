@@ -126,8 +126,7 @@ Page tree_of_one(const Page& page) {
     return tree;
 }
 
-/// Builds a BVH over the portals' boxes in the world, whose leaf i is a portal with the number i
-/// + 1.
+/// Builds a BVH over the portals' boxes in the world; its leaf i is portal number i + 1.
 Page tree_over(std::span<const Portal> portals, const Leaf& scene) {
     std::vector<Boxf> boxes;
     for (const Portal& portal : portals)
