@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a subtree of a BVH costs least. Based on: Meister and Bittner 2018, "Parallel Reinsertion
-// for Bounding Volume Hierarchy Optimization", section 3 (up from the subtree, and down again
-// beside the way, as long as there is hope).
+// MoveSearch: finds the place where a subtree of a BVH costs least. Based on: Meister and Bittner
+// 2018, "Parallel Reinsertion for Bounding Volume Hierarchy Optimization", section 3 (up from the
+// subtree, and down again beside the way, as long as a better place is possible).
 #pragma once
 
 #include "gpu/bvh/sibling_tree.h"
@@ -11,11 +11,11 @@
 
 namespace ovc {
 
-/// The subtree at `from` goes beside that at `to`; kNone: it stays.
+/// A move of the subtree at `from` beside the one at `to`; kNone: it stays.
 struct Move {
     uint32_t from = kNone;
     uint32_t to = kNone;
-    float gain = 0; // by how much the half areas of all inner nodes, added up, shrink
+    float gain = 0; // the decrease of the sum of half areas over all inner nodes
 };
 
 /// Looks for the best move of one subtree in a tree that does not change meanwhile.
@@ -31,7 +31,7 @@ public:
     Move best() {
         const uint32_t sibling = SiblingTree::sibling(best_.from);
         look_below(sibling, tree_.half_area(sibling));
-        // With the subtree gone its parent is not needed, and the nodes above hold less.
+        // Without the subtree its parent is not needed, and the nodes above hold less.
         uint32_t above = tree_.parent(best_.from);
         float saved = tree_.half_area(above);
         Bounds rest = tree_.bounds(sibling);
@@ -40,23 +40,24 @@ public:
             look_at(beside, saved);
             rest.add(tree_.bounds(beside));
             saved += tree_.half_area(next) - rest.half_area();
-            note(next, saved - tree_.half_area(next)); // beside all that is left of it
+            note(next, saved - tree_.half_area(next)); // beside all that remains below `next`
         }
         return best_;
     }
 
 private:
-    /// An inner node, and what is saved where the subtree is put somewhere below, but for the new
-    /// node that holds it there.
+    /// An inner node, and the area that is saved if the subtree goes below it. It does not count
+    /// the new node that holds the subtree there.
     struct Entry {
         uint32_t place;
         float saved;
     };
 
-    /// The new node is at least as large as the subtree.
+    /// Whether a place may still gain more than the best: the new node is at least as large as the
+    /// subtree.
     bool is_hopeful(float saved) const { return saved - area_ > best_.gain; }
 
-    /// saved - the node that would hold both
+    /// Returns the saving less the area of the node that would hold both.
     float gain_at(uint32_t place, float saved) const {
         Bounds both = tree_.bounds(place);
         both.add(bounds_);
@@ -91,7 +92,7 @@ private:
                 std::swap(near_gain, far_gain);
             }
             note(near, near_gain);
-            // The better one is looked at first: so there is less hope for the rest.
+            // The better child is searched first, because a larger best gain rules out more places.
             push(far, far_gain + tree_.half_area(far));
             push(near, near_gain + tree_.half_area(near));
         }
@@ -106,7 +107,7 @@ private:
     const Bounds bounds_;
     const float area_;
     Move best_;
-    std::array<Entry, kMaxBvhDepth + 1> stack_; // one more a level
+    std::array<Entry, kMaxBvhDepth + 1> stack_; // each level adds one entry
     size_t size_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Top-down binned surface-area heuristic, in place, in parallel.
+// Builds top-down by the binned surface-area heuristic, in place and in parallel.
 #include "gpu/bvh/bvh.h"
 
 #include "core/system/parallel.h"
@@ -18,12 +18,13 @@ namespace {
 constexpr int kBins = 16;
 constexpr size_t kParallelBuild = 4096;
 constexpr size_t kParallelSum = 32768;
-// A plane is looked for at nodes of so many items, where the best two sides share this much of the
-// node's area, and taken where it leaves less than this of the cost.
+// The builder looks for a plane at nodes of at least so many items, if the boxes of the best two
+// sides share this much of the node's area. It takes the plane if less than this of the cost
+// remains.
 constexpr size_t kMinToCut = 64;
 constexpr float kMinOverlap = 0.1f;
 constexpr float kWorthCutting = 0.95f;
-// Where that many nodes, one below the other, had no such plane, none is looked for further down:
+// After so many nodes in vain, one below the other, the builder looks for no plane further down:
 // the parts of a mesh are as smooth as the whole (docs/decisions/0022).
 constexpr int kMaxInVain = 4;
 
@@ -31,7 +32,7 @@ struct Split {
     float cost = std::numeric_limits<float>::infinity();
     int axis = -1;
     int bin = 0;
-    float overlap = 0; // half the surface area of what both sides' boxes share
+    float overlap = 0; // half the surface area of the intersection of both sides' boxes
 };
 
 /// Bin numbers of centres between two bounds, per axis; all zero along an axis without extent.
@@ -45,7 +46,7 @@ struct Binning {
     }
 };
 
-/// Around items, and around their centres, twice.
+/// The bounds of items, and of twice their centres.
 struct Extent {
     Bounds bounds = Bounds::empty();
     Bounds centers = Bounds::empty();
@@ -94,12 +95,12 @@ struct Bins {
     }
 };
 
-/// Items of a subtree: [first, last), and room for more up to `end`.
+/// The items of a subtree, [first, last), and room for more up to `end`.
 struct Range {
     size_t first;
     size_t last;
     size_t end;
-    int in_vain = 0; // nodes above, since a plane was taken, where one was looked for
+    int in_vain = 0; // nodes above at which no plane was found, since one was taken
 
     size_t count() const { return last - first; }
     size_t spare() const { return end - last; }
@@ -133,7 +134,7 @@ private:
         build_alone(nodes_[node].right, right, depth + 1);
     }
 
-    /// Fills the node in; true where its items are divided in two.
+    /// Fills the node in. Returns true if its items are divided in two.
     bool open(uint32_t node, const Range& range, int depth, Range& left, Range& right) {
         assert(range.count() > 0 && range.last <= range.end && depth <= kMaxBvhDepth);
         const Extent extent = gathered<Extent>(range.first, range.last);
@@ -149,7 +150,7 @@ private:
         return true;
     }
 
-    /// What items [first, last) come to together: Sum(args...) and all of them added to it.
+    /// Returns the sum of items [first, last): Sum(args...) with all of them added.
     template <class Sum, class... Args>
     Sum gathered(size_t first, size_t last, const Args&... args) const {
         const auto add_some = [&](size_t from, size_t to, Sum& sum) {
@@ -177,14 +178,14 @@ private:
                 Range& left, Range& right) {
         const size_t first = range.first, last = range.last;
         const int halvings = int(std::bit_width(range.count() - 1));
-        // Two are halved; and where no depth is left, all are, by count.
+        // Two items are halved, and so are all items by count once no depth is left.
         const bool free = range.count() > 2 && depth + halvings < kMaxBvhDepth;
         const Binning binning = binning_of(centers, range.count());
         const Split split = free ? best_split(first, last, binning) : Split{};
         const bool may_cut = can_cut(range, bounds, split);
         if (may_cut && divide_in_space(range, bounds, split, left, right))
             return;
-        size_t middle = first + range.count() / 2; // all centres in one place
+        size_t middle = first + range.count() / 2; // if all centres lie in one place
         if (split.axis >= 0)
             middle = size_t(std::partition(items_.begin() + ptrdiff_t(first),
                                            items_.begin() + ptrdiff_t(last),
@@ -192,7 +193,7 @@ private:
                                                return binning(item, split.axis) < split.bin;
                                            }) -
                             items_.begin());
-        // The room is shared out by count, while there is hope.
+        // Both sides share the room by count, until too many nodes have looked in vain.
         const int in_vain = range.in_vain + may_cut;
         const size_t spare = in_vain < kMaxInVain ? range.spare() : 0;
         const size_t room = spare * (middle - first) / range.count();
@@ -208,7 +209,7 @@ private:
                split.overlap >= kMinOverlap * bounds.half_area();
     }
 
-    /// Cuts the items by a plane where that gains enough.
+    /// Cuts the items by a plane if that gains enough. Returns whether it did.
     bool divide_in_space(const Range& range, const Bounds& bounds, const Split& split, Range& left,
                          Range& right) {
         const std::span<const Item> items(items_.data() + range.first, range.count());
@@ -228,7 +229,7 @@ private:
         return true;
     }
 
-    /// The halves, or none where they cost more, or where one of them is as large as the whole.
+    /// Returns the halves, or none if they cost more or one of them is as large as the whole.
     static Halves checked(Halves halves, float max_cost, size_t whole) {
         const bool fine =
             halves.below.size() < whole && halves.above.size() < whole && halves.cost() < max_cost;

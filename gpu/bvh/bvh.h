@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A binary bounding volume hierarchy over boxes, one box a leaf. Collapsed to four children when
-// packed (page.h). Based on: Wald 2007, "On fast Construction of SAH-based Bounding Volume
-// Hierarchies" (binning); Stich, Friedrich and Dietrich 2009 (spatial splits).
+// Builds a binary bounding volume hierarchy over boxes, one box a leaf. The packer collapses it to
+// four children a node (page.h). Based on: Wald 2007, "On fast Construction of SAH-based Bounding
+// Volume Hierarchies" (binning); Stich, Friedrich and Dietrich 2009 (spatial splits).
 #pragma once
 
 #include "core/box.h"
@@ -15,8 +15,8 @@
 namespace ovc {
 
 /// A subtree over n boxes takes 2 n - 1 nodes in a row: its root, then the subtree of `left`, then
-/// that of `right`. Where boxes may be cut (build_split_bvh) it takes those for as many as it might
-/// have become, and some are not used.
+/// that of `right`. If boxes may be cut (build_split_bvh), it takes the nodes for the max number of
+/// boxes, and some are not used.
 struct BvhNode {
     Boxf box;
     uint32_t right = 0; // inner: index of the right child; the left one is the next node
@@ -24,19 +24,19 @@ struct BvhNode {
     bool is_leaf() const { return right == 0; }
 };
 
-/// The hierarchy over `boxes` (none of them empty), root first; empty for none. Deterministic. At
-/// most kMaxBvhDepth deep. A box is a unit of progress.
+/// Returns the hierarchy over `boxes` (none of them empty), root first; empty for no boxes. The
+/// result is deterministic and at most kMaxBvhDepth deep. A box is a unit of progress.
 std::vector<BvhNode> build_bvh(std::span<const Boxf> boxes, BuildProgress* progress = nullptr);
 
-/// The same over the boxes of `pairs`, of which up to `max_added` are cut in two by planes, where
-/// the heuristic gains by it: each part is a leaf of its own. Every point of a pair that is in its
-/// box is in one of the parts' boxes (cut_pair.h).
+/// Returns the same over the boxes of `pairs`. Planes cut up to `max_added` of them in two if the
+/// heuristic gains by it; each part is a leaf of its own. Every point of a pair that is in its box
+/// is in one of the parts' boxes (cut_pair.h).
 std::vector<BvhNode> build_split_bvh(std::span<const Boxf> boxes,
                                      std::span<const TrianglePair> pairs, size_t max_added,
                                      BuildProgress* progress = nullptr);
 
-/// Inner levels of any tree of build_bvh: where the heuristic would go deeper, halves by count keep
-/// to it.
+/// The max number of inner levels of any tree of build_bvh. Where the heuristic would go deeper,
+/// the builder halves by count instead.
 inline constexpr int kMaxBvhDepth = 48;
 
 } // namespace ovc

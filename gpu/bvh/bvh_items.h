@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the builder of a BVH sorts: boxes of four floats a corner, with a number.
+// The items that the builder of a BVH sorts: boxes of four floats a corner, with a number.
 #pragma once
 
 #include "core/box.h"
@@ -11,8 +11,8 @@
 
 namespace ovc {
 
-/// A box as four floats a corner: the compiler makes one vector operation of each minimum and
-/// maximum.
+/// A box of four floats a corner, so that the compiler makes one vector operation of each min and
+/// max.
 struct alignas(16) Bounds {
     std::array<float, 4> lo;
     std::array<float, 4> hi;
@@ -39,8 +39,8 @@ struct alignas(16) Bounds {
 };
 
 struct Item {
-    Bounds
-        bounds; // lo[3] holds the index's bits, untouched by min and max because hi[3] is not read
+    // lo[3] holds the bits of the index. min and max leave it alone, because hi[3] is not read.
+    Bounds bounds;
 
     static Item of(const Boxf& box, uint32_t index) {
         Item item{Bounds::of(box)};

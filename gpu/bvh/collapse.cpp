@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Costs from the leaves up, choices from the root down.
+// Computes costs from the leaves up, and makes choices from the root down.
 #include "gpu/bvh/collapse.h"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ Collapse::Collapse(const std::vector<BvhNode>& nodes, BuildProgress* progress)
     in_forks([&](const Fork& fork) { weigh(root(), fork); });
 }
 
-/// The cheapest way to put the boxes of an inner node under at most `most` nodes, 2 to 4, other
-/// than itself.
+/// Returns the cheapest way to put the boxes of an inner node under at most `most` nodes, 2 to 4,
+/// other than itself.
 Collapse::Shares Collapse::shares(uint32_t node, int most) const {
     assert(most >= 2 && most <= 4 && !nodes_[node].is_leaf());
     const Costs& left = costs_[node + 1];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collapse: which nodes of a binary BVH remain when a node has up to four children. Based on:
-// Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed
+// Collapse: decides which nodes of a binary BVH remain when a node has up to four children. Based
+// on: Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed
 // Wide BVHs", section 4.1.
 #pragma once
 
@@ -26,23 +26,24 @@ struct Children {
     int count;
 };
 
-/// The cheapest choice by the surface-area heuristic: the areas of all nodes that remain, added up,
-/// are least. The same on any number of threads.
+/// The cheapest choice by the surface-area heuristic: it minimises the sum of the areas of all
+/// nodes that remain. It is the same on any number of threads.
 class Collapse {
 public:
-    /// Keeps `nodes`, which are not empty. Asks `progress` whether to go on.
+    /// Keeps a reference to `nodes`, which are not empty. Throws Cancelled if `progress` is told to
+    /// stop.
     Collapse(const std::vector<BvhNode>& nodes, BuildProgress* progress);
 
     Subtree root() const { return {0, uint32_t(nodes_.size())}; }
 
-    /// Of a node that remains; of a leaf, the leaf itself.
+    /// Returns the children of a node that remains; for a leaf, the leaf itself.
     Children children(Subtree of) const;
 
 private:
-    /// What a subtree costs where its boxes may lie under up to 1, 2, 3 nodes.
+    /// The costs of a subtree whose boxes may lie under up to 1, 2, 3 nodes.
     using Costs = std::array<float, 3>;
 
-    /// A choice of at most so many nodes on either side.
+    /// The max number of nodes on either side, and the cost of that choice.
     struct Shares {
         int left;
         int right;

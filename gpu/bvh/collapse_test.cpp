@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The choice of nodes that remain, against every choice there is.
+// Compares the choice of nodes that remain with every choice there is.
 #include "gpu/bvh/collapse.h"
 
 #include "kdtree/test_soups.h"
@@ -21,7 +21,8 @@ std::vector<Boxf> strewn(uint64_t seed, size_t count) {
     return boxes;
 }
 
-/// The least sum of areas, by trying all: of the boxes below `node` under at most `most` nodes.
+/// Returns the min sum of areas over all ways to put the boxes below `node` under up to `most`
+/// nodes.
 double least(const std::vector<BvhNode>& nodes, uint32_t node, int most) {
     const BvhNode& n = nodes[node];
     if (n.is_leaf())

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair of triangles cut in two by a plane across an axis: the boxes of both parts.
+// Cuts a pair of triangles in two by a plane across an axis, and returns the boxes of both parts.
 #pragma once
 
 #include "core/box.h"
@@ -12,14 +12,14 @@
 namespace ovc {
 
 struct CutPair {
-    Boxf below; // either may be empty, where nothing of the pair lies there
+    Boxf below; // empty if no point of the pair lies there, as is `above`
     Boxf above;
 };
 
-/// The parts of the pair at or below `plane` and at or above it, each within `box`, which holds
-/// what matters of the pair. A point of the pair that is in the box is in one of the two, however
-/// the corners were rounded to floats: parts are larger than they need be by four roundings of the
-/// largest coordinate (docs/design/numerics.md).
+/// Returns the boxes of the pair's parts at or below `plane` and at or above it, each within `box`,
+/// outside which the pair does not matter. Every point of the pair in the box is in one of the two,
+/// however the corners were rounded to floats: parts are larger than they need be by four roundings
+/// of the largest coordinate (docs/design/numerics.md).
 inline CutPair cut_pair(const TrianglePair& pair, const Boxf& box, int axis, float plane) {
     static constexpr std::array<std::array<uint8_t, 2>, 5> kSides{
         {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {3, 2}}};
@@ -48,7 +48,8 @@ inline CutPair cut_pair(const TrianglePair& pair, const Boxf& box, int axis, flo
     const float margin = 0x1p-22f * largest;
     for (Boxf* part : {&cut.below, &cut.above})
         if (!part->empty())
-            // Clamped, not intersected: within a rounding of the box nothing may come out empty.
+            // Clamped, not intersected: a part within a rounding of the box must not come out
+            // empty.
             *part = {glm::clamp(part->lo - margin, box.lo, box.hi),
                      glm::clamp(part->hi + margin, box.lo, box.hi)};
     return cut;

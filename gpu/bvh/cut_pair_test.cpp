@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a plane cuts is all in the two parts: also where corners were rounded, also on the plane.
+// The two parts hold all of a pair that a plane cuts, also if corners were rounded or lie on the
+// plane.
 #include "gpu/bvh/cut_pair.h"
 
 #include "kdtree/test_soups.h"
@@ -9,7 +10,7 @@
 namespace ovc {
 namespace {
 
-/// A corner in double, as a float leaves it behind.
+/// A corner in double, and the float that it is rounded to.
 struct Corner {
     dvec3 exact;
     vec3 rounded;
@@ -26,7 +27,7 @@ bool holds(const Boxf& box, const dvec3& p) {
     return !box.empty() && Box{dvec3(box.lo), dvec3(box.hi)}.contains(p);
 }
 
-/// What is asked of every cut, and of cuts of its parts, which are smaller boxes of the same pair.
+/// Checks a cut, and cuts of its parts, which are smaller boxes of the same pair.
 void expect_held(const TrianglePair& pair, const std::array<Corner, 4>& corners, const Boxf& box,
                  test::Random& random, int cuts) {
     const int axis = int(random.point(0, 3).x) % 3;
@@ -45,7 +46,7 @@ void expect_held(const TrianglePair& pair, const std::array<Corner, 4>& corners,
         w /= w.x + w.y + w.z;
         dvec3 p =
             w.x * corners[0].exact + w.y * corners[second ? 3 : 1].exact + w.z * corners[2].exact;
-        if (i % 3 == 0) { // moved along a side onto the plane, to rounding
+        if (i % 3 == 0) { // moved along a side onto the plane, up to rounding
             const dvec3& a = corners[0].exact;
             const dvec3& b = corners[2].exact;
             const double t = (plane - a[axis]) / (b[axis] - a[axis]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which leaves of a BVH are joined, and how 18 coordinates of 24 bits lie in 13 words and a half.
+// Joins leaves of a BVH, and packs 18 coordinates of 24 bits into 13 words and a half.
 #include "gpu/bvh/loose_pairs.h"
 
 #include "core/ray.h"
@@ -10,10 +10,10 @@
 namespace ovc {
 namespace {
 
-// How much larger than both boxes together the joint box may be. Measured on soup-500: up to here
-// pages shrink and a ray takes no more steps, since a node above two triangles is one the less.
+// The max ratio of the joint box to both boxes together. Measured on soup-500: up to this, pages
+// shrink and a ray takes no more steps, because one node above the two triangles is saved.
 constexpr float kMaxGrowth = 2;
-// What a coordinate may be for its rounding to fit into 24 bits.
+// The max absolute value of a coordinate whose rounding fits into 24 bits.
 constexpr float kReach = 1 - 0x1p-20f;
 
 bool can_be_loose(const TrianglePair& pair) {
@@ -28,7 +28,7 @@ double steps(float x) {
     return std::round(double(x) / OVC_LOOSE_STEP);
 }
 
-/// In the upper 24 bits of a word, signed.
+/// Returns the coordinate in steps, signed, in the upper 24 bits of a word.
 uint32_t counted(float x) {
     return uint32_t(int32_t(steps(x))) << 8;
 }
@@ -45,7 +45,7 @@ public:
         : nodes_(nodes), pairs_(pairs) {}
 
     std::vector<LoosePair> join() {
-        for (size_t i = nodes_.size(); i-- > 0;) // what lies below a node comes behind it
+        for (size_t i = nodes_.size(); i-- > 0;) // a node's subtree comes behind it
             if (!nodes_[i].is_leaf())
                 join_below(uint32_t(i));
         return std::move(loose_);
@@ -64,8 +64,8 @@ private:
         }
     }
 
-    /// Joins a child of the node that is a leaf with a leaf below the other child, of which the
-    /// rest then takes the place.
+    /// Joins a child of the node that is a leaf with a leaf below the other child. The rest of that
+    /// child then takes its place.
     void join_across(uint32_t node, uint32_t alone, uint32_t sibling) {
         if (nodes_[sibling].is_leaf())
             return;
@@ -131,7 +131,7 @@ void put_loose(const TrianglePair& first, const TrianglePair& second,
                 counted((i < 3 ? first.corners[i] : second.corners[i - 3])[axis]);
     for (size_t i = 0; i < 4; ++i)
         unit[i] = {corners[i][0], corners[i][1], corners[i][2], 0};
-    // The fourth corner's coordinates and the fifth's first lie in the low bytes of a texel each.
+    // The coordinates of corner 4, and the first of corner 5, lie in the low bytes of a texel each.
     const std::array<uint32_t, 4> below{corners[4][0], corners[4][1], corners[4][2], corners[5][0]};
     for (size_t i = 0; i < 4; ++i)
         for (int byte = 0; byte < 3; ++byte)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loose pairs hold their corners to half a step, and join what is alone and in the frame.
+// Loose pairs keep their corners to half a step, and join triangles that are alone and in the
+// frame.
 #include "gpu/bvh/loose_pairs.h"
 
 #include "core/ray.h"
@@ -18,7 +19,7 @@ TrianglePair alone(test::Random& random, uint32_t id) {
     return pair;
 }
 
-/// The corners of a unit as layout.h says, read field by field.
+/// Returns the corners of a unit as layout.h defines them, read field by field.
 std::array<dvec3, 6> corners_of(std::span<const uvec4, OVC_UNIT_TEXELS> unit) {
     const auto upper = [](uint32_t word) { return double(int32_t(word) >> 8) * OVC_LOOSE_STEP; };
     const auto low = [&](const uvec4& t) {
@@ -52,7 +53,7 @@ TEST(LoosePairs, KeepCornersToHalfAStep) {
     }
 }
 
-/// A node over two boxes of side 0.1, `apart` from one another.
+/// Returns a node over two boxes of side 0.1, `apart` from one another.
 std::vector<BvhNode> two_boxes(float apart) {
     const Boxf one{vec3(0), vec3(0.1f)}, other{vec3(apart), vec3(apart + 0.1f)};
     Boxf both = one;
@@ -71,7 +72,8 @@ TEST(LoosePairs, JoinWhatIsNear) {
     EXPECT_FALSE(far[0].is_leaf());
 }
 
-/// How often each triangle is in a leaf of the node, whose box holds those of its children.
+/// Counts how often each triangle is in a leaf of the node, and checks that each box holds those of
+/// the node's children.
 void count_below(const std::vector<BvhNode>& nodes, uint32_t node,
                  const std::vector<LoosePair>& loose, std::vector<int>& count) {
     const BvhNode& n = nodes[node];

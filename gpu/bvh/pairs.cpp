@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairing: sides meet in a hash table of their end points; the neighbours so found are the
-// candidates. Block by block, in parallel; then whatever blocks left alone. Based on: Karp and
-// Sipser 1981, "Maximum matchings in sparse random graphs".
+// Pairing: sides meet in a hash table of their end points, and the neighbours found so are the
+// candidates. Blocks of triangles are paired in parallel; then the triangles that they left alone
+// are paired with each other. Based on: Karp and Sipser 1981, "Maximum matchings in sparse random
+// graphs".
 #include "gpu/bvh/pairs.h"
 
 #include "core/corner_hash.h"
@@ -30,7 +31,7 @@ Boxf box_of(const LocalTriangle& t) {
     return box;
 }
 
-/// Is side i of s the side j of t, in either direction?
+/// Whether side i of s is side j of t, in either direction.
 bool same_side(const LocalTriangle& s, uint32_t i, const LocalTriangle& t, uint32_t j) {
     const vec3 &a = s[i], &b = s[(i + 1) % 3], &c = t[j], &d = t[(j + 1) % 3];
     return (a == c && b == d) || (a == d && b == c);
@@ -50,7 +51,8 @@ class OpenSides {
 public:
     explicit OpenSides(size_t triangles) : slots_(std::bit_ceil(triangles * 6 + 1), kEmpty) {}
 
-    /// The side that `fits` among those of this key, taken out; or kNone, and `side` is put in.
+    /// Takes out and returns the side that `fits` among those of this key; if there is none, puts
+    /// `side` in and returns kNone.
     /// Looks at a few only: where thousands of triangles lie on one edge, some stay alone.
     template <class Fits>
     uint32_t match_or_add(uint64_t key, uint32_t side, Fits&& fits) {
@@ -91,7 +93,7 @@ TrianglePair single(const LocalTriangle& t, uint32_t id) {
 TrianglePair joined(const LocalTriangle& a, uint32_t a_id, const LocalTriangle& b, uint32_t b_id,
                     const Neighbour& n) {
     const uint32_t side = n.my_side;
-    // b may have the shared side run either way: its end that is corner 0 is told by position.
+    // The shared side may run either way in b, so its end that is corner 0 is found by position.
     const uint32_t far = (n.its_side + 1u) % 3;
     const bool opposite = b[n.its_side] == a[(side + 1) % 3];
     const uint32_t first_of_b = opposite ? n.its_side : far;
@@ -124,7 +126,7 @@ public:
             if (free_[i] == 1)
                 last_chance_.push_back(i);
         for (uint32_t next = 0; next < ids_.size(); ++next) {
-            // Whoever has one neighbour left is served before it has none.
+            // A triangle with one free neighbour left is served before it has none.
             while (!last_chance_.empty()) {
                 const uint32_t i = last_chance_.back();
                 last_chance_.pop_back();
@@ -141,8 +143,8 @@ public:
 private:
     const LocalTriangle& triangle(uint32_t i) const { return triangles_[ids_[i]]; }
 
-    /// Up to three of each triangle, one across each side. An edge joins two triangles; further
-    /// ones at it pair up among themselves.
+    /// Finds up to three neighbours of each triangle, one across each side. An edge joins two
+    /// triangles; further ones at it pair up among themselves.
     void find_neighbours() {
         OpenSides open(ids_.size());
         for (uint32_t i = 0; i < ids_.size(); ++i) {
@@ -162,7 +164,8 @@ private:
     void meet(uint32_t i, uint32_t my_side, uint32_t j, uint32_t its_side) {
         Boxf both = boxes_[i];
         both.add(boxes_[j]);
-        // A joint box up to the size of both together is worth it: half the units, half the steps.
+        // A joint box up to twice the size of both together is worth it: half the units, half the
+        // steps.
         const float growth = both.half_area() - 2 * (boxes_[i].half_area() + boxes_[j].half_area());
         if (growth > 0)
             return;
@@ -204,8 +207,8 @@ private:
     std::vector<uint32_t> last_chance_;
 };
 
-/// Of so many triangles a block's tables stay in a core's cache, which makes it faster on one
-/// thread as well.
+/// The tables of a block of so many triangles stay in a core's cache, which makes pairing faster on
+/// one thread as well.
 constexpr size_t kBlock = 8192;
 
 } // namespace
@@ -237,7 +240,7 @@ std::vector<TrianglePair> pair_triangles(std::span<const LocalTriangle> triangle
         pairs.insert(pairs.end(), part.pairs.begin(), part.pairs.end());
         alone.insert(alone.end(), part.alone.begin(), part.alone.end());
     }
-    // Neighbours in different blocks.
+    // Neighbours may lie in different blocks.
     std::vector<uint32_t> single_ids;
     if (parts.size() > 1)
         Block(triangles, alone).pair(pairs, single_ids);

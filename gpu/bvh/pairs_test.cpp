@@ -21,7 +21,7 @@ std::vector<LocalTriangle> triangles_of(const Soup& soup) {
     return triangles;
 }
 
-/// The corners in an order that does not depend on which comes first.
+/// Returns the corners in an order that does not depend on which comes first.
 LocalTriangle sorted(LocalTriangle t) {
     std::sort(t.begin(), t.end(), [](const vec3& a, const vec3& b) {
         return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rounds: moves are looked for in parallel, in a tree that stands still, and made one by one.
+// Works in rounds: it searches for moves in parallel, in a tree that stands still, and makes them
+// one by one.
 #include "gpu/bvh/reinsert.h"
 
 #include "core/system/parallel.h"
@@ -10,12 +11,12 @@
 namespace ovc {
 namespace {
 
-constexpr double kTried = 0.05;      // of all subtrees, a round: the most promising
-constexpr double kWorthwhile = 0.01; // of the cost: what a round must gain for another one
+constexpr double kTried = 0.05;      // the share of subtrees tried in a round: the most promising
+constexpr double kWorthwhile = 0.01; // the share of the cost that a round must gain for another one
 constexpr int kMaxRounds = 16;
 constexpr size_t kSearchGrain = 256; // searches a task
 
-/// hope: what the tree would save without the subtree, but for what nodes above then shrink by.
+/// hope: the saving of the tree without the subtree. It does not count how nodes above then shrink.
 struct Candidate {
     float hope;
     uint32_t place;
@@ -39,7 +40,7 @@ std::vector<Candidate> candidates(const SiblingTree& tree) {
     return all;
 }
 
-/// What is worth moving, most gain first.
+/// Returns the moves that gain, the largest gain first.
 std::vector<Move> moves(const SiblingTree& tree, BuildProgress* progress) {
     const std::vector<Candidate> tried = candidates(tree);
     std::vector<Move> moves(tried.size());
@@ -55,7 +56,7 @@ std::vector<Move> moves(const SiblingTree& tree, BuildProgress* progress) {
     return moves;
 }
 
-/// Makes those that still gain after the ones before them; what they gain together.
+/// Makes the moves that still gain after the ones before them. Returns their total gain.
 double make(const std::vector<Move>& moves, uint32_t max_height, SiblingTree& tree) {
     double gain = 0;
     for (const auto& [from, to, hoped] : moves) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reinsertion: subtrees of a BVH move to where they cost less. A builder decides at the top first,
-// where it knows least: a floor's two triangles end up deep among the pipes that stand on it.
-// Based on: Bittner, Hapala and Havran 2013, "Fast Insertion-Based Optimization of Bounding Volume
-// Hierarchies"; Meister and Bittner 2018, "Parallel Reinsertion for Bounding Volume Hierarchy
+// Reinsertion: moves subtrees of a BVH to places where they cost less. A builder decides at the top
+// first, where it knows least: a floor's two triangles end up deep among the pipes that stand on
+// it. Hierarchies"; Meister and Bittner 2018, "Parallel Reinsertion for Bounding Volume Hierarchy
 // Optimization".
 #pragma once
 
@@ -13,10 +12,10 @@
 
 namespace ovc {
 
-/// The same leaves in a tree that costs less, or as much, and is no higher: the half areas of its
-/// inner nodes, added up. It goes on while that gains much, so a good tree costs little time. The
-/// same on any number of threads. nodes: at most kMaxBvhDepth high; of the result none is unused.
-/// Asks `progress` whether to go on.
+/// Changes the tree over the same leaves to one that costs no more, by the sum of half areas over
+/// its inner nodes, and is no higher. It goes on while rounds gain much, so a good tree costs
+/// little time. The result is the same on any number of threads and has no unused nodes. nodes: at
+/// most kMaxBvhDepth high. Throws Cancelled if `progress` is told to stop.
 void reinsert(std::vector<BvhNode>& nodes, BuildProgress* progress = nullptr);
 
 } // namespace ovc

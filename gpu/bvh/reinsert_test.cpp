@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reinsertion against trying every move, and what it must keep: the leaves, boxes that fit, the
-// height, the cost, the bits.
+// Compares reinsertion with trying every move, and checks what it must keep: the leaves, boxes that
+// fit, the height, the cost, and the bits.
 #include "gpu/bvh/reinsert.h"
 
 #include "core/system/parallel.h"
@@ -31,7 +31,7 @@ std::vector<Boxf> strewn(uint64_t seed, size_t count, double size) {
     return boxes;
 }
 
-/// Small things, and floors through all of them.
+/// Returns small boxes, and floors through all of them.
 std::vector<Boxf> storeys() {
     std::vector<Boxf> boxes = strewn(3, 5000, 0.02);
     for (int i = 0; i < 8; ++i) {
@@ -60,7 +60,7 @@ std::vector<std::pair<std::string, Tree>> trees() {
             {"geometric series", build_bvh(series)}};
 }
 
-/// Every leaf's item and box, sorted; checks on the way that every box is the union of its
+/// Every leaf's item and box, sorted. walk() also checks that every box is the union of its
 /// children's.
 using LeafList = std::vector<std::tuple<uint32_t, float, float, float, float, float, float>>;
 
@@ -161,7 +161,8 @@ TEST(Reinsert, CanBeStopped) {
     BuildProgress progress([&](double, const char*) { return goes_on; });
     progress.begin("work", 1, 1);
     goes_on = false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(50)); // it reports now and then only
+    std::this_thread::sleep_for(
+        std::chrono::milliseconds(50)); // progress reports only now and then
     EXPECT_THROW(reinsert(nodes, &progress), Cancelled);
 }
 
@@ -180,7 +181,7 @@ TEST(MoveSearch, FindsTheBestOfAllMovesThereAre) {
                 const uint32_t parent = tree.parent(from);
                 const float change = tree.move(from, to);
                 EXPECT_NEAR(change, tree.cost() - before, 1e-5 * before);
-                Facts(tree.nodes()); // boxes fit
+                Facts(tree.nodes()); // checks that boxes fit
                 least = std::min(least, change);
                 tree.move(from, parent);
                 ASSERT_TRUE(same(tree.nodes(), nodes)) << "undone";

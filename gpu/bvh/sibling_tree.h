@@ -15,7 +15,7 @@
 
 namespace ovc {
 
-/// Nodes have places: the root 0, siblings 2 k and 2 k + 1; at 1 there is nothing.
+/// Nodes have places: the root 0, siblings 2 k and 2 k + 1. Place 1 is unused.
 class SiblingTree {
 public:
     static constexpr uint32_t kFirst = 2; // the first place below the root
@@ -29,7 +29,7 @@ public:
         read(nodes, 0, 0);
     }
 
-    /// The tree as it is now, no node unused.
+    /// Returns the tree as it is now, without unused nodes.
     std::vector<BvhNode> nodes() const {
         std::vector<BvhNode> nodes;
         nodes.reserve(places_.size() - 1);
@@ -38,17 +38,17 @@ public:
     }
 
     uint32_t end() const { return uint32_t(places_.size()); }
-    uint32_t parent(uint32_t place) const { return parents_[place]; } // of the root: kNone
+    uint32_t parent(uint32_t place) const { return parents_[place]; } // kNone for the root
     const Bounds& bounds(uint32_t place) const { return places_[place].bounds; }
     float half_area(uint32_t place) const { return bounds(place).half_area(); }
     bool is_leaf(uint32_t place) const { return child(place) == 0; }
-    /// Of an inner node, the place of the first of its two children.
+    /// Returns the place of the first of an inner node's two children.
     uint32_t child(uint32_t place) const { return places_[place].child(); }
-    /// Inner nodes on the longest way down: 0 of a leaf.
+    /// Returns the number of inner nodes on the longest way down: 0 for a leaf.
     uint32_t height(uint32_t place) const { return is_leaf(place) ? 0 : places_[place].value(); }
 
-    /// Whether the subtree at `from`, not the root, can go beside that at `to`: it is not there
-    /// already, nor all around it.
+    /// Whether the subtree at `from`, not the root, can go beside the one at `to`: it must not be
+    /// there already, and `to` must not lie inside it.
     bool can_move(uint32_t from, uint32_t to) const {
         if (to == sibling(from) || to == parents_[from])
             return false;
@@ -58,9 +58,9 @@ public:
         return true;
     }
 
-    /// Moves the subtree at `from` beside that at `to`, where can_move(): a new node at `to` holds
-    /// both, and what was its sibling takes the place of their parent. Returns by how much the half
-    /// areas of all inner nodes, added up, grew. move(from, what its parent was) undoes it.
+    /// Moves the subtree at `from` beside the one at `to`, if can_move(): a new node at `to` holds
+    /// both, and the old sibling takes the place of their parent. Returns the increase of the sum
+    /// of half areas over all inner nodes. move(from, its parent before the move) undoes it.
     float move(uint32_t from, uint32_t to) {
         assert(can_move(from, to));
         const uint32_t beside = sibling(from), parent = parents_[from];
@@ -75,7 +75,7 @@ public:
         return added - before + fit_above(to) + fit_above(parent);
     }
 
-    /// Half areas of all inner nodes, added up.
+    /// Returns the sum of half areas over all inner nodes.
     double cost() const {
         double sum = is_leaf(0) ? 0 : half_area(0);
         for (uint32_t place = kFirst; place < end(); ++place)
@@ -86,12 +86,12 @@ public:
 private:
     /// 32 bytes: siblings share a line of the cache.
     struct Place {
-        // lo[3] and hi[3] hold the bits of two numbers, as an Item's.
+        // lo[3] and hi[3] hold the bits of two numbers, as in Item.
         Bounds bounds{};
 
         uint32_t child() const { return std::bit_cast<uint32_t>(bounds.lo[3]); }
         void set_child(uint32_t place) { bounds.lo[3] = std::bit_cast<float>(place); }
-        /// Of a leaf its item, else its height.
+        /// A leaf's item; an inner node's height.
         uint32_t value() const { return std::bit_cast<uint32_t>(bounds.hi[3]); }
         void set_value(uint32_t value) { bounds.hi[3] = std::bit_cast<float>(value); }
     };
@@ -126,7 +126,7 @@ private:
             parents_[child(place)] = parents_[child(place) + 1] = place;
     }
 
-    /// An inner node's box and height by its children's; false where they were that already.
+    /// Updates an inner node's box and height from its children. Returns false if neither changes.
     bool fit(uint32_t place) {
         const uint32_t first = child(place);
         Place now{bounds(first)};
@@ -138,7 +138,8 @@ private:
         return changes;
     }
 
-    /// The nodes above, up to where nothing changes; by how much their half areas grew.
+    /// Updates the nodes above, up to the first that does not change. Returns the increase of their
+    /// half areas.
     float fit_above(uint32_t place) {
         float grown = 0;
         while ((place = parents_[place]) != kNone) {

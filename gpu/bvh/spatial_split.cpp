@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Items are chopped into bins along each axis; then the plane between two bins is chosen.
+// Chops items into bins along each axis, then chooses the plane between two bins.
 #include "gpu/bvh/spatial_split.h"
 
 #include "gpu/bvh/cut_pair.h"
@@ -10,7 +10,7 @@ namespace ovc {
 namespace {
 
 constexpr int kSplitBins = 16;
-constexpr size_t kSplitSample = 2048; // items that are looked at to choose a plane
+constexpr size_t kSplitSample = 2048; // items examined to choose a plane
 
 struct SpatialBin {
     Bounds bounds = Bounds::empty();
@@ -23,10 +23,10 @@ public:
     SpatialBins(const Bounds& bounds, size_t axis)
         : axis_(axis), lo_(bounds.lo[axis]), width_((bounds.hi[axis] - lo_) / float(kSplitBins)) {}
 
-    /// Are there planes to choose from?
+    /// Whether there are planes to choose from.
     bool usable() const { return width_ > 1e-6f && plane(1) > lo_; }
 
-    /// Below bin i.
+    /// The plane below bin i.
     float plane(int i) const { return lo_ + float(i) * width_; }
 
     void add(const Item& item) {

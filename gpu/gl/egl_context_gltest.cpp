@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices are found by number and by name; each way to fail has its sentence.
+// Devices are found by number and by name, and each failure has its sentence.
 #include "gpu/gl/egl_context.h"
 
 #include "gpu/gl/workarounds.h"

@@ -50,7 +50,7 @@ protected:
         return program;
     }
 
-    /// What the program that was found writes; 0: none was found.
+    /// Returns the number that the program from the store writes; 0 if none was found.
     uint32_t found(const ProgramStore& store, const std::vector<std::string>& sources = kSources) {
         uint32_t written = 0;
         gl->run([&](GlState&) {
@@ -146,7 +146,7 @@ TEST_F(ProgramStoreGl, WhatWasUsedLongestAgoGoesFirst) {
         keep(store, {name});
     for (const fs::path& file : files())
         fs::last_write_time(file, fs::file_time_type::clock::now() - hour);
-    EXPECT_EQ(found(store), 7u); // used now
+    EXPECT_EQ(found(store), 7u); // which marks it as used now
     keep(store, {"c"});
     keep(store, {"d"});
     EXPECT_EQ(files().size(), 3u);
@@ -159,7 +159,7 @@ TEST_F(ProgramStoreGl, ManyMayKeepAndFindAtOnce) {
         const std::string name = folder.string();
         const pid_t pid = fork();
         ASSERT_GE(pid, 0);
-        if (pid == 0) { // the same test again, of another process
+        if (pid == 0) { // runs the test below in another process
             setenv("OVC_PROGRAM_STORE_FOLDER", name.c_str(), 1);
             execl("/proc/self/exe", "gpu_test", "--gtest_filter=ProgramStoreGl.AnotherProcess*",
                   nullptr);
@@ -173,10 +173,10 @@ TEST_F(ProgramStoreGl, ManyMayKeepAndFindAtOnce) {
         EXPECT_EQ(status, 0);
     }
     EXPECT_EQ(found(ProgramStore(folder)), 7u);
-    EXPECT_EQ(files().size(), 1u); // and nothing left behind
+    EXPECT_EQ(files().size(), 1u); // no temporary file is left
 }
 
-/// Run by the test above, in two processes.
+/// The test above runs this one in two processes.
 TEST_F(ProgramStoreGl, AnotherProcessKeepsAndFinds) {
     const char* shared = std::getenv("OVC_PROGRAM_STORE_FOLDER");
     if (!shared)
@@ -185,11 +185,11 @@ TEST_F(ProgramStoreGl, AnotherProcessKeepsAndFinds) {
     keep(store);
     for (int i = 0; i < 100; ++i) {
         keep(store);
-        ASSERT_EQ(found(store), 7u); // always whole
+        ASSERT_EQ(found(store), 7u); // the file is always whole
     }
 }
 
-/// Sets variables while it lives.
+/// Sets environment variables while it lives.
 class Environment {
 public:
     explicit Environment(std::vector<std::pair<const char*, const char*>> values) {

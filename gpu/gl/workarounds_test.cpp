@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of workarounds: who matches, and how entries are switched off.
+// The table of workarounds: which drivers match, and how entries are switched off.
 #include "gpu/gl/workarounds.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error bound of the kernel's sides, over a sample of triangles.
+// Estimates doubt from the error bound of the kernel's sides, over a sample of triangles.
 #include "gpu/page/frames.h"
 
 #include "core/vec.h"
@@ -12,16 +12,16 @@
 namespace ovc {
 namespace {
 
-/// A triangle of a sample: where it is, and how much of it float32 leaves in doubt.
+/// A triangle of a sample, with the part of its area that float32 leaves in doubt.
 struct Patch {
     dvec3 center;
     double area;
     double doubtful; // of the area
 };
 
-/// The doubtful share of the area, of small neighbourhoods with as many patches each, added up over
-/// the patches. Rays that come to a neighbourhood hit its triangles by their area; but a large
-/// triangle far away says nothing about small ones here.
+/// Adds up over the patches the doubtful share of the area in each one's small neighbourhood.
+/// Neighbourhoods have about as many patches each. Rays that come to one hit its triangles by their
+/// area, but a large triangle far away says nothing about small ones here.
 double sum_of_shares(std::span<Patch> patches) {
     constexpr size_t kNeighbours = 64;
     if (patches.size() <= kNeighbours) {
@@ -47,7 +47,7 @@ double sum_of_shares(std::span<Patch> patches) {
 
 double doubtful_share(const Soup& soup, std::span<const TriangleId> triangles, const Frame& frame) {
     constexpr size_t kSample = 4096;
-    // Of a corner as far off as the frame is wide, its neighbours close to the ray.
+    // The bound of a corner as far off as the frame is wide, whose neighbours are close to the ray.
     constexpr double kBound = OVC_BOUND_UNIT * (OVC_BOUND_CONSTANT + OVC_BOUND_RELATIVE);
     const size_t step = triangles.size() / kSample + 1;
     std::vector<Patch> patches;
@@ -68,7 +68,7 @@ bool one_frame_suits(const Soup& soup, std::span<const TriangleId> triangles, co
 
 namespace {
 
-/// Some of the triangles in the leaves, evenly.
+/// Returns an even sample of the triangles in the leaves.
 std::vector<TriangleId> sample_of(std::span<const Leaf> leaves) {
     constexpr size_t kSample = 8192;
     size_t all = 0;
@@ -109,7 +109,8 @@ public:
     }
 
 private:
-    /// Leaves lie in the order of their cells. [first, end), or none.
+    /// Returns the leaves below the node, [first, end), which may be none. They lie in the order of
+    /// their cells.
     std::pair<uint32_t, uint32_t> leaves_below(uint32_t node) const {
         const KdNode& n = level1_.nodes[node];
         if (n.is_leaf())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles a frame suits. The kernel counts in float32, and the smaller triangles are in the
-// frame, the more rays it leaves in doubt.
+// Decides which triangles a frame suits. The kernel computes in float32, and the smaller triangles
+// are in the frame, the more rays it leaves in doubt.
 #pragma once
 
 #include "core/soup.h"
@@ -10,23 +10,24 @@
 
 namespace ovc {
 
-/// What of the rays that hit the triangles float32 would leave in doubt in the frame, roughly: the
-/// share of the area, in small neighbourhoods all over the scene, that lies within the error bound
-/// of the triangles' sides (docs/design/numerics.md). It looks at a sample.
+/// Returns roughly the share of rays that float32 would leave in doubt in the frame, of those that
+/// hit the triangles. It is the share of the area, in small neighbourhoods all over the scene, that
+/// lies within the error bound of the triangles' sides (docs/design/numerics.md). Looks at a
+/// sample.
 double doubtful_share(const Soup& soup, std::span<const TriangleId> triangles, const Frame& frame);
 
-/// Up to this share a frame suits all leaves of a scene.
+/// Up to this doubtful share one frame suits all leaves of a scene.
 inline constexpr double kMaxDoubtful = 1.0 / 8;
 
-/// Up to this one it suits leaves that could have several: a ray that changes frames takes longer,
-/// one in doubt as well.
+/// Up to this share it suits leaves that could have several frames. A ray that changes frames takes
+/// longer, but so does one in doubt.
 inline constexpr double kMaxDoubtfulOfPart = 0.03;
 
 /// Whether the frame of a scene in `bounds` suits all its leaves.
 bool one_frame_suits(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds);
 
-/// Gives leaves that lie together one frame, as many as it suits: subtrees of level 1, the largest
-/// that do.
+/// Gives leaves that lie together a shared frame where it suits them: those of the largest subtrees
+/// of level 1 that one frame suits.
 void share_frames(const Soup& soup, Level1& level1);
 
 } // namespace ovc

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A frame in which triangles are too small for float32 is told.
+// Checks that a frame is rejected if triangles are too small in it for float32.
 #include "gpu/page/frames.h"
 
 #include "kdtree/build.h"

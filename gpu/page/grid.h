@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grid: the 16-bit coordinates that boxes of nodes count in.
+// Grid: the 16-bit coordinates in which a page stores the boxes of nodes.
 #pragma once
 
 #include "core/box.h"
@@ -15,7 +15,7 @@ class Grid {
 public:
     explicit Grid(const Box& box) {
         for (int axis = 0; axis < 3; ++axis) {
-            // Two cells of margin on each side: there the padding below has room.
+            // Two cells of margin on each side leave room for the padding below.
             const double cell = std::max(box.extent()[axis], 1e-30) / (kLast - 4);
             cell_[axis] = std::nextafter(float(cell), INFINITY);
             middle_[axis] = float((box.lo[axis] + box.hi[axis]) / 2);
@@ -24,8 +24,8 @@ public:
 
     GridHeader header() const { return {middle_, cell_}; }
 
-    /// Of `box` along an axis, rounded outwards by a tenth of a cell at least: 1/655,350
-    /// of the leaf, 50 float roundings, where the kernel makes 26 at most
+    /// Returns the range of `box` along an axis, rounded outwards by at least a tenth of a cell.
+    /// That is 1/655,350 of the leaf or 50 float roundings, while the kernel makes at most 26
     /// (docs/design/numerics.md).
     GridRange range(const Boxf& box, int axis) const {
         const double lo = std::floor(position(box.lo[axis], axis) - kPadding);

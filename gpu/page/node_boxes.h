@@ -12,14 +12,14 @@
 
 namespace ovc {
 
-/// The grid that boxes count on, as a page's header says it: coordinate c lies at
+/// The grid of a page's boxes, as the page's header gives it: coordinate c lies at
 /// middle + (c - kGridMiddle) cell.
 struct GridHeader {
     vec3 middle;
     vec3 cell;
 };
 
-/// Of the page whose texels these are.
+/// Returns the grid of the page whose texels these are.
 inline GridHeader header_of(std::span<const uvec4> texels) {
     const auto vector = [](const uvec4& t) {
         return vec3(std::bit_cast<float>(t.x), std::bit_cast<float>(t.y),
@@ -31,7 +31,7 @@ inline GridHeader header_of(std::span<const uvec4> texels) {
 constexpr uint32_t kGridLast = 0xffff;
 constexpr uint32_t kGridMiddle = 0x8000;
 
-/// A range of grid coordinates, 0 to kGridLast; empty: that of a child that is missing.
+/// A range of grid coordinates, 0 to kGridLast. The empty range stands for a missing child.
 struct GridRange {
     uint32_t lo = kGridLast;
     uint32_t hi = 0;
@@ -42,8 +42,9 @@ struct GridRange {
 
 namespace node_boxes {
 
-/// The kernel reads the upper half of a word with the lower one as its fraction: less than a cell
-/// more. For an upper bound that is outwards, for a lower one a cell is taken off before.
+/// The cells to take off a lower bound. The kernel reads the upper half of a word with the lower
+/// half as its fraction, which adds less than a cell. That only widens an upper bound, but would
+/// narrow a lower one.
 inline uint32_t less(size_t child) {
     return child & 1;
 }
@@ -59,7 +60,7 @@ inline uint32_t get(uint32_t word, size_t child) {
 
 } // namespace node_boxes
 
-/// Along one axis, whose texel `words` is. Of an odd child lo is not 0.
+/// Stores a child's range along the axis whose texel `words` is. For an odd child lo is not 0.
 inline void put_range(uvec4& words, size_t child, GridRange range) {
     assert(child < 4); // lo may be 0 in a damaged file, and is then a box that is too small
     node_boxes::put(words[int(child / 2)], child, range.lo - node_boxes::less(child));

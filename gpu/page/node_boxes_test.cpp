@@ -10,7 +10,8 @@
 namespace ovc {
 namespace {
 
-/// What shaders/box.glsl makes of it: coordinates() in cells, from the grid's first.
+/// Returns a coordinate as coordinates() of shaders/box.glsl decodes it, in cells from the grid's
+/// first.
 double in_kernel(uint32_t word, size_t child) {
     return double(int32_t(child & 1 ? word : word << 16)) / 65536 + kGridMiddle;
 }

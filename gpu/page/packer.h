@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packer: a binary BVH into units of the layout of shaders/layout.h, four children a node.
+// Packer: turns a binary BVH into units of the layout of shaders/layout.h, four children a node.
 #pragma once
 
 #include "core/build_progress.h"
@@ -25,12 +25,13 @@ inline uint32_t bits(float x) {
     return std::bit_cast<uint32_t>(x);
 }
 
-/// Grid: range(box, axis), where a box of the BVH lies on it.
-/// PutItem: put(item, unit) writes the four texels of a leaf of the BVH; from several threads.
+/// Grid: range(box, axis) returns where a box of the BVH lies on it.
+/// PutItem: put(item, unit) writes the four texels of a leaf of the BVH. Several threads call it.
 template <class Grid, class PutItem>
 class Packer {
 public:
-    /// Keeps the references. The BVH has nodes. Asks `progress` whether to go on.
+    /// Keeps the references. The BVH has nodes. This and pack() throw Cancelled if `progress` is
+    /// told to stop.
     Packer(const std::vector<BvhNode>& nodes, const GridHeader& header, const Grid& grid,
            const PutItem& put, BuildProgress* progress)
         : nodes_(nodes),
@@ -58,7 +59,8 @@ private:
     static constexpr uint32_t kFirstFree = OVC_ROOT_UNIT + 1;
     static constexpr uint32_t kParallelPack = 16384; // nodes of the BVH
 
-    /// What lies below a node: units, and nodes on the longest way, itself included.
+    /// The extent of a subtree: the units below its root, and the nodes on the longest way down,
+    /// root included.
     struct Extent {
         uint32_t units;
         uint32_t depth;
@@ -104,8 +106,8 @@ private:
         return below_[of.node] = all;
     }
 
-    /// Into the unit `at`; what lies below goes into those from `free` on: the children, then what
-    /// lies below each.
+    /// Writes the node into the unit `at`, and its subtree into the units from `free` on: the
+    /// children come first, then the subtree of each.
     void write(Subtree of, uint32_t at, uint32_t free) {
         const Children children = largest_first(collapse_.children(of));
         put_boxes(children, at);
@@ -126,8 +128,8 @@ private:
         });
     }
 
-    /// As occlusion rays go through them, which look for any hit
-    /// (docs/decisions/0020-occlusion-has-its-own-kernel.md).
+    /// Puts the largest child first. Occlusion rays look for any hit and go through children in
+    /// this order (docs/decisions/0020-occlusion-has-its-own-kernel.md).
     Children largest_first(Children children) const {
         const auto area = [&](int i) {
             return nodes_[children.subtree[size_t(i)].node].box.half_area();
@@ -153,7 +155,7 @@ private:
     const PutItem& put_;
     BuildProgress* progress_;
     const Collapse collapse_;
-    std::vector<Extent> below_; // per node of the BVH that remains
+    std::vector<Extent> below_; // for each node of the BVH that remains
     Page page_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Level 2: triangles into the leaf's frame, pairs, BVH, four children a node, 16-bit boxes.
+// Builds level 2: converts triangles to the leaf's frame, pairs them, builds a BVH, and packs it
+// with four children a node and 16-bit boxes.
 #include "gpu/page/page.h"
 
 #include "core/system/parallel.h"
@@ -43,18 +44,18 @@ void put_pair(const TrianglePair& pair, std::span<uvec4, OVC_UNIT_TEXELS> unit) 
     }
 }
 
-/// How many pairs planes may cut in two. A tenth, so that a page stays within what was planned; and
-/// units of a page are never more than if no two triangles made a pair. Loose pairs leave room for
+/// Returns how many pairs planes may cut in two: a tenth, so that a page stays within its planned
+/// size, and never more units than if no two triangles made a pair. Loose pairs leave room for
 /// more, which the plan foresees (plugin/plan/page_rate.h).
 size_t max_cut(size_t pairs, size_t triangles, bool is_loose, const LoosePairs& loose) {
     return is_loose ? size_t(loose.max_cut() * double(pairs))
                     : std::min(pairs / 10, triangles - pairs);
 }
 
-/// Pairs in a page's units, with the boxes of what matters of them.
+/// The pairs that a page's units hold, under a BVH over the parts of them inside the leaf's box.
 class PageItems {
 public:
-    /// name: index into leaf.triangles -> what the page calls it.
+    /// name: maps an index into leaf.triangles to the page's name of the triangle.
     template <class Name>
     PageItems(const Soup& soup, const Leaf& leaf, BuildProgress* progress, const LoosePairs& loose,
               Name&& name)
@@ -70,8 +71,8 @@ public:
                                  progress);
         if (is_loose_)
             loose_ = join_loose(nodes_, pairs_);
-        reinsert(nodes_, progress); // now: the fewer leaves, the less to look for
-        // As the kernel sees them: boxes are tighter without.
+        reinsert(nodes_, progress); // after joining, because fewer leaves take less time
+        // Rounded last to the corners that the kernel sees: boxes are tighter without the rounding.
         for (TrianglePair& pair : pairs_)
             for (vec3& corner : pair.corners)
                 corner = is_loose_ ? in_steps(corner) : corner;
@@ -88,7 +89,7 @@ public:
     }
 
 private:
-    /// Hits count inside the leaf's box only, so what reaches out of it need not be in the boxes.
+    /// Returns the pairs' boxes, clamped to the leaf's: hits count only inside it.
     std::vector<Boxf> boxes(const Boxf& inside) const {
         std::vector<Boxf> boxes(pairs_.size());
         parallel_for(boxes.size(), kTriangleGrain, [&](size_t first, size_t last) {
@@ -136,8 +137,8 @@ Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress,
 }
 
 uint32_t stack_depth(uint32_t depth) {
-    // A word a level at most, the last on top of the stack and not in it. Even, so that few
-    // programs serve all scenes.
+    // A ray needs at most one word a level, and the last word is on top of the stack, not in it.
+    // The number is even, so that few programs serve all scenes.
     const uint32_t words = std::max(depth, 2u) - 1;
     return words + words % 2;
 }

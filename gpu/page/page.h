@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Page: the BVH of one leaf as texels, in the layout of shaders/layout.h. The unit in which level 2
-// lives in GPU memory.
+// Page: the BVH of one leaf as texels, in the layout of shaders/layout.h. Level 2 moves in and out
+// of GPU memory by whole pages.
 #pragma once
 
 #include "core/build_progress.h"
@@ -17,8 +17,8 @@
 namespace ovc {
 
 struct Page {
-    std::vector<uvec4> texels;         // as it is built; empty where they are
-    std::span<const uvec4> borrowed{}; // somebody else's, who keeps them alive and unchanged
+    std::vector<uvec4> texels;         // of a page that was built; empty if they are borrowed
+    std::span<const uvec4> borrowed{}; // the owner keeps them alive and unchanged
     uint32_t depth = 0;                // nodes on the longest way down
 
     std::span<const uvec4> view() const { return borrowed.empty() ? texels : borrowed; }
@@ -42,31 +42,31 @@ inline uint64_t largest_bytes(std::span<const Page> pages) {
     return bytes;
 }
 
-/// Stack words that the kernel needs for all of these pages, rounded up: few programs, and no
-/// register more than needed.
+/// Returns how many stack words the kernel needs for all of these pages, rounded up to an even
+/// number so that few programs serve all scenes.
 uint32_t stack_depth(std::span<const Page> pages);
 uint32_t stack_depth(uint32_t depth);
 
-/// Of triangles in loose pairs: how many cuts by planes there may be, at most, level 1's and the
-/// page's together.
+/// The max number of cuts by planes for each triangle in loose pairs, level 1's and the page's
+/// together.
 inline constexpr double kMaxCutOfLoose = 0.8;
 
-/// Whether triangles that share no side may lie in one unit (loose_pairs.h): where that is worth
-/// it, and only for kernels with OVC_LOOSE_PAIRS.
+/// Whether triangles that share no side may lie in one unit (loose_pairs.h). build_page() does so
+/// if it is worth it. Only kernels with OVC_LOOSE_PAIRS can read such pages.
 struct LoosePairs {
     bool allowed = false;
-    double copies = 1; // of a triangle in all leaves, on average: 1 where level 1 cut none
+    double copies = 1; // of a triangle in all leaves, on average: 1 if level 1 cut none
 
-    /// Of a page's pairs, how many planes may cut in two.
+    /// The max share of a page's pairs that planes may cut in two.
     double max_cut() const { return std::max((1 + kMaxCutOfLoose) / copies - 1, 0.0); }
 };
 
-/// Builds and packs the BVH of a leaf. Its triangles go by their numbers in the soup. Each is about
-/// two units of progress.
+/// Builds and packs the BVH of a leaf, which has triangles. The page names them by their numbers in
+/// the soup. A triangle counts as about two units of progress.
 Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf,
                 BuildProgress* progress = nullptr, const LoosePairs& loose = {});
 
-/// The same; triangle i of the page is leaf.triangles[i].
+/// The same, but the page names a triangle by its index in leaf.triangles.
 Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress = nullptr,
                 const LoosePairs& loose = {});
 

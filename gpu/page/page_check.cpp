@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visits every unit of a page once, as a walk that misses nothing would.
+// Visits every unit that a walk can reach, once, as a walk that meets every box would.
 #include "gpu/page/page_check.h"
 
 #include "gpu/bvh/bvh.h"
@@ -41,7 +41,7 @@ private:
         uint32_t depth;
     };
 
-    /// In a leaf's frame, where the leaf is about as large as 1.
+    /// Whether the grid is plausible in a leaf's frame, where the leaf is about as large as 1.
     bool has_sound_grid() const {
         constexpr float kFarthest = 16;
         const GridHeader grid = header_of(texels_);
@@ -56,7 +56,8 @@ private:
         return texels_[size_t(unit) * OVC_UNIT_TEXELS + i];
     }
 
-    /// False where a walk would leave the page, or come to the same unit on two ways.
+    /// Marks a unit for a visit. Returns false if a walk would leave the page, or come to the same
+    /// unit on two ways.
     bool reach(uint64_t unit, uint32_t depth) {
         if (unit >= seen_.size() || seen_[unit])
             return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether texels that somebody else wrote are a page that may be walked.
+// Checks whether texels from outside, such as a file, are a page that may be walked.
 #pragma once
 
 #include "gpu/page/page.h"
@@ -8,8 +8,9 @@
 
 namespace ovc {
 
-/// True where every walk of the page ends, stays within it and within `page.depth` words of stack,
-/// and names triangles below triangle_count. Whether its boxes hold its triangles it does not tell.
+/// Returns true if every walk of the page ends, stays within the page and within `page.depth` words
+/// of stack, and names only triangles below triangle_count. It does not check that boxes hold their
+/// triangles.
 bool is_walkable(const Page& page, uint32_t triangle_count);
 
 } // namespace ovc

@@ -19,7 +19,7 @@ Level1 one_leaf(const Soup& soup) {
     return partition(soup, ids, bounds, 1u << 30);
 }
 
-/// Rods across the axes, two triangles each, one in 20 of them long: planes cut those.
+/// Returns rods across the axes, two triangles each. One in 20 is long, and planes cut these.
 Soup rods(size_t count) {
     test::Random random(17);
     std::vector<vec3> corners;
@@ -148,7 +148,8 @@ TEST(Page, NeedsFewStackWordsEvenWhereNothingCanBeSplit) {
     }
 }
 
-/// Inner nodes on the longest way from `unit` down, counted from the texels alone.
+/// Returns the number of inner nodes on the longest way from `unit` down, counted from the texels
+/// alone.
 uint32_t longest_way(const Page& page, uint32_t unit) {
     const auto texel = [&](int i) {
         return page.texels[size_t(unit) * OVC_UNIT_TEXELS + size_t(i)];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernel's traversal on the CPU, in double: which triangles of a page, or of all pages under
-// the top-level tree, a ray may meet. It follows shaders/traverse.glsl, for the exact fallback.
+// The kernel's traversal on the CPU, in double. It finds the triangles of a page, or of all pages
+// under the top-level tree, that a ray may meet. The exact fallback uses it; it follows
+// shaders/traverse.glsl.
 #pragma once
 
 #include "core/exact/triangle.h"
@@ -15,13 +16,13 @@
 
 namespace ovc {
 
-/// The walk's ray and what it may be off by, in the frame of a tree.
+/// A ray in the frame of a tree, with the bound of its rounding errors there.
 struct WalkedRay {
     PreparedRay ray; // t is the same in every frame
     double margin;
 };
 
-/// Into the frame of a leaf, around its box.
+/// Converts a ray to the frame of a leaf, with the error bound around its box.
 inline WalkedRay walked_ray(const Leaf& leaf, const PreparedRay& p) {
     WalkedRay walked{p, p.margin(leaf.box) * leaf.frame.scale};
     walked.ray.ray.org = leaf.frame.to_local(p.ray.org);
@@ -29,16 +30,18 @@ inline WalkedRay walked_ray(const Leaf& leaf, const PreparedRay& p) {
     walked.ray.inv_dir = p.inv_dir / leaf.frame.scale;
     return walked;
 }
-/// Into the frame behind a portal. A matrix rounds three products a coordinate more.
+/// Converts a ray to the frame behind a portal. The factor 4 is for the matrix, which rounds three
+/// more products a coordinate.
 inline WalkedRay walked_ray(const Portal& portal, const PreparedRay& p) {
     return {portal.local_ray(p), 4 * p.margin(portal.bounds) * portal.stretch()};
 }
 
 /// Calls visit(i) -> bool (true: stop) for the number i of each triangle whose packed box, widened
-/// by the ray's rounding margin, the ray meets within [from, limit()]; and enter(portal) -> bool
-/// for the number of each portal, likewise. Nearest children first, as in the kernel; t is that of
-/// the ray itself. Returns true when one of them stopped it. tree: the units of a page or of a
-/// top-level tree; header: where it begins in them; pages: those that its links lead to.
+/// by the ray's rounding margin, the ray meets within [from, limit()], and enter_portal(number) ->
+/// bool for each portal that it meets so. Goes to the nearest children first, as the kernel does; t
+/// is that of the ray itself. Returns true when one of the calls stopped it. tree: the units of a
+/// page or of a top-level tree; header: the number of the header's unit in them; pages: those that
+/// the tree's links lead to.
 template <class Visit, class Enter, class Limit>
 bool walk_units(std::span<const uvec4> tree, uint32_t header, std::span<const Page> pages,
                 const WalkedRay& walked, double from, Visit&& visit, Enter&& enter_portal,
@@ -50,11 +53,11 @@ bool walk_units(std::span<const uvec4> tree, uint32_t header, std::span<const Pa
     const dvec3 grid_org = dvec3(grid.middle) - double(kGridMiddle) * grid_cell;
 
     struct Entry {
-        const uvec4* units; // where those that it names are counted from
+        const uvec4* units; // the array in which the unit and its children are counted
         uint32_t unit;
         double enter;
     };
-    // Three siblings a level, and the one that is next.
+    // Each level leaves up to three siblings, and the last one its next node.
     constexpr size_t kMaxDepth = 64;
     static_assert(kMaxBvhDepth < kMaxDepth);
     std::array<Entry, 2 * 3 * kMaxDepth> stack;
@@ -101,7 +104,7 @@ bool walk_units(std::span<const uvec4> tree, uint32_t header, std::span<const Pa
     return false;
 }
 
-/// The triangles of all pages under the top-level tree. scene: its box and frame.
+/// Walks all pages under the top-level tree, as walk_units() does. scene: its box and frame.
 template <class Visit, class Limit>
 bool walk_tree(const TopLevel& top, std::span<const Page> pages, const Leaf& scene,
                const PreparedRay& p, double from, Visit&& visit, Limit&& limit) {
@@ -117,7 +120,7 @@ bool walk_tree(const TopLevel& top, std::span<const Page> pages, const Leaf& sce
     return walk_units(units, 0, pages, walked_ray(scene, p), from, visit, enter, limit);
 }
 
-/// Those of one page. leaf: its box and frame.
+/// Walks one page. leaf: its box and frame.
 template <class Visit, class Limit>
 bool walk_page(const Page& page, const Leaf& leaf, const PreparedRay& p, double from, Visit&& visit,
                Limit&& limit) {

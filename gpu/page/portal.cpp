@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Portals as texels, and rays through them in double.
+// Packs portals as texels, and takes rays through them in double.
 #include "gpu/page/portal.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Portal: where a ray changes from the world to the frame of a part of the scene.
+// Portal: a place where a ray changes from the world to the frame of a part of the scene.
 #pragma once
 
 #include "core/box.h"
@@ -16,26 +16,27 @@
 namespace ovc {
 
 struct Portal {
-    dvec3 origin{0}; // lies at 0 in the frame
+    dvec3 origin{0}; // the point of the world that lies at 0 in the frame
     std::array<dvec3, 3> rows{dvec3(1, 0, 0), dvec3(0, 1, 0),
                               dvec3(0, 0, 1)}; // local = rows (world - origin)
-    Box box;                                   // of what lies behind it, in the frame
+    Box box;                                   // of the part behind it, in the frame
     Box bounds;                                // the same in the world
-    uint32_t tree = 0;                         // the unit of the header of what lies behind it
-    uint32_t first_number = 0;                 // that numbers of triangles behind it count from
+    uint32_t tree = 0;                         // the unit of the header of the part's tree
+    uint32_t first_number = 0;                 // the part's triangle numbers count from here
 
     dvec3 to_local_direction(const dvec3& d) const {
         return {glm::dot(rows[0], d), glm::dot(rows[1], d), glm::dot(rows[2], d)};
     }
     dvec3 to_local(const dvec3& world) const { return to_local_direction(world - origin); }
-    /// The most that the map makes a length longer.
+    /// The max factor by which the map to the frame lengthens a vector, by its largest component.
     double stretch() const;
-    /// The same ray in the frame; t stays what it is.
+    /// Returns the same ray in the frame. Its t is that of the ray in the world.
     PreparedRay local_ray(const PreparedRay& p) const;
 };
 
-/// Into the frame, with all that lies in `box` behind it. transform: of both, which has an inverse;
-/// null where they are in the world. Error bound: docs/design/numerics.md, "Frames".
+/// Returns the portal into the frame of the part that lies in `box`. transform: places both in the
+/// world and has an inverse; null if they are in the world already. Error bound:
+/// docs/design/numerics.md, "Frames".
 Portal portal_into(const Frame& frame, const Box& box, const Transform* transform = nullptr);
 
 inline constexpr uint64_t kPortalBytes = OVC_PORTAL_TEXELS * sizeof(uvec4);

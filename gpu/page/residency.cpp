@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Eviction by least recent use among neighbours.
+// Evicts neighbouring pages by least recent use.
 #include "gpu/page/residency.h"
 
 #include <cassert>
@@ -52,9 +52,9 @@ Residency::Residency(std::span<const Stretch> stretches, uint64_t alignment, siz
         shelves_.push_back({{rounded_up(stretch.begin, alignment), stretch.end}, {}});
 }
 
-/// A run of neighbouring pages and the gaps around them that is wide enough. Of all such runs the
-/// one whose most recently used page was used longest ago; a gap that is wide enough by itself
-/// evicts nobody. Takes its place in `best` where that is cheaper.
+/// Looks for a run of neighbouring pages that, with the gaps around them, is wide enough. It
+/// chooses the run whose most recently used page was used longest ago; a gap that is wide enough by
+/// itself evicts no page. Puts the run into `best` if it is cheaper.
 void Residency::find_cheaper(size_t shelf, uint64_t bytes, Range& best) const {
     const auto& [room, leaves] = shelves_[shelf];
     const auto gap_begin = [&](size_t i) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which page lies where in a pool, and which go when room is needed; apart from GL.
+// Residency: decides which page lies where in a pool, and which pages go when room is needed. It
+// makes no GL calls.
 #pragma once
 
 #include "gpu/page/page.h"
@@ -14,24 +15,24 @@
 
 namespace ovc {
 
-/// A pool's bytes in buffers: each as large as one may be, and the last has what is left. A unit's
-/// number has the buffer's above its number within that.
+/// A pool's bytes in buffers: each has the max size, and the last holds the rest. A unit's number
+/// has the buffer's number above the unit's number within the buffer.
 struct PoolLayout {
     uint64_t bytes;
-    uint64_t buffer_bytes; // the most of one
+    uint64_t buffer_bytes; // the max of one buffer
 
     uint32_t count() const { return bytes == 0 ? 0 : uint32_t((bytes - 1) / buffer_bytes) + 1; }
     uint64_t bytes_of(uint32_t buffer) const {
         assert(buffer < count());
         return std::min(buffer_bytes, bytes - buffer * buffer_bytes);
     }
-    /// Of the number of a unit, those that count within its buffer.
+    /// The bits of a unit's number that count within its buffer.
     uint32_t buffer_bits() const {
         return count() <= 1 ? OVC_MAX_BUFFER_BITS
                             : uint32_t(std::bit_width(buffer_bytes / OVC_UNIT_BYTES - 1));
     }
-    /// The buffer's first byte among those of a pool whose buffers could be filled to the last
-    /// number that a unit of them can have.
+    /// The offset of the buffer's first byte in a pool in which every buffer had as many units as
+    /// buffer_bits() can number.
     uint64_t begin_of(uint32_t buffer) const {
         return (uint64_t(buffer) << buffer_bits()) * OVC_UNIT_BYTES;
     }
@@ -40,8 +41,8 @@ struct PoolLayout {
     }
 };
 
-/// How many pages, the first of those of so many bytes, find room one after the other behind the
-/// first `begin` bytes; and how many bytes of the pool that takes.
+/// How many pages, the first of those whose sizes are given, find room one after the other behind
+/// the first `begin` bytes, and the bytes of the pool that they need.
 struct Fit {
     size_t pages;
     uint64_t pool_bytes;
@@ -54,7 +55,7 @@ inline bool all_fit(std::span<const Page> pages, const PoolLayout& layout, uint6
     return fit_in(bytes_of_each(pages), layout, begin).pages == pages.size();
 }
 
-/// Where a page lies in the pool, as PoolLayout::begin_of() counts.
+/// A page's place in the pool, with the offset as PoolLayout::begin_of() counts.
 struct Slot {
     uint64_t offset;
     uint64_t bytes;
@@ -66,13 +67,13 @@ struct Stretch {
     uint64_t end;
 };
 
-/// What each buffer holds behind the first `begin` bytes of the pool.
+/// Returns the stretch of each buffer, without the first `begin` bytes of the pool.
 std::vector<Stretch> stretches_of(const PoolLayout& layout, uint64_t begin);
 
-/// Which leaf's page lies where, and which go when room is needed.
+/// The places of resident pages, by leaf, and their order of use.
 class Residency {
 public:
-    /// Pages lie within one of the stretches each, in bytes.
+    /// Each page lies within one of the stretches. alignment: of offsets, in bytes.
     Residency(std::span<const Stretch> stretches, uint64_t alignment, size_t leaves);
 
     bool resident(uint32_t leaf) const { return slot(leaf).bytes != 0; }
@@ -84,13 +85,13 @@ public:
     /// Marks the leaf as used now.
     void touch(uint32_t leaf) { last_use_[leaf] = ++clock_; }
 
-    /// Every use so far is before what this returns.
+    /// Returns a time that is later than every use so far.
     uint64_t now() const { return clock_ + 1; }
 
-    /// Finds room for the leaf's page, which must fit some stretch, and evicts what has to go: the
-    /// least recently used pages that together with the gaps between them make enough room. Pages
-    /// used at `keep` or later stay: false, and nothing changes, where that leaves no room.
-    /// evicted: receives who went.
+    /// Finds room for the leaf's page, which must fit some stretch, and evicts the least recently
+    /// used pages that together with the gaps between them make enough room. Returns false and
+    /// changes nothing if that would take a page that was used at `keep` or later. evicted:
+    /// receives the leaves whose pages went.
     bool admit(uint32_t leaf, uint64_t bytes, uint64_t keep, std::vector<uint32_t>& evicted);
 
 private:
@@ -101,10 +102,10 @@ private:
     };
     struct Range {
         size_t shelf;
-        size_t first; // into its leaves: pages to evict
+        size_t first; // of its leaves, [first, last): their pages go
         size_t last;
         uint64_t offset;
-        uint64_t use; // the latest of them; 0: none goes
+        uint64_t use; // the latest use of these pages; 0: none goes
     };
     void find_cheaper(size_t shelf, uint64_t bytes, Range& best) const;
 

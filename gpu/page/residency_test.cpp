@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pool's books: pages never overlap, never leave the pool, and the least recently used go
+// Residency: pages never overlap and never leave the pool, and the least recently used pages go
 // first.
 #include "gpu/page/residency.h"
 
@@ -14,7 +14,7 @@ std::vector<Stretch> whole(uint64_t bytes) {
     return {{0, bytes}};
 }
 
-/// Room for the page, whoever has to go.
+/// Finds room for the page, whatever pages have to go.
 void admit(Residency& residency, uint32_t leaf, uint64_t bytes) {
     std::vector<uint32_t> evicted;
     ASSERT_TRUE(residency.admit(leaf, bytes, residency.now(), evicted));

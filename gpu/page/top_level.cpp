@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The largest nodes of the pages are opened, and a BVH is built over what they held; and one over
-// the portals to several such trees.
+// Opens the largest nodes of the pages and builds a BVH over the nodes below them. Over several
+// such trees it builds a BVH over the portals to them.
 #include "gpu/page/top_level.h"
 
 #include "gpu/bvh/reinsert.h"
@@ -17,7 +17,7 @@
 namespace ovc {
 namespace {
 
-/// A unit of a page, and its box in cells of the grid, each as large as it is in the frame.
+/// A unit of a page, and its box in cells of the grid, each cell as large as it is in the frame.
 struct Entry {
     uint32_t page;
     uint32_t unit;
@@ -60,9 +60,9 @@ Entry root_of(std::span<const Page> pages, uint32_t page) {
     return root;
 }
 
-/// The roots of all pages, or instead of the largest of them their children, and so on, as long
-/// as they are no more than `max`. Based on: Benthin, Woop, Wald and Afra 2017, "Improved Two-Level
-/// BVHs using Partial Re-Braiding".
+/// Returns the roots of all pages, but replaces the largest nodes by their children, again and
+/// again, as long as there are no more than `max` entries. Based on: Benthin, Woop, Wald and Afra
+/// 2017, "Improved Two-Level BVHs using Partial Re-Braiding".
 std::vector<Entry> opened(std::span<const Page> pages, size_t max) {
     const auto smaller = [](const Entry& a, const Entry& b) {
         return a.box.half_area() < b.box.half_area();
@@ -89,7 +89,7 @@ std::vector<Entry> opened(std::span<const Page> pages, size_t max) {
     return nodes;
 }
 
-/// Where the boxes of entries, and of several together, lie on the grid.
+/// The grid on which the boxes of entries, and unions of them, lie exactly.
 struct Cells {
     vec3 size;
 
@@ -99,7 +99,7 @@ struct Cells {
     }
 };
 
-/// A BVH whose leaf i has item i, over the entries.
+/// Builds a BVH over the entries, whose leaf i has item i.
 Page tree_over(std::span<const Page> pages, std::span<const Entry> entries) {
     std::vector<Boxf> boxes;
     for (const Entry& entry : entries)
@@ -109,14 +109,14 @@ Page tree_over(std::span<const Page> pages, std::span<const Entry> entries) {
     const auto put = [&](uint32_t i, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
         std::ranges::copy(unit_of(pages[entries[i].page], entries[i].unit), unit.begin());
         if (!is_pair(pages[entries[i].page], entries[i].unit))
-            unit[3] = {i, 1, 0, 0}; // found again by build_top_level()
+            unit[3] = {i, 1, 0, 0}; // a mark by which build_top_level() finds it again
     };
     return Packer(nodes, header_of(pages[0].view()), Cells{header_of(pages[0].view()).cell}, put,
                   nullptr)
         .pack();
 }
 
-/// The root of the only page is the tree's.
+/// Makes the root of the only page the tree's root.
 Page tree_of_one(const Page& page) {
     Page tree;
     tree.depth = 0;
@@ -126,7 +126,7 @@ Page tree_of_one(const Page& page) {
     return tree;
 }
 
-/// A BVH whose leaf i is a portal with the number i + 1, over their boxes in the world.
+/// Builds a BVH over the portals' boxes in the world; its leaf i is portal number i + 1.
 Page tree_over(std::span<const Portal> portals, const Leaf& scene) {
     std::vector<Boxf> boxes;
     for (const Portal& portal : portals)
@@ -189,7 +189,7 @@ TopLevel build_top_level(std::span<const Page> pages, size_t max_links) {
             top.links.push_back({unit_of_entry[i], first_child(pages, entries[i])});
             top.first_link[entries[i].page + 1] = uint32_t(top.links.size());
         }
-    for (size_t page = 0; page < pages.size(); ++page) // one may have none left
+    for (size_t page = 0; page < pages.size(); ++page) // a page may have no links
         top.first_link[page + 1] = std::max(top.first_link[page + 1], top.first_link[page]);
     for (const Page& page : pages)
         top.depth = std::max(top.depth, page.depth);
@@ -263,7 +263,7 @@ void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to) 
             texel[1] = source[1];
             texel[2] = source[2];
             uvec4 last = source[3];
-            const bool is_link = last.y != 0; // of the tree of a part
+            const bool is_link = last.y != 0; // in the tree of a part
             last.x += last.w & OVC_PAIR || unit < OVC_ROOT_UNIT || is_link ? 0 : first_unit;
             texel[3] = last;
         }

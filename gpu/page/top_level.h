@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The top-level tree: a tree over all pages of a scene, which a ray goes through first. It is
-// always in the pool. Where pages share a frame its lowest units are copies of units out of the
-// pages, so that a ray goes straight on into a page that is resident. Else they are portals into
-// frames, behind each of which is a tree like that.
+// always in the pool. If pages share a frame, its lowest units are copies of units of the pages, so
+// a ray goes straight on into a page that is resident. Otherwise they are portals into frames, and
+// such a tree lies behind each of them.
 #pragma once
 
 #include "gpu/page/page.h"
@@ -24,12 +24,11 @@ struct Link {
 };
 
 struct TopLevel {
-    Page tree;                        // all its links lead nowhere; behind it the trees of parts
-    std::vector<Portal> portals;      // [0]: the way back; none where all pages share a frame
+    Page tree;                        // all its links lead nowhere; the trees of parts follow
+    std::vector<Portal> portals;      // [0]: the way back; none if all pages share a frame
     std::vector<Link> links;          // those of one page lie together
-    std::vector<uint32_t> first_link; // per page, and one past the last of all
+    std::vector<uint32_t> first_link; // for each page, and one past the last of all
     uint32_t depth = 0;               // nodes on the longest way down, pages included
-
     bool empty() const { return tree.texels.empty(); }
     std::span<const Link> links_of(uint32_t page) const {
         assert(page + size_t(1) < first_link.size());
@@ -37,38 +36,38 @@ struct TopLevel {
     }
 };
 
-/// How many links a page has on average where all pages are resident: large nodes are opened, so
-/// that the tree chooses anew what lies beside what. Measured by steps of rays: 4 are as good as
-/// 64, and 1 costs a fifth more among slivers in 200 leaves.
+/// How many links a page has on average if all pages are resident: the builder opens large nodes,
+/// so that the tree can choose anew which nodes lie together. Measured by steps of rays: 4 are as
+/// good as 64, and 1 costs a fifth more among slivers in 200 leaves.
 inline constexpr uint64_t kLinksPerPage = 4;
 
-/// The most bytes that the tree takes with so many links where all pages share a frame.
+/// The max bytes of a tree with so many links if all pages share a frame.
 inline uint64_t max_top_level_bytes(uint64_t links) {
     return ((links > 1 ? 2 * links : 0) + OVC_ROOT_UNIT + 1) * OVC_UNIT_BYTES;
 }
 
-/// The most that each of so many pages adds to the tree and the table of portals where each has a
-/// frame of its own: a portal, a header, a link, an inner node and an entry of the table.
+/// The max bytes that each page adds to the tree and the table of portals if each has a frame of
+/// its own: a portal, a header, a link, an inner node and an entry of the table.
 inline constexpr uint64_t kMaxBytesPerPart = 4 * OVC_UNIT_BYTES + kPortalBytes;
 
-/// How many links the tree over pages of `page_bytes` in all may have. One a page where the pool
-/// has not room for all, because a ray that comes to a page by several links may wait for it more
-/// than once.
+/// Returns how many links the tree over pages of `page_bytes` in all may have. It is one a page if
+/// the pool has no room for all, because a ray that comes to a page by several links may wait for
+/// it more than once.
 inline uint64_t max_links(uint64_t pages, uint64_t page_bytes, uint64_t pool_bytes) {
     const uint64_t links = pages > 1 ? kLinksPerPage * pages : 1;
     return page_bytes + max_top_level_bytes(links) <= pool_bytes ? links : pages;
 }
 
-/// The tree over at least one page; they share a frame and count their boxes on the same grid.
-/// max_links: at least as many as there are pages. Pairs that would be links count as such, but lie
-/// in the tree themselves.
+/// Builds the tree over at least one page; the pages share a frame and a grid for their boxes.
+/// max_links: at least the number of pages. Pairs that would be links count as links, but lie in
+/// the tree themselves.
 TopLevel build_top_level(std::span<const Page> pages, size_t max_links);
 
-/// The same over any number of pages, in the frames of their leaves. Neighbours that share one are
-/// a part.
+/// Builds the tree over any number of pages, in the frames of their leaves. Neighbours that share a
+/// frame are a part.
 TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links);
 
-/// Where a mesh lies, and the number that its triangles count from there.
+/// Where a mesh lies, and the number from which its triangles count there.
 struct Place {
     const Transform* transform = nullptr;
     uint32_t first_number = 0;
@@ -77,22 +76,22 @@ struct Place {
 /// Parts of a scene, and the portals that lead to them.
 struct Parts {
     std::vector<LeafRange> pages;
-    std::vector<Portal> portals; // Portal::tree: which part
+    std::vector<Portal> portals; // Portal::tree: the index of the part in `pages`
 
-    /// Those of a level 1 whose pages begin with `first_page`, in all its places.
+    /// Adds the parts of a level 1 whose pages begin with `first_page`, in all its places.
     void add(const Level1& level1, uint32_t first_page, std::span<const Place> places);
 };
 
-/// The same over parts. scene: its box and frame.
+/// Builds the tree over parts. scene: the box and frame of the whole scene.
 TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> pages,
                          size_t max_links);
 
-/// Whether rays can go through the tree in a pool: it lies in the first buffer, the largest page
-/// has room in some, and where pages come and go they can be named by a key.
+/// Whether rays can go through the tree in a pool: the tree fits the first buffer, the largest page
+/// fits some buffer, and if not all pages fit at once, a key can name every leaf.
 bool is_usable(const TopLevel& top, std::span<const Page> pages, const PoolLayout& pool);
 
-/// Writes a page as it must be where it begins at `first_unit` and units count from the pool's
-/// first; on all cores. to: as large as the page.
+/// Writes a page for a place in the pool that begins at `first_unit`, so that its units count from
+/// the pool's first; on all cores. to: as large as the page.
 void copy_relocated(const Page& page, uint32_t first_unit, std::span<uvec4> to);
 
 } // namespace ovc

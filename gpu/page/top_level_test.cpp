@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The top-level tree, walked on the CPU, offers every triangle of every leaf that a ray hits, where
-// pages are apart and where they lie in a pool.
+// The top-level tree, walked on the CPU, offers every triangle of every leaf that a ray hits, both
+// if pages are apart and if they lie in a pool.
 #include "gpu/page/top_level.h"
 
 #include "gpu/page/page_walk.h"
@@ -21,7 +21,7 @@ struct Built {
     TopLevel top;
 };
 
-/// in_one_frame: else each leaf keeps its own, behind a portal.
+/// in_one_frame: if false, each leaf keeps its own frame, behind a portal.
 Built build(const Soup& soup, size_t leaves, size_t links_per_page, bool in_one_frame = true) {
     Built built;
     Box bounds;
@@ -37,7 +37,7 @@ Built build(const Soup& soup, size_t leaves, size_t links_per_page, bool in_one_
     return built;
 }
 
-/// What the pool holds where all pages are resident, as one page.
+/// Returns the contents of a pool in which all pages are resident, as one page.
 Page pool_of(const Built& built) {
     Page pool = built.top.tree;
     for (uint32_t page = 0; page < built.pages.size(); ++page) {
@@ -51,7 +51,7 @@ Page pool_of(const Built& built) {
     return pool;
 }
 
-/// Leaves, and links a page.
+/// The parameters are the number of leaves, and of links a page.
 class TopLevelTree : public testing::TestWithParam<std::tuple<size_t, size_t>> {};
 INSTANTIATE_TEST_SUITE_P(LeavesAndLinks, TopLevelTree,
                          testing::Combine(testing::Values(1, 2, 9, 60), testing::Values(1, 4, 90)));
@@ -142,7 +142,7 @@ TEST_P(TopLevelTree, HasLinksThatLeadNowhere) {
     const size_t pages = built.pages.size();
     const bool opened = links > 1 && pages > 1;
     EXPECT_EQ(units.size() == pages, !opened);
-    // Nine pages or more are so small that 90 links each hold all their pairs.
+    // Nine or more pages are so small that 90 links each hold all their pairs.
     EXPECT_EQ(units.empty(), links == 90 && leaves >= 9);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers as pixels, in tiles, and as words, in planes.
+// Reads answers from pixels, in tiles, and from words, in planes.
 #include "gpu/trace/answers.h"
 
 #include "core/system/parallel.h"
@@ -11,9 +11,10 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kAnswerGrain = 16384; // rays a task that are only copied
+constexpr size_t kAnswerGrain = 16384; // rays a task; a task only copies
 
-/// The pixel of a ray's answer, row by row: the counterpart of pixel_of() in shaders/ray.glsl.
+/// Returns the pixel of a ray's answer, counted row by row: the counterpart of pixel_of() in
+/// shaders/ray.glsl.
 size_t pixel_of(size_t ray) {
     constexpr size_t kTile = OVC_TILE, kTilesInRow = OVC_ROW_RAYS / OVC_TILE;
     const size_t tile = ray / (kTile * kTile);
@@ -54,7 +55,7 @@ AnswerWords::AnswerWords(Ledger& ledger, uint32_t rays)
     : rays_(rays), buffer_(ledger, uint64_t(rays) * kAnswerBytes, "answers") {
     assert(rays == whole_blocks(rays));
     texture_.show(buffer_, GL_R32UI, 0, buffer_.bytes());
-    // Stays like this where all pages are resident: no answer names a leaf.
+    // The plane stays like this while all pages are resident, because no answer names a leaf then.
     fill_plane(3, rays_, OVC_NO_LEAF);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a pass leaves its answers: pixels of a texture (the fragment kernel) or words of a buffer
-// (the compute kernel). The layouts: shaders/layout.h.
+// The buffers in which a pass leaves its answers: pixels of a texture (the fragment kernel) or
+// words of a buffer (the compute kernel). shaders/layout.h defines their layouts.
 #pragma once
 
 #include "core/vec.h"
@@ -15,23 +15,24 @@
 
 namespace ovc {
 
-/// What the kernel answers. prim: the number of a triangle, or OVC_MISS, OVC_FLAGGED, OVC_CAPPED.
+/// The kernel's answer to a ray. prim: the number of a triangle, or OVC_MISS, OVC_FLAGGED,
+/// OVC_CAPPED.
 struct Answer {
     std::array<uint32_t, 3> words;
     uint32_t prim;
-    /// The key of the link that the ray waits for; OVC_NO_LEAF: no page is left.
+    /// The key of the link that the ray waits for; OVC_NO_LEAF if it waits for none.
     uint32_t where;
 
-    /// Certified: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
+    /// Certified precision: triangles that may be the answer as well, or OVC_NO_TRIANGLE.
     std::span<const uint32_t, 2> further() const { return std::span(words).first<2>(); }
-    /// Fast precision: where the hit is.
+    /// Fast precision: the ray's t at the hit.
     double t() const { return std::bit_cast<double>(uint64_t(words[1]) << 32 | words[0]); }
-    /// Fast precision.
+    /// Fast precision: barycentric coordinates of the hit, in [0, 1].
     double u() const { return (words[2] & 0xffffu) / 65535.0; }
     double v() const { return (words[2] >> 16) / 65535.0; }
 };
 
-/// On the GPU.
+/// Bytes of an answer on the GPU.
 inline constexpr uint64_t kAnswerBytes = 16;
 
 /// The leaf that the key of a link names.
@@ -39,15 +40,16 @@ inline uint32_t leaf_of(uint32_t key) {
     return (key & OVC_KEY_LEAF) - 1;
 }
 
-/// Rays come in blocks: a row of tiles.
+/// Rays are traced in blocks of this size: a row of tiles.
 inline constexpr uint32_t kBlockRays = OVC_ROW_RAYS * OVC_TILE;
-/// The size that a buffer for n rays must have: whole blocks.
+/// Returns n rounded up to whole blocks: the size that a buffer for n rays must have.
 inline size_t whole_blocks(size_t n) {
     return (n + kBlockRays - 1) / kBlockRays * kBlockRays;
 }
 
-/// Both kinds are for up to `rays` rays, whole blocks. draw() and dispatch() start the pass: the
-/// program is in use and its inputs are bound. read() waits for it.
+/// Answers of the fragment kernel. This class and AnswerWords have room for `rays` rays, whole
+/// blocks. draw() and dispatch() start the pass: its program is in use and its inputs are bound.
+/// read() waits for the pass.
 class AnswerPixels {
 public:
     AnswerPixels(Ledger& ledger, uint32_t rays);
@@ -63,13 +65,13 @@ private:
     std::vector<uvec4> pixels_;
 };
 
-/// The kernel writes no misses: dispatch() puts them there before.
+/// Answers of the compute kernel. It writes no misses, so dispatch() first fills them in.
 class AnswerWords {
 public:
     AnswerWords(Ledger& ledger, uint32_t rays);
-    /// packet: rays that an invocation takes at a time; packets_a_lane: how many of them, at most.
+    /// packet: rays that an invocation takes at a time; packets_a_lane: max packets of a lane.
     void dispatch(GLuint program, size_t rays, size_t packet, size_t packets_a_lane) const;
-    /// Those of the rays from `first_ray` on.
+    /// Reads the answers of the rays from `first_ray` on.
     void read(std::span<Answer> answers, size_t first_ray = 0);
 
 private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages that come and go: whatever is in the pool, a ray comes to each leaf on its way once, and
-// meets what the whole scene holds.
+// Whatever pages are in the pool, a ray comes to each leaf on its way once, and meets all triangles
+// of the scene on its way.
 #include "gpu/gl/test_gl.h"
 #include "gpu/trace/tracer.h"
 #include "kdtree/test_soups.h"
@@ -44,7 +44,7 @@ protected:
             gl->run([&](GlState&) { tracer.reset(); });
     }
 
-    /// A ray on its way: the links that it has waited for, by their keys, and what it has met.
+    /// A ray on its way: the links that it has waited for, by their keys, and its hits so far.
     struct UnderWay {
         Ray ray;
         Hit hit{};               // the nearest so far
@@ -73,7 +73,7 @@ protected:
         way.limit = nearest.limit();
     }
 
-    /// A pass of these rays; those that wait join the queues.
+    /// Runs a pass of these rays; those that wait join the queues.
     void pass(std::vector<UnderWay>& rays, std::span<const uint32_t> some) {
         std::vector<RayState> states(whole_blocks(some.size()));
         for (size_t j = 0; j < some.size(); ++j)
@@ -106,7 +106,7 @@ protected:
     std::vector<Page> pages;
     TopLevel top;
     std::unique_ptr<Tracer> tracer;
-    std::map<uint32_t, std::vector<uint32_t>> queues; // of rays, per leaf that they wait for
+    std::map<uint32_t, std::vector<uint32_t>> queues; // rays, by the leaf that they wait for
 };
 INSTANTIATE_TEST_SUITE_P(Kernel, LinksGl, testing::Bool(),
                          [](const auto& p) { return p.param ? "Compute" : "Fragment"; });

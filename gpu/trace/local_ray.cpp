@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays into the frame of the top-level tree.
+// Converts rays to the frame of the top-level tree.
 #include "gpu/trace/local_ray.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace ovc {
 namespace {
 
-/// The part of the ray inside the box; empty where enter > exit.
+/// Returns the part of the ray inside the box; empty if enter > exit.
 Interval inside_box(const Box& box, const Ray& ray) {
     Interval inside{ray.t_min, ray.t_max};
     for (int axis = 0; axis < 3; ++axis) {
@@ -46,7 +46,7 @@ LocalRay local_ray(const Leaf& leaf, const Ray& ray, uint32_t skip, bool any_hit
     const dvec3 travelled = ray.dir * inside.enter;
     local.org = vec3((from_origin + travelled) * scale);
     const double length = (inside.exit - inside.enter) * time.speed;
-    // Up, past what the conversion may have lost.
+    // Rounded up, past the amount that the conversion may have lost.
     local.t_end = std::bit_cast<float>(std::bit_cast<uint32_t>(float(length)) + 2);
     const double reach = std::max(largest(from_origin), largest(travelled)) * scale;
     // Written so that a NaN is not decidable either.

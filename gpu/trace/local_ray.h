@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ray in the frame of the top-level tree, as the kernel takes it (docs/design/numerics.md,
-// "Frames"): the counterpart in C++ of local_ray() in shaders/portals.glsl, so that a ray goes over
-// as 32 bytes.
+// LocalRay: a ray in the frame of the top-level tree, as the kernel takes it
+// (docs/design/numerics.md, "Frames"). local_ray() is the counterpart of local_ray() in
+// shaders/portals.glsl; it runs on the CPU so that only 32 bytes a ray go to the GPU.
 #pragma once
 
 #include "core/exact/triangle.h"
@@ -12,17 +12,16 @@
 
 namespace ovc {
 
-/// In the layout of shaders/layout.h.
+/// A ray in the layout of shaders/layout.h.
 struct LocalRay {
-    vec3 org;    // where it enters the box; t = 0
-    float t_end; // OVC_NO_RAY where it meets no box, OVC_UNDECIDABLE where double cannot say where
-    vec3 dir;    // the largest component 1 or -1
-    uint32_t
-        asks; // number of the triangle it does not see, or OVC_SKIPS_NONE; OVC_RAY_ANY_HIT added
+    vec3 org;      // where it enters the box; t = 0
+    float t_end;   // OVC_NO_RAY if it meets no box; OVC_UNDECIDABLE if double cannot say where
+    vec3 dir;      // its largest component is 1 or -1
+    uint32_t asks; // number of a triangle not to see, or OVC_SKIPS_NONE; plus OVC_RAY_ANY_HIT
 };
 static_assert(sizeof(LocalRay) == OVC_LOCAL_RAY_TEXELS * 16);
 
-/// Where not all pages are in the pool.
+/// A ray for passes in which not all pages are in the pool.
 struct ResumedRay {
     LocalRay ray;
     uint32_t waited_for; // the key of a link, or 0
@@ -30,13 +29,15 @@ struct ResumedRay {
 };
 static_assert(sizeof(ResumedRay) == OVC_RESUMED_RAY_TEXELS * 16);
 
-/// How to come back: t of the ray = enter + local t / speed.
+/// The way back from a local t: the ray's own t = enter + local t / speed.
 struct LocalTime {
     double enter = 0;
     double speed = 1;
 };
 
-/// leaf: its box and frame. skip, any_hit: what LocalRay::asks says.
+/// Returns the ray in the frame of a leaf, from where it enters the leaf's box, and sets `time`.
+/// Returns the ray in the frame of a leaf, from where it enters the leaf's box, and sets `time`.
+/// leaf: its box and frame. skip, any_hit: as in LocalRay::asks.
 LocalRay local_ray(const Leaf& leaf, const Ray& ray, uint32_t skip, bool any_hit, LocalTime& time);
 
 } // namespace ovc

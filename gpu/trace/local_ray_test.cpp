@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ray in the frame of the top-level tree is where the ray is, to the roundings that
-// docs/design/numerics.md allows.
+// A ray in the frame of the top-level tree is in the same place as the ray itself, up to the
+// roundings that docs/design/numerics.md allows.
 #include "gpu/trace/local_ray.h"
 
 #include "kdtree/test_soups.h"
@@ -19,7 +19,7 @@ Leaf leaf_of(const dvec3& center, double size) {
     return scene_leaf(bounds);
 }
 
-/// A point of the local ray, in the world.
+/// Returns a point of the local ray, in the world.
 dvec3 world(const Leaf& leaf, const LocalRay& ray, double t) {
     return (dvec3(ray.org) + t * dvec3(ray.dir)) / leaf.frame.scale + leaf.frame.origin;
 }
@@ -44,7 +44,7 @@ TEST(LocalRay, IsWhereTheRayIs) {
                     1.0f);
                 const double t_local = (t_target - time.enter) * time.speed;
                 ASSERT_LE(t_local, double(local.t_end));
-                // The origin's rounding, and that of the direction over the way.
+                // The error is the origin's rounding, and that of the direction over the way.
                 const double most = (kRounding + OVC_BOUND_UNIT * (t_local + 1)) / leaf.frame.scale;
                 const dvec3 off = world(leaf, local, t_local) - ray.at(t_target);
                 for (int axis = 0; axis < 3; ++axis)

@@ -11,7 +11,7 @@
 namespace ovc {
 namespace {
 
-constexpr size_t kMaxLeftShare = 1024; // one ray in so many may find no room
+constexpr size_t kMaxLeftShare = 1024; // at most one ray in so many may find no room
 
 const LocalRay& local(const LocalRay& ray) {
     return ray;
@@ -46,8 +46,8 @@ bool are_mostly_near(std::span<const Sent> rays) {
     return 2 * together >= pairs;
 }
 
-/// Whether both go into the same octant, and farthest along the same axis, as the kernel sees them
-/// (shaders/triangle.glsl): -0 is not negative, and the largest component is 1 or -1.
+/// Whether both rays go into the same octant and farthest along the same axis, as the kernel sees
+/// it (shaders/triangle.glsl): -0 is not negative, and the largest component is 1 or -1.
 bool go_alike(const LocalRay& a, const LocalRay& b) {
     const auto other_sign = [&](int axis) { return (a.dir[axis] < 0) ^ (b.dir[axis] < 0); };
     const auto other_axis = [&](int axis) {
@@ -55,10 +55,10 @@ bool go_alike(const LocalRay& a, const LocalRay& b) {
     };
     const int differ =
         other_sign(0) | other_sign(1) | other_sign(2) | other_axis(1) | other_axis(2);
-    return differ == 0; // without branches
+    return differ == 0; // computed without branches
 }
 
-/// The second rays of the packets whose two rays do not go alike.
+/// Returns the second rays of all packets whose two rays do not go alike.
 template <class Sent>
 std::vector<uint32_t> apart(std::span<const Sent> rays) {
     using Numbers = std::vector<uint32_t>;
@@ -88,7 +88,7 @@ std::optional<std::vector<Parted>> part(std::vector<Sent>& slots, size_t rays, s
     std::vector<Parted> parted;
     size_t end = rays + rays % 2;
     for (const uint32_t number : numbers) {
-        // Beside the one before, where the two go alike.
+        // It goes beside the ray parted before, if the two go alike.
         const bool second =
             end % 2 == 1 && go_alike(local(slots[parted.back().ray]), local(slots[number]));
         const size_t slot = second ? end : end + end % 2;

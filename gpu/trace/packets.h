@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that a software renderer's kernel takes through the tree two at a time
-// (docs/decisions/0012): which rays suit, and what happens to two that do not go alike.
+// Packets: two rays that a software renderer's kernel takes through the tree together
+// (docs/decisions/0012). Decides which rays suit, and parts two that do not go alike.
 #pragma once
 
 #include "gpu/trace/local_ray.h"
@@ -19,16 +19,17 @@ inline constexpr uint32_t kPacketRays = 2;
 bool coherent(std::span<const LocalRay> rays);
 bool coherent(std::span<const ResumedRay> rays);
 
-/// A ray of a pass, and the slot behind all rays that it went to.
+/// A ray of a pass that was moved, and its new slot behind all rays.
 struct Parted {
     uint32_t ray;
     uint32_t slot;
 };
 
-/// Moves the second ray of a packet whose rays go into different octants, or farthest along
-/// different axes, behind the first `rays` of `slots`, to at most `most` slots, and makes `slots`
-/// as many whole blocks as that takes; in its place is no ray. A few rays that find no room may
-/// stay, undecidable. None, and nothing moved, where they would be more.
+/// Moves the second ray of a packet behind the first `rays` of `slots` if its two rays go into
+/// different octants, or farthest along different axes; OVC_NO_RAY takes its place. Grows `slots`
+/// to as many whole blocks as that takes, at most `most` slots. A few rays that find no room may
+/// stay; the kernel then leaves them undecided. Returns the rays that were moved, or nothing, with
+/// none moved, if more than a few would stay.
 std::optional<std::vector<Parted>> part_packets(std::vector<LocalRay>& slots, size_t rays,
                                                 size_t most);
 std::optional<std::vector<Parted>> part_packets(std::vector<ResumedRay>& slots, size_t rays,

@@ -33,8 +33,8 @@ TEST(Packets, NeighboursThatGoTheSameWayAreCoherent) {
     EXPECT_TRUE(coherent(std::span<const LocalRay>()));
 }
 
-/// Rays of which every third goes to the other side, every fifth farthest along another axis, and
-/// some are none.
+/// Returns rays of which every third goes to the other side, every fifth goes farthest along
+/// another axis, and some are OVC_NO_RAY.
 std::vector<LocalRay> two_sided(size_t rays) {
     std::vector<LocalRay> slots(whole_blocks(rays), {vec3(0), OVC_NO_RAY, vec3(1), 0});
     for (size_t i = 0; i < rays; ++i) {

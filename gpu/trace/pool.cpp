@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pool: upload.
+// Pool: writes pages and words to its buffers.
 #include "gpu/trace/pool.h"
 
 #include "gpu/page/top_level.h"
@@ -29,7 +29,7 @@ void Pool::upload(uint64_t offset, const Page& page, uint32_t first_unit) const 
         glMapNamedBufferRange(buffers_[buffer].id(), GLintptr(inside), GLsizeiptr(page.bytes()),
                               GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_RANGE_BIT);
     if (!to)
-        return; // the context is lost, which is asked for after every pass
+        return; // the context is lost; GlThread notices that
     copy_relocated(page, first_unit, {static_cast<uvec4*>(to), page.view().size()});
     glUnmapNamedBuffer(buffers_[buffer].id());
 }

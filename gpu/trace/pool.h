@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pool: the fixed number of GPU bytes that pages live in. As many buffers as that takes, allocated
-// once, filled by sub-buffer updates. No page lies in two.
+// Pool: the fixed number of GPU bytes that pages live in. It consists of as many buffers as it
+// takes, allocated once and filled by sub-buffer updates. No page lies in two buffers.
 #pragma once
 
 #include "gpu/gl/gl_object.h"
@@ -11,20 +11,20 @@
 
 namespace ovc {
 
-/// The buffers and their books. Needs the context current.
+/// The buffers and their Residency. All calls need the context current.
 class Pool {
 public:
-    /// Pages come behind the first `begin` bytes.
+    /// Pages lie behind the first `begin` bytes, which the top-level tree takes.
     Pool(Ledger& ledger, const PoolLayout& layout, size_t leaves, uint64_t begin = 0);
 
     Residency& residency() { return residency_; }
     const Residency& residency() const { return residency_; }
     const PoolLayout& layout() const { return layout_; }
 
-    /// Once the buffers are allocated.
+    /// Makes the buffers readable by kernels. To be called once they are allocated.
     void show();
 
-    /// Writes the page at `offset`, in bytes, its units counted from `first_unit` on.
+    /// Writes the page at `offset`, in bytes, with its units counted from `first_unit` on.
     void upload(uint64_t offset, const Page& page, uint32_t first_unit = 0) const;
 
     /// Writes a word at `offset`, in bytes.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tracer: rays in by a buffer, the kernel over all of them, answers out (gpu/trace/answers.h).
-// Based on: thesis, section 3.1.
+// Tracer: uploads rays to a buffer, runs the kernel over all of them, and reads their answers
+// (gpu/trace/answers.h). Based on: thesis, section 3.1.
 #include "gpu/trace/tracer.h"
 
 #include "core/system/parallel.h"
@@ -17,20 +17,21 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kMaxBlocks = 2048; // half a million rays: beyond, a pass gains nothing more
-constexpr uint32_t kMaxBlocksInSoftware = 512; // llvmpipe clears what it allocates
-// Each word is a register (with several buffers two), and 1 % of the time; of a million rays at the
-// Stanford dragon thirty want more (docs/decisions/0012).
+constexpr uint32_t kMaxBlocks = 2048; // half a million rays; a pass gains nothing from more
+constexpr uint32_t kMaxBlocksInSoftware = 512; // fewer, as llvmpipe clears the memory it allocates
+// Each word is a register (two with several buffers) and costs 1 % of the time; of a million rays
+// at the Stanford dragon thirty need more words (docs/decisions/0012).
 constexpr uint32_t kMaxStackWordsInSoftware = 8;
 constexpr uint32_t kMaxWordsInRegisters = 32; // Workaround::ShortRegisterStack
-constexpr size_t kMaxLostShare = 256;         // of rays, one in so many; else kernels go on longer
-// With ray refill: the most rays of a lane on average, as long as each thread has some groups.
+constexpr size_t kMaxLostShare =
+    256; // if more than one ray in so many is lost, kernels go on longer
+// With ray refill: the max rays of a lane on average, if each thread still has some groups.
 constexpr size_t kLaneRays = 128;
 constexpr size_t kGroupsAThread = 4;
 constexpr size_t kRayGrain = 1024;        // rays a task
 constexpr uint64_t kSmallestPool = 16384; // a page of some hundred triangles
 
-/// How many packets each lane takes, on average.
+/// Returns how many packets each lane takes on average.
 size_t packets_a_lane(size_t rays, size_t packet) {
     static_assert(kBlockRays % (OVC_GROUP_SIZE * kPacketRays) == 0); // no packet across groups
     const size_t lanes = kGroupsAThread * thread_count() * OVC_GROUP_SIZE;
@@ -67,7 +68,7 @@ Result<MemoryPlan> plan_memory(uint64_t budget_bytes, const DeviceInfo& device,
     if (buffer_bytes > 0)
         plan.buffer_bytes = std::min(plan.buffer_bytes, buffer_bytes);
     plan.pool_bytes = std::min(plan.pool_bytes, plan.buffer_bytes * device.max_pool_buffers);
-    // A further buffer costs every step of a ray: it is worth that where it holds some pages.
+    // A further buffer costs every step of a ray, so it is worth it only if it holds some pages.
     const uint64_t rest = plan.pool_bytes % plan.buffer_bytes;
     if (plan.pool_bytes > plan.buffer_bytes && rest < plan.buffer_bytes / 4)
         plan.pool_bytes -= rest;
@@ -101,10 +102,10 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
         active_buffer_.emplace(*ledger_, plan.active_bytes, "active leaves");
 }
 
-/// What needs the memory to be there.
+/// Does the setup that needs the memory to be allocated.
 Result<Done> Tracer::set_up() {
     const Result<Done> allocated = check_gl("allocating the page pool and the buffers of rays");
-    if (ledger_->refused) // then GL's error only follows from it
+    if (ledger_->refused) // GL's own error then only follows from that
         return Error{"the GPU is out of memory", ErrorKind::OutOfGpuMemory};
     if (!allocated)
         return allocated;
@@ -142,7 +143,7 @@ Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const Pas
     return tracer;
 }
 
-/// Tells the kernel, by the page's links, where a page is now.
+/// Tells the kernel where a page is now, by writing to the page's links.
 void Tracer::say_where(uint32_t leaf) {
     const uint32_t page = uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES);
     for (const Link& link : top_.links_of(leaf)) {
@@ -184,7 +185,7 @@ void Tracer::upload(std::span<const RayState> rays) {
         upload_local(rays, local_);
 }
 
-/// As they are, for a kernel that changes frames.
+/// Uploads rays as they are, for a kernel that changes frames.
 void Tracer::upload_world(std::span<const RayState> rays) {
     glNamedBufferSubData(ray_buffer_.id(), 0,
                          GLsizeiptr(whole_blocks(rays.size()) * sizeof(RayState)), rays.data());
@@ -197,14 +198,14 @@ void Tracer::upload_world(std::span<const RayState> rays) {
     });
 }
 
-/// In the frame of the top-level tree; and how to come back from there.
+/// Uploads rays in the frame of the top-level tree, and keeps the times that lead back from there.
 template <class Sent>
 void Tracer::upload_local(std::span<const RayState> rays, std::vector<Sent>& sent) {
     sent.resize(whole_blocks(rays.size()));
     times_.resize(options_.certify ? 0 : sent.size());
     parallel_for(sent.size(), kRayGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
-            const RayState& state = rays.data()[i]; // up to the next whole block: see collect()
+            const RayState& state = rays.data()[i]; // up to the next whole block: see submit()
             LocalTime time;
             const LocalRay ray = local_ray(scene_, state.ray, state.skip, state.any_hit(), time);
             if constexpr (std::is_same_v<Sent, LocalRay>)
@@ -226,8 +227,8 @@ void Tracer::upload_local(std::span<const RayState> rays, std::vector<Sent>& sen
                          sent.data());
 }
 
-/// Fast precision: hits as Answer has them, where the kernel told t in the frame of the top-level
-/// tree, then u and v.
+/// Converts hits of fast precision to the form of Answer. The kernel gives t in the frame of the
+/// top-level tree, then u and v.
 void Tracer::come_back(std::span<Answer> answers) const {
     assert(times_.size() >= answers.size());
     for (size_t i = 0; i < answers.size(); ++i) {
@@ -239,7 +240,7 @@ void Tracer::come_back(std::span<Answer> answers) const {
     }
 }
 
-/// Which kernel the rays that were uploaded take.
+/// Returns the configuration of the kernel for the rays that were uploaded.
 ShaderConfig Tracer::shader_config() const {
     ShaderConfig config;
     config.compute = options_.compute;
@@ -341,15 +342,16 @@ void Tracer::read(std::span<Answer> answers) {
         kernel_seconds_ += time_.seconds();
 }
 
-/// Whether many were given up: doubles decide a ray slower than a pass does.
+/// Whether the kernel gave up many rays, which matters because doubles decide a ray slower than a
+/// pass does.
 bool Tracer::lost_many(std::span<const Answer> answers) {
     const auto lost = std::count_if(answers.begin(), answers.end(),
                                     [](const Answer& a) { return a.prim == OVC_CAPPED; });
     return size_t(lost) > answers.size() / kMaxLostShare;
 }
 
-/// Has kernels from now on give up fewer: first by a stack for all words, then by all the rounds
-/// there are for each ray. False: they give up as few as can be.
+/// Makes later kernels give up fewer rays: first by a stack for all words, then by giving each ray
+/// all the rounds there are. Returns false if they already give up as few as possible.
 bool Tracer::go_on_longer() {
     if (stack_words_ < stack_depth_) {
         stack_words_ = stack_depth_;
@@ -362,7 +364,8 @@ Result<Done> Tracer::collect(std::span<Answer> answers) {
     assert(answers.size() == rays_sent_);
     read(answers);
     while (lost_many(answers) && go_on_longer()) {
-        // Where all fit they stay where they are. Others may have been pushed out by now.
+        // If all pages fit they stay in place. Otherwise pages may have been evicted since the
+        // pass.
         if (!all_fit_)
             break;
         if (Result<Done> ok = launch(); !ok)

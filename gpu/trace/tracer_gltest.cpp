@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernel alone: what it calls certain is true, what it cannot know it flags.
+// Tests the kernel alone: its certain answers are true, and it flags what it cannot decide.
 #include "gpu/trace/tracer.h"
 
 #include "gpu/gl/test_gl.h"
@@ -9,7 +9,7 @@
 namespace ovc {
 namespace {
 
-/// One leaf of a soup, and a tracer on it.
+/// A fixture with one leaf of a soup, and a tracer over it.
 class KernelGl : public test::OnGl {
 protected:
     void TearDown() override {
@@ -61,7 +61,7 @@ protected:
     void expect_truth(const Soup& soup, std::span<const Ray> rays);
 
     static constexpr Ray kNoRay{dvec3(0), 0, dvec3(0, 0, 1), -1};
-    bool with_host_pages = true; // where the device takes them
+    bool with_host_pages = true; // if the device takes them
     std::unique_ptr<Tracer> tracer;
     Level1 level1;
     Numbering numbers;
@@ -73,7 +73,7 @@ const Leaf& leaf_of(const Level1& level1) {
     return level1.leaves[0];
 }
 
-/// From within the leaf's box into all directions.
+/// Returns a ray from within the leaf's box in any direction.
 Ray random_ray(test::Random& random, const Leaf& leaf) {
     const dvec3 half = leaf.box.extent() * 0.5;
     return {leaf.box.center() + random.point(-1, 1) * half, 0, random.point(-1, 1)};
@@ -83,7 +83,7 @@ bool is_certain(const Answer& answer) {
     return answer.prim != OVC_FLAGGED && answer.further()[0] == OVC_NO_TRIANGLE;
 }
 
-/// What is certain of the rays is what brute force finds.
+/// Checks that every certain answer is what brute force finds.
 void KernelGl::expect_truth(const Soup& soup, std::span<const Ray> rays) {
     const Leaf& leaf = leaf_of(level1);
     const auto nearest = trace(rays);
@@ -92,7 +92,7 @@ void KernelGl::expect_truth(const Soup& soup, std::span<const Ray> rays) {
         const Hit expected = test::brute_force(soup, leaf.triangles, rays[i]);
         if (is_certain(nearest[i])) {
             const bool hit = nearest[i].prim != OVC_MISS;
-            // Beyond its box a leaf promises nothing.
+            // A leaf promises nothing beyond its box.
             const bool inside = !expected.is_hit() || leaf.cell.contains(rays[i].at(expected.t));
             if (!inside)
                 continue;
@@ -107,7 +107,7 @@ void KernelGl::expect_truth(const Soup& soup, std::span<const Ray> rays) {
     }
 }
 
-// What a GPU has beside what a software renderer has.
+// A GPU has buffers of the driver only; a software renderer may use the process's pages.
 TEST_F(KernelGl, BuffersOfTheDriverAndOfTheProcessAnswerAlike) {
     const Soup soup = test::random_soup(6, 3000, 0.1);
     for (const bool compute : {false, true}) {
@@ -158,8 +158,8 @@ TEST_F(KernelGl, WhatItCallsCertainIsTrue) {
     }
 }
 
-/// Rays at sides of triangles, some roundings to either side: where corners in steps of 2^-23 would
-/// be seen if the bound did not hold for them.
+/// The rays go past sides of triangles, some roundings to either side. They would show it if the
+/// bound did not hold for corners in steps of 2^-23.
 TEST_F(KernelGl, WhatItCallsCertainIsTrueAtSidesOfLoosePairs) {
     const Soup soup = test::random_soup(11, 1500, 0.3);
     load(soup, LoosePairs{true});
@@ -179,8 +179,8 @@ TEST_F(KernelGl, WhatItCallsCertainIsTrueAtSidesOfLoosePairs) {
     expect_truth(soup, rays);
 }
 
-/// Rays that begin or end some roundings before or behind a triangle. From a few hundred on the
-/// kernel tells by itself.
+/// The rays begin or end some roundings before or behind a triangle. From a few hundred roundings
+/// on, the kernel decides by itself.
 TEST_F(KernelGl, WhatItCallsCertainIsTrueAtTheEndsOfRays) {
     const Soup soup = test::random_soup(13, 1500, 0.3);
     test::Random random(14);
@@ -242,8 +242,8 @@ TEST_F(KernelGl, AnEndBeforeTheBeginningIsNoRay) {
         EXPECT_EQ(answer.prim, OVC_MISS);
 }
 
-/// Lanes that take rays in turn share the rounds that a software renderer allows: thousands for
-/// each ray are more, and the pass is made again without turns.
+/// Lanes that take rays in turn share the rounds that a software renderer allows. Thousands for
+/// each ray are too many, so the pass is made again without ray refill.
 TEST_F(KernelGl, RaysOfThousandsOfRoundsAreAnsweredByTheKernel) {
     constexpr int kLayers = 4000;
     std::vector<vec3> corners;
@@ -251,7 +251,8 @@ TEST_F(KernelGl, RaysOfThousandsOfRoundsAreAnsweredByTheKernel) {
         for (const vec3& corner : {vec3(0, 0, i), vec3(kLayers, 0, i), vec3(0, kLayers, i)})
             corners.push_back(corner / float(kLayers));
     load(test::one_chunk(std::move(corners)), {}, {.compute = true});
-    // Through all boxes and past all triangles, up and down in turn; the others past everything.
+    // Rays 0 to 8191 go through all boxes and past all triangles, up and down in turn; the others
+    // go past everything.
     std::vector<Ray> rays(40000, Ray{dvec3(5, 5, 0), 0, dvec3(1, 0, 0)});
     for (size_t i = 0; i < 8192; ++i)
         rays[i] = {dvec3(0.9, 0.9, i % 2 ? 2 : -1), 0, dvec3(0, 0, i % 2 ? -1 : 1)};
