@@ -15,29 +15,25 @@ namespace ovc {
 class Numbering {
 public:
     Numbering() = default;
-    explicit Numbering(const Soup& soup) {
-        first_.reserve(soup.chunks.size() + 1);
-        uint32_t count = 0;
-        for (const Chunk& chunk : soup.chunks) {
-            first_.push_back(count);
-            count += chunk.size();
-        }
-        first_.push_back(count);
-    }
+    explicit Numbering(const Soup& soup) { append(soup); }
 
-    /// Returns whether the soup has such a triangle.
-    bool has(TriangleId id) const {
-        return id.mesh + size_t(1) < first_.size() &&
-               id.prim < first_[id.mesh + 1] - first_[id.mesh];
+    /// Numbers the triangles of chunks that the soup has got since. Those before keep theirs.
+    void append(const Soup& soup) {
+        first_.reserve(soup.chunks.size() + 1);
+        for (size_t mesh = meshes(); mesh < soup.chunks.size(); ++mesh)
+            first_.push_back(first_.back() + soup.chunks[mesh].size());
     }
+    uint64_t meshes() const { return first_.size() - 1; }
+    /// Returns the numbers that are given, with those of chunks that are empty now.
+    uint64_t count() const { return first_.back(); }
 
     uint32_t of(TriangleId id) const {
-        assert(has(id));
+        assert(id.mesh < meshes() && id.prim < first_[id.mesh + 1] - first_[id.mesh]);
         return first_[id.mesh] + id.prim;
     }
 
     TriangleId id(uint32_t number) const {
-        assert(!first_.empty() && number < first_.back());
+        assert(number < first_.back());
         // The last chunk that begins at or before the number holds it; empty ones may precede.
         const auto after = std::upper_bound(first_.begin(), first_.end(), number);
         const uint32_t mesh = uint32_t(after - first_.begin()) - 1;
@@ -45,7 +41,7 @@ public:
     }
 
 private:
-    std::vector<uint32_t> first_; // of each chunk, and behind the last the count of all
+    std::vector<uint32_t> first_{0}; // of each chunk, and behind the last the count of all
 };
 
 } // namespace ovc

@@ -35,10 +35,12 @@ bool keeps_floats_in_range(double origin) {
 
 } // namespace
 
-Chunk::Chunk(dvec3 origin)
-    : origin_(origin),
-      plain_(keeps_floats_in_range(origin.x) && keeps_floats_in_range(origin.y) &&
-             keeps_floats_in_range(origin.z)) {}
+Chunk::Chunk(dvec3 origin) : origin_(origin), plain_(is_plain()) {}
+
+bool Chunk::is_plain() const {
+    return !transform_ && double_corners_.empty() && keeps_floats_in_range(origin_.x) &&
+           keeps_floats_in_range(origin_.y) && keeps_floats_in_range(origin_.z);
+}
 
 Chunk Chunk::owning(dvec3 origin, std::vector<vec3> corners) {
     Chunk chunk(origin);
@@ -93,6 +95,21 @@ Chunk::MeshKey Chunk::mesh_key() const {
 void Chunk::place(const Transform& transform) {
     transform_ = std::make_unique<Transform>(transform_ ? then(*transform_, transform) : transform);
     plain_ = false;
+}
+
+void Chunk::place_anew(const std::optional<Transform>& transform) {
+    transform_ = transform ? std::make_unique<Transform>(*transform) : nullptr;
+    plain_ = is_plain();
+}
+
+void Chunk::set_corners(uint32_t first, std::span<const vec3> corners) {
+    assert(first * size_t(3) + corners.size() <= owned_.size());
+    std::ranges::copy(corners, owned_.begin() + ptrdiff_t(first) * 3);
+}
+
+void Chunk::set_corners(uint32_t first, std::span<const dvec3> corners) {
+    assert(first * size_t(3) + corners.size() <= owned_doubles_.size());
+    std::ranges::copy(corners, owned_doubles_.begin() + ptrdiff_t(first) * 3);
 }
 
 bool Chunk::has_whole_triangles() const {

@@ -11,6 +11,7 @@
 #include <cassert>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,6 +38,13 @@ public:
     MeshKey mesh_key() const;
     /// Moves the triangles from where they are now, which an earlier transform may have decided.
     void place(const Transform& transform);
+    /// Puts the triangles where the transform takes the mesh, or where the mesh lies by itself,
+    /// whatever placed them before.
+    void place_anew(const std::optional<Transform>& transform);
+    /// Gives triangle `first` and those behind it new corners, three each. The chunk owns corners
+    /// of this kind, and its instances see the new ones too.
+    void set_corners(uint32_t first, std::span<const vec3> corners);
+    void set_corners(uint32_t first, std::span<const dvec3> corners);
 
     Chunk(Chunk&&) = default;
     Chunk& operator=(Chunk&&) = default;
@@ -49,6 +57,10 @@ public:
     /// Returns the mask of the mesh (core/sieve.h). 0, as at first: all rays see it.
     uint32_t mask() const { return mask_; }
     void set_mask(uint32_t mask) { mask_ = mask; }
+    /// Whether the transform is to change often. Such a chunk is cut and packed by itself.
+    bool moves() const { return moves_; }
+    void set_moves() { moves_ = true; }
+    bool owns_corners() const { return !owned_.empty() || !owned_doubles_.empty(); }
     /// Returns null where the chunk has no transform.
     const Transform* transform() const { return transform_.get(); }
     uint32_t size() const { return uint32_t((corners_.size() + double_corners_.size()) / 3); }
@@ -77,6 +89,7 @@ public:
 
 private:
     explicit Chunk(dvec3 origin);
+    bool is_plain() const;
     bool has_whole_triangles() const;
     Triangle placed_triangle(uint32_t prim) const;
 
@@ -87,6 +100,7 @@ private:
     std::span<const dvec3> double_corners_;
     std::unique_ptr<const Transform> transform_;
     bool plain_; // floats without a transform, which the origin keeps in range
+    bool moves_ = false;
     uint32_t mask_ = 0;
 };
 
@@ -95,8 +109,11 @@ struct Soup {
     std::vector<Chunk> chunks;
 
     uint64_t triangle_count() const;
+    bool has(TriangleId id) const {
+        return id.mesh < chunks.size() && id.prim < chunks[id.mesh].size();
+    }
     Triangle triangle(TriangleId id) const {
-        assert(id.mesh < chunks.size());
+        assert(has(id));
         return chunks[id.mesh].triangle(id.prim);
     }
 };

@@ -31,7 +31,7 @@ typedef struct ovc_ticket_t* ovc_ticket;
 typedef enum ovc_result {
     OVC_OK = 0,
     OVC_ERROR_INVALID_ARGUMENT = 1, /* a null, a wrong struct_size, a number out of range, EGL_PLATFORM set to nonsense */
-    OVC_ERROR_INVALID_STATE = 2,    /* tracing before commit, adding after it */
+    OVC_ERROR_INVALID_STATE = 2,    /* tracing before commit, or after a change */
     OVC_ERROR_NO_DEVICE = 3,        /* EGL or OpenGL is missing, or no device has that name */
     OVC_ERROR_OUT_OF_BUDGET = 4,    /* gpu_memory_bytes is too small; the message names the smallest that works */
     OVC_ERROR_OUT_OF_MEMORY = 5,
@@ -188,7 +188,8 @@ typedef struct ovc_scene_config {
 typedef enum ovc_mesh_flags {
     OVC_MESH_SHARED = 1, /* positions are used in place, and stay valid and unchanged until the scene is destroyed.
                             Needs stride 12, or 24 of doubles, and no indices */
-    OVC_MESH_TEMPLATE = 2 /* no ray hits the mesh itself: it is there for its instances. It counts for no triangles */
+    OVC_MESH_TEMPLATE = 2, /* no ray hits the mesh itself: it is there for its instances. It counts for no triangles */
+    OVC_MESH_MOVES = 4 /* update_instance() is to move the mesh: it is built by itself from the start, so that the first move is quick too */
 } ovc_mesh_flags;
 
 /* Corners are kept as they are given: floats as floats, doubles as doubles (twice the host memory). A coordinate of a corner, with
@@ -383,6 +384,12 @@ typedef struct ovc_statistics {
     uint64_t instances;
     /* of the tree over all pages and instances, on the GPU */
     uint64_t top_level_bytes;
+    /* + commits that brought the scene up to date without building all of it */
+    uint64_t updates;
+    /* + pages that they refitted: their triangles moved */
+    uint64_t pages_refitted;
+    /* + pages that they built, anew or for meshes that were added */
+    uint64_t pages_rebuilt;
 } ovc_statistics;
 
 /* The pages that rays went through since this was asked last, or since the commit; experimental. */
@@ -440,8 +447,9 @@ typedef struct ovc_api {
     ovc_result (*create_scene)(ovc_device device, const ovc_scene_config* config, ovc_scene* scene);
     /* Meshes are numbered from 0 in the order they are added; mesh_id may be NULL. */
     ovc_result (*add_mesh)(ovc_scene scene, const ovc_mesh* mesh, uint32_t* mesh_id);
-    /* Builds level 1 and level 2. Afterwards the scene takes rays and no more meshes. An empty scene is fine: all rays miss.
-     * Where it fails or is cancelled (ovc_scene_config.progress) it leaves nothing behind and may be called again. */
+    /* Builds level 1 and level 2, or brings them up to date with what has changed since the last commit; where nothing has, it does
+     * nothing. Afterwards the scene takes rays. An empty scene is fine: all rays miss. Where it fails or is cancelled
+     * (ovc_scene_config.progress) it leaves nothing behind, and may be called again to build. */
     ovc_result (*commit)(ovc_scene scene);
     /* Writes the nearest hits of ray_count rays into hits[ray_count]. query may be NULL. */
     ovc_result (*intersect)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, ovc_hit* hits, const ovc_query* query);
@@ -525,6 +533,24 @@ typedef struct ovc_api {
      * takes O(n log n) time, however many of them lie in one point. */
     ovc_result (*all_hits)(ovc_scene scene, const ovc_ray* rays, size_t ray_count, size_t max_hits, ovc_hit* hits,
                            uint64_t* counts, const ovc_query* query);
+
+    /* Changes of a scene, before its commit or after it. Once one of these, add_mesh or add_instance has succeeded, the scene takes
+     * no rays (OVC_ERROR_INVALID_STATE, for tickets that are under way too) until commit has brought it up to date; answers are then
+     * those of a scene built anew from what is there, bit for bit in certified precision. Commit rebuilds no more than it must:
+     * for moved instances the tree above the pages, for new positions what lies around them. */
+
+    /* Gives triangles of a mesh, from first_triangle on, new corners: `mesh` describes as many triangles as change, as in add_mesh,
+     * with floats or doubles and the origin as there; transform and mask are NULL and 0, for these stay. All instances of the mesh
+     * follow. Where OVC_MESH_SHARED was set it must be set again, and positions must be the address of first_triangle's first
+     * corner: the caller writes to its own memory while no call uses the scene, and then tells here what it has written. */
+    ovc_result (*update_mesh)(ovc_scene scene, uint32_t mesh_id, const ovc_mesh* mesh, uint64_t first_triangle);
+    /* Gives a mesh or an instance a new transform, as in ovc_mesh or ovc_instance, in place of the one it was added with or got
+     * last. NULL: none. What was added as an instance of it stays where it is. A mesh that is moved for the first time is built by
+     * itself then, if OVC_MESH_MOVES was not set. */
+    ovc_result (*update_instance)(ovc_scene scene, uint32_t mesh_id, const double* transform);
+    /* Removes a mesh or an instance. Numbers of others stay as they are, and this one is not used again; instances of a removed
+     * mesh stay. */
+    ovc_result (*remove_mesh)(ovc_scene scene, uint32_t mesh_id);
 } ovc_api;
 
 #if defined(_WIN32)

@@ -218,6 +218,15 @@ public:
         check(api().add_instance(get(), &instance, &number));
         return number;
     }
+    /// Gives triangles of a mesh new corners; see ovc_api.update_mesh.
+    void update(uint32_t number, const ovc_mesh& mesh, uint64_t first_triangle = 0) {
+        check(api().update_mesh(get(), number, &mesh, first_triangle));
+    }
+    /// Puts a mesh or an instance somewhere else; see ovc_api.update_instance.
+    void move(uint32_t number, const Transform& transform) {
+        check(api().update_instance(get(), number, transform.data()));
+    }
+    void remove(uint32_t number) { check(api().remove_mesh(get(), number)); }
     void commit() { check(api().commit(get())); }
 
     /// hits: as many as rays.

@@ -14,10 +14,11 @@ namespace {
 
 std::vector<LocalTriangle> triangles_of(const Soup& soup) {
     std::vector<LocalTriangle> triangles;
-    for (uint32_t i = 0; i < soup.triangle_count(); ++i) {
-        const Triangle t = soup.triangle({0, i});
-        triangles.push_back({vec3(t[0]), vec3(t[1]), vec3(t[2])});
-    }
+    for (const Chunk& chunk : soup.chunks)
+        for (uint32_t i = 0; i < chunk.size(); ++i) {
+            const Triangle t = chunk.triangle(i);
+            triangles.push_back({vec3(t[0]), vec3(t[1]), vec3(t[2])});
+        }
     return triangles;
 }
 

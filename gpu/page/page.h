@@ -20,6 +20,7 @@ struct Page {
     std::vector<uvec4> texels;         // of a page that was built; empty if they are borrowed
     std::span<const uvec4> borrowed{}; // the owner keeps them alive and unchanged
     uint32_t depth = 0;                // nodes on the longest way down
+    float built_cost = 0;              // of a ray before the first refit (refit.h); 0: none yet
 
     std::span<const uvec4> view() const { return borrowed.empty() ? texels : borrowed; }
     uint64_t units() const { return view().size() / OVC_UNIT_TEXELS; }

@@ -242,7 +242,7 @@ TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> p
 }
 
 bool is_usable(const TopLevel& top, std::span<const Page> pages, const PoolLayout& pool) {
-    const uint64_t tree = top.tree.bytes();
+    const uint64_t tree = top.room();
     if (top.empty() || pool.bytes == 0 || tree > pool.bytes_of(0))
         return false;
     const uint64_t beside = pool.bytes_of(0) - tree;

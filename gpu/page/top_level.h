@@ -29,6 +29,10 @@ struct TopLevel {
     std::vector<Link> links;          // those of one page lie together
     std::vector<uint32_t> first_link; // for each page, and one past the last of all
     uint32_t depth = 0;               // nodes on the longest way down, pages included
+    uint64_t spare_bytes = 0;         // behind it in the pool, for a larger one after an update
+
+    /// Returns the bytes of the pool that no page lies in.
+    uint64_t room() const { return tree.bytes() + spare_bytes; }
     bool empty() const { return tree.texels.empty(); }
     std::span<const Link> links_of(uint32_t page) const {
         assert(page + size_t(1) < first_link.size());

@@ -9,7 +9,9 @@
 namespace ovc {
 
 Pool::Pool(Ledger& ledger, const PoolLayout& layout, size_t leaves, uint64_t begin)
-    : layout_(layout), residency_(stretches_of(layout, begin), OVC_UNIT_BYTES, leaves) {
+    : layout_(layout),
+      begin_(begin),
+      residency_(stretches_of(layout, begin), OVC_UNIT_BYTES, leaves) {
     for (uint32_t i = 0; i < layout.count(); ++i)
         buffers_.emplace_back(ledger, layout.bytes_of(i), "page pool");
 }

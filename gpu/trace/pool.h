@@ -20,6 +20,8 @@ public:
     Residency& residency() { return residency_; }
     const Residency& residency() const { return residency_; }
     const PoolLayout& layout() const { return layout_; }
+    /// Returns the offset before which no page lies.
+    uint64_t begin() const { return begin_; }
 
     /// Makes the buffers readable by kernels. To be called once they are allocated.
     void show();
@@ -35,6 +37,7 @@ public:
 
 private:
     PoolLayout layout_;
+    uint64_t begin_;
     std::vector<gl::Buffer> buffers_;
     std::vector<gl::BufferTexture> texels_;
     Residency residency_;

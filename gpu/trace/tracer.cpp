@@ -84,13 +84,13 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       page_data_(pages),
       software_(device.is_software),
       top_(top),
-      all_fit_(all_fit(pages, plan.pool(), top.tree.bytes())),
+      all_fit_(all_fit(pages, plan.pool(), top.room())),
       scene_(scene_leaf(bounds)),
       stack_depth_(stack_depth(top.depth)),
       stack_words_(software_ ? std::min(stack_depth_, kMaxStackWordsInSoftware) : stack_depth_),
       max_slots_(plan.batch_rays + plan.parted_rays()),
       ray_buffer_(*ledger_, uint64_t(plan.batch_rays) * sizeof(RayState), "rays"),
-      pool_(*ledger_, plan.pool(), pages.size(), top.tree.bytes()) {
+      pool_(*ledger_, plan.pool(), pages.size(), top.room()) {
     refills_ = device.has_ballots && software_ && options.compute;
     if (options.compute)
         words_.emplace(*ledger_, max_slots_);
@@ -109,15 +109,11 @@ Result<Done> Tracer::set_up() {
         return Error{"the GPU is out of memory", ErrorKind::OutOfGpuMemory};
     if (!allocated)
         return allocated;
-    if (portal_buffer_) {
-        const std::vector<uvec4> table = pack_portals(top_.portals);
-        glNamedBufferSubData(portal_buffer_->id(), 0, GLsizeiptr(table.size() * sizeof(uvec4)),
-                             table.data());
+    if (portal_buffer_)
         portals_.show(*portal_buffer_, GL_RGBA32UI, 0, portal_buffer_->bytes());
-    }
     rays_.show(ray_buffer_, GL_RGBA32UI, 0, ray_buffer_.bytes());
     pool_.show();
-    pool_.upload(0, top_.tree);
+    upload_top_level();
     if (active_buffer_) {
         active_.show(*active_buffer_, GL_R32UI, 0, active_buffer_->bytes());
         take_active(); // clears it
@@ -143,14 +139,55 @@ Result<std::unique_ptr<Tracer>> Tracer::create(const MemoryPlan& plan, const Pas
     return tracer;
 }
 
+/// Returns the unit of the pool that a link to the page leads to now.
+uint32_t Tracer::way_to(uint32_t leaf, const Link& link) const {
+    const uint32_t page = uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES);
+    return resident(leaf) ? page + link.first_child : OVC_LEADS_NOWHERE;
+}
+
 /// Tells the kernel where a page is now, by writing to the page's links.
 void Tracer::say_where(uint32_t leaf) {
-    const uint32_t page = uint32_t(pool_.residency().slot(leaf).offset / OVC_UNIT_BYTES);
     for (const Link& link : top_.links_of(leaf)) {
-        const uint32_t unit = resident(leaf) ? page + link.first_child : OVC_LEADS_NOWHERE;
         const uint64_t texel = uint64_t(link.unit) * OVC_UNIT_TEXELS + 3;
-        pool_.write(texel * sizeof(uvec4), unit);
+        pool_.write(texel * sizeof(uvec4), way_to(leaf, link));
     }
+}
+
+/// Writes the tree, whose links lead to the pages where these are now, and the table of portals.
+void Tracer::upload_top_level() {
+    Page tree = top_.tree;
+    for (uint32_t leaf = 0; leaf < page_data_.size(); ++leaf)
+        for (const Link& link : top_.links_of(leaf))
+            tree.texels[size_t(link.unit) * OVC_UNIT_TEXELS + 3].x = way_to(leaf, link);
+    pool_.upload(0, tree);
+    if (!portal_buffer_)
+        return;
+    const std::vector<uvec4> table = pack_portals(top_.portals);
+    glNamedBufferSubData(portal_buffer_->id(), 0, GLsizeiptr(table.size() * sizeof(uvec4)),
+                         table.data());
+}
+
+bool Tracer::update(const Box& bounds, std::span<const Page> pages,
+                    std::span<const uint32_t> changed) {
+    assert(pages.size() == page_data_.size());
+    page_data_ = pages;
+    if (top_.tree.bytes() > pool_.begin() || has_portals() != portal_buffer_.has_value() ||
+        (portal_buffer_ && top_.portals.size() * kPortalBytes > portal_buffer_->bytes()))
+        return false;
+    for (const uint32_t leaf : changed)
+        if (resident(leaf) && pool_.residency().slot(leaf).bytes != pages[leaf].bytes())
+            return false;
+    scene_ = scene_leaf(bounds);
+    all_fit_ = all_fit(pages, pool_.layout(), pool_.begin());
+    stack_depth_ = stack_depth(top_.depth);
+    stack_words_ = software_ ? std::min(stack_depth_, kMaxStackWordsInSoftware) : stack_depth_;
+    upload_top_level();
+    for (const uint32_t leaf : changed)
+        if (resident(leaf)) {
+            const uint64_t offset = pool_.residency().slot(leaf).offset;
+            pool_.upload(offset, pages[leaf], uint32_t(offset / OVC_UNIT_BYTES));
+        }
+    return bool(check_gl("updating pages"));
 }
 
 Moved Tracer::bring(std::span<const uint32_t> wanted) {

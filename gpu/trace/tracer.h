@@ -89,6 +89,12 @@ public:
     /// without evicting each other, at least the first.
     Moved bring(std::span<const uint32_t> wanted);
 
+    /// Takes up the pages and the top-level tree as they are now, in `bounds`; the others that were
+    /// given to create() live on. pages: as many as before; `changed` are those with other units.
+    /// Returns false, with the tracer of no use, where not all that is resident finds its place
+    /// again.
+    bool update(const Box& bounds, std::span<const Page> pages, std::span<const uint32_t> changed);
+
     /// Whether all pages are in the pool, so that a pass answers its rays for good.
     bool all_resident() const { return all_fit_ && pages_moved_ == page_data_.size(); }
 
@@ -132,6 +138,8 @@ private:
     static bool lost_many(std::span<const Answer> answers);
     bool go_on_longer();
     void say_where(uint32_t leaf);
+    void upload_top_level();
+    uint32_t way_to(uint32_t leaf, const Link& link) const;
     template <class Sent>
     void upload_local(std::span<const RayState> rays, std::vector<Sent>& sent);
 

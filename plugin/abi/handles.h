@@ -3,6 +3,7 @@
 // into result codes.
 #pragma once
 
+#include "core/changes.h"
 #include "core/soup.h"
 #include "core/system/log.h"
 #include "core/text/printable.h"
@@ -71,6 +72,12 @@ inline constexpr uint32_t kDestroyed = 0x6f766300;
 
 class RayStream;
 
+/// Whose corners a chunk has.
+struct MeshSource {
+    uint32_t mesh;          // its own number for a mesh; kNone once it is removed
+    uint32_t instances = 0; // of a mesh: those that are not removed
+};
+
 } // namespace ovc
 
 /// The handle that push() takes. It is part of its scene, so that a push() after the stream's end
@@ -97,8 +104,12 @@ struct ovc_scene_t {
     ovc::Turn turn; // calls on one scene wait here
     ovc_scene_config config{sizeof(ovc_scene_config)};
     ovc::Soup soup;
-    std::map<uint32_t, ovc::Chunk> templates;  // by number; the soup has an empty chunk for each
-    std::unique_ptr<ovc::Structure> structure; // set by commit
+    /// By number: chunks that no ray hits themselves; the soup has an empty one in their place.
+    std::map<uint32_t, ovc::Chunk> templates;
+    std::vector<ovc::MeshSource> sources;            // one per chunk
+    std::map<uint32_t, ovc::Transform> placed_first; // by what an instance's mesh was placed
+    ovc::Changes changes;                            // since the commit; none without a structure
+    std::unique_ptr<ovc::Structure> structure;       // set by commit
     ovc::Submissions submissions;
     ovc::SingleRays single_rays{turn, streaming};
     std::atomic<std::thread::id> streaming; // the thread that is inside stream(), if any

@@ -1,87 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// add_mesh and add_instance: check what is added, and make a chunk of the soup of it.
+// The table's functions that add meshes and instances to a scene, change them and remove them.
 #include "core/text/format_text.h"
+#include "plugin/abi/mesh_data.h"
 #include "plugin/abi/scene.h"
 #include "plugin/abi/scene_call.h"
 #include "plugin/abi/struct_size.h"
 
-#include <cmath>
-#include <cstring>
+#include <cassert>
 #include <optional>
 
 namespace ovc {
 namespace {
-
-uint64_t triangles_of(const ovc_mesh& mesh) {
-    return mesh.indices ? mesh.triangle_count : mesh.vertex_count / 3;
-}
-
-void check_positions(const ovc_mesh& mesh) {
-    if (mesh.positions && mesh.positions_double)
-        invalid("ovc_mesh.positions and positions_double are both set; one says it all");
-    if (!mesh.positions && !mesh.positions_double && mesh.vertex_count)
-        invalid("ovc_mesh.positions is NULL");
-    if (mesh.positions_double) {
-        if (mesh.stride < 24 || mesh.stride % 8 ||
-            reinterpret_cast<uintptr_t>(mesh.positions_double) % 8)
-            invalid(format_text("ovc_mesh.stride is {}, expected 24 or more and, as "
-                                "positions_double, a multiple of 8",
-                                mesh.stride));
-        return;
-    }
-    if (mesh.stride < 12 || mesh.stride % 4 || reinterpret_cast<uintptr_t>(mesh.positions) % 4)
-        invalid(format_text(
-            "ovc_mesh.stride is {}, expected 12 or more and, as positions, a multiple of 4",
-            mesh.stride));
-}
-
-void check_counts(const ovc_mesh& mesh) {
-    if (!mesh.indices && mesh.vertex_count % 3)
-        invalid(format_text("ovc_mesh.vertex_count is {} without indices, expected a multiple of 3",
-                            mesh.vertex_count));
-    const uint64_t triangles = triangles_of(mesh);
-    if (!mesh.indices && mesh.triangle_count && mesh.triangle_count != triangles)
-        invalid(
-            format_text("ovc_mesh.triangle_count is {}, but {} vertices without indices make {}",
-                        mesh.triangle_count, mesh.vertex_count, triangles));
-    if (triangles >= kNone)
-        invalid(format_text("a mesh holds fewer than {} triangles, not {}; split it", kNone,
-                            triangles));
-}
-
-/// Returns the struct with its stride filled in. Throws a Failure for anything wrong in it, except
-/// for indices, which copied_corners() checks.
-ovc_mesh checked(const ovc_mesh* given) {
-    ovc_mesh mesh = whole("ovc_mesh", given, offsetof(ovc_mesh, positions_double));
-    const uint32_t packed = mesh.positions_double ? 24 : 12;
-    if (!mesh.stride)
-        mesh.stride = packed;
-    check_positions(mesh);
-    if (mesh.flags & ~uint32_t(OVC_MESH_SHARED | OVC_MESH_TEMPLATE) || mesh.reserved ||
-        mesh.reserved1)
-        invalid("ovc_mesh.flags or reserved has bits that this version does not know");
-    check_counts(mesh);
-    if ((mesh.flags & OVC_MESH_SHARED) && (mesh.stride != packed || mesh.indices))
-        invalid(format_text("OVC_MESH_SHARED needs stride {} and no indices", packed));
-    for (const double coordinate : mesh.origin)
-        if (!std::isfinite(coordinate))
-            invalid("ovc_mesh.origin is not finite");
-    return mesh;
-}
-
-template <class Corner>
-std::vector<Corner> copied_corners(const ovc_mesh& mesh, const void* positions) {
-    std::vector<Corner> corners(triangles_of(mesh) * 3);
-    for (uint64_t i = 0; i < corners.size(); ++i) {
-        const uint64_t vertex = mesh.indices ? mesh.indices[i] : i;
-        if (vertex >= mesh.vertex_count)
-            invalid(format_text("ovc_mesh.indices[{}] is {}, expected less than vertex_count = {}",
-                                i, vertex, mesh.vertex_count));
-        std::memcpy(&corners[i], static_cast<const char*>(positions) + vertex * mesh.stride,
-                    sizeof(Corner));
-    }
-    return corners;
-}
 
 Chunk chunk_of(const ovc_mesh& mesh) {
     const dvec3 origin(mesh.origin[0], mesh.origin[1], mesh.origin[2]);
@@ -90,33 +19,80 @@ Chunk chunk_of(const ovc_mesh& mesh) {
     if (const double* positions = mesh.positions_double)
         return shared ? Chunk::borrowing_doubles(origin,
                                                  {reinterpret_cast<const dvec3*>(positions), count})
-                      : Chunk::owning_doubles(origin, copied_corners<dvec3>(mesh, positions));
+                      : Chunk::owning_doubles(origin, copied_double_corners(mesh));
     return shared ? Chunk::borrowing(origin, {reinterpret_cast<const vec3*>(mesh.positions), count})
-                  : Chunk::owning(origin, copied_corners<vec3>(mesh, mesh.positions));
+                  : Chunk::owning(origin, copied_corners(mesh));
 }
 
-std::optional<Transform> transform_of(const char* field, const double* given) {
-    if (!given)
-        return std::nullopt;
-    Transform transform;
-    for (size_t i = 0; i < 12; ++i) {
-        if (!std::isfinite(given[i]))
-            invalid(format_text("{}[{}] is not finite", field, i));
-        transform.rows[i / 4][i % 4] = given[i];
+/// Returns where to enter a change of a committed scene, before it is made. Nothing is traced
+/// through the scene from now on until the next commit.
+Changes& begin_change(ovc_scene scene) {
+    assert(scene->structure);
+    if (!scene->changes.any())
+        scene->single_rays.serve(nullptr);
+    return scene->changes;
+}
+
+void add_chunk(ovc_scene scene, Chunk chunk, uint32_t source, uint32_t* mesh_id) {
+    if (scene->structure) {
+        begin_change(scene).added = true;
+        chunk.set_moves(); // so that what is built already stays as it is
     }
-    return transform;
-}
-
-void check_open(ovc_scene scene, const char* call) {
-    if (scene->structure)
-        throw Failure{OVC_ERROR_INVALID_STATE,
-                      format_text("{}: the scene is committed; it takes no more meshes", call)};
-}
-
-void add_chunk(ovc_scene scene, Chunk chunk, uint32_t* mesh_id) {
     scene->soup.chunks.push_back(std::move(chunk));
+    scene->sources.push_back({source});
     if (mesh_id)
         *mesh_id = uint32_t(scene->soup.chunks.size() - 1);
+}
+
+/// Returns whose corners the mesh or instance has. Throws a Failure where there is no such mesh.
+uint32_t source_of(ovc_scene scene, const char* field, uint32_t mesh_id) {
+    if (mesh_id >= scene->sources.size())
+        invalid(format_text("{} is {}, but {} meshes were added so far", field, mesh_id,
+                            scene->sources.size()));
+    const uint32_t source = scene->sources[mesh_id].mesh;
+    if (source == kNone)
+        invalid(format_text("{} is {}, which was removed", field, mesh_id));
+    return source;
+}
+
+/// Returns the chunk with the corners of a mesh that is not removed, or has instances still.
+Chunk& chunk_of_mesh(ovc_scene scene, uint32_t mesh_id) {
+    const auto found = scene->templates.find(mesh_id);
+    return found != scene->templates.end() ? found->second : scene->soup.chunks[mesh_id];
+}
+
+/// Throws a Failure where the update is not of the same kind as the mesh, or beyond its end.
+void check_update(const ovc_mesh& update, uint64_t first, const Chunk& chunk) {
+    if (update.transform || update.mask || update.flags & OVC_MESH_TEMPLATE)
+        invalid("update_mesh: ovc_mesh.transform, mask and flags cannot change; expected NULL, 0 "
+                "and at most OVC_MESH_SHARED");
+    for (int axis = 0; axis < 3; ++axis)
+        if (update.origin[axis] != chunk.origin()[axis])
+            invalid("update_mesh: ovc_mesh.origin is not that of the mesh, which cannot change");
+    const uint64_t count = triangles_of(update);
+    if (first > chunk.size() || count > chunk.size() - first)
+        invalid(format_text("update_mesh: triangles {} to {} are given, but the mesh has {}", first,
+                            first + count, chunk.size()));
+    if (count > 0 && (update.positions_double != nullptr) != !chunk.double_corners().empty())
+        invalid("update_mesh: the mesh was added with positions of the other type, floats or "
+                "doubles");
+    if (chunk.owns_corners() == bool(update.flags & OVC_MESH_SHARED) && count > 0)
+        invalid("update_mesh: OVC_MESH_SHARED is set where the mesh was added without it, or is "
+                "missing");
+    const void* const given =
+        update.positions ? static_cast<const void*>(update.positions) : update.positions_double;
+    if (count > 0 && !chunk.owns_corners() && given != chunk.address_of(uint32_t(first)))
+        invalid("update_mesh: the positions of a mesh with OVC_MESH_SHARED stay where they were "
+                "when it was added");
+}
+
+/// Enters that these triangles of a mesh are to change, wherever it is placed.
+void note_moved(ovc_scene scene, uint32_t mesh_id, uint32_t first, uint32_t end) {
+    if (!scene->structure || first == end)
+        return;
+    for (uint32_t i = 0; i < scene->sources.size(); ++i)
+        if (scene->sources[i].mesh == mesh_id && scene->soup.chunks[i].size() > 0)
+            begin_change(scene).moved.push_back({i, first, end});
 }
 
 } // namespace
@@ -125,18 +101,20 @@ ovc_result add_mesh(ovc_scene scene, const ovc_mesh* given, uint32_t* mesh_id) {
     return on_scene(scene, "add_mesh", [&] {
         if (!given)
             invalid("add_mesh: mesh is NULL");
-        check_open(scene, "add_mesh");
         const ovc_mesh mesh = checked(given);
         const auto transform = transform_of("ovc_mesh.transform", mesh.transform);
         Chunk chunk = chunk_of(mesh);
         if (transform)
             chunk.place(*transform);
         chunk.set_mask(mesh.mask);
+        if (mesh.flags & OVC_MESH_MOVES)
+            chunk.set_moves();
+        const auto number = uint32_t(scene->soup.chunks.size());
         if (mesh.flags & OVC_MESH_TEMPLATE) {
-            scene->templates.emplace(uint32_t(scene->soup.chunks.size()), std::move(chunk));
+            scene->templates.emplace(number, std::move(chunk));
             chunk = Chunk::owning(dvec3(0), {});
         }
-        add_chunk(scene, std::move(chunk), mesh_id);
+        add_chunk(scene, std::move(chunk), number, mesh_id);
     });
 }
 
@@ -144,23 +122,83 @@ ovc_result add_instance(ovc_scene scene, const ovc_instance* given, uint32_t* me
     return on_scene(scene, "add_instance", [&] {
         if (!given)
             invalid("add_instance: instance is NULL");
-        check_open(scene, "add_instance");
         const ovc_instance instance = whole("ovc_instance", given, offsetof(ovc_instance, mask));
-        const size_t meshes = scene->soup.chunks.size();
-        if (instance.mesh >= meshes)
-            invalid(format_text("ovc_instance.mesh is {}, but {} meshes were added so far",
-                                instance.mesh, meshes));
+        const uint32_t source = source_of(scene, "ovc_instance.mesh", instance.mesh);
         if (instance.reserved || instance.reserved1)
             invalid("ovc_instance.reserved has bits that this version does not know");
         const auto transform = transform_of("ovc_instance.transform", instance.transform);
-        const auto found = scene->templates.find(instance.mesh);
-        const Chunk& source =
-            found != scene->templates.end() ? found->second : scene->soup.chunks[instance.mesh];
-        Chunk chunk = source.instance();
+        const Chunk& placed = chunk_of_mesh(scene, instance.mesh);
+        Chunk chunk = placed.instance();
+        if (const Transform* first = placed.transform())
+            scene->placed_first.emplace(uint32_t(scene->soup.chunks.size()), *first);
         if (transform)
             chunk.place(*transform);
         chunk.set_mask(instance.mask);
-        add_chunk(scene, std::move(chunk), mesh_id);
+        add_chunk(scene, std::move(chunk), source, mesh_id);
+        scene->sources[source].instances += 1;
+    });
+}
+
+ovc_result update_mesh(ovc_scene scene, uint32_t mesh_id, const ovc_mesh* given,
+                       uint64_t first_triangle) {
+    return on_scene(scene, "update_mesh", [&] {
+        if (!given)
+            invalid("update_mesh: mesh is NULL");
+        const uint32_t source = source_of(scene, "update_mesh: mesh_id", mesh_id);
+        if (source != mesh_id)
+            invalid(format_text("update_mesh: mesh_id is {}, an instance of mesh {}; update that",
+                                mesh_id, source));
+        const ovc_mesh update = checked(given);
+        Chunk& chunk = chunk_of_mesh(scene, mesh_id);
+        check_update(update, first_triangle, chunk);
+        const auto first = uint32_t(first_triangle);
+        const uint32_t end = first + uint32_t(triangles_of(update));
+        if (!chunk.owns_corners()) {
+            note_moved(scene, mesh_id, first, end);
+        } else if (update.positions_double) {
+            const std::vector<dvec3> corners = copied_double_corners(update);
+            note_moved(scene, mesh_id, first, end);
+            chunk.set_corners(first, corners);
+        } else {
+            const std::vector<vec3> corners = copied_corners(update);
+            note_moved(scene, mesh_id, first, end);
+            chunk.set_corners(first, corners);
+        }
+    });
+}
+
+ovc_result update_instance(ovc_scene scene, uint32_t mesh_id, const double* given) {
+    return on_scene(scene, "update_instance", [&] {
+        source_of(scene, "update_instance: mesh_id", mesh_id);
+        std::optional<Transform> transform = transform_of("update_instance: transform", given);
+        Chunk& chunk = chunk_of_mesh(scene, mesh_id);
+        if (const auto first = scene->placed_first.find(mesh_id);
+            first != scene->placed_first.end())
+            transform = transform ? then(first->second, *transform) : first->second;
+        if (scene->structure && scene->soup.chunks[mesh_id].size() > 0) {
+            begin_change(scene).placed.push_back(mesh_id);
+            chunk.set_moves();
+        }
+        chunk.place_anew(transform);
+    });
+}
+
+ovc_result remove_mesh(ovc_scene scene, uint32_t mesh_id) {
+    return on_scene(scene, "remove_mesh", [&] {
+        const uint32_t source = source_of(scene, "remove_mesh: mesh_id", mesh_id);
+        Chunk& chunk = scene->soup.chunks[mesh_id];
+        if (scene->structure && chunk.size() > 0)
+            begin_change(scene).removed.push_back({mesh_id, 0, chunk.size()});
+        std::vector<MeshSource>& sources = scene->sources;
+        sources[mesh_id].mesh = kNone;
+        if (source != mesh_id)
+            sources[source].instances -= 1;
+        else if (sources[source].instances > 0) // their corners stay
+            scene->templates.emplace(mesh_id, std::move(chunk));
+        chunk = Chunk::owning(dvec3(0), {});
+        if (sources[source].mesh == kNone && sources[source].instances == 0)
+            scene->templates.erase(source);
+        scene->placed_first.erase(mesh_id);
     });
 }
 

@@ -40,6 +40,9 @@ extern "C" const ovc_api* ovc_get_api(uint32_t abi_version) {
         ovc::cancel,
         ovc::release,
         ovc::all_hits,
+        ovc::update_mesh,
+        ovc::update_instance,
+        ovc::remove_mesh,
     };
     return abi_version == OVC_ABI_VERSION ? &api : nullptr;
 }

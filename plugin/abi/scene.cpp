@@ -42,6 +42,34 @@ void with_progress(const ovc_scene_config& config, const char* call, Body&& body
     }
 }
 
+/// Brings the structure up to date with what has changed. Returns false, without a structure, where
+/// one must be built; and has none either where this throws.
+bool update(ovc_scene_t& scene, BuildProgress* progress) {
+    if (!scene.structure)
+        return false;
+    std::unique_ptr<Structure> structure = std::move(scene.structure);
+    const Changes changes = std::exchange(scene.changes, {});
+    const Result<bool> updated = structure->update(changes, progress);
+    check(updated);
+    if (!*updated)
+        return false;
+    if (progress)
+        progress->finish(); // the last chance to be cancelled
+    scene.structure = std::move(structure);
+    return true;
+}
+
+void build(ovc_scene_t& scene, BuildProgress* progress) {
+    Result<std::unique_ptr<Structure>> built =
+        make_structure(scene.soup, *scene.device->gl, scene.config, scene.device->log, progress);
+    check(built);
+    if (progress)
+        progress->finish(); // as in update()
+    scene.structure = std::move(*built);
+    scene.config.saved = nullptr; // the meshes may change now
+    scene.config.saved_bytes = 0;
+}
+
 uint64_t soup_bytes(const ovc_scene_t& scene) {
     uint64_t bytes = 0;
     for (const Chunk& chunk : scene.soup.chunks)
@@ -87,17 +115,11 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
 
 ovc_result commit(ovc_scene scene) {
     return on_scene(scene, "commit", [&] {
-        if (scene->structure)
-            throw Failure{OVC_ERROR_INVALID_STATE, "commit: the scene is committed already"};
+        if (scene->structure && !scene->changes.any())
+            return;
         with_progress(scene->config, "commit", [&](BuildProgress* progress) {
-            Result<std::unique_ptr<Structure>> built = make_structure(
-                scene->soup, *scene->device->gl, scene->config, scene->device->log, progress);
-            if (!built)
-                throw Failure{code_of(built.error().kind, OVC_ERROR_INTERNAL),
-                              built.error().message};
-            if (progress)
-                progress->finish(); // the last chance to be cancelled
-            scene->structure = std::move(*built);
+            if (!update(*scene, progress))
+                build(*scene, progress);
             scene->single_rays.serve(scene->structure.get());
         });
     });

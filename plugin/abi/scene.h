@@ -9,6 +9,10 @@ namespace ovc {
 ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_scene* scene);
 ovc_result add_mesh(ovc_scene scene, const ovc_mesh* mesh, uint32_t* mesh_id);
 ovc_result add_instance(ovc_scene scene, const ovc_instance* instance, uint32_t* mesh_id);
+ovc_result update_mesh(ovc_scene scene, uint32_t mesh_id, const ovc_mesh* mesh,
+                       uint64_t first_triangle);
+ovc_result update_instance(ovc_scene scene, uint32_t mesh_id, const double* transform);
+ovc_result remove_mesh(ovc_scene scene, uint32_t mesh_id);
 ovc_result commit(ovc_scene scene);
 ovc_result statistics(ovc_scene scene, ovc_statistics* statistics);
 ovc_result plan(ovc_scene scene, ovc_plan* plan);

@@ -87,11 +87,13 @@ ovc_result on_scene(ovc_scene scene, const char* call, Body&& body) {
 }
 
 [[noreturn]] inline void not_committed(const char* call) {
-    throw Failure{OVC_ERROR_INVALID_STATE, format_text("{}: the scene is not committed yet", call)};
+    throw Failure{
+        OVC_ERROR_INVALID_STATE,
+        format_text("{}: the scene is not committed yet, or has changed since it was", call)};
 }
 
 inline Structure& committed(ovc_scene scene, const char* call) {
-    if (!scene->structure)
+    if (!scene->structure || scene->changes.any())
         not_committed(call);
     return *scene->structure;
 }
@@ -115,7 +117,8 @@ inline ovc_result code_of(ErrorKind kind, ovc_result otherwise) {
     return otherwise;
 }
 
-inline void check(const Result<Done>& result) {
+template <class T>
+void check(const Result<T>& result) {
     if (!result)
         throw Failure{code_of(result.error().kind, OVC_ERROR_INTERNAL), result.error().message};
 }

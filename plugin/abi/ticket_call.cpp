@@ -15,10 +15,10 @@ void do_in_turn(ovc_scene scene, Submission& submission) {
     const std::lock_guard turn(scene->turn);
     if (!submission.begin())
         return;
-    assert(scene->structure); // destroy_scene() stops the queue before it frees the structure
     Submission::Outcome outcome;
-    outcome.result =
-        guard(outcome, [&] { trace(submission.call(), *scene->structure, &submission); });
+    outcome.result = guard(outcome, [&] {
+        trace(submission.call(), committed(scene, submission.call().name), &submission);
+    });
     submission.end(std::move(outcome));
 }
 

@@ -19,6 +19,29 @@ uint64_t room_for_pool(const BuiltScene& scene, const TwoLevelOptions& options,
     return plan.pool_bytes - std::min(plan.pool_bytes, table_bytes);
 }
 
+bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan) {
+    const size_t pages = scene.pages.size();
+    if (pages == 0)
+        return true; // every ray misses
+    const size_t links = max_links(pages, scene.level2_bytes(), plan.pool_bytes);
+    const auto is_fine = [&] {
+        return scene.top.portals.size() * kPortalBytes <= plan.buffer_bytes &&
+               is_usable(scene.top, scene.pages,
+                         {room_for_pool(scene, options, plan), plan.buffer_bytes});
+    };
+    for (const size_t some : {links, pages}) {
+        scene.top = top_level_of(scene, some);
+        if (!is_fine())
+            continue;
+        if (scene.expects_updates())
+            scene.top.spare_bytes = (scene.top.tree.units() / 8 + 1) * OVC_UNIT_BYTES;
+        if (!is_fine())
+            scene.top.spare_bytes = 0;
+        return true;
+    }
+    return false;
+}
+
 void set_limits(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan) {
     uint64_t unique = scene.triangles;
     for (const SharedMesh& mesh : scene.shared)
@@ -29,23 +52,6 @@ void set_limits(BuiltScene& scene, const TwoLevelOptions& options, const MemoryP
 }
 
 namespace {
-
-/// Builds the top-level tree over the scene's pages, a smaller one where the pool has no room for
-/// all of them. Returns false where it has no room for the tree and the largest page.
-bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan) {
-    const size_t pages = scene.pages.size();
-    if (pages == 0)
-        return true; // every ray misses
-    const size_t links = max_links(pages, scene.level2_bytes(), plan.pool_bytes);
-    for (const size_t some : {links, pages}) {
-        scene.top = top_level_of(scene, some);
-        if (scene.top.portals.size() * kPortalBytes <= plan.buffer_bytes &&
-            is_usable(scene.top, scene.pages,
-                      {room_for_pool(scene, options, plan), plan.buffer_bytes}))
-            return true;
-    }
-    return false;
-}
 
 /// Returns the scene that options.saved holds; nothing where the scene must be built.
 std::optional<BuiltScene> restored(const Soup& soup, const TwoLevelOptions& options,

@@ -21,6 +21,10 @@ Result<BuiltScene> build_scene(const Soup& soup, const TwoLevelOptions& options,
 uint64_t room_for_pool(const BuiltScene& scene, const TwoLevelOptions& options,
                        const MemoryPlan& plan);
 
+/// Builds the top-level tree over the scene's pages, a smaller one where the pool has no room for
+/// all of them. Returns false where it has no room for the tree and the largest page.
+bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan);
+
 /// Sets the limits on leaves of the scene and of its shared meshes, whose triangles are taken.
 void set_limits(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan);
 

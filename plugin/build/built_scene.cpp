@@ -20,6 +20,7 @@ SharedMesh& BuiltScene::share(const Placed::Instances& instances) {
     auto local = std::make_unique<Soup>();
     local->chunks.push_back(soup.chunks[instances.front()].unplaced());
     BuiltScene cut(*local);
+    cut.once = {0};
     shared.push_back({std::move(local), std::move(cut), instances, 0});
     return shared.back();
 }
@@ -67,6 +68,10 @@ uint32_t BuiltScene::number_at_place(const Ray& ray, const HitPlace& place) cons
     return number != OVC_NO_TRIANGLE && hit_at(ray, soup.triangle(place.id), place)
                ? number
                : OVC_NO_TRIANGLE;
+}
+
+bool BuiltScene::expects_updates() const {
+    return was_updated || std::ranges::any_of(soup.chunks, &Chunk::moves);
 }
 
 bool BuiltScene::offer_behind(Nearest& nearest, const PreparedRay& p, TriangleId id) const {
@@ -149,10 +154,11 @@ public:
     void take(const std::vector<Placed::Instances>& shared, std::vector<Hittable>& hittable,
               BuildProgress* progress) {
         for (const Placed::Instances& instances : shared) {
-            BuiltScene& mesh = scene_.share(instances).scene;
-            hittable.push_back(take_hittable(mesh, progress));
-            mesh.seconds_level1 = 0; // the scene's own count includes it
-            note(mesh, instances, hittable.back().bounds);
+            SharedMesh& mesh = scene_.share(instances);
+            hittable.push_back(take_hittable(mesh.scene, progress));
+            mesh.scene.seconds_level1 = 0; // the scene's own count includes it
+            look_for_lines(mesh);
+            note(mesh, hittable.back().bounds);
         }
     }
 
@@ -160,12 +166,12 @@ public:
     const Box& bounds() const { return bounds_; }
 
 private:
-    void note(const BuiltScene& local, const Placed::Instances& instances, const Box& box) {
-        const Chunk& mesh = local.soup.chunks.front();
+    void note(const SharedMesh& mesh, const Box& box) {
+        const BuiltScene& local = mesh.scene;
         std::vector<uint32_t> lines;
-        if (local.dropped.degenerate > 0)
-            lines = on_a_line(mesh);
-        for (const uint32_t chunk : instances) {
+        if (mesh.has_lines)
+            lines = on_a_line(local.soup.chunks.front());
+        for (const uint32_t chunk : mesh.instances) {
             scene_.dropped.not_finite += local.dropped.not_finite;
             scene_.dropped.degenerate += local.dropped.degenerate;
             if (!box.empty())
@@ -205,10 +211,11 @@ Hittable take_hittable(BuiltScene& scene, BuildProgress* progress) {
 
 HittableParts take_hittable_parts(BuiltScene& scene, Placed placed, BuildProgress* progress) {
     const Stopwatch watch;
+    scene.once = std::move(placed.once);
     scene.copies = std::move(placed.copies);
     HittableParts parts;
     parts.once.triangles =
-        hittable_triangles(scene.soup, placed.once, &scene.dropped, &parts.once.bounds, progress);
+        hittable_triangles(scene.soup, scene.once, &scene.dropped, &parts.once.bounds, progress);
     SharedParts shared(scene);
     shared.take(placed.shared, parts.shared, progress);
     std::vector<TriangleId>& triangles = parts.once.triangles;
@@ -218,6 +225,11 @@ HittableParts take_hittable_parts(BuiltScene& scene, Placed placed, BuildProgres
     take_duplicates_out(scene, parts.once, progress);
     scene.seconds_level1 = watch.seconds();
     return parts;
+}
+
+void look_for_lines(SharedMesh& mesh) {
+    mesh.has_lines =
+        mesh.scene.dropped.degenerate > 0 && !on_a_line(mesh.soup->chunks.front()).empty();
 }
 
 void gather_pages(BuiltScene& scene) {

@@ -80,11 +80,14 @@ struct BuiltScene {
     Level1 level1;          // without duplicates, and without meshes that are shared
     std::vector<SharedMesh> shared;
     std::vector<uint32_t> mesh_of_chunk; // into `shared`, or kNone; empty where nothing is shared
+    std::vector<uint32_t> once;          // the chunks that level 1 is cut from, as in Placed
     std::vector<Placed::Copies> copies;
     /// pages[i] belongs to level1.leaves[i]. The pages of shared meshes follow, borrowed from them.
     std::vector<Page> pages;
     TopLevel top; // over the pages
     bool from_saved = false;
+    double built_overlap = 0; // of the level's own pages before the first update; 0: none yet
+    bool was_updated = false;
     double seconds_level1 = 0;
     double seconds_level2 = 0;
 
@@ -110,7 +113,7 @@ struct BuiltScene {
     /// `id`; OVC_NO_TRIANGLE where `id` stands for others, which the ray does see, and where there
     /// is no such triangle.
     uint32_t number_to_skip(TriangleId id) const {
-        return !numbers.has(id) || stands_for_others(id) ? OVC_NO_TRIANGLE : numbers.of(id);
+        return !soup.has(id) || stands_for_others(id) ? OVC_NO_TRIANGLE : numbers.of(id);
     }
     /// Returns the same for a ray with these exclusions.
     uint32_t number_to_skip(const Ray& ray, const Exclusion& without) const {
@@ -130,7 +133,7 @@ struct BuiltScene {
 
     /// Returns an empty Nearest for the ray.
     Nearest nearest_of(const PreparedRay& p) const {
-        if (!numbers.has(p.after.id))
+        if (!soup.has(p.after.id))
             return Nearest(p);
         const Triangle after = soup.triangle(p.after.id);
         return Nearest(p, &after);
@@ -144,6 +147,8 @@ struct BuiltScene {
         return !p.after.is_before_all() && offer_behind(nearest, p, id);
     }
 
+    /// Whether the top-level tree is likely to change: there were updates, or meshes move.
+    bool expects_updates() const;
     uint64_t level2_bytes() const { return total_bytes(pages); }
     uint64_t largest_page_bytes() const { return largest_bytes(pages); }
     /// Returns the number of triangles in the soup, of which those of a shared mesh and of chunks
@@ -173,6 +178,9 @@ struct SharedMesh {
     BuiltScene scene;                 // of that soup; pages number its triangles within the mesh
     Placed::Instances instances;
     uint32_t first_page; // in the pages of the whole scene
+    /// There are triangles on a line, which may get an area where an instance is placed. Those are
+    /// cut with the triangles that are placed once.
+    bool has_lines = false;
 };
 
 /// The triangles that leaves are made of: those that can be hit, without duplicates.
@@ -194,6 +202,9 @@ struct HittableParts {
 /// shared mesh is two units of progress once.
 HittableParts take_hittable_parts(BuiltScene& scene, Placed placed,
                                   BuildProgress* progress = nullptr);
+
+/// Finds out whether the mesh, whose triangles are taken, has_lines.
+void look_for_lines(SharedMesh& mesh);
 
 /// Appends the pages of the shared meshes to those of the scene, all of which are built.
 void gather_pages(BuiltScene& scene);

@@ -78,6 +78,8 @@ uint64_t checksum_of_soup(const Soup& soup) {
         sum.add_value(uint64_t(chunk.size()));
         sum.add(bytes_of(chunk.corners()));
         sum.add(bytes_of(chunk.double_corners()));
+        if (chunk.moves()) // and is cut by itself
+            sum.add_value(uint64_t(1));
         if (chunk.transform())
             sum.add(bytes_of(std::span<const Transform>(chunk.transform(), 1)));
     }
@@ -276,6 +278,7 @@ Result<BuiltScene> restored(const Archive& archive, std::span<const SavedCut> cu
     if (!CutReader(cuts.front(), *arrays, scene).read())
         return kUnsound;
     Placed placed = placed_chunks(soup); // the soup alone tells which meshes are shared
+    scene.once = std::move(placed.once);
     scene.copies = std::move(placed.copies);
     if (cuts.size() != 1 + placed.shared.size())
         return kUnsound;
@@ -283,6 +286,7 @@ Result<BuiltScene> restored(const Archive& archive, std::span<const SavedCut> cu
         SharedMesh& mesh = scene.share(placed.shared[i]);
         if (!CutReader(cuts[i + 1], *arrays, mesh.scene).read())
             return kUnsound;
+        look_for_lines(mesh);
     }
     if (!arrays->all_read())
         return kUnsound;

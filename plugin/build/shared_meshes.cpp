@@ -70,16 +70,17 @@ Placed placed_chunks(const Soup& soup) {
             take_copies_out(soup, chunks, placed);
         const Chunk& mesh = soup.chunks[chunks.front()];
         const uint64_t saved = (chunks.size() - 1) * kBytesPerTriangle * mesh.size();
+        const bool pays = saved > kWorthAPortal * kMaxBytesPerPart * chunks.size();
+        const auto moves = [&](uint32_t chunk) { return soup.chunks[chunk].moves(); };
+        const bool any_moves = std::ranges::any_of(chunks, moves);
         std::vector<uint32_t> shared;
-        if (saved > kWorthAPortal * kMaxBytesPerPart * chunks.size()) {
-            const Box box = bounds_of(mesh.unplaced());
-            for (const uint32_t chunk : chunks)
-                (is_well_placed(box, soup.chunks[chunk].transform()) ? shared : placed.once)
-                    .push_back(chunk);
-        } else {
-            placed.once.insert(placed.once.end(), chunks.begin(), chunks.end());
+        const Box box = pays || any_moves ? bounds_of(mesh.unplaced()) : Box();
+        for (const uint32_t chunk : chunks) {
+            const bool may_share =
+                (pays || moves(chunk)) && is_well_placed(box, soup.chunks[chunk].transform());
+            (may_share ? shared : placed.once).push_back(chunk);
         }
-        if (shared.size() > 1)
+        if (shared.size() > 1 || (any_moves && !shared.empty()))
             placed.shared.push_back(std::move(shared));
         else
             placed.once.insert(placed.once.end(), shared.begin(), shared.end());

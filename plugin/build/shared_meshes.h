@@ -16,7 +16,7 @@ struct Placed {
     /// first is built.
     using Copies = std::vector<uint32_t>;
     /// The chunks of one mesh, each in a place of its own.
-    using Instances = std::vector<uint32_t>;
+    using Instances = std::vector<uint32_t>; // sorted
 
     std::vector<uint32_t> once;    // sorted; their triangles are cut together
     std::vector<Instances> shared; // in the order of their meshes
@@ -24,7 +24,8 @@ struct Placed {
 };
 
 /// Returns how the chunks of a soup are built. A mesh that is placed more than once is shared where
-/// that saves more than portals cost, and where a portal is as good as the triangles themselves.
+/// that saves more than portals cost, and where a portal is as good as the triangles themselves. A
+/// chunk that moves is shared even if it is the only one of its mesh.
 Placed placed_chunks(const Soup& soup);
 
 /// Returns the number of triangles that are packed: those of a shared mesh count once.

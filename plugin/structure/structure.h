@@ -7,6 +7,7 @@
 #include "core/all_hits.h"
 #include "core/batched_stream.h"
 #include "core/build_progress.h"
+#include "core/changes.h"
 #include "core/exclusions.h"
 #include "core/file/archive.h"
 #include "core/ray_span.h"
@@ -75,6 +76,13 @@ public:
     /// be saved.
     virtual Result<Done> save(const ByteSink&) const {
         return Error{"only two-level can be saved"};
+    }
+    /// Brings the structure up to date with its soup, which has changed so. Returns false where it
+    /// must be made anew instead; it is then of no use any more, as where this throws or returns an
+    /// error. Throws Cancelled when `progress` is told to stop.
+    virtual Result<bool> update([[maybe_unused]] const Changes& changes,
+                                [[maybe_unused]] BuildProgress* progress) {
+        return false;
     }
     /// Gives back all GPU memory, and host memory that only serves speed; the next call that needs
     /// it brings it in again. Error: the structure cannot.

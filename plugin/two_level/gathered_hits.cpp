@@ -38,7 +38,7 @@ public:
     GatheredHits(const BuiltScene& scene, const PreparedRay& p) : scene_(scene), p_(p) {
         if (p.after.is_before_all())
             return;
-        const bool is_named = scene.numbers.has(p.after.id);
+        const bool is_named = scene.soup.has(p.after.id);
         const Triangle after = is_named ? scene.soup.triangle(p.after.id) : Triangle();
         behind_.emplace(p, is_named ? &after : nullptr);
     }

@@ -12,17 +12,21 @@
 
 namespace ovc {
 
-PassRunner::PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& plan, LogSink log)
-    : tracing_(tracing), gl_(gl), log_(std::move(log)), plan_(plan) {
+/// Returns the plan with a pool of the bytes that the scene leaves or needs.
+static MemoryPlan plan_for(const Tracing& tracing, MemoryPlan plan) {
     const BuiltScene& scene = tracing.scene;
     if (scene.pages.empty())
-        return;
-    plan_.active_bytes = tracing.options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
-    plan_.pool_bytes = room_for_pool(scene, tracing.options, plan);
-    const Fit fit = fit_in(bytes_of_each(scene.pages), plan_.pool(), scene.top.tree.bytes());
+        return plan;
+    plan.active_bytes = tracing.options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
+    plan.pool_bytes = room_for_pool(scene, tracing.options, plan);
+    const Fit fit = fit_in(bytes_of_each(scene.pages), plan.pool(), scene.top.room());
     if (fit.pages == scene.pages.size())
-        plan_.pool_bytes = fit.pool_bytes;
+        plan.pool_bytes = fit.pool_bytes;
+    return plan;
 }
+
+PassRunner::PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& plan, LogSink log)
+    : tracing_(tracing), gl_(gl), log_(std::move(log)), plan_(plan_for(tracing, plan)) {}
 
 Result<Done> PassRunner::open(BuildProgress* progress) {
     const PassOptions options{tracing_.options.certify, tracing_.options.compute};
@@ -48,7 +52,7 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
             return made.error();
         const BuiltScene& scene = tracing_.scene;
         const uint64_t smaller =
-            std::max(plan_.pool_bytes / 2, scene.largest_page_bytes() + scene.top.tree.bytes());
+            std::max(plan_.pool_bytes / 2, scene.largest_page_bytes() + scene.top.room());
         if (smaller == plan_.pool_bytes ||
             !is_usable(scene.top, scene.pages, {smaller, plan_.buffer_bytes}))
             return Error{format_text("{}: it has no room for the largest page, {} bytes",
@@ -63,6 +67,22 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
     tracing_.statistics.gpu_peak_bytes =
         std::max(tracing_.statistics.gpu_peak_bytes, tracer_->ledger().peak);
     return Done{};
+}
+
+Result<Done> PassRunner::update(const MemoryPlan& plan, const PageChanges& changes,
+                                BuildProgress* progress) {
+    const BuiltScene& scene = tracing_.scene;
+    bool updated = false;
+    if (tracer_ && !changes.renumbered)
+        gl_.run([&](GlState& state) {
+            updated =
+                is_ours(state) && tracer_->update(scene.level1.bounds, scene.pages, changes.pages);
+        });
+    if (updated)
+        return Done{};
+    purge();
+    plan_ = plan_for(tracing_, plan);
+    return scene.pages.empty() ? Result<Done>(Done{}) : open(progress);
 }
 
 Result<Done> PassRunner::ready() {
@@ -90,7 +110,7 @@ void PassRunner::bring_first(BuildProgress* progress) {
     const std::vector<Page>& pages = tracing_.scene.pages;
     begin(progress, "moving pages to the GPU", 0.05, plan_.pool_bytes);
     const size_t fitting =
-        fit_in(bytes_of_each(pages), plan_.pool(), tracing_.scene.top.tree.bytes()).pages;
+        fit_in(bytes_of_each(pages), plan_.pool(), tracing_.scene.top.room()).pages;
     for (size_t next = 0; next < fitting;) {
         std::vector<uint32_t> some;
         uint64_t bytes = 0;

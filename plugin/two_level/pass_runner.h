@@ -7,6 +7,7 @@
 #include "core/system/log.h"
 #include "gpu/gl/gl_thread.h"
 #include "gpu/trace/tracer.h"
+#include "plugin/build/update_scene.h"
 #include "plugin/two_level/tracing.h"
 
 #include <algorithm>
@@ -42,6 +43,9 @@ public:
     /// Makes the tracer, with a smaller pool where the driver has no room for the plan's, and moves
     /// the first pages in, so that rays need not come and wait first.
     Result<Done> open(BuildProgress* progress = nullptr);
+    /// Takes up the scene, which was updated so, as it is now. plan: as in the constructor.
+    Result<Done> update(const MemoryPlan& plan, const PageChanges& changes,
+                        BuildProgress* progress);
     /// Opens again where the tracer went with an earlier context or with purge(). Errors are those
     /// of open().
     Result<Done> ready();

@@ -163,6 +163,18 @@ Result<Done> TwoLevel::save(const ByteSink& sink) const {
     return Done{};
 }
 
+Result<bool> TwoLevel::update(const Changes& changes, BuildProgress* progress) {
+    const auto updated = update_scene(scene_, changes, options_, plan_, progress);
+    if (!updated)
+        return false;
+    statistics_.updates += 1;
+    statistics_.pages_refitted += updated->refitted;
+    statistics_.pages_rebuilt += updated->rebuilt;
+    if (const Result<Done> done = passes_.update(plan_, *updated, progress); !done)
+        return done.error();
+    return true;
+}
+
 Result<Done> TwoLevel::purge() {
     passes_.purge();
     return Done{};

@@ -43,6 +43,7 @@ public:
     ovc_statistics report() const override; // make_two_level.cpp
     Result<ovc_active> take_active() override;
     Result<Done> save(const ByteSink& sink) const override;
+    Result<bool> update(const Changes& changes, BuildProgress* progress) override;
     Result<Done> purge() override;
 
     const BuiltScene& scene() const { return scene_; }
@@ -52,14 +53,18 @@ public:
 private:
     TwoLevel(BuiltScene scene, GlThread& gl, const TwoLevelOptions& options, const MemoryPlan& plan,
              const LogSink& log)
-        : scene_(std::move(scene)), options_(options), passes_(tracing_, gl, plan, log) {}
+        : scene_(std::move(scene)),
+          options_(options),
+          plan_(plan),
+          passes_(tracing_, gl, plan, log) {}
 
     template <class Query>
     Result<Done> trace(const Query& query);
     Result<Done> trace_nearest(NearestQuery query);
 
-    const BuiltScene scene_;
+    BuiltScene scene_;
     const TwoLevelOptions options_;
+    const MemoryPlan plan_; // for any scene; passes_ has that for this one
     ovc_statistics statistics_{sizeof(ovc_statistics)};
     const Tracing tracing_{scene_, options_, statistics_, watch_};
     PassRunner passes_;

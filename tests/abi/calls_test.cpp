@@ -251,7 +251,7 @@ TEST_F(Calls, SingleRaysRefuseWhatTheyCannotDo) {
     const auto config = sized<ovc_scene_config>();
     const test::AbiScene open = test::add_soup(device, soup, config);
     EXPECT_EQ(api().intersect1(open.get(), asked, &hit, nullptr), OVC_ERROR_INVALID_STATE);
-    EXPECT_EQ(error(), "intersect1: the scene is not committed yet");
+    EXPECT_EQ(error(), "intersect1: the scene is not committed yet, or has changed since it was");
 }
 
 /// A thread that waits for a part of its call, and is given another task of the host's meanwhile,

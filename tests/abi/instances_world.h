@@ -91,9 +91,59 @@ public:
             transforms_[number] = has_both ? product(*m, first) : *m;
         else if (transforms_.count(mesh))
             transforms_[number] = first;
-        sources_[number] = sources_[mesh];
-        expect(number, /* is_template= */ false);
+        if (transforms_.count(mesh))
+            firsts_[number] = first;
+        things_.push_back(things_[mesh]);
+        things_.back().is_there = true;
+        things_.back().is_instance = true;
+        expected.chunks.push_back(expect(number));
         return number;
+    }
+
+    uint32_t count() const { return uint32_t(things_.size()); }
+    bool is_removed(uint32_t number) const { return things_[number].mesh == OVC_NONE; }
+    bool is_instance(uint32_t number) const { return things_[number].is_instance; }
+    uint64_t triangles(uint32_t number) const {
+        return sources_.at(things_[number].mesh).size() / 3;
+    }
+
+    const std::vector<dvec3>& source(uint32_t mesh) const { return sources_.at(mesh); }
+    const dvec3& origin(uint32_t number) const { return things_[number].origin; }
+
+    /// Gives triangles of a mesh new corners, floats where it has those.
+    void move_corners(uint32_t number, size_t first, const std::vector<dvec3>& corners) {
+        const Thing& thing = things_[number];
+        auto mesh = sized<ovc_mesh>();
+        const std::vector<vec3> floats(corners.begin(), corners.end());
+        if (thing.has_doubles)
+            mesh.positions_double = &corners[0].x;
+        else
+            mesh.positions = &floats[0].x;
+        mesh.vertex_count = corners.size();
+        for (int axis = 0; axis < 3; ++axis)
+            mesh.origin[axis] = thing.origin[axis];
+        ASSERT_EQ(api().update_mesh(scene.get(), number, &mesh, first), OVC_OK) << error();
+        for (size_t i = 0; i < corners.size(); ++i)
+            sources_[number][3 * first + i] =
+                thing.origin + (thing.has_doubles ? corners[i] : dvec3(floats[i]));
+        for (uint32_t other = 0; other < count(); ++other)
+            if (things_[other].mesh == number)
+                expected.chunks[other] = expect(other);
+    }
+    void move(uint32_t number, const Matrix* m) {
+        ASSERT_EQ(api().update_instance(scene.get(), number, m ? m->data() : nullptr), OVC_OK)
+            << error();
+        transforms_.erase(number);
+        if (firsts_.count(number))
+            transforms_[number] = m ? product(*m, firsts_[number]) : firsts_[number];
+        else if (m)
+            transforms_[number] = *m;
+        expected.chunks[number] = expect(number);
+    }
+    void remove(uint32_t number) {
+        ASSERT_EQ(api().remove_mesh(scene.get(), number), OVC_OK) << error();
+        things_[number] = {};
+        expected.chunks[number] = expect(number);
     }
 
     void commit() { ASSERT_EQ(api().commit(scene.get()), OVC_OK) << error(); }
@@ -131,23 +181,36 @@ private:
         sources_[number] = std::move(positions);
         if (m)
             transforms_[number] = *m;
-        expect(number, flags & OVC_MESH_TEMPLATE);
+        things_.push_back(
+            {number, origin, mesh.positions_double != nullptr, !(flags & OVC_MESH_TEMPLATE)});
+        expected.chunks.push_back(expect(number));
         return number;
     }
-    void expect(uint32_t number, bool is_template) {
-        EXPECT_EQ(number, expected.chunks.size()) << "numbered in the order they are added";
+    Chunk expect(uint32_t number) {
+        EXPECT_LT(number, things_.size()) << "numbered in the order they are added";
         std::vector<dvec3> corners;
-        if (!is_template)
-            corners = sources_[number];
+        if (things_[number].is_there)
+            corners = sources_[things_[number].mesh];
         if (transforms_.count(number))
             for (dvec3& p : corners)
                 p = moved(transforms_[number], p);
-        expected.chunks.push_back(Chunk::owning_doubles(dvec3(0), std::move(corners)));
+        return Chunk::owning_doubles(dvec3(0), std::move(corners));
     }
 
+    /// A mesh or an instance of one.
+    struct Thing {
+        uint32_t mesh = OVC_NONE; // once it is removed
+        dvec3 origin{0};
+        bool has_doubles = false;
+        bool is_there = false; // not a template, nor removed
+        bool is_instance = false;
+    };
+
     ovc_device device_;
+    std::vector<Thing> things_;
     std::map<uint32_t, std::vector<dvec3>> sources_; // as overcast.h has them, without transforms
     std::map<uint32_t, Matrix> transforms_;
+    std::map<uint32_t, Matrix> firsts_; // by what an instance's mesh was placed
 };
 
 template <class Corner>

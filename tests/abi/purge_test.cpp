@@ -148,7 +148,8 @@ TEST(ErrorCallback, SaysWhatLastErrorSaysWithItsCode) {
     }).join();
     EXPECT_EQ(told.times, 1);
     EXPECT_EQ(told.result, OVC_ERROR_INVALID_STATE);
-    EXPECT_EQ(told.message, "intersect: the scene is not committed yet");
+    EXPECT_EQ(told.message,
+              "intersect: the scene is not committed yet, or has changed since it was");
     EXPECT_EQ(told.last_error, told.message);
 
     ovc_device_info info{};

@@ -12,7 +12,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <map>
 #include <memory>
+#include <set>
 #include <thread>
 
 namespace ovc {
@@ -64,12 +66,18 @@ struct Slot {
     enum { Null, Open, Committed, Destroyed } state = Null;
     bool tells_active = false;
     Soup soup;
+    /// One per chunk: whose corners it has, its own or another's; OVC_NONE: it was removed.
+    std::vector<uint32_t> sources;
+    std::deque<Chunk> removed; // whose corners instances have still
 
-    /// What a call must return that needs a scene which is committed, or one that is not.
+    /// What a call must return that needs a scene which is committed, or any.
     ovc_result expected(bool committed) const {
         if (state == Null || state == Destroyed)
             return OVC_ERROR_INVALID_ARGUMENT;
-        return (state == Committed) == committed ? OVC_OK : OVC_ERROR_INVALID_STATE;
+        return state == Committed || !committed ? OVC_OK : OVC_ERROR_INVALID_STATE;
+    }
+    bool is_there(uint32_t mesh) const {
+        return mesh < sources.size() && sources[mesh] != OVC_NONE;
     }
 };
 
@@ -104,7 +112,8 @@ public:
             &Player::occluded,       &Player::tell,          &Player::save,
             &Player::stream,         &Player::destroy_scene, &Player::ask_device,
             &Player::race,           &Player::add_instance,  &Player::purge,
-            &Player::ask_one_by_one, &Player::submit};
+            &Player::ask_one_by_one, &Player::submit,        &Player::update_mesh,
+            &Player::update_mesh,    &Player::move,          &Player::remove};
         for (int calls = 0; calls < 60 && !choices_.over(); ++calls)
             (this->*kCalls[choices_.below(std::size(kCalls))])();
     }
@@ -151,6 +160,8 @@ private:
             return check(result, config.gpu_memory_bytes && !spoilt ? OVC_ERROR_OUT_OF_BUDGET
                                                                     : OVC_ERROR_INVALID_ARGUMENT);
         slot = Slot{};
+        std::erase_if(shared_, [&](const auto& mesh) { return mesh.first == &slot; });
+        std::erase_if(first_, [&](const auto& mesh) { return mesh.first.first == &slot; });
         slot.scene = scene;
         slot.state = Slot::Open;
         slot.tells_active = config.tell_active;
@@ -215,7 +226,74 @@ private:
         }
         slot.soup.chunks.push_back(
             Chunk::owning({mesh.origin[0], mesh.origin[1], mesh.origin[2]}, std::move(corners)));
+        slot.sources.push_back(id);
+        if (mesh.flags & OVC_MESH_SHARED)
+            shared_.insert({&slot, id});
+        slot.state = Slot::Open;
         OVC_REQUIRE(id + 1 == slot.soup.chunks.size());
+    }
+
+    /// Gives some triangles new corners. Those of meshes that are shared are left alone, because
+    /// the bytes are then the model's too.
+    void update_mesh() {
+        Slot& slot = any_slot();
+        const uint32_t mesh = choices_.below(4), first = choices_.below(8);
+        std::vector<vec3> corners(3 * (1 + choices_.below(12)));
+        for (vec3& corner : corners)
+            corner = {choices_.coordinate(), choices_.coordinate(), choices_.coordinate()};
+        auto update = sized<ovc_mesh>();
+        update.positions = &corners.data()->x;
+        update.vertex_count = corners.size();
+        const bool there = slot.is_there(mesh) && slot.sources[mesh] == mesh &&
+                           first + corners.size() / 3 <= slot.soup.chunks[mesh].size() &&
+                           !shared_.contains({&slot, mesh});
+        if (slot.is_there(mesh))
+            update.origin[0] = slot.soup.chunks[mesh].origin().x;
+        const ovc_result expected = slot.expected(false);
+        check(api().update_mesh(slot.scene, mesh, &update, first),
+              expected == OVC_OK && !there ? OVC_ERROR_INVALID_ARGUMENT : expected);
+        if (expected != OVC_OK || !there)
+            return;
+        slot.state = Slot::Open;
+        slot.soup.chunks[mesh].set_corners(first, corners);
+    }
+
+    void move() {
+        Slot& slot = any_slot();
+        const uint32_t mesh = choices_.below(6);
+        Transform transform = kIdentity;
+        for (size_t row = 0; row < 3; ++row)
+            transform.rows[row][3] = choices_.coordinate();
+        transform.rows[0][1] = choices_.below(2) ? choices_.coordinate() : 0;
+        const bool placed = choices_.below(4) > 0;
+        const ovc_result expected = slot.expected(false);
+        check(api().update_instance(slot.scene, mesh, placed ? transform.rows[0].data() : nullptr),
+              expected == OVC_OK && !slot.is_there(mesh) ? OVC_ERROR_INVALID_ARGUMENT : expected);
+        if (expected != OVC_OK || !slot.is_there(mesh))
+            return;
+        Chunk& chunk = slot.soup.chunks[mesh];
+        if (const auto first = first_.find({&slot, mesh}); first != first_.end())
+            chunk.place_anew(placed ? then(first->second, transform) : first->second);
+        else
+            chunk.place_anew(placed ? std::optional(transform) : std::nullopt);
+        if (chunk.size() > 0)
+            slot.state = Slot::Open;
+    }
+
+    void remove() {
+        Slot& slot = any_slot();
+        const uint32_t mesh = choices_.below(6);
+        const ovc_result expected = slot.expected(false);
+        check(api().remove_mesh(slot.scene, mesh),
+              expected == OVC_OK && !slot.is_there(mesh) ? OVC_ERROR_INVALID_ARGUMENT : expected);
+        if (expected != OVC_OK || !slot.is_there(mesh))
+            return;
+        Chunk& chunk = slot.soup.chunks[mesh];
+        if (chunk.size() > 0)
+            slot.state = Slot::Open;
+        slot.removed.push_back(std::move(chunk));
+        chunk = Chunk::owning(dvec3(0), {});
+        slot.sources[mesh] = OVC_NONE;
     }
 
     /// Where its mesh is: all its triangles are duplicates, and the smaller number answers.
@@ -225,10 +303,15 @@ private:
         instance.mesh = choices_.below(4);
         const ovc_result result = api().add_instance(slot.scene, &instance, nullptr);
         const ovc_result expected = slot.expected(false);
-        const bool there = instance.mesh < slot.soup.chunks.size();
+        const bool there = slot.is_there(instance.mesh);
         check(result, expected == OVC_OK && !there ? OVC_ERROR_INVALID_ARGUMENT : expected);
-        if (result == OVC_OK)
-            slot.soup.chunks.push_back(slot.soup.chunks[instance.mesh].instance());
+        if (result != OVC_OK)
+            return;
+        if (const Transform* first = slot.soup.chunks[instance.mesh].transform())
+            first_[{&slot, uint32_t(slot.sources.size())}] = *first;
+        slot.soup.chunks.push_back(slot.soup.chunks[instance.mesh].instance());
+        slot.sources.push_back(slot.sources[instance.mesh]);
+        slot.state = Slot::Open;
     }
 
     void purge() {
@@ -612,7 +695,9 @@ private:
     Choices choices_;
     std::array<Slot, 3> slots_;
     std::array<Progress, 3> progress_;
-    std::deque<std::vector<float>> positions_; // shared ones are used in place
+    std::set<std::pair<const Slot*, uint32_t>> shared_;
+    std::map<std::pair<const Slot*, uint32_t>, Transform> first_; // what instances were placed by
+    std::deque<std::vector<float>> positions_;                    // shared ones are used in place
     std::deque<std::vector<Line>> saved_;
     size_t saved_bytes_ = 0;
 };

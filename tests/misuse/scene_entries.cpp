@@ -47,7 +47,6 @@ Misuses misuse_add_mesh(Subject& s) {
     const ovc_mesh mesh = field_mesh();
     wrong.without_device("scene NULL", api().add_mesh(nullptr, &mesh, nullptr));
     wrong.argument("mesh NULL", api().add_mesh(s.empty, nullptr, nullptr));
-    wrong.state("after commit", api().add_mesh(s.field, &mesh, nullptr));
     const auto with = [&](const char* what, auto&& spoil) {
         ovc_mesh spoilt = field_mesh();
         spoil(spoilt);
@@ -72,7 +71,7 @@ ovc_result use_commit(Subject& s) {
 Misuses misuse_commit(Subject& s) {
     Wrong wrong(s);
     wrong.without_device("scene NULL", api().commit(nullptr));
-    wrong.state("twice", api().commit(s.field));
+    wrong.on_device("twice: nothing to do", OVC_OK, api().commit(s.field));
     auto config = sized<ovc_scene_config>();
     config.progress = [](void*, double, const char*) { return 1; };
     wrong.on_device("cancelled", OVC_ERROR_CANCELLED, api().commit(new_scene(s, &config).get()));
@@ -180,7 +179,6 @@ Misuses misuse_add_instance(Subject& s) {
     wrong.without_device("scene NULL", api().add_instance(nullptr, &instance, nullptr));
     wrong.argument("instance NULL", api().add_instance(s.empty, nullptr, nullptr));
     wrong.argument("no such mesh", api().add_instance(s.empty, &instance, nullptr));
-    wrong.state("after commit", api().add_instance(s.field, &instance, nullptr));
     const AbiScene scene = new_scene(s);
     const ovc_mesh mesh = field_mesh();
     api().add_mesh(scene.get(), &mesh, nullptr);
@@ -201,6 +199,107 @@ Misuses misuse_purge(Subject& s) {
     return wrong.found();
 }
 
+/// Moves the field into other cells and back, at once or by its corners.
+ovc_result use_update(Subject& s, ovc_result (*update)(ovc_scene scene, bool there)) {
+    const AbiScene scene(make_field(s.device));
+    ovc_hit hit;
+    const ovc_ray ray = into_cell(kCells, 1); // beside the field, until it is moved
+    if (!scene || update(scene.get(), true) != OVC_OK ||
+        api().intersect(scene.get(), &ray, 1, &hit, nullptr) != OVC_ERROR_INVALID_STATE ||
+        api().commit(scene.get()) != OVC_OK ||
+        api().intersect(scene.get(), &ray, 1, &hit, nullptr) != OVC_OK ||
+        !is_in_cell(hit, kCells - kSide, 1) || update(scene.get(), false) != OVC_OK ||
+        api().commit(scene.get()) != OVC_OK || !field_answers(scene.get()))
+        return OVC_ERROR_INTERNAL;
+    return OVC_OK;
+}
+
+ovc_result use_update_instance(Subject& s) {
+    return use_update(s, [](ovc_scene scene, bool there) {
+        const double up[12] = {1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 0};
+        return api().update_instance(scene, 0, there ? up : nullptr);
+    });
+}
+Misuses misuse_update_instance(Subject& s) {
+    Wrong wrong(s);
+    const double transform[12] = {NAN};
+    wrong.without_device("scene NULL", api().update_instance(nullptr, 0, nullptr));
+    wrong.argument("no such mesh", api().update_instance(s.field, 1, nullptr));
+    wrong.argument("transform NaN", api().update_instance(s.field, 0, transform));
+    return wrong.found();
+}
+
+ovc_result use_update_mesh(Subject& s) {
+    static std::vector<float> positions = field_positions();
+    const AbiScene scene = new_scene(s);
+    ovc_mesh mesh = field_mesh();
+    mesh.positions = positions.data();
+    ovc_hit hit;
+    const ovc_ray ray = into_cell(0, 1);
+    if (api().add_mesh(scene.get(), &mesh, nullptr) != OVC_OK ||
+        api().commit(scene.get()) != OVC_OK)
+        return OVC_ERROR_INTERNAL;
+    for (size_t i = 0; i < 3; ++i)
+        positions[3 * i + 2] = -1; // the first triangle only
+    mesh.vertex_count = 3;
+    if (api().update_mesh(scene.get(), 0, &mesh, 0) != OVC_OK ||
+        api().commit(scene.get()) != OVC_OK ||
+        api().intersect(scene.get(), &ray, 1, &hit, nullptr) != OVC_OK || !is_in_cell(hit, 0, 2))
+        return OVC_ERROR_INTERNAL;
+    return OVC_OK;
+}
+Misuses misuse_update_mesh(Subject& s) {
+    Wrong wrong(s);
+    const ovc_mesh mesh = field_mesh();
+    wrong.without_device("scene NULL", api().update_mesh(nullptr, 0, &mesh, 0));
+    wrong.argument("mesh NULL", api().update_mesh(s.field, 0, nullptr, 0));
+    wrong.argument("no such mesh", api().update_mesh(s.field, 1, &mesh, 0));
+    wrong.argument("beyond its end", api().update_mesh(s.field, 0, &mesh, 1));
+    const auto with = [&](const char* what, auto&& spoil) {
+        ovc_mesh spoilt = field_mesh();
+        spoil(spoilt);
+        wrong.argument(what, api().update_mesh(s.field, 0, &spoilt, 0));
+    };
+    static const double transform[12] = {};
+    with("struct_size 0", [](auto& m) { m.struct_size = 0; });
+    with("other memory", [](auto& m) { m.positions += 9, m.vertex_count -= 3; });
+    with("not shared", [](auto& m) { m.flags = 0; });
+    with("a transform", [](auto& m) { m.transform = transform; });
+    with("a mask", [](auto& m) { m.mask = 1; });
+    with("another origin", [](auto& m) { m.origin[1] = 1; });
+    with("doubles", [](auto& m) {
+        m.positions = nullptr, m.positions_double = transform, m.vertex_count = 3;
+    });
+    const AbiScene scene = new_scene(s);
+    auto instance = sized<ovc_instance>();
+    api().add_mesh(scene.get(), &mesh, nullptr);
+    api().add_instance(scene.get(), &instance, nullptr);
+    wrong.argument("an instance", api().update_mesh(scene.get(), 1, &mesh, 0));
+    return wrong.found();
+}
+
+ovc_result use_remove_mesh(Subject& s) {
+    const AbiScene scene(make_field(s.device));
+    ovc_hit hit;
+    const ovc_ray ray = into_cell(0, 1);
+    if (!scene || api().remove_mesh(scene.get(), 0) != OVC_OK ||
+        api().commit(scene.get()) != OVC_OK)
+        return OVC_ERROR_INTERNAL;
+    const ovc_result result = api().intersect(scene.get(), &ray, 1, &hit, nullptr);
+    return hit.mesh == OVC_NONE ? result : OVC_ERROR_INTERNAL;
+}
+Misuses misuse_remove_mesh(Subject& s) {
+    Wrong wrong(s);
+    wrong.without_device("scene NULL", api().remove_mesh(nullptr, 0));
+    wrong.argument("no such mesh", api().remove_mesh(s.field, 1));
+    const AbiScene scene(make_field(s.device));
+    api().remove_mesh(scene.get(), 0);
+    wrong.argument("twice", api().remove_mesh(scene.get(), 0));
+    const ovc_mesh mesh = field_mesh();
+    wrong.argument("updated after it", api().update_mesh(scene.get(), 0, &mesh, 0));
+    return wrong.found();
+}
+
 constexpr Entry kEntries[] = {
     OVC_ENTRY(create_scene, use_create_scene, misuse_create_scene),
     OVC_ENTRY(add_mesh, use_add_mesh, misuse_add_mesh),
@@ -212,6 +311,9 @@ constexpr Entry kEntries[] = {
     OVC_ENTRY(save, use_save, misuse_save),
     OVC_ENTRY(add_instance, use_add_instance, misuse_add_instance),
     OVC_ENTRY(purge, use_purge, misuse_purge),
+    OVC_ENTRY(update_mesh, use_update_mesh, misuse_update_mesh),
+    OVC_ENTRY(update_instance, use_update_instance, misuse_update_instance),
+    OVC_ENTRY(remove_mesh, use_remove_mesh, misuse_remove_mesh),
 };
 
 } // namespace

@@ -52,7 +52,7 @@ class ovc_scene_config(Sized):
                 ("saved", c.c_void_p), ("saved_bytes", c.c_uint64)]
 
 
-MESH_SHARED, MESH_TEMPLATE = 1, 2
+MESH_SHARED, MESH_TEMPLATE, MESH_MOVES = 1, 2, 4
 
 
 class ovc_mesh(Sized):
@@ -131,4 +131,7 @@ class ovc_api(c.Structure):
         ("wait", _Pointer), ("poll", _Pointer), ("cancel", _Pointer), ("release", _Pointer),
         ("all_hits", _call(_Handle, _Pointer, c.c_size_t, c.c_size_t, _Pointer, _Pointer,
                            c.POINTER(ovc_query))),
+        ("update_mesh", _call(_Handle, c.c_uint32, c.POINTER(ovc_mesh), c.c_uint64)),
+        ("update_instance", _call(_Handle, c.c_uint32, _Pointer)),
+        ("remove_mesh", _call(_Handle, c.c_uint32)),
     ]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _abi
-from ._arrays import choice, count
+from ._arrays import choice, count, numbers
 from ._calls import Progress, Writer
 from ._library import Handle, api, check
 from ._mesh import address, mesh_of, transform_of
@@ -65,6 +65,7 @@ class Scene:
         if device is not None and not isinstance(device, Device):
             raise TypeError(f"device must be an overcast.Device, not {type(device).__name__}")
         self._device = device or default_device()
+        self._meshes: dict[int, _abi.ovc_mesh] = {}
         handle = ctypes.c_void_p()
         with self._device._handle.use() as device_handle:
             self._device_handle = device_handle
@@ -77,7 +78,8 @@ class Scene:
 
     def add(self, vertices: ArrayLike, triangles: ArrayLike | None = None, *,
             transform: ArrayLike | None = None, origin: ArrayLike = (0, 0, 0),
-            template: bool = False, shared: bool = False, mask: int = 0) -> int:
+            template: bool = False, shared: bool = False, moves: bool = False,
+            mask: int = 0) -> int:
         """Adds a mesh and returns its number: 0, 1, 2, ...
 
         vertices: (n, 3) real numbers. float32 is kept as it is, all else as float64, in twice the
@@ -89,16 +91,20 @@ class Scene:
         template: no ray hits the mesh itself; it is there for add_instance().
         shared: the library reads the array in place instead of a copy. The array must be
             C-contiguous, float32 or float64, and without triangles; do not change it until the
-            scene is closed.
+            scene is closed, except as update() says.
+        moves: move() is to be called on it: the mesh is built by itself from the start, so that the
+            first move is as quick as others.
         mask: which rays see the mesh (see overcast.Limits); 0: all.
         """
-        flags = _abi.MESH_SHARED * bool(shared) | _abi.MESH_TEMPLATE * bool(template)
+        flags = (_abi.MESH_SHARED * bool(shared) | _abi.MESH_TEMPLATE * bool(template)
+                 | _abi.MESH_MOVES * bool(moves))
         mesh = mesh_of(vertices, triangles, origin, transform, flags)
         mesh.mask = count("mask", mask, 2**32 - 1)
         number = ctypes.c_uint32()
         self._call("add_mesh", mesh, number)
         if shared:
             self._kept.append(mesh)
+        self._meshes[number.value] = mesh
         return number.value
 
     def add_instance(self, mesh: int, transform: ArrayLike | None = None, *,
@@ -120,8 +126,38 @@ class Scene:
         self._call("add_instance", instance, number)
         return number.value
 
+    def update(self, mesh: int, vertices: ArrayLike, triangles: ArrayLike | None = None, *,
+               first: int = 0) -> None:
+        """Gives triangles of a mesh new corners, from triangle `first` on. All its instances follow.
+        commit() then brings the scene up to date; until then it takes no rays.
+
+        vertices, triangles: the corners of the triangles that change, in one of the forms of add().
+            They are rounded to float32 if the mesh was added in float32. Of a shared mesh: the part
+            of the array that the caller has changed, which is where it was.
+        """
+        number = count("mesh", mesh, 2**32 - 1)
+        before = self._meshes.get(number, _abi.ovc_mesh())
+        shared = before.flags & _abi.MESH_SHARED
+        if not shared:
+            kind = np.float32 if before.positions else np.float64
+            vertices = np.asarray(numbers("vertices", vertices, 3), kind)
+        update = mesh_of(vertices, triangles, tuple(before.origin), None, shared)
+        self._call("update_mesh", number, update, count("first", first, 2**64 - 1))
+
+    def move(self, mesh: int, transform: ArrayLike | None = None) -> None:
+        """Gives a mesh or an instance a new transform, in place of the one that it was added with or
+        got last. commit() then brings the scene up to date; until then it takes no rays."""
+        matrix = transform_of(transform)
+        self._call("update_instance", count("mesh", mesh, 2**32 - 1), address(matrix))
+
+    def remove(self, mesh: int) -> None:
+        """Removes a mesh or an instance. Numbers of others stay; instances of a removed mesh stay
+        too. commit() then brings the scene up to date; until then it takes no rays."""
+        self._call("remove_mesh", count("mesh", mesh, 2**32 - 1))
+
     def commit(self, progress: Callable[[float, str], object] | None = None) -> None:
-        """Builds the scene. Afterwards it takes rays and no more meshes.
+        """Builds the scene, or brings it up to date with what has changed since the last commit.
+        Afterwards it takes rays.
 
         progress(done, stage): called up to fifty times a second, from any thread, with done from 0
         to 1; it may not use the scene. An exception from it ends the commit and is raised here; so

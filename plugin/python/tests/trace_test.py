@@ -46,6 +46,28 @@ class Nearest(unittest.TestCase):
             with self.subTest(options), scene_of([self.corners], **options) as scene:
                 self.check(scene.intersect(self.origins, self.directions))
 
+    def test_scenes_that_change(self):
+        """Corners, places and meshes that changed give the answers of a scene that is new."""
+        up = np.eye(4)[:3]
+        up[2, 3] = 0.5
+        with scene_of([self.corners]) as scene:
+            scene.update(0, self.corners[5:9] + np.float32(0.25), first=5)
+            second = scene.add(self.corners, moves=True)
+            scene.commit()
+            scene.move(second, up)
+            third = scene.add_instance(0, up)
+            scene.commit()
+            scene.remove(third)
+            scene.commit()
+            changed = self.corners.copy()
+            changed[5:9] += np.float32(0.25)
+            with scene_of([changed]) as new:
+                new.add(self.corners, transform=up)
+                new.commit()
+                a, b = (s.intersect(self.origins, self.directions) for s in (scene, new))
+                np.testing.assert_array_equal(a.records, b.records)
+                self.assertTrue((a.mesh == second).any())
+
     def test_vertices_as_they_come(self):
         """Vertices by index, in columns of a wider array, in doubles, in other byte orders and
         layouts, backwards, read-only and as lists give the same answers."""

@@ -47,7 +47,7 @@ uint32_t QueuedRays::slot() {
 void QueuedRays::add(bool any_hit, const RaySpan& rays, const Exclusions& without,
                      std::span<const uint64_t> tokens) {
     assert(under_way() + rays.size() <= kMax);
-    assert(tokens.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
+    assert(tokens.size() == rays.size() && without.are_for(rays.size()));
     for (size_t i = 0; i < rays.size(); ++i) {
         const uint32_t at = slot();
         states_[at] = {rays[i], without[i].skip, tokens[i], any_hit};

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks meshes and transforms of the host.
+#include "plugin/abi/mesh_data.h"
+
+#include "core/text/format_text.h"
+#include "plugin/abi/scene_call.h"
+#include "plugin/abi/struct_size.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace ovc {
+namespace {
+
+void check_positions(const ovc_mesh& mesh) {
+    if (mesh.positions && mesh.positions_double)
+        invalid("ovc_mesh.positions and positions_double are both set; one says it all");
+    if (!mesh.positions && !mesh.positions_double && mesh.vertex_count)
+        invalid("ovc_mesh.positions is NULL");
+    if (mesh.positions_double) {
+        if (mesh.stride < 24 || mesh.stride % 8 ||
+            reinterpret_cast<uintptr_t>(mesh.positions_double) % 8)
+            invalid(format_text("ovc_mesh.stride is {}, expected 24 or more and, as "
+                                "positions_double, a multiple of 8",
+                                mesh.stride));
+        return;
+    }
+    if (mesh.stride < 12 || mesh.stride % 4 || reinterpret_cast<uintptr_t>(mesh.positions) % 4)
+        invalid(format_text(
+            "ovc_mesh.stride is {}, expected 12 or more and, as positions, a multiple of 4",
+            mesh.stride));
+}
+
+void check_counts(const ovc_mesh& mesh) {
+    if (!mesh.indices && mesh.vertex_count % 3)
+        invalid(format_text("ovc_mesh.vertex_count is {} without indices, expected a multiple of 3",
+                            mesh.vertex_count));
+    const uint64_t triangles = triangles_of(mesh);
+    if (!mesh.indices && mesh.triangle_count && mesh.triangle_count != triangles)
+        invalid(
+            format_text("ovc_mesh.triangle_count is {}, but {} vertices without indices make {}",
+                        mesh.triangle_count, mesh.vertex_count, triangles));
+    if (triangles >= kNone)
+        invalid(format_text("a mesh holds fewer than {} triangles, not {}; split it", kNone,
+                            triangles));
+}
+
+template <class Corner>
+std::vector<Corner> corners_at(const ovc_mesh& mesh, const void* positions) {
+    std::vector<Corner> corners(triangles_of(mesh) * 3);
+    for (uint64_t i = 0; i < corners.size(); ++i) {
+        const uint64_t vertex = mesh.indices ? mesh.indices[i] : i;
+        if (vertex >= mesh.vertex_count)
+            invalid(format_text("ovc_mesh.indices[{}] is {}, expected less than vertex_count = {}",
+                                i, vertex, mesh.vertex_count));
+        std::memcpy(&corners[i], static_cast<const char*>(positions) + vertex * mesh.stride,
+                    sizeof(Corner));
+    }
+    return corners;
+}
+
+} // namespace
+
+uint64_t triangles_of(const ovc_mesh& mesh) {
+    return mesh.indices ? mesh.triangle_count : mesh.vertex_count / 3;
+}
+
+ovc_mesh checked(const ovc_mesh* given) {
+    ovc_mesh mesh = whole("ovc_mesh", given, offsetof(ovc_mesh, positions_double));
+    const uint32_t packed = mesh.positions_double ? 24 : 12;
+    if (!mesh.stride)
+        mesh.stride = packed;
+    check_positions(mesh);
+    if (mesh.flags & ~uint32_t(OVC_MESH_SHARED | OVC_MESH_TEMPLATE | OVC_MESH_MOVES) ||
+        mesh.reserved || mesh.reserved1)
+        invalid("ovc_mesh.flags or reserved has bits that this version does not know");
+    check_counts(mesh);
+    if ((mesh.flags & OVC_MESH_SHARED) && (mesh.stride != packed || mesh.indices))
+        invalid(format_text("OVC_MESH_SHARED needs stride {} and no indices", packed));
+    for (const double coordinate : mesh.origin)
+        if (!std::isfinite(coordinate))
+            invalid("ovc_mesh.origin is not finite");
+    return mesh;
+}
+
+std::vector<vec3> copied_corners(const ovc_mesh& mesh) {
+    return corners_at<vec3>(mesh, mesh.positions);
+}
+
+std::vector<dvec3> copied_double_corners(const ovc_mesh& mesh) {
+    return corners_at<dvec3>(mesh, mesh.positions_double);
+}
+
+std::optional<Transform> transform_of(const char* field, const double* given) {
+    if (!given)
+        return std::nullopt;
+    Transform transform;
+    for (size_t i = 0; i < 12; ++i) {
+        if (!std::isfinite(given[i]))
+            invalid(format_text("{}[{}] is not finite", field, i));
+        transform.rows[i / 4][i % 4] = given[i];
+    }
+    return transform;
+}
+
+} // namespace ovc

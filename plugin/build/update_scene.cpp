@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// Updates the levels whose triangles have changed, takes meshes in that are new, and builds the
+// top-level tree again.
+#include "plugin/build/update_scene.h"
+
+#include "plugin/build/build_scene.h"
+#include "plugin/build/level2.h"
+#include "plugin/build/level_update.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace ovc {
+namespace {
+
+/// Returns the ranges sorted, and joined where they touch.
+std::vector<PrimRange> joined(std::vector<PrimRange> ranges) {
+    std::ranges::sort(ranges);
+    std::vector<PrimRange> all;
+    for (const PrimRange& range : ranges) {
+        if (!all.empty() && all.back().mesh == range.mesh && range.first <= all.back().end)
+            all.back().end = std::max(all.back().end, range.end);
+        else
+            all.push_back(range);
+    }
+    return all;
+}
+
+class SceneUpdate {
+public:
+    SceneUpdate(BuiltScene& scene, const Changes& changes, const TwoLevelOptions& options,
+                const MemoryPlan& plan, BuildProgress* progress)
+        : scene_(scene),
+          soup_(scene.soup),
+          changes_(changes),
+          options_(options),
+          plan_(plan),
+          progress_(progress) {}
+
+    std::optional<PageChanges> run() {
+        Placed placed = placed_chunks(soup_);
+        if (!keeps_once(placed.once) || !numbers_suffice() ||
+            std::ranges::any_of(scene_.shared, &SharedMesh::has_lines))
+            return std::nullopt;
+        begin(progress_, "update", 0.9, std::max<uint64_t>(scene_.reference_count(), 1));
+        unique_ = unique_triangles(soup_, placed);
+        scene_.numbers.append(soup_);
+        scene_.copies = std::move(placed.copies);
+        scene_.pages.resize(scene_.level1.leaves.size());
+        for (const SharedMesh& mesh : scene_.shared)
+            take_drops_off(mesh);
+        if (!update_once() || !update_shared(placed.shared))
+            return std::nullopt;
+        scene_.once = std::move(placed.once);
+        scene_.was_updated = true;
+        gather_pages(scene_);
+        if (!add_tree(scene_, options_, plan_))
+            return std::nullopt;
+        scene_.from_saved = false;
+        return std::move(done_);
+    }
+
+private:
+    /// Whether level 1 is still of the same chunks, but for those that were removed.
+    bool keeps_once(std::span<const uint32_t> once) const {
+        std::vector<uint32_t> left;
+        std::ranges::copy_if(scene_.once, std::back_inserter(left),
+                             [&](uint32_t chunk) { return soup_.chunks[chunk].size() > 0; });
+        return std::ranges::equal(left, once);
+    }
+
+    /// Whether the triangles of chunks that were added still have numbers.
+    bool numbers_suffice() const {
+        uint64_t count = scene_.numbers.count();
+        for (uint64_t i = scene_.numbers.meshes(); i < soup_.chunks.size(); ++i)
+            count += soup_.chunks[i].size();
+        return count <= OVC_MAX_TRIANGLES;
+    }
+
+    bool update_once() {
+        std::vector<PrimRange> changed;
+        const auto add = [&](const PrimRange& range) {
+            if (std::ranges::binary_search(scene_.once, range.mesh))
+                changed.push_back(range);
+        };
+        std::ranges::for_each(changes_.moved, add);
+        std::ranges::for_each(changes_.removed, add);
+        for (const uint32_t chunk : changes_.placed)
+            add({chunk, 0, soup_.chunks[chunk].size()});
+        return update_level(scene_, joined(std::move(changed)), 0);
+    }
+
+    /// Updates a level whose pages begin with `first_page`.
+    bool update_level(BuiltScene& level, std::span<const PrimRange> changed, uint32_t first_page) {
+        LevelUpdate update(level, changed, progress_);
+        if (!update.run())
+            return false;
+        for (const std::vector<uint32_t>* pages : {&update.refitted(), &update.rebuilt()})
+            for (const uint32_t page : *pages)
+                done_.pages.push_back(first_page + page);
+        done_.refitted += update.refitted().size();
+        done_.rebuilt += update.rebuilt().size();
+        done_.renumbered |= update.drops_leaves();
+        return true;
+    }
+
+    /// Keeps the meshes that are placed still, and builds those that are new.
+    bool update_shared(const std::vector<Placed::Instances>& placed) {
+        std::vector<SharedMesh> before = std::exchange(scene_.shared, {});
+        const std::vector<uint32_t> mesh_before = std::exchange(scene_.mesh_of_chunk, {});
+        if (placed.empty() && !before.empty())
+            return false; // without portals, pages must lie in the frame of the scene
+        if (!placed.empty())
+            scene_.mesh_of_chunk.assign(soup_.chunks.size(), kNone);
+        uint32_t next = 0; // of the meshes before
+        for (const Placed::Instances& instances : placed) {
+            const uint32_t was = mesh_of(instances, mesh_before);
+            const bool is_kept = was != kNone;
+            done_.renumbered |= !is_kept || was != next++;
+            if (!(is_kept ? keep(std::move(before[was]), instances) : build(instances)))
+                return false;
+            enter(scene_.shared.back());
+        }
+        done_.renumbered |= next != before.size();
+        return true;
+    }
+
+    /// Returns the mesh that these chunks were instances of before; kNone: of none that is built.
+    static uint32_t mesh_of(const Placed::Instances& instances,
+                            const std::vector<uint32_t>& mesh_before) {
+        for (const uint32_t chunk : instances)
+            if (chunk < mesh_before.size() && mesh_before[chunk] != kNone)
+                return mesh_before[chunk];
+        return kNone;
+    }
+
+    bool keep(SharedMesh mesh, const Placed::Instances& instances) {
+        mesh.instances = instances;
+        std::vector<PrimRange> changed;
+        for (const PrimRange& range : changes_.moved)
+            if (std::ranges::binary_search(instances, range.mesh))
+                changed.push_back({0, range.first, range.end});
+        for (const uint32_t chunk : instances)
+            scene_.mesh_of_chunk[chunk] = uint32_t(scene_.shared.size());
+        const bool has_moved = !changed.empty();
+        const bool updated = update_level(mesh.scene, joined(std::move(changed)), mesh.first_page);
+        scene_.shared.push_back(std::move(mesh));
+        if (has_moved)
+            look_for_lines(scene_.shared.back());
+        return updated && !scene_.shared.back().has_lines;
+    }
+
+    bool build(const Placed::Instances& instances) {
+        SharedMesh& shared = scene_.share(instances);
+        BuiltScene& mesh = shared.scene;
+        const Hittable hittable = take_hittable(mesh, progress_);
+        look_for_lines(shared);
+        mesh.limits = limits_of(options_, plan_, mesh.triangles, unique_);
+        const bool built = bool(build_levels(mesh, hittable, progress_, 0));
+        done_.rebuilt += mesh.pages.size();
+        return built && !shared.has_lines;
+    }
+
+    void take_drops_off(const SharedMesh& mesh) {
+        scene_.dropped.not_finite -= mesh.instances.size() * mesh.scene.dropped.not_finite;
+        scene_.dropped.degenerate -= mesh.instances.size() * mesh.scene.dropped.degenerate;
+    }
+
+    /// Counts what the instances of the mesh drop, and widens the scene's bounds to them.
+    void enter(const SharedMesh& mesh) {
+        scene_.dropped.not_finite += mesh.instances.size() * mesh.scene.dropped.not_finite;
+        scene_.dropped.degenerate += mesh.instances.size() * mesh.scene.dropped.degenerate;
+        const Box& box = mesh.scene.level1.bounds;
+        Level1& level1 = scene_.level1;
+        if (box.empty())
+            return;
+        for (const uint32_t chunk : mesh.instances)
+            level1.bounds.add(placed_box(box, soup_.chunks[chunk].transform()));
+        level1.padding = padding_of(level1.bounds);
+    }
+
+    BuiltScene& scene_;
+    const Soup& soup_;
+    const Changes& changes_;
+    const TwoLevelOptions& options_;
+    const MemoryPlan& plan_;
+    BuildProgress* const progress_;
+    uint64_t unique_ = 0; // triangles that are packed
+    PageChanges done_;
+};
+
+} // namespace
+
+std::optional<PageChanges> update_scene(BuiltScene& scene, const Changes& changes,
+                                        const TwoLevelOptions& options, const MemoryPlan& plan,
+                                        BuildProgress* progress) {
+    return SceneUpdate(scene, changes, options, plan, progress).run();
+}
+
+} // namespace ovc

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes that change after their commit: answers have the bits of the triangles as they are now.
+#include "core/system/stopwatch.h"
+#include "tests/abi/instances_world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace ovc {
+namespace {
+
+using namespace test;
+
+/// A scene that changes at random.
+class Changing {
+public:
+    Changing(World& world, uint64_t seed) : world_(world), random_(seed) {
+        for (uint64_t left = 2 + random_.below(4); left > 0; --left)
+            add_mesh();
+        for (uint64_t left = random_.below(4); left > 0; --left)
+            add_instance();
+    }
+
+    /// Makes some changes, without a commit.
+    void change() {
+        for (uint64_t left = 1 + random_.below(3); left > 0; --left) {
+            const uint64_t kind = random_.below(16);
+            if (kind == 0)
+                add_mesh();
+            else if (kind == 1)
+                add_instance();
+            else if (kind == 2)
+                remove();
+            else if (kind < 7)
+                move();
+            else
+                move_corners();
+        }
+    }
+
+private:
+    Matrix transform() {
+        const Matrix at = shift(random_.point(-2, 2));
+        switch (random_.below(6)) {
+        case 0:
+            return product(at, any_transform(random_, 0));
+        case 1:
+            return product(at, scale({1, random_.below(2) ? 1e-7 : 0, 1})); // flat
+        default:
+            return at;
+        }
+    }
+
+    /// A cloth of squares, whose triangles share sides.
+    std::vector<vec3> cloth() {
+        const int squares = 2 + int(random_.below(20));
+        std::vector<vec3> corners;
+        for (int x = 0; x < squares; ++x)
+            for (int y = 0; y < squares; ++y)
+                for (const auto& [right, up] :
+                     {std::pair{0, 0}, {1, 0}, {0, 1}, {0, 1}, {1, 0}, {1, 1}})
+                    corners.push_back(vec3(x + right, y + up, 0) / float(squares) - 0.5f);
+        return corners;
+    }
+    /// Where the wind takes a point of a cloth.
+    static dvec3 blown(const dvec3& p, const dvec3& wind) {
+        return {p.x, p.y, wind.x * std::sin(6 * wind.y * p.x + 4 * wind.z * p.y)};
+    }
+
+    void add_mesh() {
+        if (random_.below(3) == 0) {
+            const Matrix m = transform();
+            clothes_.push_back(world_.add(cloth(), random_.point(-1, 1), &m,
+                                          random_.below(3) ? 0u : uint32_t(OVC_MESH_MOVES)));
+            return;
+        }
+        const size_t triangles = 1 + random_.below(random_.below(2) ? 10 : 300);
+        auto corners = random_corners<vec3>(random_, triangles, 0.3);
+        if (random_.below(2))
+            for (vec3& corner : corners) // many share sides, lie on lines and in planes
+                corner = glm::round(corner * 4.0f) / 4.0f;
+        const uint32_t flags = (random_.below(4) ? 0u : uint32_t(OVC_MESH_TEMPLATE)) |
+                               (random_.below(3) ? 0u : uint32_t(OVC_MESH_MOVES));
+        const Matrix m = transform();
+        const dvec3 origin = random_.point(-1, 1);
+        if (random_.below(3))
+            world_.add(corners, origin, random_.below(2) ? &m : nullptr, flags);
+        else
+            world_.add(std::vector<dvec3>(corners.begin(), corners.end()), origin, nullptr, flags);
+    }
+
+    uint32_t any_left() {
+        for (int tries = 0; tries < 100; ++tries)
+            if (const auto number = uint32_t(random_.below(world_.count()));
+                !world_.is_removed(number))
+                return number;
+        add_mesh();
+        return world_.count() - 1;
+    }
+    uint32_t any_mesh() {
+        for (int tries = 0; tries < 100; ++tries)
+            if (const uint32_t number = any_left(); !world_.is_instance(number))
+                return number;
+        add_mesh();
+        return world_.count() - 1;
+    }
+
+    void add_instance() {
+        const Matrix m = transform();
+        world_.instance(any_left(), random_.below(4) ? &m : nullptr);
+    }
+    void move() {
+        const Matrix m = transform();
+        world_.move(any_left(), random_.below(6) ? &m : nullptr);
+    }
+    void remove() {
+        if (world_.count() > 3)
+            world_.remove(any_left());
+    }
+    void blow() {
+        const uint32_t mesh = clothes_[random_.below(clothes_.size())];
+        if (world_.is_removed(mesh))
+            return;
+        const dvec3 wind = (random_.below(4) ? 0.2 : 3) * random_.point(-1, 1);
+        const dvec3 origin = world_.origin(mesh);
+        std::vector<dvec3> corners = world_.source(mesh);
+        for (dvec3& corner : corners)
+            corner = blown(corner - origin, wind);
+        const size_t first = random_.below(3) ? 0 : random_.below(corners.size() / 3);
+        corners.erase(corners.begin(), corners.begin() + ptrdiff_t(3 * first));
+        world_.move_corners(mesh, first, corners);
+    }
+    void move_corners() {
+        if (random_.below(3) && !clothes_.empty())
+            return blow();
+        const uint32_t mesh = any_mesh();
+        const size_t all = world_.triangles(mesh);
+        const size_t first = random_.below(2) ? random_.below(all) : 0;
+        const size_t count = first == 0 && random_.below(2) ? all : 1 + random_.below(all - first);
+        const double reach = random_.below(8) ? 1 : 20;
+        auto corners = random_corners<dvec3>(random_, count, 0.3);
+        const bool on_grid = random_.below(2), broken = random_.below(8) == 0;
+        for (dvec3& corner : corners) {
+            corner *= reach;
+            if (on_grid)
+                corner = glm::round(corner * 4.0) / 4.0;
+            if (broken && random_.below(20) == 0)
+                corner.y = NAN;
+        }
+        world_.move_corners(mesh, first, corners);
+    }
+
+    World& world_;
+    Random random_;
+    std::vector<uint32_t> clothes_;
+};
+
+/// Whether two chunks are the same triangles in the same place.
+bool has_copies(const Soup& soup) {
+    for (const Chunk& a : soup.chunks)
+        for (const Chunk& b : soup.chunks)
+            if (&a != &b && a.size() > 0 && a.size() == b.size() &&
+                std::memcmp(a.address_of(0), b.address_of(0), a.double_corners().size_bytes()) == 0)
+                return true;
+    return false;
+}
+
+class Updates : public Instances {};
+
+/// OVC_UPDATES_SECONDS=600 goes on for as long.
+TEST_F(Updates, AnswerAsAScenesThatIsNew) {
+    const char* const asked = std::getenv("OVC_UPDATES_SECONDS");
+    const double seconds = asked ? std::strtod(asked, nullptr) : 8;
+    const Stopwatch watch;
+    uint64_t rays_asked = 0, updates = 0, refitted = 0, rebuilt = 0, commits = 0;
+    for (uint64_t seed = 0; seed < 6 || watch.seconds() < seconds; ++seed) {
+        Random random(seed);
+        config.leaf_triangles = random.below(3) ? 0 : 40;
+        config.kernel = random.below(2) ? OVC_KERNEL_FRAGMENT : OVC_KERNEL_AUTO;
+        config.gpu_memory_bytes = random.below(3) ? 0 : 300 << 10;
+        World w = world();
+        Changing changing(w, seed);
+        w.commit();
+        ovc_statistics before = w.statistics();
+        for (int round = 0; round < 8; ++round) {
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", round " + std::to_string(round));
+            changing.change();
+            w.commit();
+            if (HasFatalFailure())
+                return;
+            ++commits;
+            const ovc_statistics now = w.statistics();
+            Dropped dropped;
+            const auto ids = hittable_triangles(w.expected, &dropped, nullptr);
+            EXPECT_EQ(now.triangles, w.expected.triangle_count());
+            // Copies count as duplicates, and instances as their mesh does before it is placed.
+            if (now.instances == 0 && !has_copies(w.expected)) {
+                EXPECT_EQ(now.dropped_not_finite, dropped.not_finite);
+                EXPECT_EQ(now.dropped_degenerate, dropped.degenerate);
+            }
+            const bool is_updated = now.updates > before.updates;
+            updates += is_updated;
+            refitted += is_updated ? now.pages_refitted - before.pages_refitted : 0;
+            rebuilt += is_updated ? now.pages_rebuilt - before.pages_rebuilt : 0;
+            before = now;
+            if (ids.empty())
+                continue;
+            const std::vector<Ray> rays = rays_at(w.expected, 100, seed);
+            expect_brute_force(w, rays, 2, /* most_hit= */ false);
+            expect_brute_force_with_skips(w, rays, seed);
+            if (HasFatalFailure())
+                return;
+            rays_asked += rays.size();
+        }
+    }
+    EXPECT_GT(updates, 10u);
+    EXPECT_GT(refitted, 10u);
+    EXPECT_GT(rebuilt, 10u);
+    std::printf("%llu rays after %llu commits, %llu of them updates, of %llu pages refitted and "
+                "%llu built\n",
+                static_cast<unsigned long long>(rays_asked),
+                static_cast<unsigned long long>(commits), static_cast<unsigned long long>(updates),
+                static_cast<unsigned long long>(refitted),
+                static_cast<unsigned long long>(rebuilt));
+}
+
+} // namespace
+} // namespace ovc
