@@ -157,33 +157,36 @@ TriangleFault triangle_fault(const Triangle& t) {
     return on_a_line(t) ? TriangleFault::Degenerate : TriangleFault::None;
 }
 
-namespace {
-
-struct Survey {
-    Dropped dropped;
-    Box bounds;
-};
-
-Survey survey(const Chunk& chunk, uint32_t first, uint32_t last, std::vector<uint8_t>& kept,
-              BuildProgress* progress) {
-    assert(last <= kept.size());
-    Survey found;
-    LoopProgress loop(progress);
-    for (uint32_t prim = first; prim < last; ++prim) {
-        const Triangle triangle = chunk.triangle(prim);
-        const TriangleFault fault = triangle_fault(triangle);
-        kept[prim] = fault == TriangleFault::None;
-        found.dropped.not_finite += fault == TriangleFault::NotFinite;
-        found.dropped.degenerate += fault == TriangleFault::Degenerate;
-        if (fault == TriangleFault::None)
-            found.bounds.add(bounds_of(triangle));
-        loop.step();
-    }
-    loop.finish();
-    return found;
+void Survey::add(const Survey& other) {
+    dropped.not_finite += other.dropped.not_finite;
+    dropped.degenerate += other.dropped.degenerate;
+    bounds.add(other.bounds);
 }
 
-} // namespace
+Survey survey(const Chunk& chunk, uint32_t first, std::span<uint8_t> is_hit,
+              BuildProgress* progress) {
+    assert(first + is_hit.size() <= chunk.size());
+    return parallel_reduce(
+        is_hit.size(), Survey{},
+        [&](size_t from, size_t to, Survey found) {
+            LoopProgress loop(progress);
+            for (size_t i = from; i < to; ++i, loop.step()) {
+                const Triangle triangle = chunk.triangle(first + uint32_t(i));
+                const TriangleFault fault = triangle_fault(triangle);
+                is_hit[i] = fault == TriangleFault::None;
+                found.dropped.not_finite += fault == TriangleFault::NotFinite;
+                found.dropped.degenerate += fault == TriangleFault::Degenerate;
+                if (fault == TriangleFault::None)
+                    found.bounds.add(bounds_of(triangle));
+            }
+            loop.finish();
+            return found;
+        },
+        [](Survey a, const Survey& b) {
+            a.add(b);
+            return a;
+        });
+}
 
 std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, Box* bounds,
                                            BuildProgress* progress) {
@@ -205,24 +208,7 @@ std::vector<TriangleId> hittable_triangles(const Soup& soup, std::span<const uin
     for (const uint32_t mesh : chunks) {
         const Chunk& chunk = soup.chunks[mesh];
         kept.assign(chunk.size(), 0);
-        const Survey found = parallel_reduce(
-            chunk.size(), Survey{},
-            [&](size_t first, size_t last, Survey sum) {
-                const Survey part = survey(chunk, uint32_t(first), uint32_t(last), kept, progress);
-                sum.dropped.not_finite += part.dropped.not_finite;
-                sum.dropped.degenerate += part.dropped.degenerate;
-                sum.bounds.add(part.bounds);
-                return sum;
-            },
-            [](Survey a, const Survey& b) {
-                a.dropped.not_finite += b.dropped.not_finite;
-                a.dropped.degenerate += b.dropped.degenerate;
-                a.bounds.add(b.bounds);
-                return a;
-            });
-        total.dropped.not_finite += found.dropped.not_finite;
-        total.dropped.degenerate += found.dropped.degenerate;
-        total.bounds.add(found.bounds);
+        total.add(survey(chunk, 0, kept, progress));
         for (uint32_t prim = 0; prim < chunk.size(); ++prim)
             if (kept[prim])
                 ids.push_back({mesh, prim});

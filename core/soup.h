@@ -133,6 +133,19 @@ struct Dropped {
     uint64_t total() const { return not_finite + degenerate; }
 };
 
+/// What is found in some triangles: how many can never be hit, and the box of the others.
+struct Survey {
+    Dropped dropped;
+    Box bounds;
+
+    void add(const Survey& other);
+};
+
+/// Surveys triangles of a chunk from `first` on, as many as is_hit has elements, which are set to 1
+/// for those that can be hit, else to 0. A triangle is a unit of progress.
+Survey survey(const Chunk& chunk, uint32_t first, std::span<uint8_t> is_hit,
+              BuildProgress* progress = nullptr);
+
 /// Returns the ids of all triangles that can be hit, sorted. dropped, bounds: optional, receive how
 /// many were left out and the box of the others. A triangle is a unit of progress.
 std::vector<TriangleId> hittable_triangles(const Soup& soup, Dropped* dropped, Box* bounds,

@@ -13,6 +13,7 @@
 #include <array>
 #include <atomic>
 #include <cassert>
+#include <mutex>
 #include <utility>
 
 namespace ovc {
@@ -31,13 +32,15 @@ struct Fitted {
 class Refitter {
 public:
     Refitter(Page& page, const Soup& soup, const Numbering& numbers, const Leaf& leaf,
-             const NumberSet* moved)
+             const NumberSet* moved, std::vector<uint32_t>& parted)
         : texels_(page.texels),
           soup_(soup),
           numbers_(numbers),
           leaf_(leaf),
           grid_({leaf.frame.to_local(leaf.grid.lo), leaf.frame.to_local(leaf.grid.hi)}),
           moved_(moved),
+          parted_(parted),
+          max_parted_(page.units() / 32 + 16),
           cell_before_(header_of(texels_).cell),
           is_large_(page.units() >= kParallelUnits) {}
 
@@ -49,7 +52,7 @@ public:
         }
         const Ranges root = box_of(OVC_ROOT_UNIT);
         const Fitted fitted = fit(OVC_ROOT_UNIT, 0);
-        if (!sound_)
+        if (!is_sound_ || parted_.size() > max_parted_)
             return std::nullopt;
         return RefitCost{fitted.before / half_area(root, cell_before_),
                          fitted.after / half_area(fitted.box, header.cell)};
@@ -135,9 +138,10 @@ private:
     static bool name_two(uint32_t first, uint32_t last) {
         return first != last && first < 3 && last < 3;
     }
-    Fitted broken() {
-        sound_ = false;
-        return {};
+    /// Notes that a triangle leaves the page.
+    void part(uint32_t number) {
+        const std::lock_guard lock(mutex_);
+        parted_.push_back(number);
     }
 
     Fitted fit_pair(std::span<uvec4, OVC_UNIT_TEXELS> words) {
@@ -149,17 +153,24 @@ private:
         const std::array<vec3, 3> of_a = local_corners(a);
         const uint32_t first = order & 3, last = order >> 2 & 3;
         const uint32_t first_of_b = order >> 4 & 3, last_of_b = order >> 6 & 3;
-        const bool is_pair = b != OVC_NO_TRIANGLE;
-        if (!name_two(first, last) || (is_pair && !name_two(first_of_b, last_of_b)))
-            return broken();
+        bool is_pair = b != OVC_NO_TRIANGLE;
+        if (!name_two(first, last) || (is_pair && !name_two(first_of_b, last_of_b))) {
+            is_sound_ = false; // the page is from a damaged file
+            return {};
+        }
         corners[0] = of_a[first];
         corners[2] = of_a[last];
         corners[1] = corners[3] = of_a[3 - first - last];
         if (is_pair) {
             const std::array<vec3, 3> of_b = local_corners(b);
-            if (of_b[first_of_b] != corners[0] || of_b[last_of_b] != corners[2])
-                return broken();
-            corners[3] = of_b[3 - first_of_b - last_of_b];
+            is_pair = of_b[first_of_b] == corners[0] && of_b[last_of_b] == corners[2];
+            if (is_pair) {
+                corners[3] = of_b[3 - first_of_b - last_of_b];
+            } else { // a stays alone
+                part(b);
+                words[1].w = OVC_NO_TRIANGLE;
+                words[2].w = order & 15;
+            }
         }
         Boxf box;
         for (size_t i = 0; i < 4; ++i) {
@@ -178,22 +189,26 @@ private:
     const Leaf& leaf_;
     const Grid grid_;
     const NumberSet* const moved_;
+    std::vector<uint32_t>& parted_;
+    const size_t max_parted_;
     const vec3 cell_before_;
     const bool is_large_;
-    std::atomic<bool> sound_{true}; // every pair still is one
+    std::atomic<bool> is_sound_{true};
+    std::mutex mutex_; // guards parted_
 };
 
 } // namespace
 
 std::optional<RefitCost> refit_page(Page& page, const Soup& soup, const Numbering& numbers,
-                                    const Leaf& leaf, const NumberSet* moved) {
+                                    const Leaf& leaf, const NumberSet* moved,
+                                    std::vector<uint32_t>& parted) {
     assert(page.units() > OVC_ROOT_UNIT);
     if (page.has_loose_pairs())
         return std::nullopt;
     if (page.texels.empty()) // what it borrows is not ours to write
         page.texels.assign(page.borrowed.begin(), page.borrowed.end());
     page.borrowed = {};
-    return Refitter(page, soup, numbers, leaf, moved).refit();
+    return Refitter(page, soup, numbers, leaf, moved, parted).refit();
 }
 
 } // namespace ovc

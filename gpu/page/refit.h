@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace ovc {
 
@@ -35,10 +36,13 @@ struct RefitCost {
 
 /// Refits a page of `leaf`, whose frame and grid hold its triangles. moved: the triangles whose
 /// corners differ from those in the page; null, where all may, and where the leaf's frame or grid
-/// is new. Boxes of a moved triangle hold all of it, also where the builder had cut it. Returns
-/// nothing, with the page unusable, where it must be built anew: it has loose pairs, or two
-/// triangles that lie in one unit share their side no more. Works on all cores.
+/// is new. Boxes of a moved triangle hold all of it, also where the builder had cut it. parted:
+/// receives the numbers of triangles that the page has lost, because the one that they shared a
+/// side and a unit with shares it no more; some may come twice. Returns nothing, with the page
+/// unusable, where it must be built anew: it has loose pairs, or lost too many triangles. Works on
+/// all cores.
 std::optional<RefitCost> refit_page(Page& page, const Soup& soup, const Numbering& numbers,
-                                    const Leaf& leaf, const NumberSet* moved);
+                                    const Leaf& leaf, const NumberSet* moved,
+                                    std::vector<uint32_t>& parted);
 
 } // namespace ovc

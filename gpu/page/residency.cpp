@@ -4,6 +4,7 @@
 
 #include <cassert>
 #include <limits>
+#include <utility>
 
 namespace ovc {
 namespace {
@@ -95,13 +96,46 @@ bool Residency::admit(uint32_t leaf, uint64_t bytes, uint64_t keep,
     for (size_t i = range.first; i < range.last; ++i) {
         slots_[leaves[i]] = {0, 0};
         evicted.push_back(leaves[i]);
+        --resident_count_;
     }
     const auto at = leaves.erase(leaves.begin() + ptrdiff_t(range.first),
                                  leaves.begin() + ptrdiff_t(range.last));
     leaves.insert(at, leaf);
     slots_[leaf] = {range.offset, bytes};
+    ++resident_count_;
     touch(leaf);
     return true;
+}
+
+void Residency::renumber(std::span<const uint32_t> was) {
+    std::vector<Slot> slots(was.size(), Slot{0, 0});
+    std::vector<uint64_t> last_use(was.size(), 0);
+    std::vector<uint32_t> now(slots_.size(), kNone);
+    resident_count_ = 0;
+    for (uint32_t leaf = 0; leaf < was.size(); ++leaf) {
+        if (was[leaf] == kNone)
+            continue;
+        assert(now[was[leaf]] == kNone);
+        now[was[leaf]] = leaf;
+        slots[leaf] = slots_[was[leaf]];
+        last_use[leaf] = last_use_[was[leaf]];
+        resident_count_ += slots[leaf].bytes != 0;
+    }
+    slots_ = std::move(slots);
+    last_use_ = std::move(last_use);
+    for (Shelf& shelf : shelves_) {
+        for (uint32_t& leaf : shelf.leaves)
+            leaf = now[leaf];
+        std::erase(shelf.leaves, kNone);
+    }
+}
+
+void Residency::evict(uint32_t leaf) {
+    assert(resident(leaf));
+    for (Shelf& shelf : shelves_)
+        std::erase(shelf.leaves, leaf);
+    slots_[leaf] = {0, 0};
+    --resident_count_;
 }
 
 } // namespace ovc

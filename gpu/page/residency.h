@@ -77,6 +77,7 @@ public:
     Residency(std::span<const Stretch> stretches, uint64_t alignment, size_t leaves);
 
     bool resident(uint32_t leaf) const { return slot(leaf).bytes != 0; }
+    size_t resident_count() const { return resident_count_; }
     const Slot& slot(uint32_t leaf) const {
         assert(leaf < slots_.size());
         return slots_[leaf];
@@ -87,6 +88,13 @@ public:
 
     /// Returns a time that is later than every use so far.
     uint64_t now() const { return clock_ + 1; }
+
+    /// Gives pages new numbers, which keep their places. was: for each number from now on the one
+    /// before, or kNone for a page that is new. Those that are not in it go.
+    void renumber(std::span<const uint32_t> was);
+
+    /// Takes a resident page out.
+    void evict(uint32_t leaf);
 
     /// Finds room for the leaf's page, which must fit some stretch, and evicts the least recently
     /// used pages that together with the gaps between them make enough room. Returns false and
@@ -114,6 +122,7 @@ private:
     uint64_t clock_ = 0;
     std::vector<Slot> slots_;
     std::vector<uint64_t> last_use_;
+    size_t resident_count_ = 0;
 };
 
 } // namespace ovc

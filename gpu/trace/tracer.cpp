@@ -84,7 +84,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
       page_data_(pages),
       software_(device.is_software),
       top_(top),
-      all_fit_(all_fit(pages, plan.pool(), top.room())),
+      all_fit_(ovc::all_fit(pages, plan.pool(), top.room())),
       scene_(scene_leaf(bounds)),
       stack_depth_(stack_depth(top.depth)),
       stack_words_(software_ ? std::min(stack_depth_, kMaxStackWordsInSoftware) : stack_depth_),
@@ -167,27 +167,39 @@ void Tracer::upload_top_level() {
                          table.data());
 }
 
-bool Tracer::update(const Box& bounds, std::span<const Page> pages,
+bool Tracer::update(const Box& bounds, std::span<const Page> pages, std::span<const uint32_t> was,
                     std::span<const uint32_t> changed) {
-    assert(pages.size() == page_data_.size());
-    page_data_ = pages;
+    assert(pages.size() == was.size());
     if (top_.tree.bytes() > pool_.begin() || has_portals() != portal_buffer_.has_value() ||
-        (portal_buffer_ && top_.portals.size() * kPortalBytes > portal_buffer_->bytes()))
+        (portal_buffer_ && top_.portals.size() * kPortalBytes > portal_buffer_->bytes()) ||
+        (active_buffer_ && pages.size() * sizeof(uint32_t) != active_buffer_->bytes()))
         return false;
-    for (const uint32_t leaf : changed)
-        if (resident(leaf) && pool_.residency().slot(leaf).bytes != pages[leaf].bytes())
-            return false;
+    page_data_ = pages;
+    Residency& residency = pool_.residency();
+    residency.renumber(was);
+    for (const uint32_t leaf : changed) {
+        if (!resident(leaf))
+            continue;
+        const auto [offset, bytes] = residency.slot(leaf);
+        if (bytes == pages[leaf].bytes())
+            pool_.upload(offset, pages[leaf], uint32_t(offset / OVC_UNIT_BYTES));
+        else
+            residency.evict(leaf);
+    }
     scene_ = scene_leaf(bounds);
-    all_fit_ = all_fit(pages, pool_.layout(), pool_.begin());
+    all_fit_ = ovc::all_fit(pages, pool_.layout(), pool_.begin());
     stack_depth_ = stack_depth(top_.depth);
     stack_words_ = software_ ? std::min(stack_depth_, kMaxStackWordsInSoftware) : stack_depth_;
     upload_top_level();
-    for (const uint32_t leaf : changed)
-        if (resident(leaf)) {
-            const uint64_t offset = pool_.residency().slot(leaf).offset;
-            pool_.upload(offset, pages[leaf], uint32_t(offset / OVC_UNIT_BYTES));
-        }
     return bool(check_gl("updating pages"));
+}
+
+std::vector<uint32_t> Tracer::missing() const {
+    std::vector<uint32_t> leaves;
+    for (uint32_t leaf = 0; leaf < page_data_.size(); ++leaf)
+        if (!resident(leaf))
+            leaves.push_back(leaf);
+    return leaves;
 }
 
 Moved Tracer::bring(std::span<const uint32_t> wanted) {
@@ -209,7 +221,6 @@ Moved Tracer::bring(std::span<const uint32_t> wanted) {
     }
     for (const uint32_t leaf : evicted)
         say_where(leaf);
-    pages_moved_ += moved.pages;
     return moved;
 }
 

@@ -90,13 +90,22 @@ public:
     Moved bring(std::span<const uint32_t> wanted);
 
     /// Takes up the pages and the top-level tree as they are now, in `bounds`; the others that were
-    /// given to create() live on. pages: as many as before; `changed` are those with other units.
-    /// Returns false, with the tracer of no use, where not all that is resident finds its place
-    /// again.
-    bool update(const Box& bounds, std::span<const Page> pages, std::span<const uint32_t> changed);
+    /// given to create() live on. was: for each page its number before, or kNone; changed: those
+    /// whose units are others than before. Resident pages are patched in place; where one has
+    /// another size it goes, and is to be brought again. Returns false, with the tracer of no use,
+    /// where there is no room for the tree or its tables.
+    bool update(const Box& bounds, std::span<const Page> pages, std::span<const uint32_t> was,
+                std::span<const uint32_t> changed);
+
+    /// Returns the pages that are not resident.
+    std::vector<uint32_t> missing() const;
+    /// Whether the pool has room for all pages.
+    bool all_fit() const { return all_fit_; }
 
     /// Whether all pages are in the pool, so that a pass answers its rays for good.
-    bool all_resident() const { return all_fit_ && pages_moved_ == page_data_.size(); }
+    bool all_resident() const {
+        return all_fit_ && pool_.residency().resident_count() == page_data_.size();
+    }
 
     /// Sends the rays (at most plan.batch_rays) on their way through the pages that are resident
     /// now. Reads the storage of `rays` up to the next whole block: see whole_blocks(). An answer
@@ -154,7 +163,6 @@ private:
     const bool finishes_passes_ = needs(Workaround::FinishedPass);
     const TopLevel& top_;
     bool all_fit_;                    // the pool has room for all pages and the tree
-    uint64_t pages_moved_ = 0;        // into the pool, in total
     Leaf scene_;                      // the whole scene as one leaf: the top-level tree's frame
     std::vector<LocalRay> local_;     // rays of the pass, if all pages fit
     std::vector<ResumedRay> resumed_; // rays of the pass, if they do not

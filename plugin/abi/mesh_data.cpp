@@ -48,6 +48,11 @@ void check_counts(const ovc_mesh& mesh) {
 template <class Corner>
 std::vector<Corner> corners_at(const ovc_mesh& mesh, const void* positions) {
     std::vector<Corner> corners(triangles_of(mesh) * 3);
+    if (!mesh.indices && mesh.stride == sizeof(Corner)) {
+        if (!corners.empty())
+            std::memcpy(corners.data(), positions, corners.size() * sizeof(Corner));
+        return corners;
+    }
     for (uint64_t i = 0; i < corners.size(); ++i) {
         const uint64_t vertex = mesh.indices ? mesh.indices[i] : i;
         if (vertex >= mesh.vertex_count)

@@ -88,6 +88,8 @@ struct BuiltScene {
     bool from_saved = false;
     double built_overlap = 0; // of the level's own pages before the first update; 0: none yet
     bool was_updated = false;
+    /// The leaf of triangles that came into an update, or left their page in one; kNone: none yet.
+    uint32_t late_leaf = kNone;
     double seconds_level1 = 0;
     double seconds_level2 = 0;
 

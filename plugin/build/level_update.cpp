@@ -7,7 +7,6 @@
 #include "gpu/page/node_boxes.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cmath>
 
@@ -20,8 +19,9 @@ constexpr double kMaxGrowth = 4.0 / 3;
 /// By what part of its size the space of a frame grows beyond what has left it, so that the next
 /// move need not leave it again.
 constexpr double kRoomToMove = 1.0 / 16;
-/// Up to this part of a level's triangles may come to its leaves; else the leaves are cut anew.
-constexpr double kMaxComing = 1.0 / 8;
+/// The late leaf has at most this part of a level's triangles, or some; else the leaves are cut
+/// anew.
+constexpr uint64_t kMaxLatePart = 8, kMaxLate = 64;
 
 bool contains(const Box& outer, const Box& inner) {
     return inner.empty() || (outer.contains(inner.lo) && outer.contains(inner.hi));
@@ -56,11 +56,14 @@ Box box_of(const Page& page) {
     return box;
 }
 
-/// Returns how many of the scene's own pages a ray through all of them meets, by their areas.
+/// Returns how many of the scene's own pages a ray through all of them meets, by their areas. The
+/// late leaf does not count: it may reach far, but is small.
 double overlap_of(const BuiltScene& scene) {
     Box all;
     double sum = 0;
     for (size_t i = 0; i < scene.level1.leaves.size(); ++i) {
+        if (i == scene.late_leaf)
+            continue;
         const Frame& frame = scene.level1.leaves[i].frame;
         const Box local = box_of(scene.pages[i]);
         const Box world{local.lo / frame.scale + frame.origin,
@@ -81,9 +84,10 @@ LevelUpdate::LevelUpdate(BuiltScene& scene, std::span<const PrimRange> changed,
       moved_(scene.numbers.count()),
       gone_(scene.numbers.count()),
       listed_(scene.numbers.count()),
-      work_(scene.level1.leaves.size(), Work::None),
       framed_(scene.level1.leaves.size(), 0) {
     assert(std::ranges::is_sorted(changed));
+    for (uint32_t i = 0; i < framed_.size(); ++i)
+        leaves_.push_back({i});
     for (const PrimRange& range : changed)
         for (uint32_t prim = range.first; prim < range.end; ++prim)
             moved_.add(scene.numbers.of({range.mesh, prim}));
@@ -100,10 +104,16 @@ bool LevelUpdate::run() {
     dissolve_duplicates();
     list_anew();
     count_dropped();
-    if (!add_to_leaves())
-        return false;
     fit_frames();
-    return fit_pages() && overlap_of(scene_) <= kMaxGrowth * scene_.built_overlap;
+    fit_pages();
+    if (!fill_late_leaf() || !pages_fit())
+        return false;
+    drop_empty_leaves();
+    // The planes of level 1 tell nothing of leaves that have changed.
+    Level1& level1 = scene_.level1;
+    level1.nodes.assign(1, KdNode::leaf(0, uint32_t(level1.leaves.size())));
+    level1.far_leaves = 0;
+    return !level1.leaves.empty() && overlap_of(scene_) <= kMaxGrowth * scene_.built_overlap;
 }
 
 bool LevelUpdate::hits(TriangleId id) const {
@@ -111,22 +121,19 @@ bool LevelUpdate::hits(TriangleId id) const {
 }
 
 void LevelUpdate::find_faults() {
-    constexpr size_t kGrain = 4096;
     for (const PrimRange& range : changed_) {
         const uint32_t count = range.end - range.first;
-        std::vector<TriangleFault> faults(count, TriangleFault::None);
+        std::vector<uint8_t> is_hit(count, 0);
         const Chunk& chunk = scene_.soup.chunks[range.mesh];
-        const bool is_removed = range.end > chunk.size();
-        parallel_for(is_removed ? 0 : count, kGrain, [&](size_t first, size_t last) {
-            for (size_t i = first; i < last; ++i)
-                faults[i] = triangle_fault(chunk.triangle(range.first + uint32_t(i)));
-        });
-        for (uint32_t i = 0; i < count; ++i) {
-            faults_.not_finite += faults[i] == TriangleFault::NotFinite;
-            faults_.degenerate += faults[i] == TriangleFault::Degenerate;
-            if (is_removed || faults[i] != TriangleFault::None)
-                gone_.add(scene_.numbers.of({range.mesh, range.first + i}));
+        if (range.end <= chunk.size()) { // else it was removed
+            const Survey found = survey(chunk, range.first, is_hit);
+            faults_.not_finite += found.dropped.not_finite;
+            faults_.degenerate += found.dropped.degenerate;
+            moved_bounds_.add(found.bounds);
         }
+        for (uint32_t i = 0; i < count; ++i)
+            if (!is_hit[i])
+                gone_.add(scene_.numbers.of({range.mesh, range.first + i}));
     }
 }
 
@@ -154,12 +161,12 @@ void LevelUpdate::dissolve_duplicates() {
 
 /// Takes the triangles that have gone out of the leaves, and finds those that no leaf has yet.
 void LevelUpdate::list_anew() {
-    for (size_t i = 0; i < work_.size(); ++i) {
+    for (size_t i = 0; i < leaves_.size(); ++i) {
         std::vector<TriangleId>& list = scene_.level1.leaves[i].triangles;
         const auto note = [&](TriangleId id) {
             const uint32_t number = scene_.numbers.of(id);
             const bool is_gone = gone_.has(number);
-            work_[i] = std::max(work_[i], is_gone ? Work::Rebuild : Work::Refit);
+            leaves_[i].work = std::max(leaves_[i].work, is_gone ? Work::Rebuild : Work::Refit);
             if (listed_.has(number))
                 return;
             listed_.add(number);
@@ -177,7 +184,7 @@ void LevelUpdate::list_anew() {
                     note(*id);
             }
         }
-        if (work_[i] == Work::Rebuild)
+        if (leaves_[i].work == Work::Rebuild)
             std::erase_if(list, [&](TriangleId id) { return gone_.has(scene_.numbers.of(id)); });
     }
     for (const PrimRange& range : changed_)
@@ -186,27 +193,7 @@ void LevelUpdate::list_anew() {
             if (!listed_.has(number) && !gone_.has(number))
                 come_.push_back({range.mesh, prim});
         }
-}
-
-/// Puts the triangles that have come into the leaves whose boxes they widen least.
-bool LevelUpdate::add_to_leaves() {
-    std::vector<Leaf>& leaves = scene_.level1.leaves;
-    if (double(come_.size()) > kMaxComing * double(scene_.triangles))
-        return false;
     scene_.triangles += come_.size();
-    for (const TriangleId id : come_) {
-        const Box box = bounds_of(scene_.soup.triangle(id));
-        const auto growth = [&](const Leaf& leaf) {
-            Box both = leaf.box;
-            both.add(box);
-            return both.half_area() - leaf.box.half_area();
-        };
-        Leaf& leaf = *std::ranges::min_element(leaves, {}, growth);
-        leaf.triangles.insert(std::ranges::upper_bound(leaf.triangles, id), id);
-        leaf.box.add(box);
-        work_[size_t(&leaf - leaves.data())] = Work::Rebuild;
-    }
-    return true;
 }
 
 Box LevelUpdate::bounds_of_moved(const Leaf& leaf) const {
@@ -224,117 +211,165 @@ Box LevelUpdate::bounds_of_moved(const Leaf& leaf) const {
         });
 }
 
-/// Widens the leaves' boxes to their triangles, and gives those leaves a new frame that their
-/// triangles have left. A changed leaf is no cell any more: it holds all of its triangles.
+/// Gives leaves that their triangles have left a new frame. A changed leaf is no cell any more: it
+/// holds all of its triangles.
 void LevelUpdate::fit_frames() {
     Level1& level1 = scene_.level1;
-    const std::vector<LeafRange> parts = parts_of(level1);
-    Box all = level1.bounds;
-    for (size_t i = 0; i < work_.size(); ++i) {
-        Leaf& leaf = level1.leaves[i];
-        if (work_[i] == Work::None || leaf.triangles.empty())
-            continue;
-        const Box moved = bounds_of_moved(leaf);
-        all.add(moved);
-        leaf.box.add(moved.empty() ? moved : moved.padded(level1.padding));
-        leaf.cell = leaf.box;
-        leaf.reach = std::max(leaf.reach, max_component(leaf.box.extent()));
-    }
+    Box all = moved_bounds_;
     for (const TriangleId id : come_)
         all.add(bounds_of(scene_.soup.triangle(id)));
     const bool leaves_scene = !contains(level1.bounds, all);
     if (leaves_scene) {
-        level1.bounds = with_room(all);
+        level1.bounds.add(all);
+        level1.bounds = with_room(level1.bounds);
         level1.padding = padding_of(level1.bounds);
     }
-    const auto has_left = [&](const Leaf& leaf) {
-        Box inside = leaf.box.intersection(level1.bounds); // all triangles are in the bounds
-        return !contains(leaf.grid, inside);
-    };
     if (level1.shares_frame) {
-        if (leaves_scene || std::ranges::any_of(level1.leaves, has_left)) {
+        if (leaves_scene || !contains(level1.leaves.front().grid, all)) {
             share_frame(level1);
             std::ranges::fill(framed_, 1);
         }
         return;
     }
-    for (const auto& [first, count] : parts) {
-        const auto leaves = std::span(level1.leaves).subspan(first, count);
-        if (std::ranges::none_of(leaves, has_left))
+    for (const LeafRange& part : parts_of(level1))
+        share_new_frame(part);
+}
+
+/// Gives a part of the scene a new frame where its triangles have left that which it has.
+void LevelUpdate::share_new_frame(LeafRange part) {
+    const auto leaves = std::span(scene_.level1.leaves).subspan(part.first, part.count);
+    bool has_left = false;
+    for (uint32_t i = 0; i < part.count; ++i) {
+        if (leaves_[part.first + i].work == Work::None)
             continue;
-        for (Leaf& leaf : leaves)
-            leaf.box = with_room(leaf.box);
-        share_frame(leaves);
-        std::fill_n(framed_.begin() + first, count, uint8_t(1));
+        Leaf& leaf = leaves[i];
+        const Box moved = bounds_of_moved(leaf);
+        has_left |= !contains(leaf.grid, moved);
+        leaf.box.add(moved);
+        leaf.reach = std::max(leaf.reach, max_component(leaf.box.extent()));
     }
+    if (!has_left)
+        return;
+    for (Leaf& leaf : leaves)
+        leaf.box = with_room(leaf.box);
+    share_frame(leaves);
+    std::fill_n(framed_.begin() + part.first, part.count, uint8_t(1));
 }
 
-void LevelUpdate::rebuild(uint32_t leaf) {
-    Page& page = scene_.pages[leaf];
-    const double copies =
-        double(scene_.level1.reference_count()) / double(std::max<uint64_t>(scene_.triangles, 1));
-    page = build_page(scene_.soup, scene_.numbers, scene_.level1.leaves[leaf], progress_,
-                      {page.has_loose_pairs(), std::max(copies, 1.0)});
+/// Gives the leaf these triangles, and a box that holds all of them.
+void LevelUpdate::fill(Leaf& leaf, std::vector<TriangleId> triangles) const {
+    const Level1& level1 = scene_.level1;
+    Leaf filled = make_leaf(scene_.soup, level1.bounds.padded(level1.padding), level1.padding,
+                            std::move(triangles));
+    filled.cell = filled.box;
+    if (!leaf.box.empty()) {
+        filled.frame = leaf.frame;
+        filled.grid = leaf.grid;
+    }
+    leaf = std::move(filled);
 }
 
-/// Returns whether the page's refit has made it so much dearer than it was when it was built.
+void LevelUpdate::rebuild(uint32_t number) {
+    Leaf& leaf = scene_.level1.leaves[number];
+    Page& page = scene_.pages[number];
+    fill(leaf, std::move(leaf.triangles));
+    page =
+        build_page(scene_.soup, scene_.numbers, leaf, progress_, {page.has_loose_pairs(), copies_});
+}
+
+/// Returns whether the page is still about as good as it was when it was built.
 bool LevelUpdate::refit(uint32_t leaf) {
     Page& page = scene_.pages[leaf];
+    std::vector<uint32_t> parted;
     const std::optional<RefitCost> cost =
         refit_page(page, scene_.soup, scene_.numbers, scene_.level1.leaves[leaf],
-                   framed_[leaf] ? nullptr : &moved_);
+                   framed_[leaf] ? nullptr : &moved_, parted);
     if (!cost)
         return false;
     if (page.built_cost == 0)
         page.built_cost = float(cost->before);
-    return cost->after <= kMaxGrowth * double(page.built_cost);
+    if (cost->after > kMaxGrowth * double(page.built_cost))
+        return false;
+    const std::lock_guard lock(mutex_);
+    for (const uint32_t number : parted)
+        come_.push_back(scene_.numbers.id(number));
+    return true;
 }
 
-bool LevelUpdate::fit_pages() {
-    Level1& level1 = scene_.level1;
-    for (uint32_t i = 0; i < work_.size(); ++i) {
+void LevelUpdate::fit_pages() {
+    copies_ = std::max(1.0, double(scene_.level1.reference_count()) /
+                                double(std::max<uint64_t>(scene_.triangles, 1)));
+    for (uint32_t i = 0; i < leaves_.size(); ++i) {
         if (framed_[i])
-            work_[i] = std::max(work_[i], Work::Refit);
-        if (level1.leaves[i].triangles.empty())
-            work_[i] = Work::None; // drop_empty_leaves() takes it
+            leaves_[i].work = std::max(leaves_[i].work, Work::Refit);
+        if (scene_.level1.leaves[i].triangles.empty())
+            leaves_[i].work = Work::None; // drop_empty_leaves() takes it
     }
-    parallel_for(work_.size(), 1, [&](size_t first, size_t last) {
+    parallel_for(leaves_.size(), 1, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i) {
-            if (work_[i] == Work::Refit && !refit(uint32_t(i)))
-                work_[i] = Work::Rebuild;
-            if (work_[i] == Work::Rebuild)
+            if (leaves_[i].work == Work::Refit && !refit(uint32_t(i)))
+                leaves_[i].work = Work::Rebuild;
+            if (leaves_[i].work == Work::Rebuild)
                 rebuild(uint32_t(i));
         }
     });
-    const uint64_t max_bytes = scene_.limits.page_bytes_of(work_.size());
-    for (uint32_t i = 0; i < work_.size(); ++i) {
-        if (work_[i] == Work::Rebuild && scene_.pages[i].bytes() > max_bytes)
-            return false;
-        if (work_[i] == Work::Refit)
-            refitted_.push_back(i);
-        if (work_[i] == Work::Rebuild)
-            rebuilt_.push_back(i);
+}
+
+/// Puts the triangles that no page has into the late leaf. Returns false where they are many.
+bool LevelUpdate::fill_late_leaf() {
+    if (come_.empty())
+        return true;
+    Level1& level1 = scene_.level1;
+    if (scene_.late_leaf == kNone) {
+        scene_.late_leaf = uint32_t(level1.leaves.size());
+        level1.leaves.emplace_back();
+        scene_.pages.emplace_back();
+        leaves_.push_back({kNone});
     }
-    drop_empty_leaves();
-    // The planes of level 1 tell nothing of leaves that have changed.
-    level1.nodes.assign(1, KdNode::leaf(0, uint32_t(level1.leaves.size())));
-    level1.far_leaves = 0;
-    return !level1.leaves.empty();
+    Leaf& leaf = level1.leaves[scene_.late_leaf];
+    std::vector<TriangleId> triangles = std::move(leaf.triangles);
+    triangles.insert(triangles.end(), come_.begin(), come_.end());
+    std::ranges::sort(triangles);
+    triangles.erase(std::ranges::unique(triangles).begin(), triangles.end());
+    if (triangles.size() > std::max(scene_.triangles / kMaxLatePart, kMaxLate))
+        return false;
+    leaf.box = {}; // the leaf gets a frame of its own, unless all share one
+    if (level1.shares_frame)
+        leaf = {.cell = {},
+                .box = level1.bounds,
+                .frame = level1.leaves.front().frame,
+                .grid = level1.leaves.front().grid};
+    fill(leaf, std::move(triangles));
+    scene_.pages[scene_.late_leaf] =
+        build_page(scene_.soup, scene_.numbers, leaf, progress_, LoosePairs());
+    leaves_[scene_.late_leaf].work = Work::Rebuild;
+    return true;
+}
+
+bool LevelUpdate::pages_fit() const {
+    const uint64_t max_bytes = scene_.limits.page_bytes_of(leaves_.size());
+    return std::ranges::all_of(scene_.pages,
+                               [&](const Page& page) { return page.bytes() <= max_bytes; });
 }
 
 void LevelUpdate::drop_empty_leaves() {
     std::vector<Leaf>& leaves = scene_.level1.leaves;
     size_t kept = 0;
+    uint32_t late_leaf = kNone;
     for (size_t i = 0; i < leaves.size(); ++i) {
         if (leaves[i].triangles.empty())
             continue;
+        if (i == scene_.late_leaf)
+            late_leaf = uint32_t(kept);
         if (kept < i) {
             leaves[kept] = std::move(leaves[i]);
             scene_.pages[kept] = std::move(scene_.pages[i]);
+            leaves_[kept] = leaves_[i];
         }
         ++kept;
     }
-    drops_leaves_ = kept < leaves.size();
+    scene_.late_leaf = late_leaf;
+    leaves_.resize(kept, {kNone});
     leaves.resize(kept);
     scene_.pages.resize(kept);
 }

@@ -8,6 +8,7 @@
 #include "plugin/build/built_scene.h"
 
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -23,28 +24,31 @@ public:
     /// Returns false where the scene must be built anew.
     bool run();
 
-    /// The pages that have changed, by their numbers, which are those of before.
-    const std::vector<uint32_t>& refitted() const { return refitted_; }
-    const std::vector<uint32_t>& rebuilt() const { return rebuilt_; }
-    /// Whether leaves have lost all their triangles, so that others have new numbers.
-    bool drops_leaves() const { return drops_leaves_; }
+    /// What an update does with the page of a leaf.
+    enum class Work : uint8_t { None, Refit, Rebuild };
+    struct LeafChange {
+        uint32_t was; // its number before; kNone: it is new
+        Work work = Work::None;
+    };
+    /// Returns what has become of each leaf that there is now.
+    const std::vector<LeafChange>& leaves() const { return leaves_; }
 
 private:
-    /// What an update does with a leaf.
-    enum class Work : uint8_t { None, Refit, Rebuild };
-
     void find_faults();
     void dissolve_duplicates();
     void list_anew();
-    bool add_to_leaves();
     void fit_frames();
-    bool fit_pages();
+    void fit_pages();
+    bool fill_late_leaf();
+    bool pages_fit() const;
     void drop_empty_leaves();
     void count_dropped();
 
     bool hits(TriangleId id) const;
     bool is_changed(TriangleId id) const { return moved_.has(scene_.numbers.of(id)); }
     Box bounds_of_moved(const Leaf& leaf) const;
+    void share_new_frame(LeafRange part);
+    void fill(Leaf& leaf, std::vector<TriangleId> triangles) const;
     bool refit(uint32_t leaf);
     void rebuild(uint32_t leaf);
 
@@ -56,12 +60,12 @@ private:
     NumberSet listed_;             // those of them that were in a leaf, or duplicates of others
     uint64_t hit_before_ = 0;      // how many these are
     Dropped faults_;               // of the changed triangles
-    std::vector<TriangleId> come_; // to be put into some leaf
-    std::vector<Work> work_;       // for each leaf
-    std::vector<uint8_t> framed_;  // for each leaf: whether its frame is new
-    std::vector<uint32_t> refitted_;
-    std::vector<uint32_t> rebuilt_;
-    bool drops_leaves_ = false;
+    Box moved_bounds_;             // of those that can be hit
+    std::vector<TriangleId> come_; // to be put into the late leaf
+    std::mutex mutex_;             // guards come_ while pages are refitted
+    std::vector<LeafChange> leaves_;
+    std::vector<uint8_t> framed_; // for each leaf: whether its frame is new
+    double copies_ = 1;           // as in LoosePairs
 };
 
 } // namespace ovc

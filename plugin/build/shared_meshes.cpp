@@ -2,6 +2,7 @@
 // Groups chunks by the corners that they borrow, and tells which groups are worth sharing.
 #include "plugin/build/shared_meshes.h"
 
+#include "core/system/parallel.h"
 #include "core/transform.h"
 #include "gpu/page/top_level.h"
 
@@ -18,14 +19,26 @@ constexpr uint64_t kWorthAPortal = 4;
 
 /// Returns the box of a mesh before it is placed, empty where a corner is not finite.
 Box bounds_of(const Chunk& mesh) {
-    Box box;
-    for (uint32_t prim = 0; prim < mesh.size(); ++prim)
-        for (const dvec3& corner : mesh.triangle(prim)) {
-            if (!is_finite(corner))
-                return {};
-            box.add(corner);
-        }
-    return box;
+    struct Found {
+        Box box;
+        bool is_finite = true;
+    };
+    const Found all = parallel_reduce(
+        mesh.size(), Found(),
+        [&](size_t first, size_t last, Found found) {
+            for (size_t prim = first; prim < last; ++prim)
+                for (const dvec3& corner : mesh.triangle(uint32_t(prim))) {
+                    found.is_finite &= is_finite(corner);
+                    found.box.add(corner);
+                }
+            return found;
+        },
+        [](Found a, const Found& b) {
+            a.box.add(b.box);
+            a.is_finite &= b.is_finite;
+            return a;
+        });
+    return all.is_finite ? all.box : Box();
 }
 
 /// Returns the groups of chunks of the same mesh, in the order of their first chunks; the chunks of
@@ -63,7 +76,7 @@ void take_copies_out(const Soup& soup, std::vector<uint32_t>& chunks, Placed& pl
 
 } // namespace
 
-Placed placed_chunks(const Soup& soup) {
+Placed placed_chunks(const Soup& soup, const std::function<const Box*(uint32_t chunk)>& known_box) {
     Placed placed;
     for (std::vector<uint32_t>& chunks : by_mesh(soup)) {
         if (chunks.size() > 1)
@@ -74,7 +87,10 @@ Placed placed_chunks(const Soup& soup) {
         const auto moves = [&](uint32_t chunk) { return soup.chunks[chunk].moves(); };
         const bool any_moves = std::ranges::any_of(chunks, moves);
         std::vector<uint32_t> shared;
-        const Box box = pays || any_moves ? bounds_of(mesh.unplaced()) : Box();
+        const Box* const known = known_box ? known_box(chunks.front()) : nullptr;
+        Box box;
+        if (pays || any_moves)
+            box = known ? *known : bounds_of(mesh.unplaced());
         for (const uint32_t chunk : chunks) {
             const bool may_share =
                 (pays || moves(chunk)) && is_well_placed(box, soup.chunks[chunk].transform());

@@ -39,7 +39,7 @@ public:
           progress_(progress) {}
 
     std::optional<PageChanges> run() {
-        Placed placed = placed_chunks(soup_);
+        Placed placed = placed_chunks(soup_, [&](uint32_t chunk) { return known_box(chunk); });
         if (!keeps_once(placed.once) || !numbers_suffice() ||
             std::ranges::any_of(scene_.shared, &SharedMesh::has_lines))
             return std::nullopt;
@@ -62,6 +62,17 @@ public:
     }
 
 private:
+    /// Returns the box of a shared mesh whose corners have not changed.
+    const Box* known_box(uint32_t chunk) const {
+        if (chunk >= scene_.mesh_of_chunk.size() || scene_.mesh_of_chunk[chunk] == kNone)
+            return nullptr;
+        const SharedMesh& mesh = scene_.shared[scene_.mesh_of_chunk[chunk]];
+        const bool has_moved = std::ranges::any_of(changes_.moved, [&](const PrimRange& range) {
+            return std::ranges::binary_search(mesh.instances, range.mesh);
+        });
+        return has_moved ? nullptr : &mesh.scene.level1.bounds;
+    }
+
     /// Whether level 1 is still of the same chunks, but for those that were removed.
     bool keeps_once(std::span<const uint32_t> once) const {
         std::vector<uint32_t> left;
@@ -96,12 +107,13 @@ private:
         LevelUpdate update(level, changed, progress_);
         if (!update.run())
             return false;
-        for (const std::vector<uint32_t>* pages : {&update.refitted(), &update.rebuilt()})
-            for (const uint32_t page : *pages)
-                done_.pages.push_back(first_page + page);
-        done_.refitted += update.refitted().size();
-        done_.rebuilt += update.rebuilt().size();
-        done_.renumbered |= update.drops_leaves();
+        for (const LevelUpdate::LeafChange& leaf : update.leaves()) {
+            if (leaf.work != LevelUpdate::Work::None && leaf.was != kNone)
+                done_.changed.push_back(uint32_t(done_.was.size()));
+            done_.was.push_back(leaf.was == kNone ? kNone : first_page + leaf.was);
+            done_.refitted += leaf.work == LevelUpdate::Work::Refit;
+            done_.rebuilt += leaf.work == LevelUpdate::Work::Rebuild;
+        }
         return true;
     }
 
@@ -113,16 +125,12 @@ private:
             return false; // without portals, pages must lie in the frame of the scene
         if (!placed.empty())
             scene_.mesh_of_chunk.assign(soup_.chunks.size(), kNone);
-        uint32_t next = 0; // of the meshes before
         for (const Placed::Instances& instances : placed) {
             const uint32_t was = mesh_of(instances, mesh_before);
-            const bool is_kept = was != kNone;
-            done_.renumbered |= !is_kept || was != next++;
-            if (!(is_kept ? keep(std::move(before[was]), instances) : build(instances)))
+            if (!(was != kNone ? keep(std::move(before[was]), instances) : build(instances)))
                 return false;
             enter(scene_.shared.back());
         }
-        done_.renumbered |= next != before.size();
         return true;
     }
 
@@ -159,6 +167,7 @@ private:
         mesh.limits = limits_of(options_, plan_, mesh.triangles, unique_);
         const bool built = bool(build_levels(mesh, hittable, progress_, 0));
         done_.rebuilt += mesh.pages.size();
+        done_.was.resize(done_.was.size() + mesh.pages.size(), kNone);
         return built && !shared.has_lines;
     }
 

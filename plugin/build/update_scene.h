@@ -14,9 +14,9 @@ namespace ovc {
 
 /// What an update has done to the pages of a scene.
 struct PageChanges {
-    std::vector<uint32_t> pages; // whose units have changed, if `renumbered` is not set
-    bool renumbered = false;     // pages came or went
-    uint64_t refitted = 0;       // pages
+    std::vector<uint32_t> was;     // for each page: its number before; kNone: it is new
+    std::vector<uint32_t> changed; // those of before whose units are others now
+    uint64_t refitted = 0;         // pages
     uint64_t rebuilt = 0;
 };
 

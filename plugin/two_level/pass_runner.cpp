@@ -12,6 +12,9 @@
 
 namespace ovc {
 
+/// The min bytes of a pool for pages that grow or come in updates.
+constexpr uint64_t kMinSpare = 64 << 10;
+
 /// Returns the plan with a pool of the bytes that the scene leaves or needs.
 static MemoryPlan plan_for(const Tracing& tracing, MemoryPlan plan) {
     const BuiltScene& scene = tracing.scene;
@@ -20,8 +23,10 @@ static MemoryPlan plan_for(const Tracing& tracing, MemoryPlan plan) {
     plan.active_bytes = tracing.options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
     plan.pool_bytes = room_for_pool(scene, tracing.options, plan);
     const Fit fit = fit_in(bytes_of_each(scene.pages), plan.pool(), scene.top.room());
-    if (fit.pages == scene.pages.size())
-        plan.pool_bytes = fit.pool_bytes;
+    if (fit.pages < scene.pages.size())
+        return plan;
+    const uint64_t spare = scene.expects_updates() ? fit.pool_bytes / 16 + kMinSpare : 0;
+    plan.pool_bytes = std::min(plan.pool_bytes, fit.pool_bytes + spare);
     return plan;
 }
 
@@ -73,15 +78,21 @@ Result<Done> PassRunner::update(const MemoryPlan& plan, const PageChanges& chang
                                 BuildProgress* progress) {
     const BuiltScene& scene = tracing_.scene;
     bool updated = false;
-    if (tracer_ && !changes.renumbered)
+    if (tracer_)
         gl_.run([&](GlState& state) {
-            updated =
-                is_ours(state) && tracer_->update(scene.level1.bounds, scene.pages, changes.pages);
+            updated = is_ours(state) && tracer_->update(scene.level1.bounds, scene.pages,
+                                                        changes.was, changes.changed);
         });
-    if (updated)
-        return Done{};
-    purge();
-    plan_ = plan_for(tracing_, plan);
+    const MemoryPlan anew = plan_for(tracing_, plan);
+    if (updated && tracer_->all_fit()) {
+        bring(tracer_->missing());
+        if (tracer_->all_resident())
+            return Done{};
+    } else if (updated && anew.pool_bytes == plan_.pool_bytes) {
+        return Done{}; // pages come and go as before
+    }
+    purge(); // the pool is too small now, or pages lie so that there is no room between them
+    plan_ = anew;
     return scene.pages.empty() ? Result<Done>(Done{}) : open(progress);
 }
 
