@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // updates_cost SCENE [--moves] [--repeats N]: what the changes of a scene cost through the ABI,
-// beside building it anew, for docs/benchmarks.md. All in turn, medians. --moves: meshes are added
-// with OVC_MESH_MOVES.
+// beside building it anew, and calls after a hundred changes beside those of a scene that is new,
+// for docs/benchmarks.md. All in turn, medians. --moves: meshes are added with OVC_MESH_MOVES.
 #include "core/system/stopwatch.h"
 #include "host/bench/ray_sets.h"
 #include "host/camera/camera.h"
 #include "host/scene/scene_source.h"
 #include "host/scene/scene_summary.h"
 #include "tests/abi/abi_scene.h"
+#include "testscenes/random.h"
 
 #include <fmt/format.h>
 
@@ -58,7 +59,7 @@ std::vector<Mesh> meshes_of(const Soup& soup) {
 class Changing {
 public:
     Changing(const test::Device& device, const std::vector<Mesh>& meshes, bool moves)
-        : meshes_(meshes) {
+        : meshes_(meshes), now_(meshes) {
         auto config = sized<ovc_scene_config>();
         ovc_scene scene = nullptr;
         must(api().create_scene(device.get(), &config, &scene));
@@ -109,18 +110,25 @@ public:
         for (size_t m = 0; m < meshes_.size(); ++m) {
             const ovc_mesh given = given_of(meshes_[m], moved[m].corners);
             must(api().update_mesh(scene_.get(), numbers_[m], &given, moved[m].first));
+            std::ranges::copy(moved[m].corners,
+                              now_[m].corners.begin() + ptrdiff_t(3 * moved[m].first));
         }
     }
 
     /// Moves all meshes and instances.
     void move_places(double time) {
         size_t next = 0;
-        for (const Mesh& mesh : meshes_)
-            for (Transform place : mesh.places) {
+        for (size_t m = 0; m < meshes_.size(); ++m)
+            for (size_t i = 0; i < meshes_[m].places.size(); ++i) {
+                Transform place = meshes_[m].places[i];
                 place.rows[1][3] += 0.1 * std::sin(time + double(next));
+                now_[m].places[i] = place;
                 must(api().update_instance(scene_.get(), placed_[next++], place.rows[0].data()));
             }
     }
+
+    /// Returns the meshes as they are now.
+    const std::vector<Mesh>& now() const { return now_; }
 
     const AbiScene& scene() const { return scene_; }
 
@@ -134,7 +142,8 @@ private:
         return given;
     }
 
-    const std::vector<Mesh>& meshes_;
+    const std::vector<Mesh>& meshes_; // as they were first
+    std::vector<Mesh> now_;
     AbiScene scene_;
     std::vector<uint32_t> numbers_; // of the meshes
     std::vector<uint32_t> placed_;  // of what is placed, mesh by mesh
@@ -149,6 +158,31 @@ double seconds_of(const std::function<void()>& work) {
 double median(std::vector<double> values) {
     std::ranges::sort(values);
     return values[values.size() / 2];
+}
+
+/// Compares the times of calls with the same rays, across a box and towards points in it.
+void compare_calls(const AbiScene& changed, const AbiScene& fresh, const Box& box, int repeats) {
+    Random random(1);
+    const auto point = [&](double reach) {
+        const dvec3 at{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+        return box.center() + reach * box.extent() * at;
+    };
+    std::vector<Ray> rays;
+    for (int i = 0; i < 1 << 18; ++i) {
+        const dvec3 org = point(1.5);
+        rays.push_back({org, 0, point(0.4) - org});
+    }
+    std::vector<double> ratios;
+    for (int i = 0; i < 2 * repeats + 1; ++i) {
+        std::vector<ovc_hit> a, b;
+        const double mine = seconds_of([&] { a = test::answers(changed, rays); });
+        const double other = seconds_of([&] { b = test::answers(fresh, rays); });
+        ratios.push_back(mine / other);
+        if (std::memcmp(a.data(), b.data(), a.size() * sizeof(ovc_hit)) != 0)
+            fmt::print("other answers\n");
+    }
+    fmt::print("calls after 100 more updates: {:.2f} times as long as a new scene's\n",
+               median(ratios));
 }
 
 Result<Done> run(const std::string& name, bool moves, int repeats) {
@@ -179,9 +213,18 @@ Result<Done> run(const std::string& name, bool moves, int repeats) {
     for (const auto& [what, values] : times)
         fmt::print("{:22} {:10.1f} {:>10} {:10.1f}\n", what.substr(2), 1e3 * median(values),
                    fmt::format("1/{:.1f}", anew / median(values)), 1e3 * values.front());
+    for (int i = 0; i < 100; ++i) {
+        const double time = 1.7 * i;
+        if (i % 4 == 0)
+            changing.move_places(time);
+        changing.move_corners(changing.blown(i % 10 == 0 ? 1 : 0.01 * (1 + i % 5), time));
+        changing.commit();
+    }
     const ovc_statistics told = test::statistics(changing.scene());
     fmt::print("{} updates, {} pages refitted, {} built\n", told.updates, told.pages_refitted,
                told.pages_rebuilt);
+    compare_calls(changing.scene(), Changing(device, changing.now(), moves).scene(),
+                  hittable_bounds(scene->soup), repeats);
     return Done{};
 }
 

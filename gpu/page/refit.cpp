@@ -96,6 +96,7 @@ private:
             return fit_pair(words);
         Fitted all;
         all.before = half_area(box_of(at), cell_before_);
+        fetch_corners(words[3].x);
         std::array<Fitted, 4> children;
         const auto fit_child = [&](size_t child) {
             if (is_there(words, child))
@@ -125,6 +126,22 @@ private:
 
     bool has_moved(uint32_t number) const {
         return number != OVC_NO_TRIANGLE && (!moved_ || moved_->has(number));
+    }
+
+    /// Asks for the corners of the pairs among the four units from `first` on, of which the last
+    /// may be others' or none: the corners lie anywhere in memory, and waiting for one after the
+    /// other takes twice the time.
+    void fetch_corners(uint32_t first) const {
+        const size_t end = std::min(size_t(first) + 4, texels_.size() / OVC_UNIT_TEXELS);
+        for (size_t at = first; at < end; ++at) {
+            const auto words = unit(uint32_t(at));
+            if (words[3].w & OVC_PAIR)
+                for (const uint32_t number : {words[0].w, words[1].w})
+                    if (has_moved(number)) {
+                        const TriangleId id = numbers_.id(number);
+                        __builtin_prefetch(soup_.chunks[id.mesh].address_of(id.prim));
+                    }
+        }
     }
 
     std::array<vec3, 3> local_corners(uint32_t number) const {

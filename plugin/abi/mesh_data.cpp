@@ -48,7 +48,7 @@ void check_counts(const ovc_mesh& mesh) {
 template <class Corner>
 std::vector<Corner> corners_at(const ovc_mesh& mesh, const void* positions) {
     std::vector<Corner> corners(triangles_of(mesh) * 3);
-    if (!mesh.indices && mesh.stride == sizeof(Corner)) {
+    if (is_packed(mesh)) {
         if (!corners.empty())
             std::memcpy(corners.data(), positions, corners.size() * sizeof(Corner));
         return corners;
@@ -86,6 +86,10 @@ ovc_mesh checked(const ovc_mesh* given) {
         if (!std::isfinite(coordinate))
             invalid("ovc_mesh.origin is not finite");
     return mesh;
+}
+
+bool is_packed(const ovc_mesh& mesh) {
+    return !mesh.indices && mesh.stride == (mesh.positions_double ? sizeof(dvec3) : sizeof(vec3));
 }
 
 std::vector<vec3> copied_corners(const ovc_mesh& mesh) {

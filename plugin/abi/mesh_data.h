@@ -19,6 +19,9 @@ ovc_mesh checked(const ovc_mesh* given);
 /// Returns the number of triangles of a checked mesh.
 uint64_t triangles_of(const ovc_mesh& mesh);
 
+/// Whether the positions, floats or doubles, lie one after the other as corners do.
+bool is_packed(const ovc_mesh& mesh);
+
 /// Returns three corners for each triangle of a checked mesh whose positions are floats.
 std::vector<vec3> copied_corners(const ovc_mesh& mesh);
 /// Does the same where they are doubles.

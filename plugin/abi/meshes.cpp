@@ -153,17 +153,18 @@ ovc_result update_mesh(ovc_scene scene, uint32_t mesh_id, const ovc_mesh* given,
         check_update(update, first_triangle, chunk);
         const auto first = uint32_t(first_triangle);
         const uint32_t end = first + uint32_t(triangles_of(update));
-        if (!chunk.owns_corners()) {
-            note_moved(scene, mesh_id, first, end);
-        } else if (update.positions_double) {
-            const std::vector<dvec3> corners = copied_double_corners(update);
+        const auto set = [&](const auto& corners) {
             note_moved(scene, mesh_id, first, end);
             chunk.set_corners(first, corners);
-        } else {
-            const std::vector<vec3> corners = copied_corners(update);
+        };
+        if (!chunk.owns_corners())
             note_moved(scene, mesh_id, first, end);
-            chunk.set_corners(first, corners);
-        }
+        else if (update.positions_double)
+            set(copied_double_corners(update));
+        else if (is_packed(update))
+            set(std::span(reinterpret_cast<const vec3*>(update.positions), update.vertex_count));
+        else
+            set(copied_corners(update));
     });
 }
 

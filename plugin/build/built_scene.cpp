@@ -2,6 +2,8 @@
 // BuiltScene: finds the triangles of a soup that are packed, and the places where they lie.
 #include "plugin/build/built_scene.h"
 
+#include "core/system/parallel.h"
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -132,17 +134,24 @@ uint64_t BuiltScene::host_bytes() const {
 
 namespace {
 
-/// Returns the triangles of a mesh whose three corners differ but lie on a line. Where the mesh is
-/// placed, rounding may give them an area.
-std::vector<uint32_t> on_a_line(const Chunk& mesh) {
-    std::vector<uint32_t> prims;
-    for (uint32_t prim = 0; prim < mesh.size(); ++prim) {
-        const Triangle t = mesh.triangle(prim);
-        if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0] &&
-            triangle_fault(t) == TriangleFault::Degenerate)
-            prims.push_back(prim);
-    }
-    return prims;
+/// Returns those triangles of a mesh, in [first, end), whose three corners differ but lie on a
+/// line. Where the mesh is placed, rounding may give them an area.
+std::vector<uint32_t> on_a_line(const Chunk& mesh, uint32_t first, uint32_t end) {
+    return parallel_reduce(
+        end - first, std::vector<uint32_t>(),
+        [&](size_t from, size_t to, std::vector<uint32_t> prims) {
+            for (auto prim = uint32_t(first + from); prim < first + to; ++prim) {
+                const Triangle t = mesh.triangle(prim);
+                if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0] &&
+                    triangle_fault(t) == TriangleFault::Degenerate)
+                    prims.push_back(prim);
+            }
+            return prims;
+        },
+        [](std::vector<uint32_t> a, const std::vector<uint32_t>& b) {
+            a.insert(a.end(), b.begin(), b.end());
+            return a;
+        });
 }
 
 /// Takes the triangles of shared meshes, and finds those that must be cut with the others because
@@ -170,7 +179,7 @@ private:
         const BuiltScene& local = mesh.scene;
         std::vector<uint32_t> lines;
         if (mesh.has_lines)
-            lines = on_a_line(local.soup.chunks.front());
+            lines = on_a_line(local.soup.chunks.front(), 0, local.soup.chunks.front().size());
         for (const uint32_t chunk : mesh.instances) {
             scene_.dropped.not_finite += local.dropped.not_finite;
             scene_.dropped.degenerate += local.dropped.degenerate;
@@ -227,9 +236,9 @@ HittableParts take_hittable_parts(BuiltScene& scene, Placed placed, BuildProgres
     return parts;
 }
 
-void look_for_lines(SharedMesh& mesh) {
-    mesh.has_lines =
-        mesh.scene.dropped.degenerate > 0 && !on_a_line(mesh.soup->chunks.front()).empty();
+void look_for_lines(SharedMesh& mesh, uint32_t first, uint32_t end) {
+    mesh.has_lines = mesh.scene.dropped.degenerate > 0 &&
+                     !on_a_line(mesh.soup->chunks.front(), first, end).empty();
 }
 
 void gather_pages(BuiltScene& scene) {

@@ -205,8 +205,11 @@ struct HittableParts {
 HittableParts take_hittable_parts(BuiltScene& scene, Placed placed,
                                   BuildProgress* progress = nullptr);
 
-/// Finds out whether the mesh, whose triangles are taken, has_lines.
-void look_for_lines(SharedMesh& mesh);
+/// Finds out whether the mesh, whose triangles are taken, has_lines among [first, end) of them.
+void look_for_lines(SharedMesh& mesh, uint32_t first, uint32_t end);
+inline void look_for_lines(SharedMesh& mesh) {
+    look_for_lines(mesh, 0, mesh.soup->chunks.front().size());
+}
 
 /// Appends the pages of the shared meshes to those of the scene, all of which are built.
 void gather_pages(BuiltScene& scene);

@@ -76,7 +76,7 @@ void take_copies_out(const Soup& soup, std::vector<uint32_t>& chunks, Placed& pl
 
 } // namespace
 
-Placed placed_chunks(const Soup& soup, const std::function<const Box*(uint32_t chunk)>& known_box) {
+Placed placed_chunks(const Soup& soup, const KnownBox& known_box) {
     Placed placed;
     for (std::vector<uint32_t>& chunks : by_mesh(soup)) {
         if (chunks.size() > 1)
@@ -87,10 +87,11 @@ Placed placed_chunks(const Soup& soup, const std::function<const Box*(uint32_t c
         const auto moves = [&](uint32_t chunk) { return soup.chunks[chunk].moves(); };
         const bool any_moves = std::ranges::any_of(chunks, moves);
         std::vector<uint32_t> shared;
-        const Box* const known = known_box ? known_box(chunks.front()) : nullptr;
         Box box;
-        if (pays || any_moves)
+        if (pays || any_moves) {
+            const std::optional<Box> known = known_box ? known_box(chunks.front()) : std::nullopt;
             box = known ? *known : bounds_of(mesh.unplaced());
+        }
         for (const uint32_t chunk : chunks) {
             const bool may_share =
                 (pays || moves(chunk)) && is_well_placed(box, soup.chunks[chunk].transform());

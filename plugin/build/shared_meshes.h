@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace ovc {
@@ -27,10 +28,10 @@ struct Placed {
 /// Returns how the chunks of a soup are built. A mesh that is placed more than once is shared where
 /// that saves more than portals cost, and where a portal is as good as the triangles themselves. A
 /// chunk that moves is shared even if it is the only one of its mesh.
-/// known_box(chunk): the box of the chunk's triangles before they are placed, or null where it is
+/// known_box(chunk): the box of the chunk's triangles before they are placed; nothing where it is
 /// to be found here.
-Placed placed_chunks(const Soup& soup,
-                     const std::function<const Box*(uint32_t chunk)>& known_box = {});
+using KnownBox = std::function<std::optional<Box>(uint32_t chunk)>;
+Placed placed_chunks(const Soup& soup, const KnownBox& known_box = {});
 
 /// Returns the number of triangles that are packed: those of a shared mesh count once.
 uint64_t unique_triangles(const Soup& soup, const Placed& placed);

@@ -62,15 +62,28 @@ public:
     }
 
 private:
-    /// Returns the box of a shared mesh whose corners have not changed.
-    const Box* known_box(uint32_t chunk) const {
-        if (chunk >= scene_.mesh_of_chunk.size() || scene_.mesh_of_chunk[chunk] == kNone)
-            return nullptr;
-        const SharedMesh& mesh = scene_.shared[scene_.mesh_of_chunk[chunk]];
-        const bool has_moved = std::ranges::any_of(changes_.moved, [&](const PrimRange& range) {
-            return std::ranges::binary_search(mesh.instances, range.mesh);
-        });
-        return has_moved ? nullptr : &mesh.scene.level1.bounds;
+    /// Returns a box around a shared mesh, of which few corners have changed at most.
+    std::optional<Box> known_box(uint32_t chunk) const {
+        const SharedMesh* mesh =
+            chunk < scene_.mesh_of_chunk.size() ? scene_.shared_mesh_of(chunk) : nullptr;
+        if (!mesh)
+            return std::nullopt;
+        Box box = mesh->scene.level1.bounds;
+        uint64_t moved = 0;
+        for (const PrimRange& range : changes_.moved) {
+            if (range.mesh != chunk)
+                continue;
+            moved += range.end - range.first;
+            if (moved > soup_.chunks[chunk].size() / 16)
+                return std::nullopt;
+            for (uint32_t prim = range.first; prim < range.end; ++prim)
+                for (const dvec3& corner : mesh->soup->chunks.front().triangle(prim)) {
+                    if (!is_finite(corner))
+                        return std::nullopt;
+                    box.add(corner);
+                }
+        }
+        return box;
     }
 
     /// Whether level 1 is still of the same chunks, but for those that were removed.
@@ -151,12 +164,14 @@ private:
                 changed.push_back({0, range.first, range.end});
         for (const uint32_t chunk : instances)
             scene_.mesh_of_chunk[chunk] = uint32_t(scene_.shared.size());
-        const bool has_moved = !changed.empty();
-        const bool updated = update_level(mesh.scene, joined(std::move(changed)), mesh.first_page);
+        changed = joined(std::move(changed));
+        const bool updated = update_level(mesh.scene, changed, mesh.first_page);
+        for (const PrimRange& range : changed)
+            if (!mesh.has_lines)
+                look_for_lines(mesh, range.first, range.end);
+        const bool has_lines = mesh.has_lines;
         scene_.shared.push_back(std::move(mesh));
-        if (has_moved)
-            look_for_lines(scene_.shared.back());
-        return updated && !scene_.shared.back().has_lines;
+        return updated && !has_lines;
     }
 
     bool build(const Placed::Instances& instances) {
