@@ -21,7 +21,7 @@ constexpr double kMaxGrowth = 4.0 / 3;
 constexpr double kRoomToMove = 1.0 / 16;
 /// The late leaf has at most this part of a level's triangles, or some; else the leaves are cut
 /// anew.
-constexpr uint64_t kMaxLatePart = 8, kMaxLate = 64;
+constexpr uint64_t kMaxLatePart = 64, kMaxLate = 64;
 
 bool contains(const Box& outer, const Box& inner) {
     return inner.empty() || (outer.contains(inner.lo) && outer.contains(inner.hi));
@@ -315,31 +315,74 @@ void LevelUpdate::fit_pages() {
     });
 }
 
-/// Puts the triangles that no page has into the late leaf. Returns false where they are many.
+/// Takes those triangles out that a page which was built again has.
+void LevelUpdate::take_out_built(std::vector<TriangleId>& triangles) const {
+    for (uint32_t i = 0; i < leaves_.size(); ++i)
+        if (i != scene_.late_leaf && leaves_[i].work == Work::Rebuild) {
+            const std::vector<TriangleId>& built = scene_.level1.leaves[i].triangles;
+            std::erase_if(triangles,
+                          [&](TriangleId id) { return std::ranges::binary_search(built, id); });
+        }
+}
+
+/// Builds the pages again of all leaves that list one of these triangles.
+void LevelUpdate::build_leaves_of(std::span<const TriangleId> triangles) {
+    std::vector<uint32_t> numbers;
+    for (uint32_t i = 0; i < leaves_.size(); ++i) {
+        const std::vector<TriangleId>& list = scene_.level1.leaves[i].triangles;
+        if (i != scene_.late_leaf && leaves_[i].work != Work::Rebuild &&
+            std::ranges::any_of(
+                triangles, [&](TriangleId id) { return std::ranges::binary_search(list, id); }))
+            numbers.push_back(i);
+    }
+    parallel_for(numbers.size(), 1, [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i)
+            rebuild(numbers[i]);
+    });
+    for (const uint32_t number : numbers)
+        leaves_[number].work = Work::Rebuild;
+}
+
+/// Puts the triangles that no page has into the late leaf. Where they are many, those that left
+/// their page go back to it. Returns false where too many are left.
 bool LevelUpdate::fill_late_leaf() {
-    if (come_.empty())
-        return true;
     Level1& level1 = scene_.level1;
+    std::vector<TriangleId> late = std::move(come_);
+    if (scene_.late_leaf != kNone) {
+        const std::vector<TriangleId>& before = level1.leaves[scene_.late_leaf].triangles;
+        late.insert(late.end(), before.begin(), before.end());
+    }
+    std::ranges::sort(late);
+    late.erase(std::ranges::unique(late).begin(), late.end());
+    take_out_built(late);
+    const uint64_t max_late = std::max(scene_.triangles / kMaxLatePart, kMaxLate);
+    if (late.size() > max_late) {
+        build_leaves_of(late);
+        take_out_built(late);
+        if (late.size() > max_late)
+            return false;
+    }
     if (scene_.late_leaf == kNone) {
+        if (late.empty())
+            return true;
         scene_.late_leaf = uint32_t(level1.leaves.size());
         level1.leaves.emplace_back();
         scene_.pages.emplace_back();
         leaves_.push_back({kNone});
     }
     Leaf& leaf = level1.leaves[scene_.late_leaf];
-    std::vector<TriangleId> triangles = std::move(leaf.triangles);
-    triangles.insert(triangles.end(), come_.begin(), come_.end());
-    std::ranges::sort(triangles);
-    triangles.erase(std::ranges::unique(triangles).begin(), triangles.end());
-    if (triangles.size() > std::max(scene_.triangles / kMaxLatePart, kMaxLate))
-        return false;
-    leaf.box = {}; // the leaf gets a frame of its own, unless all share one
+    if (late == leaf.triangles)
+        return true;
+    leaf.triangles = {};
+    if (late.empty())
+        return true; // drop_empty_leaves() takes it
+    leaf.box = {};   // the leaf gets a frame of its own, unless all share one
     if (level1.shares_frame)
         leaf = {.cell = {},
                 .box = level1.bounds,
                 .frame = level1.leaves.front().frame,
                 .grid = level1.leaves.front().grid};
-    fill(leaf, std::move(triangles));
+    fill(leaf, std::move(late));
     scene_.pages[scene_.late_leaf] =
         build_page(scene_.soup, scene_.numbers, leaf, progress_, LoosePairs());
     leaves_[scene_.late_leaf].work = Work::Rebuild;

@@ -39,6 +39,8 @@ private:
     void list_anew();
     void fit_frames();
     void fit_pages();
+    void take_out_built(std::vector<TriangleId>& triangles) const;
+    void build_leaves_of(std::span<const TriangleId> triangles);
     bool fill_late_leaf();
     bool pages_fit() const;
     void drop_empty_leaves();
