@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/backlog.h"
+#include "core/exclusions.h"
 #include "core/result.h"
 
 #include <algorithm>
@@ -43,7 +44,7 @@ private:
         const size_t count = std::min(any_.size(), kMaxAtOnce);
         const StreamRays rays = any_.last(count);
         occluded_.resize(count);
-        if (Result<Done> done = batches_.occluded(rays.rays, rays.skip, occluded_); !done)
+        if (Result<Done> done = batches_.occluded(rays.rays, excluded(rays), occluded_); !done)
             return done;
         const std::vector<uint64_t> tokens(rays.tokens.begin(), rays.tokens.end());
         any_.drop_last(count);
@@ -56,13 +57,19 @@ private:
         const size_t count = std::min(nearest_.size(), kMaxAtOnce);
         const StreamRays rays = nearest_.last(count);
         hits_.resize(count);
-        if (Result<Done> done = batches_.intersect(rays.rays, rays.skip, hits_); !done)
+        if (Result<Done> done = batches_.intersect(rays.rays, excluded(rays), hits_); !done)
             return done;
         const std::vector<uint64_t> tokens(rays.tokens.begin(), rays.tokens.end());
         nearest_.drop_last(count);
         if (!host_.hits(*this, tokens, hits_))
             return stopped_by_host();
         return Done{};
+    }
+
+    static Exclusions excluded(const StreamRays& rays) {
+        Exclusions without(rays.skip, rays.after);
+        without.sieves = {rays.masks, rays.filters, rays.tokens};
+        return without;
     }
 
     static constexpr size_t kMaxAtOnce = size_t(1) << 20; // rays per batch

@@ -3,6 +3,7 @@
 // the host.
 #pragma once
 
+#include "core/cutout.h"
 #include "core/file/mapped_file.h"
 #include "core/soup.h"
 
@@ -99,6 +100,15 @@ inline bool is_usable_ior(double ior) {
     return ior >= 1e-6 && ior <= 1e6;
 }
 
+/// The rays that see a mesh, as bits of its chunk's mask. A chunk of mask 0 is seen by all rays.
+enum SeenBy : uint32_t {
+    kSeenByCamera = 1,      // rays that come from the camera, through glass too
+    kSeenInReflections = 2, // rays that a surface has reflected, mirrors or others, on their way
+    kShadowsLights = 4,     // shadow rays towards Scene::lights
+    kShadowsEmitters = 8,   // shadow rays towards a point of an emitting mesh
+    kSeenByAll = 15
+};
+
 /// The host's knowledge of a mesh besides its triangles. Scene::meshes[m] belongs to
 /// Scene::soup.chunks[m].
 struct MeshInfo {
@@ -106,12 +116,18 @@ struct MeshInfo {
     uint32_t material = 0; // index into Scene::materials
     /// 3 per triangle, unit length; or empty, and then the triangle's own normal shades it.
     std::vector<vec3> normals;
-    bool no_shadow = false; // light passes as if the mesh were not there
     /// The mesh whose normals this one shares, turned by `turn`; kNone: its own. Instances use it.
     uint32_t normals_from = kNone;
     dmat3 turn{1}; // multiplies those normals, whose length then does not matter
+    /// Indices into Scene::cutouts of what all rays see of the mesh, and shadow rays besides;
+    /// kNone: it has no holes.
+    uint32_t cutout = kNone;
+    uint32_t shadow_cutout = kNone;
+    /// 3 per triangle for a mesh with a cutout, or those of another mesh; else empty.
+    std::vector<vec2> uv;
+    uint32_t uv_from = kNone;
     /// Counts the corners that have these in the file and not here: normals that cannot be used or
-    /// say nothing new, and all texture coordinates, because no material of ours has textures.
+    /// say nothing new, and texture coordinates, which cutouts alone have a use for.
     uint64_t normals_left_out = 0;
     uint64_t texture_coordinates_left_out = 0;
 };
@@ -221,6 +237,7 @@ struct Scene {
     Soup soup;
     std::vector<MeshInfo> meshes;
     std::vector<Material> materials;
+    std::vector<Cutout> cutouts;
     std::vector<Light> lights;
     bool may_add_light = true;         // without lights the host adds one beside the camera
     std::optional<Camera> camera;      // none: the host frames the bounds
@@ -238,6 +255,18 @@ struct Scene {
     const std::vector<vec3>& normals_of(const MeshInfo& mesh) const {
         assert(mesh.normals_from == kNone || mesh.normals_from < meshes.size());
         return mesh.normals_from == kNone ? mesh.normals : meshes[mesh.normals_from].normals;
+    }
+
+    /// Returns 3 texture coordinates per triangle; none if the mesh has none.
+    const std::vector<vec2>& uv_of(const MeshInfo& mesh) const {
+        assert(mesh.uv_from == kNone || mesh.uv_from < meshes.size());
+        return mesh.uv_from == kNone ? mesh.uv : meshes[mesh.uv_from].uv;
+    }
+
+    /// Lets the rays of these kinds (SeenBy) see a mesh, and no others.
+    void show(uint32_t mesh, uint32_t seen_by) {
+        assert(mesh < soup.chunks.size() && seen_by != 0); // a mesh that none sees is left out
+        soup.chunks[mesh].set_mask(seen_by == kSeenByAll ? 0 : seen_by);
     }
 
     /// Appends a mesh of `material`; returns its number.

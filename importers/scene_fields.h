@@ -32,6 +32,11 @@ void each_field(auto& io, Some<Material> auto& m) {
     io(m.name, m.color, m.mirror, m.transmission, m.filter, m.ior, m.finish, m.checker, m.optics);
 }
 
+void each_field(auto& io, Some<Cutout> auto& c) {
+    io(c.width, c.height, c.opacity, c.scale, c.uv_scale, c.uv_offset, c.beyond, c.smooth,
+       c.partial);
+}
+
 void each_field(auto& io, Some<SpotCone> auto& c) {
     io(c.radius_cosine, c.falloff_cosine, c.tightness);
 }
@@ -61,16 +66,17 @@ void each_field(auto& io, Some<Instancing> auto& i) {
     io(i.unique_triangles, i.instances);
 }
 
-/// Passes all fields except the normals, which are a part of their own in the file.
+/// Passes all fields except the normals and texture coordinates, which are parts of their own in
+/// the file.
 void each_field(auto& io, Some<MeshInfo> auto& m) {
-    io(m.name, m.material, m.no_shadow, m.normals_from, m.turn, m.normals_left_out,
-       m.texture_coordinates_left_out);
+    io(m.name, m.material, m.normals_from, m.turn, m.cutout, m.shadow_cutout, m.uv_from,
+       m.normals_left_out, m.texture_coordinates_left_out);
 }
 
 /// Passes all fields except meshes, soup, and what the file's other parts hold.
 void each_field(auto& io, Some<Scene> auto& s) {
-    io(s.name, s.materials, s.lights, s.may_add_light, s.camera, s.size, s.max_depth, s.background,
-       s.exposure, s.gamma, s.instancing);
+    io(s.name, s.materials, s.cutouts, s.lights, s.may_add_light, s.camera, s.size, s.max_depth,
+       s.background, s.exposure, s.gamma, s.instancing);
 }
 
 void each_field(auto& io, Some<FileStamp> auto& f) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene file is an archive of the fields, the meshes' extents, the corners, the normals and the
-// levels.
+// The scene file is an archive of the fields, the meshes' extents, the corners, the normals, the
+// texture coordinates and the levels.
 #include "importers/scene_file.h"
 
 #include "importers/file/output_file.h"
@@ -24,20 +24,22 @@ namespace {
 constexpr std::string_view kKind = "ovc scene";
 /// Raise it with every change of scene_fields.h, and when an importer makes another scene of the
 /// same file.
-constexpr uint32_t kVersion = 6;
+constexpr uint32_t kVersion = 7;
 
 /// Where a mesh's corners and normals lie in the other parts.
 struct MeshExtent {
     dvec3 origin{0};
     uint64_t corners = 0; // its own, in the part "corners"
     uint64_t normals = 0;
+    uint64_t uv = 0;
     uint64_t corners_from = kOwnCorners; // or an earlier mesh, whose corners this one shares
-    uint64_t is_placed = 0;
+    uint32_t is_placed = 0;
+    uint32_t mask = 0; // of the chunk
     Transform transform{};
 
     static constexpr uint64_t kOwnCorners = ~uint64_t(0);
 };
-static_assert(sizeof(MeshExtent) == 152);
+static_assert(sizeof(MeshExtent) == 160);
 
 std::vector<MeshExtent> extents_of(const Scene& scene) {
     assert(scene.meshes.size() == scene.soup.chunks.size());
@@ -45,12 +47,14 @@ std::vector<MeshExtent> extents_of(const Scene& scene) {
     std::map<Chunk::MeshKey, size_t> first_of;
     for (size_t m = 0; m < scene.meshes.size(); ++m) {
         const Chunk& chunk = scene.soup.chunks[m];
-        MeshExtent extent{chunk.origin(), chunk.corners().size(), scene.meshes[m].normals.size()};
+        MeshExtent extent{chunk.origin(), chunk.corners().size(), scene.meshes[m].normals.size(),
+                          scene.meshes[m].uv.size()};
         const auto [first, is_new] = first_of.try_emplace(chunk.mesh_key(), m);
         if (!is_new) {
             extent.corners = 0;
             extent.corners_from = first->second;
         }
+        extent.mask = chunk.mask();
         if (chunk.transform()) {
             extent.is_placed = 1;
             extent.transform = *chunk.transform();
@@ -81,24 +85,33 @@ std::optional<Chunk> chunk_of(const MeshExtent& extent, std::span<const vec3> co
     return chunk;
 }
 
-/// Gives the meshes their corners, which stay where they are mapped, and their normals. Returns
-/// false if the extents do not use up both exactly.
+/// Moves the first `count` items to `to`. Returns false if there are fewer.
+template <class T>
+bool take_first(std::span<const T>& items, uint64_t count, std::vector<T>& to) {
+    if (count > items.size())
+        return false;
+    to.assign(items.begin(), items.begin() + ptrdiff_t(count));
+    items = items.subspan(count);
+    return true;
+}
+
+/// Gives the meshes their corners, which stay where they are mapped, their normals and their
+/// texture coordinates. Returns false if the extents do not use them up exactly.
 bool share_out(std::span<const MeshExtent> extents, std::span<const vec3> corners,
-               std::span<const vec3> normals, Scene& scene) {
+               std::span<const vec3> normals, std::span<const vec2> uv, Scene& scene) {
     if (extents.size() != scene.meshes.size())
         return false;
     for (size_t m = 0; m < extents.size(); ++m) {
         const MeshExtent& extent = extents[m];
         std::optional<Chunk> chunk = chunk_of(extent, corners, scene.soup);
-        if (!chunk || extent.normals > normals.size())
+        if (!chunk || !take_first(normals, extent.normals, scene.meshes[m].normals) ||
+            !take_first(uv, extent.uv, scene.meshes[m].uv))
             return false;
+        chunk->set_mask(extent.mask);
         scene.soup.chunks.push_back(std::move(*chunk));
         corners = corners.subspan(extent.corners);
-        scene.meshes[m].normals.assign(normals.begin(),
-                                       normals.begin() + ptrdiff_t(extent.normals));
-        normals = normals.subspan(extent.normals);
     }
-    return corners.empty() && normals.empty();
+    return corners.empty() && normals.empty() && uv.empty();
 }
 
 /// Checks what the host relies on.
@@ -113,6 +126,10 @@ bool is_sound(const Scene& scene) {
         return false;
     for (const Material& material : scene.materials)
         if (material.optics && material.optics->boundary > Optics::Boundary::Thin)
+            return false;
+    for (const Cutout& cutout : scene.cutouts)
+        if (cutout.opacity.empty() || cutout.beyond > Cutout::Beyond::Hole ||
+            cutout.opacity.size() != uint64_t(cutout.width) * cutout.height)
             return false;
     using Bend = ImageWindow::Bend;
     return !scene.camera || !scene.camera->window ||
@@ -134,10 +151,13 @@ Result<SceneFile> read(const Archive& archive) {
     const auto normals = archive.items<vec3>("normals");
     if (!normals)
         return normals.error();
+    const auto uv = archive.items<vec2>("uv");
+    if (!uv)
+        return uv.error();
     SceneFile file;
     ByteReader reader(*fields);
     reader(file.scene, file.scene.meshes, file.from.request, file.from.files, file.from.warnings);
-    if (!reader.done() || !share_out(*extents, *corners, *normals, file.scene) ||
+    if (!reader.done() || !share_out(*extents, *corners, *normals, *uv, file.scene) ||
         !is_sound(file.scene))
         return unsound;
     file.scene.saved = archive.unchecked("levels");
@@ -171,6 +191,9 @@ Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
     writer.begin("normals");
     for (const MeshInfo& mesh : scene.meshes)
         writer.write(bytes_of(std::span<const vec3>(mesh.normals)));
+    writer.begin("uv");
+    for (const MeshInfo& mesh : scene.meshes)
+        writer.write(bytes_of(std::span<const vec2>(mesh.uv)));
     if (save_levels) {
         writer.begin("levels");
         const Result<Done> saved = save_levels([&](Bytes bytes) {
@@ -195,6 +218,7 @@ uint64_t checksum_of(const Scene& scene) {
         if (extents[m].corners > 0)
             sum.add(bytes_of(scene.soup.chunks[m].corners()));
         sum.add(bytes_of(std::span<const vec3>(scene.meshes[m].normals)));
+        sum.add(bytes_of(std::span<const vec2>(scene.meshes[m].uv)));
     }
     return sum.value();
 }

@@ -19,7 +19,7 @@ std::vector<std::byte> fields_of(const Scene& scene) {
     ByteWriter writer;
     writer(scene, scene.meshes);
     for (const MeshInfo& mesh : scene.meshes)
-        writer(mesh.normals);
+        writer(mesh.normals, mesh.uv);
     return {writer.bytes().begin(), writer.bytes().end()};
 }
 
@@ -28,6 +28,7 @@ void expect_same(const Scene& a, const Scene& b) {
     ASSERT_EQ(a.soup.chunks.size(), b.soup.chunks.size());
     for (size_t m = 0; m < a.soup.chunks.size(); ++m) {
         EXPECT_EQ(a.soup.chunks[m].origin(), b.soup.chunks[m].origin());
+        EXPECT_EQ(a.soup.chunks[m].mask(), b.soup.chunks[m].mask());
         EXPECT_TRUE(std::ranges::equal(bytes_of(a.soup.chunks[m].corners()),
                                        bytes_of(b.soup.chunks[m].corners())));
     }
@@ -46,6 +47,7 @@ TEST(SceneFile, GivesBackEveryField) {
     ASSERT_TRUE(file) << file.error().message;
     expect_same(scene, file->scene);
     EXPECT_EQ(file->scene.materials, scene.materials);
+    EXPECT_EQ(file->scene.cutouts, scene.cutouts);
     EXPECT_EQ(file->scene.camera->window->bend, ImageWindow::Bend::Omnimax);
     EXPECT_EQ(file->from.request, "asked");
     EXPECT_EQ(file->from.files, from.files);
@@ -71,14 +73,16 @@ TEST(SceneFile, EveryFieldOfAStructIsNamed) {
     EXPECT_EQ(size(Light{}), 24 + 12 + 1 + 24 + 1 + 1 + 1 + 8 + 8 + 1u);
     EXPECT_EQ(size(ImageWindow{}), 3 * 24 + 1 + 4 + 8 + 8u);
     EXPECT_EQ(size(Camera{}), 3 * 24 + 8 + 1u);
-    EXPECT_EQ(size(MeshInfo{}), 8 + 4 + 1 + 4 + 72 + 8 + 8u);
+    EXPECT_EQ(size(Cutout{}), 4 + 4 + 8 + 4 + 16 + 16 + 1 + 1 + 1u);
+    EXPECT_EQ(size(MeshInfo{}), 8 + 4 + 4 + 72 + 3 * 4 + 8 + 8u);
     EXPECT_EQ(sizeof(Finish), 80u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Optics), 72u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Material), 360u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Light), 128u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(ImageWindow), 96u) << "a field more: name it in scene_fields.h, and here";
     EXPECT_EQ(sizeof(Camera), 184u) << "a field more: name it in scene_fields.h, and here";
-    EXPECT_EQ(sizeof(MeshInfo), 160u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(Cutout), 80u) << "a field more: name it in scene_fields.h, and here";
+    EXPECT_EQ(sizeof(MeshInfo), 200u) << "a field more: name it in scene_fields.h, and here";
 }
 
 /// The test takes every seventh byte, because it goes through files; Archive's own test takes every

@@ -11,20 +11,21 @@
 
 namespace ovc {
 
-/// Returns the nearest hit of one ray, ties to the smaller id; a miss for an invalid ray. The ray
-/// does not see the triangle `skip`.
-Hit intersect(const KdTree& tree, const Soup& soup, const Ray& ray, TriangleId skip = {});
+/// Returns the nearest hit of one ray, ties to the smaller id; a miss for an invalid ray. Hits that
+/// `without` excludes, or that do not pass the sieve, do not count.
+Hit intersect(const KdTree& tree, const Soup& soup, const Ray& ray, const Exclusion& without = {},
+              const RaySieve& sieve = {});
 
 /// Returns true when the ray hits anything; false for an invalid ray.
-bool occluded(const KdTree& tree, const Soup& soup, const Ray& ray, TriangleId skip = {});
+bool occluded(const KdTree& tree, const Soup& soup, const Ray& ray, const Exclusion& without = {},
+              const RaySieve& sieve = {});
 
-/// Writes the nearest hit of rays[i] to hits[i], on all cores. skip: empty, or one triangle per ray
-/// that the ray does not see.
+/// Writes the nearest hit of rays[i] to hits[i], on all cores.
 void intersect(const KdTree& tree, const Soup& soup, std::span<const Ray> rays,
-               std::span<const TriangleId> skip, std::span<Hit> hits);
+               const Exclusions& without, std::span<Hit> hits);
 
-/// Writes 1 to occluded[i] where rays[i] hits anything, else 0, on all cores. skip: as above.
+/// Writes 1 to occluded[i] where rays[i] hits anything, else 0, on all cores.
 void occluded(const KdTree& tree, const Soup& soup, std::span<const Ray> rays,
-              std::span<const TriangleId> skip, std::span<uint8_t> occluded);
+              const Exclusions& without, std::span<uint8_t> occluded);
 
 } // namespace ovc

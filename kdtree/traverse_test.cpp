@@ -48,7 +48,7 @@ TEST(KdTraverse, SkipsTheTriangleARayStartsOn) {
         const Triangle t = soup.triangle({0, prim});
         const dvec3 outward = glm::cross(t[1] - t[0], t[2] - t[0]);
         const Ray ray{(t[0] + t[1] + t[2]) / 3.0, 0, outward + 0.1 * random.point(-1, 1) * 0.01};
-        EXPECT_NE(intersect(tree, soup, ray, {0, prim}).id, (TriangleId{0, prim}));
+        EXPECT_NE(intersect(tree, soup, ray, TriangleId{0, prim}).id, (TriangleId{0, prim}));
     }
 }
 
@@ -60,6 +60,46 @@ TEST(KdTraverse, TiesGoToTheSmallerId) {
     const Hit hit = intersect(build_kd_tree(soup), soup, Ray{{0.2, 0.2, 1}, 0, {0, 0, -1}});
     EXPECT_EQ(hit.id, (TriangleId{0, 0}));
     EXPECT_EQ(hit.t, 1);
+}
+
+/// Lets every other prim of mesh 0 count.
+class EvenPrims final : public HitFilter {
+public:
+    bool keep(std::span<const uint64_t>, std::span<const Hit> hits,
+              std::span<uint8_t> keep) override {
+        for (size_t i = 0; i < hits.size(); ++i)
+            keep[i] = hits[i].id.prim % 2 == 0;
+        return true;
+    }
+};
+
+TEST(KdTraverse, PassesByHitsThatDoNotCount) {
+    Soup soup; // prims 1, 0 and 2 of mesh 0 in one place, and mesh 1 before them
+    const std::vector<vec3> one = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
+    std::vector<vec3> three = one;
+    for (const float larger : {2.0f, 3.0f})
+        for (const vec3& corner : one)
+            three.push_back(larger * corner);
+    soup.chunks.push_back(Chunk::owning(dvec3(0), std::move(three)));
+    soup.chunks.push_back(Chunk::owning(dvec3(0, 0, 0.5), one));
+    soup.chunks[1].set_mask(4);
+    const KdTree tree = build_kd_tree(soup);
+    const Ray ray{{0.2, 0.2, 1}, 0, {0, 0, -1}};
+    const auto nearest = [&](const Exclusion& without, const RaySieve& sieve) {
+        EXPECT_EQ(occluded(tree, soup, ray, without, sieve),
+                  intersect(tree, soup, ray, without, sieve).is_hit());
+        return intersect(tree, soup, ray, without, sieve).id;
+    };
+    EvenPrims even;
+    EXPECT_EQ(nearest({}, {}), (TriangleId{1, 0}));
+    EXPECT_EQ(nearest({}, {.mask = 4}), (TriangleId{1, 0}));
+    EXPECT_EQ(nearest({}, {.mask = 3}), (TriangleId{0, 0}));
+    EXPECT_EQ(nearest(TriangleId{0, 0}, {.mask = 3}), (TriangleId{0, 1}));
+    EXPECT_EQ(nearest(TriangleId{0, 0}, {.mask = 3, .filter = &even}), (TriangleId{0, 2}));
+    const Hit second = intersect(tree, soup, ray, {}, {.mask = 3, .filter = &even});
+    EXPECT_EQ(nearest({{}, HitPlace(second)}, {.mask = 3, .filter = &even}), (TriangleId{0, 2}));
+    EXPECT_EQ(nearest({TriangleId{0, 2}, HitPlace(second)}, {.mask = 3, .filter = &even}),
+              TriangleId());
 }
 
 } // namespace

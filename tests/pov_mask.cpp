@@ -3,6 +3,7 @@
 // stdout; 2 where a bent picture shows nothing. For importers/pov/compare.py.
 #include "host/backend/backend.h"
 #include "host/camera/camera.h"
+#include "host/render/sight.h"
 #include "importers/importer.h"
 
 #include <cstdio>
@@ -39,7 +40,10 @@ int main(int count, char** words) {
     Result<std::unique_ptr<Backend>> backend = make_embree_backend(scene->soup, EmbreeMode::Robust);
     if (!backend)
         backend = make_cpu_backend(scene->soup);
-    if (const Result<Done> done = (*backend)->intersect(rays, {}, hits); !done) {
+    std::vector<uint32_t> masks;
+    Exclusions without;
+    without.sieves = Sight(*scene).of_camera(rays.size(), masks);
+    if (const Result<Done> done = (*backend)->intersect(rays, without, hits); !done) {
         std::fprintf(stderr, "%s\n", done.error().message.c_str());
         return 1;
     }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/batched_stream.h"
+#include "core/exclusions.h"
 #include "core/file/archive.h"
 #include "core/ray.h"
 #include "core/result.h"
@@ -29,23 +30,22 @@ class Backend {
 public:
     virtual ~Backend() = default;
 
-    /// Writes the nearest hit of each ray. skip: empty, or for each ray the triangle that it starts
-    /// on and does not see. hits: as many as rays.
-    virtual Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    /// Writes the nearest hit of each ray that `without` does not exclude. hits: as many as rays.
+    /// Error: sieves, which the systems of the thesis do not have.
+    virtual Result<Done> intersect(std::span<const Ray> rays, const Exclusions& without,
                                    std::span<Hit> hits) = 0;
     /// Writes occluded[i] = 1 where ray i hits anything, else 0. Sizes as in intersect().
-    virtual Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    virtual Result<Done> occluded(std::span<const Ray> rays, const Exclusions& without,
                                   std::span<uint8_t> occluded) = 0;
     /// The mixed form: traces the rays that the host pushes until there are no more. An Error of
     /// the kind Cancelled means that the host stopped it.
     virtual Result<Done> stream(StreamHost& host) { return stream_in_batches(*this, host); }
     /// Does intersect() and takes notes of each ray. Error: the backend has no leaves.
-    virtual Result<Done> intersect_noted(std::span<const Ray> rays,
-                                         std::span<const TriangleId> skip, std::span<Hit> hits,
-                                         const RayNotes& notes) {
+    virtual Result<Done> intersect_noted(std::span<const Ray> rays, const Exclusions& without,
+                                         std::span<Hit> hits, const RayNotes& notes) {
         return notes.any()
                    ? Error{"leaf, passes and flagged can be told by --backend two-level alone"}
-                   : intersect(rays, skip, hits);
+                   : intersect(rays, without, hits);
     }
     /// Returns the pages that rays went through since the last call; none where the options did not
     /// ask for them or the backend cannot tell.

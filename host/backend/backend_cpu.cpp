@@ -18,21 +18,21 @@ public:
         statistics_.seconds_level1 = build_seconds;
     }
 
-    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> intersect(std::span<const Ray> rays, const Exclusions& without,
                            std::span<Hit> hits) override {
-        assert(hits.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
+        assert(hits.size() == rays.size() && without.are_for(rays.size()));
         const Stopwatch watch;
-        ovc::intersect(tree_, soup_, rays, skip, hits);
+        ovc::intersect(tree_, soup_, rays, without, hits);
         statistics_.nearest_rays += rays.size();
         statistics_.seconds_trace += watch.seconds();
         return Done{};
     }
 
-    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> occluded(std::span<const Ray> rays, const Exclusions& without,
                           std::span<uint8_t> occluded) override {
-        assert(occluded.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
+        assert(occluded.size() == rays.size() && without.are_for(rays.size()));
         const Stopwatch watch;
-        ovc::occluded(tree_, soup_, rays, skip, occluded);
+        ovc::occluded(tree_, soup_, rays, without, occluded);
         statistics_.occlusion_rays += rays.size();
         statistics_.seconds_trace += watch.seconds();
         return Done{};

@@ -17,28 +17,44 @@ namespace ovc {
 
 namespace {
 
-/// The context of a call, with the triangles that its rays skip.
+/// The context of a call, with what its rays do not see.
 struct Context {
-    RTCIntersectContext base; // first, because Embree hands its address to the filter
-    const TriangleId* skip;   // indexed by the rays' ids; null where no ray skips any
+    RTCIntersectContext base;  // first, because Embree hands its address to the filter
+    const Exclusions* without; // of the rays of the task; null where they see everything
+    size_t first;              // the ray among them whose id is 0
+    const Soup* soup;
 
-    explicit Context(const TriangleId* skipped);
+    Context(const Exclusions* excluded, size_t first_ray, const Soup& of);
+
+    bool counts(size_t ray, const Hit& hit) const {
+        if (!without->skip.empty() && without->skip[ray] == hit.id)
+            return false;
+        const RaySieve sieve = without->sieves[ray];
+        if (!sees(sieve.mask, soup->chunks[hit.id.mesh].mask()))
+            return false;
+        uint8_t keep = 1;
+        return !sieve.filter ||
+               (sieve.filter->keep({&sieve.name, 1}, {&hit, 1}, {&keep, 1}) && keep);
+    }
 };
 
-void refuse_skipped(const RTCFilterFunctionNArguments* a) {
-    const TriangleId* skips = reinterpret_cast<const Context*>(a->context)->skip;
+void refuse_excluded(const RTCFilterFunctionNArguments* a) {
+    const Context& context = *reinterpret_cast<const Context*>(a->context);
     for (unsigned i = 0; i < a->N; ++i) {
-        const TriangleId skip = skips[RTCRayN_id(a->ray, a->N, i)];
-        if (a->valid[i] && RTCHitN_geomID(a->hit, a->N, i) == skip.mesh &&
-            RTCHitN_primID(a->hit, a->N, i) == skip.prim)
+        const Hit hit{RTCRayN_tfar(a->ray, a->N, i),
+                      RTCHitN_u(a->hit, a->N, i),
+                      RTCHitN_v(a->hit, a->N, i),
+                      {RTCHitN_geomID(a->hit, a->N, i), RTCHitN_primID(a->hit, a->N, i)}};
+        if (a->valid[i] && !context.counts(context.first + RTCRayN_id(a->ray, a->N, i), hit))
             a->valid[i] = 0;
     }
 }
 
-Context::Context(const TriangleId* skipped) : skip(skipped) {
+Context::Context(const Exclusions* excluded, size_t first_ray, const Soup& of)
+    : without(excluded), first(first_ray), soup(&of) {
     rtcInitIntersectContext(&base);
-    if (skip)
-        base.filter = refuse_skipped;
+    if (without)
+        base.filter = refuse_excluded;
 }
 
 /// Returns false for rays that fail Embree's assertions: NaN, an empty range, numbers beyond its
@@ -87,11 +103,14 @@ class Block {
 public:
     static constexpr size_t kRays = 256;
 
-    /// skips: null, or a triangle for each ray; must stay until the rays are traced.
-    void load(std::span<const Ray> rays, const TriangleId* skips) {
+    explicit Block(const Soup& soup) : soup_(soup) {}
+
+    /// without: must stay until the rays are traced.
+    void load(std::span<const Ray> rays, const Exclusions& without) {
         assert(rays.size() <= kRays);
         count_ = rays.size();
-        skips_ = skips;
+        without_ = &without;
+        sees_all_ = without.skip.empty() && without.sieves.pass_all();
         valid_.fill(0);
         for (size_t i = 0; i < count_; ++i)
             put(i, rays[i]);
@@ -138,7 +157,7 @@ private:
     template <class Call>
     void call(RTCScene scene, const Call& ask) {
         for (size_t i = 0; i < count_; i += N) {
-            Context context(skips_ ? skips_ + i : nullptr);
+            Context context(sees_all_ ? nullptr : without_, i, soup_);
             context.base.flags = Calls<N>::kFlags;
             ask(scene, context, &valid_[i], queries_[i / N]);
         }
@@ -146,7 +165,9 @@ private:
 
     std::array<typename Calls<N>::Query, kRays / N> queries_;
     alignas(64) std::array<int, kRays> valid_;
-    const TriangleId* skips_ = nullptr;
+    const Soup& soup_;
+    const Exclusions* without_ = nullptr;
+    bool sees_all_ = true;
     size_t count_ = 0;
 };
 
@@ -167,7 +188,7 @@ const char* words_of(EmbreeMode mode) {
 class EmbreeBackend final : public Backend {
 public:
     EmbreeBackend(const Soup& soup, EmbreeMode mode)
-        : mode_(mode), device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+        : soup_(soup), mode_(mode), device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
         const Stopwatch watch;
         rtcSetSceneBuildQuality(scene_, mode == EmbreeMode::Medium ? RTC_BUILD_QUALITY_MEDIUM
                                                                    : RTC_BUILD_QUALITY_HIGH);
@@ -197,21 +218,21 @@ public:
                                  code == RTC_ERROR_OUT_OF_MEMORY ? ", out of memory" : "")};
     }
 
-    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> intersect(std::span<const Ray> rays, const Exclusions& without,
                            std::span<Hit> hits) override {
         assert(hits.size() == rays.size());
         const auto find = [&](auto& block) { block.find_nearest(scene_); };
-        for_each(rays, skip, find,
+        for_each(rays, without, find,
                  [&](auto& block, size_t i, size_t at) { hits[i] = block.nearest(at); });
         statistics_.nearest_rays += rays.size();
         return Done{};
     }
 
-    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> occluded(std::span<const Ray> rays, const Exclusions& without,
                           std::span<uint8_t> occluded) override {
         assert(occluded.size() == rays.size());
         const auto find = [&](auto& block) { block.find_any(scene_); };
-        for_each(rays, skip, find,
+        for_each(rays, without, find,
                  [&](auto& block, size_t i, size_t at) { occluded[i] = block.any(at); });
         statistics_.occlusion_rays += rays.size();
         return Done{};
@@ -242,30 +263,31 @@ private:
     /// Calls find(block), which asks Embree, for all rays in blocks, then tell(block, i, at) for
     /// each ray i, whose answer is in the block's place `at`.
     template <class Find, class Tell>
-    void for_each(std::span<const Ray> rays, std::span<const TriangleId> skip, const Find& find,
+    void for_each(std::span<const Ray> rays, const Exclusions& without, const Find& find,
                   const Tell& tell) {
-        assert(skip.empty() || skip.size() == rays.size());
+        assert(without.are_for(rays.size()) && without.after.empty());
         const Stopwatch watch;
         if (mode_ == EmbreeMode::Packets)
-            for_each_block<16>(rays, skip, find, tell);
+            for_each_block<16>(rays, without, find, tell);
         else
-            for_each_block<1>(rays, skip, find, tell);
+            for_each_block<1>(rays, without, find, tell);
         statistics_.seconds_trace += watch.seconds();
     }
 
     template <unsigned N, class Find, class Tell>
-    void for_each_block(std::span<const Ray> rays, std::span<const TriangleId> skip,
-                        const Find& find, const Tell& tell) {
+    void for_each_block(std::span<const Ray> rays, const Exclusions& without, const Find& find,
+                        const Tell& tell) {
         constexpr size_t most = Block<N>::kRays;
         const Stopwatch call;
         std::atomic<double> inside = 0, all = 0; // seconds of all threads together
         parallel_for((rays.size() + most - 1) / most, 1, [&](size_t first, size_t last) {
             const Stopwatch task;
-            Block<N> block;
+            Block<N> block(soup_);
             for (size_t b = first; b < last; ++b) {
                 const size_t from = b * most;
                 const size_t count = std::min(most, rays.size() - from);
-                block.load(rays.subspan(from, count), skip.empty() ? nullptr : &skip[from]);
+                const Exclusions part = without.subspan(from, count);
+                block.load(rays.subspan(from, count), part);
                 const Stopwatch watch;
                 find(block);
                 inside += watch.seconds();
@@ -279,6 +301,7 @@ private:
             statistics_.seconds_kernel += call.seconds() * inside / all;
     }
 
+    const Soup& soup_;
     EmbreeMode mode_;
     RTCDevice device_;
     RTCScene scene_;

@@ -29,10 +29,29 @@ static const ovc_ray* as_abi(std::span<const Ray> rays) {
     return reinterpret_cast<const ovc_ray*>(rays.data());
 }
 
-static ovc_query query_of(std::span<const TriangleId> skip) {
+/// Asks a HitFilter, which is the user of the C function.
+static int ask_filter(void* user, size_t count, const uint64_t* rays, const ovc_hit* hits,
+                      uint8_t* keep) {
+    HitFilter& filter = *static_cast<HitFilter*>(user);
+    return filter.keep({rays, count}, {reinterpret_cast<const Hit*>(hits), count}, {keep, count})
+               ? 0
+               : 1;
+}
+
+/// Returns the query for what is excluded. The library names rays as Sieves do by default.
+static ovc_query query_of(const Exclusions& without) {
+    const auto pointer = [](auto array) { return array.empty() ? nullptr : array.data(); };
+    const Sieves& sieves = without.sieves;
+    assert(sieves.filters.size() <= 1); // one for all rays of a call
     ovc_query query{};
     query.struct_size = sizeof(query);
-    query.skip = skip.empty() ? nullptr : reinterpret_cast<const ovc_triangle*>(skip.data());
+    query.skip = reinterpret_cast<const ovc_triangle*>(pointer(without.skip));
+    query.after = reinterpret_cast<const ovc_hit*>(pointer(without.after));
+    query.masks = pointer(sieves.masks);
+    if (!sieves.filters.empty() && sieves.filters[0]) {
+        query.filter = ask_filter;
+        query.filter_user = sieves.filters[0];
+    }
     return query;
 }
 
@@ -45,7 +64,9 @@ public:
 
     void push(const StreamRays& rays) override {
         assert(rays.tokens.size() == rays.rays.size());
-        const ovc_query query = query_of(rays.skip);
+        Exclusions without(rays.skip, rays.after);
+        without.sieves = {rays.masks, rays.filters, rays.tokens};
+        const ovc_query query = query_of(without);
         refused_ = refused_ || api_.push(stream_, ovc::as_abi(rays.rays), rays.tokens.data(),
                                          rays.rays.size(), rays.any_hit, &query) != OVC_OK;
     }
@@ -85,6 +106,7 @@ static ovc_mesh mesh_of(const Chunk& chunk) {
         mesh.origin[axis] = chunk.origin()[axis];
     if (chunk.transform())
         mesh.transform = chunk.transform()->rows[0].data();
+    mesh.mask = chunk.mask();
     mesh.flags = OVC_MESH_SHARED; // instances of a mesh point to the same corners, and share pages
     return mesh;
 }
@@ -97,15 +119,15 @@ public:
           scene_(std::move(scene)),
           saves_(saves) {}
 
-    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> intersect(std::span<const Ray> rays, const Exclusions& without,
                            std::span<Hit> hits) override {
-        return intersect_noted(rays, skip, hits, {});
+        return intersect_noted(rays, without, hits, {});
     }
 
-    Result<Done> intersect_noted(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> intersect_noted(std::span<const Ray> rays, const Exclusions& without,
                                  std::span<Hit> hits, const RayNotes& notes) override {
-        assert(hits.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
-        ovc_query query = query_of(skip);
+        assert(hits.size() == rays.size() && without.are_for(rays.size()));
+        ovc_query query = query_of(without);
         query.leaf = notes.leaf.empty() ? nullptr : notes.leaf.data();
         query.passes = notes.passes.empty() ? nullptr : notes.passes.data();
         query.flagged = notes.flagged.empty() ? nullptr : notes.flagged.data();
@@ -113,10 +135,10 @@ public:
                                                reinterpret_cast<ovc_hit*>(hits.data()), &query));
     }
 
-    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> occluded(std::span<const Ray> rays, const Exclusions& without,
                           std::span<uint8_t> occluded) override {
-        assert(occluded.size() == rays.size() && (skip.empty() || skip.size() == rays.size()));
-        const ovc_query query = query_of(skip);
+        assert(occluded.size() == rays.size() && without.are_for(rays.size()));
+        const ovc_query query = query_of(without);
         return device_.checked(
             api().occluded(scene_.get(), as_abi(rays), rays.size(), occluded.data(), &query));
     }

@@ -21,8 +21,7 @@ public:
     Scripted(std::string name, uint32_t prim, std::vector<std::string>& calls)
         : name_(std::move(name)), prim_(prim), calls_(calls) {}
 
-    Result<Done> intersect(std::span<const Ray>, std::span<const TriangleId>,
-                           std::span<Hit> hits) override {
+    Result<Done> intersect(std::span<const Ray>, const Exclusions&, std::span<Hit> hits) override {
         calls_.push_back(name_);
         for (Hit& hit : hits)
             hit = {1, 0, 0, {0, prim_}};
@@ -32,8 +31,7 @@ public:
         statistics_.seconds_kernel += 0.25;
         return Done{};
     }
-    Result<Done> occluded(std::span<const Ray>, std::span<const TriangleId>,
-                          std::span<uint8_t>) override {
+    Result<Done> occluded(std::span<const Ray>, const Exclusions&, std::span<uint8_t>) override {
         return Error{name_ + " does not do that"};
     }
     ovc_statistics statistics() const override { return statistics_; }
@@ -89,16 +87,14 @@ TEST_F(RunContenders, TakeTurns) {
 /// Works for 20 ms on a CPU and sleeps for 200 ms, as if other programs had taken the CPU.
 class Interrupted final : public Backend {
 public:
-    Result<Done> intersect(std::span<const Ray>, std::span<const TriangleId>,
-                           std::span<Hit>) override {
+    Result<Done> intersect(std::span<const Ray>, const Exclusions&, std::span<Hit>) override {
         const double begin = process_cpu_seconds();
         while (process_cpu_seconds() < begin + 0.02) {
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(200));
         return Done{};
     }
-    Result<Done> occluded(std::span<const Ray>, std::span<const TriangleId>,
-                          std::span<uint8_t>) override {
+    Result<Done> occluded(std::span<const Ray>, const Exclusions&, std::span<uint8_t>) override {
         return Done{};
     }
     ovc_statistics statistics() const override { return {}; }

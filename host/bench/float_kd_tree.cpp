@@ -170,17 +170,17 @@ public:
         statistics_.triangles = soup.triangle_count();
     }
 
-    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> intersect(std::span<const Ray> rays, const Exclusions& without,
                            std::span<Hit> hits) override {
-        for_each(rays, skip, [&](size_t i, TriangleId s) {
+        for_each(rays, without.skip, [&](size_t i, TriangleId s) {
             hits[i] = tree_.trace</* kAnyHit= */ false>(rays[i], s);
         });
         statistics_.nearest_rays += rays.size();
         return Done{};
     }
-    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> occluded(std::span<const Ray> rays, const Exclusions& without,
                           std::span<uint8_t> occluded) override {
-        for_each(rays, skip, [&](size_t i, TriangleId s) {
+        for_each(rays, without.skip, [&](size_t i, TriangleId s) {
             occluded[i] = tree_.trace</* kAnyHit= */ true>(rays[i], s).is_hit();
         });
         statistics_.occlusion_rays += rays.size();

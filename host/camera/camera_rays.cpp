@@ -65,7 +65,8 @@ void CameraRays::make(uint64_t first, size_t count, RayList<Path>& paths) const 
             const Place at = place(first + i);
             paths.rays[before + i] = pinhole_.ray(at.x, at.y, at.within);
             paths.skip[before + i] = TriangleId();
-            paths.purposes[before + i] = {at.pixel, at.sample, 0, RayKind::Camera, vec3(1), 0};
+            paths.purposes[before + i] = {at.pixel, at.sample, 0, RayKind::Camera,
+                                          false,    vec3(1),   0};
         }
     });
 }

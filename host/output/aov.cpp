@@ -5,6 +5,7 @@
 #include "core/system/parallel.h"
 #include "core/text/suggestion.h"
 #include "host/camera/camera.h"
+#include "host/render/sight.h"
 #include "host/shade/shade.h"
 
 #include <fmt/format.h>
@@ -111,6 +112,8 @@ Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Pinhole& camera,
     Layers layers(aovs, pixels);
     std::vector<Ray> rays;
     std::vector<Hit> hits;
+    const Sight sight(scene);
+    std::vector<uint32_t> masks;
     for (size_t start = 0; start < pixels; start += kBatchRays) {
         rays.resize(std::min(kBatchRays, pixels - start));
         hits.resize(rays.size());
@@ -118,8 +121,10 @@ Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Pinhole& camera,
             for (size_t i = first; i < last; ++i)
                 rays[i] = camera.ray(uint32_t((start + i) % width), uint32_t((start + i) / width));
         });
+        Exclusions without;
+        without.sieves = sight.of_camera(rays.size(), masks);
         if (const Result<Done> done =
-                backend.intersect_noted(rays, {}, hits, layers.notes(start, rays.size()));
+                backend.intersect_noted(rays, without, hits, layers.notes(start, rays.size()));
             !done)
             return done.error();
         parallel_for(rays.size(), kLayerGrain, [&](size_t first, size_t last) {

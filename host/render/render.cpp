@@ -142,11 +142,12 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
     const ImageSize whole{film.width(), film.height()};
     const Pinhole pinhole(camera, options.part.value_or(PicturePart{whole, 0, 0, whole}));
     const std::unique_ptr<Integrator> integrator = make_integrator(scene, camera, options);
+    const Sight sight(scene);
     const size_t lights = scene.lights.size();
     const auto trace = [&](const CameraRays& rays, const RenderObserver& watch_it, Film& to) {
         return options.mode == RenderMode::Mixed
-                   ? render_mixed(*integrator, lights, rays, backend, watch_it, to)
-                   : render_batched(*integrator, lights, rays, backend, options.batch_rays,
+                   ? render_mixed(*integrator, lights, rays, sight, backend, watch_it, to)
+                   : render_batched(*integrator, lights, rays, sight, backend, options.batch_rays,
                                     watch_it, to);
     };
     const bool is_adaptive = options.antialias && film.pixels_done() == 0;

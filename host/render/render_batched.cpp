@@ -26,9 +26,11 @@ constexpr uint64_t kMinBatches = 8;
 /// time.
 class Work {
 public:
-    Work(const CameraRays& camera, Backend& backend, const RenderObserver& observe,
-         const Film& film)
-        : camera_(camera), backend_(backend), observe_(observe), film_(film) {}
+    Work(const CameraRays& camera, const Sight& sight, Backend& backend,
+         const RenderObserver& observe, const Film& film)
+        : camera_(camera), sight_(sight), backend_(backend), observe_(observe), film_(film) {}
+
+    const Sight& sight() const { return sight_; }
 
     /// Makes the next camera rays, at most `most`. Returns false where none are left.
     bool begin(size_t most, RayList<Path>& paths) {
@@ -71,6 +73,7 @@ public:
 
 private:
     const CameraRays& camera_;
+    const Sight& sight_;
     Backend& backend_;
     const RenderObserver& observe_;
     const Film& film_;
@@ -106,8 +109,9 @@ private:
         for (const Path& path : now_.purposes)
             rays.count(path.kind);
         hits_.resize(now_.size());
+        const Exclusions without = excluded(now_);
         return trace(
-            rays, [&](Backend& backend) { return backend.intersect(now_.rays, now_.skip, hits_); });
+            rays, [&](Backend& backend) { return backend.intersect(now_.rays, without, hits_); });
     }
 
     bool shade() {
@@ -134,8 +138,9 @@ private:
 
     bool arrive() {
         occluded_.resize(shadows_.size());
+        const Exclusions without = excluded(shadows_);
         if (!trace({.shadow = shadows_.size()}, [&](Backend& backend) {
-                return backend.occluded(shadows_.rays, shadows_.skip, occluded_);
+                return backend.occluded(shadows_.rays, without, occluded_);
             }))
             return false;
         shading_.arrive(shadows_.purposes, occluded_);
@@ -145,12 +150,21 @@ private:
 
     bool pass() {
         shadow_hits_.resize(shadows_.size());
+        const Exclusions without = excluded(shadows_);
         if (!trace({.shadow = shadows_.size()}, [&](Backend& backend) {
-                return backend.intersect(shadows_.rays, shadows_.skip, shadow_hits_);
+                return backend.intersect(shadows_.rays, without, shadow_hits_);
             }))
             return false;
         shading_.pass(shadows_, shadow_hits_);
         return true;
+    }
+
+    /// Returns what the rays do not see; its masks lie in masks_.
+    template <class Purpose>
+    Exclusions excluded(const RayList<Purpose>& rays) {
+        Exclusions without(rays.skip);
+        without.sieves = work_.sight().of(rays.purposes, masks_);
+        return without;
     }
 
     template <class Ask>
@@ -183,16 +197,17 @@ private:
     std::vector<Hit> hits_;
     std::vector<Hit> shadow_hits_;
     std::vector<uint8_t> occluded_;
+    std::vector<uint32_t> masks_;
 };
 
 } // namespace
 
 Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
-                                    const CameraRays& camera, Backend& backend, size_t batch_rays,
-                                    const RenderObserver& observe, Film& film) {
+                                    const CameraRays& camera, const Sight& sight, Backend& backend,
+                                    size_t batch_rays, const RenderObserver& observe, Film& film) {
     const uint64_t wanted = std::min(camera.size() / kMinBatches + 1, kRaysACore * thread_count());
     const size_t batch = size_t(std::min<uint64_t>(batch_rays, wanted));
-    Work work(camera, backend, observe, film);
+    Work work(camera, sight, backend, observe, film);
     std::vector<std::future<void>> lanes(thread_count() == 1 ? 1 : 2);
     for (std::future<void>& lane : lanes)
         lane = std::async(std::launch::async,

@@ -5,13 +5,14 @@
 
 #include "host/camera/camera_rays.h"
 #include "host/render/render.h"
+#include "host/render/sight.h"
 
 namespace ovc {
 
 /// Renders the camera's rays onto the film. lights: the number of lights, each of which may ask for
 /// a shadow ray at every hit. batch_rays: at least 1. The report lacks `seconds` and `seconds_cpu`.
 Result<RenderReport> render_batched(const Integrator& integrator, size_t lights,
-                                    const CameraRays& camera, Backend& backend, size_t batch_rays,
-                                    const RenderObserver& observe, Film& film);
+                                    const CameraRays& camera, const Sight& sight, Backend& backend,
+                                    size_t batch_rays, const RenderObserver& observe, Film& film);
 
 } // namespace ovc

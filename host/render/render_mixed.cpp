@@ -26,7 +26,8 @@ struct UnderWay {
 template <class Purpose>
 class RaysUnderWay {
 public:
-    RaysUnderWay(uint64_t kind, bool any_hit) : kind_(kind << 32), any_hit_(any_hit) {}
+    RaysUnderWay(uint64_t kind, bool any_hit, const Sight& sight)
+        : kind_(kind << 32), any_hit_(any_hit), sight_(sight) {}
 
     bool has(uint64_t token) const { return (token & kKindBits) == kind_; }
 
@@ -39,7 +40,8 @@ public:
                 tokens_[i] = kind_ | taken[i];
             }
         });
-        stream.push({any_hit_, rays.rays, rays.skip, tokens_});
+        const Sieves sieves = sight_.of(rays.purposes, masks_);
+        stream.push({any_hit_, rays.rays, rays.skip, tokens_, {}, sieves.masks, sieves.filters});
     }
 
     /// Writes the rays that these tokens stand for, and frees their slots.
@@ -61,19 +63,22 @@ private:
 
     const uint64_t kind_;
     const bool any_hit_;
+    const Sight& sight_;
     Slots<UnderWay<Purpose>> slots_;
     std::vector<uint64_t> tokens_;
+    std::vector<uint32_t> masks_;
 };
 
 class MixedRenderer final : public StreamHost {
 public:
     MixedRenderer(const Integrator& integrator, size_t lights, const CameraRays& camera,
-                  const RenderObserver& observe, Film& film)
+                  const Sight& sight, const RenderObserver& observe, Film& film)
         : camera_(camera),
           observe_(observe),
           film_(film),
           shading_(integrator, lights, film),
-          shadows_(1, /* any_hit= */ !integrator.light_may_pass()) {}
+          paths_(0, /* any_hit= */ false, sight),
+          shadows_(1, /* any_hit= */ !integrator.light_may_pass(), sight) {}
 
     Result<RenderReport> render(Backend& backend) {
         const Stopwatch watch;
@@ -170,7 +175,7 @@ private:
     Film& film_;
     Shading shading_;
     uint64_t begun_ = 0; // camera rays
-    RaysUnderWay<Path> paths_{0, /* any_hit= */ false};
+    RaysUnderWay<Path> paths_;
     RaysUnderWay<Shadow> shadows_;
     RenderReport report_;
     // These buffers of one call are kept so that they are allocated once.
@@ -184,9 +189,9 @@ private:
 } // namespace
 
 Result<RenderReport> render_mixed(const Integrator& integrator, size_t lights,
-                                  const CameraRays& camera, Backend& backend,
+                                  const CameraRays& camera, const Sight& sight, Backend& backend,
                                   const RenderObserver& observe, Film& film) {
-    return MixedRenderer(integrator, lights, camera, observe, film).render(backend);
+    return MixedRenderer(integrator, lights, camera, sight, observe, film).render(backend);
 }
 
 } // namespace ovc

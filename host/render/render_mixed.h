@@ -5,12 +5,13 @@
 
 #include "host/camera/camera_rays.h"
 #include "host/render/render.h"
+#include "host/render/sight.h"
 
 namespace ovc {
 
 /// Does the same as render_batched(), to the same bits on the film.
 Result<RenderReport> render_mixed(const Integrator& integrator, size_t lights,
-                                  const CameraRays& camera, Backend& backend,
+                                  const CameraRays& camera, const Sight& sight, Backend& backend,
                                   const RenderObserver& observe, Film& film);
 
 } // namespace ovc

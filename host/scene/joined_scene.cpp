@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Appends scene after scene. Indices of materials and meshes move by the number that was there.
+// Appends scene after scene. Indices of materials, meshes and cutouts move by the number that was
+// there.
 #include "host/scene/joined_scene.h"
 
 #include <fmt/format.h>
@@ -34,12 +35,17 @@ public:
         take_gamma(scene, next.name);
         const auto materials = uint32_t(all_.materials.size());
         const auto meshes = uint32_t(all_.meshes.size());
+        const auto cutouts = uint32_t(all_.cutouts.size());
+        const auto move = [](uint32_t& index, uint32_t by) { index += index == kNone ? 0 : by; };
         for (MeshInfo& mesh : scene.meshes) {
             mesh.material += materials;
-            if (mesh.normals_from != kNone)
-                mesh.normals_from += meshes;
+            move(mesh.normals_from, meshes);
+            move(mesh.uv_from, meshes);
+            move(mesh.cutout, cutouts);
+            move(mesh.shadow_cutout, cutouts);
         }
         append(all_.materials, scene.materials);
+        append(all_.cutouts, scene.cutouts);
         append(all_.meshes, scene.meshes);
         append(all_.soup.chunks, scene.soup.chunks);
         append(all_.lights, scene.lights);

@@ -22,6 +22,7 @@ struct Path {
     uint32_t sample;  // the number of the pixel's camera ray that led here
     uint16_t depth;   // surfaces that the path left on its way here
     RayKind kind;     // how it left the last one
+    bool reflected;   // some surface has reflected it; what has no_image is seen then
     vec3 weight;      // the pixel's share of the light at the ray's end
     float density;    // path tracing: the density of its direction, by solid angle; 0: no other was
                       // possible

@@ -50,9 +50,7 @@ static bool passes(const Material& material, bool may_be_bent) {
 
 static bool light_passes(const Scene& scene, bool has_lights) {
     return std::any_of(scene.materials.begin(), scene.materials.end(),
-                       [&](const Material& m) { return passes(m, has_lights); }) ||
-           (has_lights && std::any_of(scene.meshes.begin(), scene.meshes.end(),
-                                      [](const MeshInfo& m) { return m.no_shadow; }));
+                       [&](const Material& m) { return passes(m, has_lights); });
 }
 
 PathTracer::PathTracer(const Scene& scene, const vec3& up, const PathTracerOptions& options)
@@ -141,8 +139,13 @@ void PathTracer::light_up(const Met& met, double choice, const dvec2& u, Film& f
 void PathTracer::go_on(const Met& met, const Scattered& scattered, const vec3& weight,
                        Sides& sides) const {
     const Path& from = met.path;
-    Path path{from.pixel,      from.sample, uint16_t(from.depth + 1),
-              RayKind::Bounce, weight,      float(scattered.density)};
+    Path path{from.pixel,
+              from.sample,
+              uint16_t(from.depth + 1),
+              RayKind::Bounce,
+              /* reflected= */ true,
+              weight,
+              float(scattered.density)};
     if (scattered.density > 0) {
         Ray ray;
         ray.org = met.surface.position;
@@ -157,6 +160,7 @@ void PathTracer::go_on(const Met& met, const Scattered& scattered, const vec3& w
         sides.mirrored.push(mirror_ray(met.ray, met.surface), met.hit.id, path);
         return;
     }
+    path.reflected = from.reflected;
     if (met.bsdf.is_straight()) { // the direction is still the one that was chosen
         path.density = from.density;
         path.behind = float(met.distance);
@@ -169,11 +173,8 @@ void PathTracer::go_on(const Met& met, const Scattered& scattered, const vec3& w
 bool PathTracer::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
     const SurfacePoint surface = surface_point(scene_, ray, hit);
     const bool is_light = shadow.light != kNone;
-    if (!is_light || !scene_.meshes[hit.id.mesh].no_shadow) {
-        const bool ends =
-            !passes(*surface.material, is_light) || shadow.passed >= options_.max_depth;
-        shadow.arriving *= ends ? vec3(0) : Bsdf(surface).through();
-    }
+    const bool ends = !passes(*surface.material, is_light) || shadow.passed >= options_.max_depth;
+    shadow.arriving *= ends ? vec3(0) : Bsdf(surface).through();
     ++shadow.passed;
     const dvec3 there = ray.dir;
     ray = is_light ? shadow_ray(scene_.lights[shadow.light], surface.beyond)

@@ -31,9 +31,7 @@ static vec3 light_through(const SurfacePoint& surface) {
 
 static bool lets_light_through(const Scene& scene) {
     return std::any_of(scene.materials.begin(), scene.materials.end(),
-                       [](const Material& m) { return m.transmission > 0; }) ||
-           std::any_of(scene.meshes.begin(), scene.meshes.end(),
-                       [](const MeshInfo& m) { return m.no_shadow; });
+                       [](const Material& m) { return m.transmission > 0; });
 }
 
 void tell_simplifications(const Scene& scene, std::span<const Light> lights,
@@ -94,9 +92,10 @@ Whitted::Met Whitted::meet(const Ray& ray, const Path& path, const Hit& hit,
         if (path.depth >= max_depth_ || max_component(weight) < kMinWeight)
             return;
         met.weight -= path.weight * taken;
-        spawned.paths.push(
-            child(), hit.id,
-            {path.pixel, path.sample, uint16_t(path.depth + deeper), kind, weight, path.density});
+        const bool reflected = path.reflected || kind == RayKind::Reflection;
+        spawned.paths.push(child(), hit.id,
+                           {path.pixel, path.sample, uint16_t(path.depth + deeper), kind, reflected,
+                            weight, path.density});
     };
     follow(parts.mirror, parts.taken_by_mirror, RayKind::Reflection, 1,
            [&] { return mirror_ray(ray, met.surface); });
@@ -121,11 +120,9 @@ void Whitted::light_up(const Light& light, uint32_t number, const Met& met, Film
 
 bool Whitted::pass(const Hit& hit, Ray& ray, Shadow& shadow) const {
     const SurfacePoint glass = surface_point(scene_, ray, hit);
-    if (!scene_.meshes[hit.id.mesh].no_shadow) {
-        shadow.arriving *= light_through(glass);
-        if (max_component(shadow.arriving) < kMinShadow)
-            shadow.arriving = vec3(0);
-    }
+    shadow.arriving *= light_through(glass);
+    if (max_component(shadow.arriving) < kMinShadow)
+        shadow.arriving = vec3(0);
     ++shadow.passed;
     const dvec3 there = ray.dir;
     ray = shadow_ray(scene_.lights[shadow.light], glass.beyond);

@@ -217,14 +217,14 @@ TEST(Whitted, BatchSizeDoesNotChangeAPixelThroughSplittingRays) {
 class CountingBackend final : public Backend {
 public:
     explicit CountingBackend(const Soup& soup) : cpu_(make_cpu_backend(soup)) {}
-    Result<Done> intersect(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> intersect(std::span<const Ray> rays, const Exclusions& without,
                            std::span<Hit> hits) override {
         most = std::max(most, rays.size());
-        return cpu_->intersect(rays, skip, hits);
+        return cpu_->intersect(rays, without, hits);
     }
-    Result<Done> occluded(std::span<const Ray> rays, std::span<const TriangleId> skip,
+    Result<Done> occluded(std::span<const Ray> rays, const Exclusions& without,
                           std::span<uint8_t> occluded) override {
-        return cpu_->occluded(rays, skip, occluded);
+        return cpu_->occluded(rays, without, occluded);
     }
     ovc_statistics statistics() const override { return {}; }
     std::string renderer() const override { return "none"; }
@@ -328,12 +328,10 @@ TEST(Whitted, SamplesSmoothEdgesAndAverageTheSameLight) {
 /// Answers no ray, like a lost device.
 class FailingBackend final : public Backend {
 public:
-    Result<Done> intersect(std::span<const Ray>, std::span<const TriangleId>,
-                           std::span<Hit>) override {
+    Result<Done> intersect(std::span<const Ray>, const Exclusions&, std::span<Hit>) override {
         return Error{"the device was lost"};
     }
-    Result<Done> occluded(std::span<const Ray>, std::span<const TriangleId>,
-                          std::span<uint8_t>) override {
+    Result<Done> occluded(std::span<const Ray>, const Exclusions&, std::span<uint8_t>) override {
         return Error{"the device was lost"};
     }
     ovc_statistics statistics() const override { return {}; }

@@ -78,7 +78,7 @@ TEST(PbrtMapping, MirrorGlassMetalAndHoles) {
     EXPECT_EQ(uber.transmission, 1);
     EXPECT_NEAR(uber.filter.x, 0.75f, 1e-6f);
     EXPECT_EQ(uber.ior, 1);
-    EXPECT_TRUE(scene_of(std::string("Material \"interface\"") + kMesh).meshes[0].no_shadow);
+    EXPECT_TRUE(scene_of(std::string("Material \"interface\"") + kMesh).meshes.empty());
 }
 
 TEST(PbrtMapping, SpectraBecomeTheirColors) {
@@ -161,7 +161,7 @@ TEST(PbrtMapping, AreaLightsSendOutTheirLight) {
     const Scene ball = scene_of(disk + "Shape \"sphere\"");
     for (const dvec3& at : {dvec3(10, 0, 0), dvec3(0, -10, 0), dvec3(0, 0, 10)})
         EXPECT_NEAR(sum(ball, at), 5 * kPi / 100, 0.005);
-    EXPECT_TRUE(ball.meshes[0].no_shadow);
+    EXPECT_EQ(ball.soup.chunks[0].mask(), kSeenByAll & ~kShadowsLights);
     EXPECT_EQ(ball.materials[ball.meshes[0].material].finish->ambient, vec3(5));
     // Many spheres become few lights with all of their light.
     std::string many;

@@ -33,7 +33,7 @@ struct Placed {
     dmat4 placed;
     bool inverse;
     uint32_t material;
-    bool no_shadow;
+    uint32_t seen_by;
 };
 
 /// The state that an object inherits from its parents.
@@ -43,7 +43,7 @@ struct Inherited {
     const Texture* texture = nullptr; // null: the scene's default
     dmat4 texture_placed{1};          // applied after the texture's own transformation
     const Interior* interior = nullptr;
-    bool no_shadow = false;
+    uint32_t seen_by = kSeenByAll;
     bool inverse = false;
 };
 
@@ -140,10 +140,6 @@ public:
         : look_(look), scene_(scene), materials_(look, scene) {}
 
     void gather(const Object& object, Inherited from) {
-        if (object.no_image && !gather_unseen) {
-            tell_all(object.notes, look_);
-            return;
-        }
         if (is_solid(object)) {
             add_solid(object, from);
             return;
@@ -151,18 +147,19 @@ public:
         inherit(object, from);
         if (const auto* light = std::get_if<LightSource>(&object.shape))
             add_light(*light, from.placed, scene_);
-        else if (!std::holds_alternative<std::monostate>(object.shape))
-            placed.push_back(
-                {&object, from.placed, from.inverse, material_of(from), from.no_shadow});
+        else if (!std::holds_alternative<std::monostate>(object.shape) && is_wanted(from.seen_by))
+            placed.push_back({&object, from.placed, from.inverse, material_of(from), from.seen_by});
         for (const ObjectPtr& child : object.children)
             gather(*child, from);
     }
 
     std::vector<Placed> placed;
     std::vector<Solid> solids;
-    bool gather_unseen = false; // whether objects with no_image are gathered too
+    bool gather_unseen = false; // whether objects that no ray sees are gathered too
 
 private:
+    bool is_wanted(uint32_t seen_by) const { return seen_by != 0 || gather_unseen; }
+
     void inherit(const Object& object, Inherited& from) {
         if (!object.refused.empty())
             throw ParseError(object.place, object.refused, object.caller);
@@ -172,7 +169,7 @@ private:
         from.placed = from.placed * object.placed;
         from.in_solid = from.in_solid * object.placed;
         from.interior = object.interior ? &*object.interior : from.interior;
-        from.no_shadow = from.no_shadow || object.no_shadow;
+        from.seen_by &= object.seen_by;
         from.inverse = from.inverse != object.inverse;
         // A short scene with groups of groups can place more objects than memory holds.
         if (++visited_ > look_.max_triangles / kTrianglesAnObject)
@@ -191,10 +188,10 @@ private:
         Solid solid;
         solid.object = &object;
         solid.placed = from.placed * object.placed;
-        solid.no_shadow = from.no_shadow || object.no_shadow;
+        solid.seen_by = from.seen_by & object.seen_by;
         from.in_solid = glm::inverse(object.placed);
         from.inverse = false; // the inverse of a whole solid has the same surface
-        if (gather_node(object, from, solid))
+        if (gather_node(object, from, solid) && is_wanted(solid.seen_by))
             solids.push_back(std::move(solid));
     }
 
@@ -408,7 +405,7 @@ void add_plane(const Placed& p, const dvec3& center, double reach, Scene& scene)
         corners.insert(corners.end(), {vec3(0), vec3(rim[i]), vec3(rim[(i + 1) % 4])});
     const uint32_t mesh =
         scene.add_mesh("plane", p.material, Chunk::owning(origin, std::move(corners)));
-    scene.meshes[mesh].no_shadow = p.no_shadow;
+    scene.show(mesh, p.seen_by);
 }
 
 /// Returns a box around the scene and the camera, which is never empty.
@@ -429,7 +426,8 @@ Box reach_of_solids(const Box& world) {
     return Box{world.center(), world.center()}.padded(kPlaneReach * reach_of(world));
 }
 
-using Batches = std::map<std::pair<uint32_t, bool>, Batch>;
+/// By the number of their material and the rays that see them.
+using Batches = std::map<std::pair<uint32_t, uint32_t>, Batch>;
 
 void add_solids(const std::vector<Solid>& solids, int segments, const Box& world,
                 const dvec3& origin, Batches& batches) {
@@ -449,8 +447,8 @@ void add_solids(const std::vector<Solid>& solids, int segments, const Box& world
                 for (const SolidPart& part : parts[i]) {
                     const Solid& solid = solids[number];
                     const Placed p{solid.object, solid.placed, false, material_of(solid, part.skin),
-                                   solid.no_shadow};
-                    add_corners(part.facets, p, origin, batches[{p.material, p.no_shadow}]);
+                                   solid.seen_by};
+                    add_corners(part.facets, p, origin, batches[{p.material, p.seen_by}]);
                 }
     }
 }
@@ -474,7 +472,7 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
             facets.corners.clear();
             facets.smooth = false;
             shape->cut(segments, p.object->open, facets);
-            add_corners(facets, p, origin, batches[{p.material, p.no_shadow}]);
+            add_corners(facets, p, origin, batches[{p.material, p.seen_by}]);
         }
     add_solids(gatherer.solids, segments, world_of(box, look), origin, batches);
     for (auto& [key, batch] : batches) {
@@ -489,7 +487,7 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
             scene.add_mesh(scene.materials[key.first].name, key.first,
                            Chunk::owning(origin, std::move(batch.corners)),
                            batch.smooth ? std::move(batch.normals) : std::vector<vec3>());
-        scene.meshes[mesh].no_shadow = key.second;
+        scene.show(mesh, key.second);
     }
 
     const Box world = world_of(box, look);
@@ -511,7 +509,7 @@ Box moved(const Box& box, const dmat4& by) {
 
 namespace {
 
-/// An object gathered by itself. no_image does not hide it.
+/// An object gathered by itself, whether any ray sees it or not.
 struct ObjectAlone {
     ObjectAlone(const Object& object, uint64_t max_triangles) {
         look.max_triangles = max_triangles;
@@ -548,7 +546,7 @@ CutObject cut_object(const Object& object, uint64_t max_triangles) {
     for (const Solid& solid : gatherer.solids)
         for (const SolidPart& part :
              evaluate(solid, segments, moved(reach, glm::inverse(solid.placed))))
-            add_finite(part.facets, {solid.object, solid.placed, false, 0, false}, cut.facets);
+            add_finite(part.facets, {solid.object, solid.placed, false, 0, kSeenByAll}, cut.facets);
     return cut;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/box.h"
+#include "core/scene.h"
 #include "importers/pov/shapes/facets.h"
 #include "importers/pov/values/value.h"
 
@@ -64,9 +65,8 @@ struct Object {
     dmat4 placed{1};                // from the object's own space to its parent's
     std::optional<Texture> texture; // none: the parent's
     std::optional<Interior> interior;
-    uint32_t depth = 1; // levels of objects within objects, as parts, clips or bounds
-    bool no_shadow = false;
-    bool no_image = false;
+    uint32_t depth = 1;            // levels of objects within objects, as parts, clips or bounds
+    uint32_t seen_by = kSeenByAll; // as no_shadow, no_image and no_reflection leave it
     bool inverse = false;
     bool open = false;
     bool has_inside = true; // false for a sheet, which cannot take anything away from a solid

@@ -353,7 +353,7 @@ TEST(PovScene, ReadsLightsCameraAndSettings) {
     EXPECT_EQ(material.finish->reflection, vec3(0.3f));
     EXPECT_NEAR(material.transmission, 0.5, 1e-6);
     EXPECT_EQ(material.ior, 1.4);
-    EXPECT_TRUE(scene->meshes[0].no_shadow);
+    EXPECT_EQ(scene->soup.chunks[0].mask(), kSeenByCamera | kSeenInReflections);
 }
 
 TEST(PovScene, GetsNoLightThatItDoesNotHave) {

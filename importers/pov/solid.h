@@ -27,7 +27,7 @@ struct SolidLeaf {
 struct Solid {
     const Object* object;
     dmat4 placed{1}; // from the solid's space to the world
-    bool no_shadow = false;
+    uint32_t seen_by = kSeenByAll;
     std::vector<csg::Node> nodes; // children before parents; the last is the root
     std::vector<SolidLeaf> leaves;
 };

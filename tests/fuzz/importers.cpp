@@ -89,7 +89,13 @@ Scene scene_with_everything() {
     scene.add_mesh("b", 1, Chunk::owning(dvec3(1e6, 0, 0.125), corners));
     scene.meshes[1].normals_from = 0;
     scene.meshes[1].turn = dmat3(2);
-    scene.meshes[1].no_shadow = true;
+    scene.show(1, kSeenByCamera);
+    scene.cutouts = {{.width = 2, .height = 1, .opacity = {0, 255}},
+                     {.width = 1, .height = 1, .opacity = {9}, .smooth = true}};
+    scene.meshes[0].cutout = 0;
+    scene.meshes[0].uv.assign(6, vec2(0.25f, 1));
+    scene.meshes[1].shadow_cutout = 1;
+    scene.meshes[1].uv_from = 0;
     scene.add_mesh("", 0, Chunk::owning(dvec3(0), {}));
     Light light;
     light.position = dvec3(1, 2, 3);

@@ -37,6 +37,8 @@ bool Interpreter::shape() {
 
 bool Interpreter::add_shape(Mesh mesh) {
     const GraphicsState& now = state_.now;
+    if (!now.emission && is_invisible(materials_.all()[now.material]))
+        return true; // no ray sees it
     triangles_ += mesh.size();
     if (triangles_ > options_.max_triangles)
         return diagnostics_.fail(

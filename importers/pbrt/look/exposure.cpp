@@ -90,8 +90,7 @@ float fitting_exposure(const Scene& scene) {
     for (size_t m = 0; m < scene.soup.chunks.size(); ++m) {
         const Chunk& chunk = scene.soup.chunks[m];
         const Material& material = scene.materials[scene.meshes[m].material];
-        const bool is_lit =
-            !scene.meshes[m].no_shadow && (!material.finish || material.finish->diffuse > 0);
+        const bool is_lit = !material.finish || material.finish->diffuse > 0;
         for (uint64_t p = (step - number % step) % step; is_lit && p < chunk.size(); p += step) {
             const Triangle t = chunk.triangle(uint32_t(p));
             const dvec3 middle = (t[0] + t[1] + t[2]) / 3.0;

@@ -123,7 +123,7 @@ void parse_light_source(Reader& reader, Object& object) {
     if (words.looks_like) {
         auto lamp = std::make_shared<Object>(*words.looks_like);
         place(*lamp, translation(light.position));
-        lamp->no_shadow = true;
+        lamp->seen_by &= ~uint32_t(kShadowsLights | kShadowsEmitters);
         object.children.push_back(lamp);
     }
     object.shape = source;

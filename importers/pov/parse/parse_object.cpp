@@ -176,14 +176,20 @@ bool parse_look(Reader& reader, Object& object) {
     return true;
 }
 
+/// Reads the flag of a word that hides the object from rays of these kinds.
+void parse_hiding(Reader& reader, Object& object, uint32_t kinds) {
+    object.seen_by = parse_flag(reader) ? object.seen_by & ~kinds : object.seen_by | kinds;
+}
+
 bool parse_switch(Reader& reader, Object& object) {
     const Token token = reader.peek();
     if (reader.take("no_shadow"))
-        object.no_shadow = parse_flag(reader);
-    else if (reader.take("no_image")) {
-        object.no_image = parse_flag(reader);
-        object.notes.push_back(make_note("no_image", token.place, "what has no_image is left out"));
-    } else if (reader.take("no_reflection") || reader.take("double_illuminate")) {
+        parse_hiding(reader, object, kShadowsLights | kShadowsEmitters);
+    else if (reader.take("no_image"))
+        parse_hiding(reader, object, kSeenByCamera);
+    else if (reader.take("no_reflection"))
+        parse_hiding(reader, object, kSeenInReflections);
+    else if (reader.take("double_illuminate")) {
         if (parse_flag(reader))
             object.notes.push_back(left_out("an object", token));
     } else if (reader.take("inverse"))
