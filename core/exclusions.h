@@ -16,6 +16,8 @@ namespace ovc {
 struct HitPlace {
     double t = -std::numeric_limits<double>::infinity(); // before all hits; so is NaN
     TriangleId id;
+    bool is_certain =
+        false; // it is known to be where the ray hits the triangle, so nobody need test
 
     HitPlace() = default;
     explicit HitPlace(const Hit& hit) : t(hit.t), id(hit.id) {}

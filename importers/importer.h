@@ -37,6 +37,8 @@ struct ImportOptions {
     std::optional<ImageSize> size = {};
     /// The version of POV-Ray's language that a scene is in until it names one itself.
     std::optional<double> pov_version = {};
+    /// Keeps texture coordinates in MeshInfo::uv. Only .ply has them so far.
+    bool texture_coordinates = false;
     /// Receives every file that is read or looked for in vain; may be null.
     FilesRead* files = nullptr;
 };

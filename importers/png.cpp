@@ -76,13 +76,17 @@ void decode(Reading& r) {
         png_colorp table = nullptr;
         int count = 0;
         png_get_PLTE(r.png, r.info, &table, &count);
+        png_bytep opacities = nullptr; // of the first few colors
+        int opacity_count = 0;
+        png_get_tRNS(r.png, r.info, &opacities, &opacity_count, nullptr);
         picture.indices.resize(picture.size());
         for (size_t i = 0; i < picture.size(); ++i) {
             const int index = r.rows[i / picture.width][i % picture.width];
             const png_color c = index < count ? table[index] : png_color{0, 0, 0};
             picture.indices[i] = uint8_t(index);
             picture.pixels[i] = {uint16_t(257 * c.red), uint16_t(257 * c.green),
-                                 uint16_t(257 * c.blue), 65535};
+                                 uint16_t(257 * c.blue),
+                                 uint16_t(index < opacity_count ? 257 * opacities[index] : 65535)};
         }
         return;
     }

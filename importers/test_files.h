@@ -108,6 +108,40 @@ inline ImportOptions gather(std::vector<std::string>& messages) {
     return options;
 }
 
+/// Returns the bytes of a PNG picture of 8 bits a sample whose rows `samples` holds. colors and
+/// opacities: of an indexed picture, 3 and 1 a color; else empty, and samples are RGBA.
+inline std::string png_of(uint8_t width, uint8_t height, const std::vector<uint8_t>& samples,
+                          const std::string& colors = {}, const std::string& opacities = {}) {
+    std::string file = "\x89PNG\r\n\x1a\n";
+    const auto number = [](uLong n) {
+        return std::string{char(n >> 24), char(n >> 16), char(n >> 8), char(n)};
+    };
+    const auto chunk = [&](const std::string& kind, const std::string& data) {
+        const std::string checked = kind + data;
+        file +=
+            number(uLong(data.size())) + checked +
+            number(crc32(0, reinterpret_cast<const Bytef*>(checked.data()), uInt(checked.size())));
+    };
+    const char type = colors.empty() ? 6 : 3;
+    chunk("IHDR", number(width) + number(height) + std::string{8, type, 0, 0, 0});
+    if (!colors.empty())
+        chunk("PLTE", colors);
+    if (!opacities.empty())
+        chunk("tRNS", opacities);
+    std::string rows;
+    const size_t stride = samples.size() / height;
+    for (size_t y = 0; y < height; ++y)
+        rows += '\0' + std::string(samples.begin() + ptrdiff_t(y * stride),
+                                   samples.begin() + ptrdiff_t((y + 1) * stride));
+    uLongf size = compressBound(uLong(rows.size()));
+    std::string packed(size, '\0');
+    compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+             reinterpret_cast<const Bytef*>(rows.data()), uLong(rows.size()));
+    chunk("IDAT", packed.substr(0, size));
+    chunk("IEND", "");
+    return file;
+}
+
 /// load() must come back, with a scene or with an error, on every beginning of the file and with
 /// any one bit changed.
 inline void survive_damage(const TestFolder& folder, const std::string& name) {

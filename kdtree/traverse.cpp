@@ -61,6 +61,7 @@ Hit intersect(const KdTree& tree, const Soup& soup, const Ray& ray, const Exclus
         if (!hit.is_hit() || sieve.passes_all() || counts(soup, sieve, hit))
             return hit;
         more.after = HitPlace(hit);
+        more.after.is_certain = true;
     }
 }
 

@@ -376,7 +376,7 @@ typedef struct ovc_statistics {
     /* + of `single_rays`, those that the GPU answered in batches; the CPU answered the others */
     uint64_t gathered_rays;
     /* + rays that doubles answered on the CPU, because too few waited for a page to be worth
-     * moving */
+     * moving, or too few went on behind hits that do not count to be worth a pass */
     uint64_t stragglers;
     /* of `triangles`, those that are packed: once for a mesh whose instances share pages */
     uint64_t unique_triangles;

@@ -25,7 +25,7 @@ Scene make(const std::string& name) {
     return std::move(*scene);
 }
 
-/// FNV-1a over 32-bit words: all corners, origins, and which material a mesh has.
+/// FNV-1a over 32-bit words: all corners, origins, holes, and which material a mesh has.
 class Hash {
 public:
     void add(uint32_t word) { value_ = (value_ ^ word) * 0x100000001b3u; }
@@ -50,7 +50,13 @@ uint64_t hash(const Scene& scene) {
         for (const vec3& corner : chunk.corners())
             for (int axis = 0; axis < 3; ++axis)
                 h.add(std::bit_cast<uint32_t>(corner[axis]));
+        for (const vec2& uv : scene.meshes[m].uv)
+            for (int axis = 0; axis < 2; ++axis)
+                h.add(std::bit_cast<uint32_t>(uv[axis]));
     }
+    for (const Cutout& cutout : scene.cutouts)
+        for (const uint8_t opacity : cutout.opacity)
+            h.add(uint32_t(opacity));
     return h.value();
 }
 
@@ -77,6 +83,8 @@ constexpr Sample kSamples[] = {
     {"glass", 41472, 0x13ff34bdbb2f366b},
     {"box", 30, 0xa3188fbfd523c5bc},
     {"far-terrain", 274160, 0xba45980e69015acb},
+    {"leaf-canopy", 200302, 0xb59ed3aa7c50d328},
+    {"leaf-canopy-modelled", 2200302, 0xff5776582d194cd6},
 };
 
 /// For the names of failing tests.

@@ -116,7 +116,9 @@ int ComparedHit::order_closely(const PreparedRay& p, Candidate& other, const Tri
 std::optional<Candidate> hit_at(const Ray& ray, const Triangle& triangle, const HitPlace& place) {
     const PreparedRay p(PreparedRay::behind(ray, place));
     const std::optional<Candidate> found = candidate(p, triangle, place.id);
-    const bool is_there = found && rounded_hit(p, triangle, place.id, found->support).t == place.t;
+    const bool is_there =
+        found &&
+        (place.is_certain || rounded_hit(p, triangle, place.id, found->support).t == place.t);
     return is_there ? found : std::nullopt;
 }
 

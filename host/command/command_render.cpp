@@ -81,6 +81,7 @@ struct RenderWords {
     std::string aov;
     std::string png_bits = "8";
     bool no_shadows = false;
+    bool no_cutouts = false;
     bool working_set = false;
     BackendArguments backend;
     std::string cache;
@@ -196,6 +197,7 @@ void RenderWords::add_light_to(CLI::App& app) {
     app.add_option("--png-bits", png_bits, "Bits a channel of .png files; default: 8")
         ->type_name(choice_names(kPngBits));
     app.add_flag("--no-shadows", no_shadows, "Lights shine through everything");
+    app.add_flag("--no-cutouts", no_cutouts, "Surfaces have no holes, whatever their pictures say");
 }
 
 void RenderWords::add_run_to(CLI::App& app) {
@@ -440,6 +442,7 @@ static Result<Done> understand_shading(const RenderWords& words, RenderJob& job)
         return integrator.error();
     job.render.integrator = IntegratorKind(*integrator);
     job.render.shadows = !words.no_shadows;
+    job.render.cutouts = !words.no_cutouts;
     if (isatty(STDERR_FILENO))
         job.render.batch_rays = kWatchedBatchRays;
     return Done{};

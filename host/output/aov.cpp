@@ -105,14 +105,13 @@ Result<Aovs> parse_aovs(std::string_view text) {
     }
 }
 
-Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Pinhole& camera, Backend& backend,
-                                      const Aovs& aovs) {
+Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Pinhole& camera, const Sight& sight,
+                                      Backend& backend, const Aovs& aovs) {
     const uint32_t width = camera.width();
     const size_t pixels = size_t(width) * camera.height();
     Layers layers(aovs, pixels);
     std::vector<Ray> rays;
     std::vector<Hit> hits;
-    const Sight sight(scene);
     std::vector<uint32_t> masks;
     for (size_t start = 0; start < pixels; start += kBatchRays) {
         rays.resize(std::min(kBatchRays, pixels - start));

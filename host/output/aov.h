@@ -7,6 +7,7 @@
 #include "host/backend/backend.h"
 #include "host/camera/camera.h"
 #include "host/output/output.h"
+#include "host/render/sight.h"
 
 #include <string_view>
 #include <vector>
@@ -33,7 +34,7 @@ Result<Aovs> parse_aovs(std::string_view text);
 /// Returns the layers, each with a word for each pixel. It traces one ray through the middle of
 /// each pixel, apart from those of the picture. Error: leaf, passes or flagged of a backend that
 /// has none.
-Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Pinhole& camera, Backend& backend,
-                                      const Aovs& aovs);
+Result<std::vector<Layer>> trace_aovs(const Scene& scene, const Pinhole& camera, const Sight& sight,
+                                      Backend& backend, const Aovs& aovs);
 
 } // namespace ovc

@@ -60,7 +60,8 @@ TEST(Aovs, OfAFileAreWhatEachPixelsRayHits) {
     const Camera camera = scene->camera.value_or(Camera{dvec3(3, 2, 6), dvec3(0)});
     const auto backend = make_cpu_backend(scene->soup);
     Aovs aovs{true, true, true};
-    const auto layers = trace_aovs(*scene, Pinhole(camera, kWidth, kHeight), *backend, aovs);
+    const auto layers =
+        trace_aovs(*scene, Pinhole(camera, kWidth, kHeight), Sight(*scene), *backend, aovs);
     ASSERT_TRUE(layers);
     ASSERT_EQ(layers->size(), 6u);
     const std::string path =
@@ -115,8 +116,8 @@ TEST(Aovs, LeafAndPassesAreRefusedByABackendWithoutLeaves) {
     const auto backend = make_cpu_backend(scene->soup);
     Aovs aovs;
     aovs.passes = true;
-    const auto layers =
-        trace_aovs(*scene, Pinhole(Camera{dvec3(3, 2, 6), dvec3(0)}, 4, 4), *backend, aovs);
+    const auto layers = trace_aovs(*scene, Pinhole(Camera{dvec3(3, 2, 6), dvec3(0)}, 4, 4),
+                                   Sight(*scene), *backend, aovs);
     ASSERT_FALSE(layers);
     EXPECT_EQ(layers.error().message,
               "leaf, passes and flagged can be told by --backend two-level alone");

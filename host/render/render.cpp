@@ -142,7 +142,7 @@ Result<RenderReport> render_picture(const Scene& scene, const Camera& camera, Ba
     const ImageSize whole{film.width(), film.height()};
     const Pinhole pinhole(camera, options.part.value_or(PicturePart{whole, 0, 0, whole}));
     const std::unique_ptr<Integrator> integrator = make_integrator(scene, camera, options);
-    const Sight sight(scene);
+    const Sight sight(scene, options.cutouts);
     const size_t lights = scene.lights.size();
     const auto trace = [&](const CameraRays& rays, const RenderObserver& watch_it, Film& to) {
         return options.mode == RenderMode::Mixed

@@ -28,6 +28,7 @@ struct RenderOptions {
     RenderMode mode = RenderMode::Auto;
     uint32_t max_depth = 5; // max surfaces that a path leaves
     bool shadows = true;
+    bool cutouts = true;                // surfaces have the holes that their pictures cut out
     uint64_t seed = 0;                  // of path tracing
     std::optional<Antialias> antialias; // none: the film's samples, evenly; else the film has 1
     std::optional<PicturePart> part;    // the film's part of the picture; none: all of it

@@ -171,7 +171,7 @@ private:
     uint64_t checksum_of_picture(const Shot& shot) const {
         ByteWriter view;
         view(shot.camera, *options_.part, options_.integrator, options_.max_depth, options_.shadows,
-             options_.seed, job_.backend.precision);
+             options_.cutouts, options_.seed, job_.backend.precision);
         if (const std::optional<Antialias>& how = options_.antialias)
             view(how->method, how->threshold, how->depth, how->jitter);
         Checksum sum;
@@ -251,7 +251,8 @@ private:
         contents.notes = notes_of(frame);
         if (job_.aovs.any()) {
             Result<std::vector<Layer>> traced =
-                trace_aovs(scene_, Pinhole(shot.camera, *options_.part), backend_, job_.aovs);
+                trace_aovs(scene_, Pinhole(shot.camera, *options_.part),
+                           Sight(scene_, options_.cutouts), backend_, job_.aovs);
             if (!traced)
                 return traced.error();
             contents.layers = std::move(*traced);

@@ -13,7 +13,7 @@ namespace ovc {
 namespace {
 
 /// The use that the reader has for a row's property.
-enum class Role : uint8_t { Skipped, Position, Normal, Indices };
+enum class Role : uint8_t { Skipped, Position, Normal, Texture, Indices };
 
 struct Column {
     PlyProperty property;
@@ -24,9 +24,21 @@ struct Column {
 struct Layout {
     std::vector<Column> columns;
     bool has_normals = false;
+    bool has_uv = false;
 };
 
-Layout vertex_layout(const PlyElement& element) {
+/// Returns the numbers of the properties of a vertex that are its texture coordinates, whose names
+/// differ between programs.
+std::optional<std::array<int, 2>> uv_columns(const PlyElement& vertices) {
+    constexpr std::array<std::string_view, 2> kNames[] = {
+        {"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
+    for (const auto& [u, v] : kNames)
+        if (const std::array at{vertices.find(u), vertices.find(v)}; at[0] >= 0 && at[1] >= 0)
+            return at;
+    return std::nullopt;
+}
+
+Layout vertex_layout(const PlyElement& element, bool with_uv) {
     constexpr std::string_view kPosition[] = {"x", "y", "z"};
     constexpr std::string_view kNormal[] = {"nx", "ny", "nz"};
     Layout layout;
@@ -44,18 +56,20 @@ Layout vertex_layout(const PlyElement& element) {
         ++normals;
     }
     layout.has_normals = normals == 3;
+    const auto uv = with_uv ? uv_columns(element) : std::nullopt;
+    layout.has_uv = uv && !element.properties[size_t((*uv)[0])].is_list &&
+                    !element.properties[size_t((*uv)[1])].is_list;
+    for (int i = 0; i < 2 && layout.has_uv; ++i)
+        layout.columns[size_t((*uv)[size_t(i)])] = {element.properties[size_t((*uv)[size_t(i)])],
+                                                    Role::Texture, i};
     return layout;
 }
 
-/// Texture coordinates stand at vertices, under names that differ between programs, or at the
-/// corners of faces, as VCGLIB writes them.
+/// Texture coordinates stand at vertices, or at the corners of faces, as VCGLIB writes them.
 bool has_texture_coordinates(const PlyHeader& header) {
-    constexpr std::array<std::string_view, 2> kNames[] = {
-        {"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
     const PlyElement* vertices = header.find("vertex");
-    for (const auto& [u, v] : kNames)
-        if (vertices && vertices->find(u) >= 0 && vertices->find(v) >= 0)
-            return true;
+    if (vertices && uv_columns(*vertices))
+        return true;
     const PlyElement* faces = header.find("face");
     return faces && faces->find("texcoord") >= 0;
 }
@@ -76,8 +90,8 @@ struct Pending {
 template <class Rows, class V>
 class PlyReader {
 public:
-    PlyReader(Source& source, const PlyHeader& header)
-        : source_(source), header_(header), rows_(source) {
+    PlyReader(Source& source, const PlyHeader& header, bool with_uv)
+        : source_(source), header_(header), rows_(source), with_uv_(with_uv) {
         if (const PlyElement* vertices = header.find("vertex"))
             vertex_count_ = vertices->count;
     }
@@ -108,8 +122,10 @@ public:
         scene.add_mesh(std::move(name), 0, Chunk::owning(origin_, corners_.take()),
                        normals_.empty() ? std::vector<vec3>() : corner_normals_.take());
         scene.meshes[0].normals_left_out = lost_normals_ ? corners : 0;
-        scene.meshes[0].texture_coordinates_left_out =
-            has_texture_coordinates(header_) ? corners : 0;
+        if (!uv_.empty())
+            scene.meshes[0].uv = corner_uv_.take();
+        else if (has_texture_coordinates(header_))
+            scene.meshes[0].texture_coordinates_left_out = corners;
         return scene;
     }
 
@@ -149,7 +165,7 @@ private:
     }
 
     bool read_vertices(const PlyElement& element) {
-        const Layout layout = vertex_layout(element);
+        const Layout layout = vertex_layout(element, with_uv_);
         const size_t rows = plausible_rows(element, element.shortest_row(header_.format));
         vertices_.reserve(rows);
         if (layout.has_normals)
@@ -157,27 +173,32 @@ private:
         for (uint64_t i = 0; i < element.count; ++i) {
             V position(0);
             vec3 normal(0);
+            vec2 uv(0);
             if (!rows_.begin_row(element))
                 return false;
             for (const Column& column : layout.columns)
-                if (!read_column(column, position, normal))
+                if (!read_column(column, position, normal, uv))
                     return false;
             if (!rows_.end_row())
                 return false;
             vertices_.push_back(position);
             if (layout.has_normals)
                 add_normal(normal);
+            if (layout.has_uv)
+                uv_.push_back(uv);
         }
         place_origin();
         return true;
     }
 
-    bool read_column(const Column& column, V& position, vec3& normal) {
+    bool read_column(const Column& column, V& position, vec3& normal, vec2& uv) {
         switch (column.role) {
         case Role::Position:
             return rows_.scalar(column.property, position[column.axis]);
         case Role::Normal:
             return rows_.scalar(column.property, normal[column.axis]);
+        case Role::Texture:
+            return rows_.scalar(column.property, uv[column.axis]);
         default:
             return skip(column.property);
         }
@@ -308,6 +329,8 @@ private:
             corners_.push_back(vertices_[index]);
         if (!normals_.empty())
             corner_normals_.push_back(normals_[index]);
+        if (!uv_.empty())
+            corner_uv_.push_back(uv_[index]);
     }
 
     static constexpr uint32_t kRestart = 0xffffffffu;
@@ -318,12 +341,15 @@ private:
     uint64_t vertex_count_ = 0;
     std::vector<V> vertices_;
     std::vector<vec3> normals_; // one per vertex, or empty
+    std::vector<vec2> uv_;      // likewise
+    const bool with_uv_;        // they are wanted
     bool vertices_ready_ = false;
     bool lost_normals_ = false;
     uint64_t too_short_ = 0; // polygons with fewer than three corners
     dvec3 origin_{0};
     Blocks<vec3> corners_;
     Blocks<vec3> corner_normals_;
+    Blocks<vec2> corner_uv_;
     Pending pending_;
     std::vector<int64_t> row_;      // the row's indices as stored
     std::vector<uint32_t> polygon_; // the same, checked
@@ -333,8 +359,8 @@ private:
 
 template <class Rows, class V>
 Result<Scene> read_body(Source& source, const PlyHeader& header, const std::filesystem::path& path,
-                        const LogSink& log) {
-    PlyReader<Rows, V> reader(source, header);
+                        const ImportOptions& options) {
+    PlyReader<Rows, V> reader(source, header, options.texture_coordinates);
     if (!reader.read())
         return reader.error();
     const std::optional<Error> left_over = reader.left_over();
@@ -344,11 +370,11 @@ Result<Scene> read_body(Source& source, const PlyHeader& header, const std::file
         return source.error(fmt::format("found {} triangles, expected at most {}",
                                         reader.triangle_count(), kMaxTriangles));
     const auto warn = [&](const std::string& sentence) {
-        say(log, LogLevel::Warning, source.error(sentence).message);
+        say(options.log, LogLevel::Warning, source.error(sentence).message);
     };
     for (const auto& warning : {reader.surplus(), left_over})
         if (warning)
-            say(log, LogLevel::Warning, warning->message);
+            say(options.log, LogLevel::Warning, warning->message);
     if (reader.too_short() > 0)
         warn(fmt::format("{} with fewer than three corners left out",
                          counted(reader.too_short(), "polygon")));
@@ -362,13 +388,13 @@ Result<Scene> read_body(Source& source, const PlyHeader& header, const std::file
 
 template <class Rows>
 Result<Scene> read_body(Source& source, const PlyHeader& header, const std::filesystem::path& path,
-                        const LogSink& log) {
+                        const ImportOptions& options) {
     const PlyElement* vertices = header.find("vertex");
     for (const char* axis : {"x", "y", "z"})
         if (const int at = vertices ? vertices->find(axis) : -1; at >= 0)
             if (exceeds_float(vertices->properties[size_t(at)].type))
-                return read_body<Rows, dvec3>(source, header, path, log);
-    return read_body<Rows, vec3>(source, header, path, log);
+                return read_body<Rows, dvec3>(source, header, path, options);
+    return read_body<Rows, vec3>(source, header, path, options);
 }
 
 /// Checks that the header describes a model.
@@ -405,11 +431,11 @@ Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& o
         return *error;
     switch (header->format) {
     case PlyFormat::Ascii:
-        return read_body<AsciiRows>(*source, *header, path, options.log);
+        return read_body<AsciiRows>(*source, *header, path, options);
     case PlyFormat::BinaryLittleEndian:
-        return read_body<BinaryRows<std::endian::little>>(*source, *header, path, options.log);
+        return read_body<BinaryRows<std::endian::little>>(*source, *header, path, options);
     case PlyFormat::BinaryBigEndian:
-        return read_body<BinaryRows<std::endian::big>>(*source, *header, path, options.log);
+        return read_body<BinaryRows<std::endian::big>>(*source, *header, path, options);
     }
     return source->error("unreachable");
 }

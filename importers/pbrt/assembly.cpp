@@ -23,8 +23,10 @@ struct Run {
     uint32_t triangles = 0;
     uint32_t material = 0;
     bool has_normals = false;
+    Sight sight;
     uint64_t last_size = 0;        // triangles of the last shape
     uint32_t normals_from = kNone; // the first mesh made of it, which holds the normals
+    uint32_t uv_from = kNone;      // likewise the texture coordinates
     /// The first meshes made of it, whose corners other instances borrow: one as the file has it,
     /// and one with its triangles turned round, for transforms that mirror.
     std::array<uint32_t, 2> corners_from{kNone, kNone};
@@ -38,8 +40,8 @@ struct Run {
 
 bool belongs(const Run& run, const Shape& shape) {
     return run.material == shape.material && run.has_normals == !shape.mesh.normals.empty() &&
-           run.triangles + shape.mesh.size() <= kLargestRun && shape.mesh.size() <= kSmall &&
-           run.last_size <= kSmall;
+           run.sight == shape.sight && run.triangles + shape.mesh.size() <= kLargestRun &&
+           shape.mesh.size() <= kSmall && run.last_size <= kSmall;
 }
 
 std::vector<Run> runs_of(const Object& object) {
@@ -49,7 +51,7 @@ std::vector<Run> runs_of(const Object& object) {
         if (shape.mesh.size() == 0)
             continue;
         if (runs.empty() || !belongs(runs.back(), shape))
-            runs.push_back({i, i, 0, shape.material, !shape.mesh.normals.empty()});
+            runs.push_back({i, i, 0, shape.material, !shape.mesh.normals.empty(), shape.sight});
         runs.back().last = i + 1;
         runs.back().last_size = shape.mesh.size();
         runs.back().triangles += uint32_t(shape.mesh.size());
@@ -208,6 +210,26 @@ std::vector<vec3> normals_of(const Object& object, const Run& run, bool mirrored
     return normals;
 }
 
+/// Returns texture coordinates in the order of write_corners(); none where there are no holes.
+std::vector<vec2> uv_of(const Object& object, const Run& run, bool mirrored_place) {
+    std::vector<vec2> uv;
+    for (size_t i = run.first; i < run.last && run.sight.has_cutout(); ++i) {
+        const Shape& shape = object.shapes[i];
+        const bool mirrored = swaps_handedness(shape.to_object) != mirrored_place;
+        for (size_t t = 0; t < shape.mesh.size(); ++t)
+            for (size_t k = 0; k < 3; ++k)
+                uv.push_back(shape.mesh.uv_of(nth_corner(t, k, is_flipped(shape, t) != mirrored)));
+    }
+    return uv;
+}
+
+/// Tells the mesh which rays see it; its texture coordinates are the caller's to set.
+void set_sight(const Run& run, uint32_t mesh, Scene& scene) {
+    scene.meshes[mesh].cutout = run.sight.cutout;
+    scene.meshes[mesh].shadow_cutout = run.sight.shadow_cutout;
+    scene.show(mesh, run.sight.seen_by);
+}
+
 std::vector<vec3> corners_of(const Object& object, const Run& run, const dmat4& place,
                              const Frame& frame, bool mirrored_place = false) {
     std::vector<vec3> corners(size_t(run.triangles) * 3);
@@ -231,6 +253,7 @@ void add_top(Object& top, const Frame& frame, Scene& scene) {
     for (const Run& run : runs_of(top)) {
         std::string name = name_of(top, run);
         std::vector<vec3> normals = normals_of(top, run, /* mirrored_place= */ false);
+        std::vector<vec2> uv = uv_of(top, run, /* mirrored_place= */ false);
         std::vector<vec3> corners;
         Mesh& first = top.shapes[run.first].mesh;
         if (run.last == run.first + 1 && !first.is_indexed()) {
@@ -242,9 +265,12 @@ void add_top(Object& top, const Frame& frame, Scene& scene) {
         }
         for (size_t i = run.first; i < run.last; ++i)
             top.shapes[i].mesh = {};
-        scene.add_mesh(std::move(name), run.material,
-                       Chunk::owning(frame.origin, std::move(corners)), std::move(normals));
-        run.tell_left_out(scene.meshes.back());
+        const uint32_t mesh =
+            scene.add_mesh(std::move(name), run.material,
+                           Chunk::owning(frame.origin, std::move(corners)), std::move(normals));
+        scene.meshes[mesh].uv = std::move(uv);
+        set_sight(run, mesh, scene);
+        run.tell_left_out(scene.meshes[mesh]);
     }
 }
 
@@ -264,6 +290,19 @@ Chunk placed_chunk(const Object& object, const Run& run, const PlacedObject& ins
             rows.rows[size_t(row)][size_t(column)] = instance.place[column][row];
     chunk.place(rows);
     return chunk;
+}
+
+/// Gives an instance's mesh its texture coordinates, of which all that are not mirrored share one.
+void share_uv(const Object& object, Run& run, bool mirrored, uint32_t mesh, Scene& scene) {
+    if (!run.sight.has_cutout())
+        return;
+    if (!mirrored && run.uv_from != kNone) {
+        scene.meshes[mesh].uv_from = run.uv_from;
+        return;
+    }
+    scene.meshes[mesh].uv = uv_of(object, run, mirrored);
+    if (!mirrored)
+        run.uv_from = mesh;
 }
 
 /// Adds an instance's meshes. `frame` is that of the corners: the object's if the instances share
@@ -288,6 +327,8 @@ void add_instance(const Object& object, std::vector<Run>& runs, const PlacedObje
         if (shares_corners && run.corners_from[mirrored] == kNone)
             run.corners_from[mirrored] = mesh;
         run.tell_left_out(scene.meshes[mesh]);
+        set_sight(run, mesh, scene);
+        share_uv(object, run, mirrored, mesh, scene);
         if (!run.has_normals)
             continue;
         scene.meshes[mesh].turn = turn;

@@ -3,16 +3,27 @@
 // object, too.
 #pragma once
 
+#include "core/scene.h"
 #include "importers/pbrt/interpret/transform.h"
 #include "importers/pbrt/shapes/mesh.h"
 
 namespace ovc::pbrt {
+
+/// Which rays see a shape, and where.
+struct Sight {
+    uint32_t cutout = kNone, shadow_cutout = kNone; // as in MeshInfo
+    uint32_t seen_by = kSeenByAll;
+
+    bool has_cutout() const { return cutout != kNone || shadow_cutout != kNone; }
+    bool operator==(const Sight&) const = default;
+};
 
 struct Shape {
     Mesh mesh;
     dmat4 to_object; // places the mesh in its object
     uint32_t material = 0;
     bool reversed = false; // ReverseOrientation
+    Sight sight{};
 };
 
 /// Returns whether a triangle's corners run the other way than its normals, or ReverseOrientation,

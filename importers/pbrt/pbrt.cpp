@@ -36,9 +36,6 @@ Result<Scene> read_pbrt(const std::filesystem::path& path, const ImportOptions& 
         return Error{fmt::format("{}: {}", path.string(), fine.error().message)};
     pbrt::assemble(std::move(world), census, scene);
     assert(has_sound_meshes(scene));
-    for (uint32_t m = 0; m < scene.meshes.size(); ++m)
-        if (pbrt::is_emitter(scene.materials[scene.meshes[m].material]))
-            scene.show(m, kSeenByAll & ~kShadowsLights); // the lights that stand for it lie in it
     if (const float exposure = pbrt::fitting_exposure(scene); exposure != 1) {
         pbrt::expose(scene, exposure);
         scene.exposure = exposure;

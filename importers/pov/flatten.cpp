@@ -4,6 +4,7 @@
 
 #include "core/system/parallel.h"
 #include "importers/origin.h"
+#include "importers/pov/material_table.h"
 #include "importers/pov/shapes/bounds.h"
 #include "importers/pov/solid.h"
 #include "importers/pov/trace.h"
@@ -15,9 +16,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <map>
-#include <unordered_map>
 
 namespace ovc::pov {
 
@@ -32,7 +31,7 @@ struct Placed {
     const Object* object;
     dmat4 placed;
     bool inverse;
-    uint32_t material;
+    Cover cover;
     uint32_t seen_by;
 };
 
@@ -44,85 +43,8 @@ struct Inherited {
     dmat4 texture_placed{1};          // applied after the texture's own transformation
     const Interior* interior = nullptr;
     uint32_t seen_by = kSeenByAll;
+    bool uv_mapping = false;
     bool inverse = false;
-};
-
-void tell_all(const Notes& notes, const Look& look) {
-    for (const auto& note : notes)
-        if (look.tell)
-            look.tell(*note);
-}
-
-/// Adds materials to a scene. Equal ones are added once.
-class MaterialTable {
-public:
-    MaterialTable(const Look& look, Scene& scene) : look_(look), scene_(scene) {}
-
-    uint32_t number(const Texture& texture, const dmat4& placed, const Interior* interior) {
-        for (const Notes* notes : {&texture.notes, &texture.pigment.notes, &texture.surface.notes})
-            tell_all(*notes, look_);
-        if (interior)
-            tell_all(interior->notes, look_);
-        ovc::Material material = made(texture, placed, interior);
-        const auto [first, last] = by_color_.equal_range(color_key(material));
-        for (auto known = first; known != last; ++known) {
-            const ovc::Material& other = scene_.materials[known->second];
-            material.name = other.name; // the name must not make equal materials differ
-            if (material == other)
-                return known->second;
-        }
-        const auto number = uint32_t(scene_.materials.size());
-        material.name = fmt::format("material {}", number + 1);
-        by_color_.emplace(color_key(material), number);
-        scene_.materials.push_back(std::move(material));
-        return number;
-    }
-
-private:
-    ovc::Material made(const Texture& texture, const dmat4& placed,
-                       const Interior* interior) const {
-        const Color& color = texture.pigment.color;
-        ovc::Material material;
-        Finish finish = texture.surface.finish;
-        const float opacity = std::clamp(color.opacity(), 0.0f, 1.0f);
-        finish.diffuse *= opacity;
-        finish.ambient =
-            opacity * (texture.surface.ambient * look_.ambient_light + texture.surface.emission);
-        material.color = color.rgb;
-        material.mirror =
-            std::max(max_component(finish.reflection), max_component(finish.grazing_reflection));
-        const vec3 through =
-            texture.surface.refraction * (color.filter * color.rgb + vec3(color.transmit));
-        material.transmission = std::clamp(max_component(through), 0.0f, 1.0f);
-        if (material.transmission > 0)
-            material.filter = glm::clamp(through / material.transmission, 0.0f, 1.0f);
-        const double ior = texture.surface.ior.value_or(interior ? interior->ior : 1);
-        material.ior = is_usable_ior(ior) ? ior : 1;
-        material.finish = finish;
-        if (texture.pigment.other) {
-            const dmat4 whole = placed * texture.pigment.placed;
-            const dmat4 back = glm::inverse(whole);
-            Checker checker;
-            checker.other = texture.pigment.other->rgb;
-            for (int row = 0; row < 3; ++row)
-                for (int column = 0; column < 4; ++column)
-                    checker.to_cubes[size_t(row)][column] = back[column][row];
-            material.checker = checker;
-        }
-        return material;
-    }
-
-    /// Returns a hash of the color, in which materials usually differ.
-    static size_t color_key(const ovc::Material& m) {
-        size_t key = 0;
-        for (int i = 0; i < 3; ++i)
-            key = 31 * key + std::hash<float>()(m.color[i]);
-        return key;
-    }
-
-    const Look& look_;
-    Scene& scene_;
-    std::unordered_multimap<size_t, uint32_t> by_color_; // numbers of materials
 };
 
 void add_light(const LightSource& source, const dmat4& placed, Scene& scene) {
@@ -137,7 +59,7 @@ void add_light(const LightSource& source, const dmat4& placed, Scene& scene) {
 class Gatherer {
 public:
     Gatherer(const Look& look, Scene& scene)
-        : look_(look), scene_(scene), materials_(look, scene) {}
+        : holes(scene), look_(look), scene_(scene), materials_(look, scene) {}
 
     void gather(const Object& object, Inherited from) {
         if (is_solid(object)) {
@@ -148,13 +70,15 @@ public:
         if (const auto* light = std::get_if<LightSource>(&object.shape))
             add_light(*light, from.placed, scene_);
         else if (!std::holds_alternative<std::monostate>(object.shape) && is_wanted(from.seen_by))
-            placed.push_back({&object, from.placed, from.inverse, material_of(from), from.seen_by});
+            placed.push_back(
+                {&object, from.placed, from.inverse, cover_of(object, from), from.seen_by});
         for (const ObjectPtr& child : object.children)
             gather(*child, from);
     }
 
     std::vector<Placed> placed;
     std::vector<Solid> solids;
+    HoleTable holes;
     bool gather_unseen = false; // whether objects that no ray sees are gathered too
 
 private:
@@ -170,6 +94,7 @@ private:
         from.in_solid = from.in_solid * object.placed;
         from.interior = object.interior ? &*object.interior : from.interior;
         from.seen_by &= object.seen_by;
+        from.uv_mapping = from.uv_mapping || object.uv_mapping;
         from.inverse = from.inverse != object.inverse;
         // A short scene with groups of groups can place more objects than memory holds.
         if (++visited_ > look_.max_triangles / kTrianglesAnObject)
@@ -179,9 +104,34 @@ private:
                                          look_.max_triangles / kTrianglesAnObject));
     }
 
-    uint32_t material_of(const Inherited& from) {
+    Cover cover_of(const Object& object, const Inherited& from, bool in_solid = false) {
         const Texture& texture = from.texture ? *from.texture : look_.defaults;
-        return materials_.number(texture, from.texture_placed, from.interior);
+        const Pigment& pigment = texture.pigment;
+        const bool on_uv = pigment.uv_mapping || from.uv_mapping;
+        const bool has_uv = !in_solid && (object.kind == "mesh" || object.kind == "mesh2");
+        const bool has_holes = pigment.holes && (!on_uv || has_uv);
+        const Color& color = has_holes ? pigment.holes->color : pigment.color;
+        Cover cover{materials_.number(texture, color, from.texture_placed, from.interior)};
+        if (has_holes)
+            cover.holes = holes.number(
+                pigment, on_uv ? pigment.placed : from.texture_placed * pigment.placed, on_uv);
+        if (pigment.holes)
+            tell_of_holes(object, scene_.materials[cover.material], has_holes);
+        return cover;
+    }
+
+    void tell_of_holes(const Object& object, const ovc::Material& material, bool has_holes) const {
+        const auto tell = [&](const char* kind, const char* sentence) {
+            if (look_.tell)
+                look_.tell(*make_note(kind, object.place, sentence));
+        };
+        if (!has_holes)
+            tell("uv_mapping", "an image_map with uv_mapping has holes on meshes alone, outside of "
+                               "solids; here its average lets light through");
+        const Finish& finish = *material.finish;
+        if (has_holes &&
+            (finish.specular > 0 || finish.phong > 0 || material.mirror > 0 || material.ior != 1))
+            tell("holes", "the holes of an image_map neither shine nor bend light");
     }
 
     void add_solid(const Object& object, Inherited from) {
@@ -243,7 +193,7 @@ private:
         leaf.inverse = from.inverse;
         leaf.has_inside = object.has_inside;
         if (!std::holds_alternative<std::monostate>(object.shape))
-            leaf.skins.push_back({&object, material_of(from)});
+            leaf.skins.push_back({&object, cover_of(object, from, /* in_solid= */ true)});
         if (std::holds_alternative<EndlessShape>(object.shape))
             for (const ObjectPtr& bound : object.bounds) {
                 const Box box =
@@ -253,7 +203,7 @@ private:
         for (const ObjectPtr& child : object.children) { // a mesh has a child for each texture
             Inherited down = from;
             inherit(*child, down);
-            leaf.skins.push_back({child.get(), material_of(down)});
+            leaf.skins.push_back({child.get(), cover_of(*child, down, /* in_solid= */ true)});
         }
         return leaf;
     }
@@ -311,7 +261,7 @@ Box box_of(const Gatherer& gatherer, int segments) {
     Facets facets;
     for (const Placed& p : gatherer.placed)
         if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
-            facets.corners.clear();
+            facets.clear();
             if (shape->box) {
                 box.add(moved(*shape->box, p.placed));
                 continue;
@@ -324,14 +274,16 @@ Box box_of(const Gatherer& gatherer, int segments) {
     return box;
 }
 
-/// The triangles of one material.
+/// The triangles of one mesh. They have texture coordinates where the mesh has holes.
 struct Batch {
     std::vector<vec3> corners, normals;
+    std::vector<vec2> uv;
     bool smooth = false;
 };
 
-/// Calls use(corners) for each triangle of `facets`, moved into the world. Its corners run
-/// counterclockwise seen from outside, and each has a normal of any length.
+/// Calls use(corners, uv) for each triangle of `facets`, moved into the world. Its corners run
+/// counterclockwise seen from outside, and each has a normal of any length. uv: of its corners;
+/// null if there are none.
 template <class Use>
 void for_each_placed(const Facets& facets, const Placed& p, Use use) {
     assert(facets.corners.size() % 3 == 0);
@@ -341,8 +293,10 @@ void for_each_placed(const Facets& facets, const Placed& p, Use use) {
     const size_t order[3] = {0, mirrored ? size_t(2) : 1, mirrored ? size_t(1) : 2};
     for (size_t t = 0; t + 2 < facets.corners.size(); t += 3) {
         std::array<Corner, 3> corners;
+        std::array<vec2, 3> uv;
         for (size_t i = 0; i < 3; ++i) {
             const Corner& corner = facets.corners[t + order[i]];
+            uv[i] = facets.uv.empty() ? vec2(0) : facets.uv[t + order[i]];
             corners[i] = {dvec3(p.placed * dvec4(corner.position, 1)),
                           outward * (turned * corner.normal)};
         }
@@ -351,12 +305,15 @@ void for_each_placed(const Facets& facets, const Placed& p, Use use) {
         for (Corner& corner : corners)
             if (!(glm::dot(corner.normal, corner.normal) > 0))
                 corner.normal = flat;
-        use(corners);
+        use(corners, facets.uv.empty() ? nullptr : uv.data());
     }
 }
 
-void add_corners(const Facets& facets, const Placed& p, const dvec3& origin, Batch& batch) {
-    for_each_placed(facets, p, [&](const std::array<Corner, 3>& corners) {
+void add_corners(const Facets& facets, const Placed& p, const HoleTable& holes, const dvec3& origin,
+                 Batch& batch) {
+    for_each_placed(facets, p, [&](const std::array<Corner, 3>& corners, const vec2* uv) {
+        holes.add_uv(p.cover.holes, {corners[0].position, corners[1].position, corners[2].position},
+                     uv, batch.uv);
         for (const Corner& corner : corners) {
             batch.corners.push_back(vec3(corner.position - origin));
             const double length = glm::length(corner.normal);
@@ -368,7 +325,7 @@ void add_corners(const Facets& facets, const Placed& p, const dvec3& origin, Bat
 }
 
 void add_finite(const Facets& facets, const Placed& p, Facets& out) {
-    for_each_placed(facets, p, [&](const std::array<Corner, 3>& corners) {
+    for_each_placed(facets, p, [&](const std::array<Corner, 3>& corners, const vec2*) {
         if (std::all_of(corners.begin(), corners.end(),
                         [](const Corner& c) { return is_finite(c.position); }))
             out.corners.insert(out.corners.end(), corners.begin(), corners.end());
@@ -387,7 +344,8 @@ std::optional<PlaneShape> placed_plane(const PlaneShape& plane, const Placed& p)
 
 /// Adds a square around the point of the plane nearest to the scene's center. That point is a
 /// corner of all four triangles, so that there the plane keeps its place in floats.
-void add_plane(const Placed& p, const dvec3& center, double reach, Scene& scene) {
+void add_plane(const Placed& p, const HoleTable& holes, const dvec3& center, double reach,
+               Scene& scene) {
     const auto plane = placed_plane(std::get<PlaneShape>(p.object->shape), p);
     if (!plane)
         return;
@@ -400,11 +358,17 @@ void add_plane(const Placed& p, const dvec3& center, double reach, Scene& scene)
     const dvec3 v = glm::cross(normal, u);
     const double r = kPlaneReach * std::max(reach, glm::length(origin - center));
     std::vector<vec3> corners;
+    std::vector<vec2> uv;
     const dvec3 rim[4] = {r * (u + v), r * (v - u), -r * (u + v), r * (u - v)};
-    for (int i = 0; i < 4; ++i)
-        corners.insert(corners.end(), {vec3(0), vec3(rim[i]), vec3(rim[(i + 1) % 4])});
+    for (size_t i = 0; i < 4; ++i) {
+        const dvec3 next = rim[(i + 1) % 4];
+        corners.insert(corners.end(), {vec3(0), vec3(rim[i]), vec3(next)});
+        holes.add_uv(p.cover.holes, {origin, origin + rim[i], origin + next}, nullptr, uv);
+    }
     const uint32_t mesh =
-        scene.add_mesh("plane", p.material, Chunk::owning(origin, std::move(corners)));
+        scene.add_mesh("plane", p.cover.material, Chunk::owning(origin, std::move(corners)));
+    scene.meshes[mesh].cutout = holes.cutout(p.cover.holes);
+    scene.meshes[mesh].uv = std::move(uv);
     scene.show(mesh, p.seen_by);
 }
 
@@ -426,11 +390,54 @@ Box reach_of_solids(const Box& world) {
     return Box{world.center(), world.center()}.padded(kPlaneReach * reach_of(world));
 }
 
-/// By the number of their material and the rays that see them.
-using Batches = std::map<std::pair<uint32_t, uint32_t>, Batch>;
+/// What the triangles of a mesh have in common.
+struct MeshKey {
+    uint32_t material, cutout, seen_by;
+
+    auto operator<=>(const MeshKey&) const = default;
+};
+
+/// The meshes in the making.
+class Batches {
+public:
+    Batches(const HoleTable& holes, const dvec3& origin) : holes_(holes), origin_(origin) {}
+
+    void add(const Facets& facets, const Placed& p) {
+        const MeshKey key{p.cover.material, holes_.cutout(p.cover.holes), p.seen_by};
+        add_corners(facets, p, holes_, origin_, all_[key]);
+    }
+
+    /// Leaves no batches behind.
+    void give_to(Scene& scene) {
+        for (auto& [key, batch] : all_)
+            if (!batch.corners.empty())
+                give_to(scene, key, batch);
+        all_.clear();
+    }
+
+private:
+    void give_to(Scene& scene, const MeshKey& key, Batch& batch) const {
+        assert(batch.corners.size() == batch.normals.size());
+        if (batch.corners.size() / 3 > kMaxTriangles)
+            throw ParseError({}, fmt::format("found {} triangles of one material, expected at "
+                                             "most {}",
+                                             batch.corners.size() / 3, kMaxTriangles));
+        const uint32_t mesh =
+            scene.add_mesh(scene.materials[key.material].name, key.material,
+                           Chunk::owning(origin_, std::move(batch.corners)),
+                           batch.smooth ? std::move(batch.normals) : std::vector<vec3>());
+        scene.meshes[mesh].cutout = key.cutout;
+        scene.meshes[mesh].uv = std::move(batch.uv);
+        scene.show(mesh, key.seen_by);
+    }
+
+    const HoleTable& holes_;
+    const dvec3 origin_;
+    std::map<MeshKey, Batch> all_;
+};
 
 void add_solids(const std::vector<Solid>& solids, int segments, const Box& world,
-                const dvec3& origin, Batches& batches) {
+                Batches& batches) {
     constexpr size_t kAtOnce = 64; // so that not all solids are in memory twice
     const Box reach = reach_of_solids(world);
     const std::vector<std::vector<uint32_t>> groups = alike(solids);
@@ -446,9 +453,8 @@ void add_solids(const std::vector<Solid>& solids, int segments, const Box& world
             for (const uint32_t number : groups[start + i])
                 for (const SolidPart& part : parts[i]) {
                     const Solid& solid = solids[number];
-                    const Placed p{solid.object, solid.placed, false, material_of(solid, part.skin),
-                                   solid.seen_by};
-                    add_corners(part.facets, p, origin, batches[{p.material, p.seen_by}]);
+                    batches.add(part.facets, {solid.object, solid.placed, false,
+                                              cover_of(solid, part.skin), solid.seen_by});
                 }
     }
 }
@@ -464,36 +470,21 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
     const int segments = choose_segments(gatherer, look.tolerance);
     require_at_most(look.max_triangles, gatherer, segments, {});
     const Box box = box_of(gatherer, 8);
-    const dvec3 origin = chunk_origin(box, 16);
-    Batches batches;
+    Batches batches(gatherer.holes, chunk_origin(box, 16));
     Facets facets;
     for (const Placed& p : placed)
         if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
-            facets.corners.clear();
-            facets.smooth = false;
+            facets.clear();
             shape->cut(segments, p.object->open, facets);
-            add_corners(facets, p, origin, batches[{p.material, p.seen_by}]);
+            batches.add(facets, p);
         }
-    add_solids(gatherer.solids, segments, world_of(box, look), origin, batches);
-    for (auto& [key, batch] : batches) {
-        assert(batch.corners.size() == batch.normals.size());
-        if (batch.corners.empty())
-            continue;
-        if (batch.corners.size() / 3 > kMaxTriangles)
-            throw ParseError({}, fmt::format("found {} triangles of one material, expected at "
-                                             "most {}",
-                                             batch.corners.size() / 3, kMaxTriangles));
-        const uint32_t mesh =
-            scene.add_mesh(scene.materials[key.first].name, key.first,
-                           Chunk::owning(origin, std::move(batch.corners)),
-                           batch.smooth ? std::move(batch.normals) : std::vector<vec3>());
-        scene.show(mesh, key.second);
-    }
+    add_solids(gatherer.solids, segments, world_of(box, look), batches);
+    batches.give_to(scene);
 
     const Box world = world_of(box, look);
     for (const Placed& p : placed)
         if (std::holds_alternative<PlaneShape>(p.object->shape))
-            add_plane(p, world.center(), reach_of(world), scene);
+            add_plane(p, gatherer.holes, world.center(), reach_of(world), scene);
 }
 
 Box moved(const Box& box, const dmat4& by) {
@@ -537,7 +528,7 @@ CutObject cut_object(const Object& object, uint64_t max_triangles) {
             if (const std::optional<PlaneShape> in_world = placed_plane(*plane, p))
                 cut.planes.push_back(*in_world);
         if (const Shape* shape = std::get_if<Shape>(&p.object->shape)) {
-            facets.corners.clear();
+            facets.clear();
             shape->cut(segments, p.object->open, facets);
             add_finite(facets, p, cut.facets);
         }
@@ -546,7 +537,8 @@ CutObject cut_object(const Object& object, uint64_t max_triangles) {
     for (const Solid& solid : gatherer.solids)
         for (const SolidPart& part :
              evaluate(solid, segments, moved(reach, glm::inverse(solid.placed))))
-            add_finite(part.facets, {solid.object, solid.placed, false, 0, kSeenByAll}, cut.facets);
+            add_finite(part.facets, {solid.object, solid.placed, false, {}, kSeenByAll},
+                       cut.facets);
     return cut;
 }
 

@@ -67,6 +67,7 @@ struct Object {
     std::optional<Interior> interior;
     uint32_t depth = 1;            // levels of objects within objects, as parts, clips or bounds
     uint32_t seen_by = kSeenByAll; // as no_shadow, no_image and no_reflection leave it
+    bool uv_mapping = false;       // of its own texture and those of its parts
     bool inverse = false;
     bool open = false;
     bool has_inside = true; // false for a sheet, which cannot take anything away from a solid

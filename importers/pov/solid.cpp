@@ -368,13 +368,13 @@ std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& rea
     return parts;
 }
 
-uint32_t material_of(const Solid& solid, uint32_t skin) {
+Cover cover_of(const Solid& solid, uint32_t skin) {
     size_t leaf = 0;
     for (; skin >= solid.leaves[leaf].skins.size(); ++leaf) {
         assert(leaf + 1 < solid.leaves.size());
         skin -= uint32_t(solid.leaves[leaf].skins.size());
     }
-    return solid.leaves[leaf].skins[skin].material;
+    return solid.leaves[leaf].skins[skin].cover;
 }
 
 std::vector<std::vector<uint32_t>> alike(const std::vector<Solid>& solids) {

@@ -4,6 +4,7 @@
 
 #include "core/box.h"
 #include "importers/csg/csg.h"
+#include "importers/pov/hole_table.h"
 #include "importers/pov/object.h"
 
 namespace ovc::pov {
@@ -13,7 +14,7 @@ struct SolidLeaf {
     /// A shape and its material; a mesh has one skin for each texture.
     struct Skin {
         const Object* object;
-        uint32_t material;
+        Cover cover;
     };
     std::vector<Skin> skins;
     dmat4 placed{1}; // in the solid's space
@@ -48,8 +49,8 @@ struct SolidPart {
 /// space, cuts off what is endless.
 std::vector<SolidPart> evaluate(const Solid& solid, int segments, const Box& reach);
 
-/// Returns the material of a skin, whose number counts through all leaves.
-uint32_t material_of(const Solid& solid, uint32_t skin);
+/// Returns the cover of a skin, whose number counts through all leaves.
+Cover cover_of(const Solid& solid, uint32_t skin);
 
 /// Returns the numbers of the solids in groups that have the same triangles in their own spaces, as
 /// copies of a declared object do. An endless solid is alone, because where it is cut off depends

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <limits>
+#include <optional>
 
 namespace ovc {
 
@@ -65,9 +67,34 @@ std::optional<TriangleId> BuiltScene::first_copy_behind(TriangleId built, Triang
     return chunk == place->end() ? std::nullopt : std::optional(TriangleId{*chunk, built.prim});
 }
 
+/// Returns whether doubles tell that the ray does not hit the triangle from the place on.
+static bool is_passed(const Ray& ray, const Triangle& triangle, const HitPlace& place) {
+    const double all = std::numeric_limits<double>::max();
+    const PreparedRay whole(Ray{ray.org, -all, ray.dir, all});
+    bool in_doubt = false;
+    const auto found = candidate(whole, triangle, {}, [&](auto&&...) -> std::optional<Candidate> {
+        in_doubt = true;
+        return std::nullopt;
+    });
+    return !in_doubt && (!found || found->latest_t() < place.t);
+}
+
+uint32_t BuiltScene::number_to_skip(const Ray& ray, const Exclusion& without) const {
+    const uint32_t start = number_to_skip(without.skip);
+    if (without.after.is_before_all())
+        return start;
+    // A ray that has passed by a hit is far from the triangle that it started on, but the kernel
+    // would be in doubt about the one at the place.
+    if (start != OVC_NO_TRIANGLE && !is_passed(ray, soup.triangle(without.skip), without.after))
+        return start;
+    const uint32_t at_place = number_at_place(ray, without.after);
+    return at_place != OVC_NO_TRIANGLE ? at_place : start;
+}
+
 uint32_t BuiltScene::number_at_place(const Ray& ray, const HitPlace& place) const {
     const uint32_t number = number_to_skip(place.id);
-    return number != OVC_NO_TRIANGLE && hit_at(ray, soup.triangle(place.id), place)
+    return number != OVC_NO_TRIANGLE &&
+                   (place.is_certain || hit_at(ray, soup.triangle(place.id), place))
                ? number
                : OVC_NO_TRIANGLE;
 }

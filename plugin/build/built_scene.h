@@ -117,13 +117,8 @@ struct BuiltScene {
     uint32_t number_to_skip(TriangleId id) const {
         return !soup.has(id) || stands_for_others(id) ? OVC_NO_TRIANGLE : numbers.of(id);
     }
-    /// Returns the same for a ray with these exclusions.
-    uint32_t number_to_skip(const Ray& ray, const Exclusion& without) const {
-        const uint32_t number = number_to_skip(without.skip);
-        return number != OVC_NO_TRIANGLE || without.after.is_before_all()
-                   ? number
-                   : number_at_place(ray, without.after);
-    }
+    /// Returns the same for a ray with these exclusions, of which the kernel is told one.
+    uint32_t number_to_skip(const Ray& ray, const Exclusion& without) const;
 
     /// Adds the shared mesh of these chunks (not empty), of which nothing is built yet.
     SharedMesh& share(const Placed::Instances& instances);

@@ -21,6 +21,7 @@ struct NearestQuery {
     std::span<uint32_t> passes;  // empty, or counts those of each ray
     std::span<uint32_t> flagged; // empty, or becomes 1 for flagged rays
     std::span<Hit> places;       // what without.after refers to, where rays have sieves
+    bool has_own_places = false; // all of these are hits that this query has found
 
     NearestQuery part(size_t first, size_t count) const {
         return {rays.subspan(first, count),
@@ -28,7 +29,8 @@ struct NearestQuery {
                 results.subspan(first, count),
                 passes.empty() ? passes : passes.subspan(first, count),
                 flagged.empty() ? flagged : flagged.subspan(first, count),
-                places.empty() ? places : places.subspan(first, count)};
+                places.empty() ? places : places.subspan(first, count),
+                has_own_places};
     }
     void count_pass(size_t i) const {
         if (!passes.empty())
@@ -51,6 +53,7 @@ struct NearestQuery {
 
 struct OcclusionQuery {
     static constexpr bool kAnyHit = true;
+    static constexpr bool has_own_places = false;
     RaySpan rays;
     Exclusions without;
     std::span<uint8_t> results;

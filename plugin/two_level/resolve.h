@@ -145,6 +145,7 @@ public:
 private:
     Exclusion exclusion(uint32_t i) const {
         Exclusion without = query_.without[i];
+        without.after.is_certain = query_.has_own_places;
         // In fast precision t is not exact enough to tell that a hit is the same as before.
         if (!tracing_.options.certify && !without.after.is_before_all())
             without.skip = without.after.id;

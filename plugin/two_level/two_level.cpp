@@ -67,6 +67,7 @@ Result<Done> TwoLevel::intersect(RaySpan rays, const Exclusions& without, std::s
 Result<Done> TwoLevel::trace_nearest(NearestQuery query) {
     std::vector<Hit> places;
     if (query.has_sieves()) {
+        query.has_own_places = query.without.after.empty();
         places.assign(query.rays.size(), kBeforeAll);
         std::ranges::copy(query.without.after, places.begin());
         query.without.after = query.places = places;
@@ -118,6 +119,7 @@ Hit TwoLevel::nearest_on_cpu(const Ray& ray, const Exclusion& without,
         if (!hit.is_hit() || sieve.passes_all() || counts(scene_.soup, sieve, hit))
             return hit;
         more.after = HitPlace(hit);
+        more.after.is_certain = true;
     }
 }
 

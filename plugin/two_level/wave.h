@@ -65,14 +65,16 @@ public:
             const std::vector<uint32_t> queue = waiting_.take(leaf);
             rays.insert(rays.end(), queue.begin(), queue.end());
         }
-        parallel_for(rays.size(), kRaysPerTask, [&](size_t from, size_t to) {
-            for (size_t j = from; j < to; ++j)
-                resolver_.answer_exactly(rays[j]);
-        });
-        tracing_.statistics.stragglers += rays.size();
-        for (const uint32_t i : rays)
-            states_[i].stage = State::Done;
-        send_on(rays);
+        answer(rays);
+    }
+
+    /// Answers all rays that are ready, and those that go on behind their hits, by the exact
+    /// fallback, where these are the last few: a ray may have to pass by many hits, and each of
+    /// them would cost a pass.
+    void answer_last_few() {
+        constexpr size_t kFew = 64; // they take about as long as a pass of a few rays
+        while (ready() > 0 && ready() <= kFew && waiting() == 0 && loaded_ == 0)
+            answer(std::exchange(ready_, {}));
     }
 
     /// Returns the rays that were answered since the last call of this.
@@ -119,6 +121,18 @@ private:
         uint32_t key = 0;
         enum : uint32_t { Done, Ready, Waits } stage = Done;
     };
+
+    void answer(std::span<const uint32_t> rays) {
+        constexpr size_t kGrain = 8; // such a ray takes long
+        parallel_for(rays.size(), kGrain, [&](size_t from, size_t to) {
+            for (size_t j = from; j < to; ++j)
+                resolver_.answer_exactly(rays[j]);
+        });
+        tracing_.statistics.stragglers += rays.size();
+        for (const uint32_t i : rays)
+            states_[i].stage = State::Done;
+        send_on(rays);
+    }
 
     void start_one(uint32_t i) {
         states_[i] = {};

@@ -149,6 +149,8 @@ Result<Done> trace_in_waves(const Tracing& tracing, PassRunner& passes, const Qu
                 return done;
             if (!asked)
                 return asked;
+            if (query.has_sieves() && !tracing.options.tell_active)
+                wave.answer_last_few();
         }
     }
     return Done{};

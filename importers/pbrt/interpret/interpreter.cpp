@@ -305,6 +305,7 @@ bool Interpreter::world_begin() {
 
 /// The graphics state ends with the world; camera and film stay, as in pbrt-v2.
 bool Interpreter::world_end() {
+    world_ended_ = true;
     if (state_.depth() > 0)
         diagnostics_.missing(
             "unclosed", place_,

@@ -4,6 +4,7 @@
 
 #include "importers/importer.h"
 #include "importers/pbrt/interpret/graphics_state.h"
+#include "importers/pbrt/look/alphas.h"
 #include "importers/pbrt/look/camera.h"
 #include "importers/pbrt/look/materials.h"
 #include "importers/pbrt/objects.h"
@@ -91,7 +92,9 @@ private:
     bool setting();
     bool bare_setting();
 
-    bool add_shape(Mesh mesh);
+    /// Returns which rays see a shape with these parameters; nothing if none does.
+    std::optional<Sight> sight_of(const Parameters& parameters);
+    bool add_shape(Mesh mesh, const Sight& sight);
     bool bind_late_instances();
     Object& object() { return building_.empty() ? world_.top : building_.back(); }
 
@@ -102,11 +105,13 @@ private:
     bool known_one_ = false;
     bool at_end_ = false;
     uint64_t worlds_ = 0;       // worlds that have begun
+    bool world_ended_ = false;  // by WorldEnd, which v4 does not have
     bool passing_over_ = false; // inside a world that is not asked for, or behind the one that is
 
     StateStack state_;
     std::unordered_map<std::string, Transforms> systems_;
     Textures textures_{diagnostics_};
+    Alphas alphas_{textures_, tokens_, diagnostics_};
     Materials materials_{textures_, diagnostics_};
     Lights lights_{textures_, diagnostics_};
     Film film_;

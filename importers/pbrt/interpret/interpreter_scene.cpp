@@ -17,6 +17,7 @@ bool Interpreter::shape() {
     Parameters parameters;
     if (!read_typed(type, parameters))
         return false;
+    const std::optional<Sight> sight = sight_of(parameters);
     const uint64_t left = options_.max_triangles - std::min(options_.max_triangles, triangles_);
     ShapeRequest request{type,
                          parameters,
@@ -24,28 +25,38 @@ bool Interpreter::shape() {
                          tokens_,
                          diagnostics_,
                          left,
-                         options_.tolerance.value_or(kTolerance)};
+                         options_.tolerance.value_or(kTolerance),
+                         sight && sight->has_cutout()};
     std::optional<Mesh> mesh = make_shape(request);
     if (diagnostics_.failed())
         return false;
-    const bool is_hidden =
-        !textures_.is_pattern(parameters, "alpha") && textures_.number(parameters, "alpha", 1) == 0;
-    if (!mesh || is_hidden)
-        return true;
-    return add_shape(std::move(*mesh));
+    return !mesh || !sight || add_shape(std::move(*mesh), *sight);
 }
 
-bool Interpreter::add_shape(Mesh mesh) {
+std::optional<Sight> Interpreter::sight_of(const Parameters& parameters) {
+    if (!state_.now.emission && is_invisible(materials_.all()[state_.now.material]))
+        return std::nullopt;
+    const Alpha alpha = alphas_.of(parameters, "alpha");
+    if (alpha.is_zero)
+        return std::nullopt;
+    const Alpha shadow = alphas_.of(parameters, "shadowalpha");
+    Sight sight{alpha.cutout, shadow.cutout};
+    if (shadow.is_zero)
+        sight.seen_by &= ~uint32_t(kShadowsLights | kShadowsEmitters);
+    if (state_.now.emission && building_.empty()) // the lights that stand for it lie in it
+        sight.seen_by &= ~uint32_t(kShadowsLights);
+    return sight;
+}
+
+bool Interpreter::add_shape(Mesh mesh, const Sight& sight) {
     const GraphicsState& now = state_.now;
-    if (!now.emission && is_invisible(materials_.all()[now.material]))
-        return true; // no ray sees it
     triangles_ += mesh.size();
     if (triangles_ > options_.max_triangles)
         return diagnostics_.fail(
             place_, fmt::format("found {} triangles so far, expected at most {}; --max-triangles "
                                 "allows more",
                                 triangles_, options_.max_triangles));
-    Shape shape{std::move(mesh), now.transforms.start(), now.material, now.reversed};
+    Shape shape{std::move(mesh), now.transforms.start(), now.material, now.reversed, sight};
     if (now.emission && building_.empty()) {
         shape.material =
             materials_.emitter(now.material, now.emission->radiance, now.emission->two_sided);
@@ -89,7 +100,10 @@ bool Interpreter::texture() {
     Parameters parameters;
     if (!read_text(name) || !read_text(value) || !read_typed(type, parameters))
         return false;
-    textures_.define(name, type, parameters, place_);
+    const bool is_float = value == "float";
+    textures_.define(name, is_float, type, parameters, place_);
+    if (is_float)
+        alphas_.define(name, type, parameters, place_);
     return true;
 }
 
@@ -166,6 +180,7 @@ bool Interpreter::bare_setting() {
 void Interpreter::fill(Scene& scene) {
     assert(at_end_);
     scene.materials = materials_.take();
+    scene.cutouts = alphas_.take(/* partial= */ !world_ended_);
     if (film_.has_size)
         scene.size = film_.size;
     if (camera_)

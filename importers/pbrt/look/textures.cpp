@@ -9,13 +9,25 @@
 
 namespace ovc::pbrt {
 
-void Textures::define(const std::string& name, const std::string& type,
+static bool is_plain(const std::string& type) {
+    return type == "constant" || type == "scale" || type == "mix";
+}
+
+void Textures::define(const std::string& name, bool is_float, const std::string& type,
                       const Parameters& parameters, const Place& place) {
-    const bool is_plain = type == "constant" || type == "scale" || type == "mix";
+    if (!is_float)
+        tell_mean(type, place);
     bool is_made_of_patterns = false;
     for (const Parameter& p : parameters.all())
         is_made_of_patterns = is_made_of_patterns || is_pattern(parameters, p.name);
-    means_[name] = {mean(type, parameters, place), !is_plain || is_made_of_patterns};
+    means_[name] = {mean(type, parameters), !is_plain(type) || is_made_of_patterns};
+}
+
+void Textures::tell_mean(const std::string& type, const Place& place) const {
+    if (!is_plain(type))
+        diagnostics_.approximate(
+            "texture " + type, place,
+            fmt::format("textures {} are shown by their mean", ovc::quoted(type)));
 }
 
 bool Textures::is_pattern(const Parameters& parameters, std::string_view name) const {
@@ -26,7 +38,7 @@ bool Textures::is_pattern(const Parameters& parameters, std::string_view name) c
     return at != means_.end() && at->second.is_pattern;
 }
 
-vec3 Textures::mean(const std::string& type, const Parameters& p, const Place& place) const {
+vec3 Textures::mean(const std::string& type, const Parameters& p) const {
     if (type == "constant")
         return color(p, "value", vec3(1));
     if (type == "scale") // v4 calls its factors tex and scale
@@ -36,8 +48,6 @@ vec3 Textures::mean(const std::string& type, const Parameters& p, const Place& p
     if (type == "mix")
         return glm::mix(color(p, "tex1", vec3(0)), color(p, "tex2", vec3(1)),
                         float(number(p, "amount", 0.5)));
-    diagnostics_.approximate("texture " + type, place,
-                             fmt::format("textures {} are shown by their mean", ovc::quoted(type)));
     if (type == "checkerboard" || type == "directionmix")
         return 0.5f * (color(p, "tex1", vec3(1)) + color(p, "tex2", vec3(0)));
     if (type == "dots")

@@ -12,9 +12,12 @@ class Textures {
 public:
     explicit Textures(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
-    /// Adds the texture of a Texture directive, with its class as `type` ("scale").
-    void define(const std::string& name, const std::string& type, const Parameters& parameters,
-                const Place& place);
+    /// Adds the texture of a Texture directive, with its class as `type` ("scale"). Warns of a
+    /// pattern, but not of floats, which Alphas may evaluate.
+    void define(const std::string& name, bool is_float, const std::string& type,
+                const Parameters& parameters, const Place& place);
+    /// Warns that textures of this class are shown by their mean.
+    void tell_mean(const std::string& type, const Place& place) const;
 
     /// Returns the colour that a parameter states, or the mean of the texture that it names;
     /// `otherwise` without either.
@@ -30,7 +33,7 @@ private:
         bool is_pattern;
     };
 
-    vec3 mean(const std::string& type, const Parameters& parameters, const Place& place) const;
+    vec3 mean(const std::string& type, const Parameters& parameters) const;
 
     Diagnostics& diagnostics_;
     std::unordered_map<std::string, Mean> means_;

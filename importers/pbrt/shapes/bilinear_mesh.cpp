@@ -14,9 +14,13 @@ namespace {
 /// The corners lie at (u, v) = (0,0), (1,0), (0,1), (1,1).
 struct BilinearPatch {
     dvec3 p[4];
+    dvec2 uv[4] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}}; // texture coordinates of the corners
 
     dvec3 at(double u, double v) const {
         return glm::mix(glm::mix(p[0], p[1], u), glm::mix(p[2], p[3], u), v);
+    }
+    dvec2 uv_at(double u, double v) const {
+        return glm::mix(glm::mix(uv[0], uv[1], u), glm::mix(uv[2], uv[3], u), v);
     }
     double size() const {
         Box box;
@@ -42,13 +46,16 @@ uint32_t steps_for(const std::vector<BilinearPatch>& patches, double tolerance) 
     return uint32_t(std::min(steps, kMaxPatchSteps));
 }
 
-void add_patch(const BilinearPatch& patch, uint32_t steps, Mesh& mesh) {
+void add_patch(const BilinearPatch& patch, uint32_t steps, bool with_uv, Mesh& mesh) {
     assert(steps >= 1 && steps <= kMaxPatchSteps);
     const auto first = uint32_t(mesh.positions.size() / 3);
     const uint32_t row = steps + 1;
     for (uint32_t v = 0; v <= steps; ++v)
-        for (uint32_t u = 0; u <= steps; ++u)
+        for (uint32_t u = 0; u <= steps; ++u) {
             mesh.add_vertex(patch.at(double(u) / steps, double(v) / steps));
+            if (with_uv)
+                mesh.uv.emplace_back(patch.uv_at(double(u) / steps, double(v) / steps));
+        }
     for (uint32_t v = 0; v < steps; ++v)
         for (uint32_t u = 0; u < steps; ++u) {
             const uint32_t a = first + v * row + u;
@@ -70,10 +77,13 @@ std::optional<Mesh> make_bilinear_mesh(ShapeRequest& request) {
         *indices = {0, 1, 2, 3};
     if (indices->empty())
         return left_out(request, "it has no indices");
+    const std::vector<vec2> uv = take_uv(request, points.size() / 3);
     std::vector<BilinearPatch> patches(indices->size() / 4);
     for (size_t i = 0; i < indices->size(); ++i) {
         const double* p = points.data() + size_t((*indices)[i]) * 3;
         patches[i / 4].p[i % 4] = {p[0], p[1], p[2]};
+        if (!uv.empty())
+            patches[i / 4].uv[i % 4] = dvec2(uv[(*indices)[i]]);
     }
     const uint32_t steps = steps_for(patches, request.tolerance);
     if (patches.size() * 2 * steps * steps > request.max_triangles) {
@@ -86,7 +96,7 @@ std::optional<Mesh> make_bilinear_mesh(ShapeRequest& request) {
     }
     Mesh mesh;
     for (const BilinearPatch& patch : patches)
-        add_patch(patch, steps, mesh);
+        add_patch(patch, steps, request.wants_uv, mesh);
     return mesh;
 }
 

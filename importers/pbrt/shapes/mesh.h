@@ -14,7 +14,7 @@ namespace ovc::pbrt {
 
 /// A mesh is either indexed, with three doubles per vertex; or, from a PLY file, has three corners
 /// per triangle in single precision, to be added to an origin. It has no normals, or normals of any
-/// length: one per vertex if it is indexed, else one per corner.
+/// length: one per vertex if it is indexed, else one per corner. Likewise texture coordinates.
 struct Mesh {
     std::string name;
     std::vector<double> positions;
@@ -22,6 +22,7 @@ struct Mesh {
     dvec3 origin{0};
     std::vector<vec3> corners;
     std::vector<vec3> normals;
+    std::vector<vec2> uv;
     uint64_t normals_left_out = 0, texture_coordinates_left_out = 0; // as in MeshInfo
 
     uint64_t size() const { return (indices.size() + corners.size()) / 3; }
@@ -39,6 +40,13 @@ struct Mesh {
     vec3 normal(size_t c) const {
         assert(c < 3 * size() && (is_indexed() ? indices[c] : c) < normals.size());
         return normals[is_indexed() ? indices[c] : c];
+    }
+
+    /// Returns pbrt's texture coordinates of corner c, also where the file has none.
+    vec2 uv_of(size_t c) const {
+        constexpr vec2 kOtherwise[] = {vec2(0, 0), vec2(1, 0), vec2(1, 1)};
+        const size_t at = is_indexed() ? indices[c] : c;
+        return at < uv.size() ? uv[at] : kOtherwise[c % 3];
     }
 
     void add_vertex(const dvec3& p) { positions.insert(positions.end(), {p.x, p.y, p.z}); }

@@ -21,6 +21,7 @@ constexpr double kMaxQuadricSteps = 256;
 struct Profile {
     std::vector<dvec3> points;
     std::vector<dvec3> normals;
+    std::vector<double> v;  // pbrt's, of each point; empty: in even steps
     bool is_curved = false; // the surface bends both ways
 
     void add(const dvec3& point, const dvec3& normal) {
@@ -69,12 +70,13 @@ bool on_axis(const dvec3& p) {
 }
 
 /// Makes rows of vertices at each step of phi. A row on the axis is one point, yet has a normal for
-/// each step; triangles without area at such points are left out.
-Mesh sweep(const Profile& profile, double phi_max_degrees, const Steps& fine) {
+/// each step; triangles without area at such points are left out. with_uv: the last row is another
+/// one than the first, in the same place, because its u is 1.
+Mesh sweep(const Profile& profile, double phi_max_degrees, const Steps& fine, bool with_uv) {
     assert(profile.points.size() >= 2 && profile.points.size() == profile.normals.size());
     const double share = std::clamp(phi_max_degrees, 0.0, 360.0) / 360;
     const size_t steps = fine.of(share, profile.is_curved);
-    const bool closed = share == 1;
+    const bool closed = share == 1 && !with_uv;
     const size_t columns = closed ? steps : steps + 1;
     const size_t rows = profile.points.size();
     Mesh mesh;
@@ -83,6 +85,9 @@ Mesh sweep(const Profile& profile, double phi_max_degrees, const Steps& fine) {
             const double turns = share * double(i) / double(steps);
             mesh.add_vertex(turned(profile.points[j], turns));
             mesh.normals.push_back(vec3(turned(profile.normals[j], turns)));
+            const double v = profile.v.empty() ? double(j) / double(rows - 1) : profile.v[j];
+            if (with_uv)
+                mesh.uv.emplace_back(double(i) / double(steps), v);
         }
     for (size_t i = 0; i < steps; ++i)
         for (size_t j = 0; j + 1 < rows; ++j) {
@@ -165,6 +170,7 @@ Profile paraboloid(const Parameters& p, const Steps& fine) {
     for (size_t i = 0; i <= steps; ++i) {
         const double share = i == steps ? 1 : first + (1 - first) * double(i) / double(steps);
         profile.add({radius * share, 0, top * share * share}, {2 * top * share, 0, -radius});
+        profile.v.push_back(top > bottom ? (top * share * share - bottom) / (top - bottom) : 0);
     }
     return profile;
 }
@@ -214,7 +220,7 @@ std::optional<Mesh> make_quadric(ShapeRequest& request) {
         const double phi = request.parameters.number("phimax", 360);
         if (!is_usable(profile) || !(phi > 0))
             return left_out(request, "its numbers make no surface");
-        return sweep(profile, phi, fine);
+        return sweep(profile, phi, fine, request.wants_uv);
     }
     return std::nullopt;
 }

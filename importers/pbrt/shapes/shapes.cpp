@@ -49,10 +49,11 @@ std::vector<vec3> take_normals(ShapeRequest& request, size_t vertices) {
 }
 
 /// Notes in the mesh the data of its vertices that it has no use for.
-std::optional<Mesh> told(std::optional<Mesh> mesh, const Parameters& parameters) {
+std::optional<Mesh> told(std::optional<Mesh> mesh, const ShapeRequest& request) {
+    const Parameters& parameters = request.parameters;
     if (mesh && mesh->normals.empty() && parameters.find("N"))
         mesh->normals_left_out = 3 * mesh->size();
-    if (mesh && (parameters.find("uv") || parameters.find("st")))
+    if (mesh && !request.wants_uv && (parameters.find("uv") || parameters.find("st")))
         mesh->texture_coordinates_left_out = 3 * mesh->size();
     return mesh;
 }
@@ -68,7 +69,7 @@ std::nullopt_t left_out(ShapeRequest& request, std::string_view why) {
 std::optional<Mesh> make_shape(ShapeRequest& request) {
     for (const Maker& maker : kMakers)
         if (maker.type == request.type)
-            return told(maker.make(request), request.parameters);
+            return told(maker.make(request), request);
     const std::string type(request.type);
     request.diagnostics.missing("shape " + type, request.place,
                                 fmt::format("shapes {} left out", ovc::quoted(type)));
@@ -82,6 +83,26 @@ std::vector<double> take_points(ShapeRequest& request) {
         return points;
     left_out(request, points.empty() ? "it has no points P" : "its points P are not in triples");
     return {};
+}
+
+std::vector<vec2> take_uv(ShapeRequest& request, size_t vertices) {
+    if (!request.wants_uv)
+        return {};
+    std::span<const double> numbers;
+    for (const char* name : {"uv", "st"})
+        if (numbers.empty())
+            numbers = request.parameters.numbers(name, {Kind::Point2, Kind::Vector2, Kind::Float});
+    if (numbers.size() != 2 * vertices) {
+        if (!numbers.empty())
+            request.diagnostics.missing("uv of " + std::string(request.type), request.place,
+                                        fmt::format("uv left out: found {} numbers for {}",
+                                                    numbers.size(), counted(vertices, "point")));
+        return {};
+    }
+    std::vector<vec2> uv(vertices);
+    for (size_t i = 0; i < vertices; ++i)
+        uv[i] = vec2(float(numbers[2 * i]), float(numbers[2 * i + 1]));
+    return uv;
 }
 
 std::optional<std::vector<uint32_t>> take_indices(ShapeRequest& request, size_t vertices,
@@ -116,6 +137,7 @@ std::optional<Mesh> make_triangle_mesh(ShapeRequest& request) {
         return left_out(request, "it has no indices");
     mesh.indices = std::move(*indices);
     mesh.normals = take_normals(request, vertices);
+    mesh.uv = take_uv(request, vertices);
     return mesh;
 }
 
@@ -129,6 +151,7 @@ std::optional<Mesh> make_ply_mesh(ShapeRequest& request) {
     ImportOptions options;
     options.log = request.diagnostics.log();
     options.files = request.tokens.files_read();
+    options.texture_coordinates = request.wants_uv;
     Result<Scene> scene = read_ply(*path, options);
     if (!scene) {
         request.diagnostics.missing("file " + name, request.place,
@@ -143,6 +166,7 @@ std::optional<Mesh> make_ply_mesh(ShapeRequest& request) {
     mesh.corners = chunk.take_corners();
     MeshInfo& info = scene->meshes[0];
     mesh.normals = std::move(info.normals);
+    mesh.uv = std::move(info.uv);
     mesh.normals_left_out = info.normals_left_out;
     mesh.texture_coordinates_left_out = info.texture_coordinates_left_out;
     return mesh;
@@ -162,9 +186,12 @@ std::optional<Mesh> make_height_field(ShapeRequest& request) {
     mesh.positions.reserve(heights.size() * 3);
     mesh.indices.reserve((nu - 1) * (nv - 1) * 6);
     for (size_t v = 0; v < nv; ++v)
-        for (size_t u = 0; u < nu; ++u)
-            mesh.add_vertex(
-                {double(u) / double(nu - 1), double(v) / double(nv - 1), heights[v * nu + u]});
+        for (size_t u = 0; u < nu; ++u) {
+            const dvec2 at(double(u) / double(nu - 1), double(v) / double(nv - 1));
+            mesh.add_vertex({at.x, at.y, heights[v * nu + u]});
+            if (request.wants_uv)
+                mesh.uv.emplace_back(at);
+        }
     for (size_t v = 0; v + 1 < nv; ++v)
         for (size_t u = 0; u + 1 < nu; ++u) {
             const auto corner = uint32_t(v * nu + u);

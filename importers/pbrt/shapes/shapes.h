@@ -17,6 +17,7 @@ struct ShapeRequest {
     Diagnostics& diagnostics;
     uint64_t max_triangles; // the number that the scene still allows
     double tolerance;       // kTolerance, or another
+    bool wants_uv = false;  // the mesh gets its texture coordinates
 };
 
 /// Returns the shape's triangles. Returns nothing if the shape is unknown, lacks data, or has data
@@ -41,6 +42,9 @@ std::optional<std::vector<uint32_t>> take_indices(ShapeRequest& request, size_t 
 /// Returns the numbers of "P", three per point; warns and returns none if it is missing or does not
 /// come in triples.
 std::vector<double> take_points(ShapeRequest& request);
+/// Returns the texture coordinates of the vertices, or none: where the request wants none, the file
+/// has none, or, with a warning, where their number is wrong.
+std::vector<vec2> take_uv(ShapeRequest& request, size_t vertices);
 /// Warns that the shape is left out, and why.
 std::nullopt_t left_out(ShapeRequest& request, std::string_view why);
 

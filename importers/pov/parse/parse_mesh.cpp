@@ -18,7 +18,9 @@ bool same_look(const Texture& a, const Texture& b) {
     const auto color = [](const Color& c) {
         return std::array<float, 5>{c.rgb.x, c.rgb.y, c.rgb.z, c.filter, c.transmit};
     };
-    return color(a.pigment.color) == color(b.pigment.color) &&
+    return color(a.pigment.color) == color(b.pigment.color) && a.pigment.holes == b.pigment.holes &&
+           a.pigment.uv_mapping == b.pigment.uv_mapping &&
+           (!a.pigment.holes || a.pigment.placed == b.pigment.placed) &&
            a.pigment.other.has_value() == b.pigment.other.has_value() &&
            a.surface.finish == b.surface.finish && a.surface.ambient == b.surface.ambient &&
            a.surface.emission == b.surface.emission;
@@ -56,6 +58,7 @@ public:
             shape.cut = [shared](int, bool, Facets& out) {
                 out.corners.insert(out.corners.end(), shared->corners.begin(),
                                    shared->corners.end());
+                out.uv.insert(out.uv.end(), shared->uv.begin(), shared->uv.end());
                 out.smooth = out.smooth || shared->smooth;
             };
             child->shape = std::move(shape);
@@ -72,6 +75,19 @@ private:
     size_t last_ = 0;
 };
 
+using TriangleUv = std::array<vec2, 3>;
+
+void add_triangle(const Corner (&c)[3], bool smooth, const TriangleUv& uv, Facets& facets) {
+    const bool added = smooth ? facets.add(c[0], c[1], c[2])
+                              : facets.add(c[0].position, c[1].position, c[2].position);
+    // Coordinates are kept from the first that is not 0 on.
+    const bool is_zero = uv[0] == vec2(0) && uv[1] == vec2(0) && uv[2] == vec2(0);
+    if (!added || (is_zero && facets.uv.empty()))
+        return;
+    facets.uv.resize(facets.corners.size() - 3, vec2(0));
+    facets.uv.insert(facets.uv.end(), uv.begin(), uv.end());
+}
+
 /// Reads the `{ a, na, b, nb, c, nc texture { … } }` of a mesh's triangle.
 void parse_mesh_triangle(Reader& reader, bool smooth, Groups& groups) {
     reader.expect('{', "triangle");
@@ -85,23 +101,20 @@ void parse_mesh_triangle(Reader& reader, bool smooth, Groups& groups) {
         }
     }
     std::optional<Texture> texture;
+    TriangleUv uv{};
     while (!reader.take('}')) {
         if (reader.take("texture"))
             texture = parse_texture(reader);
         else if (reader.take("uv_vectors"))
-            for (int i = 0; i < 3; ++i) {
-                parse_vector2(reader);
+            for (vec2& at : uv) {
+                at = vec2(parse_vector2(reader));
                 reader.take_comma();
             }
         else
             reader.fail_here("'}' or a texture of a triangle");
     }
     reader.grow(3 * sizeof(Corner));
-    Facets& facets = groups.of(texture);
-    if (smooth)
-        facets.add(c[0], c[1], c[2]);
-    else
-        facets.add(c[0].position, c[1].position, c[2].position);
+    add_triangle(c, smooth, uv, groups.of(texture));
 }
 
 std::vector<dvec3> parse_vectors(Reader& reader, std::string_view what) {
@@ -118,7 +131,7 @@ std::vector<dvec3> parse_vectors(Reader& reader, std::string_view what) {
 }
 
 struct Face {
-    std::array<uint32_t, 3> corner{}, normal{};
+    std::array<uint32_t, 3> corner{}, normal{}, uv{};
     int texture = -1;
 };
 
@@ -141,7 +154,7 @@ std::vector<Face> parse_faces(Reader& reader) {
     for (int i = 0; i < count; ++i) {
         reader.take_comma();
         Face face;
-        face.corner = face.normal = parse_indices(reader);
+        face.corner = face.normal = face.uv = parse_indices(reader);
         // A face has one texture, or one for each corner, of which we keep the first.
         for (int t = 0; t < 3; ++t) {
             reader.take_comma();
@@ -174,19 +187,36 @@ std::vector<Texture> parse_textures(Reader& reader) {
 
 struct Mesh2 {
     std::vector<dvec3> vertices, normals;
+    std::vector<vec2> uv;
     std::vector<Face> faces;
     std::vector<Texture> textures;
 };
 
-void parse_normal_indices(Reader& reader, Mesh2& mesh) {
-    reader.expect('{', "normal_indices");
-    const int count = parse_int(reader, 0, int(mesh.faces.size()), "the number of normal indices");
+/// Reads normal_indices or uv_indices, which come behind the faces.
+void parse_more_indices(Reader& reader, std::string_view what,
+                        std::array<uint32_t, 3> Face::*indices, Mesh2& mesh) {
+    reader.expect('{', what);
+    const int count =
+        parse_int(reader, 0, int(mesh.faces.size()), fmt::format("the number of {}", what));
     for (int i = 0; i < count; ++i) {
         reader.take_comma();
-        mesh.faces[size_t(i)].normal = parse_indices(reader);
+        mesh.faces[size_t(i)].*indices = parse_indices(reader);
     }
     reader.take_comma();
-    reader.expect('}', "normal_indices");
+    reader.expect('}', what);
+}
+
+std::vector<vec2> parse_uv_vectors(Reader& reader) {
+    reader.expect('{', "uv_vectors");
+    const int count = parse_count(reader, 0);
+    std::vector<vec2> uv;
+    for (int i = 0; i < count; ++i) {
+        reader.take_comma();
+        uv.emplace_back(parse_vector2(reader));
+    }
+    reader.take_comma();
+    reader.expect('}', "uv_vectors");
+    return uv;
 }
 
 void add_faces(Reader& reader, const Mesh2& mesh, Groups& groups) {
@@ -205,10 +235,10 @@ void add_faces(Reader& reader, const Mesh2& mesh, Groups& groups) {
             c[i] = {mesh.vertices[face.corner[i]],
                     smooth ? mesh.normals[face.normal[i]] : dvec3(0)};
         }
-        if (smooth)
-            groups.of(texture).add(c[0], c[1], c[2]);
-        else
-            groups.of(texture).add(c[0].position, c[1].position, c[2].position);
+        TriangleUv uv{};
+        for (size_t i = 0; i < 3; ++i)
+            uv[i] = face.uv[i] < mesh.uv.size() ? mesh.uv[face.uv[i]] : vec2(0);
+        add_triangle(c, smooth, uv, groups.of(texture));
     }
 }
 
@@ -235,14 +265,16 @@ void parse_mesh2(Reader& reader, Object& object) {
             mesh.vertices = parse_vectors(reader, "vertex_vectors");
         else if (reader.take("normal_vectors"))
             mesh.normals = parse_vectors(reader, "normal_vectors");
-        else if (reader.take("uv_vectors") || reader.take("uv_indices"))
-            skip_braces(reader, "uv_vectors");
+        else if (reader.take("uv_vectors"))
+            mesh.uv = parse_uv_vectors(reader);
+        else if (reader.take("uv_indices"))
+            parse_more_indices(reader, "uv_indices", &Face::uv, mesh);
         else if (reader.take("texture_list"))
             mesh.textures = parse_textures(reader);
         else if (reader.take("face_indices"))
             mesh.faces = parse_faces(reader);
         else if (reader.take("normal_indices"))
-            parse_normal_indices(reader, mesh);
+            parse_more_indices(reader, "normal_indices", &Face::normal, mesh);
         else
             break;
     }

@@ -192,7 +192,9 @@ bool parse_switch(Reader& reader, Object& object) {
     else if (reader.take("double_illuminate")) {
         if (parse_flag(reader))
             object.notes.push_back(left_out("an object", token));
-    } else if (reader.take("inverse"))
+    } else if (reader.take("uv_mapping"))
+        object.uv_mapping = parse_flag(reader);
+    else if (reader.take("inverse"))
         object.inverse = !object.inverse;
     else if (reader.take("open"))
         object.open = parse_flag(reader);
@@ -213,7 +215,8 @@ bool starts_object(const Token& token) {
 
 void place(Object& object, const dmat4& by) {
     object.placed = by * object.placed;
-    if (object.texture)
+    // What lies on texture coordinates moves with them, and not once more.
+    if (object.texture && !object.uv_mapping && !object.texture->pigment.uv_mapping)
         object.texture->pigment.placed = by * object.texture->pigment.placed;
     for (std::vector<ObjectPtr>* list : {&object.clips, &object.bounds})
         for (ObjectPtr& other : *list) {
@@ -282,7 +285,7 @@ void parse_modifiers(Reader& reader, Object& object) {
         } else if (const auto texture = take_named_if<Texture>(reader))
             add_texture(object, *texture, token.place); // old scenes name it without texture { }
         else if (token.kind == TokenKind::Name && token.name->is_keyword && !starts_object(token)) {
-            reader.next(); // photons, uv_mapping and the like
+            reader.next(); // photons and the like
             if (token.is("interior_texture") || token.is("cutaway_textures"))
                 object.notes.push_back(left_out("an object", token));
             skip_arguments(reader);

@@ -138,6 +138,7 @@ void parse_list(Reader& reader, const Token& pattern, Pigment& pigment) {
         pigment.color = colors.size() > 0 ? colors[0] : kDefaults[0];
         pigment.other = colors.size() > 1 ? colors[1] : kDefaults[1];
         pigment.placed = dmat4(1);
+        pigment.holes.reset();
         pigment.notes.clear();
         if (pigment.color.opacity() != 1 || pigment.other->opacity() != 1)
             pigment.notes = {
@@ -151,6 +152,7 @@ void parse_list(Reader& reader, const Token& pattern, Pigment& pigment) {
     if (!mean.empty())
         pigment.color = mean.color();
     pigment.other.reset();
+    pigment.holes.reset();
     pigment.notes = average_note(pattern);
 }
 
@@ -160,6 +162,7 @@ const Color kMiddle{vec3(0.5f)};
 void set_plain(Pigment& pigment, const Color& color) {
     pigment.color = color;
     pigment.other.reset();
+    pigment.holes.reset();
     pigment.notes.clear();
 }
 
@@ -180,6 +183,7 @@ Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
             reader.next();
             pigment.color = parse_map(reader).average;
             pigment.other.reset();
+            pigment.holes.reset();
             mapped = true;
         } else if (is_list_pattern(token)) {
             reader.next();
@@ -187,6 +191,10 @@ Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
         } else if (token.is("image_map")) {
             reader.next();
             parse_image_map(reader, token, pigment);
+        } else if (reader.take("uv_mapping")) {
+            pigment.uv_mapping = parse_flag(reader);
+            if (pigment.other)
+                pigment.notes = {left_out("a checker", token)};
         } else if (token.is("quick_color") || token.is("quick_colour")) {
             reader.next();
             parse_color(reader);
@@ -196,6 +204,7 @@ Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
             if (!mapped)
                 pigment.color = kMiddle;
             pigment.other.reset();
+            pigment.holes.reset();
             if (token.is("function"))
                 parse_function(reader);
             else
@@ -492,6 +501,8 @@ Texture parse_texture(Reader& reader) {
             texture.pigment = parse_pigment(reader, texture.pigment);
         else if (reader.take("finish"))
             texture.surface = parse_finish(reader, texture.surface);
+        else if (reader.take("uv_mapping"))
+            texture.pigment.uv_mapping = parse_flag(reader);
         else if (reader.take("tiles"))
             texture = parse_tiles(reader);
         else if (reader.take("normal")) {
@@ -521,6 +532,7 @@ Texture layered(const Texture& upper, const Texture& lower, const Place& at) {
     if (over.filter <= 0 && over.transmit <= 0 && !upper.pigment.other)
         return upper;
     Texture both = upper;
+    both.pigment.holes.reset(); // what is below fills them
     const Color under = mean_of(lower.pigment);
     const auto seen = [&](const Color& c) {
         const vec3 through = c.filter * c.rgb + vec3(c.transmit);

@@ -2,6 +2,7 @@
 #include "importers/pov/pictures/image_map.h"
 
 #include "importers/file/text.h"
+#include "importers/pov/pictures/holes.h"
 #include "importers/pov/pictures/picture.h"
 #include "importers/pov/words/block.h"
 
@@ -13,13 +14,18 @@ namespace ovc::pov {
 
 namespace {
 
-/// Returns a picture's average color. Before version 3.7 its numbers are not taken for sRGB.
-Color average(const Reader& reader, const Picture& picture) {
-    assert(picture.size() > 0 && picture.pixels.size() == picture.size());
-    std::array<double, 256> linear;
-    for (size_t i = 0; i < linear.size(); ++i)
-        linear[i] =
+/// Returns the light of the 256 codes of a sample. Before version 3.7 they are not taken for sRGB.
+std::array<double, 256> light_of_codes(const Reader& reader) {
+    std::array<double, 256> light;
+    for (size_t i = 0; i < light.size(); ++i)
+        light[i] =
             reader.has_linear_colors() ? from_srgb(double(i) / 255, reader.gamma) : double(i) / 255;
+    return light;
+}
+
+/// Returns a picture's average color.
+Color average(const Picture& picture, const std::array<double, 256>& linear) {
+    assert(picture.size() > 0 && picture.pixels.size() == picture.size());
     dvec3 sum(0);
     double opacity = 0;
     for (const auto& p : picture.pixels) {
@@ -30,16 +36,41 @@ Color average(const Reader& reader, const Picture& picture) {
     return {vec3(sum / count), 0, float(1 - opacity / count)};
 }
 
-/// Reads `all A` behind filter or transmit and adds A to `share`. Without all, it reads and ignores
-/// the number of a color and its amount.
-void parse_through(Reader& reader, float& share) {
-    const bool all = reader.take("all");
-    if (!all) {
-        parse_float(reader);
-        reader.take_comma();
+/// Reads `all A`, or the number of a color and A, behind filter or transmit.
+void parse_through(Reader& reader, MapTransparency& to, float MapTransparency::Share::*kind) {
+    if (reader.take("all")) {
+        to.all.*kind += float(parse_float(reader));
+        return;
     }
-    const double amount = parse_float(reader);
-    share += all ? float(amount) : 0;
+    const int index = parse_int(reader, 0, 65535, "the number of a color");
+    reader.take_comma();
+    to.of_index[index].*kind = float(parse_float(reader));
+}
+
+/// The words behind the name of an image_map's picture.
+struct MapWords {
+    MapTransparency transparency;
+    bool smooth = false;
+    int type = 0; // 0: the picture lies on x and y
+};
+
+MapWords parse_map_words(Reader& reader, const Place& start) {
+    MapWords words;
+    while (!reader.take('}')) {
+        if (reader.take("filter"))
+            parse_through(reader, words.transparency, &MapTransparency::Share::filter);
+        else if (reader.take("transmit"))
+            parse_through(reader, words.transparency, &MapTransparency::Share::transmit);
+        else if (reader.take("once"))
+            words.transparency.once = true;
+        else if (reader.take("interpolate"))
+            words.smooth = parse_float(reader) > 0;
+        else if (reader.take("map_type"))
+            words.type = int(parse_float(reader));
+        else if (reader.next().kind == TokenKind::End)
+            reader.fail(start, "found no '}' to image_map");
+    }
+    return words;
 }
 
 } // namespace
@@ -50,6 +81,8 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
     };
     pigment.color = {vec3(0.5f)};
     pigment.other.reset();
+    pigment.holes.reset();
+    pigment.placed = dmat4(1);
     reader.expect('{', "image_map");
     const Place start = reader.peek().place;
     if (reader.peek().kind == TokenKind::Name && !starts_text(reader, reader.peek()) &&
@@ -61,28 +94,31 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
         return;
     }
     const std::string name = parse_text(reader);
-    Color color;
     const std::filesystem::path path = reader.find_file(name, ".png");
     const Result<Picture> picture =
         path.empty() ? Error{fmt::format("there is no file {}", ovc::quoted(name))}
                      : read_picture(path);
-    if (picture) {
-        color = average(reader, *picture);
-        reader.spend(picture->size() / 16);
-        note("image_map", word.place, "image_map is drawn by its average color");
-    } else
+    const MapWords words = parse_map_words(reader, start);
+    if (!picture) {
         note("image_map " + name, start,
              fmt::format("{}: the image_map is drawn by a middle grey", picture.error().message));
-    while (!reader.take('}')) {
-        if (reader.take("filter"))
-            parse_through(reader, color.filter);
-        else if (reader.take("transmit"))
-            parse_through(reader, color.transmit);
-        else if (reader.next().kind == TokenKind::End)
-            reader.fail(start, "found no '}' to image_map");
+        return;
     }
-    if (picture)
-        pigment.color = color;
+    reader.spend(picture->size() / 16);
+    const std::array<double, 256> light = light_of_codes(reader);
+    pigment.color = average(*picture, light);
+    pigment.color.filter += words.transparency.all.filter;
+    pigment.color.transmit += words.transparency.all.transmit;
+    const auto holes = holes_of(*picture, words.transparency, words.smooth, light);
+    pigment.notes.clear();
+    if (!holes || !holes->one_color || words.type != 0)
+        note("image_map", word.place, "image_map is drawn by its average color");
+    if (words.type == 0)
+        pigment.holes = holes;
+    else if (holes)
+        pigment.notes.push_back(
+            make_note("map_type", word.place,
+                      fmt::format("an image_map of map_type {} has no holes", words.type)));
 }
 
 } // namespace ovc::pov

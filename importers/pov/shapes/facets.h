@@ -16,19 +16,29 @@ struct Corner {
 /// Triangles of three corners each, counterclockwise seen from outside. Normals point outside.
 struct Facets {
     std::vector<Corner> corners;
-    bool smooth = false; // whether some corner has a normal of its own
+    std::vector<vec2> uv; // texture coordinates of the corners, where a mesh has them; else empty
+    bool smooth = false;  // whether some corner has a normal of its own
 
     /// Adds a flat triangle, unless two of its corners are the same, as at a pole or a seam.
-    void add(const dvec3& a, const dvec3& b, const dvec3& c) {
-        if (a != b && b != c && c != a)
-            for (const dvec3& p : {a, b, c})
-                corners.push_back({p, dvec3(0)});
+    /// Returns whether it was added.
+    bool add(const dvec3& a, const dvec3& b, const dvec3& c) {
+        if (a == b || b == c || c == a)
+            return false;
+        for (const dvec3& p : {a, b, c})
+            corners.push_back({p, dvec3(0)});
+        return true;
     }
-    void add(const Corner& a, const Corner& b, const Corner& c) {
+    bool add(const Corner& a, const Corner& b, const Corner& c) {
         if (a.position == b.position || b.position == c.position || c.position == a.position)
-            return;
+            return false;
         corners.insert(corners.end(), {a, b, c});
         smooth = true;
+        return true;
+    }
+    void clear() {
+        corners.clear();
+        uv.clear();
+        smooth = false;
     }
     void add_quad(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
         add(a, b, c);

@@ -55,11 +55,20 @@ struct Color {
     float opacity() const { return 1 - filter - transmit; }
 };
 
+/// The holes of an image_map and the color of what is there.
+struct Holes {
+    Cutout cutout;
+    Color color;
+    bool one_color = false; // all that is there has this color
+};
+
 /// A color, the average of a pattern, or a checker of two of them.
 struct Pigment {
     Color color;
-    std::optional<Color> other; // of a checker
-    dmat4 placed{1};            // from a checker's space to that of the object's parent
+    std::shared_ptr<const Holes> holes; // of an image_map; null: none
+    bool uv_mapping = false;            // the image_map lies on texture coordinates, not on x and y
+    std::optional<Color> other;         // of a checker
+    dmat4 placed{1};                    // from its space to that of the object's parent, or to uv
     Notes notes;
 };
 

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/shade/cutouts.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+
+namespace ovc {
+
+namespace {
+
+/// Returns the number of the texel that stands for number i of a row of `size`; `size` or more for
+/// a hole. i is a whole number, perhaps far outside of the row.
+uint32_t texel_number(double i, uint32_t size, Cutout::Beyond beyond) {
+    if (i >= 0 && i < size)
+        return uint32_t(i);
+    if (beyond == Cutout::Beyond::Hole)
+        return size;
+    if (beyond == Cutout::Beyond::Clamp)
+        return i < 0 ? 0 : size - 1;
+    return uint32_t(i - size * std::floor(i / size)) % size;
+}
+
+float texel(const Cutout& cutout, double x, double y) {
+    const uint32_t column = texel_number(x, cutout.width, cutout.beyond);
+    const uint32_t row = texel_number(y, cutout.height, cutout.beyond);
+    if (column >= cutout.width || row >= cutout.height)
+        return 0;
+    return float(cutout.opacity[size_t(row) * cutout.width + column]) / 255.0f;
+}
+
+/// Returns the opacity between the middles of four texels.
+float smooth_opacity(const Cutout& cutout, const dvec2& at) {
+    const dvec2 first = glm::floor(at - 0.5);
+    const vec2 share(at - 0.5 - first);
+    const float top =
+        glm::mix(texel(cutout, first.x, first.y), texel(cutout, first.x + 1, first.y), share.x);
+    const float below = glm::mix(texel(cutout, first.x, first.y + 1),
+                                 texel(cutout, first.x + 1, first.y + 1), share.x);
+    return glm::mix(top, below, share.y);
+}
+
+/// Returns a number in [0, 1) that differs from hit to hit as if by chance.
+float chance_of(const Hit& hit) {
+    uint64_t hash = (uint64_t(hit.id.mesh) << 32) | hit.id.prim;
+    for (const double number : {hit.u, hit.v, hit.t}) { // the mixing is SplitMix64's
+        hash += std::bit_cast<uint64_t>(number) + 0x9e3779b97f4a7c15u;
+        hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;
+        hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;
+        hash ^= hash >> 31;
+    }
+    return float(hash >> 40) * 0x1p-24f;
+}
+
+bool is_there(const Cutout& cutout, const dvec2& uv, const Hit& hit) {
+    const float opacity = opacity_at(cutout, uv);
+    if (opacity <= 0 || opacity >= 1 || !cutout.partial)
+        return opacity > 0;
+    return chance_of(hit) < opacity;
+}
+
+} // namespace
+
+float opacity_at(const Cutout& cutout, const dvec2& uv) {
+    assert(cutout.width > 0 && cutout.height > 0);
+    const dvec2 at = cutout.uv_scale * uv + cutout.uv_offset;
+    const dvec2 texels(at.x * cutout.width, (1 - at.y) * cutout.height);
+    if (!std::isfinite(texels.x) || !std::isfinite(texels.y))
+        return 0;
+    const float opacity = cutout.smooth ? smooth_opacity(cutout, texels)
+                                        : texel(cutout, std::floor(texels.x), std::floor(texels.y));
+    return std::clamp(cutout.scale * opacity, 0.0f, 1.0f);
+}
+
+Cutouts::Cutouts(const Scene& scene, Asked asked)
+    : any_(std::ranges::any_of(scene.meshes,
+                               [&](const MeshInfo& mesh) {
+                                   return mesh.cutout != kNone || (asked == Asked::ByShadowRays &&
+                                                                   mesh.shadow_cutout != kNone);
+                               })),
+      meshes_(any_ ? scene.meshes.size() : 0) {
+    const auto cutout = [&](uint32_t i) { return i == kNone ? nullptr : &scene.cutouts[i]; };
+    for (size_t m = 0; m < meshes_.size(); ++m) {
+        const MeshInfo& mesh = scene.meshes[m];
+        const bool by_shadows = asked == Asked::ByShadowRays;
+        meshes_[m] = {scene.uv_of(mesh).data(), cutout(mesh.cutout),
+                      by_shadows ? cutout(mesh.shadow_cutout) : nullptr};
+    }
+}
+
+bool Cutouts::keep(std::span<const uint64_t>, std::span<const Hit> hits, std::span<uint8_t> keep) {
+    for (size_t i = 0; i < hits.size(); ++i)
+        keep[i] = counts(hits[i]);
+    return true;
+}
+
+bool Cutouts::counts(const Hit& hit) const {
+    assert(hit.id.mesh < meshes_.size());
+    const OfMesh& mesh = meshes_[hit.id.mesh];
+    if (!mesh.all && !mesh.shadow)
+        return true;
+    const vec2* uv = mesh.uv + 3 * size_t(hit.id.prim);
+    const dvec2 at =
+        (1 - hit.u - hit.v) * dvec2(uv[0]) + hit.u * dvec2(uv[1]) + hit.v * dvec2(uv[2]);
+    return (!mesh.all || is_there(*mesh.all, at, hit)) &&
+           (!mesh.shadow || is_there(*mesh.shadow, at, hit));
+}
+
+} // namespace ovc

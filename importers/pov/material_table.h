@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// MaterialTable turns textures into the materials of a scene.
+#pragma once
+
+#include "importers/pov/flatten.h"
+
+#include <unordered_map>
+
+namespace ovc::pov {
+
+void tell_all(const Notes& notes, const Look& look);
+
+/// Adds materials to a scene. Equal ones are added once.
+class MaterialTable {
+public:
+    MaterialTable(const Look& look, Scene& scene) : look_(look), scene_(scene) {}
+
+    /// Returns an index into Scene::materials. color: of the texture's pigment, perhaps without its
+    /// holes. placed: brings the texture into the world. interior: may be null.
+    uint32_t number(const Texture& texture, const Color& color, const dmat4& placed,
+                    const Interior* interior);
+
+private:
+    ovc::Material made(const Texture& texture, const Color& color, const dmat4& placed,
+                       const Interior* interior) const;
+
+    const Look& look_;
+    Scene& scene_;
+    std::unordered_multimap<size_t, uint32_t> by_color_; // numbers of materials
+};
+
+} // namespace ovc::pov
