@@ -102,6 +102,13 @@ typedef struct ovc_device_config {
     void* log_user;
     ovc_error_function error; /* NULL: nobody is told. Else told of all calls on the device and its scenes that fail, create_device too */
     void* error_user;
+    /* the budget of all scenes together, each of which gets what it has use for or an equal part; one that has not been used for
+     * long makes room for others, and a call may wait for one on another scene to end. 0: each scene has a budget of its own */
+    uint64_t gpu_memory_bytes;
+    /* max threads that the library's loops run on at once, and max cores that a software renderer's kernels use; 0: all cores.
+     * Threads that call count while they work in such a loop. The first device on a software renderer decides for it */
+    uint32_t threads;
+    uint32_t reserved; /* 0 */
 } ovc_device_config;
 
 /* The struct_size of an earlier header is fine: fields that it lacks are not filled in. */
@@ -114,7 +121,7 @@ typedef struct ovc_device_info {
     uint32_t max_texture_size;       /* texels a side */
     uint64_t max_buffer_texels;      /* of a buffer texture, after the clamp to what works */
     uint64_t memory_bytes;           /* free GPU memory as the driver reports it; on a software renderer 1 GiB */
-    uint64_t default_budget_bytes;   /* what gpu_memory_bytes = 0 means */
+    uint64_t default_budget_bytes;   /* what ovc_scene_config.gpu_memory_bytes = 0 means */
     uint32_t is_tested; /* 1: all of Overcast's tests have run on a driver of this kind; 0: none that we know of */
     uint32_t reserved;  /* 0 */
 } ovc_device_info;
@@ -165,7 +172,7 @@ typedef int (*ovc_progress_function)(void* user, double done, const char* stage)
 /* Fields are only ever appended; the struct_size of an earlier header is fine, and what it lacks is the default. */
 typedef struct ovc_scene_config {
     size_t struct_size;
-    uint64_t gpu_memory_bytes; /* the budget: pages, rays and hits together stay below it. 0: the device's default */
+    uint64_t gpu_memory_bytes; /* the budget: pages, rays and hits together stay below it. 0: the device's default. Max: what the device's scenes share */
     uint64_t leaf_triangles;   /* max triangles of a level-1 leaf. 0: a tenth of the scene or less; one leaf where that fits and rays gain by it */
     uint32_t leaves;           /* instead of leaf_triangles: about this many leaves. 0: as leaf_triangles says */
     uint32_t precision;        /* ovc_precision */

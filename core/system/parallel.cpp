@@ -8,16 +8,44 @@
 #include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cassert>
 #include <chrono>
 #include <latch>
+#include <mutex>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace ovc {
+
+struct LoopThreads::Arena {
+    oneapi::tbb::task_arena arena;
+};
+
+static constinit thread_local LoopThreads* loop_threads = nullptr;
+
+/// Returns the arena of this thread's loops; nullptr: that of the process.
+static oneapi::tbb::task_arena* own_arena() {
+    LoopThreads::Arena* const own = loop_threads ? loop_threads->arena() : nullptr;
+    return own ? &own->arena : nullptr;
+}
+
+LoopThreads::LoopThreads(size_t count) {
+    if (count > 0 && count < thread_count()) // oneTBB warns of more than there are
+        arena_.reset(new Arena{oneapi::tbb::task_arena(int(count))});
+}
+
+LoopThreads::~LoopThreads() = default;
+
+LoopThreads::Scope::Scope(LoopThreads& threads) : before_(std::exchange(loop_threads, &threads)) {}
+
+LoopThreads::Scope::~Scope() {
+    loop_threads = before_;
+}
 
 #ifndef __SANITIZE_THREAD__
 namespace {
@@ -28,10 +56,12 @@ using Context = oneapi::tbb::task_group_context;
 /// thread's floating-point mode. Otherwise it would run in the mode of the thread on which oneTBB
 /// began, which may be the host's and flush subnormals, say.
 void isolated(FunctionRef<void(Context&)> loop) {
-    oneapi::tbb::this_task_arena::isolate([&] {
-        Context context(Context::isolated, Context::default_traits | Context::fp_settings);
-        loop(context);
-    });
+    Context context(Context::isolated, Context::default_traits | Context::fp_settings);
+    const auto run = [&] { oneapi::tbb::this_task_arena::isolate([&] { loop(context); }); };
+    if (oneapi::tbb::task_arena* const arena = own_arena())
+        arena->execute(run);
+    else
+        run();
 }
 
 } // namespace
@@ -71,8 +101,10 @@ ThreadLimit::ThreadLimit(size_t threads)
 ThreadLimit::~ThreadLimit() = default;
 
 size_t thread_count() {
-    return oneapi::tbb::global_control::active_value(
+    const size_t all = oneapi::tbb::global_control::active_value(
         oneapi::tbb::global_control::max_allowed_parallelism);
+    const oneapi::tbb::task_arena* const arena = own_arena();
+    return arena ? std::min(all, size_t(arena->max_concurrency())) : all;
 }
 
 namespace {
@@ -111,17 +143,18 @@ void gather_threads(size_t count) {
 } // namespace
 
 void start_threads() {
-    static const bool started = [] {
-        try_threads(thread_count() - 1);
-        try {
-            gather_threads(thread_count());
-        } catch (const std::runtime_error&) { // oneTBB's report of the same failure
-            throw std::system_error(
-                std::make_error_code(std::errc::resource_unavailable_try_again));
-        }
-        return true;
-    }();
-    (void)started;
+    static std::mutex mutex;
+    static size_t started = 1;
+    const std::lock_guard lock(mutex);
+    if (started >= thread_count())
+        return;
+    try_threads(thread_count() - started);
+    try {
+        gather_threads(thread_count());
+    } catch (const std::runtime_error&) { // oneTBB's report of the same failure
+        throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
+    }
+    started = thread_count();
 }
 
 } // namespace ovc

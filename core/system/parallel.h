@@ -66,10 +66,37 @@ T parallel_reduce(size_t count, T identity, Body&& body, Join&& join) {
     return total;
 }
 
-/// Starts the threads that loops run on, once in a process. Otherwise they would start within the
-/// first loops, and where the system refuses one there, oneTBB throws in the midst of a loop or
-/// ends the process. Throws std::system_error where the system refuses one.
+/// Starts the threads that loops of this thread run on, which stay. Otherwise they would start
+/// within the first loops, and where the system refuses one there, oneTBB throws in the midst of a
+/// loop or ends the process. Throws std::system_error where the system refuses one.
 void start_threads();
+
+/// The threads that loops of one owner run on, of which there is a max number together.
+class LoopThreads {
+public:
+    /// count: 0 for no limit.
+    explicit LoopThreads(size_t count);
+    ~LoopThreads();
+    LoopThreads(const LoopThreads&) = delete;
+
+    /// While it lives, loops that this thread begins run on these threads. A loop for which none is
+    /// free waits. ThreadSanitizer's loops know no limit.
+    class Scope {
+    public:
+        explicit Scope(LoopThreads& threads);
+        ~Scope();
+        Scope(const Scope&) = delete;
+
+    private:
+        LoopThreads* before_;
+    };
+
+    struct Arena;
+    Arena* arena() { return arena_.get(); }
+
+private:
+    std::unique_ptr<Arena> arena_; // none without a limit
+};
 
 /// While it lives, loops of the whole process run on at most `threads` (> 0) threads.
 class ThreadLimit {
@@ -82,7 +109,7 @@ private:
     std::unique_ptr<Limit> limit_;
 };
 
-/// Returns the max number of threads that loops run on.
+/// Returns the max number of threads that loops of this thread run on.
 size_t thread_count();
 
 /// Sorts [first, last) by <. Equal elements come in any order.

@@ -147,6 +147,37 @@ TEST(Parallel, ALoopWithinALoopRunsWholeWhereThatOneThrows) {
     }
 }
 
+#ifndef __SANITIZE_THREAD__
+TEST(LoopThreads, AreAtMostSoManyAtOnce) {
+    const oneapi::tbb::global_control threads(oneapi::tbb::global_control::max_allowed_parallelism,
+                                              8);
+    LoopThreads two(2), all(0);
+    std::atomic<int> inside{0}, most{0};
+    std::atomic<size_t> items{0};
+    const auto part = [&](size_t first, size_t last) {
+        const int now = ++inside;
+        for (int before = most; before < now && !most.compare_exchange_weak(before, now);) {
+        }
+        work_for_a_while();
+        items += last - first;
+        --inside;
+    };
+    std::vector<std::thread> callers;
+    for (int caller = 0; caller < 4; ++caller)
+        callers.emplace_back([&] {
+            const LoopThreads::Scope scope(two);
+            EXPECT_EQ(thread_count(), 2u);
+            parallel_for(100, 1, part);
+            const LoopThreads::Scope inner(all);
+            EXPECT_EQ(thread_count(), 8u);
+        });
+    for (std::thread& caller : callers)
+        caller.join();
+    EXPECT_EQ(items, 400u);
+    EXPECT_LE(most, 2);
+}
+#endif
+
 TEST(Forks, ThrowWhatOneOfThemThrows) {
     EXPECT_THROW(in_forks([](const Fork& fork) {
                      fork([&] { fork([] { throw std::runtime_error("one"); }, [] {}); }, [] {});

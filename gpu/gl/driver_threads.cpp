@@ -11,6 +11,7 @@
 #ifdef __linux__
 #include <ctime>
 #include <pthread.h>
+#include <sched.h>
 #include <unistd.h>
 #endif
 
@@ -30,6 +31,29 @@ void name_device_thread() {
     pthread_setname_np(pthread_self(), kDeviceThreadName);
 }
 
+/// Returns the cores that this thread may run on; none if the system does not tell.
+static std::vector<int> own_cores() {
+    std::vector<int> cores;
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof(set), &set) == 0)
+        for (int core = 0; core < CPU_SETSIZE; ++core)
+            if (CPU_ISSET(core, &set))
+                cores.push_back(core);
+    return cores;
+}
+
+void keep_to_cores(uint32_t count) {
+    const std::vector<int> cores = own_cores();
+    // From the core that it runs on: otherwise all processes would keep to the first ones.
+    const size_t first = size_t(std::ranges::find(cores, sched_getcpu()) - cores.begin());
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    for (size_t i = 0; i < std::min<size_t>(count, cores.size()); ++i)
+        CPU_SET(cores[(first + i) % cores.size()], &set);
+    if (!cores.empty())
+        sched_setaffinity(0, sizeof(set), &set);
+}
+
 DriverThreads DriverThreads::find() {
     DriverThreads found;
     std::error_code error;
@@ -47,6 +71,10 @@ DriverThreads DriverThreads::find() {
 #else
 
 void name_device_thread() {}
+void keep_to_cores(uint32_t) {}
+static std::vector<int> own_cores() {
+    return {};
+}
 static double cpu_seconds(int) {
     return 0;
 }
@@ -72,7 +100,7 @@ std::optional<double> DriverThreads::seconds_each() const {
         workers += now > kIdle;
     }
     // A driver that has threads for each kind of kernel runs one kind at a time.
-    workers = std::min(workers, std::max(std::thread::hardware_concurrency(), 1u));
+    workers = std::min(workers, std::max(unsigned(own_cores().size()), 1u));
     if (all <= 0) // the driver works on threads that it started after find()
         return {};
     return all / std::max(workers, 1u);

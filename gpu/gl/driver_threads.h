@@ -3,6 +3,7 @@
 // work uses the same cores during a pass, so wall time says little about the kernel.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -14,6 +15,10 @@ inline constexpr const char* kDeviceThreadName = "ovc-device";
 
 /// Gives this thread that name.
 void name_device_thread();
+
+/// Lets this thread, and those that it starts, run on at most `count` (> 0) of the cores that it
+/// may run on now. Does nothing where the system does not tell which these are (Linux does).
+void keep_to_cores(uint32_t count);
 
 class DriverThreads {
 public:

@@ -24,13 +24,16 @@ struct DeviceInfo {
     bool takes_host_pages = false;
     uint32_t max_texture_size = 0;
     uint64_t max_buffer_texels = 0;
-    uint32_t max_pool_buffers = 1;  // that a kernel can read beside its other inputs
-    uint64_t buffer_alignment = 16; // bytes, of windows into a buffer
-    uint64_t memory_bytes = 0;      // free, as reported; on a software renderer 1 GiB
+    uint32_t max_pool_buffers = 1;    // that a kernel can read beside its other inputs
+    uint64_t buffer_alignment = 16;   // bytes, of windows into a buffer
+    uint64_t memory_bytes = 0;        // free, as reported; on a software renderer 1 GiB
+    uint64_t shared_budget_bytes = 0; // of all scenes together; 0: each has a budget of its own
 
-    /// The bytes that a scene may use when the host names no budget: the free memory less an
-    /// eighth, for the driver and other programs.
-    uint64_t default_budget_bytes() const { return memory_bytes - memory_bytes / 8; }
+    /// The bytes that a scene may use when the host names no budget for it: those that it shares
+    /// with others, or the free memory less an eighth, for the driver and other programs.
+    uint64_t default_budget_bytes() const {
+        return shared_budget_bytes ? shared_budget_bytes : memory_bytes - memory_bytes / 8;
+    }
 };
 
 /// Error: EGL_PLATFORM is set to a name that no EGL knows. Overcast opens no window system, but the

@@ -20,8 +20,9 @@ static Result<EglContext> create_context(const std::string& device, const LogSin
     }
 }
 
-Result<std::unique_ptr<GlThread>> GlThread::start(const std::string& device, LogSink log) {
-    std::unique_ptr<GlThread> self(new GlThread(device, std::move(log)));
+Result<std::unique_ptr<GlThread>> GlThread::start(const std::string& device, LogSink log,
+                                                  const DeviceLimits& limits) {
+    std::unique_ptr<GlThread> self(new GlThread(device, std::move(log), limits));
     self->thread_ = std::thread([&self = *self] { self.serve(); });
     std::unique_lock lock(self->mutex_);
     self->changed_.wait(lock, [&] { return self->started_.has_value(); });
@@ -49,28 +50,25 @@ void GlThread::execute(const std::function<void(GlState&)>& work) {
     rethrow(job);
 }
 
-/// Waits until ready(), and calls idle() without the lock now and then.
-template <class Ready>
-void GlThread::wait_until(std::unique_lock<std::mutex>& lock, const std::function<void()>& idle,
-                          Ready&& ready) {
-    constexpr std::chrono::milliseconds kBetweenCalls(10);
-    while (!changed_.wait_for(lock, kBetweenCalls, ready)) {
-        lock.unlock();
-        idle();
-        lock.lock();
-    }
-}
-
 void GlThread::post(Job& job, const std::function<void()>& idle) {
-    std::unique_lock lock(mutex_);
-    wait_until(lock, idle, [&] { return !job_; });
+    turn_.lock_while([&] {
+        idle();
+        return true;
+    });
+    const std::lock_guard lock(mutex_);
     job_ = &job;
     changed_.notify_all();
 }
 
+/// Waits until the job is done, and calls idle() now and then.
 void GlThread::wait_for(const Job& job, const std::function<void()>& idle) {
+    constexpr std::chrono::milliseconds kBetweenCalls(10);
     std::unique_lock lock(mutex_);
-    wait_until(lock, idle, [&] { return job.done; });
+    while (!changed_.wait_for(lock, kBetweenCalls, [&] { return job.done; })) {
+        lock.unlock();
+        idle();
+        lock.lock();
+    }
 }
 
 void GlThread::rethrow(const Job& job) {
@@ -113,6 +111,8 @@ void GlThread::forget_if_dead(GlState& state) {
 
 void GlThread::serve() {
     name_device_thread();
+    if (limits_.threads > 0)
+        keep_to_cores(limits_.threads); // as do the threads that the driver starts from here
     Result<EglContext> context = create_context(device_, log_);
     std::unique_lock lock(mutex_);
     if (!context) {
@@ -122,6 +122,7 @@ void GlThread::serve() {
     }
     GlState state{std::move(*context), DebugOutput(log_), {}, gl::context_generation};
     info_ = state.context.info();
+    info_.shared_budget_bytes = budget_.bytes();
     started_ = Done{};
     changed_.notify_all();
     while (true) {
@@ -140,6 +141,7 @@ void GlThread::serve() {
         job_->thrown = thrown;
         std::exchange(job_, nullptr)->done = true;
         changed_.notify_all();
+        turn_.unlock();
     }
 }
 

@@ -3,9 +3,11 @@
 // and threads alone.
 #pragma once
 
+#include "core/system/turn.h"
 #include "gpu/gl/debug_output.h"
 #include "gpu/gl/egl_context.h"
 #include "gpu/gl/kernel.h"
+#include "gpu/gl/shared_budget.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -19,6 +21,12 @@
 
 namespace ovc {
 
+/// What a device and its scenes may use.
+struct DeviceLimits {
+    uint64_t gpu_memory_bytes = 0; // of all scenes together; 0: each has a budget of its own
+    uint32_t threads = 0;          // the cores that a software renderer may use; 0: all
+};
+
 /// The state that lives on the thread: the context, and the programs compiled in it, which are
 /// destroyed first.
 struct GlState {
@@ -31,12 +39,13 @@ struct GlState {
 class GlThread {
 public:
     /// Starts the thread and opens the device there.
-    static Result<std::unique_ptr<GlThread>> start(const std::string& device, LogSink log);
+    static Result<std::unique_ptr<GlThread>> start(const std::string& device, LogSink log,
+                                                   const DeviceLimits& limits = {});
     ~GlThread();
     GlThread(const GlThread&) = delete;
 
     /// Runs work(GlState&) on the thread, waits for it, and returns its value. An exception that
-    /// work throws is thrown here. Several threads may call; they take turns.
+    /// work throws is thrown here. Several threads may call: first come, first served.
     template <class Work>
     auto run(Work&& work) {
         using Value = std::invoke_result_t<Work, GlState&>;
@@ -68,6 +77,9 @@ public:
 
     const DeviceInfo& info() const { return info_; }
 
+    /// What all scenes of the device may use together.
+    SharedBudget& budget() { return budget_; }
+
     /// How often the device has been opened. Objects of an earlier context are gone.
     uint32_t generation() const { return generation_; }
 
@@ -76,7 +88,11 @@ public:
     Result<Done> reopen(uint32_t generation);
 
 private:
-    GlThread(std::string device, LogSink log) : device_(std::move(device)), log_(std::move(log)) {}
+    GlThread(std::string device, LogSink log, const DeviceLimits& limits)
+        : device_(std::move(device)),
+          log_(std::move(log)),
+          limits_(limits),
+          budget_(limits.gpu_memory_bytes) {}
     struct Job {
         const std::function<void(GlState&)>* work;
         bool done = false;
@@ -86,18 +102,18 @@ private:
     void execute(const std::function<void(GlState&)>& work);
     void post(Job& job, const std::function<void()>& idle);
     void wait_for(const Job& job, const std::function<void()>& idle);
-    template <class Ready>
-    void wait_until(std::unique_lock<std::mutex>& lock, const std::function<void()>& idle,
-                    Ready&& ready);
     static void rethrow(const Job& job);
     void serve();
     static void forget_if_dead(GlState& state);
 
     const std::string device_;
     const LogSink log_;
+    const DeviceLimits limits_;
+    SharedBudget budget_;
+    Turn turn_;        // of the callers; the thread gives it back when it has done their work
     std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
-    Job* job_ = nullptr; // waiting or under way; other callers wait until it is done
+    Job* job_ = nullptr; // waiting or under way
     std::optional<Result<Done>> started_;
     bool stop_ = false;
     std::atomic<uint32_t> generation_{0};

@@ -4,6 +4,7 @@
 
 #include "core/system/parallel.h"
 #include "core/text/format_text.h"
+#include "gpu/trace/tracer.h"
 #include "plugin/abi/device_call.h"
 #include "plugin/abi/struct_size.h"
 
@@ -136,7 +137,12 @@ ovc_result create_device(const ovc_device_config* given, ovc_device* device) {
         if (!device)
             throw Failure{OVC_ERROR_INVALID_ARGUMENT, "create_device: device is NULL"};
         *device = nullptr;
-        auto created = std::make_unique<ovc_device_t>();
+        if (config.reserved)
+            throw Failure{
+                OVC_ERROR_INVALID_ARGUMENT,
+                format_text("ovc_device_config.reserved is {}, expected 0", config.reserved)};
+        auto created = std::make_unique<ovc_device_t>(config.threads);
+        const LoopThreads::Scope threads(created->loops);
         created->messages.tell(config.error, config.error_user);
         if (config.log)
             created->log = [log = config.log, user = config.log_user](LogLevel level,
@@ -149,9 +155,14 @@ ovc_result create_device(const ovc_device_config* given, ovc_device* device) {
         check_environment();
         start_threads();
         Result<std::unique_ptr<GlThread>> gl =
-            GlThread::start(config.name ? config.name : "", created->log);
+            GlThread::start(config.name ? config.name : "", created->log,
+                            {config.gpu_memory_bytes, config.threads});
         if (!gl)
             throw no_device_for(gl.error());
+        if (const auto plan = plan_memory((*gl)->info().default_budget_bytes(), (*gl)->info());
+            config.gpu_memory_bytes && !plan)
+            throw Failure{OVC_ERROR_OUT_OF_BUDGET,
+                          "ovc_device_config.gpu_memory_bytes: " + plan.error().message};
         created->gl = std::move(*gl);
         *device = created.release();
     });

@@ -17,7 +17,10 @@ ovc_result on_device(ovc_device device, const char* call, Body&& body) {
     if (device->magic != kDeviceMagic)
         return fail_without_device(OVC_ERROR_INVALID_STATE,
                                    format_text("{}: the device is being destroyed", call));
-    return guard(device->messages, std::forward<Body>(body));
+    return guard(device->messages, [&] {
+        const LoopThreads::Scope threads(device->loops);
+        body();
+    });
 }
 
 } // namespace ovc

@@ -6,6 +6,8 @@
 #include "core/changes.h"
 #include "core/soup.h"
 #include "core/system/log.h"
+#include "core/system/parallel.h"
+#include "core/system/turn.h"
 #include "core/text/printable.h"
 #include "gpu/gl/fork_mark.h"
 #include "gpu/gl/gl_thread.h"
@@ -18,7 +20,6 @@
 #include "plugin/structure/failure.h"
 #include "plugin/structure/single_rays.h"
 #include "plugin/structure/structure.h"
-#include "plugin/structure/turn.h"
 
 #include <atomic>
 #include <deque>
@@ -140,11 +141,14 @@ private:
 } // namespace ovc
 
 struct ovc_device_t {
+    explicit ovc_device_t(uint32_t threads) : loops(threads) {}
+
     std::atomic<uint32_t> magic{ovc::kDeviceMagic};
     ovc::CallsInside calls;
     ovc::ForkMark mark;
     ovc::Messages messages;
     ovc::LogSink log;
+    ovc::LoopThreads loops;
     std::unique_ptr<ovc::GlThread> gl;
     std::atomic<int> scenes{0};
     std::atomic<int> tickets{0};

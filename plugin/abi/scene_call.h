@@ -46,7 +46,10 @@ ovc_result beside_calls(Handle* handle, const char* call, Lives&& lives, Body&& 
     const CallsInside::Call inside(handle->calls);
     if (!lives(handle, call)) // a thread may have destroyed it before this call was counted
         return OVC_ERROR_INVALID_ARGUMENT;
-    return guard(handle->device->messages, std::forward<Body>(body));
+    return guard(handle->device->messages, [&] {
+        const LoopThreads::Scope threads(handle->device->loops);
+        body();
+    });
 }
 
 /// Runs body() beside all other calls on the scene, without the scene's turn.

@@ -17,6 +17,7 @@ void do_in_turn(ovc_scene scene, Submission& submission) {
         return;
     Submission::Outcome outcome;
     outcome.result = guard(outcome, [&] {
+        const LoopThreads::Scope threads(scene->device->loops);
         trace(submission.call(), committed(scene, submission.call().name), &submission);
     });
     submission.end(std::move(outcome));

@@ -7,7 +7,7 @@
 #include "plugin/structure/faster_way.h"
 #include "plugin/structure/gathering.h"
 #include "plugin/structure/structure.h"
-#include "plugin/structure/turn.h"
+#include "core/system/turn.h"
 
 #include <algorithm>
 #include <array>

@@ -35,6 +35,10 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
         refuse("ovc_scene_config.structure is 0, two-level, which libovercast.so has; this library "
                "has 1 to 6");
     const char* name = thesis::name_of(ovc_structure(config.structure));
+    if (device.shared_budget_bytes)
+        refuse(format_text("{} shares no budget: ovc_device_config.gpu_memory_bytes is {}, "
+                           "expected 0",
+                           name, device.shared_budget_bytes));
     if (config.tell_active)
         refuse(format_text("{} does not tell which pages are active", name));
     if (config.kernel == OVC_KERNEL_COMPUTE)

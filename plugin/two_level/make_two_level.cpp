@@ -19,6 +19,11 @@ void check_config(const ovc_scene_config& config, const DeviceInfo& device) {
         throw Failure{OVC_ERROR_INVALID_ARGUMENT,
                       "ovc_scene_config.level1 and level1_build mean nothing to two-level, whose "
                       "level 1 is a KD-tree: expected 0"};
+    if (device.shared_budget_bytes && config.gpu_memory_bytes > device.shared_budget_bytes)
+        throw Failure{OVC_ERROR_INVALID_ARGUMENT,
+                      format_text("ovc_scene_config.gpu_memory_bytes is {}, but the scenes of the "
+                                  "device share {}",
+                                  config.gpu_memory_bytes, device.shared_budget_bytes)};
     if (config.gpu_memory_bytes)
         if (const auto plan = plan_memory(config.gpu_memory_bytes, device); !plan)
             throw Failure{OVC_ERROR_OUT_OF_BUDGET, plan.error().message};

@@ -30,9 +30,57 @@ static MemoryPlan plan_for(const Tracing& tracing, MemoryPlan plan) {
     return plan;
 }
 
-PassRunner::PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& plan, LogSink log)
-    : tracing_(tracing), gl_(gl), log_(std::move(log)), plan_(plan_for(tracing, plan)) {}
+/// Returns the bytes that the plan's buffers take.
+static uint64_t bytes_of(const BuiltScene& scene, const MemoryPlan& plan) {
+    return plan.ray_bytes() + plan.pool_bytes + plan.active_bytes +
+           scene.top.portals.size() * kPortalBytes;
+}
 
+PassRunner::PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& plan, LogSink log)
+    : tracing_(tracing), gl_(gl), log_(std::move(log)), share_(gl.budget(), [this] { close(); }) {
+    set_plan(plan_for(tracing, plan));
+}
+
+/// Returns the plan for a share of so many bytes, less than what the scene has use for.
+MemoryPlan PassRunner::plan_within(uint64_t bytes) const {
+    Result<MemoryPlan> plan =
+        plan_memory(bytes, gl_.info(), whole_.bytes_per_ray, tracing_.options.buffer_bytes);
+    assert(plan);
+    plan->driver_bytes = whole_.driver_bytes;
+    return plan_for(tracing_, *plan);
+}
+
+void PassRunner::set_plan(const MemoryPlan& whole) {
+    const BuiltScene& scene = tracing_.scene;
+    whole_ = plan_ = whole;
+    const uint64_t most = planned_ = scene.pages.empty() ? 0 : bytes_of(scene, whole);
+    uint64_t least = most;
+    if (gl_.budget().bytes() > 0 && most > 0) {
+        const uint64_t tables = bytes_of(scene, whole) - whole.ray_bytes() - whole.pool_bytes;
+        least = smallest_budget(scene.largest_page_bytes() + scene.top.room() + tables, gl_.info());
+        if (least >= most || !is_usable(scene.top, scene.pages, plan_within(least).pool()))
+            least = most; // its leaves were not cut for less
+    }
+    share_.demand(least, most);
+}
+
+Result<SharedBudget::Use> PassRunner::begin_use(BuildProgress* progress) {
+    if (tracing_.scene.pages.empty())
+        return SharedBudget::Use(); // every ray misses, no GPU needed
+    Result<SharedBudget::Use> use = share_.begin([&] {
+        add(progress, 0); // throws where the commit is cancelled
+        return tracing_.watch.keeps_on();
+    });
+    if (!use || (tracer_ && tracer_generation_ == gl_.generation()))
+        return use;
+    if (const uint64_t bytes = share_.bytes(); bytes != std::exchange(planned_, bytes))
+        plan_ = bytes < bytes_of(tracing_.scene, whole_) ? plan_within(bytes) : whole_;
+    if (const Result<Done> opened = open(progress); !opened)
+        return opened.error();
+    return use;
+}
+
+/// Makes the tracer, with a smaller pool where the driver has no room for the plan's.
 Result<Done> PassRunner::open(BuildProgress* progress) {
     const PassOptions options{tracing_.options.certify, tracing_.options.compute};
     while (true) {
@@ -69,43 +117,56 @@ Result<Done> PassRunner::open(BuildProgress* progress) {
         plan_.pool_bytes = smaller;
     }
     bring_first(progress);
+    gpu_bytes_ = tracer_->ledger().in_use;
     tracing_.statistics.gpu_peak_bytes =
         std::max(tracing_.statistics.gpu_peak_bytes, tracer_->ledger().peak);
     return Done{};
 }
 
-Result<Done> PassRunner::update(const MemoryPlan& plan, const PageChanges& changes,
-                                BuildProgress* progress) {
+/// Returns whether the pages could be brought up to date where they are. anew: the plan of the
+/// scene as it is now.
+Result<bool> PassRunner::update_in_place(const MemoryPlan& anew, const PageChanges& changes) {
     const BuiltScene& scene = tracing_.scene;
+    const Result<SharedBudget::Use> use = share_.begin([] { return true; });
+    if (!use)
+        return use.error();
     bool updated = false;
     if (tracer_)
         gl_.run([&](GlState& state) {
             updated = is_ours(state) && tracer_->update(scene.level1.bounds, scene.pages,
                                                         changes.was, changes.changed);
         });
-    const MemoryPlan anew = plan_for(tracing_, plan);
-    if (updated && tracer_->all_fit()) {
-        bring(tracer_->missing());
-        if (tracer_->all_resident())
-            return Done{};
-    } else if (updated && anew.pool_bytes == plan_.pool_bytes) {
-        return Done{}; // pages come and go as before
-    }
-    purge(); // the pool is too small now, or pages lie so that there is no room between them
-    plan_ = anew;
-    return scene.pages.empty() ? Result<Done>(Done{}) : open(progress);
+    if (!updated)
+        return false;
+    if (!tracer_->all_fit())
+        return anew.pool_bytes == whole_.pool_bytes; // pages come and go as before
+    bring(tracer_->missing());
+    return tracer_->all_resident(); // if not, there is no room between pages
 }
 
-Result<Done> PassRunner::ready() {
-    if (tracing_.scene.pages.empty() || (tracer_ && tracer_generation_ == gl_.generation()))
+Result<Done> PassRunner::update(const MemoryPlan& plan, const PageChanges& changes,
+                                BuildProgress* progress) {
+    const MemoryPlan anew = plan_for(tracing_, plan);
+    const Result<bool> updated = update_in_place(anew, changes);
+    if (!updated)
+        return updated.error();
+    if (*updated)
         return Done{};
-    return open();
+    purge();
+    set_plan(anew);
+    const Result<SharedBudget::Use> use = begin_use(progress);
+    return use ? Result<Done>(Done{}) : use.error();
 }
 
 void PassRunner::purge() {
+    share_.close();
+    batches_ = {};
+}
+
+void PassRunner::close() {
     if (tracer_)
         gl_.run([&](GlState&) { tracer_.reset(); });
-    batches_ = {};
+    gpu_bytes_ = 0;
 }
 
 Error PassRunner::lost() {

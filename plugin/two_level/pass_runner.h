@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // PassRunner: the part of a scene that lives on the device. It owns the tracer, moves pages into
-// the pool and runs passes of the kernel; it makes the tracer anew after purge() and where a
-// context was lost.
+// the pool and runs passes of the kernel, within the scene's share of the device's budget.
 #pragma once
 
 #include "core/system/log.h"
@@ -12,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <span>
@@ -37,18 +37,16 @@ class PassRunner {
 public:
     /// plan: before portals are taken off. The thread must outlive the runner.
     PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& plan, LogSink log);
-    ~PassRunner() { purge(); }
     PassRunner(const PassRunner&) = delete;
 
-    /// Makes the tracer, with a smaller pool where the driver has no room for the plan's, and moves
-    /// the first pages in, so that rays need not come and wait first.
-    Result<Done> open(BuildProgress* progress = nullptr);
+    /// Begins a use of the device: everything below, but for update() and purge(), is called within
+    /// one. Makes the tracer where there is none, as at first, after purge(), where a context was
+    /// lost and where another scene needed the memory. Its pool is smaller where the driver has no
+    /// room for the plan's. Moves the first pages in, so that rays need not come and wait first.
+    Result<SharedBudget::Use> begin_use(BuildProgress* progress = nullptr);
     /// Takes up the scene, which was updated so, as it is now. plan: as in the constructor.
     Result<Done> update(const MemoryPlan& plan, const PageChanges& changes,
                         BuildProgress* progress);
-    /// Opens again where the tracer went with an earlier context or with purge(). Errors are those
-    /// of open().
-    Result<Done> ready();
     /// Gives back all GPU memory.
     void purge();
 
@@ -82,9 +80,15 @@ public:
     std::array<Batch, 2>& batches() { return batches_; }
 
     const MemoryPlan& plan() const { return plan_; }
-    uint64_t gpu_bytes() const { return tracer_ ? tracer_->ledger().in_use : 0; }
+    /// The bytes of GL buffers and textures that are alive. At any time.
+    uint64_t gpu_bytes() const { return gpu_bytes_; }
 
 private:
+    void set_plan(const MemoryPlan& whole);
+    MemoryPlan plan_within(uint64_t bytes) const;
+    Result<bool> update_in_place(const MemoryPlan& anew, const PageChanges& changes);
+    Result<Done> open(BuildProgress* progress);
+    void close();
     void bring_first(BuildProgress* progress);
     /// Whether the tracer's context is alive. Called on the context's thread.
     bool is_ours(const GlState& state) const {
@@ -94,11 +98,15 @@ private:
     const Tracing tracing_;
     GlThread& gl_;
     const LogSink log_;
-    MemoryPlan plan_;
-    std::unique_ptr<Tracer> tracer_; // made and destroyed on the thread of gl_; none after purge()
+    MemoryPlan whole_; // for all that the scene has use for
+    MemoryPlan plan_;  // for `planned_` bytes
+    uint64_t planned_ = 0;
+    std::unique_ptr<Tracer> tracer_; // made and destroyed on the thread of gl_
+    std::atomic<uint64_t> gpu_bytes_{0};
     uint32_t tracer_generation_ = 0; // of the context that it was made in
     std::array<Batch, 2> batches_;
     double seconds_a_ray_ = 1e-5; // of the pass before
+    SharedBudget::Share share_;   // closes the tracer
 };
 
 } // namespace ovc

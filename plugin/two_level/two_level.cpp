@@ -27,15 +27,12 @@ Result<std::unique_ptr<TwoLevel>> TwoLevel::build(const Soup& soup, GlThread& gl
     if (!scene)
         return scene.error();
     std::unique_ptr<TwoLevel> self(new TwoLevel(std::move(*scene), gl, options, *plan, log));
-    const size_t leaves = self->scene_.pages.size();
-    if (leaves == 0)
-        return self; // every ray misses, no GPU needed
-    const Result<Done> opened = self->passes_.open(progress);
-    if (opened)
+    const Result<SharedBudget::Use> use = self->passes_.begin_use(progress);
+    if (use)
         return self;
-    if (opened.error().kind != ErrorKind::OutOfGpuMemory || leaves > 1 || options.leaf_triangles ||
-        options.leaves)
-        return opened.error();
+    if (use.error().kind != ErrorKind::OutOfGpuMemory || self->scene_.pages.size() > 1 ||
+        options.leaf_triangles || options.leaves)
+        return use.error();
     say(log, LogLevel::Warning, "cutting the scene into leaves, of which the GPU holds some");
     TwoLevelOptions cut = options;
     cut.leaf_triangles = self->scene_.limits.triangles;
@@ -48,8 +45,9 @@ Result<Done> TwoLevel::trace(const Query& query) {
     assert(query.results.size() == query.rays.size());
     assert(query.without.are_for(query.rays.size()));
     const Stopwatch watch;
-    if (Result<Done> ready = passes_.ready(); !ready)
-        return ready;
+    const Result<SharedBudget::Use> use = passes_.begin_use();
+    if (!use)
+        return use.error();
     const bool in_one_pass = passes_.all_resident() && !query.has_sieves();
     const Result<Done> done = in_one_pass ? OnePass(tracing_, passes_, query).run()
                                           : trace_in_waves(tracing_, passes_, query);
@@ -132,16 +130,18 @@ bool TwoLevel::occluded_on_cpu(const Ray& ray, const Exclusion& without,
 }
 
 Result<Done> TwoLevel::stream(StreamHost& host) {
-    if (Result<Done> ready = passes_.ready(); !ready)
-        return ready;
+    const Result<SharedBudget::Use> use = passes_.begin_use();
+    if (!use)
+        return use.error();
     return trace_stream(tracing_, passes_, host);
 }
 
 Result<ovc_active> TwoLevel::take_active() {
     if (!options_.tell_active)
         return Error{"which pages are active is told where ovc_scene_config.tell_active is 1"};
-    if (Result<Done> ready = passes_.ready(); !ready)
-        return ready.error();
+    const Result<SharedBudget::Use> use = passes_.begin_use();
+    if (!use)
+        return use.error();
     const std::vector<uint32_t> now = passes_.take_active();
     assert(now.size() == scene_.pages.size());
     ovc_active active{};

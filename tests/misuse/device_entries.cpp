@@ -39,8 +39,11 @@ Misuses misuse_create_device(Subject& s) {
     Wrong wrong(s);
     ovc_device device;
     ovc_device_config unsized{};
+    auto reserved = sized<ovc_device_config>();
+    reserved.reserved = 1;
     wrong.without_device("device NULL", api().create_device(nullptr, nullptr));
     wrong.without_device("struct_size 0", api().create_device(&unsized, &device));
+    wrong.without_device("reserved 1", api().create_device(&reserved, &device));
     return wrong.found();
 }
 

@@ -297,6 +297,10 @@ void add_benchmarks(std::vector<Claim>& claims) {
         .held("cannot hold both,", "doubles settle what it leaves", "ctest -R Stability");
     Section(claims, kBenchmarks, "Instances")
         .held("The pictures have", "the same pixels", "ctest -R Instances");
+    Section(claims, kBenchmarks, "Updates")
+        .held("commits of random updates", "the same bits as brute force", "ctest -R Updates");
+    Section(claims, kBenchmarks, "Leaves that are cut out")
+        .held("holds that", "the same leaves are hit", "ctest -R CutoutPictures");
     Section(claims, kBenchmarks, "Single rays")
         .held("intersect1, 256 threads", "0.81", "single_rays_cost DRAGON --threads 256");
     Section(claims, kBenchmarks, "The plan")

@@ -35,9 +35,15 @@ public:
     OvercastMesh(const OvercastMesh&) = delete;
     OvercastMesh& operator=(const OvercastMesh&) = delete;
 
-    bool hit(const ovc_ray& ray, OvercastHit& hit) const {
-        ovc_hit found;
-        device_->check(device_->api().intersect1(scene_, &ray, &found, nullptr));
+    bool hit(const ovc_ray& ray, const OvercastHit* after, OvercastHit& hit) const {
+        ovc_hit found, place{};
+        ovc_query query{};
+        query.struct_size = sizeof query;
+        if (after) {
+            place = {after->depth, 0, 0, 0, uint32_t(after->triangle)};
+            query.after = &place;
+        }
+        device_->check(device_->api().intersect1(scene_, &ray, &found, &query));
         hit = {found.t, long(found.prim)};
         return found.mesh != OVC_NONE;
     }
@@ -94,12 +100,12 @@ OvercastMesh* overcast_take(const OvercastTriangles& triangles) {
 }
 
 bool overcast_hit(const OvercastMesh& mesh, const double origin[3], const double direction[3],
-                  double nearest, double farthest, OvercastHit& hit) {
+                  double nearest, double farthest, const OvercastHit* after, OvercastHit& hit) {
     return mesh.hit({{origin[0], origin[1], origin[2]},
                      nearest,
                      {direction[0], direction[1], direction[2]},
                      farthest},
-                    hit);
+                    after, hit);
 }
 
 void overcast_release(OvercastMesh* mesh) {

@@ -27,11 +27,12 @@ class OvercastMesh;
 /// Throws std::runtime_error where an environment variable (README.md) has no meaning.
 OvercastMesh* overcast_take(const OvercastTriangles& triangles);
 
-/// The nearest hit at `nearest` <= depth <= `farthest`; false: there is none. Two triangles at one
-/// depth: the one with the smaller number. Any number of threads at once. Throws
-/// std::runtime_error with Overcast's sentence where it fails.
+/// The first hit at `nearest` <= depth <= `farthest`, behind `after` where that is not NULL, which
+/// may be `hit`; false: there is none. Of triangles in one point, the smaller number is before the
+/// larger. Any number of threads at once. Throws std::runtime_error with Overcast's sentence where
+/// it fails.
 bool overcast_hit(const OvercastMesh& mesh, const double origin[3], const double direction[3],
-                  double nearest, double farthest, OvercastHit& hit);
+                  double nearest, double farthest, const OvercastHit* after, OvercastHit& hit);
 
 /// No ray may be under way. NULL is nothing to do.
 void overcast_release(OvercastMesh* mesh);

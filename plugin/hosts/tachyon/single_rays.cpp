@@ -59,11 +59,13 @@ void SingleRays::check(ovc_result result) const {
         throw std::runtime_error(api_->last_error(device_));
 }
 
-std::optional<ovc_hit> SingleRays::nearest(const ovc_ray& ray, uint32_t skip) const {
+std::optional<ovc_hit> SingleRays::nearest(const ovc_ray& ray, const ovc_hit& after,
+                                           uint32_t skip) const {
     const ovc_triangle skipped{skip == OVC_NONE ? OVC_NONE : 0, skip};
     ovc_query query{};
     query.struct_size = sizeof(query);
     query.skip = &skipped;
+    query.after = &after;
     ovc_hit hit;
     check(api_->intersect1(scene_, &ray, &hit, &query));
     return hit.prim == OVC_NONE ? std::nullopt : std::optional(hit);

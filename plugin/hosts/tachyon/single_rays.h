@@ -7,10 +7,15 @@
 #include "plugin/overcast.h"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 
 namespace ovc::tachyon {
+
+/// Behind this are all hits of a ray.
+inline constexpr ovc_hit kBeforeAll{-std::numeric_limits<double>::infinity(), 0, 0, OVC_NONE,
+                                    OVC_NONE};
 
 class SingleRays {
 public:
@@ -20,11 +25,11 @@ public:
     SingleRays(const SingleRays&) = delete;
     SingleRays& operator=(const SingleRays&) = delete;
 
-    /// The nearest triangle on the ray but `skip` (OVC_NONE: none), or nothing. From any thread.
-    /// Throws as the constructor does.
-    std::optional<ovc_hit> nearest(const ovc_ray& ray, uint32_t skip) const;
+    /// The first hit of the ray behind `after`, of no triangle but `skip` (OVC_NONE: of any), or
+    /// nothing. From any thread. Throws as the constructor does.
+    std::optional<ovc_hit> nearest(const ovc_ray& ray, const ovc_hit& after,
+                                   uint32_t skip = OVC_NONE) const;
 
-    const Corners& corners() const { return corners_; }
     ovc_statistics statistics() const;
     std::string renderer() const;
 

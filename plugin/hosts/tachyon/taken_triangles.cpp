@@ -3,15 +3,11 @@
 #include "plugin/hosts/tachyon/taken_triangles.h"
 
 #include "plugin/hosts/tachyon/beside.h"
-#include "plugin/hosts/tachyon/duplicate_sets.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -25,7 +21,7 @@ namespace {
 struct Stand {
     RT_OBJECT_HEAD
     std::vector<object*> triangles; // by prim
-    DuplicateSets duplicates;
+    bool has_duplicates = false;    // triangles with the same three corners
     std::unique_ptr<SingleRays> rays;
 };
 
@@ -38,25 +34,29 @@ bool offer(const object* triangle, ray& r) {
     return r.maxdist < before;
 }
 
-/// The triangles last offered to a ray, of duplicates the smallest.
+/// The triangles that a ray was offered. Each is offered once, for glass dims a shadow each time.
 class Offered {
 public:
-    bool has(uint32_t prim) const { return std::ranges::find(last_, prim) != last_.end(); }
-    void add(uint32_t prim) { last_[count_++ % last_.size()] = prim; }
+    /// Returns whether it is the first time.
+    bool add(uint32_t prim) {
+        if (std::ranges::find(prims_, prim) != prims_.end())
+            return false;
+        prims_.push_back(prim);
+        return true;
+    }
 
 private:
-    std::array<uint32_t, 8> last_{OVC_NONE, OVC_NONE, OVC_NONE, OVC_NONE,
-                                  OVC_NONE, OVC_NONE, OVC_NONE, OVC_NONE};
-    size_t count_ = 0;
+    std::vector<uint32_t> prims_;
 };
 
-/// Offers the triangle and its duplicates, which Overcast does not name beside it.
-bool offer_all(const Stand& stand, uint32_t prim, ray& r, Offered& offered) {
-    bool taken = offer(stand.triangles[prim], r);
-    offered.add(prim);
-    for (const uint32_t duplicate : stand.duplicates.of(prim))
-        taken = offer(stand.triangles[duplicate], r) || taken;
-    return taken;
+/// Adds the triangles in the nearest point of the ray but `skip`.
+void add_nearest(const Stand& stand, const ovc_ray& ray, uint32_t skip, std::set<uint32_t>& prims) {
+    const std::optional<ovc_hit> first = stand.rays->nearest(ray, kBeforeAll, skip);
+    for (auto hit = first; hit && hit->t == first->t; hit = stand.rays->nearest(ray, *hit, skip)) {
+        prims.insert(hit->prim);
+        if (!stand.has_duplicates)
+            return;
+    }
 }
 
 /// Offers the triangle and, where the ray passes a side of it within rounding errors, its
@@ -64,41 +64,29 @@ bool offer_all(const Stand& stand, uint32_t prim, ray& r, Offered& offered) {
 bool offer_found(const Stand& stand, const ovc_ray& asked, const ovc_hit& hit, ray& r,
                  Offered& offered) {
     const auto& triangle = *reinterpret_cast<const Triangle*>(stand.triangles[hit.prim]);
-    const RaysBeside rays = rays_beside(asked, hit, triangle);
-    const uint32_t found = stand.duplicates.smallest(hit.prim);
-    if (rays.count == 0)
-        return offer_all(stand, found, r, offered);
-    std::set<uint32_t> prims = {found};
-    for (const ovc_ray& beside : rays)
-        if (const std::optional<ovc_hit> other = stand.rays->nearest(beside, hit.prim))
-            prims.insert(stand.duplicates.smallest(other->prim));
+    std::set<uint32_t> prims = {hit.prim};
+    for (const ovc_ray& beside : rays_beside(asked, hit, triangle))
+        add_nearest(stand, beside, hit.prim, prims);
     bool taken = false;
     for (const uint32_t prim : prims)
-        if (!offered.has(prim))
-            taken = offer_all(stand, prim, r, offered) || taken;
+        if (offered.add(prim))
+            taken = offer(stand.triangles[prim], r) || taken;
     return taken;
 }
 
-/// Offers the triangles on the ray, nearest first, until Tachyon takes one.
+/// Offers the triangles on the ray, nearest first, until Tachyon takes one; and where triangles are
+/// there twice, those in the same point, which may look otherwise.
 void ask(const Stand& stand, ray& r) {
-    ovc_ray asked{{r.o.x, r.o.y, r.o.z}, EPSILON, {r.d.x, r.d.y, r.d.z}, r.maxdist};
+    const ovc_ray asked{{r.o.x, r.o.y, r.o.z}, EPSILON, {r.d.x, r.d.y, r.d.z}, r.maxdist};
     Offered offered;
-    uint32_t skip = OVC_NONE;
-    while (asked.t_min < asked.t_max) {
-        const std::optional<ovc_hit> hit = stand.rays->nearest(asked, skip);
-        if (!hit)
-            return;
-        asked.t_min = std::max(asked.t_min, hit->t);
-        skip = hit->prim;
-        if (offered.has(stand.duplicates.smallest(hit->prim))) {
-            // At an edge two are equally near, t is rounded, and whoever skips a triangle is
-            // shown its duplicate: one may come again.
-            asked.t_min = std::nextafter(asked.t_min, std::numeric_limits<double>::infinity());
-            continue;
+    double last = r.maxdist;
+    for (auto hit = stand.rays->nearest(asked, kBeforeAll); hit && hit->t <= last;
+         hit = stand.rays->nearest(asked, *hit))
+        if (offer_found(stand, asked, *hit, r, offered)) {
+            if (!stand.has_duplicates)
+                return;
+            last = hit->t;
         }
-        if (offer_found(stand, asked, *hit, r, offered))
-            return;
-    }
 }
 
 void intersect(const void* self, void* voidray) {
@@ -191,8 +179,7 @@ const SingleRays* take_triangles(scenedef& scene, Intersect triangle_intersect,
     stand->triangles = std::move(objects.triangles);
     order_as_tested(scene, stand->triangles, stand->triangles.size() + objects.others.size());
     stand->rays = std::make_unique<SingleRays>(corners_of(stand->triangles), settings);
-    if (stand->rays->statistics().twins > 0)
-        stand->duplicates = DuplicateSets(stand->rays->corners());
+    stand->has_duplicates = stand->rays->statistics().twins > 0;
     const SingleRays* rays = stand->rays.get();
     relink(scene, *stand.release(), objects.others);
     return rays;

@@ -27,7 +27,8 @@ class Sized(c.Structure):
 
 class ovc_device_config(Sized):
     _fields_ = [("struct_size", c.c_size_t), ("name", c.c_char_p), ("log", LogFunction),
-                ("log_user", c.c_void_p)]
+                ("log_user", c.c_void_p), ("error", c.c_void_p), ("error_user", c.c_void_p),
+                ("gpu_memory_bytes", c.c_uint64), ("threads", c.c_uint32), ("reserved", c.c_uint32)]
 
 
 class ovc_device_info(Sized):

@@ -10,6 +10,7 @@ import logging
 import os
 
 from . import _abi
+from ._arrays import count as counted
 from ._library import Handle, api, check
 
 _LOG = logging.getLogger("overcast")
@@ -59,10 +60,18 @@ class Device:
 
     name: a number as listed by devices(), or a part of the renderer's name in any case; None: the
     first GPU, else the software renderer. Raises Error where there is none.
+
+    gpu_memory: bytes that all scenes on the device may use together; 0: each has a budget of its
+    own. Scenes that have not been used for long make room for others.
+    threads: on at most so many threads the library computes, and on as many cores a software
+    renderer; 0: on all.
     """
 
-    def __init__(self, name: str | int | None = None) -> None:
-        config = _abi.ovc_device_config(name=None if name is None else str(name).encode(), log=_log)
+    def __init__(self, name: str | int | None = None, *, gpu_memory: int = 0,
+                 threads: int = 0) -> None:
+        config = _abi.ovc_device_config(name=None if name is None else str(name).encode(), log=_log,
+                                        gpu_memory_bytes=counted("gpu_memory", gpu_memory),
+                                        threads=counted("threads", threads, most=2**32 - 1))
         handle = ctypes.c_void_p()
         check(api().create_device(config, handle))
         self._handle = Handle("device", handle.value, api().destroy_device)

@@ -46,6 +46,18 @@ class Nearest(unittest.TestCase):
             with self.subTest(options), scene_of([self.corners], **options) as scene:
                 self.check(scene.intersect(self.origins, self.directions))
 
+    def test_scenes_share_the_budget_of_their_device(self):
+        device = overcast.Device(gpu_memory=300 << 10, threads=1)
+        self.assertEqual(device.info.default_budget_bytes, 300 << 10)
+        with self.assertRaisesRegex(overcast.Error, "share 307200"):
+            overcast.Scene(device, gpu_memory=1 << 20)
+        with scene_of([self.corners], device=device) as one, \
+             scene_of([self.corners], device=device) as two:
+            for scene in (one, two, one):
+                self.check(scene.intersect(self.origins, self.directions))
+                in_use = sum(s.statistics()["gpu_bytes"] for s in (one, two))
+                self.assertLessEqual(in_use, 300 << 10)
+
     def test_scenes_that_change(self):
         """Corners, places and meshes that changed give the answers of a scene that is new."""
         up = np.eye(4)[:3]

@@ -19,18 +19,25 @@ public:
     }
 
     /// Waits for this thread's turn as long as goes_on(), which is asked some fifty times a second,
-    /// returns true. Returns whether the thread has the turn.
+    /// returns true. Returns whether the thread has the turn; where goes_on() throws, it has not.
     template <class GoesOn>
     bool lock_while(GoesOn&& goes_on) {
         std::unique_lock lock(mutex_);
         const uint64_t mine = next_++;
         const auto is_mine = [&] { return served_ == mine; };
         while (!changed_.wait_for(lock, std::chrono::milliseconds(20), is_mine)) {
+            bool waits = false;
             lock.unlock();
-            const bool waits = goes_on();
+            try {
+                waits = goes_on();
+            } catch (...) {
+                lock.lock();
+                give_up(mine);
+                throw;
+            }
             lock.lock();
             if (!waits && !is_mine()) {
-                given_up_.insert(mine);
+                give_up(mine);
                 return false;
             }
         }
@@ -48,15 +55,27 @@ public:
     void unlock() {
         {
             const std::lock_guard lock(mutex_);
-            assert(served_ != next_); // some thread has the turn
-            do
-                ++served_;
-            while (given_up_.erase(served_) > 0);
+            serve_next();
         }
         changed_.notify_all();
     }
 
 private:
+    void serve_next() {
+        assert(served_ != next_); // some thread has the turn
+        do
+            ++served_;
+        while (given_up_.erase(served_) > 0);
+    }
+    void give_up(uint64_t number) {
+        if (number != served_) {
+            given_up_.insert(number);
+            return;
+        }
+        serve_next();
+        changed_.notify_all();
+    }
+
     std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
     uint64_t next_ = 0;           // the number for the next thread that comes

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// SharedBudget: shares are max-min fair. Where not all scenes get what they have use for, those
+// with less than an equal part get all of theirs, and the others divide the rest equally.
+#include "gpu/gl/shared_budget.h"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+
+namespace ovc {
+
+using Share = SharedBudget::Share;
+using Use = SharedBudget::Use;
+
+/// Returns the sum of all shares where none is larger than `level` without need.
+uint64_t SharedBudget::sum_at(uint64_t level) const {
+    uint64_t sum = 0;
+    for (const Share* share : shares_)
+        sum += std::min(share->most_, std::max(share->least_, level));
+    return sum;
+}
+
+uint64_t SharedBudget::fair_bytes(const Share& share) const {
+    uint64_t low = 0, high = bytes_ + 1;
+    while (high - low > 1) {
+        const uint64_t middle = low + (high - low) / 2;
+        (sum_at(middle) <= bytes_ ? low : high) = middle;
+    }
+    return std::min(share.most_, std::max(share.least_, low));
+}
+
+/// Returns the bytes that others leave.
+uint64_t SharedBudget::free_bytes(const Share& share) const {
+    uint64_t free = bytes_;
+    for (const Share* other : shares_)
+        free -= other == &share ? 0 : other->bytes_;
+    return free;
+}
+
+void SharedBudget::close(Share& share) {
+    assert(share.user_ == std::thread::id());
+    share.close_();
+    share.bytes_ = 0;
+}
+
+/// Closes others until they leave so many bytes. A share that is open already takes from none but
+/// those that have more than is fair. Returns whether there is room.
+bool SharedBudget::make_room(const Share& share, uint64_t bytes) {
+    const auto may_close = [&](const Share& other) {
+        return &other != &share && other.bytes_ > 0 && other.user_ == std::thread::id() &&
+               (share.bytes_ == 0 || other.bytes_ > fair_bytes(other));
+    };
+    while (free_bytes(share) < bytes) {
+        Share* oldest = nullptr;
+        for (Share* other : shares_)
+            if (may_close(*other) && (!oldest || other->last_use_ < oldest->last_use_))
+                oldest = other;
+        if (!oldest)
+            return false;
+        close(*oldest);
+    }
+    return true;
+}
+
+/// Gives the share what it can have now. Returns false if that is of no use.
+bool SharedBudget::grant(Share& share) {
+    const uint64_t fair = fair_bytes(share);
+    if (share.bytes_ >= fair)
+        return true;
+    const uint64_t bytes = make_room(share, fair) ? fair : free_bytes(share);
+    if (bytes < share.least_)
+        return false;
+    if (bytes > share.bytes_) {
+        if (share.bytes_ > 0)
+            close(share);
+        share.bytes_ = bytes;
+    }
+    return true;
+}
+
+/// Whether all threads that are within a Use wait for another share, so that no Use ends.
+bool SharedBudget::nobody_works() const {
+    return std::ranges::all_of(shares_, [&](const Share* share) {
+        return share->user_ == std::thread::id() || waiting_.contains(share->user_);
+    });
+}
+
+Share::Share(SharedBudget& budget, std::function<void()> close)
+    : budget_(budget), close_(std::move(close)) {
+    const std::lock_guard lock(budget_.mutex_);
+    budget_.shares_.push_back(this);
+}
+
+Share::~Share() {
+    close();
+    const std::lock_guard lock(budget_.mutex_);
+    std::erase(budget_.shares_, this);
+}
+
+void Share::demand(uint64_t least, uint64_t most) {
+    assert(least <= most);
+    const std::lock_guard lock(budget_.mutex_);
+    assert(budget_.bytes_ == 0 || least <= budget_.bytes_);
+    least_ = least;
+    most_ = most;
+}
+
+void Share::close() {
+    {
+        const std::lock_guard lock(budget_.mutex_);
+        budget_.close(*this);
+    }
+    budget_.changed_.notify_all();
+}
+
+Result<Use> Share::begin(const std::function<bool()>& goes_on) {
+    if (budget_.bytes_ == 0) {
+        bytes_ = most_;
+        return Use();
+    }
+    const std::thread::id me = std::this_thread::get_id();
+    std::unique_lock lock(budget_.mutex_);
+    const bool is_inside =
+        std::ranges::any_of(budget_.shares_, [&](const Share* s) { return s->user_ == me; });
+    std::unique_lock<Turn> turn;
+    if (!is_inside) { // otherwise the thread whose turn it is may wait for this call
+        lock.unlock();
+        if (!budget_.turn_.lock_while(goes_on))
+            return Error{"cancelled", ErrorKind::Cancelled};
+        turn = std::unique_lock(budget_.turn_, std::adopt_lock);
+        lock.lock();
+    }
+    while (!budget_.grant(*this)) {
+        if (bytes_ > 0)
+            budget_.close(*this); // those that wait hold nothing, or two might wait for each other
+        if (is_inside)
+            budget_.waiting_.insert(me);
+        const bool in_vain = budget_.nobody_works();
+        if (!in_vain)
+            budget_.changed_.wait_for(lock, std::chrono::milliseconds(20));
+        budget_.waiting_.erase(me);
+        if (in_vain)
+            return Error{"the scenes of the calls that this one comes from leave it no room in the "
+                         "budget that they share",
+                         ErrorKind::OverBudget};
+        lock.unlock();
+        if (!goes_on())
+            return Error{"cancelled", ErrorKind::Cancelled};
+        lock.lock();
+    }
+    user_ = me;
+    last_use_ = ++budget_.clock_;
+    return Use(*this);
+}
+
+Use::~Use() {
+    if (!share_)
+        return;
+    {
+        const std::lock_guard lock(share_->budget_.mutex_);
+        share_->user_ = {};
+    }
+    share_->budget_.changed_.notify_all();
+}
+
+} // namespace ovc
