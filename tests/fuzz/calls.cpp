@@ -96,7 +96,8 @@ struct Progress {
 
 class Player {
 public:
-    Player(ovc_device device, Choices choices) : device_(device), choices_(choices) {}
+    Player(ovc_device device, bool shares_budget, Choices choices)
+        : device_(device), shares_budget_(shares_budget), choices_(choices) {}
     ~Player() {
         for (Slot& slot : slots_)
             if (slot.state != Slot::Null)
@@ -626,7 +627,25 @@ private:
                 else
                     check_hit(self.slot, ray, {OVC_NONE, OVC_NONE}, told->hits[i]);
             }
+            if (self.player.choices_.once_in(8))
+                self.ask_another();
             return self.player.choices_.once_in(3) ? self.push(stream) : 0;
+        }
+        /// Another scene may have no room beside the stream's.
+        void ask_another() {
+            const Slot& other = player.any_slot();
+            const std::vector<ovc_ray> asked = player.rays(other);
+            if (&other == &slot)
+                return;
+            std::vector<ovc_hit> hits(asked.size());
+            const ovc_result result =
+                api().intersect(other.scene, asked.data(), asked.size(), hits.data(), nullptr);
+            if (result == OVC_ERROR_OUT_OF_BUDGET)
+                OVC_REQUIRE(player.shares_budget_);
+            else
+                player.check(result, other.expected(true));
+            for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
+                check_hit(other, asked[i], {OVC_NONE, OVC_NONE}, hits[i]);
         }
     };
 
@@ -666,23 +685,23 @@ private:
             api().destroy_device(device_); // refused
     }
 
-    /// Two threads trace a scene while this one destroys it, or not.
+    /// Two threads trace a scene, or two, while this one destroys the first, or not.
     void race() {
-        Slot& slot = any_slot();
-        if (slot.state != Slot::Committed)
+        Slot &slot = any_slot(), &other = any_slot();
+        if (slot.state != Slot::Committed || other.state != Slot::Committed)
             return;
-        const std::vector<ovc_ray> asked = rays(slot);
-        const auto trace = [&] {
-            std::vector<ovc_hit> hits(asked.size());
+        const auto trace = [](const Slot& traced, const std::vector<ovc_ray>& with) {
+            std::vector<ovc_hit> hits(with.size());
             const ovc_result result =
-                api().intersect(slot.scene, asked.data(), asked.size(), hits.data(), nullptr);
+                api().intersect(traced.scene, with.data(), with.size(), hits.data(), nullptr);
             OVC_REQUIRE(result == OVC_OK || result == OVC_ERROR_INVALID_STATE ||
                         result == OVC_ERROR_INVALID_ARGUMENT);
-            for (size_t i = 0; result == OVC_OK && i < asked.size(); ++i)
-                check_hit(slot, asked[i], {OVC_NONE, OVC_NONE}, hits[i]);
+            for (size_t i = 0; result == OVC_OK && i < with.size(); ++i)
+                check_hit(traced, with[i], {OVC_NONE, OVC_NONE}, hits[i]);
         };
+        const std::vector<ovc_ray> asked = rays(slot), asked_other = rays(other);
         const bool destroys = choices_.below(2);
-        std::thread first(trace), second(trace);
+        std::thread first([&] { trace(slot, asked); }), second([&] { trace(other, asked_other); });
         if (destroys)
             api().destroy_scene(slot.scene);
         first.join();
@@ -692,6 +711,7 @@ private:
     }
 
     const ovc_device device_;
+    const bool shares_budget_;
     Choices choices_;
     std::array<Slot, 3> slots_;
     std::array<Progress, 3> progress_;
@@ -705,14 +725,21 @@ private:
 } // namespace
 
 bool fuzz_calls(const uint8_t* data, size_t size) {
-    static const ovc_device device = [] {
-        ovc_device opened = nullptr;
-        api().create_device(nullptr, &opened);
-        return opened;
-    }();
-    if (!device)
+    const auto opened = [](const ovc_device_config& config) {
+        ovc_device device = nullptr;
+        api().create_device(&config, &device);
+        return device;
+    };
+    auto limits = sized<ovc_device_config>();
+    static const ovc_device alone = opened(limits);
+    limits.gpu_memory_bytes = 150000; // more than create_scene() asks for, less than three scenes
+    limits.threads = 1;
+    static const ovc_device shared = opened(limits);
+    if (!alone || !shared)
         return false;
-    Player(device, Choices(data, size)).play();
+    Choices choices(data, size);
+    const bool shares_budget = choices.below(2);
+    Player(shares_budget ? shared : alone, shares_budget, choices).play();
     return true;
 }
 
