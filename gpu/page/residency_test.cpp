@@ -117,6 +117,40 @@ TEST(Residency, NoPageLiesInTwoStretches) {
     EXPECT_TRUE(residency.resident(0) && residency.resident(3));
 }
 
+TEST(Residency, PagesKeepTheirPlacesUnderNewNumbers) {
+    Residency residency(whole(400), 1, 4);
+    for (const uint32_t leaf : {0u, 1u, 3u})
+        admit(residency, leaf, 100);
+    residency.touch(0);
+    const std::vector<uint64_t> offsets = {residency.slot(0).offset, residency.slot(1).offset,
+                                           residency.slot(3).offset};
+    residency.renumber(std::vector<uint32_t>{3, kNone, 0, 2, kNone}); // 1 goes
+    EXPECT_EQ(residency.resident_count(), 2u);
+    EXPECT_EQ(residency.slot(0).offset, offsets[2]);
+    EXPECT_EQ(residency.slot(2).offset, offsets[0]);
+    for (const uint32_t leaf : {1u, 3u, 4u})
+        EXPECT_FALSE(residency.resident(leaf));
+    admit(residency, 1, 100);
+    EXPECT_EQ(residency.slot(1).offset, offsets[1]) << "where the page that went has been";
+    admit(residency, 3, 100);
+    admit(residency, 4, 100);
+    EXPECT_FALSE(residency.resident(0)) << "it was used longest ago";
+    EXPECT_TRUE(residency.resident(2));
+}
+
+TEST(Residency, WhatIsTakenOutLeavesItsPlace) {
+    Residency residency(whole(200), 1, 3);
+    admit(residency, 0, 100);
+    admit(residency, 1, 100);
+    const uint64_t offset = residency.slot(0).offset;
+    residency.evict(0);
+    EXPECT_FALSE(residency.resident(0));
+    EXPECT_EQ(residency.resident_count(), 1u);
+    admit(residency, 2, 100);
+    EXPECT_EQ(residency.slot(2).offset, offset);
+    EXPECT_TRUE(residency.resident(1));
+}
+
 TEST(PoolLayout, NumbersOfUnitsHaveTheBuffersAbove) {
     const PoolLayout one{3 << 20, 3 << 20};
     EXPECT_EQ(one.count(), 1u);
