@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# The fields of ovc_statistics, read from plugin/overcast.h: for C++ as statistics_fields.inc, a line
-# OVC_STATISTIC(name, counts up) for each, and for Python as the list OVC_STATISTICS_PYTHON.
+# Reads the fields of ovc_statistics from plugin/overcast.h. C++ gets statistics_fields.inc with a
+# line OVC_STATISTIC(name, counts up) for each, Python the list OVC_STATISTICS_PYTHON.
 set(header ${PROJECT_SOURCE_DIR}/plugin/overcast.h)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
 file(READ ${header} text)
 string(REGEX MATCH "typedef struct ovc_statistics {.*} ovc_statistics;" text "${text}")
 string(REPLACE ";" "<end>" text "${text}")
-string(REGEX MATCHALL "/\\* [+]? ?[^/]*\\*/[ \n]*(uint64_t|double) [a-z0-9_]+<end>" fields "${text}")
+string(REGEX MATCHALL "/\\* [+]? ?[^/]*\\*/[ \n]*(uint64_t|double) [a-z0-9_]+<end>" fields
+       "${text}")
 
 set(lines "")
 set(OVC_STATISTICS_PYTHON "")

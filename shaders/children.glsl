@@ -9,7 +9,8 @@ struct Way {
 };
 
 #if OVC_ANY_HIT
-// In the order of their numbers, the largest first (gpu/page/packer.h): nearest first found a hit no sooner.
+// Goes to the children in the order of their numbers: the packer puts the largest first
+// (gpu/page/packer.h). Going to the nearest first found a hit no sooner.
 struct Children {
     bvec4 met;
 };

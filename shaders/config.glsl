@@ -76,6 +76,7 @@
 #define OVC_TEXELS(number) layout(binding = number) uniform usamplerBuffer
 #define OVC_TEXEL(texels, i) texelFetch(texels, i)
 #endif
+// A ray's loops end after so many rounds and report it, before a driver ends them silently.
 #ifndef OVC_MAX_ROUNDS
-#define OVC_MAX_ROUNDS 0x7fffffff // a ray's loops end after so many rounds and say so, before a driver ends them silently
+#define OVC_MAX_ROUNDS 0x7fffffff
 #endif

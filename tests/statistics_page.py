@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fails unless docs/reference/stats.md has the fields of ovc_statistics as plugin/overcast.h tells of them.
+"""Fails unless docs/reference/stats.md lists ovc_statistics as plugin/overcast.h documents it.
 
 usage: statistics_page.py ROOT [--write]     --write: puts them there
 """
@@ -13,15 +13,19 @@ END = "<!-- end -->\n"
 
 def table(root):
     header = (root / "plugin/overcast.h").read_text()
-    struct = re.search(r"typedef struct ovc_statistics \{(.*?)\} ovc_statistics;", header, re.DOTALL)[1]
-    places = dict(re.findall(r'\{"(\w+)", "/([\w/]+)"\}', (root / "host/output/stats.cpp").read_text()))
+    struct = re.search(r"typedef struct ovc_statistics \{(.*?)\} ovc_statistics;",
+                       header, re.DOTALL)[1]
+    stats = (root / "host/output/stats.cpp").read_text()
+    places = dict(re.findall(r'\{"(\w+)", "/([\w/]+)"\}', stats))
     yield "| field of `ovc_statistics` | key in JSON | counts up | meaning |\n|---|---|---|---|\n"
     for comment, name in re.findall(r"/\*(.*?)\*/\s*(?:uint64_t|double) (\w+);", struct, re.DOTALL):
         meaning = re.sub(r"\s*\n\s*\* ", " ", comment).strip()
         counts_up = meaning.startswith("+ ")
-        key = places.get(name) or re.sub("^seconds_", "time/", re.sub("^dropped_", "dropped/", name))
-        key = " of ".join(f"`{part}`" for part in reversed(key.split("/")))
-        yield f"| `{name}` | {key} | {'yes' if counts_up else ''} | {meaning.removeprefix('+ ')} |\n"
+        default = re.sub("^seconds_", "time/", re.sub("^dropped_", "dropped/", name))
+        path = places.get(name) or default
+        key = " of ".join(f"`{part}`" for part in reversed(path.split("/")))
+        mark = "yes" if counts_up else ""
+        yield f"| `{name}` | {key} | {mark} | {meaning.removeprefix('+ ')} |\n"
 
 
 def main():

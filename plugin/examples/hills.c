@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A picture of hills in letters, in C99: loads libovercast.so, adds a mesh and four instances of it, asks for the nearest
- * hits of a batch of rays. Usage: hills [libovercast.so.1] */
+/* Draws hills in letters, in C99: loads libovercast.so, adds a mesh and four instances of it, and
+ * asks for the nearest hits of a batch of rays. Usage: hills [libovercast.so.1] */
 #include <overcast/overcast.h>
 
 #include <dlfcn.h>
@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
         rays[i] = ray;
     }
     check(api->intersect(scene, rays, WIDTH * HEIGHT, hits, NULL));
-    for (int i = 0; i < WIDTH * HEIGHT; ++i) { /* the number of the instance, in two letters by its prim */
+    for (int i = 0; i < WIDTH * HEIGHT; ++i) { /* each instance has two letters */
         putchar(hits[i].mesh == OVC_NONE ? ' ' : "aAbBcCdD"[(hits[i].mesh - 1) * 2 + hits[i].prim / 2 % 2]);
         if (i % WIDTH == WIDTH - 1)
             putchar('\n');

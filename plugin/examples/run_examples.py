@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fails unless docs/guide/tutorial.md shows the examples as they are and what they print, and hills.c is C99 of at most 80 lines.
+"""Fails unless docs/guide/tutorial.md shows the examples as they are and what they print, and
+hills.c has at most 80 lines.
 
 usage: run_examples.py ROOT HILLS SUNLIT LIBRARY
 """
@@ -26,7 +27,9 @@ def main():
         print(run.stdout, run.stderr, sep="")
         shown = "\n".join(line.rstrip() for line in run.stdout.splitlines() if line.strip())
         if run.returncode != 0 or not shown or shown not in manual:
-            wrong.append(f"{pathlib.Path(command[0]).name}: exit {run.returncode}, and docs/guide/tutorial.md does not show what it printed")
+            name = pathlib.Path(command[0]).name
+            wrong.append(f"{name}: exit {run.returncode}, "
+                         "and docs/guide/tutorial.md does not show what it printed")
     print("\n".join(wrong))
     return 1 if wrong else 0
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The smallest host: loads the plugin, adds one triangle, asks two rays. C99, nothing but overcast.h. Exit 0 when the
- * answers are right. usage: c99_host libovercast.so */
+/* The smallest host, in C99 with overcast.h alone: it loads the plugin, adds one triangle and asks
+ * two rays. Its exit code is 0 if the answers are right. usage: c99_host libovercast.so */
 #include "plugin/overcast.h"
 
 #include <dlfcn.h>

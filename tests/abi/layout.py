@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fails unless every field of the C ABI lies where a released header had it, as a C compiler tells.
+"""Fails unless a C compiler puts every field of the C ABI where a released header had it.
 
-usage: layout.py ROOT [--write]     --write: appends what has been added since, for a release
+usage: layout.py ROOT [--write]     --write: appends the fields added since, for a release
 
-layout.txt has a line for each: struct.field, offset and size; or a name of an enum, and its value.
+layout.txt has a line for each field (struct.field, offset, size) and each enumerator (name, value).
 """
 import os
 import pathlib
@@ -16,7 +16,7 @@ COMPILER = os.environ.get("CC", "cc")
 
 
 def names(header):
-    """The fields of all structs, and the names in enums and of plain numbers."""
+    """Yields the fields of all structs and the enumerators of all enums."""
     text = re.sub(r"/\*.*?\*/", "", header, flags=re.DOTALL)
     for body, struct in re.findall(r"typedef struct \w+ \{(.*?)\} (\w+);", text, re.DOTALL):
         for line in body.split(";"):
@@ -32,28 +32,33 @@ def run_c(root, statements):
         source = pathlib.Path(folder, "layout.c")
         source.write_text('#include "plugin/overcast.h"\n#include <stddef.h>\n#include <stdio.h>\n'
                           "int main(void) {\n" + "\n".join(statements) + "\nreturn 0;\n}\n")
-        subprocess.run([COMPILER, "-std=c99", "-I", root, source, "-o", f"{folder}/layout"], check=True)
-        return subprocess.run([f"{folder}/layout"], check=True, capture_output=True, text=True).stdout.splitlines()
+        program = f"{folder}/layout"
+        subprocess.run([COMPILER, "-std=c99", "-I", root, source, "-o", program], check=True)
+        return subprocess.check_output([program], text=True).splitlines()
 
 
 def statement(name):
     if "." not in name:
         return f'printf("{name} %lld\\n", (long long){name});'
     struct, field = name.split(".")
-    return (f'printf("{name} %zu %zu\\n", offsetof({struct}, {field}), sizeof((({struct}*)0)->{field}));')
+    return (f'printf("{name} %zu %zu\\n", offsetof({struct}, {field}), '
+            f"sizeof((({struct}*)0)->{field}));")
 
 
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     file = root / "tests/abi/layout.txt"
     released = file.read_text().splitlines() if file.exists() else []
-    told = run_c(root, [statement(name) for name in names((root / "plugin/overcast.h").read_text())])
+    header = (root / "plugin/overcast.h").read_text()
+    told = run_c(root, [statement(name) for name in names(header)])
+    now = {line.split()[0]: line for line in told}
     moved = [line for line in released if line not in told]
     for line in moved:
         print(f"a released header has {line}; plugin/overcast.h has "
-              f"{next((now for now in told if now.split()[0] == line.split()[0]), 'nothing of this name')}")
+              f"{now.get(line.split()[0], 'nothing of this name')}")
     if sys.argv[2:] == ["--write"] and not moved:
-        file.write_text("\n".join(released + [line for line in told if line not in released]) + "\n")
+        added = [line for line in told if line not in released]
+        file.write_text("\n".join(released + added) + "\n")
     return 1 if moved or not released else 0
 
 

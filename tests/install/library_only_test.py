@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""cmake -DOVC_LIBRARY_ONLY=ON: the library builds with libepoxy, GLM and oneTBB alone, installs, and serves a program."""
+"""Tests that cmake -DOVC_LIBRARY_ONLY=ON builds the library with libepoxy, GLM and oneTBB alone,
+installs it, and that a program finds it."""
 
 import os
 import pathlib
@@ -10,8 +11,12 @@ import unittest
 
 from installed import CONSUMER, SOURCE, run
 
-# Whose headers the library may include; those of the compiler and of the C library are besides.
-ALLOWED = {"libepoxy-dev", "libglm-dev", "libtbb-dev", "libegl-dev", "libgl-dev", "libglx-dev", "libopengl-dev", "libx11-dev"}
+# The library may include headers of these packages, of the compiler and of the C library.
+ALLOWED = {"libepoxy-dev", "libglm-dev", "libtbb-dev", "libegl-dev", "libgl-dev", "libglx-dev",
+           "libopengl-dev", "libx11-dev"}
+SYSTEM = r"libc6-dev|linux-libc-dev|libstdc\+\+|libgcc|libcrypt"
+# The library must do without these, as if they were not installed.
+HIDDEN = ("fmt", "assimp", "PNG", "ZLIB", "GTest", "CLI11", "OpenEXR")
 
 
 class LibraryOnly(unittest.TestCase):
@@ -21,24 +26,29 @@ class LibraryOnly(unittest.TestCase):
         cls.addClassCleanup(holder.cleanup)
         cls.folder = pathlib.Path(holder.name).resolve()
         cls.build = cls.folder / "build"
-        run("cmake", "-S", SOURCE, "-B", cls.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DOVC_LIBRARY_ONLY=ON",
+        run("cmake", "-S", SOURCE, "-B", cls.build, "-G", "Ninja",
+            "-DCMAKE_BUILD_TYPE=Debug", "-DOVC_LIBRARY_ONLY=ON",
             "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=16",
-            *(f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in ("fmt", "assimp", "PNG", "ZLIB", "GTest", "CLI11", "OpenEXR")))
+            *(f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in HIDDEN))
         run("cmake", "--build", cls.build)
         run("cmake", "--install", cls.build, "--prefix", cls.folder / "prefix")
 
     def test_it_includes_headers_of_three_packages(self):
-        headers = set(re.findall(r"/usr/include/\S+", run("ninja", "-C", self.build, "-t", "deps")))
+        dependencies = run("ninja", "-C", self.build, "-t", "deps")
+        headers = set(re.findall(r"/usr/include/\S+", dependencies))
         self.assertIn("/usr/include/epoxy/gl.h", headers)
         if not pathlib.Path("/usr/bin/dpkg").exists():
             self.skipTest("no dpkg to tell whose headers they are")
-        owners = subprocess.run(["dpkg", "-S", *sorted(headers)], text=True, capture_output=True).stdout
-        packages = {package for line in owners.splitlines() for package in re.findall(r"([\w.+-]+)(?::\w+)?(?:, |: )", line)}
-        foreign = {package for package in packages - ALLOWED if not re.match(r"libc6-dev|linux-libc-dev|libstdc\+\+|libgcc|libcrypt", package)}
+        owners = subprocess.run(["dpkg", "-S", *sorted(headers)], text=True,
+                                capture_output=True).stdout
+        packages = {package for line in owners.splitlines()
+                    for package in re.findall(r"([\w.+-]+)(?::\w+)?(?:, |: )", line)}
+        foreign = {package for package in packages - ALLOWED if not re.match(SYSTEM, package)}
         self.assertEqual(foreign, set())
 
     def test_a_program_finds_it(self):
-        run("cmake", "-S", CONSUMER, "-B", self.folder / "consumer", f"-DCMAKE_PREFIX_PATH={self.folder / 'prefix'}",
+        run("cmake", "-S", CONSUMER, "-B", self.folder / "consumer",
+            f"-DCMAKE_PREFIX_PATH={self.folder / 'prefix'}",
             f"-DEXAMPLES={SOURCE / 'plugin/examples'}")
         run("cmake", "--build", self.folder / "consumer")
         self.assertIn(os.environ["OVC_LIBDIR"], run("ldd", self.folder / "consumer/consumer"))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Preloaded (LD_PRELOAD): the process may start as many threads as OVC_TEST_THREADS says, and no more. */
+/* Preloaded (LD_PRELOAD), this library lets a process start at most OVC_TEST_THREADS threads. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

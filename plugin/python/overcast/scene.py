@@ -128,8 +128,8 @@ class Scene:
 
     def update(self, mesh: int, vertices: ArrayLike, triangles: ArrayLike | None = None, *,
                first: int = 0) -> None:
-        """Gives triangles of a mesh new corners, from triangle `first` on. All its instances follow.
-        commit() then brings the scene up to date; until then it takes no rays.
+        """Gives triangles of a mesh new corners, from triangle `first` on. All its instances
+        follow. commit() then brings the scene up to date; until then it takes no rays.
 
         vertices, triangles: the corners of the triangles that change, in one of the forms of add().
             They are rounded to float32 if the mesh was added in float32. Of a shared mesh: the part
@@ -145,8 +145,8 @@ class Scene:
         self._call("update_mesh", number, update, count("first", first, 2**64 - 1))
 
     def move(self, mesh: int, transform: ArrayLike | None = None) -> None:
-        """Gives a mesh or an instance a new transform, in place of the one that it was added with or
-        got last. commit() then brings the scene up to date; until then it takes no rays."""
+        """Replaces the transform of a mesh or an instance. commit() then brings the scene up to
+        date; until then it takes no rays."""
         matrix = transform_of(transform)
         self._call("update_instance", count("mesh", mesh, 2**32 - 1), address(matrix))
 

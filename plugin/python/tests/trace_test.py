@@ -173,7 +173,8 @@ class Nearest(unittest.TestCase):
             self.assertIs(scene.intersect_rays(records, out=out), out)
             self.assertEqual((out.records.ctypes.data, out.hit.any()), (memory, False))
             records["t_max"] = np.inf
-            self.check(scene.intersect_rays(np.repeat(records, 2)[::2]))  # a copy, as not contiguous
+            # An array that is not contiguous is copied.
+            self.check(scene.intersect_rays(np.repeat(records, 2)[::2]))
             np.testing.assert_array_equal(scene.occluded_rays(records), self.prim != overcast.NONE)
 
     def test_float_records_are_the_doubles_that_they_are(self):
