@@ -85,6 +85,8 @@ constexpr Sample kSamples[] = {
     {"far-terrain", 274160, 0xba45980e69015acb},
     {"leaf-canopy", 200302, 0xb59ed3aa7c50d328},
     {"leaf-canopy-modelled", 2200302, 0xff5776582d194cd6},
+    {"cloth", 131082, 0xb57d3555837ba5be},
+    {"grass-in-wind", 1377002, 0x42f1d9d114d4cd35},
 };
 
 /// For the names of failing tests.

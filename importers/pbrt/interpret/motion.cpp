@@ -32,11 +32,11 @@ std::optional<Parts> taken_apart(const dmat4& m) {
         const dmat3 next = 0.5 * (rotation + glm::transpose(glm::inverse(rotation)));
         change = 0;
         for (int i = 0; i < 3; ++i)
-            change = glm::max(change, glm::length(next[i] - rotation[i]));
+            change += glm::length(next[i] - rotation[i]); // NaN where there is no inverse
         rotation = next;
     }
     if (!(change < 1e-9))
-        return std::nullopt; // NaN for a singular matrix
+        return std::nullopt;
     if (glm::determinant(rotation) < 0)
         rotation = -rotation;
     return Parts{dvec3(m[3]), glm::normalize(glm::quat_cast(rotation)),
