@@ -60,8 +60,8 @@ private:
     std::vector<Part> parts_;
 };
 
-/// Returns a point inside a polygon of `plane`. The point is off the middle, because the edges of
-/// symmetric operands meet there. attempt: each number gives another point.
+/// Returns a point inside a polygon of `plane`. The point is off the middle, because edges of
+/// symmetric operands often meet there. attempt: each number gives another point.
 Point inner_point(const Polygon& polygon, const Plane& plane, int attempt);
 
 } // namespace ovc::csg
