@@ -239,6 +239,7 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Cutout> cutouts;
     std::vector<Light> lights;
+    bool moves = false;                // something in it goes by the Moment
     bool may_add_light = true;         // without lights the host adds one beside the camera
     std::optional<Camera> camera;      // none: the host frames the bounds
     std::optional<ImageSize> size;     // of the picture, where the file asks for one

@@ -18,13 +18,14 @@ struct Format {
     std::string_view extension;
     Result<Scene> (*read)(const std::filesystem::path&, const ImportOptions&);
     Result<Done> (*write)(const Scene&, const std::filesystem::path&); // null: only read
+    bool may_move = false;
 };
 
 constexpr Format kFormats[] = {{"obj", read_obj, write_obj},
                                {"ovc", read_ovc, write_ovc},
-                               {"pbrt", read_pbrt, nullptr},
+                               {"pbrt", read_pbrt, nullptr, true},
                                {"ply", read_ply, write_ply},
-                               {"pov", read_pov, nullptr}};
+                               {"pov", read_pov, nullptr, true}};
 
 const Format* format_of(std::string_view extension) {
     for (const Format& format : kFormats)
@@ -81,6 +82,11 @@ Result<Scene> load(const std::filesystem::path& path, const ImportOptions& optio
     return unknown_extension(path, extension, /* to_write= */ false);
 } catch (const std::bad_alloc&) {
     return Error{fmt::format("{}: found a model larger than the memory", path.string())};
+}
+
+bool may_move(const std::filesystem::path& path) {
+    const Format* format = format_of(extension_of(without_gz(lower_name(path))));
+    return format && format->may_move;
 }
 
 Result<Done> save(const Scene& scene, const std::filesystem::path& path) {

@@ -2,6 +2,7 @@
 // Importers read files into scenes, and write scenes to files for `overcast convert`.
 #pragma once
 
+#include "core/moment.h"
 #include "core/result.h"
 #include "core/scene.h"
 #include "core/system/log.h"
@@ -33,6 +34,8 @@ struct ImportOptions {
     std::optional<double> tolerance = {};
     /// The world to read of a .pbrt file that has several, from 1.
     uint64_t world = 1;
+    /// The moment that the scene is to be of: those of POV-Ray and PBRT may move.
+    Moment moment = {};
     /// The size of the picture to come, if it is known: scenes of POV-Ray may ask for it.
     std::optional<ImageSize> size = {};
     /// The version of POV-Ray's language that a scene is in until it names one itself.
@@ -59,6 +62,9 @@ Result<Scene> load(const std::filesystem::path& path, const ImportOptions& optio
 /// (scene_file.h) holds all of the scene, which comes back as it is. A file that exists is replaced
 /// only once the new one is complete; on an error the unfinished file is removed.
 Result<Done> save(const Scene& scene, const std::filesystem::path& path);
+
+/// Returns whether load() may give other scenes for other moments, as far as the name tells.
+bool may_move(const std::filesystem::path& path);
 
 /// Returns the extensions that load() reads without Assimp, without the dot ("ply", "obj").
 std::vector<std::string> own_extensions();

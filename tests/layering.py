@@ -23,10 +23,11 @@ MAY_INCLUDE = {
 # The neighbours within its folder that each part may include. A part that is not named here may
 # include them all.
 PARTS = {
-    "gpu/gl": set(),
+    "gpu/budget": set(),
+    "gpu/gl": {"gpu/budget"},
     "gpu/bvh": set(),
     "gpu/page": {"gpu/bvh"},
-    "gpu/trace": {"gpu/gl", "gpu/page"},
+    "gpu/trace": {"gpu/budget", "gpu/gl", "gpu/page"},
     "plugin/structure": {"plugin"},
     "plugin/abi": {"plugin", "plugin/structure"},
     "plugin/build": {"plugin", "plugin/plan"},
@@ -36,7 +37,7 @@ PARTS = {
 
 # Header pattern -> the files that may include such headers. Tests may include any.
 PLACES = {
-    r"glm/": ["core/vec.h"],
+    r"glm/": ["core/vec.h", "importers/pbrt/interpret/motion.cpp"],
     r"(oneapi/)?tbb/": ["core/system/parallel.cpp"],
     r"xxhash\.h": ["core/file/checksum.cpp"],
     r"assimp/": ["importers/mesh/assimp.cpp"],

@@ -20,6 +20,7 @@ struct Generator {
     uint32_t least = 0, most = 0; // the range of N; no N when most is 0
     Scene (*make)(uint32_t size, const Soup* model);
     CameraPath (*path)(uint32_t size) = nullptr;
+    Scene (*make_moving)(double clock) = nullptr;
 
     bool sized() const { return most != 0; }
     /// "terrain-" for "terrain-N", "knot" for "knot".
@@ -36,6 +37,13 @@ Scene alone(uint32_t size, const Soup*) {
 template <Scene (*kMake)()>
 Scene alone(uint32_t, const Soup*) {
     return kMake();
+}
+
+/// A scene that moves.
+template <Scene (*kMake)(double clock)>
+constexpr Generator moving(std::string_view name, std::string_view description) {
+    const auto still = [](uint32_t, const Soup*) { return kMake(0); };
+    return {{name, description, 0, false, true}, 0, 0, still, nullptr, kMake};
 }
 
 constexpr Generator kGenerators[] = {
@@ -81,6 +89,9 @@ constexpr Generator kGenerators[] = {
      0,
      0,
      alone<make_modelled_leaf_canopy>},
+    moving<make_cloth>("cloth", "a banner that waves with --frames: 131,082 triangles"),
+    moving<make_grass_in_wind>("grass-in-wind",
+                               "8,100 tufts of grass that bend with --frames: 1,377,002 triangles"),
     {{"terrain-N", "hills over N x N cells: 2 N^2 triangles"}, 1, 4096, alone<make_terrain>},
     {{"far-terrain", "a ground of 1e7 m, down to 1 mm at its far corner: 274,160 triangles"},
      0,
@@ -203,7 +214,7 @@ const CatalogEntry& test_scene_entry(std::string_view name) {
     return parse(name)->generator->entry;
 }
 
-Result<Scene> make_test_scene(std::string_view name, const Soup* model) {
+Result<Scene> make_test_scene(std::string_view name, const Soup* model, double clock) {
     const Result<Request> request = find(name);
     if (!request)
         return request.error();
@@ -211,7 +222,8 @@ Result<Scene> make_test_scene(std::string_view name, const Soup* model) {
     if (model)
         if (const Result<Done> fine = check_model(generator, *model); !fine)
             return fine.error();
-    Scene scene = generator.make(uint32_t(request->size), model);
+    Scene scene = generator.make_moving ? generator.make_moving(clock)
+                                        : generator.make(uint32_t(request->size), model);
     scene.name = name;
     return scene;
 }

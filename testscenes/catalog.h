@@ -16,6 +16,7 @@ struct CatalogEntry {
     std::string_view description; // one line, with its triangle count
     uint32_t frames = 0;          // the frames of its camera path, or 0 if it has none
     bool takes_model = false;     // whether it can show a user's model
+    bool moves = false;           // whether it moves with the clock
 };
 
 /// Returns all scenes, for `overcast scenes` and for suggestions.
@@ -27,10 +28,10 @@ bool is_test_scene(std::string_view name);
 /// Returns the entry of such a name.
 const CatalogEntry& test_scene_entry(std::string_view name);
 
-/// Builds the scene. model: shown instead of the generated model and scaled to fit, or null.
-/// Errors: an unknown name (the nearest one is suggested), a size out of range, a model for a scene
-/// that takes none, or a model without a triangle to hit.
-Result<Scene> make_test_scene(std::string_view name, const Soup* model = nullptr);
+/// Builds the scene. model: shown instead of the generated model and scaled to fit, or null. clock:
+/// from 0 to 1, for scenes that move. Errors: an unknown name (the nearest one is suggested), a size
+/// out of range, a model for a scene that takes none, or a model without a triangle to hit.
+Result<Scene> make_test_scene(std::string_view name, const Soup* model = nullptr, double clock = 0);
 
 /// Returns the camera path of the scene. Errors: those of make_test_scene(), or a scene without a
 /// path.

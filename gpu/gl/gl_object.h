@@ -4,8 +4,8 @@
 #pragma once
 
 #include "core/system/system_pages.h"
+#include "gpu/budget/ledger.h"
 #include "gpu/gl/gl.h"
-#include "gpu/gl/ledger.h"
 
 #include <cassert>
 #include <cstdint>

@@ -4,10 +4,10 @@
 #pragma once
 
 #include "core/system/turn.h"
+#include "gpu/budget/shared_budget.h"
 #include "gpu/gl/debug_output.h"
 #include "gpu/gl/egl_context.h"
 #include "gpu/gl/kernel.h"
-#include "gpu/gl/shared_budget.h"
 
 #include <atomic>
 #include <condition_variable>

@@ -4,10 +4,10 @@
 #pragma once
 
 #include "core/result.h"
+#include "gpu/budget/ledger.h"
 #include "gpu/gl/driver_threads.h"
 #include "gpu/gl/egl_context.h"
 #include "gpu/gl/kernel.h"
-#include "gpu/gl/ledger.h"
 #include "gpu/gl/workarounds.h"
 #include "gpu/page/top_level.h"
 #include "gpu/trace/answers.h"

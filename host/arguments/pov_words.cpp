@@ -26,11 +26,12 @@ struct Refused {
     std::string_view instead;
 };
 constexpr Refused kRefused[] = {
-    {"KF", "--frames A:B takes frames of a camera path"},
-    {"KI", "--frames A:B takes frames of a camera path"},
-    {"K", "a scene has no clock here; --frames takes frames of a camera path"},
-    {"SF", "--frames A:B takes frames from A to B"},
-    {"EF", "--frames A:B takes frames from A to B"},
+    {"KF", "the clock runs from 0 to 1; +KFI1 +KFF25 are its frames"},
+    {"KI", "the clock runs from 0 to 1; +KFI1 +KFF25 are its frames"},
+    {"KC", "the clock is 1 in the last frame"},
+    {"K", "the clock of a still picture is 0; +KFI1 +KFF25 take it from 0 to 1"},
+    {"SF", "+KFI1 +KFF25 take all frames, and --continue those that are not there"},
+    {"EF", "+KFI1 +KFF25 take all frames, and --continue those that are not there"},
     {"SC", "--crop WxH+X+Y renders a part of the picture"},
     {"EC", "--crop WxH+X+Y renders a part of the picture"},
     {"SR", "--crop WxH+X+Y renders a part of the picture"},
@@ -139,6 +140,10 @@ public:
             ours_.push_back("--size=" + width_ + "x" + height_);
         if (antialiasing_)
             add_antialias();
+        if (!first_frame_.empty() && last_frame_.empty())
+            return Error{"+KFI and +KFF belong together; +KFF is missing"};
+        if (!last_frame_.empty())
+            add_frames();
         return std::move(ours_);
     }
 
@@ -201,6 +206,17 @@ private:
             ours_.push_back("--jitter=" + (jitters_ ? jitter_ : "0"));
     }
 
+    /// Gives names of files a place for the frame's number, where they have none: before the
+    /// ending, as POV-Ray does.
+    void add_frames() {
+        for (size_t i = 0; i + 1 < ours_.size(); ++i)
+            if (std::string& name = ours_[i + 1];
+                ours_[i] == "-o" && name.find('#') == std::string::npos)
+                name.insert(std::min(name.rfind('.'), name.size()), last_frame_.size(), '#');
+        ours_.push_back("--frames=" + (first_frame_.empty() ? "1" : first_frame_) + ":" +
+                        last_frame_);
+    }
+
     /// Our own options begin with "--", or with a minus and a small letter.
     static bool is_pov(const std::string& word) {
         return word.size() > 1 &&
@@ -241,6 +257,10 @@ private:
             take_jitter(on, value);
         else if (letters == "MV")
             ours_.push_back("--pov-version=" + word.substr(3));
+        else if (letters == "KF" && word.size() > 3 && std::toupper(word[3]) == 'I')
+            first_frame_ = word.substr(4);
+        else if (letters == "KF" && word.size() > 3 && std::toupper(word[3]) == 'F')
+            last_frame_ = word.substr(4);
         else if (letters == "C")
             take_continue(on);
         else if (on && (word == "+FN16" || word == "+fn16"))
@@ -290,13 +310,13 @@ private:
             if (letters.starts_with(refused.word))
                 return Error{fmt::format("{} is not there: {}", word, refused.instead)};
         return Error{fmt::format("'{}' is no word of POV-Ray's that is understood here; there are "
-                                 "+I +O +W +H +A +AM +R +J +Q +C +MV +WT +FN",
+                                 "+I +O +W +H +A +AM +R +J +Q +C +MV +WT +FN +KFI +KFF",
                                  word)};
     }
 
     const LogSink& log_;
     std::vector<std::string> ours_;
-    std::string width_, height_;
+    std::string width_, height_, first_frame_, last_frame_;
     bool antialiasing_ = false, jitters_ = true;
     std::string threshold_ = "0.3"; // POV-Ray's default
     std::string method_, depth_, jitter_;

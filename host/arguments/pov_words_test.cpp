@@ -57,8 +57,16 @@ TEST(PovWords, ThatMeanNothingHereAreSaidToAndPassedOver) {
                     "+UV means nothing here\n");
 }
 
+TEST(PovWords, OfFramesNumberThePictures) {
+    EXPECT_THAT(translated({"+KFI5", "+KFF10", "+Oa.b/c.png", "-o", "d-###.exr"}),
+                ElementsAre("-o", "a.b/c##.png", "-o", "d-###.exr", "--frames=5:10"));
+    EXPECT_THAT(translated({"Final_Frame=9"}), ElementsAre("--frames=1:9"));
+    EXPECT_THAT(translated({"+KFI5"}).at(0), testing::HasSubstr("+KFF is missing"));
+}
+
 TEST(PovWords, ThatCannotBeObeyedNameOurs) {
-    EXPECT_THAT(translated({"+KFF10"}).at(0), testing::HasSubstr("--frames A:B"));
+    EXPECT_THAT(translated({"+K0.5"}).at(0), testing::HasSubstr("+KFI1 +KFF25"));
+    EXPECT_THAT(translated({"+KF2"}).at(0), testing::HasSubstr("runs from 0 to 1"));
     EXPECT_THAT(translated({"+SC0.5"}).at(0), testing::HasSubstr("--crop"));
     EXPECT_THAT(translated({"+FT"}).at(0), testing::HasSubstr(".png or .exr"));
     EXPECT_THAT(translated({"+Z"}).at(0),

@@ -2,6 +2,7 @@
 // The backends behind the C ABI, which takes the soup and its rays without a copy.
 #include "host/backend/backend.h"
 #include "host/backend/plugin_loader.h"
+#include "host/scene/moved_meshes.h"
 #include "host/terminal/build_watch.h"
 
 #include <fmt/format.h>
@@ -111,13 +112,29 @@ static ovc_mesh mesh_of(const Chunk& chunk) {
     return mesh;
 }
 
+/// Returns triangles [first, end) of the chunk as update_mesh takes them.
+static ovc_mesh part_of(const Chunk& chunk, uint32_t first, uint32_t end) {
+    ovc_mesh part = mesh_of(chunk);
+    if (part.positions)
+        part.positions += 9 * size_t(first);
+    else
+        part.positions_double += 9 * size_t(first);
+    part.vertex_count = 3 * uint64_t(end - first);
+    part.transform = nullptr;
+    part.mask = 0;
+    return part;
+}
+
 class PluginBackend final : public Backend {
 public:
-    PluginBackend(PluginDevice device, std::string renderer, PluginScene scene, bool saves)
+    /// watch: that of the scene's config, or null.
+    PluginBackend(PluginDevice device, std::string renderer, std::unique_ptr<BuildWatch> watch,
+                  PluginScene scene, bool is_two_level)
         : device_(std::move(device)),
           renderer_(std::move(renderer)),
+          watch_(std::move(watch)),
           scene_(std::move(scene)),
-          saves_(saves) {}
+          is_two_level_(is_two_level) {}
 
     Result<Done> intersect(std::span<const Ray> rays, const Exclusions& without,
                            std::span<Hit> hits) override {
@@ -155,7 +172,21 @@ public:
         return api().active(scene_.get(), &active) == OVC_OK ? std::optional(active) : std::nullopt;
     }
 
-    bool saves() const override { return saves_; }
+    Result<bool> update(const Soup& soup, const std::vector<MovedMesh>& moved) override {
+        if (!is_two_level_)
+            return false;
+        for (const MovedMesh& one : moved)
+            if (const Result<Done> told = tell(soup.chunks[one.mesh], one); !told)
+                return told.error();
+        std::optional<BuildWatch::Building> watched;
+        if (watch_)
+            watched.emplace(*watch_);
+        if (const Result<Done> done = device_.checked(api().commit(scene_.get())); !done)
+            return done.error();
+        return true;
+    }
+
+    bool saves() const override { return is_two_level_; }
 
     Result<Done> save(const ByteSink& sink) const override {
         const auto write = [](void* user, const void* bytes, size_t size) {
@@ -179,10 +210,27 @@ public:
 private:
     const ovc_api& api() const { return *device_.api(); }
 
+    /// Tells the library what has moved of a mesh.
+    Result<Done> tell(const Chunk& chunk, const MovedMesh& moved) {
+        if (moved.end > moved.first) {
+            const ovc_mesh part = part_of(chunk, moved.first, moved.end);
+            const ovc_result result =
+                api().update_mesh(scene_.get(), moved.mesh, &part, moved.first);
+            if (result != OVC_OK)
+                return device_.checked(result);
+        }
+        if (!moved.placed)
+            return Done{};
+        const double* const transform =
+            chunk.transform() ? chunk.transform()->rows[0].data() : nullptr;
+        return device_.checked(api().update_instance(scene_.get(), moved.mesh, transform));
+    }
+
     PluginDevice device_;
     std::string renderer_;
-    PluginScene scene_; // after device_, so that it is destroyed first
-    const bool saves_;
+    std::unique_ptr<BuildWatch> watch_;
+    PluginScene scene_;       // after those, so that it is destroyed first
+    const bool is_two_level_; // the systems of the thesis neither save nor update
 };
 
 static Result<Done> add_meshes(const PluginDevice& device, ovc_scene scene, const Soup& soup) {
@@ -241,19 +289,27 @@ Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const 
     Result<ovc_scene_config> config = config_of(options, *info, log);
     if (!config)
         return config.error();
-    std::optional<BuildWatch> watch;
-    if (options.watching != BuildWatching::None)
-        watch.emplace(options.watching == BuildWatching::Shown).watch(*config);
+    std::unique_ptr<BuildWatch> watch;
+    if (options.watching != BuildWatching::None) {
+        watch = std::make_unique<BuildWatch>(options.watching == BuildWatching::Shown);
+        watch->watch(*config);
+    }
     Result<PluginScene> scene = device.create_scene(*config);
     if (!scene)
         return scene.error();
     if (const Result<Done> added = add_meshes(device, scene->get(), soup); !added)
         return added.error();
-    if (const Result<Done> done = device.checked(device.api()->commit(scene->get())); !done)
-        return done.error();
-    return std::unique_ptr<Backend>(
-        std::make_unique<PluginBackend>(std::move(device), info->renderer, std::move(*scene),
-                                        structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL));
+    {
+        std::optional<BuildWatch::Building> watched;
+        if (watch)
+            watched.emplace(*watch);
+        const Result<Done> done = device.checked(device.api()->commit(scene->get()));
+        if (!done)
+            return done.error();
+    }
+    return std::unique_ptr<Backend>(std::make_unique<PluginBackend>(
+        std::move(device), info->renderer, std::move(watch), std::move(*scene),
+        structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL));
 }
 
 Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,

@@ -38,6 +38,8 @@ static constexpr const char* kRenderExamples = R"(Examples:
       100 frames along the scene's camera path, built once: dragons-0000.png to dragons-0099.png
   overcast render dragon.ply --camera-path walk.csv --frames 0:90:10 -o walk-###.png
       every tenth frame of a path of your own (docs/guide/scenes.md)
+  overcast render clock.pov --frames 1:25 -o clock-##.png
+      25 frames of what moves in the scene; what stays is not built anew
   overcast render dragons-5 --model dragon.ply
       the scene with your model in the place of the generated one
   overcast render plants.pbrt --cache ~/.cache/overcast -o plants.png
@@ -131,8 +133,9 @@ void RenderWords::add_view_to(CLI::App& app) {
                    "many scans and CAD models have z")
         ->type_name(choice_names(kAxes));
     app.add_option("--frames", frames,
-                   "Frames of the camera path, the first and the last included; default: one "
-                   "picture, with --camera-path all frames")
+                   "Frames of the camera path, or of what moves in the scene: POV-Ray's clock runs "
+                   "from 0 in frame A to 1 in frame B; default: one picture, with --camera-path "
+                   "all frames")
         ->type_name("A:B[:STEP]");
     app.add_option(
            "--camera-path", camera_path,
@@ -255,12 +258,16 @@ struct NamedPath {
     std::string name;
 };
 
+/// Returns a path without cameras where the scene may move before its own.
 static Result<NamedPath> choose_path(const RenderWords& words) {
     const std::string scene = words.scene.name();
     const bool from_file = !words.camera_path.empty();
+    if (!from_file && words.scene.may_move())
+        return NamedPath{{}, "a scene that moves"};
     if (!from_file && !is_test_scene(scene))
-        return Error{
-            fmt::format("--frames: '{}' has no camera path; --camera-path gives it one", scene)};
+        return Error{fmt::format("--frames: '{}' has no camera path, and nothing in it moves; "
+                                 "--camera-path gives it one",
+                                 scene)};
     Result<CameraPath> path =
         from_file ? load_camera_path(words.camera_path) : test_scene_path(scene);
     if (!path)
@@ -273,24 +280,26 @@ static Result<std::vector<Shot>> understand_frames(const RenderWords& words) {
     std::vector<Shot> shots;
     if (words.frames.empty() && words.camera_path.empty())
         return shots;
-    // CLI11's excludes() would list the two in the help in an order that changes from run to run.
-    if (!words.camera.empty())
-        return Error{fmt::format("--camera and {} cannot be given together",
-                                 words.frames.empty() ? "--camera-path" : "--frames")};
     const Result<NamedPath> path = choose_path(words);
     if (!path)
         return path.error();
-    FrameRange range{0, uint32_t(path->cameras.size() - 1), 1};
+    const bool has_cameras = !path->cameras.empty();
+    // CLI11's excludes() would list the two in the help in an order that changes from run to run.
+    if (has_cameras && !words.camera.empty())
+        return Error{fmt::format("--camera and {} cannot be given together",
+                                 words.frames.empty() ? "--camera-path" : "--frames")};
+    const uint32_t frames = has_cameras ? uint32_t(path->cameras.size()) : kMaxFrames;
+    FrameRange range{0, frames - 1, 1};
     if (!words.frames.empty()) {
-        const Result<FrameRange> asked =
-            parse_frames(words.frames, uint32_t(path->cameras.size()), path->name);
+        const Result<FrameRange> asked = parse_frames(words.frames, frames, path->name);
         if (!asked)
             return asked.error();
         range = *asked;
     }
     for (uint32_t i = 0; i < range.count(); ++i) {
         const uint32_t frame = range.first + i * range.step;
-        shots.push_back({frame, path->cameras[frame]});
+        shots.push_back({frame, has_cameras ? std::optional(path->cameras[frame]) : std::nullopt,
+                         Moment::of_frame(frame, range.first, range.last)});
     }
     return shots;
 }
@@ -353,7 +362,7 @@ static Result<Done> understand_view(const RenderWords& words, RenderJob& job) {
         const Result<size_t> axis = parse_choice("--up", words.up, kAxes);
         if (!axis)
             return axis.error();
-        if (!job.shots.empty())
+        if (!job.shots.empty() && job.shots[0].camera)
             return Error{"--up and a camera path cannot be given together: its cameras say what is "
                          "up"};
         job.up = int(*axis);
@@ -490,6 +499,8 @@ static Result<RenderJob> understand(const RenderWords& words) {
     if (!shots)
         return shots.error();
     job.shots = std::move(*shots);
+    if (!job.shots.empty())
+        job.scene.moment = job.shots[0].moment;
     job.outputs = words.outputs;
     if (job.outputs.empty())
         job.outputs = {job.shots.empty() ? "out.png" : "out-####.png"};

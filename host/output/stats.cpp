@@ -108,6 +108,7 @@ static Json frame_of(const FrameStats& f) {
     frame["gpu_peak_bytes"] = f.tracing.gpu_peak_bytes;
     frame["host_peak_bytes"] = f.host_peak_bytes;
     add_times(frame["time"], f.report);
+    frame["time"]["scene"] = f.seconds_scene;
     frame["time"]["output"] = f.seconds_output;
     frame["time"]["total"] = f.seconds;
     return frame;

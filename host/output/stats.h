@@ -21,6 +21,7 @@ struct FrameStats {
     ovc_statistics tracing{}; // what was counted for this frame alone
     std::optional<ovc_active> active;
     uint64_t host_peak_bytes = 0; // of the process, up to its end
+    double seconds_scene = 0; // before: reading the scene at its moment, and updating what is built
     double seconds_output = 0;
     double seconds = 0; // from its first ray to its last file
 };

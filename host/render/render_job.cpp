@@ -11,6 +11,7 @@
 #include "host/output/stats.h"
 #include "host/render/frames.h"
 #include "host/render/render.h"
+#include "host/render/stage.h"
 #include "host/render/unfinished.h"
 #include "host/scene/scene_cache.h"
 #include "host/scene/scene_summary.h"
@@ -81,40 +82,38 @@ static bool is_there(const RenderJob& job, uint32_t frame) {
                        [](const std::string& output) { return fs::exists(output); });
 }
 
-/// A run of pictures over one scene and one backend.
+/// A picture's number, and the camera that takes it.
+struct View {
+    uint32_t frame = 0;
+    Camera camera;
+};
+
+/// Pictures of one scene, by one backend.
 class Rendering {
 public:
-    Rendering(const RenderJob& job, const PicturePart& part, Scene& scene, Backend& backend,
+    Rendering(const RenderJob& job, const PicturePart& part, Scene& scene, Stage& stage,
               const LogSink& log)
         : job_(job),
           log_(log),
           options_(render_options(job, part, scene)),
           scene_(scene),
-          lights_(job.lights.empty() ? scene.lights : job.lights),
-          backend_(backend) {}
+          lights_(stage.lights()),
+          backend_(stage.backend()) {}
 
-    /// Renders every picture in turn until one is interrupted; its pixels are kept beside its
-    /// outputs.
-    Result<Done> run(const std::vector<Shot>& shots, RenderStats& stats) {
-        stats.report.complete = true;
-        for (const Shot& shot : shots) {
-            if (is_there(job_, shot.frame)) {
-                ++stats.frames_there;
-                continue;
-            }
-            const Result<FrameStats> frame = render_one(shot);
-            if (!frame)
-                return frame.error();
-            stats.report.complete = frame->report.complete;
-            if (!frame->report.complete && is_sequence())
-                return Done{};
-            stats.add(*frame);
-            if (is_sequence() && !job_.quiet) {
-                fmt::print("{}\n", frame_summary(*frame));
-                std::fflush(stdout);
-            }
-            if (!stats.report.complete)
-                return Done{};
+    /// Renders a picture. Where it is interrupted, its pixels are kept beside its outputs, and
+    /// stats.report is not complete.
+    Result<Done> run(const View& view, double seconds_scene, RenderStats& stats) {
+        Result<FrameStats> frame = render_one(view);
+        if (!frame)
+            return frame.error();
+        frame->seconds_scene = seconds_scene;
+        stats.report.complete = frame->report.complete;
+        if (!frame->report.complete && is_sequence())
+            return Done{};
+        stats.add(*frame);
+        if (is_sequence() && !job_.quiet) {
+            fmt::print("{}\n", frame_summary(*frame));
+            std::fflush(stdout);
         }
         return Done{};
     }
@@ -122,7 +121,7 @@ public:
     bool is_sequence() const { return !job_.shots.empty(); }
 
 private:
-    Result<FrameStats> render_one(const Shot& shot) {
+    Result<FrameStats> render_one(const View& shot) {
         const Stopwatch watch;
         const ovc_statistics before = backend_.statistics();
         FrameStats frame;
@@ -150,12 +149,12 @@ private:
         return frame;
     }
 
-    std::vector<std::string> outputs_of(const Shot& shot) const {
+    std::vector<std::string> outputs_of(const View& shot) const {
         return ovc::outputs_of(job_, shot.frame);
     }
-    std::string film_of(const Shot& shot) const { return unfinished_film(outputs_of(shot)[0]); }
+    std::string film_of(const View& shot) const { return unfinished_film(outputs_of(shot)[0]); }
 
-    Result<Done> go_on_with(const Shot& shot, Film& film) const {
+    Result<Done> go_on_with(const View& shot, Film& film) const {
         if (!job_.go_on || !fs::exists(film_of(shot)))
             return Done{};
         const Result<Done> loaded = load_film(film_of(shot), checksum_of_picture(shot), film);
@@ -168,7 +167,7 @@ private:
 
     /// Returns a checksum of everything that the pixels depend on, without the picture's size:
     /// save_film() adds that.
-    uint64_t checksum_of_picture(const Shot& shot) const {
+    uint64_t checksum_of_picture(const View& shot) const {
         ByteWriter view;
         view(shot.camera, *options_.part, options_.integrator, options_.max_depth, options_.shadows,
              options_.cutouts, options_.seed, job_.backend.precision);
@@ -187,7 +186,7 @@ private:
                 pixel[i] = linear_light(pixel[i], scene_.gamma);
     }
 
-    Result<RenderReport> trace(const Shot& shot, Film& film) {
+    Result<RenderReport> trace(const View& shot, Film& film) {
         Progress progress(backend_, is_sequence() ? fmt::format("frame {}: ", shot.frame) : "",
                           uint64_t(film.width()) * film.height(), film.pixels_done(),
                           /* shown= */ !job_.quiet);
@@ -198,7 +197,7 @@ private:
         return render_picture(scene_, shot.camera, backend_, options_, observe, film);
     }
 
-    Result<Done> save_finished(const Shot& shot, const Film& film, const FrameStats& frame) {
+    Result<Done> save_finished(const View& shot, const Film& film, const FrameStats& frame) {
         const std::vector<std::string> outputs = outputs_of(shot);
         if (const Result<Done> saved = save_all(outputs, shot, film, frame); !saved)
             return kept(saved.error(), shot, film);
@@ -210,7 +209,7 @@ private:
     }
 
     /// Saves the film where an output cannot be written, so that the picture is not lost.
-    Error kept(Error error, const Shot& shot, const Film& film) {
+    Error kept(Error error, const View& shot, const Film& film) {
         if (save_film(film, checksum_of_picture(shot), film_of(shot)))
             error.message += fmt::format("; the picture is kept in {}, and --continue writes it "
                                          "without rendering it again",
@@ -220,7 +219,7 @@ private:
 
     /// Saves the film and the picture so far beside the outputs, which may be finished pictures of
     /// an earlier run. A sequence gets no picture, for it would only be one of many.
-    Result<Done> save_unfinished(const Shot& shot, const Film& film, const FrameStats& frame) {
+    Result<Done> save_unfinished(const View& shot, const Film& film, const FrameStats& frame) {
         if (film.pixels_done() == 0)
             return Done{};
         std::vector<std::string> outputs = outputs_of(shot);
@@ -241,7 +240,7 @@ private:
                 {"overcast:statistics", frame_json(frame)}};
     }
 
-    Result<Done> save_all(const std::vector<std::string>& outputs, const Shot& shot,
+    Result<Done> save_all(const std::vector<std::string>& outputs, const View& shot,
                           const Film& film, const FrameStats& frame) {
         Image image = film.image();
         if (scene_.gamma != 1)
@@ -268,7 +267,7 @@ private:
     const LogSink& log_;
     const RenderOptions options_;
     Scene& scene_;
-    const std::vector<Light> lights_; // as the scene or the user has them
+    const std::vector<Light>& lights_; // as the scene or the user has them
     Backend& backend_;
     const InterruptGuard interrupt_;
 };
@@ -356,16 +355,43 @@ static void tell_of_up_left_out(const RenderJob& job, const Scene& scene, const 
                         job.scene.name()));
 }
 
-/// Returns the job's shots, or the one of a still picture. An error where a camera cannot be used:
-/// nobody has checked that of a file before.
-static Result<std::vector<Shot>> shots_of(const RenderJob& job, const Scene& scene,
-                                          const ImageSize& size) {
-    std::vector<Shot> shots =
-        job.shots.empty() ? std::vector<Shot>{{0, still_camera(scene, job, size)}} : job.shots;
-    for (const Shot& shot : shots)
-        if (const Result<Done> fine = check_camera(shot.camera); !fine)
+/// Renders every shot in turn until one is interrupted.
+static Result<Done> render_shots(const RenderJob& job, const PicturePart& part, Stage& stage,
+                                 Scene& scene, const LogSink& log, RenderStats& stats) {
+    stats.report.complete = true;
+    const std::vector<Shot> shots =
+        job.shots.empty() ? std::vector<Shot>{Shot{.camera = job.camera}} : job.shots;
+    for (const Shot& shot : shots) {
+        if (is_there(job, shot.frame)) {
+            ++stats.frames_there;
+            continue;
+        }
+        const Stopwatch watch;
+        const Result<Done> there = stage.go_to(shot.moment);
+        stats.report.complete = there || there.error().kind != ErrorKind::Cancelled;
+        if (!there)
+            return stats.report.complete ? there : Result<Done>(Done{});
+        const View view{shot.frame, shot.camera && !job.shots.empty()
+                                        ? *shot.camera
+                                        : still_camera(scene, job, part.picture)};
+        // Nobody has checked that of a file before.
+        if (const Result<Done> fine = check_camera(view.camera); !fine)
             return Error{fmt::format("{}: {}", job.scene.name(), fine.error().message)};
-    return shots;
+        const double seconds = watch.seconds();
+        const Result<Done> done = Rendering(job, part, scene, stage, log).run(view, seconds, stats);
+        if (!done || !stats.report.complete)
+            return done;
+    }
+    return Done{};
+}
+
+/// Refuses frames that would all be alike.
+static Result<Done> check_frames(const RenderJob& job, const Scene& scene) {
+    if (job.shots.size() < 2 || scene.moves || job.shots[0].camera)
+        return Done{};
+    return Error{fmt::format("--frames: nothing in '{}' moves, and it has no camera path; "
+                             "--camera-path gives it one",
+                             job.scene.name())};
 }
 
 static void add_what_backend_tells(const RenderJob& job, const Scene& scene, const Backend& backend,
@@ -410,14 +436,12 @@ Result<int> render(const RenderJob& job) {
     stats.scene_from_cache = cache.found();
 
     tell_of_up_left_out(job, *scene, log);
-    const Result<std::vector<Shot>> shots = shots_of(job, *scene, size);
-    if (!shots)
-        return shots.error();
+    if (const Result<Done> fine = check_frames(job, *scene); !fine)
+        return fine.error();
     BackendOptions options = job.backend;
     options.saved = scene->saved;
     options.watching = job.quiet ? BuildWatching::Silent : BuildWatching::Shown;
-    const Result<std::unique_ptr<Backend>> backend =
-        make_backend(scene->soup, options, log, opening);
+    Result<std::unique_ptr<Backend>> backend = make_backend(scene->soup, options, log, opening);
     if (!backend && backend.error().kind == ErrorKind::Cancelled) {
         print_message("interrupted while building; nothing was rendered");
         return kExitInterrupted;
@@ -426,10 +450,12 @@ Result<int> render(const RenderJob& job) {
         return backend.error();
 
     cache.keep(*scene, **backend, log);
-    Result<Done> done = Rendering(job, *part, *scene, **backend, log).run(*shots, stats);
+    options.saved = {}; // of the first moment
+    Stage stage(job, *scene, std::move(*backend), options);
+    Result<Done> done = render_shots(job, *part, stage, *scene, log, stats);
     if (!done)
         return done.error();
-    add_what_backend_tells(job, *scene, **backend, stats);
+    add_what_backend_tells(job, *scene, stage.backend(), stats);
     stats.seconds_total = total.seconds();
     if (!job.stats.empty())
         if (done = save_text(stats_json(stats), job.stats); !done)

@@ -32,8 +32,9 @@ struct Crop {
 
 /// One picture of a sequence.
 struct Shot {
-    uint32_t frame = 0; // in the camera path
-    Camera camera;
+    uint32_t frame = 0;           // in the camera path, where there is one
+    std::optional<Camera> camera; // none: the scene's own
+    Moment moment{};
 };
 
 struct RenderJob {

@@ -29,6 +29,7 @@ public:
         Scene& scene = next.scene;
         add_instancing(scene);
         take_first(all_.camera, scene.camera, next.name, "camera");
+        all_.moves = all_.moves || scene.moves;
         take_first(all_.size, scene.size, next.name, "picture's size");
         take_first(all_.max_depth, scene.max_depth, next.name, "depth");
         take_background(scene, next.name);

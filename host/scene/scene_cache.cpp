@@ -51,6 +51,8 @@ SceneCache::SceneCache(const std::string& folder, const SceneArguments& argument
     const bool is_cache = arguments.scenes.size() == 1 && fs::path(first).extension() == ".ovc";
     if (folder.empty() || is_cache) // an .ovc file is a cache itself
         return;
+    if (arguments.moment.in_sequence && arguments.may_move())
+        return; // it is another scene in each frame
     from_.request = request_of(arguments, backend, size);
     path_ = fs::path(folder) / file_name(first, from_.request);
 }

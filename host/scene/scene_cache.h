@@ -15,7 +15,8 @@ namespace ovc {
 /// The cache's entry for one scene with one set of options.
 class SceneCache {
 public:
-    /// folder: where it is empty, nothing is kept. arguments: name at least one scene, and must
+    /// folder: where it is empty, nothing is kept; nor of a scene that may move in a sequence.
+    /// arguments: name at least one scene, and must
     /// outlive it. size: as for open_scene().
     SceneCache(const std::string& folder, const SceneArguments& arguments,
                const BackendOptions& backend, std::optional<ImageSize> size);

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cassert>
 #include <charconv>
 #include <filesystem>
@@ -111,6 +112,12 @@ std::vector<NamedFile> SceneArguments::files() const {
     return files;
 }
 
+bool SceneArguments::may_move() const {
+    return std::ranges::any_of(scenes, [](const std::string& scene) {
+        return is_test_scene(scene) ? test_scene_entry(scene).moves : ovc::may_move(scene);
+    });
+}
+
 static Result<Scene> make_with_model(const std::string& name, const ImportOptions& options,
                                      const std::string& model) {
     const Result<Scene> loaded =
@@ -131,6 +138,7 @@ Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
     options.tolerance = *tolerance_of(arguments.tolerance);
     options.pov_version = *pov_version_of(arguments.pov_version);
     options.world = *world_of(arguments.world);
+    options.moment = arguments.moment;
     std::vector<NamedScene> scenes;
     for (const std::string& name : arguments.scenes) {
         Result<Scene> scene = open_scene(name, options, arguments.model);
@@ -144,7 +152,8 @@ Result<Scene> open_scene(const SceneArguments& arguments, const LogSink& log,
 Result<Scene> open_scene(const std::string& source, const ImportOptions& options,
                          const std::string& model) {
     if (is_test_scene(source))
-        return model.empty() ? make_test_scene(source) : make_with_model(source, options, model);
+        return model.empty() ? make_test_scene(source, nullptr, options.moment.clock)
+                             : make_with_model(source, options, model);
     std::error_code ignored;
     if (std::filesystem::is_directory(source, ignored))
         return Error{fmt::format("'{}' is a directory, expected a file or a test scene", source)};

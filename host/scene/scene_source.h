@@ -26,6 +26,7 @@ struct SceneArguments {
     std::string tolerance;     // empty: not given
     std::string pov_version;   // empty: not given
     std::string world;         // empty: not given
+    Moment moment;             // that the scene is to be of
 
     /// name: the scene's name in the help.
     void add_to(CLI::App& app, const char* name = "SCENE");
@@ -33,6 +34,8 @@ struct SceneArguments {
     Result<Done> check() const;
     /// Returns the scene's name in messages and statistics: "dragon.ply + floor.obj".
     std::string name() const;
+    /// Returns whether what it names may move with the moment.
+    bool may_move() const;
     /// Returns the files that the user named; test scenes are none.
     std::vector<NamedFile> files() const;
 };

@@ -6,8 +6,6 @@
 
 namespace ovc {
 
-BuildWatch::BuildWatch(bool shown) : line_(shown) {}
-
 void BuildWatch::watch(ovc_scene_config& config) {
     config.progress = told;
     config.progress_user = this;
@@ -15,8 +13,10 @@ void BuildWatch::watch(ovc_scene_config& config) {
 
 int BuildWatch::told(void* self, double done, const char* stage) {
     auto& watch = *static_cast<BuildWatch*>(self);
-    watch.line_.show(fmt::format("building: {:3.0f} %, {}", 100 * done, stage));
-    return watch.interrupt_.interrupted();
+    if (!watch.interrupt_)
+        return 0;
+    watch.line_->show(fmt::format("building: {:3.0f} %, {}", 100 * done, stage));
+    return watch.interrupt_->interrupted();
 }
 
 } // namespace ovc

@@ -7,22 +7,42 @@
 #include "host/terminal/terminal_line.h"
 #include "plugin/overcast.h"
 
+#include <optional>
+
 namespace ovc {
 
 class BuildWatch {
 public:
-    /// shown: false keeps it silent even on a terminal. At most one may live, and no InterruptGuard
-    /// besides.
-    explicit BuildWatch(bool shown);
+    /// shown: false keeps it silent even on a terminal.
+    explicit BuildWatch(bool shown) : shown_(shown) {}
+    BuildWatch(const BuildWatch&) = delete;
 
-    /// Makes a scene of this config report to this object, which must outlive the scene's commit.
+    /// Makes a scene of this config report to this object, which must outlive the scene.
     void watch(ovc_scene_config& config);
+
+    /// A commit is watched while one of these lives. No other InterruptGuard may live meanwhile.
+    class Building {
+    public:
+        explicit Building(BuildWatch& watch) : watch_(watch) {
+            watch_.interrupt_.emplace("stopping");
+            watch_.line_.emplace(watch_.shown_);
+        }
+        ~Building() {
+            watch_.line_.reset();
+            watch_.interrupt_.reset();
+        }
+        Building(const Building&) = delete;
+
+    private:
+        BuildWatch& watch_;
+    };
 
 private:
     static int told(void* self, double done, const char* stage);
 
-    const InterruptGuard interrupt_{"stopping"};
-    TerminalLine line_;
+    const bool shown_;
+    std::optional<InterruptGuard> interrupt_;
+    std::optional<TerminalLine> line_;
 };
 
 } // namespace ovc

@@ -342,7 +342,7 @@ std::optional<PlaneShape> placed_plane(const PlaneShape& plane, const Placed& p)
     return PlaneShape{normal, glm::dot(normal, on_plane)};
 }
 
-/// Adds a square around the point of the plane nearest to the scene's center. That point is a
+/// Adds a square around the point of the plane nearest to `center`, a point near the scene. It is a
 /// corner of all four triangles, so that there the plane keeps its place in floats.
 void add_plane(const Placed& p, const HoleTable& holes, const dvec3& center, double reach,
                Scene& scene) {
@@ -381,8 +381,11 @@ Box world_of(Box box, const Look& look) {
     return box;
 }
 
+/// Returns a power of two, so that it is the same for about the same boxes: planes then stay where
+/// they are while other things move.
 double reach_of(const Box& world) {
-    return std::max(1.0, 0.5 * glm::length(world.extent()));
+    const double reach = std::max(1.0, 0.5 * glm::length(world.extent()));
+    return reach < 1e300 ? std::ldexp(1.0, std::ilogb(reach) + 1) : reach;
 }
 
 /// Returns the box that cuts off endless solids.
@@ -484,7 +487,7 @@ void flatten(const std::vector<ObjectPtr>& objects, const Look& look, Scene& sce
     const Box world = world_of(box, look);
     for (const Placed& p : placed)
         if (std::holds_alternative<PlaneShape>(p.object->shape))
-            add_plane(p, gatherer.holes, world.center(), reach_of(world), scene);
+            add_plane(p, gatherer.holes, chunk_origin(world, 2), reach_of(world), scene);
 }
 
 Box moved(const Box& box, const dmat4& by) {

@@ -55,6 +55,7 @@ public:
         reader_.version = options.pov_version.value_or(reader_.version);
         reader_.version_given = options.pov_version.has_value();
         reader_.picture = options.size.value_or(reader_.picture);
+        reader_.moment = options.moment;
     }
 
     Scene parse(std::unique_ptr<SourceFile> file) {
@@ -78,6 +79,7 @@ public:
         look_.tolerance = options_.tolerance;
         look_.tell = [&](const Note& note) { reader_.warn(note.kind, note.place, note.sentence); };
         flatten(objects_, look_, scene);
+        scene.moves = reader_.moves;
         return scene;
     }
 

@@ -4,10 +4,10 @@
 // faster.
 #pragma once
 
+#include "core/system/turn.h"
 #include "plugin/structure/faster_way.h"
 #include "plugin/structure/gathering.h"
 #include "plugin/structure/structure.h"
-#include "core/system/turn.h"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/result.h"
+#include "gpu/budget/ledger.h"
 #include "gpu/gl/egl_context.h"
-#include "gpu/gl/ledger.h"
 #include "plugin/thesis/bounded_passes.h"
 #include "plugin/thesis/frame_ray.h"
 #include "plugin/thesis/tiles.h"

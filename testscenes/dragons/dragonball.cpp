@@ -11,10 +11,11 @@ namespace {
 
 using namespace dragons;
 
-constexpr uint64_t kDragonTriangles = 7'219'045; // the XYZ RGB dragon of Stanford
+constexpr uint64_t kLargeDragonTriangles = 7'219'045; // the XYZ RGB dragon of Stanford
 constexpr uint32_t kWavesAcross = 205, kWavesDeep = 208;
 constexpr TubeGrid kBall{142, 71};
-static_assert(kDragonTriangles + 2 * kWavesAcross * kWavesDeep + 3 * 2 * 142 * 71 == 7'364'817);
+static_assert(kLargeDragonTriangles + 2 * kWavesAcross * kWavesDeep + 3 * 2 * 142 * 71 ==
+              7'364'817);
 constexpr double kWaterHalf = 7;
 
 double waves(dvec2 at) {
@@ -51,7 +52,7 @@ CameraPath dragonball_path() {
 Scene make_dragonball(const Soup* model) {
     Scene scene;
     add(scene, {"dragon", vec3(0.72f, 0.53f, 0.20f), 0}, dvec3(0),
-        make_model(model, kDragonTriangles, {3.1, 2.2, 1.5}, true));
+        make_model(model, kLargeDragonTriangles, {3.1, 2.2, 1.5}, true));
     add(scene, {"waves", vec3(0.04f, 0.09f, 0.11f), 0.6f}, dvec3(0),
         make_sheet(kWavesAcross, kWavesDeep, kWaterHalf, true, waves));
     add(scene, {"mirror ball", vec3(0.75f, 0.10f, 0.07f), 0.6f}, {-1.0, 0.68, 1.5},

@@ -35,7 +35,7 @@ float shade(float x, float y, float z) {
     return 0.45f + 0.55f * std::abs(0.36f * x + 0.8f * y + 0.48f * z);
 }
 
-float number(const Layer& layer, size_t i) {
+float value_at(const Layer& layer, size_t i) {
     return std::bit_cast<float>(layer.values[i]);
 }
 
@@ -65,7 +65,7 @@ Result<std::string> leaf_patches(const std::filesystem::path& exr) {
         float light = 1;
         if (leaf->values[i] != kNoLeaf) {
             color = patch_color(leaf->values[i]);
-            light = shade(number(*x, i), number(*y, i), number(*z, i));
+            light = shade(value_at(*x, i), value_at(*y, i), value_at(*z, i));
         }
         for (const float channel : {color.red, color.green, color.blue})
             samples.push_back(sample(light * channel));

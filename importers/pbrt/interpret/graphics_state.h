@@ -10,12 +10,12 @@
 
 namespace ovc::pbrt {
 
-/// The transforms at the start and at the end of the exposure; we show the start.
+/// The transforms at the start and at the end of the motion.
 struct Transforms {
     std::array<dmat4, 2> at{dmat4(1), dmat4(1)};
     std::array<bool, 2> active{true, true};
 
-    const dmat4& start() const { return at[0]; }
+    bool move() const { return at[0] != at[1]; }
     void multiply(const dmat4& by) {
         for (size_t i = 0; i < 2; ++i)
             if (active[i])

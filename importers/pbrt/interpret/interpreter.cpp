@@ -250,7 +250,7 @@ bool Interpreter::object_instance() {
     std::string name;
     if (!read_text(name))
         return false;
-    const dmat4& place = state_.now.transforms.start();
+    const dmat4 place = now_at(state_.now.transforms);
     const auto at = object_ids_.find(name);
     if (at != object_ids_.end())
         object().instances.push_back({at->second, place});

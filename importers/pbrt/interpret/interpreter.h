@@ -92,6 +92,8 @@ private:
     bool setting();
     bool bare_setting();
 
+    /// Returns where these transforms are at the picture's moment.
+    dmat4 now_at(const Transforms& transforms);
     /// Returns which rays see a shape with these parameters; nothing if none does.
     std::optional<Sight> sight_of(const Parameters& parameters);
     bool add_shape(Mesh mesh, const Sight& sight);
@@ -103,6 +105,7 @@ private:
     const ImportOptions& options_;
     Place place_; // of the directive at hand
     bool known_one_ = false;
+    bool moves_ = false; // a transform of something in the scene does
     bool at_end_ = false;
     uint64_t worlds_ = 0;       // worlds that have begun
     bool world_ended_ = false;  // by WorldEnd, which v4 does not have

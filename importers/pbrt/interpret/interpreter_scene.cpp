@@ -3,6 +3,7 @@
 #include "importers/pbrt/interpret/interpreter.h"
 
 #include "importers/file/text.h"
+#include "importers/pbrt/interpret/motion.h"
 #include "importers/pbrt/look/exposure.h"
 
 #include <fmt/format.h>
@@ -48,6 +49,15 @@ std::optional<Sight> Interpreter::sight_of(const Parameters& parameters) {
     return sight;
 }
 
+dmat4 Interpreter::now_at(const Transforms& transforms) {
+    moves_ = moves_ || transforms.move();
+    if (transforms.move() && !options_.moment.in_sequence)
+        diagnostics_.approximate("motion", place_,
+                                 "motion left out: things stand where they are at the start; "
+                                 "--frames shows them move");
+    return between(transforms.at[0], transforms.at[1], options_.moment.clock);
+}
+
 bool Interpreter::add_shape(Mesh mesh, const Sight& sight) {
     const GraphicsState& now = state_.now;
     triangles_ += mesh.size();
@@ -56,7 +66,7 @@ bool Interpreter::add_shape(Mesh mesh, const Sight& sight) {
             place_, fmt::format("found {} triangles so far, expected at most {}; --max-triangles "
                                 "allows more",
                                 triangles_, options_.max_triangles));
-    Shape shape{std::move(mesh), now.transforms.start(), now.material, now.reversed, sight};
+    Shape shape{std::move(mesh), now_at(now.transforms), now.material, now.reversed, sight};
     if (now.emission && building_.empty()) {
         shape.material =
             materials_.emitter(now.material, now.emission->radiance, now.emission->two_sided);
@@ -112,7 +122,7 @@ bool Interpreter::light_source() {
     Parameters parameters;
     if (!read_typed(type, parameters))
         return false;
-    lights_.add(type, parameters, state_.now.transforms.start(), place_);
+    lights_.add(type, parameters, now_at(state_.now.transforms), place_);
     return true;
 }
 
@@ -135,12 +145,15 @@ bool Interpreter::camera() {
     CameraRequest request;
     if (!read_typed(request.type, request.parameters))
         return false;
-    request.world_to_camera = state_.now.transforms.start();
     request.place = place_;
     Transforms to_world = state_.now.transforms;
     for (dmat4& m : to_world.at)
         m = glm::inverse(m);
     systems_["camera"] = to_world;
+    // As in pbrt, the camera moves in the world, not the world before the camera.
+    request.world_to_camera = to_world.move() && options_.moment.clock > 0
+                                  ? glm::inverse(now_at(to_world))
+                                  : now_at(state_.now.transforms);
     camera_ = std::move(request);
     return true;
 }
@@ -179,6 +192,7 @@ bool Interpreter::bare_setting() {
 
 void Interpreter::fill(Scene& scene) {
     assert(at_end_);
+    scene.moves = moves_;
     scene.materials = materials_.take();
     scene.cutouts = alphas_.take(/* partial= */ !world_ended_);
     if (film_.has_size)

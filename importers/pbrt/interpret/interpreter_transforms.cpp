@@ -76,9 +76,6 @@ bool Interpreter::active_transform() {
         return diagnostics_.fail(place_, fmt::format("found {}, expected All, StartTime or EndTime",
                                                      described(tokens_.token())));
     state_.now.transforms.active = {which != "EndTime", which != "StartTime"};
-    if (which == "EndTime")
-        diagnostics_.approximate("motion", place_,
-                                 "motion left out: things stand where they are at the start");
     return true;
 }
 

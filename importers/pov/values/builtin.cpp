@@ -176,6 +176,12 @@ const Array& parse_array(Reader& reader, const Token& token) {
     return **array;
 }
 
+/// Returns what the picture's moment says, and notes that the scene has asked.
+Number of_moment(Reader& reader, double number) {
+    reader.moves = true;
+    return Number::of(number);
+}
+
 Number dimensions(Reader& reader, const Token& token) {
     const double count = double(parse_array(reader, token).sizes.size());
     reader.expect(')', token.name->text);
@@ -242,14 +248,14 @@ const std::unordered_map<std::string_view, Builtin> kBuiltins = {
     {"no", [](Reader&, const Token&) { return Number::of(0); }},
     {"off", [](Reader&, const Token&) { return Number::of(0); }},
     {"version", [](Reader& r, const Token&) { return Number::of(r.version); }},
-    {"clock", [](Reader&, const Token&) { return Number::of(0); }},
-    {"clock_delta", [](Reader&, const Token&) { return Number::of(0); }},
-    {"clock_on", [](Reader&, const Token&) { return Number::of(0); }},
+    {"clock", [](Reader& r, const Token&) { return of_moment(r, r.moment.clock); }},
+    {"clock_delta", [](Reader& r, const Token&) { return of_moment(r, r.moment.clock_step()); }},
+    {"clock_on", [](Reader& r, const Token&) { return of_moment(r, r.moment.in_sequence); }},
     {"initial_clock", [](Reader&, const Token&) { return Number::of(0); }},
-    {"final_clock", [](Reader&, const Token&) { return Number::of(0); }},
-    {"frame_number", [](Reader&, const Token&) { return Number::of(0); }},
-    {"initial_frame", [](Reader&, const Token&) { return Number::of(0); }},
-    {"final_frame", [](Reader&, const Token&) { return Number::of(0); }},
+    {"final_clock", [](Reader& r, const Token&) { return of_moment(r, r.moment.in_sequence); }},
+    {"frame_number", [](Reader& r, const Token&) { return of_moment(r, r.moment.frame); }},
+    {"initial_frame", [](Reader& r, const Token&) { return of_moment(r, r.moment.first); }},
+    {"final_frame", [](Reader& r, const Token&) { return of_moment(r, r.moment.last); }},
     {"now", [](Reader&, const Token&) { return Number::of(0); }},
     {"image_width", [](Reader& r, const Token&) { return Number::of(r.picture.width); }},
     {"image_height", [](Reader& r, const Token&) { return Number::of(r.picture.height); }},

@@ -3,6 +3,7 @@
 // and inserts the tokens of includes and macros.
 #pragma once
 
+#include "core/moment.h"
 #include "core/scene.h"
 #include "core/system/log.h"
 #include "importers/file/files_read.h"
@@ -127,7 +128,9 @@ public:
     bool has_linear_colors() const { return version_given && version >= 3.7; }
     double gamma = 1; // assumed_gamma, to which srgb colors are converted
     ImageSize picture{640, 480};
-    Texture defaults; // of #default
+    Moment moment;
+    bool moves = false; // the scene has asked for the moment
+    Texture defaults;   // of #default
     /// The objects that the scene asked about with trace().
     std::map<std::shared_ptr<const Object>, std::shared_ptr<const TraceTarget>> targets;
     std::map<std::string, std::shared_ptr<Font>> fonts; // by name

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "core/result.h"
+#include "gpu/budget/ledger.h"
 #include "gpu/gl/egl_context.h"
-#include "gpu/gl/ledger.h"
 #include "gpu/trace/pool.h"
 #include "gpu/trace/tracer.h"
 #include "plugin/thesis/frame_ray.h"

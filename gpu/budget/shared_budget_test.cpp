@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gpu/gl/shared_budget.h"
+#include "gpu/budget/shared_budget.h"
 
 #include <gtest/gtest.h>
 

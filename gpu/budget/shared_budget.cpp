@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SharedBudget: shares are max-min fair. Where not all scenes get what they have use for, those
 // with less than an equal part get all of theirs, and the others divide the rest equally.
-#include "gpu/gl/shared_budget.h"
+#include "gpu/budget/shared_budget.h"
 
 #include <algorithm>
 #include <cassert>

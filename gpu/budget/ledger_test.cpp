@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ledger of GPU bytes.
-#include "gpu/gl/ledger.h"
+#include "gpu/budget/ledger.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stage: the scene and the backend of a picture, which go on from moment to moment.
+#pragma once
+
+#include "host/backend/backend.h"
+#include "host/render/render_job.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace ovc {
+
+class Stage {
+public:
+    /// The scene is that of the job's first moment, and the backend is built of it; the scene and
+    /// the job outlive this. options: for building anew.
+    Stage(const RenderJob& job, Scene& scene, std::unique_ptr<Backend> backend,
+          const BackendOptions& options);
+
+    Backend& backend() { return *backend_; }
+    /// Returns the lights as the user or the scene has them.
+    const std::vector<Light>& lights() const { return lights_; }
+
+    /// Goes on to this moment, where something in the scene moves. What is the same in both moments
+    /// is not built anew, unless meshes have become others.
+    Result<Done> go_to(const Moment& moment);
+
+private:
+    std::vector<Light> lights_now() const;
+    Result<Done> build_anew();
+
+    SceneArguments arguments_;
+    const std::optional<ImageSize> size_;
+    Scene& scene_;
+    std::unique_ptr<Backend> backend_;
+    const BackendOptions options_;
+    const std::vector<Light>& given_lights_;
+    std::vector<Light> lights_;
+};
+
+} // namespace ovc
