@@ -29,8 +29,8 @@ bool is_test_scene(std::string_view name);
 const CatalogEntry& test_scene_entry(std::string_view name);
 
 /// Builds the scene. model: shown instead of the generated model and scaled to fit, or null. clock:
-/// from 0 to 1, for scenes that move. Errors: an unknown name (the nearest one is suggested), a size
-/// out of range, a model for a scene that takes none, or a model without a triangle to hit.
+/// from 0 to 1, for scenes that move. Errors: an unknown name (the nearest one is suggested), a
+/// size out of range, a model for a scene that takes none, or a model without a triangle to hit.
 Result<Scene> make_test_scene(std::string_view name, const Soup* model = nullptr, double clock = 0);
 
 /// Returns the camera path of the scene. Errors: those of make_test_scene(), or a scene without a

@@ -16,7 +16,7 @@ Scene make_plants(uint32_t size);
 /// Makes 100,000 leaves, which a picture cuts out of quads.
 Scene make_leaf_canopy();
 Scene make_modelled_leaf_canopy();
-/// What moves, at a clock from 0 to 1.
+/// Makes a scene that moves, at a clock from 0 to 1.
 Scene make_cloth(double clock);
 Scene make_grass_in_wind(double clock);
 Scene make_terrain(uint32_t cells);
