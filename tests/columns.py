@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fails where a line has more than 100 columns. usage: columns.py ROOT
 
-All lines of CMake, Python, shell and YAML count; of C, C++ and GLSL those with a comment, because
-clang-format holds the code; of Markdown the prose: not tables, code blocks, HTML, links alone on
-their line and headings.
+It checks all lines of CMake, Python, shell and YAML, lines of C, C++ and GLSL that have a comment,
+because clang-format wraps the code, and the prose of Markdown. Tables, code blocks, HTML, headings
+and links alone on their line are not prose.
 """
 import pathlib
 import re
@@ -23,7 +23,7 @@ TOKEN = re.compile(r'R"(?P<end>[^()\\\s]*)\(.*?\)(?P=end)"|"(?:\\.|[^"\\\n])*"'
                    r"|(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])+'|(?P<comment>//[^\n]*|/\*.*?\*/)",
                    re.DOTALL)
 FENCE = re.compile(r"\s*(```+|~~~+)")
-# A table's row, HTML, a heading, a link that is a line by itself and the address of a link.
+# Matches a table's row, HTML, a heading, a link that is a line by itself and a link's address.
 NOT_PROSE = re.compile(r"\s*(\||<|#+ |[*-]?\s*!?\[[^\]]*\]\([^)]*\)[.,;:]?$|\[[^\]]*\]:)")
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command as a user runs it, plugin and all: bad input gets one sentence and writes nothing;
-// the picture does not depend on the budget.
+// Runs the command as a user does, plugin and all. Bad input gets one sentence and writes nothing,
+// and the picture does not depend on the budget.
 #include "tests/real_data.h"
 #include "tests/run_command.h"
 
@@ -53,7 +53,8 @@ std::string binary_ply_header(int vertices, int faces) {
            std::to_string(faces) + "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
-/// Whether the statistics of a rendering say that `part`, scene or levels, came from a cache.
+/// Returns whether the statistics of a rendering report that `part`, scene or levels, came from a
+/// cache.
 bool from_cache(const std::string& stats, const std::string& part) {
     const size_t at = stats.find("\"from_cache\"");
     EXPECT_NE(at, stats.npos);
@@ -67,7 +68,7 @@ TEST_F(CommandLine, ASceneFileHoldsTheSceneAndWhatIsBuiltOfIt) {
     ASSERT_EQ(rendered.exit_code, 0) << rendered.output;
     EXPECT_EQ(bytes("file.png"), bytes("direct.png"));
     EXPECT_TRUE(from_cache(bytes("s.json"), "levels"));
-    // Other options: the scene is there, the levels are built.
+    // With other options, the scene comes from the file and the levels are built.
     ASSERT_EQ(overcast("render m.ovc --leaves 40 -o other.png --size 48x32 --quiet --stats s.json")
                   .exit_code,
               0);
@@ -168,7 +169,8 @@ TEST_F(CommandLine, BadInputIsOneSentenceExitOneAndNothingWritten) {
     fs::create_directories(folder / "folder.ply");
     const struct {
         const char* arguments;
-        std::vector<const char*> parts; // all of them stand in the sentence
+        // The sentence must contain all of these.
+        std::vector<const char*> parts;
         const char* environment = "";
     } cases[] = {
         {"none.ply", {"none.ply", "no such file"}},
@@ -239,7 +241,7 @@ TEST_F(CommandLine, TheDragonInTwelveMegabytesIsTheSamePicture) {
     EXPECT_THAT(bytes("s.json"), HasSubstr("\"gpu_budget_bytes\": 12582912"));
 }
 
-/// The first number of that key in a JSON text; -1: none.
+/// Returns the first number of that key in a JSON text, or -1 if there is none.
 double number(const std::string& text, const std::string& key) {
     const size_t at = text.find("\"" + key + "\": ");
     return at == std::string::npos ? -1.0 : std::stod(text.substr(at + key.size() + 4));
@@ -296,7 +298,7 @@ AttributeEnd
     EXPECT_THAT(unknown.output, HasSubstr("did you mean 'path'?"));
 }
 
-/// Also of a scene file, whose reader knows nothing of lamps.
+/// Holds for a scene file too, although its reader does not know lamps.
 TEST_F(CommandLine, OnlyWhoeverSimplifiesLampsWarnsOfIt) {
     write("lamp.pbrt", R"(WorldBegin
 AreaLightSource "diffuse" "rgb L" [9 9 9]
@@ -316,7 +318,7 @@ Shape "trianglemesh" "integer indices" [0 1 2] "point P" [-1 3 -1 1 3 -1 1 3 1]
 }
 
 TEST_F(CommandLine, CtrlCDuringABuildEndsItSoon) {
-    // Building takes from half a second to six here: the signal comes in the midst of it.
+    // A build takes from half a second to six here, so the signal comes during it.
     const auto run = test::run_shell(OVC_BINARY_DIR "/bin/overcast render dragons-21 --quiet -o '" +
                                      folder.string() +
                                      "/never.png' & pid=$!; sleep 2; kill -INT $pid; wait $pid");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Completion and the man page, judged by the shells and by groff themselves where they are
-// installed.
+// Tests the completion and the man page with the shells and with groff, where they are installed.
 #include "tests/run_command.h"
 
 #include <gmock/gmock.h>
@@ -32,7 +31,7 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-/// What bash offers for the last of these words; "=" is a word by itself, as bash has it.
+/// Returns the words that bash offers for the last of these. As in bash, "=" is a word by itself.
 std::vector<std::string> bash_offers(const std::string& words) {
     const std::string script = "source <(" + std::string(kOvercast) +
                                " completion bash); cd " OVC_SOURCE_DIR "; COMP_WORDS=(" + words +
@@ -62,7 +61,7 @@ TEST(BashCompletion, OffersCommandsOptionsChoicesScenesAndFiles) {
     EXPECT_THAT(bash_offers("overcast render --size 1"), ElementsAre("")) << "nothing to offer";
 }
 
-/// --help of a command and what completion offers are one and the same list.
+/// Completion must offer the same options as a command's --help lists.
 TEST(BashCompletion, OffersEveryOptionOfTheHelp) {
     if (!is_installed("bash"))
         GTEST_SKIP() << "bash is not installed";
@@ -96,7 +95,8 @@ TEST(ZshCompletion, IsAScript) {
     EXPECT_EQ(checked.output, "");
 }
 
-/// What runs where somebody types "overcast rend", a tab and return after these commands.
+/// Returns the command that runs if somebody types "overcast rend", a tab and return after these
+/// commands.
 std::string zsh_runs(const std::string& setup) {
     const std::string script = "zmodload zsh/zpty; zpty shell \"TERM=dumb zsh -f -i\"; "
                                "zpty -w shell '" +

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Cornell box by path tracing against radiosity: the box cut into patches, form factors by
-// Lambert's formula, the equations solved by iteration. The two share nothing but the box.
+// Compares path tracing of the Cornell box with radiosity: the box is cut into patches, Lambert's
+// formula gives the form factors, and iteration solves the equations. The two share nothing except
+// the box.
 // Based on: Goral et al. 1984, "Modeling the Interaction of Light between Diffuse Surfaces"; the
-// measured box of Cornell University, with the colors and the light of
-// pbrt-v4-scenes/cornell-box.
+// measured box of Cornell University, with the colors and the light of pbrt-v4-scenes/cornell-box.
 #include "host/shade/path_tracer.h"
 
 #include "host/camera/camera_rays.h"
@@ -24,12 +24,12 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Counterclockwise seen from where light is.
+/// The corners run counterclockwise seen from the side that light reaches.
 struct Face {
     std::array<dvec3, 4> corners;
     dvec3 albedo;
     double emission = 0;
-    int cuts = 8; // a side, into patches
+    int cuts = 8; // A side is cut into so many patches.
 
     dvec3 at(double u, double v) const {
         return (1 - u) * (1 - v) * corners[0] + u * (1 - v) * corners[1] + u * v * corners[2] +
@@ -63,7 +63,7 @@ std::vector<Face> cornell_box() {
     };
     add_block({{{130, 65}, {82, 225}, {240, 272}, {290, 114}}}, 165);
     add_block({{{423, 247}, {265, 296}, {314, 456}, {472, 406}}}, 330);
-    // All face where the room's middle sees them; of a block, outwards.
+    // The faces of the room face its middle, and those of a block face outwards.
     const dvec3 middle(278, 274, 280);
     for (size_t i = 0; i < box.size(); ++i) {
         const dvec3 inner = i < 6 ? middle : i < 11 ? dvec3(186, 80, 169) : dvec3(368, 160, 351);
@@ -84,7 +84,7 @@ public:
         solve();
     }
 
-    /// Of a matte point.
+    /// Returns the radiance of a matte point.
     dvec3 radiance(const dvec3& at, const dvec3& normal, const dvec3& albedo) const {
         dvec3 sum(0);
         for (const Patch& patch : patches_)
@@ -127,8 +127,8 @@ private:
             }
     }
 
-    /// Lambert's: the patch's edges as seen from the point, what is below its horizon cut off; x
-    /// the share of the patch that is in view.
+    /// Applies Lambert's formula to the patch's edges as seen from the point, clipped at the
+    /// point's horizon, and scales the result by the share of the patch that is in view.
     double form_factor(const dvec3& at, const dvec3& normal, const Patch& patch) const {
         if (!(glm::dot(at - patch.middle, patch.normal) > 1e-6))
             return 0;
@@ -168,7 +168,8 @@ private:
         return double(seen) / (kSteps * kSteps);
     }
 
-    /// By the blocks alone: nothing else is in the way, but the lamp of what is behind it.
+    /// Tests the blocks alone. Nothing else can be in the way, except the lamp in front of the
+    /// ceiling.
     bool blocked(const dvec3& from, const dvec3& to) const {
         for (size_t f = 6; f < faces_.size(); ++f) {
             const Face& face = faces_[f];
@@ -208,7 +209,7 @@ Scene scene_of(const std::vector<Face>& faces) {
     return scene;
 }
 
-/// The mean of pixels that all show one point.
+/// Returns the mean of pixels that all show one point.
 dvec3 path_traced(const Scene& scene, Backend& backend, const dvec3& at, const dvec3& normal) {
     Camera camera;
     camera.eye = at + 5.0 * normal;
@@ -228,8 +229,8 @@ dvec3 path_traced(const Scene& scene, Backend& backend, const dvec3& at, const d
     return sum;
 }
 
-/// Points on the red wall, the green wall, the floor, the ceiling, the back and the blocks' tops,
-/// as (face, u, v); two of them in shadow.
+/// These points are on the red wall, the green wall, the floor, the ceiling, the back and the
+/// blocks' tops, as (face, u, v). Two of them are in shadow.
 constexpr struct {
     size_t face;
     double u, v;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast diff beside OpenImageIO's idiff on rendered pictures, where idiff is installed: the same
-// numbers, the same exit codes.
+// Compares overcast diff with OpenImageIO's idiff, where that is installed, on rendered pictures:
+// numbers and exit codes must be the same.
 #include "tests/run_command.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ protected:
     fs::path folder_;
 };
 
-/// The number after `key`.
+/// Returns the number after `key`.
 double number(const std::string& text, const std::string& key) {
     const size_t at = text.find(key);
     EXPECT_NE(at, text.npos) << key << " in " << text;
@@ -52,14 +52,14 @@ TEST_F(DiffBesideIdiff, HasTheSameNumbers) {
     EXPECT_NEAR(number(ours, "\"max\": "), number(theirs, "Max error  = "), 1e-6);
 }
 
-/// But for warnings, hard limits and other sizes: there idiff 2.4.7, Debian 12's, ends otherwise
-/// than its documentation says, and ours as that says.
+/// Leaves out warnings, hard limits and pictures of different sizes. For these, idiff 2.4.7 of
+/// Debian 12 deviates from its documentation, which overcast diff follows.
 TEST_F(DiffBesideIdiff, EndsWithTheSameCodes) {
     for (const char* words :
          {"a.png a.png", "a.png b.png", "a.png b.png -fail 0.9 -warn 0.9",
           "a.png b.png -fail 0.01 -failpercent 95 -warn 0.9",
           "a.png b.png -fail 0.01 -failpercent 20 -warn 0.9", "a.png none.png"}) {
-        std::string with_two = words; // minus signs, as ours are
+        std::string with_two = words; // Our options begin with two minus signs.
         for (size_t at = 0; (at = with_two.find(" -", at)) != with_two.npos; at += 3)
             with_two.insert(at + 1, 1, '-');
         EXPECT_EQ(run("overcast diff " + with_two).exit_code,

@@ -14,7 +14,7 @@ import tree
 
 
 def prose(document):
-    """The document without its code, where brackets and number signs mean something else."""
+    """Returns the document without its code, where brackets and number signs mean other things."""
     text = re.sub(r"^( *)```.*?^\1```$", "", document.read_text(), flags=re.MULTILINE | re.DOTALL)
     return re.sub(r"`[^`\n]*`", lambda code: "" if "](" in code.group() else code.group(), text)
 

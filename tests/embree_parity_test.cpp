@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `overcast trace` against Embree's robust mode on the same rays. Where the two differ, exact
-// arithmetic decides who is right; every difference is listed with its explanation.
+// Compares `overcast trace` with Embree's robust mode on the same rays. Where the two differ, exact
+// arithmetic decides which is right. Every difference is listed with its explanation.
 #include "importers/importer.h"
 #include "kdtree/test_soups.h"
 #include "tests/exact.h"
@@ -17,8 +17,8 @@
 namespace ovc {
 namespace {
 
-/// Rays that floats hold exactly, so that both sides are asked the same: from outside towards the
-/// mesh, from inside its bounds into all directions, and along axes.
+/// Returns rays that floats hold exactly, so that both sides get the same rays. They come from
+/// outside towards the mesh, from inside its bounds into all directions, and along axes.
 std::vector<Ray> seeded_rays(const Box& bounds, size_t count) {
     test::Random random(20061);
     const dvec3 center = bounds.center();
@@ -64,7 +64,8 @@ std::vector<Hit> ask_overcast(const std::string& scene, const std::vector<Ray>& 
     return hits;
 }
 
-/// Embree 3, robust, one ray at a time. Chunks must be at the origin: Embree has floats only.
+/// Traces one ray at a time with Embree 3 in robust mode. Chunks must be at the origin, because
+/// Embree has floats only.
 class Embree {
 public:
     explicit Embree(const Soup& soup)
@@ -120,7 +121,7 @@ std::string name_of(TriangleId id) {
     return id.mesh == kNone ? "miss" : std::to_string(id.prim);
 }
 
-/// Why ours and Embree's answer differ; empty where ours is wrong.
+/// Explains why our answer and Embree's differ. Returns an empty string if ours is wrong.
 std::string explanation(const Soup& soup, const std::vector<TriangleId>& ids, const Ray& ray,
                         TriangleId ours, TriangleId embree) {
     const std::optional<test::ExactHit> truth = test::exact_nearest(soup, ids, ray);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays against triangles in exact rational arithmetic: the judge where two programs disagree.
+// Intersects rays and triangles in exact rational arithmetic, to judge where two programs disagree.
 #pragma once
 
 #include "core/exact/triangle.h"
@@ -31,11 +31,12 @@ inline Rational dot(const RationalVec& a, const RationalVec& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// The double nearest to x, of two the even one; the largest where x lies beyond it.
+/// Returns the double nearest to x. A tie goes to the even one, and an x beyond the largest double
+/// to that.
 inline double rounded(const Rational& x) {
     constexpr double largest = std::numeric_limits<double>::max();
     const Rational size = abs(x);
-    double nearest = std::min(size.convert_to<double>(), largest); // off by a little, perhaps
+    double nearest = std::min(size.convert_to<double>(), largest); // This may be a little off.
     const auto nearer_to = [&](double other) {
         const Rational gain = abs(size - Rational(nearest)) - abs(size - Rational(other));
         return gain > 0 || (gain == 0 && std::bit_cast<uint64_t>(nearest) % 2 == 1);
@@ -47,7 +48,7 @@ inline double rounded(const Rational& x) {
     return x < 0 ? -nearest : nearest;
 }
 
-/// Where a ray meets a triangle.
+/// A hit of a ray and a triangle.
 struct ExactHit {
     Rational t, u, v;
     TriangleId id;
@@ -55,9 +56,9 @@ struct ExactHit {
     Hit rounded() const { return {test::rounded(t), test::rounded(u), test::rounded(v), id}; }
 };
 
-/// Where the ray meets the closed triangle within [t_min, t_max]; nothing where it does not or
-/// where it runs within the triangle's plane. Based on: Moeller and Trumbore 1997, without a single
-/// rounding.
+/// Returns the hit of the ray and the closed triangle within [t_min, t_max], or nothing if there is
+/// none or if the ray runs within the triangle's plane.
+/// Based on: Moeller and Trumbore 1997, without a single rounding.
 inline std::optional<ExactHit> exact_hit(const Ray& ray, const Triangle& triangle,
                                          TriangleId id = {0, 0}) {
     const RationalVec a = exact(triangle[0]);
@@ -82,8 +83,8 @@ inline std::optional<ExactHit> exact_hit(const Ray& ray, const Triangle& triangl
     return ExactHit{t, u, v, id};
 }
 
-/// The nearest of all triangles, exactly; equal t goes to the smaller id. Only triangles whose box
-/// the ray comes near, by a margin that no rounding reaches, are computed exactly.
+/// Returns the nearest of all triangles, exactly. Of equal t, the smaller id wins. Only triangles
+/// whose box the ray comes near, by a margin that no rounding reaches, are computed exactly.
 inline std::optional<ExactHit> exact_nearest(const Soup& soup, const std::vector<TriangleId>& ids,
                                              const Ray& ray) {
     std::optional<ExactHit> best;

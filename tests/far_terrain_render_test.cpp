@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture of far-terrain, 1e7 m with 1 mm detail at the far corner where the camera stands: no
-// background shows through the ground, and each pixel sees the triangle that the reference sees.
+// Tests the picture of far-terrain, 1e7 m wide with 1 mm detail at the far corner where the camera
+// stands. No background shows through the ground, and each pixel shows the triangle that the
+// reference finds.
 #include "host/backend/backend.h"
 #include "host/camera/camera.h"
 #include "host/render/render.h"
@@ -16,7 +17,7 @@ namespace {
 
 constexpr uint32_t kWidth = 400, kHeight = 300;
 
-/// All ground black, all sky bright.
+/// Returns a scene with black ground under a bright sky.
 Scene black_terrain() {
     Result<Scene> scene = make_test_scene("far-terrain");
     for (Material& material : scene->materials)
@@ -30,7 +31,7 @@ protected:
         BackendOptions options;
         options.kind = BackendKind::TwoLevel;
         options.kernel = GetParam();
-        options.leaves = 100; // many borders
+        options.leaves = 100; // This makes many borders.
         return make_backend(scene_.soup, options, {});
     }
 

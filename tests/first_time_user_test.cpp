@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes wrong in a user's first hour, as a shell has it: each ends with one sentence, or
-// quietly, and leaves nothing half done.
+// Tests what goes wrong in a user's first hour, through a shell. Every command ends with one
+// sentence, or quietly, and leaves no half-written file.
 #include "tests/run_command.h"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    /// In bash, for its PIPESTATUS, and in a folder of the test's own; $o is the command.
+    /// Runs the script in bash, for its PIPESTATUS, in the test's own folder. $o is the command.
     test::CommandResult bash(const std::string& script) const {
         return test::run_shell("cd '" + folder_.string() + "' && o=" + kOvercast + " bash -c '" +
                                script + "'");
@@ -65,7 +65,7 @@ TEST_F(FirstTimeUser, ReadsHelpWithoutStrayEscapes) {
     }
 }
 
-/// Said once, by the commands that trace on it, and by none that was asked to be quiet.
+/// Commands that trace on the software renderer say so once, and not with --quiet.
 TEST_F(FirstTimeUser, HearsOnceThatThereIsNoGpuWhereRaysAreTraced) {
     const std::string devices = bash("$o devices").output;
     if (devices.find("\n1 ") != devices.npos || devices.find("(software)") == devices.npos)
@@ -105,7 +105,7 @@ TEST_F(FirstTimeUser, InterruptsARendering) {
 }
 
 TEST_F(FirstTimeUser, HasAFullDisk) {
-    // A limit on a file's size is what a full disk is to a program that writes one.
+    // For a program that writes a file, a limit on its size is the same as a full disk.
     const auto file = bash("echo old > out.png; ulimit -f 1; $o render box --size 300x300 --quiet");
     expect_one_sentence(file, "out.png: cannot be written: ");
     EXPECT_EQ(fs::file_size(folder_ / "out.png"), 4u) << "what was there is there";
@@ -123,7 +123,7 @@ TEST_F(FirstTimeUser, MayNotWriteThere) {
     fs::create_directory(folder_ / "closed");
     fs::permissions(folder_ / "closed", fs::perms::owner_read | fs::perms::owner_exec |
                                             fs::perms::others_read | fs::perms::others_exec);
-    // Root may write anywhere.
+    // Root may write anywhere, so the command runs as another user.
     const std::string as_user =
         geteuid() == 0 ? "setpriv --reuid 65534 --regid 65534 --clear-groups " : "";
     if (!as_user.empty() && bash(as_user + "$o --version").exit_code != 0)
@@ -133,7 +133,7 @@ TEST_F(FirstTimeUser, MayNotWriteThere) {
     EXPECT_TRUE(fs::is_empty(folder_ / "closed"));
 }
 
-/// Known before anything is read: none of the inputs is there.
+/// The command finds out before it reads anything, for none of the inputs exists.
 TEST_F(FirstTimeUser, NamesAFolderThatTakesNoFiles) {
     for (const char* words :
          {"render no.ply -o /proc/a.png", "render no.ply --stats /proc/s.json",
@@ -194,7 +194,7 @@ TEST_F(FirstTimeUser, ClosesAPipeEarly) {
         const auto run = bash(std::string(c.script) +
                               "; codes=(${PIPESTATUS[@]}); echo; echo codes ${codes[*]}");
         EXPECT_THAT(run.output, testing::StartsWith(c.first));
-        // 141 is what a shell makes of SIGPIPE, which every tool ends by.
+        // 141 is the exit code that a shell reports for SIGPIPE, which ends any tool here.
         EXPECT_THAT(run.output, testing::ContainsRegex("codes (141 )?(0|141) 0")) << c.script;
         EXPECT_THAT(run.output, testing::Not(HasSubstr("overcast:"))) << c.script;
     }

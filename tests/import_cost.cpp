@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// import_cost FILE [--assimp] [--times N]: what reading a file costs, as a line of JSON, for
-// importers/measure.py. A process of its own per file, so that peaks do not mix.
+// import_cost FILE [--assimp] [--times N] measures the cost of reading a file. It prints a line of
+// JSON, for importers/measure.py. Each file gets a process of its own, so that peaks do not mix.
 #include "host/terminal/process_cost.h"
 #include "importers/readers.h"
 

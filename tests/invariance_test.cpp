@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One hash for all: the hits of a scene are the same bits whatever the system, the leaf size, the
-// budget, the batch size, the order of the rays, the kernel and the vector width of the software
-// renderer.
+// Tests that the hits of a scene have one hash: they are the same bits whatever the system, the
+// leaf size, the budget, the batch size, the order of the rays, the kernel and the vector width of
+// the software renderer.
 #include "core/system/parallel.h"
 #include "host/backend/backend.h"
 #include "importers/importer.h"
@@ -21,7 +21,7 @@
 namespace ovc {
 namespace {
 
-/// FNV-1a over the bytes of the hits.
+/// Returns the FNV-1a hash of the hits' bytes.
 uint64_t hash(std::span<const Hit> hits) {
     uint64_t h = 0xcbf29ce484222325;
     for (const std::byte byte : std::as_bytes(hits))
@@ -29,8 +29,8 @@ uint64_t hash(std::span<const Hit> hits) {
     return h;
 }
 
-/// Through the scene from outside, from inside into all directions, along axes, and at corners of
-/// its triangles, a quarter each.
+/// Returns rays of four kinds, a quarter each: through the scene from outside, from inside into all
+/// directions, along axes, and at corners of triangles.
 std::vector<Ray> mixed_rays(const Soup& soup, size_t count) {
     test::Random random(4);
     Box bounds;
@@ -69,7 +69,7 @@ public:
             ptrdiff_t(ray_count / 20));
     }
 
-    /// What the CPU KD-tree answers in double.
+    /// Returns the answers of the CPU KD-tree in double precision.
     std::span<const Hit> expected() const { return hits_; }
     std::span<const Ray> rays() const { return rays_; }
 
@@ -79,7 +79,8 @@ public:
         return made ? std::move(*made) : nullptr;
     }
 
-    /// With the smallest budget that the error names, where options' is too small.
+    /// Makes a backend. If the budget of `options` is too small, it gets the smallest that the
+    /// error names.
     std::unique_ptr<Backend> limited(BackendOptions options) const {
         if (Result<std::unique_ptr<Backend>> made = make_backend(soup_, options, {}); made)
             return std::move(*made);
@@ -124,7 +125,7 @@ public:
         }
     }
 
-    /// The systems of the thesis, some in the least memory they take.
+    /// Tests the systems of the thesis, some of them in the least memory that they take.
     void other_systems() const {
         for (const auto& [kind, textures] : {std::pair(BackendKind::SingleTexture, 0u),
                                              {BackendKind::MultiTexture, 2u},
@@ -144,8 +145,8 @@ public:
         }
     }
 
-    /// Two-level as the thesis has it, over every level 1, without a limit, and with such parts
-    /// of the bytes of all pages.
+    /// Tests the thesis' two-level system over every level 1, without a limit and with the given
+    /// parts of the bytes of all pages.
     void queues_of_the_thesis(std::initializer_list<uint64_t> parts) const {
         for (const auto& [level1, build] :
              {std::pair(OVC_LEVEL1_KD_TREE, OVC_LEVEL1_BUILD_TOP_DOWN),
@@ -220,7 +221,7 @@ private:
     std::vector<Hit> hits_;
 };
 
-/// A soup of slivers of all sizes, none of them connected.
+/// Returns a soup of slivers of all sizes. None of them are connected.
 Soup soup_scene() {
     return std::move(make_test_scene("soup-10")->soup);
 }
@@ -231,7 +232,7 @@ Soup load_soup(const std::filesystem::path& file) {
     return std::move(scene->soup);
 }
 
-/// Every part of the kitchen: 247,265 triangles in 174 files.
+/// Returns every part of the kitchen: 247,265 triangles in 174 files.
 Soup kitchen(const std::filesystem::path& data) {
     std::vector<std::filesystem::path> files;
     for (const auto& entry :
@@ -289,8 +290,8 @@ TEST(Invariance, Kitchen) {
     scene.ray_orders();
 }
 
-/// Mesa reads the width once a process, so each width is a process of its own; its cache of shaders
-/// does not know the width and stays out.
+/// Mesa reads the width once in a process, so each width gets a process of its own. Mesa's shader
+/// cache is off, because its keys leave out the width.
 TEST(Invariance, SoupOverVectorWidths) {
     const Invariance scene(soup_scene(), 20'000);
     const std::string base = testing::TempDir() + "overcast_widths_" + std::to_string(getpid());

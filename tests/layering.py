@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fails when a file includes what its folder may not know. usage: layering.py ROOT
 
-The graph of docs/design/overview.md: core <- importers; core <- kdtree <- gpu <- plugin;
+The graph is that of docs/design/overview.md: core <- importers; core <- kdtree <- gpu <- plugin;
 core <- testscenes; shaders/layout.h is a leaf; host -> plugin/overcast.h only; tests -> anything.
 Only the files in PLACES may name the third-party headers there.
 """

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `overcast report --only leaks` in its short form, and what it aims at in meshes with holes.
+// Tests `overcast report --only leaks` in its short form, and its targets in meshes with holes.
 #include "host/report/stability/leak_cases.h"
 
 #include "host/report/stability/sound_targets.h"
@@ -23,7 +23,7 @@ Soup soup_of(Corners corners, dvec3 place) {
     return soup;
 }
 
-/// The icosphere without its first `count` triangles.
+/// Returns the icosphere without its first `count` triangles.
 Corners with_hole(size_t count) {
     Corners corners = icosphere();
     corners.erase(corners.begin(), corners.begin() + std::ptrdiff_t(3 * count));
@@ -70,14 +70,14 @@ TEST(Leaks, ARunEndsAfterABatchWhenTold) {
 
 TEST(SoundTargets, AreAllOfAClosedMesh) {
     const SoundTargets targets(soup_of(icosphere(), dvec3(1e7)));
-    EXPECT_EQ(targets.vertices(), 2562u); // Euler: 5120 / 2 + 2
+    EXPECT_EQ(targets.vertices(), 2562u); // By Euler's formula, this is 5120 / 2 + 2.
     EXPECT_EQ(targets.sound_vertices(), 2562u);
     EXPECT_EQ(targets.edges(), 7680u);
     EXPECT_EQ(targets.sound_edges(), 7680u);
 }
 
 TEST(SoundTargets, AreNotAtARim) {
-    // One triangle less: its three edges and three vertices are at a rim now.
+    // One triangle is missing, so its three edges and three vertices are at a rim.
     const SoundTargets targets(soup_of(with_hole(1), dvec3(0)));
     EXPECT_EQ(targets.sound_edges(), targets.edges() - 3);
     EXPECT_EQ(targets.sound_vertices(), targets.vertices() - 3);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How lean: bytes a triangle, GPU bytes under a budget, memory while reading.
+// Tests how lean the library is: bytes for each triangle, GPU bytes under a budget, memory while
+// reading.
 #include "importers/importer.h"
 #include "tests/abi/abi_scene.h"
 #include "tests/real_data.h"
@@ -43,7 +44,7 @@ protected:
     test::Device device_;
 };
 
-/// Half the rays of a picture, from where no page is without rays.
+/// Returns a grid of parallel rays that is wider than the scene.
 std::vector<ovc_ray> rays_around() {
     std::vector<ovc_ray> rays;
     for (int i = 0; i < 64; ++i)
@@ -75,13 +76,13 @@ TEST_F(Memory, SliversTake96BytesATriangle) {
     const double one = bytes_a_triangle(soup->soup, 0);
     EXPECT_LE(one, 96);
     EXPECT_GE(one, 80) << "planes cut most of them";
-    // What level 1 cuts, pages do not.
+    // Triangles that level 1 cuts are not cut in pages.
     for (const uint32_t leaves : {2u, 8u, 20u})
         EXPECT_NEAR(bytes_a_triangle(soup->soup, leaves), one, 0.1 * one) << leaves << " leaves";
 }
 
 TEST_F(Memory, OfTheGpuStaysWithinEveryBudget) {
-    const Result<Scene> scene = make_test_scene("sphere-6"); // 4 MB of pages
+    const Result<Scene> scene = make_test_scene("sphere-6"); // Its pages take 4 MB.
     ASSERT_TRUE(scene);
     const std::vector<ovc_ray> rays = rays_around();
     std::vector<ovc_hit> hits(rays.size());
@@ -101,7 +102,7 @@ TEST_F(Memory, OfTheGpuStaysWithinEveryBudget) {
     }
 }
 
-/// In a process of its own. Of what is read, corners as they are kept are the soup.
+/// Runs in a process of its own. The soup's bytes are those of the corners as they are kept.
 TEST(MemoryOfImport, IsAtMostHalfMoreThanTheSoup) {
     const std::string ply = testing::TempDir() + "memory_" + std::to_string(getpid()) + ".ply";
     const std::string bin = OVC_BINARY_DIR "/bin/";

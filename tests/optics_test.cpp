@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The optics table in a short form: spawned rays neither hit what they leave nor escape, glass
-// bends light as it must, mirrors are deep.
+// Tests the optics table in a short form: spawned rays neither hit the surface that they leave nor
+// escape, glass bends light as it must, mirrors are deep.
 #include "host/report/optics/optics.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast, povray and tachyon draw the same picture of the same triangles, and more samples come
-// nearer to it; finer triangles come nearer to exact shapes.
+// Tests that overcast, povray and tachyon draw the same picture of the same triangles, that more
+// samples bring it nearer to the exact picture, and finer triangles nearer to exact shapes.
 #include "tests/run_command.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace ovc {
 namespace {
 
-/// path: where other programs are looked for; empty: where they are.
+/// path: the folders to look for other programs in, or empty for the ones of the environment.
 nlohmann::json bench(const std::string& words, const std::string& path = {}) {
     const test::CommandResult run = test::run_shell(
         (path.empty() ? "" : "PATH=" + path + " ") + OVC_BINARY_DIR "/bin/overcast bench " + words +
@@ -32,7 +32,7 @@ TEST(Pictures, OfAllProgramsComeNearerToOneWithMoreSamples) {
     for (const auto& [program, by_samples] : errors) {
         ASSERT_EQ(by_samples.size(), 3u) << program;
         EXPECT_GT(by_samples.at(1), by_samples.at(16)) << program;
-        // One ray through each pixel's middle: the same pixels, whoever draws them.
+        // One ray goes through each pixel's middle, so every program draws the same pixels.
         EXPECT_NEAR(by_samples.at(1), errors["certified"][1], 0.02 * errors["certified"][1])
             << program;
         EXPECT_LT(by_samples.at(16), 0.6 * by_samples.at(1)) << program;
@@ -62,7 +62,7 @@ TEST(Pictures, OfRoundShapesComeNearerToThemWithinTheTolerance) {
     double last = 1, largest_rmse = 0;
     for (const auto& row : found["rows"]) {
         if (row["tolerance"].is_null())
-            continue; // the reader's own
+            continue; // This row uses the reader's own tolerance.
         for (const auto& [shape, off] : row["largest_distance"].items()) {
             EXPECT_GT(off, 0.0) << shape;
             EXPECT_LE(off, row["tolerance"]) << shape;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Glass, mirrors and shadows through glass look as POV-Ray draws them: its own spheres, our
-// triangles.
+// Tests that glass, mirrors and shadows through glass look as POV-Ray draws them. POV-Ray draws its
+// own spheres, Overcast triangles.
 #include "host/render/render.h"
 #include "importers/importer.h"
 #include "tests/run_command.h"
@@ -21,13 +21,14 @@ namespace {
 
 constexpr uint32_t kSize = 256;
 
-/// A binary PPM of two bytes a color, linear.
+/// Reads a binary PPM with two bytes for each color, which are linear.
 std::optional<Image> read_ppm(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::string header, line;
     uint32_t width = 0, height = 0, most = 0;
     while (most == 0 && std::getline(file, line)) {
-        header += line[0] == '#' ? "" : line + " "; // POV-Ray says when and by whom it was drawn
+        // POV-Ray writes a comment that says when and by whom the picture was drawn.
+        header += line[0] == '#' ? "" : line + " ";
         std::sscanf(header.c_str(), "P6 %u %u %u", &width, &height, &most);
     }
     if (most != 65535)
@@ -44,8 +45,8 @@ std::optional<Image> read_ppm(const std::filesystem::path& path) {
     return image;
 }
 
-/// What POV-Ray makes of a scene, linear; nothing, and the test fails or is skipped, where it does
-/// not.
+/// Returns POV-Ray's picture of a scene, with linear colors. If POV-Ray draws none, returns
+/// nothing, and the test fails or is skipped.
 std::optional<Image> drawn_by_povray(const std::string& scene,
                                      const std::string& antialias = "-A") {
     const std::filesystem::path ppm =
@@ -60,7 +61,8 @@ std::optional<Image> drawn_by_povray(const std::string& scene,
     return image;
 }
 
-/// mean: of the difference over colors and pixels; unlike: the share of pixels more than 0.02 off.
+/// mean: a limit on the mean difference over colors and pixels. unlike_share: a limit on the share
+/// of pixels that differ by more than 0.02.
 void expect_alike(const Scene& scene, uint32_t max_depth, const Image& theirs, double mean,
                   double unlike_share, std::optional<Antialias> antialias = {}) {
     Film film(kSize, kSize);
@@ -73,14 +75,14 @@ void expect_alike(const Scene& scene, uint32_t max_depth, const Image& theirs, d
     double sum = 0;
     size_t unlike = 0;
     for (size_t i = 0; i < ours.pixels.size(); ++i) {
-        // What is brighter than white POV-Ray cuts off.
+        // POV-Ray clips colors that are brighter than white.
         const vec3 off = glm::abs(glm::min(vec3(ours.pixels[i]), vec3(1)) - vec3(theirs.pixels[i]));
         sum += double(off.x + off.y + off.z) / 3;
         unlike += max_component(off) > 0.02f;
     }
     std::printf("mean difference %.5f, %zu of %zu pixels unlike\n",
                 sum / double(ours.pixels.size()), unlike, ours.pixels.size());
-    // Where edges of squares and balls cross a pixel's middle, facets and spheres may disagree.
+    // Facets and spheres may disagree where an edge of a square or ball crosses a pixel's middle.
     EXPECT_LT(sum / double(ours.pixels.size()), mean);
     EXPECT_LT(double(unlike), unlike_share * double(ours.pixels.size()));
 }
@@ -99,7 +101,7 @@ TEST(Povray, DrawsGlassAndMirrorsAsWeDo) {
     expect_alike(*scene, 12, *theirs, 0.001, 1 / 250.0);
 }
 
-/// The same file, read by both.
+/// Both programs read the same file.
 void expect_file_alike(const std::string& name, double mean, double unlike_share) {
     if (!has_povray())
         GTEST_SKIP() << "povray is not installed";
@@ -113,7 +115,7 @@ void expect_file_alike(const std::string& name, double mean, double unlike_share
     expect_alike(*scene, scene->max_depth.value_or(5), *theirs, mean, unlike_share);
 }
 
-/// A scene of a few lines, read by both.
+/// Both programs read the same scene of a few lines.
 void expect_text_alike(const std::string& text, double mean, double unlike_share,
                        std::optional<Antialias> antialias = {},
                        const std::string& in_povray = "-A") {
@@ -162,7 +164,8 @@ TEST(Povray, DrawsOldScenesAndDarkOnesAsWeDo) {
 }
 
 TEST(Povray, DrawsLightsAndFinishesAsWeDoFromTheSameFile) {
-    expect_file_alike("lights.pov", 0.003, 1 / 60.0); // the floor's far squares: below a pixel
+    // The far squares of the floor are smaller than a pixel.
+    expect_file_alike("lights.pov", 0.003, 1 / 60.0);
 }
 
 TEST(Povray, DrawsSolidsAsWeDo) {

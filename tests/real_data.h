@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real scenes for tests: third-party files that are never part of the project.
+// Finds real scenes for tests. They are third-party files that are never part of the project.
 #pragma once
 
 #include <cstdlib>
@@ -16,15 +16,15 @@ namespace ovc {
 inline constexpr const char* kNoRealData = "no real data: neither $OVC_DATA nor ../shared/data has "
                                            "a script `unpack` that works (it needs zstd)";
 
-/// The folder that holds the index of the real data: $OVC_DATA, or ../shared/data beside the
-/// sources.
+/// Returns the folder that holds the index of the real data: $OVC_DATA, or ../shared/data beside
+/// the sources.
 inline std::filesystem::path real_data_index() {
     const char* data = std::getenv("OVC_DATA");
     return data ? data : OVC_SOURCE_DIR "/../shared/data";
 }
 
-/// The folder with meshes/ pbrt/ pov/ torture/, unpacked into the build folder on the first call of
-/// any process; nothing where there is none: GTEST_SKIP() << kNoRealData.
+/// Returns the folder with meshes/ pbrt/ pov/ torture/. The first call of any process unpacks it
+/// into the build folder. Returns nothing if there is none; tests then GTEST_SKIP() << kNoRealData.
 inline std::optional<std::filesystem::path> real_data() {
     namespace fs = std::filesystem;
     const fs::path folder = OVC_BINARY_DIR "/real_data";
@@ -32,7 +32,7 @@ inline std::optional<std::filesystem::path> real_data() {
     if (!fs::exists(unpack))
         return std::nullopt;
     fs::create_directories(folder);
-    // Tests run side by side as processes: one unpacks, the others wait.
+    // Tests run side by side as processes. One unpacks while the others wait.
     const int lock = open((folder.string() + ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
     if (lock < 0 || flock(lock, LOCK_EX) != 0)
         return std::nullopt;

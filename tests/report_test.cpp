@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report as a user makes it, on small scenes: a whole page of each experiment, every number of
-// which stands in its JSON.
+// Makes the report as a user does, on small scenes: each experiment gets a whole page, and every
+// number on it stands in its JSON.
 #include "tests/run_command.h"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ std::string text_of(const fs::path& path) {
     return text.str();
 }
 
-/// What lies between each `open` and the next `close` in the text.
+/// Returns the texts between each `open` and the next `close`.
 std::vector<std::string> between(const std::string& text, const std::string& open,
                                  const std::string& close) {
     std::vector<std::string> found;
@@ -62,7 +62,7 @@ bool has_digit(const std::string& text) {
     return std::ranges::any_of(text, [](unsigned char c) { return std::isdigit(c); });
 }
 
-/// Split at spaces, without the punctuation around.
+/// Splits the text at spaces and removes punctuation around the words.
 std::vector<std::string> words_of(const std::string& text) {
     std::vector<std::string> words;
     std::istringstream stream(text);
@@ -74,7 +74,7 @@ std::vector<std::string> words_of(const std::string& text) {
     return words;
 }
 
-/// The words of all texts in it.
+/// Adds the words of all texts in the JSON.
 void add_words(const Json& json, std::set<std::string>& words) {
     if (json.is_string())
         for (std::string& word : words_of(json.get<std::string>()))
@@ -103,7 +103,8 @@ protected:
             files_[file] = Json::parse(text_of(folder / file));
         return files_[file];
     }
-    /// <data value="V" data-at="FILE#POINTER">shown</data>, from behind `<data value="`.
+    /// Checks one number of a page. data: the part of <data value="V"
+    /// data-at="FILE#POINTER">shown</data> that follows `<data value="`.
     void expect_in_its_json(const std::string& data) {
         const std::string value = data.substr(0, data.find('"'));
         const std::string at = between(data, "data-at=\"", "\"").at(0);
@@ -116,8 +117,8 @@ protected:
         EXPECT_NEAR(std::stod(shown), stored.get<double>(), 0.006 * std::abs(stored.get<double>()))
             << at << ": " << shown;
     }
-    /// What is not <data>: no word with a digit, but those of the JSON's texts, such as a scene's
-    /// name.
+    /// Checks that the text outside of <data> has no word with a digit, except words of the JSON's
+    /// texts, such as a scene's name.
     void expect_no_other_number(std::string html, const std::set<std::string>& words) {
         html = without(std::move(html), "<data ", "</data>");
         for (const std::string& word : words_of(plain(std::move(html))))
@@ -178,7 +179,7 @@ TEST_P(Report, HasEveryNumberInItsJsonAndRepeatsNothing) {
         EXPECT_EQ(fs::last_write_time(path), time) << path << " was made anew";
 }
 
-/// The same library, but for one line of its kernel: tests/broken_kernel.
+/// The library of tests/broken_kernel differs from this one by a line of its kernel.
 TEST(BrokenKernel, ShowsUpAsWrongIds) {
     if (test::run_shell("command -v gnuplot").exit_code != 0)
         GTEST_SKIP() << "gnuplot is not installed";
@@ -200,7 +201,7 @@ TEST(BrokenKernel, ShowsUpAsWrongIds) {
         return most;
     };
     for (const Json& workload : figures["scenes"][0]["workloads"])
-        if (workload["workload"] == "edges") { // where the broken line decides
+        if (workload["workload"] == "edges") { // The broken line decides these rays.
             EXPECT_GT(wrong_of(workload, "certified"), 1000);
             EXPECT_EQ(wrong_of(workload, "cpu-kdtree"), 0);
             return;

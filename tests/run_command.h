@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a command as a user would, and keeps what it said.
+// Runs a command as a user would, and keeps its output.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 namespace ovc::test {
 
 struct CommandResult {
-    int exit_code = -1; // -1: ended by a signal
+    int exit_code = -1; // stays -1 if a signal ended the command
     std::string output; // standard output and standard error
 };
 
-/// Through /bin/sh; what is not redirected is captured.
+/// Runs the command through /bin/sh. Output that it does not redirect is captured.
 inline CommandResult run_shell(const std::string& command) {
     CommandResult result;
     FILE* pipe = popen(("{ " + command + "; } 2>&1").c_str(), "r");
@@ -29,8 +29,7 @@ inline CommandResult run_shell(const std::string& command) {
     return result;
 }
 
-/// What is left of a command's output without its warnings, and without the remark that it takes
-/// the software renderer.
+/// Removes warnings from a command's output, and the remark that it takes the software renderer.
 inline std::string without_remarks(std::string text) {
     for (const char* remark : {"overcast: warning:", "overcast: no GPU found"})
         for (size_t at; (at = text.find(remark)) != std::string::npos;)

@@ -26,7 +26,7 @@ esac
 
 
 def shell_lines(document):
-    """The lines of the blocks that are marked as sh."""
+    """Returns the lines of the blocks that are marked as sh."""
     blocks = re.findall(r"^```sh\n(.*?)^```", document.read_text(), re.MULTILINE | re.DOTALL)
     return [line for block in blocks for line in block.splitlines() if line.strip()]
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// single_rays_cost SCENE [--threads N] [--size N] [--repeats N]: rays asked one by one, from as
-// many threads as there are cores and from many more, beside the plugin's CPU tree in a plain loop,
-// the CPU KD-tree, and the same rays gathered for the GPU. All in turn, medians; what a call
-// waited. On a machine that others use too, rays per second of this process' CPU time are what can
-// be compared.
+// single_rays_cost SCENE [--threads N] [--size N] [--repeats N] measures rays asked one by one,
+// from as many threads as there are cores and from many more. It compares them with the plugin's
+// CPU tree in a plain loop, the CPU KD-tree, and the same rays gathered for the GPU. All take
+// turns; medians and the longest wait of a call are printed. On a machine that others use too,
+// compare rays per second of this process' CPU time.
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 #include "host/bench/ray_sets.h"
@@ -38,13 +38,15 @@ struct Job {
 
 struct Run {
     double seconds = 0;
-    double cpu_seconds = 0;  // of all threads
-    double longest_wait = 0; // of one call, in seconds
+    double cpu_seconds = 0;  // the sum over all threads
+    double longest_wait = 0; // the longest single call, in seconds
 };
 
-constexpr size_t kTile = 64; // rays that a thread of a host takes at once
+// A thread of a host takes so many rays at once.
+constexpr size_t kTile = 64;
 
-/// ask(i) for i in [0, count) on so many threads, which share them out as renderers do tiles.
+/// Calls ask(i) for i in [0, count) on so many threads, which share the rays as renderers share
+/// tiles.
 template <class Ask>
 Run on_threads(size_t threads, size_t count, Ask&& ask) {
     std::atomic<size_t> next{0};
@@ -55,7 +57,8 @@ Run on_threads(size_t threads, size_t count, Ask&& ask) {
         running.emplace_back([&, t] {
             start.arrive_and_wait();
             for (size_t first; (first = next.fetch_add(kTile)) < count;) {
-                const Stopwatch watch; // of a tile, which holds the longest call
+                // The time of a tile bounds its longest call.
+                const Stopwatch watch;
                 for (size_t i = first; i < std::min(first + kTile, count); ++i)
                     ask(i);
                 longest[t] = std::max(longest[t], watch.seconds());
@@ -70,7 +73,7 @@ Run on_threads(size_t threads, size_t count, Ask&& ask) {
             *std::max_element(longest.begin(), longest.end())};
 }
 
-/// One way to answer a set of rays: its times, and what it answered.
+/// A way to answer a set of rays, with its times.
 struct Contender {
     std::string name;
     std::function<Run(const RaySet&, std::vector<Hit>&)> run;
@@ -120,7 +123,7 @@ std::vector<Contender> contenders(const Job& job, const KdTree& tree, const Soup
         {fmt::format("intersect1, {} threads", job.threads), one_by_one(job.threads)},
         {fmt::format("gathered alone, {} threads", job.threads),
          [&](const RaySet& set, std::vector<Hit>& hits) {
-             // A thirtieth of the rays: this may be slow.
+             // This may be slow, so it gets a thirtieth of the rays.
              return on_threads(job.threads, set.rays.size() / 30, [&](size_t i) {
                  SingleRay asked;
                  asked.ray = set.rays[i];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stability suite in its short form: certified mode answers what the reference answers, and the
-// reference names the triangle that exact arithmetic names.
+// Runs the stability suite in its short form: certified mode answers as the reference does, and the
+// reference names the same triangle as exact arithmetic.
 #include "host/report/stability/stability.h"
 
 #include "host/report/stability/stability_table.h"
@@ -51,7 +51,8 @@ std::string name_of(TriangleId id) {
     return id.mesh == kNone ? "miss" : std::to_string(id.mesh) + "/" + std::to_string(id.prim);
 }
 
-/// The exact nearest hit among what the ray sees; equal t goes to the smaller id.
+/// Returns the exact nearest hit among the triangles that the ray sees. Of equal t, the smaller id
+/// wins.
 TriangleId exact_answer(const Soup& soup, std::vector<TriangleId> seen, const Ray& ray,
                         TriangleId skip) {
     if (!ray.valid())
@@ -65,8 +66,7 @@ void compare_with_exact(const StabilityCase& one) {
     const Soup soup = one.soup();
     const std::vector<TriangleId> ids = hittable_triangles(soup, nullptr, nullptr);
     const KdTree tree = build_kd_tree(soup);
-    // A ray costs a box test for every triangle, and exact numbers for every one that it comes
-    // near.
+    // A ray costs a box test for every triangle, and exact arithmetic for every triangle nearby.
     const size_t sample = std::clamp<size_t>(120'000 / soup.triangle_count(), 8, 60);
     const AimedRays set = stability_rays(one, soup, 0, sample);
     size_t wrong = 0;

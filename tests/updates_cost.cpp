@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// updates_cost SCENE [--moves] [--repeats N]: what the changes of a scene cost through the ABI,
-// beside building it anew, and calls after a hundred changes beside those of a scene that is new,
-// for docs/benchmarks.md. All in turn, medians. --moves: meshes are added with OVC_MESH_MOVES.
+// updates_cost SCENE [--moves] [--repeats N] measures the cost of changing a scene through the ABI
+// beside that of building it anew, and of calls after a hundred changes beside calls of a new
+// scene, for docs/benchmarks.md. All take turns, and medians are printed. --moves: meshes are added
+// with OVC_MESH_MOVES.
 #include "core/system/stopwatch.h"
 #include "host/bench/ray_sets.h"
 #include "host/camera/camera.h"
@@ -33,11 +34,11 @@ void must(ovc_result result) {
     std::exit(1);
 }
 
-/// A mesh of the scene in floats around its origin, and the numbers of its instances.
+/// A mesh of the scene in floats around its origin, and the transforms of its instances.
 struct Mesh {
     std::vector<vec3> corners;
     dvec3 origin;
-    std::vector<Transform> places; // of a mesh that is placed once: where
+    std::vector<Transform> places; // If there is only one, the mesh itself is placed there.
 };
 
 std::vector<Mesh> meshes_of(const Soup& soup) {
@@ -55,7 +56,7 @@ std::vector<Mesh> meshes_of(const Soup& soup) {
     return meshes;
 }
 
-/// A scene of these meshes, which changes.
+/// A scene of these meshes that changes.
 class Changing {
 public:
     Changing(const test::Device& device, const std::vector<Mesh>& meshes, bool moves)
@@ -89,10 +90,10 @@ public:
     void commit() { must(api().commit(scene_.get())); }
 
     struct Moved {
-        size_t first; // triangle
+        size_t first; // the number of the first triangle
         std::vector<vec3> corners;
     };
-    /// Returns where the wind of that time takes the given part of each mesh's triangles.
+    /// Returns the corners of `part` of each mesh's triangles, moved by the wind of that time.
     std::vector<Moved> blown(double part, double time) const {
         std::vector<Moved> all;
         for (const Mesh& mesh : meshes_) {
@@ -142,11 +143,11 @@ private:
         return given;
     }
 
-    const std::vector<Mesh>& meshes_; // as they were first
+    const std::vector<Mesh>& meshes_; // the meshes before any change
     std::vector<Mesh> now_;
     AbiScene scene_;
-    std::vector<uint32_t> numbers_; // of the meshes
-    std::vector<uint32_t> placed_;  // of what is placed, mesh by mesh
+    std::vector<uint32_t> numbers_; // the numbers of the meshes
+    std::vector<uint32_t> placed_;  // the numbers of meshes and instances that have a place
 };
 
 double seconds_of(const std::function<void()>& work) {

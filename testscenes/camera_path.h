@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CameraPath: one camera a frame.
+// CameraPath has a camera for each frame.
 #pragma once
 
 #include "core/scene.h"

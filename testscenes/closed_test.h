@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether triangles close a volume, and which way they look.
+// Tests whether triangles close a volume, and which way they face.
 #pragma once
 
 #include "core/soup.h"
@@ -21,7 +21,7 @@ inline CornerBits bits_of(const vec3& v) {
             std::bit_cast<uint32_t>(v.z + 0.0f)};
 }
 
-/// Edges that are not met as often in one direction as in the other.
+/// Counts the edges that triangles do not run along equally often in both directions.
 inline uint64_t open_edges(std::span<const vec3> corners) {
     std::map<CornerBits, uint32_t> numbers;
     std::vector<uint32_t> corner;
@@ -42,7 +42,7 @@ inline uint64_t open_edges(std::span<const vec3> corners) {
     return open;
 }
 
-/// Positive when the faces look outwards.
+/// Returns the volume within the triangles, which is positive if the faces look outwards.
 inline double enclosed_volume(std::span<const vec3> corners) {
     double sum = 0;
     for (size_t i = 0; i < corners.size(); i += 3)

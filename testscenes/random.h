@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random: numbers that depend on a seed and nothing else; no std distribution, whose results differ
-// between libraries.
+// Random numbers that depend on a seed and nothing else. They use no distribution of std, because
+// these differ between libraries.
 #pragma once
 
 #include "core/vec.h"
@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-/// A well-mixed function of 64 bits (the finalizer of Steele, Lea and Flood 2014, "SplitMix").
+/// Mixes 64 bits well (the finalizer of Steele, Lea and Flood 2014, "SplitMix").
 constexpr uint64_t mix_bits(uint64_t x) {
     x += 0x9e3779b97f4a7c15u;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -17,7 +17,7 @@ constexpr uint64_t mix_bits(uint64_t x) {
     return x ^ (x >> 31);
 }
 
-/// A stream of numbers. Draw several in one expression only inside braces: those are evaluated in
+/// A stream of numbers. Draw several in one expression only inside braces, which are evaluated in
 /// order.
 class Random {
 public:
@@ -26,12 +26,12 @@ public:
 
     uint64_t bits() { return mix_bits(state_++); }
     uint32_t below(uint32_t count) { return uint32_t((bits() >> 32) * count >> 32); }
-    /// In [0, 1), [from, to).
+    /// Returns a number in [0, 1) or [from, to).
     double uniform() { return double(bits() >> 11) * 0x1p-53; }
     double uniform(double from, double to) { return from + (to - from) * uniform(); }
     bool chance(double probability) { return uniform() < probability; }
 
-    /// Evenly inside the unit ball.
+    /// Returns a point inside the unit ball, evenly distributed.
     dvec3 in_ball() {
         for (;;) {
             const dvec3 p{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
@@ -39,7 +39,7 @@ public:
                 return p;
         }
     }
-    /// Evenly on the unit sphere.
+    /// Returns a point on the unit sphere, evenly distributed.
     dvec3 direction() {
         for (;;) {
             const dvec3 p = in_ball();

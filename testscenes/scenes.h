@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The generators behind the catalog, one per scene family. Sizes lie in the catalog's range; the
-// catalog names the scene.
+// The generators behind the catalog, one for each scene family. Sizes lie in the catalog's range.
+// The catalog names the scene.
 #pragma once
 
 #include "testscenes/camera_path.h"
@@ -9,14 +9,14 @@
 
 namespace ovc {
 
-/// The size of plants-N that is `plants`; N counts 110,000 triangles, roughly.
+/// `plants` is plants-N of this size. N counts about 110,000 triangles.
 inline constexpr double kPlantsDemoSize = 64;
 
 Scene make_plants(uint32_t size);
-/// 100,000 leaves, cut out of quads by a picture; or modelled.
+/// Makes 100,000 leaves, which a picture cuts out of quads.
 Scene make_leaf_canopy();
 Scene make_modelled_leaf_canopy();
-/// What moves, at a clock from 0 to 1.
+/// Makes a scene that moves, at a clock from 0 to 1.
 Scene make_cloth(double clock);
 Scene make_grass_in_wind(double clock);
 Scene make_terrain(uint32_t cells);
@@ -31,16 +31,15 @@ Scene make_glass();
 Scene make_box();
 
 inline constexpr uint32_t kMaxDragons = 21;
-/// model: shown instead of the generated dragon; null: none. At least one of its triangles can be
-/// hit.
+/// model: shown instead of the generated dragon, or null. At least one of its triangles can be hit.
 Scene make_dragons(uint32_t count, const Soup* model);
 Scene make_dragonball(const Soup* model);
 
-inline constexpr uint32_t kPowerplantTriangles = 12'748'510; // as the one of UNC
-/// Exactly so many triangles, one less where that is odd.
+inline constexpr uint32_t kPowerplantTriangles = 12'748'510; // as many as UNC's power plant has
+/// Makes exactly so many triangles, or one less if the number is odd.
 Scene make_powerplant(uint32_t triangles);
 
-// The camera paths of the thesis, one a scene.
+// The camera paths of the thesis, one for each scene.
 CameraPath dragons_path(uint32_t count);
 CameraPath dragonball_path();
 CameraPath plants_path();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Smooth curves through the neighbourhood of a few points: uniform cubic B-splines.
+// Smooth curves near a few points, which are uniform cubic B-splines.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 
 namespace ovc {
 
-/// The curve at `along` in [0, 1]: it begins at the first point, ends at the last, and passes near
-/// those between. T: anything with + and a product with a double.
+/// Returns the curve at `along` in [0, 1]. It begins at the first point, ends at the last, and
+/// passes near those between. T: any type with + and a product with a double.
 template <class T>
 T spline_at(std::span<const T> points, double along) {
     assert(!points.empty());
     const auto last = int64_t(points.size()) - 1;
-    // Both ends count three times, which is what makes the curve begin and end there.
+    // Both ends count three times, so that the curve begins and ends there.
     const double s = std::clamp(along, 0.0, 1.0) * double(last + 2);
     const int64_t segment = std::min(int64_t(s), last + 1);
     const double f = s - double(segment), g = 1 - f;

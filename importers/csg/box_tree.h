@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tree of boxes, halved at the median of the longest axis: which of them touch a given box.
+// A tree of boxes that finds the boxes touching a given one. Nodes are halved at the median of
+// their longest axis.
 #pragma once
 
 #include "core/box.h"
@@ -22,7 +23,7 @@ public:
 
     Box bounds() const { return nodes_.empty() ? Box() : nodes_[0].box; }
 
-    /// visit(index of a box) for all that touch `box`.
+    /// Calls visit(index) for each box that touches `box`.
     template <class Visit>
     void visit(const Box& box, Visit&& visit) const {
         if (nodes_.empty())
@@ -48,7 +49,7 @@ private:
     struct Node {
         Box box;
         uint32_t first, last;
-        uint32_t second = 0; // child; the first stands behind its parent; 0: a leaf
+        uint32_t second = 0; // The second child, 0 in a leaf. The first child follows its parent.
     };
 
     void build(uint32_t first, uint32_t last) {

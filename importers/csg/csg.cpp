@@ -14,7 +14,7 @@ namespace ovc::csg {
 
 namespace {
 
-/// Where an outline that stays is from.
+/// The operand and triangle that an outline comes from.
 struct Kept {
     uint32_t operand, triangle;
 };
@@ -48,7 +48,7 @@ private:
         uint32_t operand, triangle;
     };
 
-    /// Triangles of other operands that touch this one, or nearly.
+    /// Returns triangles of other operands that may touch this one. Some of them only come near.
     std::vector<Touch> touching(uint32_t operand, uint32_t triangle,
                                 const std::vector<uint32_t>& cutters) const {
         const GridTriangle& t = meshes_[operand].triangles[triangle];
@@ -66,7 +66,7 @@ private:
                     found.push_back({other, i});
             });
         }
-        // In no order, so that a round cut makes a flat tree.
+        // A random order makes the tree of cuts flat where the other operand is round.
         std::sort(found.begin(), found.end(), [](const Touch& a, const Touch& b) {
             const auto mixed = [](const Touch& x) {
                 return (x.triangle * 2654435761u) ^ (x.operand * 40503u);
@@ -115,7 +115,8 @@ private:
         for (const Touch& other : others)
             cut.cut(meshes_[other.operand].triangles[other.triangle],
                     meshes_[other.operand].planes[other.triangle]);
-        // Halves come behind the whole. Two that both stay are one again.
+        // Halves stand behind the part that they halve, so the loop meets them first. A part stays
+        // in one piece if both halves stay.
         const auto parts = cut.parts();
         std::vector<uint8_t> stays(parts.size());
         for (size_t i = parts.size(); i-- > 0;)
@@ -136,7 +137,7 @@ private:
     }
 
     bool stays_polygon(uint32_t operand, const Polygon& polygon, const Plane& plane) const {
-        // A polygon too thin to hold a point of the fine grid is judged by one beside it.
+        // A polygon too thin to hold a point of the fine grid is judged by a point beside it.
         Point point;
         for (int attempt = 0; attempt < 4; ++attempt) {
             point = inner_point(polygon, plane, attempt);
@@ -151,7 +152,8 @@ private:
                             [&](uint32_t other) { return sides_of(meshes_[other], point, plane); });
     }
 
-    /// Triangles that no other operand touches are judged together as far as they hang together.
+    /// Judges triangles that no other operand touches. Connected ones get the same answer, so they
+    /// are judged once.
     void judge_whole(uint32_t operand, const std::vector<uint32_t>& triangles) {
         const Mesh& mesh = meshes_[operand];
         std::vector<uint32_t> group(triangles.size());
@@ -195,7 +197,7 @@ private:
     Grid grid_;
     Rules rules_;
     std::vector<Mesh> meshes_;
-    std::vector<Outline> outlines_; // that stay
+    std::vector<Outline> outlines_; // the outlines that stay
     std::vector<Kept> kept_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volumes by formulas, closed results, coinciding faces, and random trees against asking every
-// operand by itself.
+// Tests volumes by formulas, closed results, coinciding faces, and random trees against the answers
+// of every operand by itself.
 #include "importers/csg/csg.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ Operand inverse(Operand operand) {
     return operand;
 }
 
-/// All operands under one node.
+/// Returns a tree of one node with all operands under it.
 Tree flat(Kind kind, std::vector<Operand> operands) {
     Tree tree;
     Node root{kind, 0, {}};
@@ -83,7 +83,7 @@ double area(const std::vector<Part>& parts) {
     return sum;
 }
 
-/// How many edges are not run along once each way, or twice, …
+/// Returns the number of edges that triangles run along more often one way than the other.
 size_t open_edges(const std::vector<Part>& parts) {
     using Corner = std::array<double, 3>;
     std::map<std::pair<Corner, Corner>, int> edges;
@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(All, Csg, testing::ValuesIn(kCases),
 
 TEST(CsgRound, ALensHasItsVolume) {
     const int segments = 96;
-    const double d = 1, r = 1; // two unit spheres, their middles 1 apart
+    const double d = 1, r = 1; // The middles of the two unit spheres are 1 apart.
     const double lens = kPi * (2 * r - d) * (2 * r - d) * (d * d + 4 * d * r) / (12 * d);
     const Operand a = sphere(dvec3(0), 1, segments), b = sphere(dvec3(1, 0, 0), 1, segments);
     const auto common = evaluate(flat(Kind::Intersection, {a, b}));
@@ -164,7 +164,7 @@ TEST(CsgRound, ALensHasItsVolume) {
     const auto both = evaluate(flat(Kind::Merge, {a, b}));
     EXPECT_NEAR(volume(common), lens, 0.005 * lens);
     const double whole = volume(evaluate(flat(Kind::Union, {a})));
-    // Of the facets themselves sums are exact.
+    // The volumes of the faceted solids add up exactly.
     EXPECT_NEAR(volume(rest), whole - volume(common), 1e-9);
     EXPECT_NEAR(volume(both), 2 * whole - volume(common), 1e-9);
     for (const auto* parts : {&common, &rest, &both})
@@ -196,7 +196,8 @@ TEST(CsgRules, AUnionKeepsItsInnerSurfacesAndAClipShowsNone) {
     const std::vector<Operand> two = {box(dvec3(0), dvec3(2)), box(dvec3(1), dvec3(3))};
     EXPECT_NEAR(area(evaluate(flat(Kind::Union, two))), 48, 1e-9);
     EXPECT_NEAR(area(evaluate(flat(Kind::Merge, two))), 42, 1e-9);
-    EXPECT_NEAR(area(evaluate(flat(Kind::Clip, two))), 3, 1e-9); // three squares of the first
+    // Three squares of the first box are left.
+    EXPECT_NEAR(area(evaluate(flat(Kind::Clip, two))), 3, 1e-9);
 }
 
 TEST(CsgRules, WhatIsNotSolidHasNoInside) {
@@ -204,11 +205,12 @@ TEST(CsgRules, WhatIsNotSolidHasNoInside) {
     sheet.triangles = {{dvec3(-5, 0.5, -5), dvec3(-5, 0.5, 5), dvec3(5, 0.5, 0)}};
     sheet.solid = false;
     const auto parts = evaluate(flat(Kind::Intersection, {box(dvec3(0), dvec3(1)), sheet}));
-    EXPECT_NEAR(area(parts), 1, 1e-9); // of the sheet, what lies in the box; of the box, nothing
+    // The part of the sheet in the box is left, and no part of the box.
+    EXPECT_NEAR(area(parts), 1, 1e-9);
 }
 
-/// Boxes on a coarse grid: nearly all faces, edges and corners coincide. The volume of the result
-/// is the number of cells inside.
+/// On a coarse grid, nearly all faces, edges and corners of boxes coincide. The volume of the
+/// result is the number of cells inside.
 TEST(CsgRandom, BoxesOnACoarseGridCountAsCellsDo) {
     std::mt19937 random(7);
     const auto number = [&](int below) { return int(random() % unsigned(below)); };
@@ -224,7 +226,7 @@ TEST(CsgRandom, BoxesOnACoarseGridCountAsCellsDo) {
             tree.operands.back().inverse = i > 0 && number(2);
             tree.nodes.push_back({Kind::Operand, uint32_t(i), {}});
         }
-        // Joined two by two, at random; the first, which is finite, bounds the whole.
+        // Random pairs are joined. The first box, which is finite, bounds the whole.
         std::vector<uint32_t> open;
         for (uint32_t i = 1; i < uint32_t(count); ++i)
             open.push_back(i);

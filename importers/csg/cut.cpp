@@ -7,7 +7,8 @@ namespace ovc::csg {
 
 namespace {
 
-/// All points are on the outer side of one wall, or on it and at least one is outside.
+/// Returns whether a wall separates the points from the triangle: none is inside the wall, and at
+/// least one is outside.
 bool apart(std::span<const Point* const> points, std::span<const Plane> walls) {
     for (const Plane& wall : walls) {
         bool outside = false, inside = false;
@@ -24,11 +25,11 @@ bool apart(std::span<const Point* const> points, std::span<const Plane> walls) {
     return false;
 }
 
-/// The planes through the triangle's edges, along the axis that it faces most; the triangle is
-/// above them.
+/// Returns the planes through the triangle's edges, parallel to the axis that it faces most. The
+/// triangle is above them.
 std::array<Plane, 3> walls_of(const GridTriangle& t, const Plane& plane) {
     const int axis = major_axis_of(plane);
-    // Seen along the axis the triangle runs counterclockwise, or the other way.
+    // Seen against the axis, the triangle runs clockwise if it is turned.
     const bool turned = plane.n[axis] < 0;
     const auto wall = [&](size_t i) {
         const GridPoint &a = t[i], &b = t[(i + 1) % 3];
@@ -81,8 +82,7 @@ void CutTriangle::cut_around(size_t part, const GridTriangle& other,
         cut_around(below, other, walls);
         return;
     }
-    // Two convex polygons of one plane that have no inner point in common have an edge between
-    // them.
+    // If two convex polygons of one plane share no inner point, an edge of one separates them.
     for (const Plane* wall : walls) {
         bool inside = false;
         for (const Point* p : parts_[part].polygon.points)
@@ -114,7 +114,7 @@ bool CutTriangle::halve(size_t part, const Plane* by, std::span<const Plane> wal
     }
     if (!above || !below)
         return false;
-    // Each half: its points in order, and the two ends of the cut.
+    // Each half has its points in order, and the two ends of the cut.
     Polygon halves[2]; // above, below
     std::vector<const Point*> ends;
     for (size_t i = 0; i < count; ++i) {
@@ -127,7 +127,7 @@ bool CutTriangle::halve(size_t part, const Plane* by, std::span<const Plane> wal
             if (here < 0)
                 continue;
             halves[half].points.push_back(p);
-            // From a point on the cut outwards the edge goes along the cut.
+            // An edge that leaves the half from a point on the cut is replaced by the cut.
             halves[half].edges.push_back(here == 0 && there < 0 ? Edge{by, half == 1} : edge);
         }
         if (sides[i] == 0)
@@ -162,7 +162,8 @@ Point inner_point(const Polygon& polygon, const Plane& plane, int attempt) {
         weights += weight;
     }
     const dvec3 p = sum / weights;
-    // Where the plane meets two that lie across the axes it faces less, in steps of 2^-20.
+    // Two planes across the axes that the polygon faces less, at multiples of 2^-20, meet its plane
+    // close to p.
     const int axis = major_axis_of(plane);
     const auto across = [&](int other) {
         Int128 n[3] = {0, 0, 0};

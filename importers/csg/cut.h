@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle cut by others: convex polygons, in a tree of cuts.
+// Cuts a triangle by others into convex polygons, which form a tree of cuts.
 #pragma once
 
 #include "importers/csg/mesh.h"
@@ -9,20 +9,20 @@
 
 namespace ovc::csg {
 
-/// An edge lies in `plane` and in the polygon's own; the polygon is above it, or below.
+/// An edge lies in `plane` and in the polygon's own plane. The polygon is above or below `plane`.
 struct Edge {
     const Plane* plane;
     bool below;
 };
 
-/// Convex, counterclockwise seen from above; edge i runs from point i to the next. Neighbouring
-/// edges are not in line.
+/// A convex polygon, counterclockwise seen from above. Edge i runs from point i to the next one.
+/// Neighbouring edges are not in line.
 struct Polygon {
     std::vector<const Point*> points;
     std::vector<Edge> edges;
 };
 
-/// Points and planes stay where they are.
+/// Holds points and planes, which keep their addresses.
 struct Pool {
     std::deque<Point> points;
     std::deque<Plane> planes;
@@ -31,27 +31,28 @@ struct Pool {
     const Plane* keep(const Plane& p) { return &planes.emplace_back(p); }
 };
 
-/// A triangle and what it is cut into.
+/// A triangle and the parts that it is cut into.
 class CutTriangle {
 public:
     struct Part {
         Polygon polygon;
-        size_t above = 0, below = 0; // numbers of the two halves; 0: it is whole
+        size_t above = 0, below = 0; // the numbers of the two halves, or 0 if the part is whole
     };
 
     CutTriangle(const GridTriangle& triangle, const Plane& plane, Pool& pool);
 
-    /// Cuts what `other` touches: along it, or, where it lies in the same plane, around it.
+    /// Cuts the parts that `other` touches along it, or around it if it lies in the same plane.
     void cut(const GridTriangle& other, const Plane& other_plane);
 
-    /// [0] is the whole.
+    /// Returns all parts. The first one is the whole triangle.
     std::span<const Part> parts() const { return parts_; }
     const Plane& plane() const { return *plane_; }
 
 private:
     void cut_across(size_t part, const Plane* by, std::span<const Plane> walls);
     void cut_around(size_t part, const GridTriangle& other, std::span<const Plane* const> walls);
-    /// False where the plane does not run through the part, or only where the walls stand between.
+    /// Cuts the part by a plane. Returns false and cuts nothing if the plane does not run through
+    /// the part, or only outside the walls.
     bool halve(size_t part, const Plane* by, std::span<const Plane> walls);
 
     const Plane* plane_;
@@ -59,8 +60,8 @@ private:
     std::vector<Part> parts_;
 };
 
-/// A point inside a polygon of `plane`, not in the middle but where symmetry leads nothing to;
-/// attempt: another one for each number.
+/// Returns a point inside a polygon of `plane`. The point is off the middle, because edges of
+/// symmetric operands often meet there. attempt: each number gives another point.
 Point inner_point(const Polygon& polygon, const Plane& plane, int attempt);
 
 } // namespace ovc::csg

@@ -20,7 +20,7 @@ Wide product(const Int128& a, const Int128& b) {
     return Wide(a) * Wide(b);
 }
 
-/// a b - c d
+/// Returns a b - c d.
 Wide minor_of(const Int128& a, const Int128& b, const Int128& c, const Int128& d) {
     return product(a, b) - product(c, d);
 }
@@ -74,7 +74,7 @@ std::array<int64_t, 3> rounded(const GridPoint& p) {
     return {p[0] * kSteps, p[1] * kSteps, p[2] * kSteps};
 }
 
-// Cramer's rule, by the second-order minors of b and c.
+// Applies Cramer's rule with the second-order minors of b and c.
 Point meet(const Plane& a, const Plane& b, const Plane& c) {
     const Int128 *u = b.n, *v = c.n;
     const Wide yz = minor_of(u[1], v[2], u[2], v[1]), zx = minor_of(u[2], v[0], u[0], v[2]),
@@ -106,8 +106,9 @@ int side(const Plane& plane, const GridPoint& p) {
     return sign(plane.n[0] * p[0] + plane.n[1] * p[1] + plane.n[2] * p[2] + plane.d);
 }
 
-// Doubles decide where they can: `near` is off by less than 2^-kFractionBits in each coordinate,
-// and ten roundings of 2^-53 of the largest term are less than 2^-49 of the sum of sizes.
+// Doubles decide where their error allows it. `near` is off by less than 2^-kFractionBits in each
+// coordinate, and ten roundings by 2^-53 of the largest term add up to less than 2^-49 of the sum
+// of sizes.
 int side(const Plane& plane, const Point& p) {
     double value = plane.near[3], size = std::abs(value), steep = 0;
     for (int i = 0; i < 3; ++i) {

@@ -16,8 +16,8 @@ Grid::Grid(const std::vector<Operand>& operands) {
         return;
     const dvec3 half = 0.5 * box.extent();
     std::frexp(std::max(max_component(half), 1e-30), &exponent);
-    exponent += 2 - kGridBits; // half of it for the origin's own rounding
-    // On the grid, so that whole numbers stay whole.
+    exponent += 2 - kGridBits; // One of the two bits makes room for the rounding of the origin.
+    // The origin is a multiple of the grid's step, so that integers stay integers.
     for (int i = 0; i < 3; ++i)
         origin[i] = std::ldexp(std::round(std::ldexp(box.center()[i], -exponent)), exponent);
 }
@@ -65,8 +65,8 @@ Mesh::Mesh(const Operand& operand, const Grid& grid)
 
 namespace {
 
-/// Where a point lies beside a vertical plane, the point moved by an endlessly small step (e, e^2)
-/// along the axes behind `axis`: so that no point lies above an edge.
+/// Returns the side of a vertical plane that a point is on after an infinitesimal step (e, e^2)
+/// along the two axes that follow `axis`. The step makes sure that no point lies above an edge.
 int moved_side(const Plane& vertical, const Point& p, int axis) {
     const int at = side(vertical, p);
     if (at != 0)
@@ -86,8 +86,8 @@ bool is_over(const GridTriangle& t, const Point& p, int axis) {
 
 } // namespace
 
-// A ray from the point along the axis that `from` faces most: what it crosses is above in that
-// sense, what holds the point itself lies between the two sides.
+// Sends a ray from the point along the axis that `from` faces most, and counts the triangles that
+// it crosses (up). A triangle that the point lies on parts the two sides (through).
 Sides sides_of(const Mesh& mesh, const Point& point, const Plane& from) {
     if (!mesh.solid)
         return {};
@@ -99,7 +99,7 @@ Sides sides_of(const Mesh& mesh, const Point& point, const Plane& from) {
         const Plane& plane = mesh.planes[t];
         if (plane.n[axis] == 0 || !is_over(mesh.triangles[t], point, axis))
             return;
-        const int at = side(plane, point) * (plane.n[axis] > 0 ? 1 : -1); // the point's height
+        const int at = side(plane, point) * (plane.n[axis] > 0 ? 1 : -1); // 1: above the triangle
         up ^= at < 0;
         through ^= at == 0;
     });

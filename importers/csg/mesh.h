@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Operands on the grid, made ready for questions.
+// Operands on the grid, with planes and a tree of boxes.
 #pragma once
 
 #include "importers/csg/box_tree.h"
@@ -10,10 +10,10 @@ namespace ovc::csg {
 
 using GridTriangle = std::array<GridPoint, 3>;
 
-/// From doubles to the grid and back: a power of two, about the middle of all operands.
+/// Converts between doubles and the grid, whose origin is the middle of all operands.
 struct Grid {
     dvec3 origin{0};
-    int exponent = 0; // a step of the grid is 2^exponent
+    int exponent = 0; // A step of the grid is 2^exponent.
 
     explicit Grid(const std::vector<Operand>& operands);
     bool holds(const dvec3& p) const;
@@ -23,7 +23,7 @@ struct Grid {
 
 struct Mesh {
     std::vector<GridTriangle> triangles;
-    std::vector<Plane> planes; // null: no triangle
+    std::vector<Plane> planes; // A triangle without a plane (is_null) is left out.
     std::vector<uint8_t> hidden;
     BoxTree boxes;
     bool solid, inverse;
@@ -33,14 +33,14 @@ struct Mesh {
 
 Box box_of(const GridTriangle& triangle);
 
-/// What is inside a mesh just above a point and just below it. The two differ where the point is on
-/// the mesh.
+/// Says whether the places just above and just below a point are inside a mesh. The two differ if
+/// the point is on the mesh.
 struct Sides {
     bool above = false, below = false;
 };
 
-/// point lies on `from`, away from the edges of triangles that are not in its plane; above is where
-/// the normal of `from` points.
+/// Returns the sides of `point`, which lies on `from`, but not on an edge of a triangle of the mesh
+/// that is not in this plane. The normal of `from` points above.
 Sides sides_of(const Mesh& mesh, const Point& point, const Plane& from);
 
 } // namespace ovc::csg

@@ -65,7 +65,7 @@ bool Rules::stays(uint32_t operand, bool below_is_inside,
         const Node& node = tree_.nodes[parent_[at]];
         if (node.kind == Kind::Union)
             continue;
-        bool before = false; // whether the sibling comes before
+        bool before = false; // The sibling comes before.
         for (size_t i = node.children.size(); i-- > 0;) {
             if (node.children[i] == at) {
                 before = true;
@@ -77,8 +77,8 @@ bool Rules::stays(uint32_t operand, bool below_is_inside,
                     return false;
                 continue;
             }
-            // The sibling ends here as well: the solids lie on one side, and one of the surfaces is
-            // enough; or back to back, and nothing is left.
+            // The sibling has a surface here as well. If both solids lie on one side, the first
+            // surface is enough. If they lie back to back, neither stays.
             const bool one_side = other.below == below_is_inside;
             if (!one_side || (before && node.kind != Kind::Clip))
                 return false;

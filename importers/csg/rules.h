@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which parts of an operand's surface bound the result: POV-Ray's rules. A part of an operand is
-// judged beside its siblings, then its parent beside that one's, up to the root.
+// Decides by POV-Ray's rules which parts of an operand's surface bound the result. A part of an
+// operand is compared with the operand's siblings, then with its parent's siblings, up to the root.
 // Source: POV-Ray 3.7, All_CSG_Intersect_Intersections and All_CSG_Merge_Intersections in csg.cpp.
 #pragma once
 
@@ -15,15 +15,16 @@ class Rules {
 public:
     explicit Rules(const Tree& tree);
 
-    /// Operands that part the surface of this one into what stays and what goes. Found when asked
-    /// for: where a thousand are taken away, each has a thousand.
+    /// Returns the operands that may remove a part of this one's surface. The list is not stored,
+    /// because in a difference of a thousand operands each has a thousand.
     std::vector<uint32_t> cutters(uint32_t operand) const;
     bool has_cutters(uint32_t operand) const { return is_cut_[operand]; }
-    /// Whether any of its surface can be seen.
+    /// Returns whether the result can show some of the operand's surface.
     bool is_shown(uint32_t operand) const { return shown_[operand]; }
 
-    /// sides(other): what is inside that operand above and below the part. below_is_inside: of the
-    /// part's own operand.
+    /// Returns whether a part of the operand's surface bounds the result.
+    /// below_is_inside: the inside of the part's own operand is below the part.
+    /// sides(other): returns whether the places above and below the part are inside that operand.
     bool stays(uint32_t operand, bool below_is_inside,
                const std::function<Sides(uint32_t)>& sides) const;
 
@@ -32,8 +33,8 @@ private:
     void gather(uint32_t node, std::vector<uint32_t>& operands) const;
 
     const Tree& tree_;
-    std::vector<uint32_t> parent_;  // of each node; the root's is itself
-    std::vector<uint32_t> node_of_; // of each operand
+    std::vector<uint32_t> parent_;  // the parent of each node; the root's parent is itself
+    std::vector<uint32_t> node_of_; // the node of each operand
     std::vector<uint8_t> shown_, is_cut_;
 };
 

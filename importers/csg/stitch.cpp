@@ -20,9 +20,9 @@ struct HashOfCorner {
     }
 };
 
-/// Corners are rounded to 2^-36 of the size of all operands. Lines that should meet in one point
-/// meet in several a little apart, where the operands' corners were rounded: here they are one
-/// again. That leaves edges as they match, whichever corners fall together.
+/// Corners are snapped to 2^-36 of the size of all operands. Because the operands' corners were
+/// rounded, lines that should meet in one point meet in several, a little apart. Snapping makes
+/// these one point again. Edges that matched still match, whichever corners become one.
 constexpr int kSnappedBits = 3 + kFractionBits;
 
 Corner snapped(Corner p) {
@@ -31,7 +31,8 @@ Corner snapped(Corner p) {
     return p;
 }
 
-/// A corner and the straight line that goes on from it: corners in line have the same one.
+/// A corner and the number of the straight line that starts or goes on at it. Corners in line have
+/// the same number.
 struct Turn {
     uint32_t vertex;
     uint32_t line;
@@ -72,7 +73,7 @@ private:
         return {double(p[0]), double(p[1]), double(p[2])};
     }
 
-    /// Without edges that rounding made points of.
+    /// Removes edges that rounding has made points.
     static Loop tidied(Loop loop) {
         Loop kept;
         for (size_t i = 0; i < loop.size(); ++i)
@@ -83,7 +84,8 @@ private:
 
     static uint64_t key(uint32_t a, uint32_t b) { return uint64_t(a) << 32 | b; }
 
-    /// Edges that no other runs along, the other way.
+    /// Counts for each edge how often it is run along one way, less the other way. An edge with
+    /// another count than 0 is open.
     void find_open() {
         for (const Loop& loop : loops_)
             for (size_t i = 0; i < loop.size(); ++i) {
@@ -120,8 +122,8 @@ private:
         }
     }
 
-    /// Ends that lie on the way from a to b, in order. Their points do so exactly; snapped, they
-    /// are off by at most half a unit in each coordinate, as a and b are.
+    /// Returns the ends that lie between a and b, in order. They lie there exactly before they are
+    /// snapped. Snapping moves them, a and b by at most half a unit in each coordinate.
     std::vector<uint32_t> between(uint32_t a, uint32_t b, const BoxTree& tree,
                                   const std::vector<uint32_t>& ends) const {
         constexpr double kOff = 2 << kSnappedBits;
@@ -151,7 +153,8 @@ private:
             out.push_back({outline, {vertices_[a], vertices_[b], vertices_[c]}});
     }
 
-    /// Corners are cut off one by one, the shortest cut first; never one that leaves a line.
+    /// Cuts off one corner after another, the shortest cut first, but no corner whose cut leaves
+    /// nothing but a line.
     void triangulate(uint32_t outline, std::vector<Stitched>& out) const {
         Loop loop = loops_[outline];
         uint32_t line = uint32_t(loop.size());
@@ -177,13 +180,14 @@ private:
                 }
             }
             if (best == count)
-                break; // a triangle with corners on one of its edges: see below
+                break; // A triangle with corners on one of its edges is left, see below.
             const size_t before = (best + count - 1) % count, after = (best + 1) % count;
             add(outline, loop[before].vertex, loop[best].vertex, loop[after].vertex, out);
             loop[before].line = ++line;
             loop.erase(loop.begin() + ptrdiff_t(best));
         }
-        // The corner that all others are in line across from; in a plain triangle, any.
+        // The apex is the corner that does not lie on the edge with further corners. In a triangle
+        // without such an edge, any corner will do.
         const size_t count = loop.size();
         size_t apex = 0;
         for (size_t i = 0; i < count; ++i)

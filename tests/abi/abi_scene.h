@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A soup behind the C ABI, for tests: handles with owners, structs with their size set, and the
-// fixture of tests that need a device.
+// Puts a soup behind the C ABI, for tests: handles with owners, structs with their size set, and
+// the fixture of tests that need a device.
 #pragma once
 
 #include "core/ray.h"
@@ -31,7 +31,7 @@ struct DestroyDevice {
 };
 using Device = std::unique_ptr<ovc_device_t, DestroyDevice>;
 
-/// Null where there is none.
+/// Opens a device. Returns null if there is none.
 inline Device open_device() {
     ovc_device device = nullptr;
     api().create_device(nullptr, &device);
@@ -43,7 +43,8 @@ struct DestroyScene {
 };
 using AbiScene = std::unique_ptr<ovc_scene_t, DestroyScene>;
 
-/// The soup's meshes, shared with it, not committed. Null where the config is refused.
+/// Adds the soup's meshes to a new scene, which shares them and is not committed. Returns null if
+/// the config is refused.
 inline AbiScene add_soup(const Device& device, const Soup& soup, const ovc_scene_config& config) {
     ovc_scene scene = nullptr;
     if (api().create_scene(device.get(), &config, &scene) != OVC_OK)
@@ -81,7 +82,7 @@ inline ovc_statistics statistics(const AbiScene& scene) {
     return statistics;
 }
 
-/// A device, or the test is skipped.
+/// A test with a device. Without one, the test is skipped.
 class DeviceTest : public testing::Test {
 protected:
     void SetUp() override {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The C ABI under misuse: an error with its sentence, never a crash; and what it promises about
-// numbers.
+// Misuses the C ABI, which must return an error with a sentence and never crash, and tests its
+// promises about numbers.
 #include "tests/abi/abi_scene.h"
 
 #include <gmock/gmock.h>
@@ -178,7 +178,7 @@ TEST_F(Abi, BadRaysMissAndAreCounted) {
         for (const double bad : {double(NAN), HUGE_VAL, -HUGE_VAL}) {
             ovc_ray ray = kDown;
             (&ray.org[0])[field] = bad;
-            if (field != 7 || bad != HUGE_VAL) // an infinite end is no fault
+            if (field != 7 || bad != HUGE_VAL) // An infinite end is allowed.
                 rays.push_back(ray);
         }
     rays.push_back({{0.25, 0.25, 1}, 0, {0, 0, 0}, 9});
@@ -194,7 +194,7 @@ TEST_F(Abi, BadRaysMissAndAreCounted) {
 
 TEST_F(Abi, IndicesStridesOriginsAndSharingGiveTheSameTriangle) {
     const float wide[] = {9, 1, 0, 0, 9, 0,
-                          1, 0, 9, 0, 0, 0}; // stride 16, the first float not ours
+                          1, 0, 9, 0, 0, 0}; // The stride is 16 and skips the first float.
     const uint32_t indices[3] = {2, 0, 1};
     ovc_mesh indexed = triangle();
     indexed.positions = wide + 1;
@@ -239,7 +239,7 @@ TEST_F(Abi, TellsLeafPassesAndActivePagesWhereItWasAskedTo) {
     uint8_t occluded = 0;
     EXPECT_EQ(api().occluded(scene, &kDown, 1, &occluded, &query), OVC_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(error(), "occluded: ovc_query.leaf, passes and flagged are for intersect");
-    // Hosts of earlier headers, whose query ends before `flagged`, and before `leaf`.
+    // Hosts of earlier headers have a query that ends before `flagged`, or before `leaf`.
     query.struct_size = offsetof(ovc_query, flagged);
     flagged = 7;
     ASSERT_EQ(api().intersect(scene, &kDown, 1, &hit, &query), OVC_OK);
@@ -328,13 +328,13 @@ TEST_F(Abi, TwoDevicesAndScenesWorkSideBySide) {
     ASSERT_EQ(api().intersect(far, &kDown, 1, &far_hit, nullptr), OVC_OK);
     EXPECT_EQ(near_hit.t, 1);
     EXPECT_EQ(far_hit.t, 10);
-    api().destroy_device(other); // refused: a scene is alive
+    api().destroy_device(other); // This is refused, because a scene is alive.
     ASSERT_EQ(api().intersect(far, &kDown, 1, &far_hit, nullptr), OVC_OK);
     api().destroy_scene(far);
     api().destroy_device(other);
 }
 
-/// A host of a stream that asks for each hit whether the way up is free, and counts.
+/// The host of a stream. It asks for each hit whether the way up is free, and counts.
 struct Streamer {
     const ovc_api* api = nullptr;
     ovc_scene scene = nullptr;
@@ -342,14 +342,14 @@ struct Streamer {
     size_t hits = 0;
     size_t misses = 0;
     size_t free = 0;
-    ovc_result inner = OVC_OK; // of a call that is not allowed
+    ovc_result inner = OVC_OK; // the result of a call that is not allowed
     int stop = 0;
 
     static int more(void* user, ovc_stream stream, size_t wanted) {
         Streamer& self = *static_cast<Streamer*>(user);
         EXPECT_GT(wanted, 0u);
         if (self.rays > 0)
-            return 0; // no more
+            return 0; // There are no more rays.
         self.rays = 2;
         const ovc_ray rays[2] = {kDown, {{5, 5, 1}, 0, {0, 0, -1}, HUGE_VAL}};
         const uint64_t tokens[2] = {70, 71};
@@ -416,7 +416,7 @@ TEST_F(Abi, AMisusedStreamIsRefused) {
     host.more = Streamer::more;
     host.answered = Streamer::answered;
     EXPECT_EQ(api().stream(nullptr, &host), OVC_ERROR_INVALID_ARGUMENT);
-    EXPECT_EQ(api().stream(scene, &host), OVC_ERROR_INVALID_STATE); // not committed
+    EXPECT_EQ(api().stream(scene, &host), OVC_ERROR_INVALID_STATE); // The scene is not committed.
     commit_triangle();
     EXPECT_EQ(api().stream(scene, nullptr), OVC_ERROR_INVALID_ARGUMENT);
     host.answered = nullptr;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The calls that take rays in other forms than batches of doubles, against intersect() and
-// occluded() with those, bit by bit: single rays, and rays in floats.
+// Compares calls that take single rays and rays in floats, bit by bit, with intersect() and
+// occluded() on batches of doubles.
 #include "kdtree/test_soups.h"
 #include "tests/abi/abi_scene.h"
 
@@ -54,7 +54,7 @@ protected:
     }
 };
 
-/// body(i) for i in [0, count), shared out among so many threads of the host's.
+/// Calls body(i) for i in [0, count), shared out among so many threads of the host.
 template <class Body>
 void on_threads(size_t threads, size_t count, Body&& body) {
     std::vector<std::thread> running;
@@ -102,7 +102,7 @@ TEST_F(Calls, SingleRaysFromManyThreadsAreAnsweredAsBatchesAre) {
     }
 }
 
-/// Goes on until trials have sent some rays either way, beside batches that take their turns.
+/// Asks until trials have sent some rays both ways, beside batches that take their turns.
 TEST_F(Calls, SingleRaysHaveTheSameBitsWhicheverWayTheyGo) {
     const Soup soup = test::closed_grid(40);
     const auto scene = committed(soup);
@@ -254,8 +254,9 @@ TEST_F(Calls, SingleRaysRefuseWhatTheyCannotDo) {
     EXPECT_EQ(error(), "intersect1: the scene is not committed yet, or has changed since it was");
 }
 
-/// A thread that waits for a part of its call, and is given another task of the host's meanwhile,
-/// waits for its own turn. Of two scenes, so that threads in the one help with the other's parts.
+/// A thread may wait for a part of its call and run another task of the host meanwhile. It then
+/// waits for its own turn. There are two scenes, so that threads in one help with parts of the
+/// other.
 TEST_F(Calls, AHostMayCallFromItsOwnTasks) {
     const Soup soup = test::closed_grid(60);
     const test::AbiScene scenes[] = {committed(soup), committed(soup)};
@@ -315,8 +316,8 @@ double seconds_since(Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
 }
 
-/// Rays that whole numbers decide, some microseconds each: a call of many seconds, most of it on
-/// the CPU.
+/// Returns rays that only integers can decide, which takes some microseconds each. A call with them
+/// takes many seconds, most of them on the CPU.
 std::vector<Ray> slow_rays(const Soup& soup, size_t count) {
     std::vector<Ray> rays = test::unpleasant_rays(soup, 12, count);
     for (size_t i = 0; i < rays.size(); ++i) {
@@ -327,8 +328,8 @@ std::vector<Ray> slow_rays(const Soup& soup, size_t count) {
     return rays;
 }
 
-/// Asked in time, and obeyed in time. Limits are wide, for machines that do other things as well;
-/// docs/reference/abi.md says a twentieth and a tenth of a second.
+/// Tests that the host is asked in time and obeyed in time. Limits are wide, for busy machines;
+/// docs/reference/abi.md promises a twentieth and a tenth of a second.
 TEST_F(Calls, ASlowCallIsAskedOftenAndEndsSoon) {
     const Soup soup = test::closed_grid(60);
     const auto scene = committed(soup);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast.hpp in C++17: a triangle, its hits and what blocks. Exit 0 when the answers are right.
+// Uses overcast.hpp in C++17: a triangle, its hits and its shadow. The exit code is 0 if the
+// answers are right.
 #include "plugin/overcast.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// overcast.hpp: owners destroy once, errors carry code and sentence, spans of other lengths are
-// refused, and what a stream's functions throw arrives.
+// Tests overcast.hpp: owners destroy once, errors carry a code and a sentence, spans of different
+// lengths are refused, and exceptions of a stream's functions arrive.
 #include "plugin/overcast.hpp"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ protected:
         EXPECT_EQ(scene.add<float>(kTriangle), 0u);
         EXPECT_EQ(scene.add_instance(0, {1, 0, 0, 2, 0, 1, 0, 0, 0, 0, 1, 0}), 1u);
         scene.commit();
-        return scene; // moved
+        return scene; // This moves the scene.
     }
     std::optional<overcast::Device> device;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a device's config limits: the GPU memory of all its scenes together, and threads. And turns:
-// nobody who calls waits much longer than the others.
+// Tests the limits of a device's config: the GPU memory of all its scenes together, and threads.
+// Also tests turns: no caller waits much longer than the others.
 #include "kdtree/test_soups.h"
 #include "tests/abi/abi_scene.h"
 
@@ -39,8 +39,8 @@ protected:
     struct Scene {
         Soup soup;
         std::vector<Ray> rays;
-        std::vector<ovc_hit> expected; // with a budget of its own
-        AbiScene scene;                // of the device that is limited
+        std::vector<ovc_hit> expected; // the answers of a scene with a budget of its own
+        AbiScene scene;                // a scene of the limited device
     };
 
     static AbiScene committed(const test::Device& on, const Soup& soup, uint64_t leaf_triangles) {
@@ -51,7 +51,7 @@ protected:
         return scene;
     }
 
-    /// Scenes of 2,000 triangles and more, of some 100 KiB and more.
+    /// Returns scenes of at least 2,000 triangles, which take at least some 100 KiB.
     std::vector<Scene> scenes_of(size_t count) {
         std::vector<Scene> scenes(count);
         for (size_t i = 0; i < count; ++i) {
@@ -249,7 +249,8 @@ TEST_F(DeviceLimits, TurnsOfScenesThatShareABudgetAreFair) {
     const Soup soup = test::random_soup(7, 5000, 0.05);
     const std::vector<Ray> rays = test::unpleasant_rays(soup, 7, 1024);
     auto config = sized<ovc_device_config>();
-    config.gpu_memory_bytes = 1 << 20; // two of them at a time
+    // Two scenes fit at a time.
+    config.gpu_memory_bytes = 1 << 20;
     const test::Device limited = device_of(config);
     std::vector<AbiScene> scenes;
     for (size_t i = 0; i < 8; ++i)

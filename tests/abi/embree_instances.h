@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene of Embree's own instances, which judges those behind the C ABI.
+// A scene of Embree's own instances, to compare those behind the C ABI with.
 #pragma once
 
 #include "core/ray.h"
@@ -14,7 +14,7 @@
 
 namespace ovc::test {
 
-/// Embree with instances of its own, whose transforms are floats; robust.
+/// Traces Embree's instances in robust mode. Their transforms are floats.
 class EmbreeInstances {
 public:
     EmbreeInstances() : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {}

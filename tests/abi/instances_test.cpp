@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Doubles, transforms and instances through the ABI, against the same triangles moved by hand:
+// Tests doubles, transforms and instances through the ABI against the same triangles moved by hand:
 // every bit against brute force, a sample against exact rationals, and ids against Embree's own
 // instances.
 #include "core/file/test_archive.h"
@@ -20,7 +20,8 @@ TEST_F(Instances, AnswerAsTheirTrianglesMovedByHandDo) {
     for (uint64_t seed = 0; seed < 6; ++seed) {
         SCOPED_TRACE(seed);
         test::Random random(seed);
-        const double reach = std::pow(10, int(seed)) - 0.9; // from on top of each other to far away
+        // The reach grows from 0.1, where instances overlap, to far away.
+        const double reach = std::pow(10, int(seed)) - 0.9;
         World w = world();
         const auto floats = random_corners<vec3>(random, 40, 0.3);
         const auto doubles = random_corners<dvec3>(random, 40, 0.3);
@@ -47,7 +48,7 @@ TEST_F(Instances, AnswerAsTheirTrianglesMovedByHandDo) {
 }
 
 TEST_F(Instances, DoublesAreNotRounded) {
-    // A floor of squares 2^-20 wide, 1e7 away: floats are 1 apart there.
+    // The floor consists of squares 2^-20 wide, 1e7 away, where floats are 1 apart.
     const double step = 0x1p-20;
     const dvec3 corner(1e7 + 0.1, -2e7 - 0.7, 3e7);
     std::vector<dvec3> corners;
@@ -75,10 +76,10 @@ TEST_F(Instances, DoublesAreNotRounded) {
     expect_brute_force(w, rays_at(w.expected, 1000, 1), 100);
 }
 
-/// Rays straight down at seams and corners of tiles: each must hit.
+/// Rays go straight down at seams and corners of tiles. Each must hit.
 TEST_F(Instances, TilesShareTheirCornersWhereSumsAreExact) {
     const auto at = [](int x, int y) { return vec3(float(x), float(y), float((x * y) % 3) / 4); };
-    std::vector<vec3> tile; // its opposite sides match
+    std::vector<vec3> tile; // Its opposite sides match.
     for (int x = 0; x < 3; ++x)
         for (int y = 0; y < 3; ++y)
             for (const vec3& p : {at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y),
@@ -170,7 +171,7 @@ TEST_F(Instances, OverflowIsDroppedAndUnderflowIsZero) {
     EXPECT_EQ(hits[0].t, 1);
 }
 
-/// Far above and below what floats hold, answers are still those of exact arithmetic.
+/// Far above and below the range of floats, answers are still those of exact arithmetic.
 TEST_F(Instances, AnyScaleWithinTheRange) {
     for (const double size : {1e-70, 1e-50, 1e-30, 1e30, 1e50, 1e70}) {
         SCOPED_TRACE(size);
@@ -244,7 +245,8 @@ TEST_F(Instances, TheMeshOfAnEarlierHeaderIsFine) {
     World w = world();
     const std::vector<vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     ovc_mesh mesh;
-    std::memset(&mesh, 0xff, sizeof(mesh)); // what lies behind the earlier struct is not looked at
+    // Bytes behind the earlier struct must not be read.
+    std::memset(&mesh, 0xff, sizeof(mesh));
     std::memset(&mesh, 0, offsetof(ovc_mesh, positions_double));
     mesh.struct_size = offsetof(ovc_mesh, positions_double);
     mesh.positions = &corners[0].x;
@@ -254,7 +256,7 @@ TEST_F(Instances, TheMeshOfAnEarlierHeaderIsFine) {
     EXPECT_EQ(w.intersect({{{0.25, 0.25, 1}, 0, {0, 0, -1}}})[0].t, 1);
 }
 
-/// What was saved fits the same instances, and no others.
+/// Saved levels fit the same instances, and no others.
 TEST_F(Instances, AreSavedWithTheirTransforms) {
     test::Random random(13);
     const auto corners = random_corners<vec3>(random, 80, 0.3);
@@ -297,7 +299,7 @@ TEST_F(Instances, NameTheTrianglesThatEmbreesInstancesName) {
     for (uint32_t i = 0; i < 40; ++i) {
         Matrix m = any_transform(random, 4);
         for (double& x : m)
-            x = float(x); // both are asked the same
+            x = float(x); // Both sides get the same transform.
         w.instance(i % 4, &m);
         embree.add_instance(i % 4, m);
     }
@@ -305,7 +307,8 @@ TEST_F(Instances, NameTheTrianglesThatEmbreesInstancesName) {
     embree.commit();
     Box bounds;
     const std::vector<TriangleId> ids = hittable_triangles(w.expected, nullptr, &bounds);
-    std::vector<Ray> rays; // anywhere, not at sides, where floats decide by chance
+    // Rays go anywhere. Towards sides, floats would decide by chance.
+    std::vector<Ray> rays;
     for (int i = 0; i < 50'000; ++i) {
         const dvec3 org = bounds.lo + random.point(0, 1) * bounds.extent();
         rays.push_back({dvec3(vec3(org)), 0, dvec3(vec3(random.point(-1, 1)))});
@@ -315,7 +318,7 @@ TEST_F(Instances, NameTheTrianglesThatEmbreesInstancesName) {
     for (size_t i = 0; i < rays.size(); ++i) {
         TriangleId theirs = embree.nearest(rays[i]);
         if (theirs.mesh != kNone)
-            theirs.mesh += 4; // the templates are numbered first
+            theirs.mesh += 4; // Our templates are numbered first.
         if (theirs == hits[i].id)
             continue;
         ++differences;

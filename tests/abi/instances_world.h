@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Instances through the ABI, and the same triangles moved by hand: a scene, rays at it, and what
-// must be equal.
+// Instances through the ABI beside the same triangles moved by hand: a scene, rays at it, and
+// comparisons of the two.
 #pragma once
 
 #include "kdtree/test_soups.h"
@@ -20,7 +20,7 @@ namespace ovc::test {
 
 using Matrix = std::array<double, 12>;
 
-/// As overcast.h has it.
+/// Moves a point as overcast.h defines it.
 inline dvec3 moved(const Matrix& m, const dvec3& p) {
     dvec3 q;
     for (int row = 0; row < 3; ++row) {
@@ -50,7 +50,7 @@ inline Matrix scale(const dvec3& by) {
     return {by.x, 0, 0, 0, 0, by.y, 0, 0, 0, 0, by.z, 0};
 }
 
-/// Any affine map: rotations, shears, mirrors, whatever comes.
+/// Returns any affine map, such as a rotation, a shear or a mirror.
 inline Matrix any_transform(Random& random, double reach) {
     Matrix m;
     for (size_t i = 0; i < 12; ++i)
@@ -58,7 +58,7 @@ inline Matrix any_transform(Random& random, double reach) {
     return m;
 }
 
-/// A scene behind the ABI, and its triangles where overcast.h says they are, mesh by mesh.
+/// A scene behind the ABI, and its triangles at the places that overcast.h defines, mesh by mesh.
 class World {
 public:
     World(ovc_device device, const ovc_scene_config& config) : device_(device) {
@@ -110,7 +110,7 @@ public:
     const std::vector<dvec3>& source(uint32_t mesh) const { return sources_.at(mesh); }
     const dvec3& origin(uint32_t number) const { return things_[number].origin; }
 
-    /// Gives triangles of a mesh new corners, floats where it has those.
+    /// Gives triangles of a mesh new corners, in floats if the mesh has floats.
     void move_corners(uint32_t number, size_t first, const std::vector<dvec3>& corners) {
         const Thing& thing = things_[number];
         auto mesh = sized<ovc_mesh>();
@@ -199,18 +199,20 @@ private:
 
     /// A mesh or an instance of one.
     struct Thing {
-        uint32_t mesh = OVC_NONE; // once it is removed
+        uint32_t mesh = OVC_NONE; // OVC_NONE after it is removed
         dvec3 origin{0};
         bool has_doubles = false;
-        bool is_there = false; // not a template, nor removed
+        bool is_there = false; // false for templates and removed ones
         bool is_instance = false;
     };
 
     ovc_device device_;
     std::vector<Thing> things_;
-    std::map<uint32_t, std::vector<dvec3>> sources_; // as overcast.h has them, without transforms
+    /// The corners as overcast.h defines them, without transforms.
+    std::map<uint32_t, std::vector<dvec3>> sources_;
     std::map<uint32_t, Matrix> transforms_;
-    std::map<uint32_t, Matrix> firsts_; // by what an instance's mesh was placed
+    /// The transforms by which the meshes of instances were placed.
+    std::map<uint32_t, Matrix> firsts_;
 };
 
 template <class Corner>
@@ -224,7 +226,7 @@ std::vector<Corner> random_corners(Random& random, size_t triangles, double size
     return corners;
 }
 
-/// At corners, at sides, and anywhere within the triangles of a soup, from all around.
+/// Returns rays from all around at corners, sides and inner points of a soup's triangles.
 inline std::vector<Ray> rays_at(const Soup& soup, size_t count, uint64_t seed) {
     Random random(seed);
     Box bounds;
@@ -243,7 +245,8 @@ inline std::vector<Ray> rays_at(const Soup& soup, size_t count, uint64_t seed) {
     return rays;
 }
 
-/// Bit for bit what testing every triangle answers; and of some rays what exact rationals say.
+/// Expects, bit for bit, the answers of testing every triangle, and for the first `exactly` rays
+/// those of exact rationals.
 inline void expect_brute_force(const World& world, const std::vector<Ray>& rays, size_t exactly,
                                bool most_hit = true) {
     const std::vector<TriangleId> ids = hittable_triangles(world.expected, nullptr, nullptr);
@@ -268,8 +271,8 @@ inline void expect_brute_force(const World& world, const std::vector<Ray>& rays,
     }
 }
 
-/// The same where each ray does not see one triangle, often the one that it would hit; and whether
-/// anything is hit.
+/// Expects the same if each ray skips one triangle, often the one that it would hit, and compares
+/// whether rays hit anything.
 inline void expect_brute_force_with_skips(const World& world, const std::vector<Ray>& rays,
                                           uint64_t seed) {
     Random random(seed);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What plan() tells against what commit then makes: within 10 %, or one leaf or page.
+// Compares the forecast of plan() with the result of commit. They agree within 10 %, or one leaf or
+// page.
 #include "importers/importer.h"
 #include "kdtree/test_soups.h"
 #include "tests/abi/abi_scene.h"
@@ -32,7 +33,7 @@ protected:
         return statistics;
     }
 
-    /// Plans, commits and compares; returns what was committed.
+    /// Plans, commits and compares. Returns the statistics of the commit.
     ovc_statistics compare(const Soup& soup, const ovc_scene_config& config) const {
         const auto scene = test::add_soup(device, soup, config);
         EXPECT_TRUE(scene) << error();
@@ -46,19 +47,19 @@ protected:
         near("leaves", plan.leaves, made.leaves, 1);
         near("references", plan.leaf_references, made.leaf_references);
         near("bytes of level 2", plan.level2_bytes, made.level2_bytes);
-        // The most of many is told from above: what the worst leaf may be.
+        // The plan gives an upper bound of the largest page.
         EXPECT_GE(double(plan.largest_page_bytes), 0.9 * double(made.largest_page_bytes));
         EXPECT_LE(double(plan.largest_page_bytes), 1.3 * double(made.largest_page_bytes));
         near("pages resident", plan.resident_pages, made.pages_in, 1);
         near("host bytes", plan.host_bytes, made.host_bytes);
         EXPECT_EQ(plan.gpu_budget_bytes, made.gpu_budget_bytes);
-        // What commit allocates is what the plan shares out, and nothing else.
+        // The plan's parts add up to what commit allocates.
         near("GPU bytes", plan.ray_bytes + plan.level1_bytes + plan.pool_bytes,
              made.gpu_peak_bytes);
         return made;
     }
 
-    /// At several counts of leaves and several budgets.
+    /// Compares at several numbers of leaves and several budgets.
     void compare_all(const std::string& name, const Soup& soup) const {
         uint64_t level2_bytes = 0;
         for (const uint32_t leaves : {0u, 4u, 40u, 200u}) {
@@ -84,7 +85,7 @@ protected:
         compare_all(name, scene->soup);
     }
 
-    /// Off by a tenth at most, or by so many.
+    /// Expects a difference of at most a tenth, or of `slack`.
     static void near(const char* what, uint64_t planned, uint64_t made, uint64_t slack = 0) {
         const double most = std::max(0.1 * double(made), double(slack));
         EXPECT_LE(std::abs(double(planned) - double(made)), most)
@@ -120,7 +121,8 @@ TEST_F(Plan, OfDragons) {
     compare_all("dragons-2");
 }
 
-/// It looks at each mesh once, not at each instance of it: 36 million triangles here.
+/// plan() looks at each mesh once, not at each of its instances, which are 36 million triangles
+/// here.
 TEST_F(Plan, OfAThousandInstances) {
     Scene scene = std::move(*make_test_scene("sphere-5"));
     Scene trees = std::move(*make_test_scene("terrain-130"));
@@ -154,7 +156,7 @@ TEST_F(Plan, OfTheRealDragonAndKitchen) {
         ASSERT_TRUE(scene) << scene.error().message;
         compare_all(file, scene->soup);
     }
-    Soup kitchen; // 174 files, one scene
+    Soup kitchen; // The scene has 174 files.
     for (const auto& entry :
          std::filesystem::recursive_directory_iterator(*data / "meshes/kitchen-fathirmutfak"))
         if (entry.path().extension() == ".obj")
@@ -165,7 +167,7 @@ TEST_F(Plan, OfTheRealDragonAndKitchen) {
     compare_all("kitchen", kitchen);
 }
 
-/// The number that the sentence of a refused commit names.
+/// Returns the number that the message of a refused commit names.
 uint64_t named_by(const std::string& message) {
     const std::string before = "the smallest that works is ";
     const size_t at = message.find(before);
@@ -188,7 +190,7 @@ TEST_F(Plan, TellsTheSmallestBudgetThatWorksAndAllLargerOnesWork) {
             for (const uint64_t missing : {uint64_t(1), smallest / 20, smallest / 4}) {
                 const auto short_of = with(smallest - missing);
                 if (!short_of)
-                    continue; // refused before anything is added
+                    continue; // The scene is refused before anything is added.
                 const ovc_plan plan = plan_of(short_of.get());
                 EXPECT_FALSE(plan.fits);
                 EXPECT_EQ(plan.smallest_budget_bytes, smallest);

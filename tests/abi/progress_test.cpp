@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Progress of a commit, and a commit that is cancelled: at once, wherever it is, without a trace.
+// Tests the progress of a commit, and that a cancelled commit ends at once, at any stage, without a
+// trace.
 #include "core/system/stopwatch.h"
 #include "tests/abi/abi_scene.h"
 #include "testscenes/catalog.h"
@@ -17,7 +18,7 @@ namespace {
 using test::api;
 using test::sized;
 
-/// Listens to a commit; cancels it when told `stop_at` or more.
+/// Listens to a commit, and cancels it when the progress is `stop_at` or more.
 struct Listener {
     double stop_at = 2;
     double last = -1;
@@ -51,7 +52,7 @@ struct Listener {
 
 class Commit : public test::DeviceTest {
 protected:
-    /// Nearest hits along a row of rays through the middle.
+    /// Returns the nearest hits along a row of rays through the middle.
     std::vector<ovc_hit> hits(ovc_scene scene) const {
         std::vector<ovc_ray> rays;
         for (int i = 0; i < 500; ++i)
@@ -84,7 +85,7 @@ TEST_F(Commit, CancelledAnywhereLeavesASceneThatCanBeCommittedAgain) {
     const auto expected = hits(reference.get());
     Listener listener;
     const auto made = test::add_soup(device, scene->soup, listener.config());
-    // 1: everything is built, and given up at the very end.
+    // At 1, everything is built, and the commit is given up at the very end.
     for (const double stop_at : {0.0, 0.05, 0.15, 0.3, 0.5, 0.7, 0.9, 0.96, 1.0}) {
         listener.stop_at = stop_at;
         listener.last = -1;
@@ -141,7 +142,8 @@ TEST_F(Commit, CancelsAPlanToo) {
 TEST_F(Commit, TakesTheConfigOfAnEarlierHeader) {
     auto config = sized<ovc_scene_config>();
     config.struct_size = offsetof(ovc_scene_config, progress);
-    config.progress = [](void*, double, const char*) { return 1; }; // beyond its end: not looked at
+    // This field is beyond the struct's end, so it must not be read.
+    config.progress = [](void*, double, const char*) { return 1; };
     const auto made = test::add_soup(device, {}, config);
     ASSERT_TRUE(made) << error();
     EXPECT_EQ(api().commit(made.get()), OVC_OK) << error();
@@ -152,7 +154,7 @@ TEST_F(Commit, TakesTheConfigOfAnEarlierHeader) {
     EXPECT_EQ(statistics.host_bytes, 77u);
 }
 
-/// Each in a tenth of a second on an idle machine; the test allows for a busy one.
+/// A commit ends within a tenth of a second on an idle machine. The test allows for a busy one.
 TEST_F(Commit, AnswersSoonWhereverItIsCancelled) {
     const Result<Scene> scene = make_test_scene("dragons-10");
     ASSERT_TRUE(scene);

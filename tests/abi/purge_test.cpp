@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// purge: GPU memory given back, and the same bits afterwards. The error callback: what last_error
-// says, when it becomes true.
+// Tests that purge gives GPU memory back and that answers have the same bits afterwards. Also tests
+// that the error callback gets the text of last_error at the same time.
 #include "kdtree/test_soups.h"
 #include "tests/abi/abi_scene.h"
 
@@ -34,8 +34,8 @@ protected:
 };
 
 TEST_F(Purge, GivesBackAllGpuMemoryAndAnswersStayTheSame) {
-    for (const uint64_t budget :
-         {0, 120'000}) { // all pages at once, and moved in as they are needed
+    // All pages are resident at once, or are moved in as they are needed.
+    for (const uint64_t budget : {0, 120'000}) {
         SCOPED_TRACE(budget);
         auto config = sized<ovc_scene_config>();
         config.gpu_memory_bytes = budget;
@@ -158,7 +158,8 @@ TEST(ErrorCallback, SaysWhatLastErrorSaysWithItsCode) {
     EXPECT_THAT(told.message, HasSubstr("ovc_device_info.struct_size is 0"));
     EXPECT_EQ(told.last_error, told.message);
 
-    told.device = nullptr; // a create_device that fails is told too
+    // The callback also hears of a create_device that fails.
+    told.device = nullptr;
     config.name = "no such card";
     EXPECT_EQ(api().create_device(&config, &opened), OVC_ERROR_NO_DEVICE);
     EXPECT_EQ(told.times, 3);
@@ -169,8 +170,8 @@ TEST(ErrorCallback, SaysWhatLastErrorSaysWithItsCode) {
 
 TEST(ErrorCallback, TheConfigOfAnEarlierHeaderHasNone) {
     ovc_device_config config;
-    std::memset(&config, 0xff,
-                sizeof(config)); // what lies behind the earlier struct is not looked at
+    // Bytes behind the earlier struct must not be read.
+    std::memset(&config, 0xff, sizeof(config));
     std::memset(&config, 0, offsetof(ovc_device_config, error));
     config.struct_size = offsetof(ovc_device_config, error);
     config.name = "no such card";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Saving through the ABI: a later scene answers with the same bits without building; what is
-// damaged, or of another scene, is noticed, and then it builds.
+// Tests saving through the ABI: a later scene answers with the same bits without building. A scene
+// notices bytes that are damaged or belong to another scene, and then builds.
 #include "core/file/test_archive.h"
 #include "kdtree/test_soups.h"
 #include "tests/abi/abi_scene.h"
@@ -36,7 +36,7 @@ protected:
         return 0;
     }
 
-    /// With the bytes to start from, or without.
+    /// Returns a committed scene, which starts from the saved bytes if there are any.
     test::AbiScene committed(const Soup& soup, Bytes saved, ovc_scene_config config) {
         config.saved = saved.data();
         config.saved_bytes = saved.size();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls that are submitted: the answers of the blocking ones, bit by bit, and what becomes of
-// tickets that are cancelled, released, or outlive their scene.
+// Compares submitted calls with blocking ones, bit by bit, and tests tickets that are cancelled,
+// released, or outlive their scene.
 #include "kdtree/test_soups.h"
 #include "tests/abi/abi_scene.h"
 
@@ -84,7 +84,7 @@ TEST_F(Tickets, OfManyThreadsAreAnsweredAsBlockingCallsAre) {
     EXPECT_EQ(shadows, expected_shadows);
 }
 
-/// Keeps the first ticket in its progress function until it is let go.
+/// Holds the first ticket in its progress function until the gate opens.
 struct Gate {
     std::atomic<bool> reached{false};
     std::atomic<bool> open{false};
@@ -138,7 +138,8 @@ TEST_F(Tickets, MayBeReleasedBeforeTheyAreDone) {
     ASSERT_EQ(api().intersect(scene.get(), as_abi(rays), 1000, expected.data(), nullptr), OVC_OK);
     for (int i = 0; i < 20; ++i)
         api().release(submit(0, rays.size(), hits.data()));
-    std::memset(hits.data(), 0x55, hits.size() * sizeof(ovc_hit)); // they are the caller's again
+    // The buffers are the caller's again.
+    std::memset(hits.data(), 0x55, hits.size() * sizeof(ovc_hit));
     ovc_ticket ticket = submit(0, 1000, again.data());
     EXPECT_EQ(api().wait(ticket), OVC_OK);
     api().release(ticket);

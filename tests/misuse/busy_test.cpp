@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many threads at once, and handles that are destroyed while others use them: every call ends with
-// the right answer or an error.
+// Tests many threads at once, and handles that are destroyed while others use them. Every call must
+// end with the right answer or an error.
 #include "tests/misuse/field.h"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ namespace {
 using test::api;
 using test::sized;
 
-/// body(i) on so many threads at once.
+/// Calls body(i) on so many threads at once.
 void on_threads(int count, const std::function<void(int)>& body) {
     std::vector<std::thread> threads;
     for (int i = 0; i < count; ++i)
@@ -67,7 +67,7 @@ TEST_F(Busy, ThreadsWithBatchesAreServedFirstComeFirstServed) {
     EXPECT_GT(*least, 0);
 }
 
-/// What overcast.h says of the stack.
+/// overcast.h promises that so much stack is enough.
 TEST_F(Busy, AThreadOf256KibOfStackMayCall) {
     struct Call {
         ovc_device device;
@@ -76,7 +76,7 @@ TEST_F(Busy, AThreadOf256KibOfStackMayCall) {
     const auto body = [](void* given) -> void* {
         auto& asked = *static_cast<Call*>(given);
         const test::AbiScene scene(test::make_field(asked.device));
-        ovc_ray far = test::into_cell(5, 3); // which takes whole numbers
+        ovc_ray far = test::into_cell(5, 3); // Only integers can decide this ray.
         far.org[2] = 1e200;
         ovc_hit hits[2]{};
         const bool traced = scene && test::field_answers(scene.get()) &&
@@ -147,7 +147,8 @@ TEST_F(Busy, ADestroyedSceneIsAnErrorAsLongAsItsDeviceLives) {
     EXPECT_STREQ(api().last_error(device.get()), "commit: the scene is destroyed");
     EXPECT_STREQ(api().last_error(nullptr), "commit: the scene is destroyed");
     api().destroy_scene(scene);
-    for (int later = 0; later < 2000; ++later) { // more than are remembered
+    // More scenes are destroyed than the library remembers.
+    for (int later = 0; later < 2000; ++later) {
         ovc_scene other = nullptr;
         ASSERT_EQ(api().create_scene(device.get(), nullptr, &other), OVC_OK);
         api().destroy_scene(other);

@@ -61,7 +61,7 @@ Misuses misuse_describe_device(Subject& s) {
     return wrong.found();
 }
 
-/// Refused, because it has scenes; then it must still work.
+/// Calls destroy_device on a device with scenes, which is refused. The device must still work.
 ovc_result use_destroy_device(Subject& s) {
     api().destroy_device(nullptr);
     api().destroy_device(s.device);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The list of all functions of the table: how each is used, and how misused. A new one gets its row
-// here; a test fails until it has.
+// The list of all functions of the table, with a use and misuses of each. A test fails until a new
+// function has its row here.
 #pragma once
 
 #include "tests/misuse/field.h"
@@ -12,7 +12,7 @@
 
 namespace ovc::test {
 
-/// What the functions are called with.
+/// The handles that the functions are called with.
 struct Subject {
     explicit Subject(ovc_device of) : device(of), field(make_field(of)) {
         api().create_scene(of, nullptr, &empty);
@@ -24,25 +24,26 @@ struct Subject {
     Subject(const Subject&) = delete;
 
     ovc_device device;
-    ovc_scene field;           // committed
-    ovc_scene empty = nullptr; // not committed
+    ovc_scene field;           // This scene is committed.
+    ovc_scene empty = nullptr; // This scene is not committed.
 };
 
-/// A call that is wrong, what it should have returned, and what it did.
+/// A wrong call, the result that it should have returned, and the result that it returned.
 struct Misuse {
     const char* what;
     ovc_result expected;
     ovc_result got;
-    std::string said; // by last_error, of the device or of the thread
+    std::string said; // the text of last_error, of the device or of the thread
 };
 using Misuses = std::vector<Misuse>;
 
 struct Entry {
     const char* name;
-    size_t offset; // in ovc_api
-    /// Uses it as it should be; checks its answer, and returns its result.
+    size_t offset; // the offset in ovc_api
+    /// Uses the function as it should be used, checks its answer, and returns its result.
     ovc_result (*use)(Subject&);
-    /// Null, wrong sizes, numbers out of range, the wrong order. Empty where nothing can be wrong.
+    /// Misuses the function with null, wrong sizes, numbers out of range or a wrong order. Returns
+    /// nothing if nothing can be wrong.
     Misuses (*misuse)(Subject&);
 };
 
@@ -51,7 +52,7 @@ std::span<const Entry> scene_entries();
 std::span<const Entry> ray_entries();
 std::span<const Entry> ticket_entries();
 
-/// All of them.
+/// Returns all entries.
 inline std::vector<Entry> entries() {
     std::vector<Entry> all;
     for (const auto part : {device_entries(), scene_entries(), ray_entries(), ticket_entries()})
@@ -59,16 +60,16 @@ inline std::vector<Entry> entries() {
     return all;
 }
 
-/// A row for the function of that name.
+/// Makes a row for the function of that name.
 #define OVC_ENTRY(function, use, misuse)                                                           \
     { #function, offsetof(ovc_api, function), use, misuse }
 
-/// Collects misuses and what was said of each.
+/// Collects misuses and the messages about them.
 class Wrong {
 public:
     explicit Wrong(const Subject& subject) : device_(subject.device) {}
 
-    /// Of a call on a handle that is in order: its device has the sentence.
+    /// Adds a call on a valid handle. Its device has the sentence.
     void on_device(const char* what, ovc_result expected, ovc_result got) {
         found_.push_back({what, expected, got, api().last_error(device_)});
     }
@@ -76,7 +77,7 @@ public:
         on_device(what, OVC_ERROR_INVALID_ARGUMENT, got);
     }
     void state(const char* what, ovc_result got) { on_device(what, OVC_ERROR_INVALID_STATE, got); }
-    /// Of a call on no handle, or on none that is in order: the thread has the sentence.
+    /// Adds a call on no handle, or on one that is not valid. The thread has the sentence.
     void without_device(const char* what, ovc_result got) {
         found_.push_back({what, OVC_ERROR_INVALID_ARGUMENT, got, api().last_error(nullptr)});
     }

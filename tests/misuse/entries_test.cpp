@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every function of the table is used, and misused: it does what it should, or returns the error
-// that it should, with a sentence; and what comes after is as if nothing had been wrong.
+// Uses and misuses every function of the table. It does what it should, or returns the right error
+// with a sentence, and later calls are not affected.
 #include "tests/misuse/entries.h"
 
 #include <gmock/gmock.h>

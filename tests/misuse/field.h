@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A field of triangles whose answers are plain to see, behind the C ABI: cell (x, y) of the unit
-// grid holds triangle x + y kSide, whose corners are (x, y), (x + 1, y), (x, y + 1) at height 0.
+// A field of triangles with obvious answers, behind the C ABI: cell (x, y) of the unit grid holds
+// triangle x + y kSide, whose corners are (x, y), (x + 1, y), (x, y + 1) at height 0.
 #pragma once
 
 #include "tests/abi/abi_scene.h"
@@ -27,7 +27,7 @@ inline const std::vector<float>& field_positions() {
     return positions;
 }
 
-/// Shared: the positions live as long as the program.
+/// Returns a shared mesh, whose positions live as long as the program.
 inline ovc_mesh field_mesh() {
     auto mesh = sized<ovc_mesh>();
     mesh.positions = field_positions().data();
@@ -36,7 +36,7 @@ inline ovc_mesh field_mesh() {
     return mesh;
 }
 
-/// Down into a cell from this height, at u = v = 1/4.
+/// Returns a ray down into a cell from this height, which hits at u = v = 1/4.
 inline ovc_ray into_cell(uint32_t cell, double height) {
     return {{cell % kSide + 0.25, cell / kSide + 0.25, height}, 0, {0, 0, -1}, HUGE_VAL};
 }
@@ -45,7 +45,7 @@ inline bool is_in_cell(const ovc_hit& hit, uint32_t cell, double height) {
     return hit.mesh == 0 && hit.prim == cell && hit.t == height && hit.u == 0.25 && hit.v == 0.25;
 }
 
-/// The field on a device, committed; null where it is refused.
+/// Returns the committed field on a device, or null if it is refused.
 inline ovc_scene make_field(ovc_device device) {
     ovc_scene scene = nullptr;
     const ovc_mesh mesh = field_mesh();
@@ -56,12 +56,12 @@ inline ovc_scene make_field(ovc_device device) {
     return nullptr;
 }
 
-/// Rays into all cells: whether all answers are right, of both queries.
+/// Sends rays into all cells, and returns whether all answers to both queries are right.
 inline bool field_answers(ovc_scene scene) {
     std::vector<ovc_ray> rays;
     for (uint32_t cell = 0; cell < kCells; ++cell)
         rays.push_back(into_cell(cell, 1 + cell % 5));
-    rays.push_back({{-1, -1, 1}, 0, {0, 0, -1}, HUGE_VAL}); // beside it
+    rays.push_back({{-1, -1, 1}, 0, {0, 0, -1}, HUGE_VAL}); // This ray goes beside the field.
     std::vector<ovc_hit> hits(rays.size());
     std::vector<uint8_t> occluded(rays.size(), 9);
     if (api().intersect(scene, rays.data(), rays.size(), hits.data(), nullptr) != OVC_OK ||

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A host that forks: in the child the parent's handles are errors, nothing waits for threads that
-// stayed behind, and the parent goes on as if nothing had been.
+// Tests a host that forks: in the child, the parent's handles are errors and nothing waits for
+// threads that stayed behind. The parent goes on as before.
 #include "tests/misuse/entries.h"
 
 #include <atomic>
@@ -16,8 +16,8 @@ namespace {
 
 using test::api;
 
-/// How a child that runs the body ends: its exit status, or minus the signal that ended it. A child
-/// that hangs is ended by SIGALRM.
+/// Returns the exit status of a child that runs the body, or minus the signal that ended it.
+/// SIGALRM ends a child that hangs.
 int in_child(const std::function<int()>& body) {
     const pid_t child = fork();
     if (child == 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fuzzer's function over sequences of calls drawn at random: the same on every run.
+// Runs the fuzzer's function over random sequences of calls, which are the same on every run.
 #include "tests/fuzz/calls.h"
 
 #include <gtest/gtest.h>

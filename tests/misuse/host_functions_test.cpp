@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions that a host hands in, when they call back what they may not: an error, where the
-// plugin would wait for itself.
+// Tests functions of the host that call the plugin back where they may not. Where the plugin would
+// wait for itself, the call must return an error.
 #include "tests/misuse/entries.h"
 
 #include <atomic>
@@ -11,12 +11,12 @@ namespace {
 using test::api;
 using test::sized;
 
-/// Uses every function of the table, once, from where none but last_error may be called, on a
-/// subject that is in the middle of something.
+/// Uses every function of the table once, in a place where only last_error may be called, on a
+/// subject that is in the middle of a call.
 struct Intruder {
     test::Subject* subject = nullptr;
     std::atomic<bool> called{false};
-    std::string allowed; // that should not have been
+    std::string allowed; // the calls that should not have been allowed
 
     void intrude() {
         if (!subject || called.exchange(true))
@@ -56,7 +56,7 @@ TEST_F(HostFunctions, ALogThatCallsBackGetsErrors) {
     {
         test::Subject subject(talking);
         intruder.subject = &subject;
-        api().destroy_device(talking); // refused, which the log is told
+        api().destroy_device(talking); // The refusal goes to the log.
         EXPECT_TRUE(intruder.called);
         EXPECT_EQ(intruder.allowed, "");
         EXPECT_TRUE(test::field_answers(subject.field));
@@ -76,7 +76,7 @@ TEST_F(HostFunctions, AProgressThatCallsBackGetsErrors) {
     const test::AbiScene owner(scene);
     const ovc_mesh mesh = test::field_mesh();
     ASSERT_EQ(api().add_mesh(scene, &mesh, nullptr), OVC_OK);
-    ovc_scene field = std::exchange(subject.field, scene); // on itself
+    ovc_scene field = std::exchange(subject.field, scene); // The subject is the scene itself.
     EXPECT_EQ(api().commit(scene), OVC_OK);
     subject.field = field;
     EXPECT_TRUE(intruder.called);

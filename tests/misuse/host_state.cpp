@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a HostState, read.
+// Reads the parts of a HostState.
 #include "tests/misuse/host_state.h"
 
 #include "gpu/gl/gl.h"
@@ -21,7 +21,7 @@ std::string bytes(const T& value) {
     return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-/// The system fills in a part of a sigset_t only.
+/// Returns a set's members, because the system fills in only a part of a sigset_t.
 std::string members(const sigset_t& set) {
     std::string found;
     for (int signal = 1; signal < NSIG; ++signal)
@@ -72,7 +72,8 @@ void add_egl(HostState& state) {
     state["EGL API"] = bytes(eglQueryAPI());
 }
 
-/// What a renderer binds and sets; a value that a driver does not know leaves the marker.
+/// Adds the state that renderers bind and set. A value that a driver does not know keeps the
+/// marker.
 void add_gl(HostState& state) {
     constexpr GLenum kValues[] = {
         GL_ACTIVE_TEXTURE,
@@ -133,7 +134,8 @@ void add_gl(HostState& state) {
 
 HostState host_state() {
     HostState state;
-    add_thread(state); // first: what follows computes
+    // The thread comes first, because the rest computes.
+    add_thread(state);
     add_process(state);
     add_egl(state);
     if (eglGetCurrentContext() != EGL_NO_CONTEXT)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What belongs to the host of a library, as of now: the thread's floating-point mode and signal
-// mask, the environment, the handlers of signals, EGL's bindings, and the state and pixels of the
-// GL context that is current.
+// Reads the state that belongs to the host of a library: the thread's floating-point mode and
+// signal mask, the environment, the handlers of signals, EGL's bindings, and the state and pixels
+// of the current GL context.
 #pragma once
 
 #include <map>
@@ -9,12 +9,12 @@
 
 namespace ovc::test {
 
-/// Each part by its name, as bytes.
+/// Holds the bytes of each part by its name.
 using HostState = std::map<std::string, std::string>;
 
 HostState host_state();
 
-/// The names of the parts that differ; empty: none do.
+/// Returns the names of the parts that differ, or an empty string.
 std::string difference(const HostState& before, const HostState& after);
 
 } // namespace ovc::test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What belongs to the host is byte for byte the same before and after each function of the table,
-// used or misused: in all floating-point modes, and with the host's own GL context current.
+// Tests that the host's state is the same, byte for byte, before and after a use or misuse of each
+// function of the table, in all floating-point modes and with the host's own GL context current.
 #include "tests/misuse/host_state.h"
 
 #include "gpu/gl/egl_context.h"
@@ -18,7 +18,7 @@ namespace {
 
 using test::api;
 
-/// A mode that a host may run in, by MXCSR and the x87's control word.
+/// A mode that a host may run in: MXCSR and the x87's control word.
 struct FloatMode {
     const char* name;
     uint32_t mxcsr;
@@ -42,13 +42,13 @@ void set(const FloatMode& mode) {
     _mm_setcsr(mode.mxcsr);
 }
 
-/// The function in a mode, between two looks at the host's state.
+/// Calls the function in a mode, and compares the host's state before and after.
 template <class Function>
 void expect_untouched(const FloatMode& mode, const std::string& what, Function&& function) {
     set(mode);
     const uint32_t before_mxcsr = _mm_getcsr();
     const test::HostState before = test::host_state();
-    set(mode); // the look computed
+    set(mode); // host_state() computed and changed flags.
     function();
     const uint32_t after_mxcsr = _mm_getcsr();
     const test::HostState after = test::host_state();
@@ -84,7 +84,7 @@ TEST_F(Host, KeepsItsFloatingPointEnvironmentAndSignals) {
     unsetenv("OVC_MISUSE_TEST");
 }
 
-/// A context of the host's, on the display that the plugin's device has too, in the middle of work.
+/// The host has a context on the same display as the plugin's device, in the middle of work.
 TEST_F(Host, KeepsItsGlContextWithAllThatIsSetInIt) {
     const Result<EglContext> mine = EglContext::create("", {});
     ASSERT_TRUE(mine) << mine.error().message;
@@ -110,7 +110,7 @@ TEST_F(Host, KeepsItsGlContextWithAllThatIsSetInIt) {
     EXPECT_TRUE(mine->alive());
 }
 
-/// Ends all displays of the machine's EGL devices, as a host does that is done with them.
+/// Ends all displays of the machine's EGL devices, as a host that needs them no more does.
 void end_displays() {
     EGLDeviceEXT devices[16];
     EGLint count = 0;
@@ -123,7 +123,7 @@ void end_displays() {
         eglTerminate(display);
 }
 
-/// The plugin's context is gone with the display that it shares with the host.
+/// The plugin's context goes with the display that it shares with the host.
 TEST_F(Host, MayEndTheDisplayThatItShares) {
     const ovc_scene traced = test::make_field(device.get());
     ASSERT_TRUE(test::field_answers(traced));
@@ -149,7 +149,8 @@ TEST_F(Host, MayEndTheDisplayThatItShares) {
     for (const ovc_scene scene : {fresh, traced, idle})
         api().destroy_scene(scene);
     const ovc_scene later = test::make_field(device.get());
-    const bool again = !later; // the first call that needs the device says that it was lost
+    // The first call that needs the device reports that it was lost.
+    const bool again = !later;
     const ovc_scene last = again ? test::make_field(device.get()) : later;
     ASSERT_TRUE(last) << api().last_error(device.get());
     EXPECT_TRUE(test::field_answers(last));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hosts on machines that refuse: threads, address space, libraries, disk. A sentence and a code, or
-// the right answer; never the end of the process.
+// Tests hosts on machines that refuse threads, address space, libraries or disk space. A call ends
+// with a sentence and a code, or with the right answer, and never ends the process.
 #include "gpu/gl/gl_libraries.h"
 #include "tests/run_command.h"
 
@@ -23,7 +23,7 @@ using testing::Not;
 
 namespace fs = std::filesystem;
 
-/// The C99 host in an environment, or after a command of the shell.
+/// Runs the C99 host with variables of the environment or a command of the shell in front.
 test::CommandResult host(const std::string& before) {
     return test::run_shell(before + " " OVC_BINARY_DIR "/bin/c99_host " OVC_BINARY_DIR
                                     "/bin/libovercast.so.1");
@@ -66,7 +66,7 @@ TEST_F(Limits, LittleAddressSpaceIsASentence) {
     for (int mib = 20; mib < 700; mib += 23) {
         const auto run = host("ulimit -v " + std::to_string(mib * 1024) + ";");
         if (run.exit_code == 127 || run.output.find("error while loading") != std::string::npos)
-            continue; // not even the host itself
+            continue; // Not even the host itself starts.
         ASSERT_THAT(run.exit_code, AnyOf(0, 1)) << mib << " MiB: " << run.output;
         EXPECT_THAT(run.output, Not(HasSubstr("internal error"))) << mib << " MiB";
         refused += run.exit_code;
@@ -92,8 +92,8 @@ TEST_F(Limits, MissingLibrariesOfOpenGlAreNamedWithTheirPackage) {
     fs::remove_all(folder);
 }
 
-/// In a process of its own, which has a disk of 64 KiB at `folder`. Returns what body returns, or
-/// -1 where the system does not allow it.
+/// Runs body in a process of its own, which has a disk of 64 KiB at `folder`. Returns the result of
+/// body, or -1 if the system does not allow such a disk.
 template <class Body>
 int on_a_small_disk(const fs::path& folder, Body&& body) {
     fs::create_directories(folder);

@@ -112,7 +112,7 @@ ovc_result use_single_rays(Subject& s) {
     }
     return OVC_OK;
 }
-/// Of intersect1 or occluded1, by what they answer in.
+/// Misuses intersect1 or occluded1, which differ in the type of their answer.
 template <class Answer>
 Misuses misuse_single(Subject& s,
                       ovc_result (*call)(ovc_scene, const ovc_ray*, Answer*, const ovc_query*)) {
@@ -134,12 +134,12 @@ Misuses misuse_occluded1(Subject& s) {
     return misuse_single(s, api().occluded1);
 }
 
-/// A stream's host that pushes a ray into each cell, and counts what is right.
+/// The host of a stream. It pushes a ray into each cell, and counts right answers.
 struct Streamer {
     Subject& subject;
     uint32_t pushed = 0;
     uint32_t right = 0;
-    Misuses (*within)(Subject&, ovc_stream) = nullptr; // asked once, within the stream
+    Misuses (*within)(Subject&, ovc_stream) = nullptr; // called once, within the stream
     Misuses misuses;
     ovc_stream stream = nullptr; // the handle, to be misused later
 
@@ -206,7 +206,8 @@ Misuses misuse_push_within(Subject& s, ovc_stream stream) {
     wrong.argument("struct_size 0", api().push(stream, &ray, &token, 1, 0, &unsized));
     wrong.argument("notes", api().push(stream, &ray, &token, 1, 0, &noted));
     wrong.state("commit within a stream", api().commit(s.field));
-    api().destroy_scene(s.field); // refused: else the stream would wait for itself
+    // This is refused, because the stream would wait for itself.
+    api().destroy_scene(s.field);
     return wrong.found();
 }
 Misuses misuse_push(Subject& s) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loads the plugin, uses it, unloads it, many times over: what the process has must not grow. On
-// one thread: oneTBB 2021.8 keeps 9 KiB of every thread that has run a loop and ended, with and
-// without us. usage: reload_host libovercast.so TIMES
+// Loads, uses and unloads the plugin many times. The resources of the process must not grow. There
+// is only one thread, because oneTBB 2021.8 keeps 9 KiB of every thread that has run a loop and
+// ended, with and without us. usage: reload_host libovercast.so TIMES
 #include "plugin/overcast.h"
 
 #include <cmath>
@@ -40,7 +40,7 @@ void print(int times, const Resources& now) {
                 now.resident_kib, now.threads, now.files, now.mappings);
 }
 
-/// What failed, or null.
+/// Returns the name of the step that failed, or null.
 const char* use(const ovc_api& api) {
     static const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     const ovc_ray ray = {{0.25, 0.25, 1}, 0, {0, 0, -1}, HUGE_VAL};
@@ -59,13 +59,13 @@ const char* use(const ovc_api& api) {
                        api.add_mesh(scene, &mesh, nullptr) == OVC_OK &&
                        api.commit(scene) == OVC_OK &&
                        api.intersect(scene, &ray, 1, &hit, nullptr) == OVC_OK && hit.t == 1;
-    api.commit(nullptr); // leaves a message on this thread
+    api.commit(nullptr); // This leaves a message on this thread.
     api.destroy_scene(scene);
     api.destroy_device(device);
     return right ? nullptr : "a wrong answer";
 }
 
-/// Whether it went well.
+/// Returns whether all went well.
 bool load_and_use(const char* path) {
     void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     const auto get_api =
@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
     }
     const Resources last = resources();
     print(times, last);
-    // The heap moves a little; a kilobyte that is lost each time would show.
+    // The size of the heap varies a little. A kilobyte lost each time would exceed this limit.
     const bool grown = last.resident_kib > settled.resident_kib + times * 9 / 10 ||
                        last.threads > settled.threads || last.files > settled.files ||
                        last.mappings > settled.mappings + 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of scenes: what goes in, what is told.
+// The rows of scenes: meshes, commits, and what is reported.
 #include "tests/misuse/entries.h"
 
 namespace ovc::test {
@@ -100,7 +100,7 @@ ovc_result use_destroy_scene(Subject& s) {
 }
 Misuses misuse_destroy_scene(Subject& s) {
     Wrong wrong(s);
-    ovc_scene scene = new_scene(s).get(); // destroyed at the end of this line
+    ovc_scene scene = new_scene(s).get(); // It is destroyed at the end of this line.
     api().destroy_scene(scene);
     wrong.argument("used after it", api().commit(scene));
     return wrong.found();
@@ -199,11 +199,11 @@ Misuses misuse_purge(Subject& s) {
     return wrong.found();
 }
 
-/// Moves the field into other cells and back, at once or by its corners.
+/// Moves the field into other cells and back, by `update`.
 ovc_result use_update(Subject& s, ovc_result (*update)(ovc_scene scene, bool there)) {
     const AbiScene scene(make_field(s.device));
     ovc_hit hit;
-    const ovc_ray ray = into_cell(kCells, 1); // beside the field, until it is moved
+    const ovc_ray ray = into_cell(kCells, 1); // The field is not there until it is moved.
     if (!scene || update(scene.get(), true) != OVC_OK ||
         api().intersect(scene.get(), &ray, 1, &hit, nullptr) != OVC_ERROR_INVALID_STATE ||
         api().commit(scene.get()) != OVC_OK ||
@@ -240,7 +240,7 @@ ovc_result use_update_mesh(Subject& s) {
         api().commit(scene.get()) != OVC_OK)
         return OVC_ERROR_INTERNAL;
     for (size_t i = 0; i < 3; ++i)
-        positions[3 * i + 2] = -1; // the first triangle only
+        positions[3 * i + 2] = -1; // This moves the first triangle only.
     mesh.vertex_count = 3;
     if (api().update_mesh(scene.get(), 0, &mesh, 0) != OVC_OK ||
         api().commit(scene.get()) != OVC_OK ||

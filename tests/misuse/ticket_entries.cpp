@@ -5,7 +5,7 @@
 namespace ovc::test {
 namespace {
 
-/// A ray into each cell, submitted in both ways.
+/// Submits a ray into each cell, in both ways.
 struct Submitted {
     explicit Submitted(Subject& s) {
         for (uint32_t cell = 0; cell < kCells; ++cell)
@@ -76,7 +76,7 @@ Misuses misuse_submit_occluded(Subject& s) {
     return wrong.found();
 }
 
-/// A ticket that is released already.
+/// Returns a ticket that is released already.
 ovc_ticket late(Subject& s) {
     return Submitted(s).tickets[0];
 }
@@ -122,7 +122,7 @@ Misuses misuse_cancel(Subject& s) {
     return wrong.found();
 }
 
-/// Twice, and NULL: nothing to do.
+/// Releases a ticket twice, and NULL. Both do nothing.
 ovc_result use_release(Subject& s) {
     api().release(nullptr);
     api().release(late(s));

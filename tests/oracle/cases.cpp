@@ -27,7 +27,7 @@ ovc_ray ray_of(const Corner& org, const Corner& dir) {
     return {{org[0], org[1], org[2]}, 0, {dir[0], dir[1], dir[2]}, kInfinity};
 }
 
-/// At a vertex, an edge, the inside of a triangle, or near one of these.
+/// Returns a point at a vertex, on an edge, inside a triangle, or near one of these.
 Corner target(Random& random, std::span<const Triangle> triangles) {
     const auto& c = triangles[random.below(triangles.size())].corners;
     const size_t i = random.below(3);
@@ -54,7 +54,7 @@ Corner center(std::span<const Triangle> triangles) {
     return sum;
 }
 
-/// The largest coordinate, seen from there.
+/// Returns the largest absolute coordinate relative to `from`.
 double reach(std::span<const Triangle> triangles, const Corner& from) {
     double most = 0;
     for (const Triangle& t : triangles)
@@ -64,14 +64,15 @@ double reach(std::span<const Triangle> triangles, const Corner& from) {
     return most;
 }
 
-/// From a few sizes of the scene away.
+/// Returns a ray that comes from a few sizes of the scene away.
 ovc_ray aimed(Random& random, std::span<const Triangle> triangles) {
     const Corner middle = center(triangles);
     const Corner org = middle + random.point(3 * reach(triangles, middle));
     return ray_of(org, target(random, triangles) - org);
 }
 
-/// With ends at hits, or a rounding beside them, zeros of either sign, and starts on triangles.
+/// Returns a ray with ends at hits or one rounding beside them, with zeros of either sign, or with
+/// an origin on a triangle.
 ovc_ray with_ends(Random& random, std::span<const Triangle> triangles) {
     ovc_ray ray = aimed(random, triangles);
     const double ends[] = {
@@ -81,7 +82,7 @@ ovc_ray with_ends(Random& random, std::span<const Triangle> triangles) {
     ray.t_max = random.below(3) ? kInfinity : ends[random.below(std::size(ends))];
     if (ray.t_max < ray.t_min)
         std::swap(ray.t_min, ray.t_max);
-    if (random.below(3) == 0) { // begins at its target
+    if (random.below(3) == 0) { // The ray begins at its target.
         const Corner on = target(random, triangles);
         std::copy(on.begin(), on.end(), ray.org);
     }
@@ -93,7 +94,7 @@ ovc_ray with_ends(Random& random, std::span<const Triangle> triangles) {
     return ray;
 }
 
-/// With components that are tiny beside the others, denormals among them.
+/// Returns a ray with components that are tiny beside the others, some of them denormal.
 ovc_ray with_tiny_parts(Random& random, std::span<const Triangle> triangles) {
     ovc_ray ray = aimed(random, triangles);
     const double tiny[] = {5e-324, 1e-310, 1e-300, 1e-160, 1e-30};
@@ -117,7 +118,8 @@ ovc_ray from_afar(Random& random, std::span<const Triangle> triangles) {
     Corner away = random.point();
     for (double& x : away)
         if (random.below(2))
-            x = 0; // from there the coordinate is the target's, to the last bit
+            // The origin then has the target's coordinate, to the last bit.
+            x = 0;
     if (away == Corner{})
         away[random.below(3)] = 1;
     ovc_ray ray = ray_of(at + far * away, -1.0 * away);
@@ -162,9 +164,9 @@ Corner rotated(const std::array<Corner, 3>& rows, const Corner& p) {
     return q;
 }
 
-/// A box as CAD programs write it: the triangles of a face meet those of the next in T-junctions,
-/// which triangles with corners on a line close; then rotated, so that they are on a line only to a
-/// rounding.
+/// Makes a box as CAD programs write it: the triangles of a face meet those of the next in
+/// T-junctions, which triangles with corners on a line close. A rotation then leaves them on a line
+/// only up to a rounding.
 std::vector<Mesh> collinear(Random& random) {
     Mesh mesh;
     std::array<Corner, 3> rows;
@@ -186,7 +188,7 @@ std::vector<Mesh> collinear(Random& random) {
             put(at(-1, -1), at(1, -1), at(1, 1));
             put(at(-1, -1), at(1, 1), at(-1, 1));
             Corner last = at(-1, -1);
-            for (int i = 1; i <= 4; ++i) { // slivers along two sides
+            for (int i = 1; i <= 4; ++i) { // Slivers lie along two sides.
                 const double x = i == 4 ? 1 : random(-1 + 0.4 * i, -0.8 + 0.4 * i);
                 put(last, at(x, -1), at(1, -1));
                 put(at(-1, x), at(x, 1), at(-1, 1));
@@ -229,7 +231,7 @@ std::vector<Mesh> mixed_sizes(Random& random) {
     return {mesh};
 }
 
-/// Overlapping in planes, and each of them again in another mesh.
+/// Makes triangles that overlap in planes, and each of them again in another mesh.
 std::vector<Mesh> coplanar(Random& random) {
     Mesh mesh;
     for (int plane = 0; plane < 3; ++plane) {
@@ -244,7 +246,7 @@ std::vector<Mesh> coplanar(Random& random) {
     return {mesh, again};
 }
 
-/// Around a hub.
+/// Makes triangles around a hub.
 std::vector<Mesh> fan(Random& random) {
     Mesh mesh{.in_floats = true};
     const Corner hub = random.lattice();
@@ -258,7 +260,7 @@ std::vector<Mesh> fan(Random& random) {
     return {mesh};
 }
 
-/// The same a few roundings apart.
+/// Makes copies of a triangle that are a few roundings apart.
 std::vector<Mesh> copies(Random& random) {
     Mesh mesh;
     std::array<Corner, 3> corners{random.point(), random.point(), random.point()};
@@ -282,19 +284,20 @@ std::vector<Mesh> instances(Random& random) {
             const bool diagonal = j % 5 == 0 && j < 11, shift = j % 4 == 3;
             m[j] = shift ? random(-1, 1) : diagonal || kind > 1 ? random(-1, 1) : 0;
         }
-        if (kind == 1) // very uneven
+        if (kind == 1) // This transform is very uneven.
             m[0] *= 1e4;
-        if (kind == 2) // nearly flat
+        if (kind == 2) // This transform is nearly flat.
             for (size_t j = 0; j < 4; ++j)
                 m[j] = m[4 + j] + (j == 3 ? 0 : random(-1e-15, 1e-15));
-        if (kind == 3) // exactly where the mesh is
+        if (kind == 3) // The instance is exactly where the mesh is.
             m = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
         meshes[0].instances.push_back(m);
     }
     return meshes;
 }
 
-/// Large enough for their pages to be shared, some in the same place, with duplicates in the mesh.
+/// Makes instances with meshes large enough for shared pages, some in the same place, and with
+/// duplicates in the mesh.
 std::vector<Mesh> shared_instances(Random& random) {
     Mesh mesh;
     for (int i = 0; i < 100; ++i) {
@@ -302,7 +305,8 @@ std::vector<Mesh> shared_instances(Random& random) {
         for (int k = 0; k < 3; ++k)
             mesh.corners.push_back(at + 0.5 * random.lattice());
     }
-    for (size_t i = 0; i < 90; ++i) // each other triangle again, wound the other way
+    // Every other triangle comes again, wound the other way.
+    for (size_t i = 0; i < 90; ++i)
         mesh.corners.push_back(mesh.corners[6 * (i / 3) + 2 - i % 3]);
     for (int i = 0; i < 8; ++i) {
         const double shift = double(random.below(2));

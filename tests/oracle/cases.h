@@ -23,7 +23,7 @@ public:
     Corner point(double size = 1) {
         return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)};
     }
-    /// Few bits, so that exact coincidences happen.
+    /// Returns a point whose coordinates have few bits, so that exact coincidences happen.
     Corner lattice() {
         return {double(int(below(17)) - 8) / 4, double(int(below(17)) - 8) / 4,
                 double(int(below(17)) - 8) / 4};
@@ -33,17 +33,18 @@ private:
     std::mt19937_64 engine_;
 };
 
-/// A mesh of corners, three a triangle, and where its instances are.
+/// A mesh with three corners for each triangle, and the transforms of its instances.
 struct Mesh {
     std::vector<Corner> corners;
-    bool in_floats = false; // what the ABI is given; the corners are floats then
-    std::vector<std::array<double, 12>> instances; // besides the mesh itself
+    /// The ABI gets floats, which hold the corners exactly.
+    bool in_floats = false;
+    std::vector<std::array<double, 12>> instances; // further instances beside the mesh itself
 };
 
 struct Case {
     const char* name;
     std::vector<Mesh> (*meshes)(Random&);
-    /// A ray at the triangles, which are where their instances are.
+    /// Returns a ray at the triangles, which are where their instances are.
     ovc_ray (*ray)(Random&, std::span<const Triangle>);
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cramer's rule for org + t dir = a + u ab + v ac, in integers after a scaling by powers of two.
+// Applies Cramer's rule to org + t dir = a + u ab + v ac, in integers after scaling by powers of
+// two.
 #include "tests/oracle/exact_oracle.h"
 
 #include <algorithm>
@@ -9,11 +10,12 @@
 namespace ovc::oracle {
 namespace {
 
-using Long = long double; // 64 bits of mantissa on x86: a filter that leaves little to integers
+// On x86, this has 64 bits of mantissa. A filter with it leaves few rays to integers.
+using Long = long double;
 using IntegerVec = std::array<Integer, 3>;
 using LongVec = std::array<Long, 3>;
 
-/// The exponent of the lowest bit that is set; a large number for 0.
+/// Returns the exponent of the lowest bit that is set, or a large number for 0.
 int lowest_bit(double x) {
     if (x == 0)
         return std::numeric_limits<int>::max() / 2;
@@ -27,7 +29,7 @@ int lowest_bit(double x) {
     return exponent - bits;
 }
 
-/// x / 2^bit, which is whole.
+/// Returns x / 2^bit, which is an integer.
 Integer whole(double x, int bit) {
     if (x == 0)
         return 0;
@@ -64,20 +66,21 @@ LongVec longs(const double* v) {
     return {v[0], v[1], v[2]};
 }
 
-/// numerator / denominator 2^exponent, to the nearest double, ties to even. denominator > 0.
+/// Returns numerator / denominator 2^exponent as the nearest double, ties to even. denominator > 0.
 double rounded(const Integer& numerator, const Integer& denominator, int exponent) {
     if (numerator == 0)
         return 0;
     const bool negative = numerator < 0;
     const Integer n = abs(numerator);
-    // A quotient of 60 bits or more, and whether anything is left behind it.
+    // The quotient has 60 bits or more; `rest` tells whether anything is left behind it.
     int shift = 60 + int(msb(denominator)) - int(msb(n));
     shift = std::max(shift, 0);
     Integer quotient, rest;
     divide_qr(Integer(n << shift), denominator, quotient, rest);
-    int bit = exponent - shift; // of the quotient's last place
+    int bit = exponent - shift; // the exponent of the quotient's last place
     const int keep =
-        std::max(int(msb(quotient)) - 52, -1074 - bit); // bits that do not fit a double
+        // These bits do not fit a double.
+        std::max(int(msb(quotient)) - 52, -1074 - bit);
     if (keep > 0) {
         const Integer half = Integer(1) << (keep - 1);
         const Integer low = quotient & ((Integer(1) << keep) - 1);
@@ -91,8 +94,8 @@ double rounded(const Integer& numerator, const Integer& denominator, int exponen
     return negative ? -value : value;
 }
 
-/// Whether a triangle certainly is not hit, or not before `limit`; all bounds are wide. t_bound:
-/// receives a t before which it certainly is hit, or infinity.
+/// Returns whether a triangle certainly is not hit, or not before `limit`. All bounds are wide.
+/// t_bound: receives a t before which it certainly is hit, or infinity.
 bool certainly_out(const ovc_ray& ray, const Triangle& t, Long limit, Long& t_bound) {
     constexpr Long kError = 0x1p-56L;
     const LongVec a = longs(t.corners[0].data());
@@ -113,11 +116,11 @@ bool certainly_out(const ovc_ray& ray, const Triangle& t, Long limit, Long& t_bo
     const Long depth_error = kError * dot(size(ac), q_size);
     t_bound = std::numeric_limits<Long>::infinity();
     if (!(det > 4 * det_error))
-        return false; // its sign is not known
+        return false; // Its sign is not known.
     if (u < -u_error || v < -v_error || u + v - det > u_error + v_error + det_error)
         return true;
     if (!(depth > 2 * depth_error))
-        return false; // it may lie behind
+        return false; // It may lie behind.
     const Long least = (depth - depth_error) / (det + det_error);
     const Long most = (depth + depth_error) / (det - det_error);
     if (least > limit * (1 + 1e-15L))
@@ -128,7 +131,7 @@ bool certainly_out(const ovc_ray& ray, const Triangle& t, Long limit, Long& t_bo
     return false;
 }
 
-/// The sign of t / det 2^exponent - end.
+/// Returns the sign of t / det 2^exponent - end.
 int compare(const Integer& t, const Integer& det, int exponent, double end) {
     const int bit = std::min(exponent, end == 0 ? exponent : lowest_bit(end));
     return Integer(t << (exponent - bit)).compare(Integer(det * whole(end, bit)));
@@ -153,7 +156,7 @@ struct Oracle::ExactHit {
     }
 };
 
-/// A ray in whole numbers.
+/// A ray in integers.
 struct Oracle::ExactRay {
     ExactRay(const ovc_ray& ray, int lowest_bit_of_corners)
         : length_bit(lowest_bit_of_corners), t_min(ray.t_min) {
@@ -162,8 +165,8 @@ struct Oracle::ExactRay {
             length_bit = std::min(length_bit, lowest_bit(ray.org[axis]));
             dir_bit = std::min(dir_bit, lowest_bit(ray.dir[axis]));
         }
-        exponent = length_bit - dir_bit; // t counts in lengths by directions
-        // No hit is told beyond the largest double.
+        exponent = length_bit - dir_bit; // t counts lengths in units of directions.
+        // No hit is reported beyond the largest double.
         t_max = std::min(ray.t_max, std::numeric_limits<double>::max());
         org = wholes(ray.org, length_bit);
         dir = wholes(ray.dir, dir_bit);

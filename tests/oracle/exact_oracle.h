@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nearest hit by testing every triangle in whole numbers, which Boost multiplies. Shares no
-// code with the library: what the C ABI answers is held against it.
+// Finds the nearest hit by testing every triangle in integers, which Boost multiplies. It shares no
+// code with the library, so the answers of the C ABI are compared with it.
 #pragma once
 
 #include "plugin/overcast.h"
@@ -24,15 +24,15 @@ struct Triangle {
 
 class Oracle {
 public:
-    /// Corners are finite. Triangles without area are left out.
+    /// Corners must be finite. Triangles without area are left out.
     explicit Oracle(std::vector<Triangle> triangles);
 
-    /// The answer that overcast.h promises: t, u and v are the exact values, each rounded to the
-    /// nearest double. skip: a triangle that the ray does not see.
+    /// Returns the answer that overcast.h promises: t, u and v are the exact values, each rounded
+    /// to the nearest double. skip: a triangle that the ray does not see.
     ovc_hit nearest(const ovc_ray& ray, ovc_triangle skip = {OVC_NONE, OVC_NONE}) const;
-    /// All hits of the ray, in the order of exact t, mesh and prim, rounded likewise.
+    /// Returns all hits of the ray in the order of exact t, mesh and prim, rounded likewise.
     std::vector<ovc_hit> all_hits(const ovc_ray& ray) const;
-    /// The first hit behind the place `after`, as ovc_query.after says.
+    /// Returns the first hit behind the place `after`, as ovc_query.after defines it.
     ovc_hit next(const ovc_ray& ray, const ovc_hit& after) const;
 
     size_t triangle_count() const { return triangles_.size(); }
@@ -45,7 +45,7 @@ private:
     std::optional<ExactHit> meet(const ExactRay& ray, const Triangle& triangle) const;
 
     std::vector<Triangle> triangles_;
-    int lowest_bit_ = 0; // all corners are multiples of 2^lowest_bit_
+    int lowest_bit_ = 0; // All corners are multiples of 2^lowest_bit_.
     mutable uint64_t exact_tests_ = 0;
 };
 

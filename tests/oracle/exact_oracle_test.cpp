@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The C ABI against the oracle: the right triangle, and t, u and v to the last bit, of rays in
-// batches and one by one, over cases that are hard. OVC_ORACLE_RAYS says how many rays; the gate
-// asks few.
+// Compares the C ABI with the oracle: it must find the right triangle, and t, u and v to the last
+// bit, for rays in batches and one by one, over hard cases. OVC_ORACLE_RAYS sets the number of
+// rays; by default there are few.
 #include "tests/abi/abi_scene.h"
 #include "tests/oracle/cases.h"
 
@@ -48,7 +48,7 @@ protected:
         return number;
     }
 
-    /// What overcast.h says an instance's corner is.
+    /// Returns an instance's corner as overcast.h defines it.
     static Corner placed(const std::array<double, 12>& m, const Corner& p) {
         Corner q;
         for (size_t row = 0; row < 3; ++row) {
@@ -65,10 +65,10 @@ protected:
                                  {number, prim}});
     }
 
-    /// The mask of a mesh or an instance by its number.
+    /// Returns the mask of a mesh or an instance by its number.
     static uint32_t mask_of(uint32_t number) { return number % 4; }
 
-    /// The meshes in a scene of its own that is built in one of several ways, and their triangles.
+    /// Makes a scene of the meshes, built in one of several ways. Returns it and its triangles.
     test::AbiScene make(const std::vector<Mesh>& meshes, Random& random,
                         std::vector<Triangle>& triangles) const {
         auto config = sized<ovc_scene_config>();
@@ -173,13 +173,13 @@ TEST_F(ExactOracle, FindsNoAnswerThatIsOffByABit) {
                 (unsigned long long)(hits));
 }
 
-/// A hit of the ray, or a place before, behind or between its hits that is none.
+/// Returns a hit of the ray, or a place before, behind or between its hits that is none.
 ovc_hit some_place(Random& random, const std::vector<ovc_hit>& hits, const Triangle& triangle) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     ovc_hit place = hits.empty() ? ovc_hit{1, 0, 0, 0, 0} : hits[random.below(hits.size())];
     switch (random.below(6)) {
     case 0:
-        place.mesh = triangle.id.mesh; // which the ray may meet elsewhere
+        place.mesh = triangle.id.mesh; // The ray may meet it elsewhere.
         place.prim = triangle.id.prim;
         return place;
     case 1:
@@ -200,7 +200,7 @@ class ExactOrder : public ExactOracle {
 protected:
     static constexpr size_t kRays = 100;
 
-    /// Asks for one hit behind the other, in place, until all rays miss.
+    /// Asks for one hit after the other, in place, until all rays miss.
     void expect_all_hits(ovc_scene scene, const std::vector<std::vector<ovc_hit>>& expected) {
         std::vector<ovc_hit> hits(kRays, {-std::numeric_limits<double>::infinity(), 0, 0, 0, 0});
         auto query = sized<ovc_query>();
@@ -268,7 +268,7 @@ protected:
     std::vector<ovc_ray> rays;
 };
 
-/// Lets some hits of each ray pass, and notes what it is asked.
+/// A filter that lets some hits of each ray pass, and records the hits that it is asked about.
 class NotedFilter {
 public:
     explicit NotedFilter(std::vector<std::set<std::pair<uint32_t, uint32_t>>>& asked)
@@ -296,7 +296,7 @@ private:
     bool asked_twice_ = false;
 };
 
-/// The first hit, or all hits, of rays with masks and a filter, in every form of a call.
+/// Tests the first hit, or all hits, of rays with masks and a filter, in every form of a call.
 class ExactSieves : public ExactOrder {
 protected:
     void expect_counting_hits(ovc_scene scene, Random& random,
@@ -381,7 +381,7 @@ protected:
         });
     }
 
-    /// The hits of the ray that its mask sees.
+    /// Returns the hits of the ray that its mask sees.
     std::vector<ovc_hit> all_seen(size_t i) const {
         std::vector<ovc_hit> seen;
         for (const ovc_hit& hit : all_hits[i])
@@ -390,7 +390,7 @@ protected:
         return seen;
     }
 
-    /// Every fourth ray without masks and filter, all of them for both kinds of answers.
+    /// Pushes each ray for both kinds of answers, every fourth one without masks and filter.
     void expect_in_a_stream(ovc_scene scene) {
         struct Host {
             const ExactSieves& test;
@@ -401,7 +401,7 @@ protected:
         };
         with_filter([&](ovc_query& query) {
             Host host{*this, query};
-            host.sieved.masks = nullptr; // as the rays come one by one
+            host.sieved.masks = nullptr; // Rays come one by one.
             auto calls = sized<ovc_stream_host>();
             calls.user = &host;
             calls.more = [](void* user, ovc_stream stream, size_t) {

@@ -13,9 +13,9 @@ inline constexpr double kHeadPlane = 0.02;
 void add_head(std::vector<Limb>& out);
 
 // body.cpp
-/// Streaks and roughness, for hair and plates.
+/// Returns the height of streaks and roughness, for hair and plates.
 double strand_skin(double along, double turns, const dvec3& at);
-/// All parts, the body first.
+/// Returns all parts, the body first.
 std::vector<Limb> anatomy();
 
 } // namespace ovc::dragons

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limb: a part of a creature: a tube round a curve, with a skin.
+// A limb is a part of a creature: a tube around a curve, with a skin.
 #pragma once
 
 #include "testscenes/tube.h"
@@ -8,7 +8,7 @@
 
 namespace ovc::dragons {
 
-/// A place of the curve, and half the width of the limb there, sideways and upwards.
+/// A place of the curve, with half the width of the limb there, sideways and upwards.
 struct Joint {
     dvec3 at;
     double across, up;
@@ -21,26 +21,27 @@ inline Joint operator*(double s, const Joint& a) {
     return {s * a.at, s * a.across, s * a.up};
 }
 
-/// How far the skin stands out at a share of the length and round the limb (0: its right side, a
-/// quarter: its back), where `at` is the place without skin.
+/// Returns how far the skin stands out. along: the share of the limb's length. turns: the way
+/// around the limb, 0 at its right side, a quarter at its back. at: the place without skin.
 using Skin = double (*)(double along, double turns, const dvec3& at);
 
 struct Limb {
     std::vector<Joint> joints;
-    dvec3 back{0, 1, 0}; // which side is up at the first joint; not along the curve
+    /// The direction that is up at the first joint. It must not be along the curve.
+    dvec3 back{0, 1, 0};
     Skin skin = nullptr;
 };
 
-/// The curve of a limb, with axes that turn with it and never about it.
+/// A place of the limb's curve. Its axes turn with the curve and never about it.
 struct Station {
     Joint joint;
     dvec3 ahead, side, back;
 };
 
-/// `count` stations, evenly from the first joint to the last, count > 1.
+/// Returns `count` stations, evenly from the first joint to the last. count > 1.
 std::vector<Station> stations(const Limb& limb, uint32_t count);
 
-/// A measure of how many triangles the limb deserves, and of its slenderness.
+/// Measures how many triangles the limb needs, and how slender it is.
 struct Extent {
     double area, length_per_girth;
 };

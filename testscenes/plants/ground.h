@@ -9,14 +9,14 @@
 
 namespace ovc::plants {
 
-/// What covers a piece of ground; each is a mesh of its own.
+/// The covers of the ground. Each is a mesh of its own.
 enum class Cover : uint8_t { Mud, Sand, Meadow, DryMeadow, ForestFloor, Stone, FarWood, FarRidge };
 inline constexpr size_t kCovers = 8;
 
-/// cells x cells squares of two triangles, finer towards the viewer, sorted by cover.
+/// Makes cells x cells squares of two triangles, finer towards the viewer, sorted by cover.
 std::array<Corners, kCovers> make_ground(uint32_t cells);
 
-/// The water, flat at y = 0, also below the land.
+/// Makes the water, flat at y = 0, also below the land.
 Corners make_water();
 
 } // namespace ovc::plants

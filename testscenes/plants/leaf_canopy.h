@@ -11,10 +11,11 @@ struct LeafCanopy {
 
     uint32_t leaves = 100'000;
     Leaves as = Leaves::CutOut;
-    uint32_t texels = 256; // a side of the picture
+    uint32_t texels = 256; // the side of the picture
 };
 
-/// Leaf l is the triangles from 2 l on of mesh 0, or from 22 l on where the leaves are modelled.
+/// Makes the canopy. The triangles of leaf l begin with 2 l of mesh 0, or with 22 l if the leaves
+/// are modelled.
 Scene make_leaf_canopy(const LeafCanopy& canopy);
 
 } // namespace ovc

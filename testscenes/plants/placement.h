@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the plants of the plants scene stand: by height, slope and distance to the water, densest
-// near the viewer.
+// Places the plants of the plants scene by height, slope and distance to the water, densest near
+// the viewer.
 #pragma once
 
 #include "testscenes/plants/species.h"
@@ -18,7 +18,7 @@ struct Plant {
     dvec3 at;
 };
 
-/// All plants; `density` 1 is the demo scene's, 2 has twice as many plants.
+/// Returns all plants. With `density` 1 they are the demo scene's, with 2 there are twice as many.
 std::vector<Plant> place_plants(double density);
 
 } // namespace ovc::plants

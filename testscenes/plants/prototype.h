@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prototype: one plant (or rock) of a species, rooted at (0, 0, 0) and growing along +y, to be
+// A prototype is one plant (or rock) of a species, rooted at (0, 0, 0) and growing along +y. It is
 // placed many times.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace ovc::plants {
 
-/// The parts of a plant that differ in colour. Tinted is what varies from plant to plant of a
+/// The parts of a plant that differ in colour. Only the tinted part varies among plants of a
 /// species.
 enum class Part : uint8_t { Tinted, Wood, Accent };
 inline constexpr size_t kParts = 3;
@@ -23,7 +23,8 @@ struct Prototype {
     const Corners& operator[](Part part) const { return parts[size_t(part)]; }
 };
 
-/// All makers: `detail` 1 is for the nearest plants, less is coarser; the size stays the same.
+/// Makes a prototype. With `detail` 1 it is for the nearest plants. Less detail makes it coarser at
+/// the same size.
 using Maker = Prototype (*)(Random random, double detail);
 
 // tree.cpp
@@ -42,11 +43,11 @@ Prototype make_lily(Random random, double detail);
 // rock.cpp
 Prototype make_rock(Random random, double detail);
 
-/// A leaf of two triangles, folded along its middle: from `base` along `along` (its length),
-/// `normal` its upper side.
+/// Adds a leaf of two triangles, folded along its middle. It goes from `base` along `along`, which
+/// is as long as the leaf. `normal` points up from its upper side.
 void add_leaf(Corners& out, dvec3 base, dvec3 along, dvec3 normal, double width);
 
-/// How many of `count` at full detail remain, at least `least`.
+/// Returns how many of `count` at full detail remain, at least `least`.
 uint32_t scaled(double count, double detail, uint32_t least);
 
 } // namespace ovc::plants

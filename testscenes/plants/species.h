@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Species: which plants grow in the plants scene, their colours and how they are made.
+// The species of the plants scene, with their colours and makers.
 #pragma once
 
 #include "testscenes/plants/prototype.h"
@@ -24,18 +24,18 @@ enum class Kind : uint8_t {
     Rock
 };
 
-/// Linear colours. A plant's tint is the number of one of `tints`.
+/// Colours are linear. A plant's tint is the number of one of `tints`.
 struct Species {
     const char* name;
     Maker make;
-    uint32_t variants;    // different prototypes
-    double fine_distance; // within it the full detail is worth its triangles; metres
+    uint32_t variants;    // the number of different prototypes
+    double fine_distance; // Full detail is worth its triangles within so many metres.
     vec3 wood;
     vec3 accent;
     std::span<const vec3> tints;
 };
 
-/// By Kind.
+/// Returns the species in the order of Kind.
 std::span<const Species> species();
 
 } // namespace ovc::plants

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan of the plant: a hall of storeys, each of bays; what stands where. Metres; the hall's
-// corner is at (0, 0, 0), x runs along it, y up.
+// The plan of the plant: a hall of storeys, each of bays, and the things in them. Units are metres.
+// The hall's corner is at (0, 0, 0), x runs along it, and y is up.
 #pragma once
 
 #include "testscenes/powerplant/parts.h"
@@ -19,7 +19,8 @@ struct Plan {
     double length() const { return kBay * bays_x; }
     double depth() const { return kBay * bays_z; }
     double height() const { return kStorey * storeys; }
-    /// The row of bays kept free to walk along, and the bay that is open through all storeys.
+    /// The aisle is the row of bays kept free to walk along. The shaft is the bay that is open
+    /// through all storeys.
     uint32_t aisle() const { return bays_z / 2; }
     uint32_t shaft() const { return bays_x / 2; }
     /// The walls that divide a storey into three rooms stand before these columns of bays.
@@ -27,7 +28,7 @@ struct Plan {
     uint32_t second_wall() const { return bays_x - bays_x / 3; }
 };
 
-/// A plan for about so many triangles.
+/// Returns a plan for about so many triangles.
 Plan plan_for(uint64_t triangles);
 
 struct Bay {
@@ -43,11 +44,11 @@ void add_structure(Works& works, const Plan& plan, const Bay& bay);
 void add_pipe_rack(Works& works, const Plan& plan, uint32_t storey, uint32_t row);
 void add_cable_trays(Works& works, const Bay& bay, Random& random);
 void add_risers(Works& works, const Bay& bay, Random& random);
-// machines.cpp: what a bay is there for
+// machines.cpp: the machines of a bay
 void add_machines(Works& works, const Bay& bay, Random& random);
-// yard.cpp: what stands outside
+// yard.cpp: everything outside of the hall
 void add_yard(Works& works, const Plan& plan);
-/// A heap of coal of exactly so many triangles, even and at least kMinHeap.
+/// Adds a heap of coal of exactly so many triangles, which are even and at least kMinHeap.
 inline constexpr uint64_t kMinHeap = 2000;
 void add_coal_heap(Works& works, const Plan& plan, uint64_t triangles);
 
