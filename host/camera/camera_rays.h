@@ -4,7 +4,7 @@
 #pragma once
 
 #include "host/camera/camera.h"
-#include "host/render/film.h"
+#include "host/film/film.h"
 #include "host/shade/integrator.h"
 
 #include <cstdint>

@@ -6,8 +6,8 @@
 #include "core/scene.h"
 #include "host/backend/backend.h"
 #include "host/camera/camera.h"
+#include "host/film/film.h"
 #include "host/render/antialias.h"
-#include "host/render/film.h"
 #include "host/shade/integrator.h"
 
 #include <cstddef>

@@ -7,7 +7,7 @@
 #include "core/ray.h"
 #include "core/vec.h"
 #include "host/backend/ray_list.h"
-#include "host/render/film.h"
+#include "host/film/film.h"
 
 #include <cstdint>
 #include <span>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests that the film's sums do not depend on their order, and when a pixel is done.
-#include "host/render/film.h"
+#include "host/film/film.h"
 
 #include "core/system/parallel.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests that an interrupted picture comes back to the bit, or is refused.
-#include "host/render/unfinished.h"
+#include "host/film/unfinished.h"
 
 #include "importers/test_files.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light is summed in fixed point, because a sum of whole numbers does not depend on their order.
-#include "host/render/film.h"
+#include "host/film/film.h"
 
 #include "core/system/parallel.h"
 

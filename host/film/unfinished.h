@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/result.h"
-#include "host/render/film.h"
+#include "host/film/film.h"
 
 #include <cstdint>
 #include <filesystem>

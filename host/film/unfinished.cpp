@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An unfinished film is an archive of the pixels that are done and of the light that they got.
-#include "host/render/unfinished.h"
+#include "host/film/unfinished.h"
 
 #include "core/file/archive.h"
 #include "core/file/mapped_file.h"
