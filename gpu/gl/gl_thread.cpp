@@ -111,6 +111,9 @@ void GlThread::forget_if_dead(GlState& state) {
 
 void GlThread::serve() {
     name_device_thread();
+    std::optional<LoopThreads::Scope> loops;
+    if (limits_.loops)
+        loops.emplace(*limits_.loops);
     if (limits_.threads > 0)
         keep_to_cores(limits_.threads); // as do the threads that the driver starts from here
     Result<EglContext> context = create_context(device_, log_);

@@ -3,6 +3,7 @@
 // and threads alone.
 #pragma once
 
+#include "core/system/parallel.h"
 #include "core/system/turn.h"
 #include "gpu/budget/shared_budget.h"
 #include "gpu/gl/debug_output.h"
@@ -25,6 +26,7 @@ namespace ovc {
 struct DeviceLimits {
     uint64_t gpu_memory_bytes = 0; // of all scenes together; 0: each has a budget of its own
     uint32_t threads = 0;          // the cores that a software renderer may use; 0: all
+    LoopThreads* loops = nullptr;  // of the device; outlives it. Null: those of the process
 };
 
 /// The state that lives on the thread: the context, and the programs compiled in it, which are

@@ -156,7 +156,7 @@ ovc_result create_device(const ovc_device_config* given, ovc_device* device) {
         start_threads();
         Result<std::unique_ptr<GlThread>> gl =
             GlThread::start(config.name ? config.name : "", created->log,
-                            {config.gpu_memory_bytes, config.threads});
+                            {config.gpu_memory_bytes, config.threads, &created->loops});
         if (!gl)
             throw no_device_for(gl.error());
         if (const auto plan = plan_memory((*gl)->info().default_budget_bytes(), (*gl)->info());
