@@ -135,7 +135,7 @@ Result<Use> Share::begin(const std::function<bool()>& goes_on) {
             budget_.close(*this); // those that wait hold nothing, or two might wait for each other
         if (is_inside)
             budget_.waiting_.insert(me);
-        const bool in_vain = budget_.nobody_works();
+        const bool in_vain = is_inside && budget_.nobody_works();
         if (!in_vain)
             budget_.changed_.wait_for(lock, std::chrono::milliseconds(20));
         budget_.waiting_.erase(me);
