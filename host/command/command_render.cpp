@@ -280,14 +280,14 @@ static Result<std::vector<Shot>> understand_frames(const RenderWords& words) {
     std::vector<Shot> shots;
     if (words.frames.empty() && words.camera_path.empty())
         return shots;
-    const Result<NamedPath> path = choose_path(words);
-    if (!path)
-        return path.error();
-    const bool has_cameras = !path->cameras.empty();
+    const bool has_cameras = !words.camera_path.empty() || !words.scene.may_move();
     // CLI11's excludes() would list the two in the help in an order that changes from run to run.
     if (has_cameras && !words.camera.empty())
         return Error{fmt::format("--camera and {} cannot be given together",
                                  words.frames.empty() ? "--camera-path" : "--frames")};
+    const Result<NamedPath> path = choose_path(words);
+    if (!path)
+        return path.error();
     const uint32_t frames = has_cameras ? uint32_t(path->cameras.size()) : kMaxFrames;
     FrameRange range{0, frames - 1, 1};
     if (!words.frames.empty()) {
