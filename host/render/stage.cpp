@@ -33,7 +33,9 @@ Result<Done> Stage::go_to(const Moment& moment) {
     const auto moved = moved_meshes(scene_.soup, next->soup);
     if (moved) {
         move_meshes(scene_.soup, next->soup, *moved);
-        next->soup = std::move(scene_.soup); // which the backend uses where it lies
+        next->soup = std::move(scene_.soup);   // which the backend uses where it lies
+        next->files = std::move(scene_.files); // which it may borrow from
+        next->saved = {};
     } else {
         backend_.reset(); // before its soup
     }

@@ -129,6 +129,26 @@ TEST_P(MovingScene, HasTheFramesOfOneThatIsBuiltAnew) {
     EXPECT_EQ(stage.backend().statistics().updates, kFrames - 1) << "it was not built anew";
 }
 
+/// A file of the scene is mapped into memory anew for each moment.
+TEST(Stage, KeepsWhatIsMappedIntoMemory) {
+    const fs::path folder = fs::path(testing::TempDir()) / "overcast-mapped-stage";
+    fs::create_directories(folder);
+    ASSERT_TRUE(save(*make_test_scene("sphere-3"), folder / "ball.ovc"));
+    RenderJob job;
+    job.scene.scenes = {folder / "ball.ovc", "cloth"};
+    job.scene.moment = Moment::of_frame(1, 1, 3);
+    job.backend.kind = BackendKind::CpuKdTree;
+    Result<Scene> scene = open_scene(job.scene, {});
+    ASSERT_TRUE(scene);
+    const Triangle first = scene->soup.triangle({0, 7});
+    Stage stage(job, *scene, make_cpu_backend(scene->soup), job.backend);
+    for (const uint32_t frame : {2u, 3u}) {
+        ASSERT_TRUE(stage.go_to(Moment::of_frame(frame, 1, 3)));
+        EXPECT_EQ(scene->soup.triangle({0, 7}), first);
+    }
+    fs::remove_all(folder);
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, MovingScene,
                          testing::Values("cloth", "grass-in-wind", "pov", "pbrt"),
                          [](const auto& scene) {
