@@ -2,6 +2,7 @@
 // Reads the scene anew for each moment, and tells the backend what has moved since the one before.
 #include "host/render/stage.h"
 
+#include "host/output/stats.h"
 #include "host/scene/moved_meshes.h"
 
 #include <utility>
@@ -37,16 +38,30 @@ Result<Done> Stage::go_to(const Moment& moment) {
         next->files = std::move(scene_.files); // which it may borrow from
         next->saved = {};
     } else {
+        gone_ = statistics();
         backend_.reset(); // before its soup
     }
     next->moves = true;
     scene_ = std::move(*next);
     lights_ = lights_now();
-    if (!moved)
-        return build_anew();
-    const Result<bool> updated = backend_->update(scene_.soup, *moved);
+    return moved ? update(*moved) : build_anew();
+}
+
+ovc_statistics Stage::statistics() const {
+    return counted_besides(gone_, backend_->statistics());
+}
+
+/// The library may find that building anew costs less than an update. It then counts from 0.
+Result<Done> Stage::update(const std::vector<MovedMesh>& moved) {
+    if (moved.empty())
+        return Done{};
+    const ovc_statistics before = backend_->statistics();
+    const Result<bool> updated = backend_->update(scene_.soup, moved);
     if (!updated)
         return updated.error();
+    if (*updated && backend_->statistics().updates > before.updates)
+        return Done{};
+    gone_ = counted_besides(gone_, before);
     return *updated ? Result<Done>(Done{}) : build_anew();
 }
 

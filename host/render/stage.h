@@ -11,6 +11,8 @@
 
 namespace ovc {
 
+struct MovedMesh;
+
 class Stage {
 public:
     /// The scene is that of the job's first moment, and the backend is built of it; the scene and
@@ -19,6 +21,8 @@ public:
           const BackendOptions& options);
 
     Backend& backend() { return *backend_; }
+    /// Returns what the backend tells, and what those before it have counted besides.
+    ovc_statistics statistics() const;
     /// Returns the lights as the user or the scene has them.
     const std::vector<Light>& lights() const { return lights_; }
 
@@ -28,6 +32,7 @@ public:
 
 private:
     std::vector<Light> lights_now() const;
+    Result<Done> update(const std::vector<MovedMesh>& moved);
     Result<Done> build_anew();
 
     SceneArguments arguments_;
@@ -37,6 +42,7 @@ private:
     const BackendOptions options_;
     const std::vector<Light>& given_lights_;
     std::vector<Light> lights_;
+    ovc_statistics gone_{}; // counted by structures that are no more
 };
 
 } // namespace ovc
