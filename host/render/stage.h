@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-struct MovedMesh;
+struct SoupDifference;
 
 class Stage {
 public:
@@ -27,12 +27,13 @@ public:
     const std::vector<Light>& lights() const { return lights_; }
 
     /// Goes on to this moment, where something in the scene moves. What is the same in both moments
-    /// is not built anew, unless meshes have become others.
+    /// is not built anew, but for meshes behind one that has become another.
     Result<Done> go_to(const Moment& moment);
 
 private:
     std::vector<Light> lights_now() const;
-    Result<Done> update(const std::vector<MovedMesh>& moved);
+    void take_all_but_soup(Scene next, bool borrows);
+    Result<Done> update(const SoupDifference& changes);
     Result<Done> build_anew();
 
     SceneArguments arguments_;
