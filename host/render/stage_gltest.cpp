@@ -135,8 +135,9 @@ TEST_P(MovingScene, HasTheFramesOfOneThatIsBuiltAnew) {
         EXPECT_FALSE(std::ranges::equal(before, expected, {}, &Hit::t, &Hit::t)) << "all stays";
         before = expected;
     }
-    if (GetParam() != std::string("pov that gets a mesh"))
+    if (GetParam() != std::string("pov that gets a mesh")) {
         EXPECT_EQ(stage.statistics().updates, kFrames - 1) << "it was not built anew";
+    }
     EXPECT_EQ(stage.statistics().nearest_rays, kFrames * before.size());
 }
 

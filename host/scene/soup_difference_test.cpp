@@ -10,10 +10,9 @@ namespace {
 /// Returns corners of triangles along x, from `from` on.
 std::vector<vec3> row(float from, size_t triangles) {
     std::vector<vec3> corners;
-    for (size_t i = 0; i < triangles; ++i) {
-        const float x = from + float(i);
-        corners.insert(corners.end(), {{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}});
-    }
+    for (size_t i = 0; i < triangles; ++i)
+        for (const vec3& corner : {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)})
+            corners.push_back(vec3(from + float(i), 0, 0) + corner);
     return corners;
 }
 
@@ -91,7 +90,7 @@ TEST(SoupDifference, ReplacesFromTheFirstMeshOnThatIsNotTheSame) {
         void (*change)(Soup&);
         uint32_t kept;
     } cases[] = {
-        {"size", [](Soup& s) { s.chunks[1] = Chunk::owning(dvec3(5, 0, 0), row(0, 4)); }, 1},
+        {"size", [](Soup& s) { s.chunks[3] = Chunk::owning_doubles(dvec3(0), {}); }, 3},
         {"origin", [](Soup& s) { s.chunks[0] = Chunk::owning(dvec3(1), row(0, 200)); }, 0},
         {"type", [](Soup& s) { s.chunks[3] = Chunk::owning(dvec3(0), row(0, 1)); }, 3},
         {"mask", [](Soup& s) { s.chunks[2].set_mask(4); }, 2},
