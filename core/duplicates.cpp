@@ -172,7 +172,9 @@ Hit as_hit_of(TriangleId id, const Soup& soup, const Hit& hit) {
 }
 
 std::span<const Duplicates::Pair> Duplicates::of(TriangleId id) const {
-    return std::ranges::equal_range(pairs_, id, {}, &Pair::smallest);
+    const auto first = std::ranges::lower_bound(pairs_, id, {}, &Pair::smallest);
+    const auto last = std::ranges::upper_bound(pairs_, id, {}, &Pair::smallest);
+    return {first, last};
 }
 
 } // namespace ovc

@@ -234,6 +234,7 @@ private:
     /// The triangles decided of late, in a table in which they push each other out.
     class Recent {
     public:
+        Recent() : ids_{} {} // Clang 14 takes it for not constructible within Nearest otherwise
         void add(TriangleId id) { ids_[slot(id)] = id; }
         bool has(TriangleId id) const { return ids_[slot(id)] == id; }
 
@@ -241,7 +242,7 @@ private:
         static constexpr size_t kSlots = 512;
         static size_t slot(TriangleId id) { return (id.prim + 31 * size_t(id.mesh)) % kSlots; }
 
-        std::array<TriangleId, kSlots> ids_{};
+        std::array<TriangleId, kSlots> ids_;
     };
 
     /// Decides a triangle that shares the corner or side that the best hit lies on, as thousands

@@ -160,6 +160,12 @@ Result<ovc_active> TwoLevel::take_active() {
 }
 
 Result<Done> TwoLevel::save(const ByteSink& sink) const {
+    // Pages name triangles by numbers, which those that are gone have had.
+    if (scene_.numbers.count() != scene_.soup.triangle_count())
+        return Error{
+            "meshes were removed since the scene was built; one that is built anew without "
+            "them can be saved",
+            ErrorKind::InvalidArgument};
     if (!save_levels(scene_, sink))
         return Error{"saving was stopped", ErrorKind::Cancelled};
     return Done{};

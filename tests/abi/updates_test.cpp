@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes that change after their commit: answers have the bits of the triangles as they are now.
+#include "core/file/test_archive.h"
 #include "core/system/stopwatch.h"
 #include "tests/abi/instances_world.h"
+
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
@@ -224,6 +227,50 @@ TEST_F(Updates, AnswerAsAScenesThatIsNew) {
                 static_cast<unsigned long long>(commits), static_cast<unsigned long long>(updates),
                 static_cast<unsigned long long>(refitted),
                 static_cast<unsigned long long>(rebuilt));
+}
+
+/// Another scene of the meshes as they are now takes the bytes.
+TEST_F(Updates, AreSavedUnlessMeshesWereRemoved) {
+    test::Random random(3);
+    const Soup grid = test::closed_grid(20);
+    std::vector<vec3> cloth(grid.chunks[0].corners().begin(), grid.chunks[0].corners().end());
+    const auto stone = random_corners<vec3>(random, 40, 0.3);
+    config.leaf_triangles = 300;
+    World w = world();
+    w.add(cloth, dvec3(0), nullptr);
+    w.add(stone, dvec3(0), nullptr);
+    w.commit();
+    std::vector<dvec3> moved(cloth.begin() + 150, cloth.begin() + 210);
+    for (dvec3& corner : moved)
+        corner = dvec3(vec3(0.999 * corner)); // within the box of all
+    w.move_corners(0, 50, moved);
+    w.commit();
+    EXPECT_EQ(w.statistics().updates, 1u);
+    test::ArchiveMemory saved;
+    const auto append = [](void* user, const void* bytes, size_t size) {
+        static_cast<test::ArchiveMemory*>(user)->append(
+            {static_cast<const std::byte*>(bytes), size});
+        return 0;
+    };
+    ASSERT_EQ(api().save(w.scene.get(), append, &saved), OVC_OK) << w.error();
+    for (size_t i = 0; i < moved.size(); ++i)
+        cloth[150 + i] = vec3(moved[i]);
+    config.saved = saved.bytes().data();
+    config.saved_bytes = saved.bytes().size();
+    World again = world();
+    again.add(cloth, dvec3(0), nullptr);
+    again.add(stone, dvec3(0), nullptr);
+    again.commit();
+    EXPECT_EQ(again.statistics().from_saved, 1u);
+    expect_brute_force(again, rays_at(again.expected, 1000, 14), 50);
+    again.move_corners(0, 10, moved);
+    again.commit();
+    expect_brute_force(again, rays_at(again.expected, 1000, 15), 50);
+
+    w.remove(1);
+    w.commit();
+    EXPECT_EQ(api().save(w.scene.get(), append, &saved), OVC_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(w.error(), testing::HasSubstr("meshes were removed"));
 }
 
 } // namespace

@@ -76,6 +76,7 @@ struct Slot {
             return OVC_ERROR_INVALID_ARGUMENT;
         return state == Committed || !committed ? OVC_OK : OVC_ERROR_INVALID_STATE;
     }
+    bool has_lost_meshes() const { return std::ranges::find(sources, OVC_NONE) != sources.end(); }
     bool is_there(uint32_t mesh) const {
         return mesh < sources.size() && sources[mesh] != OVC_NONE;
     }
@@ -576,7 +577,8 @@ private:
         const ovc_result result = api().save(slot.scene, write, &sink);
         if (result == OVC_ERROR_CANCELLED)
             return check(slot.expected(true), OVC_OK);
-        check(result, slot.expected(true));
+        if (result != OVC_ERROR_INVALID_ARGUMENT || !slot.has_lost_meshes())
+            check(result, slot.expected(true));
         if (result != OVC_OK)
             return;
         // Kept, perhaps damaged, for scenes of the same meshes or others.
