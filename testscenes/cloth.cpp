@@ -2,10 +2,10 @@
 // cloth: a banner that hangs from a pole and waves in the wind, whose corners all move. The clock's
 // last moment is its first again.
 #include "testscenes/corners.h"
+#include "testscenes/noise.h"
 #include "testscenes/scenes.h"
 
-#include <cmath>
-#include <numbers>
+#include "core/system/parallel.h"
 
 namespace ovc {
 namespace {
@@ -14,12 +14,11 @@ constexpr uint32_t kClothCells = 256; // a side: 2 x 256 x 256 triangles
 
 /// Returns where the cloth is that is (u, v) from its upper left corner, each from 0 to 1.
 dvec3 cloth_at(double u, double v, double clock) {
-    const double turn = 2 * std::numbers::pi;
     const double slack = v * (1.2 - 0.2 * v); // none at the pole
-    const double wave = std::sin(turn * (1.5 * u + 0.6 * v - clock)) +
-                        0.4 * std::sin(turn * (2.5 * v - 0.5 * u - 2 * clock)) +
-                        0.15 * std::sin(turn * (5 * u + 3 * v - 3 * clock));
-    return {3 * (u - 0.5) + 0.08 * slack * std::cos(turn * (u + v - clock)),
+    const double wave = circle(1.5 * u + 0.6 * v - clock).y +
+                        0.4 * circle(2.5 * v - 0.5 * u - 2 * clock).y +
+                        0.15 * circle(5 * u + 3 * v - 3 * clock).y;
+    return {3 * (u - 0.5) + 0.08 * slack * circle(u + v - clock).x,
             2.4 - 2.1 * v + 0.06 * slack * wave, 0.3 * slack * wave};
 }
 
@@ -49,12 +48,20 @@ Corners pole() {
 } // namespace
 
 Scene make_cloth(double clock) {
+    constexpr uint32_t kWidth = kClothCells + 1;
+    std::vector<vec3> points(kWidth * kWidth), directions(kWidth * kWidth);
+    parallel_for(points.size(), 1024, [&](size_t first, size_t last) {
+        for (size_t p = first; p < last; ++p) {
+            const double u = double(p % kWidth) / kClothCells, v = double(p / kWidth) / kClothCells;
+            points[p] = vec3(cloth_at(u, v, clock));
+            directions[p] = normal_at(u, v, clock);
+        }
+    });
     Corners corners;
     std::vector<vec3> normals;
     const auto add = [&](uint32_t i, uint32_t j) {
-        const double u = double(i) / kClothCells, v = double(j) / kClothCells;
-        corners.push_back(vec3(cloth_at(u, v, clock)));
-        normals.push_back(normal_at(u, v, clock));
+        corners.push_back(points[j * kWidth + i]);
+        normals.push_back(directions[j * kWidth + i]);
     };
     for (uint32_t j = 0; j < kClothCells; ++j)
         for (uint32_t i = 0; i < kClothCells; ++i) {

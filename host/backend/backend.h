@@ -17,14 +17,13 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace ovc {
 
 class DeviceOpening;
 class PluginDevice;
 struct KdTree;
-struct MovedMesh;
+struct SoupDifference;
 
 /// A backend is built over one soup, which must outlive it unchanged but for what update() is told
 /// of, because it may use the corners in place. It is called by one thread at a time.
@@ -49,9 +48,9 @@ public:
                    ? Error{"leaf, passes and flagged can be told by --backend two-level alone"}
                    : intersect(rays, without, hits);
     }
-    /// Takes up the soup after move_meshes() has moved these of its meshes. Returns false where the
-    /// backend must be made anew.
-    virtual Result<bool> update(const Soup&, const std::vector<MovedMesh>&) { return false; }
+    /// Takes up the soup after take_over() has changed it so (host/scene/soup_difference.h).
+    /// Returns false where the backend must be made anew.
+    virtual Result<bool> update(const Soup&, const SoupDifference&) { return false; }
     /// Returns the pages that rays went through since the last call; none where the options did not
     /// ask for them or the backend cannot tell.
     virtual std::optional<ovc_active> take_active() { return {}; }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The backends behind the C ABI, which takes the soup and its rays without a copy.
 #include "host/backend/backend.h"
+#include "host/backend/mesh_numbers.h"
 #include "host/backend/plugin_loader.h"
-#include "host/scene/moved_meshes.h"
+#include "host/scene/soup_difference.h"
 #include "host/terminal/build_watch.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cassert>
+#include <map>
 #include <optional>
 
 namespace ovc {
@@ -59,14 +61,18 @@ static ovc_query query_of(const Exclusions& without) {
 /// Translates between a StreamHost and the callbacks of the C ABI, in both directions.
 class CalledBack final : public RayStream {
 public:
-    CalledBack(const ovc_api& api, StreamHost& host) : api_(api), host_(host) {}
+    CalledBack(const ovc_api& api, StreamHost& host, const MeshNumbers& numbers)
+        : api_(api), host_(host), numbers_(numbers) {}
 
     ovc_stream_host as_abi() { return {sizeof(ovc_stream_host), this, more, answered}; }
 
     void push(const StreamRays& rays) override {
         assert(rays.tokens.size() == rays.rays.size());
-        Exclusions without(rays.skip, rays.after);
-        without.sieves = {rays.masks, rays.filters, rays.tokens};
+        const LibraryExclusions excluded(numbers_, rays.skip, rays.after);
+        Exclusions without(excluded.skip(), excluded.after());
+        HitFilter* const filter =
+            rays.filters.empty() || !rays.filters[0] ? nullptr : filter_of(*rays.filters[0]);
+        without.sieves = {rays.masks, {&filter, filter ? size_t(1) : 0}, rays.tokens};
         const ovc_query query = query_of(without);
         refused_ = refused_ || api_.push(stream_, ovc::as_abi(rays.rays), rays.tokens.data(),
                                          rays.rays.size(), rays.any_hit, &query) != OVC_OK;
@@ -83,14 +89,27 @@ private:
         self.stream_ = stream;
         const std::span<const uint64_t> tokens(answers->tokens, answers->count);
         if (answers->hits)
-            return self.go_on(self.host_.hits(
-                self, tokens, {reinterpret_cast<const Hit*>(answers->hits), answers->count}));
+            return self.go_on(self.give_hits(
+                tokens, {reinterpret_cast<const Hit*>(answers->hits), answers->count}));
         return self.go_on(self.host_.occlusions(self, tokens, {answers->occluded, answers->count}));
+    }
+    bool give_hits(std::span<const uint64_t> tokens, std::span<const Hit> hits) {
+        if (!numbers_.differ())
+            return host_.hits(*this, tokens, hits);
+        std::vector<Hit> in_scene(hits.begin(), hits.end());
+        numbers_.to_scene(in_scene);
+        return host_.hits(*this, tokens, in_scene);
+    }
+    /// Returns a filter for the library, which lives as long as the stream.
+    HitFilter* filter_of(HitFilter& filter) {
+        return &filters_.try_emplace(&filter, numbers_, filter).first->second;
     }
     int go_on(bool wanted) const { return wanted && !refused_ ? 0 : 1; }
 
     const ovc_api& api_;
     StreamHost& host_;
+    const MeshNumbers& numbers_;
+    std::map<HitFilter*, LibraryFilter> filters_;
     ovc_stream stream_ = nullptr;
     bool refused_ = false; // the library refused a push
 };
@@ -125,15 +144,55 @@ static ovc_mesh part_of(const Chunk& chunk, uint32_t first, uint32_t end) {
     return part;
 }
 
+/// What a call excludes, in the library's numbers.
+class LibraryQuery {
+public:
+    LibraryQuery(const MeshNumbers& numbers, const Exclusions& without)
+        : excluded_(numbers, without.skip, without.after), without_(without) {
+        without_.skip = excluded_.skip();
+        without_.after = excluded_.after();
+        const auto filters = without.sieves.filters;
+        if (numbers.differ() && !filters.empty() && filters[0]) {
+            filter_.emplace(numbers, *filters[0]);
+            one_ = &*filter_;
+            without_.sieves.filters = {&one_, 1};
+        }
+    }
+    LibraryQuery(const LibraryQuery&) = delete; // it refers to itself
+
+    ovc_query query() const { return query_of(without_); }
+
+private:
+    LibraryExclusions excluded_;
+    std::optional<LibraryFilter> filter_;
+    HitFilter* one_ = nullptr;
+    Exclusions without_;
+};
+
+/// Adds the meshes of the soup whose numbers are not known yet.
+static Result<Done> add_meshes(const PluginDevice& device, ovc_scene scene, const Soup& soup,
+                               MeshNumbers& numbers) {
+    while (numbers.count() < soup.chunks.size()) {
+        const ovc_mesh mesh = mesh_of(soup.chunks[numbers.count()]);
+        uint32_t number = 0;
+        const Result<Done> added = device.checked(device.api()->add_mesh(scene, &mesh, &number));
+        if (!added)
+            return added;
+        numbers.add(number);
+    }
+    return Done{};
+}
+
 class PluginBackend final : public Backend {
 public:
-    /// watch: that of the scene's config, or null.
+    /// watch: that of the scene's config, or null. numbers: of the scene's meshes.
     PluginBackend(PluginDevice device, std::string renderer, std::unique_ptr<BuildWatch> watch,
-                  PluginScene scene, bool is_two_level)
+                  PluginScene scene, MeshNumbers numbers, bool is_two_level)
         : device_(std::move(device)),
           renderer_(std::move(renderer)),
           watch_(std::move(watch)),
           scene_(std::move(scene)),
+          numbers_(std::move(numbers)),
           is_two_level_(is_two_level) {}
 
     Result<Done> intersect(std::span<const Ray> rays, const Exclusions& without,
@@ -144,24 +203,30 @@ public:
     Result<Done> intersect_noted(std::span<const Ray> rays, const Exclusions& without,
                                  std::span<Hit> hits, const RayNotes& notes) override {
         assert(hits.size() == rays.size() && without.are_for(rays.size()));
-        ovc_query query = query_of(without);
+        const LibraryQuery asked(numbers_, without);
+        ovc_query query = asked.query();
         query.leaf = notes.leaf.empty() ? nullptr : notes.leaf.data();
         query.passes = notes.passes.empty() ? nullptr : notes.passes.data();
         query.flagged = notes.flagged.empty() ? nullptr : notes.flagged.data();
-        return device_.checked(api().intersect(scene_.get(), as_abi(rays), rays.size(),
-                                               reinterpret_cast<ovc_hit*>(hits.data()), &query));
+        const Result<Done> done =
+            device_.checked(api().intersect(scene_.get(), as_abi(rays), rays.size(),
+                                            reinterpret_cast<ovc_hit*>(hits.data()), &query));
+        if (done)
+            numbers_.to_scene(hits);
+        return done;
     }
 
     Result<Done> occluded(std::span<const Ray> rays, const Exclusions& without,
                           std::span<uint8_t> occluded) override {
         assert(occluded.size() == rays.size() && without.are_for(rays.size()));
-        const ovc_query query = query_of(without);
+        const LibraryQuery asked(numbers_, without);
+        const ovc_query query = asked.query();
         return device_.checked(
             api().occluded(scene_.get(), as_abi(rays), rays.size(), occluded.data(), &query));
     }
 
     Result<Done> stream(StreamHost& host) override {
-        CalledBack called(api(), host);
+        CalledBack called(api(), host, numbers_);
         const ovc_stream_host callbacks = called.as_abi();
         return device_.checked(api().stream(scene_.get(), &callbacks));
     }
@@ -172,12 +237,11 @@ public:
         return api().active(scene_.get(), &active) == OVC_OK ? std::optional(active) : std::nullopt;
     }
 
-    Result<bool> update(const Soup& soup, const std::vector<MovedMesh>& moved) override {
+    Result<bool> update(const Soup& soup, const SoupDifference& difference) override {
         if (!is_two_level_)
             return false;
-        for (const MovedMesh& one : moved)
-            if (const Result<Done> told = tell(soup.chunks[one.mesh], one); !told)
-                return told.error();
+        if (const Result<Done> told = tell(soup, difference); !told)
+            return told.error();
         std::optional<BuildWatch::Building> watched;
         if (watch_)
             watched.emplace(*watch_);
@@ -210,38 +274,39 @@ public:
 private:
     const ovc_api& api() const { return *device_.api(); }
 
-    /// Tells the library what has moved of a mesh.
-    Result<Done> tell(const Chunk& chunk, const MovedMesh& moved) {
-        if (moved.end > moved.first) {
-            const ovc_mesh part = part_of(chunk, moved.first, moved.end);
-            const ovc_result result =
-                api().update_mesh(scene_.get(), moved.mesh, &part, moved.first);
-            if (result != OVC_OK)
-                return device_.checked(result);
+    /// Tells the library what has changed in the soup.
+    Result<Done> tell(const Soup& soup, const SoupDifference& difference) {
+        for (uint32_t mesh = difference.kept; mesh < numbers_.count(); ++mesh)
+            if (const auto done =
+                    device_.checked(api().remove_mesh(scene_.get(), numbers_.in_library(mesh)));
+                !done)
+                return done;
+        numbers_.forget_from(difference.kept);
+        for (const PrimRange& range : difference.moved) {
+            const ovc_mesh part = part_of(soup.chunks[range.mesh], range.first, range.end);
+            if (const auto done = device_.checked(api().update_mesh(
+                    scene_.get(), numbers_.in_library(range.mesh), &part, range.first));
+                !done)
+                return done;
         }
-        if (!moved.placed)
-            return Done{};
-        const double* const transform =
-            chunk.transform() ? chunk.transform()->rows[0].data() : nullptr;
-        return device_.checked(api().update_instance(scene_.get(), moved.mesh, transform));
+        for (const uint32_t mesh : difference.placed) {
+            const Transform* transform = soup.chunks[mesh].transform();
+            if (const auto done = device_.checked(
+                    api().update_instance(scene_.get(), numbers_.in_library(mesh),
+                                          transform ? transform->rows[0].data() : nullptr));
+                !done)
+                return done;
+        }
+        return add_meshes(device_, scene_.get(), soup, numbers_);
     }
 
     PluginDevice device_;
     std::string renderer_;
     std::unique_ptr<BuildWatch> watch_;
-    PluginScene scene_;       // after those, so that it is destroyed first
+    PluginScene scene_; // after those, so that it is destroyed first
+    MeshNumbers numbers_;
     const bool is_two_level_; // the systems of the thesis neither save nor update
 };
-
-static Result<Done> add_meshes(const PluginDevice& device, ovc_scene scene, const Soup& soup) {
-    for (const Chunk& chunk : soup.chunks) {
-        const ovc_mesh mesh = mesh_of(chunk);
-        const Result<Done> added = device.checked(device.api()->add_mesh(scene, &mesh, nullptr));
-        if (!added)
-            return added;
-    }
-    return Done{};
-}
 
 /// Warns of a budget beyond the memory. A scene may take less than its budget, so it is no error.
 static void check_budget(uint64_t budget_bytes, const ovc_device_info& info, const LogSink& log) {
@@ -297,7 +362,8 @@ Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const 
     Result<PluginScene> scene = device.create_scene(*config);
     if (!scene)
         return scene.error();
-    if (const Result<Done> added = add_meshes(device, scene->get(), soup); !added)
+    MeshNumbers numbers;
+    if (const Result<Done> added = add_meshes(device, scene->get(), soup, numbers); !added)
         return added.error();
     {
         std::optional<BuildWatch::Building> watched;
@@ -308,7 +374,7 @@ Result<std::unique_ptr<Backend>> make_plugin_backend(PluginDevice device, const 
             return done.error();
     }
     return std::unique_ptr<Backend>(std::make_unique<PluginBackend>(
-        std::move(device), info->renderer, std::move(watch), std::move(*scene),
+        std::move(device), info->renderer, std::move(watch), std::move(*scene), std::move(numbers),
         structure_of(options.kind) == OVC_STRUCTURE_TWO_LEVEL));
 }
 
@@ -323,7 +389,8 @@ Result<ovc_plan> make_plugin_plan(const PluginDevice& device, const Soup& soup,
     const Result<PluginScene> scene = device.create_scene(*config);
     if (!scene)
         return scene.error();
-    if (const Result<Done> added = add_meshes(device, scene->get(), soup); !added)
+    MeshNumbers numbers;
+    if (const Result<Done> added = add_meshes(device, scene->get(), soup, numbers); !added)
         return added.error();
     ovc_plan plan{};
     plan.struct_size = sizeof(plan);

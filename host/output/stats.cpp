@@ -64,6 +64,15 @@ ovc_statistics counted_between(const ovc_statistics& before, const ovc_statistic
     return counted;
 }
 
+ovc_statistics counted_besides(const ovc_statistics& earlier, const ovc_statistics& now) {
+    ovc_statistics counted = now;
+    for_each_statistic([&](const char*, auto field, bool counts_up) {
+        if (counts_up)
+            counted.*field += earlier.*field;
+    });
+    return counted;
+}
+
 void RenderStats::add(const FrameStats& frame) {
     report += frame.report;
     seconds_output += frame.seconds_output;
@@ -173,6 +182,10 @@ static std::string gpu_lines(const ovc_statistics& t) {
                             human_bytes(t.top_level_bytes));
     text += fmt::format("  GPU        {} at most, of a budget of {}\n",
                         human_bytes(t.gpu_peak_bytes), human_bytes(t.gpu_budget_bytes));
+    if (t.updates > 0)
+        text +=
+            fmt::format("  updates    {}: {} pages refitted, {} built\n", human_count(t.updates),
+                        human_count(t.pages_refitted), human_count(t.pages_rebuilt));
     text += fmt::format("  moved      {} in {} pages, {} passes\n", human_bytes(t.bytes_in),
                         human_count(t.pages_in), human_count(t.passes));
     return text;

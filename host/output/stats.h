@@ -30,6 +30,9 @@ struct FrameStats {
 /// (leaves, bytes of the structure, peaks) is that of `after`.
 ovc_statistics counted_between(const ovc_statistics& before, const ovc_statistics& after);
 
+/// Returns `now`, and what `earlier` has counted besides: a reading of another structure.
+ovc_statistics counted_besides(const ovc_statistics& earlier, const ovc_statistics& now);
+
 struct RenderStats {
     std::string scene;
     uint32_t width = 0;

@@ -90,6 +90,17 @@ TEST(StatsCounters, OfAFrameAreWhatWasCountedInBetween) {
     EXPECT_EQ(counted.gpu_peak_bytes, 77u);
 }
 
+TEST(StatsCounters, OfStructuresThatAreGoneAreAdded) {
+    ovc_statistics earlier{}, now{};
+    earlier.passes = 10;
+    earlier.leaves = 3;
+    now.passes = 4;
+    now.leaves = 9;
+    const ovc_statistics counted = counted_besides(earlier, now);
+    EXPECT_EQ(counted.passes, 14u);
+    EXPECT_EQ(counted.leaves, 9u);
+}
+
 TEST(StatsSummary, SaysWhatAPersonWantsToKnow) {
     const std::string text = stats_summary(example());
     for (const char* part :

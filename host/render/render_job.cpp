@@ -98,15 +98,16 @@ public:
           options_(render_options(job, part, scene)),
           scene_(scene),
           lights_(stage.lights()),
+          stage_(stage),
           backend_(stage.backend()) {}
 
     /// Renders a picture. Where it is interrupted, its pixels are kept beside its outputs, and
-    /// stats.report is not complete.
-    Result<Done> run(const View& view, double seconds_scene, RenderStats& stats) {
-        Result<FrameStats> frame = render_one(view);
+    /// stats.report is not complete. begun: how long its scene took, and the stage's statistics
+    /// before that.
+    Result<Done> run(const View& view, const FrameStats& begun, RenderStats& stats) {
+        const Result<FrameStats> frame = render_one(view, begun);
         if (!frame)
             return frame.error();
-        frame->seconds_scene = seconds_scene;
         stats.report.complete = frame->report.complete;
         if (!frame->report.complete && is_sequence())
             return Done{};
@@ -121,10 +122,9 @@ public:
     bool is_sequence() const { return !job_.shots.empty(); }
 
 private:
-    Result<FrameStats> render_one(const View& shot) {
+    Result<FrameStats> render_one(const View& shot, const FrameStats& begun) {
         const Stopwatch watch;
-        const ovc_statistics before = backend_.statistics();
-        FrameStats frame;
+        FrameStats frame = begun;
         frame.frame = shot.frame;
         scene_.lights = placed_lights(scene_, lights_, shot.camera);
         Film film(options_.part->size.width, options_.part->size.height, job_.samples);
@@ -134,7 +134,7 @@ private:
             frame.report = *report;
         else
             return report.error();
-        frame.tracing = counted_between(before, backend_.statistics());
+        frame.tracing = counted_between(begun.tracing, stage_.statistics());
         frame.active = backend_.take_active();
         frame.host_peak_bytes = host_peak_bytes();
         frame.seconds = watch.seconds(); // for the notes in its files
@@ -268,6 +268,7 @@ private:
     const RenderOptions options_;
     Scene& scene_;
     const std::vector<Light>& lights_; // as the scene or the user has them
+    Stage& stage_;
     Backend& backend_;
     const InterruptGuard interrupt_;
 };
@@ -367,6 +368,8 @@ static Result<Done> render_shots(const RenderJob& job, const PicturePart& part, 
             continue;
         }
         const Stopwatch watch;
+        FrameStats begun;
+        begun.tracing = stage.statistics();
         const Result<Done> there = stage.go_to(shot.moment);
         stats.report.complete = there || there.error().kind != ErrorKind::Cancelled;
         if (!there)
@@ -377,8 +380,8 @@ static Result<Done> render_shots(const RenderJob& job, const PicturePart& part, 
         // Nobody has checked that of a file before.
         if (const Result<Done> fine = check_camera(view.camera); !fine)
             return Error{fmt::format("{}: {}", job.scene.name(), fine.error().message)};
-        const double seconds = watch.seconds();
-        const Result<Done> done = Rendering(job, part, scene, stage, log).run(view, seconds, stats);
+        begun.seconds_scene = watch.seconds();
+        const Result<Done> done = Rendering(job, part, scene, stage, log).run(view, begun, stats);
         if (!done || !stats.report.complete)
             return done;
     }
@@ -394,10 +397,10 @@ static Result<Done> check_frames(const RenderJob& job, const Scene& scene) {
                              job.scene.name())};
 }
 
-static void add_what_backend_tells(const RenderJob& job, const Scene& scene, const Backend& backend,
+static void add_what_backend_tells(const RenderJob& job, const Scene& scene, Stage& stage,
                                    RenderStats& stats) {
-    stats.tracing = backend.statistics();
-    stats.renderer = backend.renderer();
+    stats.tracing = stage.statistics();
+    stats.renderer = stage.backend().renderer();
     stats.left_out =
         left_out_of(scene, needs_of(scene, {job.render.shadows,
                                             job.backend.precision == OVC_PRECISION_CERTIFIED,
@@ -455,7 +458,7 @@ Result<int> render(const RenderJob& job) {
     Result<Done> done = render_shots(job, *part, stage, *scene, log, stats);
     if (!done)
         return done.error();
-    add_what_backend_tells(job, *scene, stage.backend(), stats);
+    add_what_backend_tells(job, *scene, stage, stats);
     stats.seconds_total = total.seconds();
     if (!job.stats.empty())
         if (done = save_text(stats_json(stats), job.stats); !done)

@@ -2,8 +2,11 @@
 // Reads the scene anew for each moment, and tells the backend what has moved since the one before.
 #include "host/render/stage.h"
 
-#include "host/scene/moved_meshes.h"
+#include "host/output/stats.h"
+#include "host/scene/soup_difference.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace ovc {
@@ -30,21 +33,38 @@ Result<Done> Stage::go_to(const Moment& moment) {
     Result<Scene> next = open_scene(arguments_, LogSink(), size_);
     if (!next)
         return next.error();
-    const auto moved = moved_meshes(scene_.soup, next->soup);
-    if (moved) {
-        move_meshes(scene_.soup, next->soup, *moved);
-        next->soup = std::move(scene_.soup); // which the backend uses where it lies
-    } else {
-        backend_.reset(); // before its soup
-    }
-    next->moves = true;
-    scene_ = std::move(*next);
+    const SoupDifference changes = difference(scene_.soup, next->soup);
+    // A backend has the corners of meshes that are gone until it is up to date.
+    const std::vector<Chunk> gone = take_over(scene_.soup, std::exchange(next->soup, {}), changes);
+    take_all_but_soup(std::move(*next), changes.added > 0);
+    return changes.any() ? update(changes) : Result<Done>(Done{});
+}
+
+/// borrows: some of the soup borrows from files of `next`.
+void Stage::take_all_but_soup(Scene next, bool borrows) {
+    if (!borrows)
+        next.files.clear();
+    std::ranges::move(scene_.files, std::back_inserter(next.files));
+    next.saved = {};
+    next.soup = std::move(scene_.soup); // which the backend uses where it lies
+    next.moves = true;
+    scene_ = std::move(next);
     lights_ = lights_now();
-    if (!moved)
-        return build_anew();
-    const Result<bool> updated = backend_->update(scene_.soup, *moved);
+}
+
+ovc_statistics Stage::statistics() const {
+    return counted_besides(gone_, backend_->statistics());
+}
+
+/// The library may find that building anew costs less than an update. It then counts from 0.
+Result<Done> Stage::update(const SoupDifference& changes) {
+    const ovc_statistics before = backend_->statistics();
+    const Result<bool> updated = backend_->update(scene_.soup, changes);
     if (!updated)
         return updated.error();
+    if (*updated && backend_->statistics().updates > before.updates)
+        return Done{};
+    gone_ = counted_besides(gone_, before);
     return *updated ? Result<Done>(Done{}) : build_anew();
 }
 

@@ -11,6 +11,8 @@
 
 namespace ovc {
 
+struct SoupDifference;
+
 class Stage {
 public:
     /// The scene is that of the job's first moment, and the backend is built of it; the scene and
@@ -19,15 +21,19 @@ public:
           const BackendOptions& options);
 
     Backend& backend() { return *backend_; }
+    /// Returns what the backend tells, and what those before it have counted besides.
+    ovc_statistics statistics() const;
     /// Returns the lights as the user or the scene has them.
     const std::vector<Light>& lights() const { return lights_; }
 
     /// Goes on to this moment, where something in the scene moves. What is the same in both moments
-    /// is not built anew, unless meshes have become others.
+    /// is not built anew, but for meshes behind one that has become another.
     Result<Done> go_to(const Moment& moment);
 
 private:
     std::vector<Light> lights_now() const;
+    void take_all_but_soup(Scene next, bool borrows);
+    Result<Done> update(const SoupDifference& changes);
     Result<Done> build_anew();
 
     SceneArguments arguments_;
@@ -37,6 +43,7 @@ private:
     const BackendOptions options_;
     const std::vector<Light>& given_lights_;
     std::vector<Light> lights_;
+    ovc_statistics gone_{}; // counted by structures that are no more
 };
 
 } // namespace ovc

@@ -56,6 +56,15 @@ AttributeBegin
 AttributeEnd
 )";
 
+/// A box that comes in the last two frames, as a mesh before that of the ball.
+constexpr const char* kAppears = R"(#version 3.7;
+camera { location <0, 2, -6> look_at <0, .5, 0> }
+light_source { <5, 8, -6> rgb 1 }
+plane { y, 0 pigment { rgb <.7, .7, .6> } }
+#if (clock > .5) box { <-2, 0, 0>, <-1, 1 + clock, 1> pigment { rgb <.9, .9, .2> } } #end
+sphere { <1 - clock, 1, 2>, .7 pigment { rgb <1, .3, .2> } }
+)";
+
 constexpr uint32_t kFrames = 4;
 
 class MovingScene : public testing::TestWithParam<const char*> {
@@ -68,8 +77,8 @@ protected:
         const std::string scene = GetParam();
         if (is_test_scene(scene))
             return scene;
-        std::string path = folder_ / ("scene." + scene);
-        std::ofstream(path) << (scene == "pov" ? kPov : kPbrt);
+        std::string path = folder_ / (scene == "pbrt" ? "scene.pbrt" : "scene.pov");
+        std::ofstream(path) << (scene == "pbrt" ? kPbrt : scene == "pov" ? kPov : kAppears);
         return path;
     }
 
@@ -126,14 +135,39 @@ TEST_P(MovingScene, HasTheFramesOfOneThatIsBuiltAnew) {
         EXPECT_FALSE(std::ranges::equal(before, expected, {}, &Hit::t, &Hit::t)) << "all stays";
         before = expected;
     }
-    EXPECT_EQ(stage.backend().statistics().updates, kFrames - 1) << "it was not built anew";
+    if (GetParam() != std::string("pov that gets a mesh")) {
+        EXPECT_EQ(stage.statistics().updates, kFrames - 1) << "it was not built anew";
+    }
+    EXPECT_EQ(stage.statistics().nearest_rays, kFrames * before.size());
+}
+
+/// A file of the scene is mapped into memory anew for each moment.
+TEST(Stage, KeepsWhatIsMappedIntoMemory) {
+    const fs::path folder = fs::path(testing::TempDir()) / "overcast-mapped-stage";
+    fs::create_directories(folder);
+    ASSERT_TRUE(save(*make_test_scene("sphere-3"), folder / "ball.ovc"));
+    RenderJob job;
+    job.scene.scenes = {folder / "ball.ovc", "cloth"};
+    job.scene.moment = Moment::of_frame(1, 1, 3);
+    job.backend.kind = BackendKind::CpuKdTree;
+    Result<Scene> scene = open_scene(job.scene, {});
+    ASSERT_TRUE(scene);
+    const Triangle first = scene->soup.triangle({0, 7});
+    Stage stage(job, *scene, make_cpu_backend(scene->soup), job.backend);
+    for (const uint32_t frame : {2u, 3u}) {
+        ASSERT_TRUE(stage.go_to(Moment::of_frame(frame, 1, 3)));
+        EXPECT_EQ(scene->soup.triangle({0, 7}), first);
+    }
+    fs::remove_all(folder);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, MovingScene,
-                         testing::Values("cloth", "grass-in-wind", "pov", "pbrt"),
+                         testing::Values("cloth", "grass-in-wind", "pov", "pbrt",
+                                         "pov that gets a mesh"),
                          [](const auto& scene) {
                              std::string name = scene.param;
                              std::ranges::replace(name, '-', '_');
+                             std::ranges::replace(name, ' ', '_');
                              return name;
                          });
 

@@ -2,11 +2,11 @@
 // grass-in-wind: tufts of the plants' grass, which gusts bend. A tuft is an instance that is
 // sheared along the wind, so from one frame to the next transforms alone change.
 #include "testscenes/corners.h"
+#include "testscenes/noise.h"
 #include "testscenes/plants/prototype.h"
 #include "testscenes/scenes.h"
 
-#include <cmath>
-#include <numbers>
+#include <array>
 
 namespace ovc {
 namespace {
@@ -18,15 +18,14 @@ constexpr dvec2 kWind(0.8, 0.6);
 /// How far the wind bends grass at (x, z), in its own heights. The clock's last moment is its first
 /// again.
 double bend_at(double x, double z, double clock) {
-    const double turn = 2 * std::numbers::pi, along = kWind.x * x + kWind.y * z,
-                 across = kWind.x * z - kWind.y * x;
-    const double gust = std::sin(turn * (0.13 * along - clock) + 0.7 * std::sin(0.9 * across));
-    const double flutter = std::sin(turn * (0.9 * along + 0.5 * across - 5 * clock));
+    const double along = kWind.x * x + kWind.y * z, across = kWind.x * z - kWind.y * x;
+    const double gust = circle(0.13 * along - clock + 0.11 * circle(0.14 * across).y).y;
+    const double flutter = circle(0.9 * along + 0.5 * across - 5 * clock).y;
     return 0.35 + 0.28 * gust + 0.05 * flutter;
 }
 
 Transform placed(dvec2 at, double turn, double size, double clock) {
-    const double c = size * std::cos(turn), s = size * std::sin(turn),
+    const double c = size * circle(turn).x, s = size * circle(turn).y,
                  bend = size * bend_at(at.x, at.y, clock);
     return {{{{c, bend * kWind.x, s, at.x}, {0, size, 0, 0}, {-s, bend * kWind.y, c, at.y}}}};
 }
@@ -52,8 +51,7 @@ Scene make_grass_in_wind(double clock) {
         const dvec2 at =
             kApart * dvec2(i % kSide + random.uniform(), i / kSide + random.uniform()) -
             dvec2(kReach);
-        const double turn = random.uniform(0, 2 * std::numbers::pi),
-                     size = random.uniform(0.8, 1.4);
+        const double turn = random.uniform(), size = random.uniform(0.8, 1.4);
         Chunk tuft = first[kind] != 0
                          ? scene.soup.chunks[first[kind]].unplaced()
                          : Chunk::owning(dvec3(0), plants::make_grass(Random(100 + kind),
