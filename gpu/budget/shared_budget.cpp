@@ -65,7 +65,7 @@ bool SharedBudget::make_room(const Share& share, uint64_t bytes) {
 /// Gives the share what it can have now. Returns false if that is of no use.
 bool SharedBudget::grant(Share& share) {
     const uint64_t fair = fair_bytes(share);
-    if (share.bytes_ >= fair)
+    if (share.bytes_ >= fair - fair / 16) // all that was allocated goes where a share grows
         return true;
     const uint64_t bytes = make_room(share, fair) ? fair : free_bytes(share);
     if (bytes < share.least_)

@@ -53,7 +53,8 @@ public:
         Share(const Share&) = delete;
 
         /// Sets with how many bytes it is of use (least, at most the budget's) and what it has use
-        /// for (most). Call it before the first begin().
+        /// for (most). Call it before the first begin(), and whenever that changes; a share that is
+        /// open is closed for more only where that is worth it.
         void demand(uint64_t least, uint64_t most);
 
         /// Waits until the share can be used, first come, first served; others close where they
@@ -67,6 +68,7 @@ public:
         void close();
 
         uint64_t bytes() const { return bytes_; }
+        uint64_t most_bytes() const { return most_; }
 
     private:
         friend class SharedBudget;

@@ -51,9 +51,16 @@ MemoryPlan PassRunner::plan_within(uint64_t bytes) const {
 }
 
 void PassRunner::set_plan(const MemoryPlan& whole) {
+    demand(whole);
+    plan_ = whole;
+    planned_ = share_.most_bytes();
+}
+
+/// Says to the budget what the scene, as it is now, has use for.
+void PassRunner::demand(const MemoryPlan& whole) {
     const BuiltScene& scene = tracing_.scene;
-    whole_ = plan_ = whole;
-    const uint64_t most = planned_ = scene.pages.empty() ? 0 : bytes_of(scene, whole);
+    whole_ = whole;
+    const uint64_t most = scene.pages.empty() ? 0 : bytes_of(scene, whole);
     uint64_t least = most;
     if (gl_.budget().bytes() > 0 && most > 0) {
         const uint64_t tables = bytes_of(scene, whole) - whole.ray_bytes() - whole.pool_bytes;
@@ -150,8 +157,10 @@ Result<Done> PassRunner::update(const MemoryPlan& plan, const PageChanges& chang
     const Result<bool> updated = update_in_place(anew, changes);
     if (!updated)
         return updated.error();
-    if (*updated)
+    if (*updated) {
+        demand(anew);
         return Done{};
+    }
     purge();
     set_plan(anew);
     const Result<SharedBudget::Use> use = begin_use(progress);

@@ -85,6 +85,7 @@ public:
 
 private:
     void set_plan(const MemoryPlan& whole);
+    void demand(const MemoryPlan& whole);
     MemoryPlan plan_within(uint64_t bytes) const;
     Result<bool> update_in_place(const MemoryPlan& anew, const PageChanges& changes);
     Result<Done> open(BuildProgress* progress);

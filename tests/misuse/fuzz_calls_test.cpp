@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the fuzzer's function over random sequences of calls, which are the same on every run.
+// Runs the fuzzer's function over random sequences of calls, which are the same on every run, and
+// over those that it once failed on.
 #include "tests/fuzz/calls.h"
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <random>
 #include <vector>
 
@@ -18,6 +22,18 @@ TEST(FuzzCalls, RandomSequencesOfCallsGetRightAnswersOrErrors) {
         for (uint8_t& byte : bytes)
             byte = uint8_t(random() >> 8);
         if (!fuzz_calls(bytes.data(), bytes.size()))
+            GTEST_SKIP() << "no device";
+    }
+}
+
+TEST(FuzzCalls, SequencesThatFailedOnceDoNotFailAgain) {
+    for (const auto& entry :
+         std::filesystem::directory_iterator(OVC_SOURCE_DIR "/tests/fuzz/calls")) {
+        SCOPED_TRACE(entry.path());
+        std::ifstream file(entry.path(), std::ios::binary);
+        const std::string bytes(std::istreambuf_iterator<char>(file), {});
+        ASSERT_FALSE(bytes.empty());
+        if (!fuzz_calls(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()))
             GTEST_SKIP() << "no device";
     }
 }
