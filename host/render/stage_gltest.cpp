@@ -115,7 +115,7 @@ protected:
         return hits;
     }
 
-    fs::path folder_ = fs::path(testing::TempDir()) / "overcast-moving-scene";
+    fs::path folder_ = fs::path(testing::TempDir()) / ("moving_" + std::to_string(getpid()));
 };
 
 TEST_P(MovingScene, HasTheFramesOfOneThatIsBuiltAnew) {
@@ -143,7 +143,7 @@ TEST_P(MovingScene, HasTheFramesOfOneThatIsBuiltAnew) {
 
 /// A file of the scene is mapped into memory anew for each moment.
 TEST(Stage, KeepsWhatIsMappedIntoMemory) {
-    const fs::path folder = fs::path(testing::TempDir()) / "overcast-mapped-stage";
+    const fs::path folder = fs::path(testing::TempDir()) / ("mapped_" + std::to_string(getpid()));
     fs::create_directories(folder);
     ASSERT_TRUE(save(*make_test_scene("sphere-3"), folder / "ball.ovc"));
     RenderJob job;
