@@ -117,7 +117,8 @@ bool walk_tree(const TopLevel& top, std::span<const Page> pages, const Leaf& sce
             [&](uint32_t i) { return visit(portal.first_number + i); },
             [](uint32_t) { return false; }, limit);
     };
-    return walk_units(units, 0, pages, walked_ray(scene, p), from, visit, enter, limit);
+    const WalkedRay walked = top.way_in ? walked_ray(*top.way_in, p) : walked_ray(scene, p);
+    return walk_units(units, 0, pages, walked, from, visit, enter, limit);
 }
 
 /// Walks one page. leaf: its box and frame.

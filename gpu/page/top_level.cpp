@@ -223,6 +223,12 @@ TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> p
                          size_t max_links) {
     assert(!parts.pages.empty() && parts.portals.size() >= parts.pages.size());
     TopLevel top;
+    if (parts.portals.size() == 1 && parts.portals[0].first_number == 0) {
+        assert(parts.pages[0].count == pages.size());
+        top = build_top_level(pages, std::max(max_links, pages.size()));
+        top.way_in = parts.portals[0];
+        return top;
+    }
     top.tree = tree_over(parts.portals, scene);
     const uint32_t depth = top.tree.depth;
     top.first_link = {0};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The top-level tree: a tree over all pages of a scene, which a ray goes through first. It is
-// always in the pool. If pages share a frame, its lowest units are copies of units of the pages, so
-// a ray goes straight on into a page that is resident. Otherwise they are portals into frames, and
-// such a tree lies behind each of them.
+// always in the pool. If pages share a frame, the tree lies in it and its lowest units are copies
+// of units of the pages, so a ray goes straight on into a page that is resident. Otherwise they are
+// portals into frames, and such a tree lies behind each of them.
 #pragma once
 
 #include "gpu/page/page.h"
@@ -11,6 +11,7 @@
 
 #include <cassert>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct Link {
 struct TopLevel {
     Page tree;                        // all its links lead nowhere; the trees of parts follow
     std::vector<Portal> portals;      // [0]: the way back; none if all pages share a frame
+    std::optional<Portal> way_in;     // into the frame that all pages share, if not the scene's
     std::vector<Link> links;          // those of one page lie together
     std::vector<uint32_t> first_link; // for each page, and one past the last of all
     uint32_t depth = 0;               // nodes on the longest way down, pages included
@@ -86,7 +88,8 @@ struct Parts {
     void add(const Level1& level1, uint32_t first_page, std::span<const Place> places);
 };
 
-/// Builds the tree over parts. scene: the box and frame of the whole scene.
+/// Builds the tree over parts. A part that is alone, and whose triangles count from 0, has the tree
+/// in its frame. scene: the box and frame of the whole scene.
 TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> pages,
                          size_t max_links);
 

@@ -31,6 +31,33 @@ double largest(const dvec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
+/// Returns the max of a coordinate of rows v, with the signs that make it largest.
+double reach_of(const std::array<dvec3, 3>& rows, const dvec3& v) {
+    const dvec3 size = glm::abs(v);
+    return std::max({glm::dot(glm::abs(rows[0]), size), glm::dot(glm::abs(rows[1]), size),
+                     glm::dot(glm::abs(rows[2]), size)});
+}
+
+/// Returns the word of what a ray asks for.
+uint32_t asks_of(uint32_t skip, bool any_hit) {
+    return std::min<uint32_t>(skip, OVC_SKIPS_NONE) | (any_hit ? OVC_RAY_ANY_HIT : 0);
+}
+
+/// Returns LocalRay::t_end. inside: the part of the ray inside the box, which is `speed` times as
+/// long in the frame. reach: how far from the frame's origin the sums in doubles have come.
+float t_end_of(const Ray& ray, const Interval& inside, double speed, double reach) {
+    if (!(inside.enter <= inside.exit && ray.t_max >= ray.t_min))
+        return OVC_NO_RAY;
+    const double length = (inside.exit - inside.enter) * speed;
+    // Written so that a NaN is not decidable either.
+    const bool decidable =
+        reach <= OVC_MAX_LEAF_SIZES && length <= 1e30 && speed >= 1e-300 && speed <= 1e300;
+    if (!decidable)
+        return OVC_UNDECIDABLE;
+    // Rounded up, past the amount that the conversion may have lost.
+    return std::bit_cast<float>(std::bit_cast<uint32_t>(float(length)) + 2);
+}
+
 } // namespace
 
 LocalRay local_ray(const Leaf& leaf, const Ray& ray, uint32_t skip, bool any_hit, LocalTime& time) {
@@ -41,21 +68,32 @@ LocalRay local_ray(const Leaf& leaf, const Ray& ray, uint32_t skip, bool any_hit
 
     LocalRay local;
     local.dir = vec3(ray.dir * (1 / longest));
-    local.asks = std::min<uint32_t>(skip, OVC_SKIPS_NONE) | (any_hit ? OVC_RAY_ANY_HIT : 0);
+    local.asks = asks_of(skip, any_hit);
     const dvec3 from_origin = ray.org - leaf.frame.origin;
     const dvec3 travelled = ray.dir * inside.enter;
     local.org = vec3((from_origin + travelled) * scale);
-    const double length = (inside.exit - inside.enter) * time.speed;
-    // Rounded up, past the amount that the conversion may have lost.
-    local.t_end = std::bit_cast<float>(std::bit_cast<uint32_t>(float(length)) + 2);
-    const double reach = std::max(largest(from_origin), largest(travelled)) * scale;
-    // Written so that a NaN is not decidable either.
-    const bool decidable = reach <= OVC_MAX_LEAF_SIZES && length <= 1e30 && time.speed >= 1e-300 &&
-                           time.speed <= 1e300;
-    if (!decidable)
-        local.t_end = OVC_UNDECIDABLE;
-    if (!(inside.enter <= inside.exit && ray.t_max >= ray.t_min))
-        local.t_end = OVC_NO_RAY;
+    local.t_end = t_end_of(ray, inside, time.speed,
+                           std::max(largest(from_origin), largest(travelled)) * scale);
+    return local;
+}
+
+LocalRay local_ray(const Portal& portal, const Ray& ray, uint32_t skip, bool any_hit,
+                   LocalTime& time) {
+    const dvec3 from_origin = ray.org - portal.origin;
+    Ray there = ray;
+    there.org = portal.to_local_direction(from_origin);
+    there.dir = portal.to_local_direction(ray.dir);
+    const double longest = largest(there.dir);
+    const Interval inside = inside_box(portal.box, there);
+    time = {inside.enter, longest};
+
+    LocalRay local;
+    local.dir = vec3(there.dir * (1 / longest));
+    local.asks = asks_of(skip, any_hit);
+    local.org = vec3(there.org + there.dir * inside.enter);
+    local.t_end = t_end_of(ray, inside, longest,
+                           std::max(reach_of(portal.rows, from_origin),
+                                    reach_of(portal.rows, ray.dir) * std::abs(inside.enter)));
     return local;
 }
 

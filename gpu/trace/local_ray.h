@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/exact/triangle.h"
+#include "gpu/page/portal.h"
 #include "kdtree/partition.h"
 #include "shaders/layout.h"
 
@@ -36,8 +37,11 @@ struct LocalTime {
 };
 
 /// Returns the ray in the frame of a leaf, from where it enters the leaf's box, and sets `time`.
-/// Returns the ray in the frame of a leaf, from where it enters the leaf's box, and sets `time`.
 /// leaf: its box and frame. skip, any_hit: as in LocalRay::asks.
 LocalRay local_ray(const Leaf& leaf, const Ray& ray, uint32_t skip, bool any_hit, LocalTime& time);
+
+/// Returns the ray in the frame behind a portal, likewise.
+LocalRay local_ray(const Portal& portal, const Ray& ray, uint32_t skip, bool any_hit,
+                   LocalTime& time);
 
 } // namespace ovc

@@ -53,6 +53,34 @@ TEST(LocalRay, IsWhereTheRayIs) {
         }
 }
 
+TEST(LocalRay, IsWhereTheRayIsBehindAPortal) {
+    test::Random random(8);
+    for (const double size : {1e-9, 0.3, 4e7})
+        for (int i = 0; i < 4000; ++i) {
+            const Leaf leaf = leaf_of(random.point(-1, 1) * size, size);
+            Transform transform;
+            for (auto& row : transform.rows)
+                row = {random(-1, 1), random(-1, 1), random(-1, 1), random(-3, 3) * size};
+            if (!is_well_placed(leaf.box, &transform))
+                continue;
+            const Portal portal = portal_into(leaf.frame, leaf.box, &transform);
+            const dvec3 target = transform(leaf.frame.origin + random.point(-0.9, 0.9) * size);
+            const dvec3 org = target + random.point(-5, 5) * size;
+            const double t_target = random(0.1, 10);
+            const Ray ray{org, 0, (target - org) / t_target};
+            LocalTime time;
+            const LocalRay local = local_ray(portal, ray, 5, false, time);
+            ASSERT_GE(local.t_end, 0.0f);
+            const double t_local = (t_target - time.enter) * time.speed;
+            ASSERT_LE(t_local, double(local.t_end));
+            const double most = kRounding + OVC_BOUND_UNIT * (t_local + 1);
+            const dvec3 off =
+                dvec3(local.org) + t_local * dvec3(local.dir) - portal.to_local(ray.at(t_target));
+            for (int axis = 0; axis < 3; ++axis)
+                ASSERT_LE(std::abs(off[axis]), most) << size;
+        }
+}
+
 TEST(LocalRay, ThatMissesTheBoxOrHasNoLengthIsNoRay) {
     const Leaf leaf = leaf_of(dvec3(0), 1);
     LocalTime time;

@@ -255,7 +255,10 @@ void Tracer::upload_local(std::span<const RayState> rays, std::vector<Sent>& sen
         for (size_t i = first; i < last; ++i) {
             const RayState& state = rays.data()[i]; // up to the next whole block: see submit()
             LocalTime time;
-            const LocalRay ray = local_ray(scene_, state.ray, state.skip, state.any_hit(), time);
+            const bool any_hit = state.any_hit();
+            const LocalRay ray = top_.way_in
+                                     ? local_ray(*top_.way_in, state.ray, state.skip, any_hit, time)
+                                     : local_ray(scene_, state.ray, state.skip, any_hit, time);
             if constexpr (std::is_same_v<Sent, LocalRay>)
                 sent[i] = ray;
             else

@@ -25,9 +25,10 @@ std::vector<uint32_t> lenders(const Soup& soup) {
     std::vector<uint32_t> all;
     for (uint32_t i = 0; i < soup.chunks.size(); ++i) {
         const Chunk& chunk = soup.chunks[i];
-        all.push_back(chunk.size() == 0
-                          ? i
-                          : found.try_emplace({chunk.address_of(0), chunk.size()}, i).first->second);
+        all.push_back(
+            chunk.size() == 0
+                ? i
+                : found.try_emplace({chunk.address_of(0), chunk.size()}, i).first->second);
     }
     return all;
 }
