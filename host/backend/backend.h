@@ -87,7 +87,7 @@ inline ovc_structure structure_of(BackendKind kind) {
 }
 
 /// Silent: Ctrl-C cancels the plugin's building, with an Error of the kind Cancelled. Shown: a line
-/// on a terminal tells the progress as well. Both need that no other InterruptGuard lives.
+/// on a terminal tells the progress as well.
 enum class BuildWatching { None, Silent, Shown };
 
 struct BackendOptions {

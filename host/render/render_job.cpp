@@ -92,14 +92,15 @@ struct View {
 class Rendering {
 public:
     Rendering(const RenderJob& job, const PicturePart& part, Scene& scene, Stage& stage,
-              const LogSink& log)
+              const InterruptGuard& interrupt, const LogSink& log)
         : job_(job),
           log_(log),
           options_(render_options(job, part, scene)),
           scene_(scene),
           lights_(stage.lights()),
           stage_(stage),
-          backend_(stage.backend()) {}
+          backend_(stage.backend()),
+          interrupt_(interrupt) {}
 
     /// Renders a picture. Where it is interrupted, its pixels are kept beside its outputs, and
     /// stats.report is not complete. begun: how long its scene took, and the stage's statistics
@@ -270,7 +271,7 @@ private:
     const std::vector<Light>& lights_; // as the scene or the user has them
     Stage& stage_;
     Backend& backend_;
-    const InterruptGuard interrupt_;
+    const InterruptGuard& interrupt_;
 };
 
 static void report(const RenderJob& job, const RenderStats& stats) {
@@ -360,6 +361,7 @@ static void tell_of_up_left_out(const RenderJob& job, const Scene& scene, const 
 static Result<Done> render_shots(const RenderJob& job, const PicturePart& part, Stage& stage,
                                  Scene& scene, const LogSink& log, RenderStats& stats) {
     stats.report.complete = true;
+    const InterruptGuard interrupt; // of all shots, or one between two of them would be forgotten
     const std::vector<Shot> shots =
         job.shots.empty() ? std::vector<Shot>{Shot{.camera = job.camera}} : job.shots;
     for (const Shot& shot : shots) {
@@ -381,7 +383,8 @@ static Result<Done> render_shots(const RenderJob& job, const PicturePart& part, 
         if (const Result<Done> fine = check_camera(view.camera); !fine)
             return Error{fmt::format("{}: {}", job.scene.name(), fine.error().message)};
         begun.seconds_scene = watch.seconds();
-        const Result<Done> done = Rendering(job, part, scene, stage, log).run(view, begun, stats);
+        const Result<Done> done =
+            Rendering(job, part, scene, stage, interrupt, log).run(view, begun, stats);
         if (!done || !stats.report.complete)
             return done;
     }

@@ -20,7 +20,7 @@ public:
     /// Makes a scene of this config report to this object, which must outlive the scene.
     void watch(ovc_scene_config& config);
 
-    /// A commit is watched while one of these lives. No other InterruptGuard may live meanwhile.
+    /// A commit is watched while one of these lives.
     class Building {
     public:
         explicit Building(BuildWatch& watch) : watch_(watch) {

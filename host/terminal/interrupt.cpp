@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <csignal>
 #include <string_view>
+#include <utility>
 
 namespace ovc {
 
@@ -35,8 +36,8 @@ static void leave(int) {
     _exit(kExitInterrupted);
 }
 
-/// The part of the message that says what the program does; set before the handler is.
-static const char* doing_now = "";
+/// The part of the message that says what the program does; null while no guard lives.
+static const char* doing_now = nullptr;
 
 static void remember(int) {
     const int errno_before = errno;
@@ -53,15 +54,18 @@ void exit_on_interrupt() {
     std::signal(SIGINT, leave);
 }
 
-InterruptGuard::InterruptGuard(const char* doing) {
+InterruptGuard::InterruptGuard(const char* doing) : outer_(std::exchange(doing_now, doing)) {
+    if (outer_)
+        return;
     interrupt_seen = 0;
-    doing_now = doing;
     on_terminal = isatty(STDERR_FILENO);
     std::signal(SIGINT, remember);
 }
 
 InterruptGuard::~InterruptGuard() {
-    exit_on_interrupt();
+    if (!outer_)
+        exit_on_interrupt();
+    doing_now = outer_;
 }
 
 bool InterruptGuard::interrupted() const {

@@ -14,7 +14,8 @@ inline constexpr int kExitInterrupted = 2;
 void exit_on_interrupt();
 
 /// While a guard lives, the first SIGINT only prints a message with what the program does about it,
-/// and sets interrupted(); a second one exits as above. At most one may live at a time.
+/// and sets interrupted(); a second one exits as above. Guards may lie within each other: the inner
+/// one says what is done, and all of them are interrupted.
 class InterruptGuard {
 public:
     /// doing: what the message says that the program does; must outlive the guard.
@@ -24,6 +25,9 @@ public:
     InterruptGuard& operator=(const InterruptGuard&) = delete;
 
     bool interrupted() const;
+
+private:
+    const char* const outer_; // what the guard around this one says; null: there is none
 };
 
 } // namespace ovc

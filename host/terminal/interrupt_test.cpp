@@ -40,6 +40,24 @@ TEST_F(InterruptDeathTest, TheFirstOnlyAsks) {
     std::signal(SIGINT, SIG_DFL);
 }
 
+TEST_F(InterruptDeathTest, IsRememberedByTheGuardAround) {
+    testing::internal::CaptureStderr();
+    {
+        const InterruptGuard around("ending");
+        {
+            const InterruptGuard inner("stopping");
+            std::raise(SIGINT);
+        }
+        EXPECT_TRUE(around.interrupted());
+        const InterruptGuard next("stopping again");
+        EXPECT_TRUE(next.interrupted());
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+              "overcast: interrupted; stopping (press again to give up)\n");
+    EXPECT_FALSE(InterruptGuard().interrupted());
+    std::signal(SIGINT, SIG_DFL);
+}
+
 TEST_F(InterruptDeathTest, TheSecondRemovesWhatIsUnfinished) {
     const fs::path inside = folder_ / "inside";
     fs::create_directory(inside);
