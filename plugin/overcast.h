@@ -7,9 +7,10 @@
  * pointer of the caller's after it returns, except the positions of a mesh added with OVC_MESH_SHARED. The caller owns every
  * buffer. Structs that go in begin with struct_size = sizeof(the struct); every other field means "default" when zero. Structs
  * and the table only ever grow at their end: the struct_size of an earlier header is fine. The manual is docs/reference/abi.md.
- * Calls may come from any thread, of 256 KiB of stack at least; calls on one scene wait their turn, first come, first served. The caller's GL context, floating-point state and
- * environment are left alone: each device has a thread of its own. The functions that a caller hands in for errors, logs, progress
- * and what is saved may call last_error and nothing else. In a process that is forked, the parent's handles are errors. */
+ * Calls may come from any thread, of 256 KiB of stack at least; calls on one scene wait their turn, first come, first served. The
+ * caller's GL context, floating-point state and environment are left alone: each device has a thread of its own. The functions that
+ * a caller hands in for errors, logs, progress and what is saved may call last_error and nothing else. In a process that is forked,
+ * the parent's handles are errors. */
 #ifndef OVERCAST_H
 #define OVERCAST_H
 
@@ -193,8 +194,8 @@ typedef struct ovc_scene_config {
 } ovc_scene_config;
 
 typedef enum ovc_mesh_flags {
-    OVC_MESH_SHARED = 1, /* positions are used in place, and stay valid and unchanged until the scene is destroyed.
-                            Needs stride 12, or 24 of doubles, and no indices */
+    OVC_MESH_SHARED = 1, /* positions are used in place: they stay valid until the scene is destroyed or the mesh removed,
+                            and change with update_mesh() only. Needs stride 12, or 24 of doubles, and no indices */
     OVC_MESH_TEMPLATE = 2, /* no ray hits the mesh itself: it is there for its instances. It counts for no triangles */
     OVC_MESH_MOVES = 4 /* update_instance() is to move the mesh: it is built by itself from the start, so that the first move is quick too */
 } ovc_mesh_flags;
@@ -304,7 +305,8 @@ typedef struct ovc_plan {
 } ovc_plan;
 
 /* How a scene stands, and what has been done with it. Fields that are marked + count up from commit
- * on, so that the difference of two readings tells what lies between; seconds are of wall clock.
+ * on, so that the difference of two readings tells what lies between; they begin at 0 again where a
+ * commit after changes had to build the scene anew. Seconds are of wall clock.
  * The struct_size of an earlier header is fine: what it lacks is not filled in. A field is added
  * here, at the end, and nowhere else: its name in JSON and Python and its line in
  * docs/reference/stats.md are made from this list (cmake/statistics.cmake). */
@@ -556,7 +558,8 @@ typedef struct ovc_api {
      * itself then, if OVC_MESH_MOVES was not set. */
     ovc_result (*update_instance)(ovc_scene scene, uint32_t mesh_id, const double* transform);
     /* Removes a mesh or an instance. Numbers of others stay as they are, and this one is not used again; instances of a removed
-     * mesh stay. */
+     * mesh stay. Positions with OVC_MESH_SHARED are no longer read once the mesh and all of its instances are removed and the next
+     * commit has returned. */
     ovc_result (*remove_mesh)(ovc_scene scene, uint32_t mesh_id);
 } ovc_api;
 

@@ -90,9 +90,15 @@ void check_update(const ovc_mesh& update, uint64_t first, const Chunk& chunk) {
 void note_moved(ovc_scene scene, uint32_t mesh_id, uint32_t first, uint32_t end) {
     if (!scene->structure || first == end)
         return;
-    for (uint32_t i = 0; i < scene->sources.size(); ++i)
-        if (scene->sources[i].mesh == mesh_id && scene->soup.chunks[i].size() > 0)
+    const std::vector<MeshSource>& sources = scene->sources;
+    uint32_t left = 1 + sources[mesh_id].instances; // which come after the mesh
+    for (uint32_t i = mesh_id; left > 0 && i < sources.size(); ++i) {
+        if (sources[i].mesh != mesh_id)
+            continue;
+        left -= 1;
+        if (scene->soup.chunks[i].size() > 0)
             begin_change(scene).moved.push_back({i, first, end});
+    }
 }
 
 } // namespace

@@ -34,6 +34,7 @@ public:
         : scene_(scene),
           soup_(scene.soup),
           changes_(changes),
+          moved_(joined(changes.moved)),
           options_(options),
           plan_(plan),
           progress_(progress) {}
@@ -62,6 +63,11 @@ public:
     }
 
 private:
+    /// Returns what has moved of a chunk, sorted and joined.
+    std::span<const PrimRange> moved_of(uint32_t chunk) const {
+        return std::ranges::equal_range(moved_, chunk, {}, &PrimRange::mesh);
+    }
+
     /// Returns a box around a shared mesh, of which few corners have changed at most.
     std::optional<Box> known_box(uint32_t chunk) const {
         const SharedMesh* mesh =
@@ -70,9 +76,7 @@ private:
             return std::nullopt;
         Box box = mesh->scene.level1.bounds;
         uint64_t moved = 0;
-        for (const PrimRange& range : changes_.moved) {
-            if (range.mesh != chunk)
-                continue;
+        for (const PrimRange& range : moved_of(chunk)) {
             moved += range.end - range.first;
             if (moved > soup_.chunks[chunk].size() / 16)
                 return std::nullopt;
@@ -108,7 +112,7 @@ private:
             if (std::ranges::binary_search(scene_.once, range.mesh))
                 changed.push_back(range);
         };
-        std::ranges::for_each(changes_.moved, add);
+        std::ranges::for_each(moved_, add);
         std::ranges::for_each(changes_.removed, add);
         for (const uint32_t chunk : changes_.placed)
             add({chunk, 0, soup_.chunks[chunk].size()});
@@ -159,11 +163,11 @@ private:
     bool keep(SharedMesh mesh, const Placed::Instances& instances) {
         mesh.instances = instances;
         std::vector<PrimRange> changed;
-        for (const PrimRange& range : changes_.moved)
-            if (std::ranges::binary_search(instances, range.mesh))
+        for (const uint32_t chunk : instances) {
+            for (const PrimRange& range : moved_of(chunk))
                 changed.push_back({0, range.first, range.end});
-        for (const uint32_t chunk : instances)
             scene_.mesh_of_chunk[chunk] = uint32_t(scene_.shared.size());
+        }
         changed = joined(std::move(changed));
         const bool updated = update_level(mesh.scene, changed, mesh.first_page);
         for (const PrimRange& range : changed)
@@ -207,6 +211,7 @@ private:
     BuiltScene& scene_;
     const Soup& soup_;
     const Changes& changes_;
+    const std::vector<PrimRange> moved_; // sorted and joined
     const TwoLevelOptions& options_;
     const MemoryPlan& plan_;
     BuildProgress* const progress_;

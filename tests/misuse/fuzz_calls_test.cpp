@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the fuzzer's function over random sequences of calls, which are the same on every run, and
-// over those that it once failed on.
+// over those that it once failed on. OVC_FUZZ_SECONDS: for as long as that, instead of 300 times.
 #include "tests/fuzz/calls.h"
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -15,7 +17,9 @@ namespace ovc {
 namespace {
 
 TEST(FuzzCalls, RandomSequencesOfCallsGetRightAnswersOrErrors) {
-    for (uint32_t seed = 0; seed < 300; ++seed) {
+    const char* const told = std::getenv("OVC_FUZZ_SECONDS");
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(told ? atoi(told) : 0);
+    for (uint32_t seed = 0; seed < 300 || std::chrono::steady_clock::now() < end; ++seed) {
         SCOPED_TRACE(seed);
         std::mt19937 random(seed);
         std::vector<uint8_t> bytes(200 + random() % 4000);
