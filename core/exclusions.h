@@ -52,6 +52,8 @@ struct Exclusions {
         : skip(skip_), after(after_) {}
     Exclusions(const std::vector<TriangleId>& skip_) : skip(skip_) {}
 
+    /// Whether no ray has an Exclusion; sieves may still drop hits.
+    bool empty() const { return skip.empty() && after.empty(); }
     bool are_for(size_t rays) const {
         return (skip.empty() || skip.size() == rays) && (after.empty() || after.size() == rays);
     }

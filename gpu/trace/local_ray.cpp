@@ -9,8 +9,9 @@
 namespace ovc {
 namespace {
 
-/// Returns the part of the ray inside the box; empty if enter > exit.
-Interval inside_box(const Box& box, const Ray& ray) {
+/// Returns the part of the ray inside the box; empty if enter > exit. Inlined, for a call of its
+/// own costs a third of local_ray().
+[[gnu::always_inline]] inline Interval inside_box(const Box& box, const Ray& ray) {
     Interval inside{ray.t_min, ray.t_max};
     for (int axis = 0; axis < 3; ++axis) {
         const double org = ray.org[axis];

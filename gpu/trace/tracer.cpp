@@ -251,22 +251,25 @@ template <class Sent>
 void Tracer::upload_local(std::span<const RayState> rays, std::vector<Sent>& sent) {
     sent.resize(whole_blocks(rays.size()));
     times_.resize(options_.certify ? 0 : sent.size());
-    parallel_for(sent.size(), kRayGrain, [&](size_t first, size_t last) {
-        for (size_t i = first; i < last; ++i) {
-            const RayState& state = rays.data()[i]; // up to the next whole block: see submit()
-            LocalTime time;
-            const bool any_hit = state.any_hit();
-            const LocalRay ray = top_.way_in
-                                     ? local_ray(*top_.way_in, state.ray, state.skip, any_hit, time)
-                                     : local_ray(scene_, state.ray, state.skip, any_hit, time);
-            if constexpr (std::is_same_v<Sent, LocalRay>)
-                sent[i] = ray;
-            else
-                sent[i] = {ray, state.key(), {}};
-            if (!options_.certify)
-                times_[i] = time;
-        }
-    });
+    const auto convert = [&](const auto& frame) {
+        parallel_for(sent.size(), kRayGrain, [&](size_t first, size_t last) {
+            for (size_t i = first; i < last; ++i) {
+                const RayState& state = rays.data()[i]; // up to the next whole block: see submit()
+                LocalTime time;
+                const LocalRay ray = local_ray(frame, state.ray, state.skip, state.any_hit(), time);
+                if constexpr (std::is_same_v<Sent, LocalRay>)
+                    sent[i] = ray;
+                else
+                    sent[i] = {ray, state.key(), {}};
+                if (!options_.certify)
+                    times_[i] = time;
+            }
+        });
+    };
+    if (top_.way_in)
+        convert(*top_.way_in);
+    else
+        convert(scene_);
     if (takes_packets() && coherent(std::span<const Sent>(sent).first(rays.size())))
         if (auto parted = part_packets(sent, rays.size(), max_slots_)) {
             packets_ = true;

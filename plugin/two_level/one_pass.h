@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -95,8 +96,8 @@ private:
         batch.make_room();
         parallel_for(batch.rays.size(), kRaysPerTask, [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j) {
-                const uint32_t i = batch.rays[j];
-                batch.states[j] = resolver_.ray_state(i, query_.rays[i].t_max, 0);
+                const double all = std::numeric_limits<double>::infinity();
+                batch.states[j] = resolver_.ray_state(batch.rays[j], all, 0);
             }
         });
     }

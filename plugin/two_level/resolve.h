@@ -87,12 +87,17 @@ public:
     /// RayState::key().
     RayState ray_state(uint32_t i, double t_end, uint32_t key) const {
         query_.count_pass(i);
-        const Exclusion without = exclusion(i);
-        Ray rest = PreparedRay::behind(query_.rays[i], without.after);
-        rest.t_max = t_end;
-        return {rest,
+        const Ray ray = query_.rays[i];
+        double t_min = ray.t_min;
+        uint32_t skip = OVC_NO_TRIANGLE;
+        if (!query_.without.empty()) {
+            const Exclusion without = exclusion(i);
+            t_min = PreparedRay::behind(ray, without.after).t_min;
+            skip = scene_.number_to_skip(query_.rays[i], without);
+        }
+        return {{ray.org, t_min, ray.dir, std::min(ray.t_max, t_end)},
                 {},
-                scene_.number_to_skip(query_.rays[i], without),
+                skip,
                 key | (Query::kAnyHit ? OVC_RAY_ANY_HIT : 0)};
     }
 
