@@ -4,6 +4,7 @@
 #include "tests/misuse/entries.h"
 
 #include <atomic>
+#include <utility>
 
 namespace ovc {
 namespace {
@@ -91,6 +92,75 @@ TEST_F(HostFunctions, AWriteThatCallsBackGetsErrors) {
     EXPECT_TRUE(intruder.called);
     EXPECT_EQ(intruder.allowed, "");
     EXPECT_TRUE(test::field_answers(subject.field));
+}
+
+int keep_all(void* user, size_t, const uint64_t*, const ovc_hit*, uint8_t*) {
+    static_cast<Intruder*>(user)->intrude();
+    return 0;
+}
+
+TEST_F(HostFunctions, AFilterThatCallsBackGetsErrors) {
+    test::Subject subject(device.get());
+    Intruder intruder{&subject, {}, {}};
+    auto query = sized<ovc_query>();
+    query.filter = keep_all;
+    query.filter_user = &intruder;
+    const ovc_ray ray = test::into_cell(5, 1);
+    ovc_hit hit;
+    EXPECT_EQ(api().intersect(subject.field, &ray, 1, &hit, &query), OVC_OK);
+    EXPECT_TRUE(test::is_in_cell(hit, 5, 1));
+    EXPECT_TRUE(intruder.called);
+    EXPECT_EQ(intruder.allowed, "");
+    EXPECT_TRUE(test::field_answers(subject.field));
+}
+
+/// Pushes a ray into each cell once, with the query that is the user's.
+int push_all(void* user, ovc_stream stream, size_t) {
+    auto& query = *static_cast<ovc_query**>(user);
+    if (!std::exchange(query, nullptr))
+        return 0;
+    auto stopped = sized<ovc_query>();
+    stopped.filter = [](void*, size_t, const uint64_t*, const ovc_hit*, uint8_t*) { return 1; };
+    for (uint32_t cell = 0; cell < test::kCells; ++cell) {
+        const ovc_ray ray = test::into_cell(cell, 1);
+        const uint64_t token = cell;
+        EXPECT_EQ(api().push(stream, &ray, &token, 1, cell % 2, &stopped), OVC_OK);
+    }
+    return 0;
+}
+
+TEST_F(HostFunctions, AFilterStopsCallsOfEveryForm) {
+    test::Subject subject(device.get());
+    const ovc_scene field = subject.field;
+    auto query = sized<ovc_query>();
+    query.filter = [](void*, size_t, const uint64_t*, const ovc_hit*, uint8_t*) { return 1; };
+    std::vector<ovc_ray> rays;
+    for (uint32_t cell = 0; cell < test::kCells; ++cell)
+        rays.push_back(test::into_cell(cell, 1));
+    std::vector<ovc_hit> hits(rays.size());
+    std::vector<uint8_t> occluded(rays.size());
+    const auto stops = [&](ovc_result result, const char* call) {
+        EXPECT_EQ(result, OVC_ERROR_CANCELLED) << call;
+        EXPECT_NE(error().find(call), std::string::npos) << error();
+        EXPECT_TRUE(test::field_answers(field)) << call;
+    };
+    const ovc_ray* const first = rays.data();
+    const size_t count = rays.size();
+    stops(api().intersect(field, first, count, hits.data(), &query), "intersect");
+    stops(api().occluded(field, first, count, occluded.data(), &query), "occluded");
+    stops(api().all_hits(field, first, count, 1, hits.data(), nullptr, &query), "all_hits");
+    stops(api().intersect1(field, first, hits.data(), &query), "intersect1");
+    stops(api().occluded1(field, first, occluded.data(), &query), "occluded1");
+    ovc_ticket ticket = nullptr;
+    ASSERT_EQ(api().submit_intersect(field, first, count, hits.data(), &query, &ticket), OVC_OK);
+    stops(api().wait(ticket), "submit_intersect");
+    api().release(ticket);
+    auto host = sized<ovc_stream_host>();
+    ovc_query* once = &query;
+    host.user = &once;
+    host.more = push_all;
+    host.answered = [](void*, ovc_stream, const ovc_stream_answers*) { return 0; };
+    stops(api().stream(field, &host), "stream");
 }
 
 } // namespace

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// paired_calls BEFORE.so AFTER.so SCENE [--rays N] [--repeats N] times calls of two versions of the
+// library on the same rays, by turns, for docs/benchmarks.md. Prints the median and the quartiles
+// of the ratio of each pair. Answers must be the same bits.
+#include "core/system/stopwatch.h"
+#include "host/scene/scene_source.h"
+#include "host/scene/scene_summary.h"
+#include "plugin/overcast.h"
+#include "testscenes/random.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace ovc {
+namespace {
+
+/// A scene in one of the libraries. Structs have the sizes of the first version of the ABI.
+class Side {
+public:
+    Side(const char* path, const Soup& soup) {
+        void* const library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+        if (!library)
+            give_up(dlerror());
+        const auto get_api = ovc_get_api_function(dlsym(library, "ovc_get_api"));
+        api_ = get_api ? get_api(OVC_ABI_VERSION) : nullptr;
+        if (!api_)
+            give_up(fmt::format("{} is no library of Overcast of this version", path));
+        must(api_->create_device(nullptr, &device_));
+        must(api_->create_scene(device_, nullptr, &scene_));
+        std::vector<double> positions;
+        for (size_t i = 0; i < soup.chunks.size(); ++i) {
+            const Chunk& chunk = soup.chunks[i];
+            positions.clear();
+            for (uint32_t prim = 0; prim < chunk.size(); ++prim)
+                for (const dvec3& corner : chunk.triangle(prim))
+                    positions.insert(positions.end(), {corner.x, corner.y, corner.z});
+            ovc_mesh mesh{};
+            mesh.struct_size = offsetof(ovc_mesh, mask);
+            mesh.positions_double = positions.data();
+            mesh.vertex_count = positions.size() / 3;
+            must(api_->add_mesh(scene_, &mesh, nullptr));
+        }
+        must(api_->commit(scene_));
+    }
+
+    void intersect(const std::vector<ovc_ray>& rays, std::vector<ovc_hit>& hits) const {
+        must(api_->intersect(scene_, rays.data(), rays.size(), hits.data(), nullptr));
+    }
+    void occluded(const std::vector<ovc_ray>& rays, std::vector<uint8_t>& occluded) const {
+        must(api_->occluded(scene_, rays.data(), rays.size(), occluded.data(), nullptr));
+    }
+
+private:
+    [[noreturn]] static void give_up(const std::string& why) {
+        fmt::print(stderr, "paired_calls: {}\n", why);
+        std::exit(1);
+    }
+    void must(ovc_result result) const {
+        if (result != OVC_OK)
+            give_up(api_->last_error(device_));
+    }
+
+    const ovc_api* api_ = nullptr;
+    ovc_device device_ = nullptr;
+    ovc_scene scene_ = nullptr;
+};
+
+ovc_ray ray_from(const dvec3& org, const dvec3& dir) {
+    return {
+        {org.x, org.y, org.z}, 0, {dir.x, dir.y, dir.z}, std::numeric_limits<double>::infinity()};
+}
+
+/// Returns rays of a camera, row by row.
+std::vector<ovc_ray> camera_rays(const Box& box, size_t count) {
+    const double reach = max_component(box.extent());
+    const dvec3 eye = box.center() + reach * dvec3(0.3, 0.4, 1.4);
+    const auto width = size_t(std::sqrt(double(count)));
+    std::vector<ovc_ray> rays;
+    for (size_t i = 0; i < count; ++i) {
+        const dvec3 on_screen(double(i % width) / double(width) - 0.5,
+                              double(i / width) / double(width) - 0.5, 0);
+        rays.push_back(ray_from(eye, box.center() + 0.9 * reach * on_screen - eye));
+    }
+    return rays;
+}
+
+/// Returns rays in all directions, from just before the hits of `first`, or from points of the box.
+std::vector<ovc_ray> bounced_rays(const Box& box, const std::vector<ovc_ray>& first,
+                                  const std::vector<ovc_hit>& hits) {
+    Random random(1);
+    const auto any = [&] {
+        return dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    };
+    std::vector<ovc_ray> rays;
+    for (size_t i = 0; i < first.size(); ++i) {
+        const auto& [org, t_min, dir, t_max] = first[i];
+        const dvec3 from = hits[i].mesh == OVC_NONE
+                               ? box.center() + 0.5 * box.extent() * any()
+                               : dvec3(org[0], org[1], org[2]) +
+                                     0.9999 * hits[i].t * dvec3(dir[0], dir[1], dir[2]);
+        rays.push_back(ray_from(from, any()));
+    }
+    return rays;
+}
+
+void print(const char* what, std::vector<double> ratios) {
+    std::ranges::sort(ratios);
+    const auto at = [&](double share) { return ratios[size_t(share * double(ratios.size() - 1))]; };
+    fmt::print("{:10} {:.3f} ({:.3f} to {:.3f})\n", what, at(0.5), at(0.25), at(0.75));
+}
+
+Result<Done> run(const char* before, const char* after, const std::string& name, size_t count,
+                 int repeats) {
+    const Result<Scene> scene = open_scene(name, standard_error_log(LogLevel::Warning));
+    if (!scene)
+        return scene.error();
+    const Box box = hittable_bounds(scene->soup);
+    const std::array<Side, 2> sides{Side(before, scene->soup), Side(after, scene->soup)};
+    std::array<std::vector<ovc_hit>, 2> hits{std::vector<ovc_hit>(count),
+                                             std::vector<ovc_hit>(count)};
+    std::array<std::vector<uint8_t>, 2> occluded{std::vector<uint8_t>(count),
+                                                 std::vector<uint8_t>(count)};
+    const std::vector<ovc_ray> primary = camera_rays(box, count);
+    sides[0].intersect(primary, hits[0]);
+    const std::vector<ovc_ray> bounced = bounced_rays(box, primary, hits[0]);
+
+    const auto compare = [&](const char* what, auto&& call, const auto& answers) {
+        std::vector<double> ratios;
+        for (int i = 0; i < repeats + 2; ++i) {
+            std::array<double, 2> seconds{};
+            for (const size_t side : {size_t(i) % 2, 1 - size_t(i) % 2}) {
+                const Stopwatch watch;
+                call(side);
+                seconds[side] = watch.seconds();
+            }
+            if (i >= 2) // the first two compile kernels and move pages in
+                ratios.push_back(seconds[1] / seconds[0]);
+        }
+        print(what, std::move(ratios));
+        if (std::memcmp(answers[0].data(), answers[1].data(),
+                        answers[0].size() * sizeof(answers[0][0])) != 0)
+            fmt::print("{:10} other answers\n", what);
+    };
+    fmt::print("{}, {} rays: the time of {} to that of {}, by turns; median (quartiles) of {}\n",
+               name, count, after, before, repeats);
+    compare(
+        "primary", [&](size_t s) { sides[s].intersect(primary, hits[s]); }, hits);
+    compare(
+        "diffuse", [&](size_t s) { sides[s].intersect(bounced, hits[s]); }, hits);
+    compare(
+        "occlusion", [&](size_t s) { sides[s].occluded(bounced, occluded[s]); }, occluded);
+    return Done{};
+}
+
+} // namespace
+} // namespace ovc
+
+int main(int count, char** arguments) {
+    std::vector<const char*> names;
+    size_t rays = 1 << 18;
+    int repeats = 101;
+    for (int i = 1; i < count; ++i) {
+        const std::string argument = arguments[i];
+        if (argument == "--rays" && i + 1 < count)
+            rays = std::max<size_t>(std::strtoull(arguments[++i], nullptr, 10), 1);
+        else if (argument == "--repeats" && i + 1 < count)
+            repeats = std::max(std::atoi(arguments[++i]), 1);
+        else
+            names.push_back(arguments[i]);
+    }
+    if (names.size() != 3) {
+        fmt::print(stderr,
+                   "Usage: paired_calls BEFORE.so AFTER.so SCENE [--rays N] [--repeats N]\n");
+        return 1;
+    }
+    const auto done = ovc::run(names[0], names[1], names[2], rays, repeats);
+    if (!done)
+        fmt::print(stderr, "paired_calls: {}\n", done.error().message);
+    return done ? 0 : 1;
+}
