@@ -68,12 +68,13 @@ public:
         return Done{};
     }
     /// Asks the watch within a pass, wherever something may take long. Returns false where the call
-    /// is cancelled and work on it is in vain. Any thread; those without the Scope only look up the
-    /// answer.
+    /// is cancelled and work on it is in vain; the watch is not asked again then. Any thread; those
+    /// without the Scope only look up the answer.
     bool keeps_on() const {
         if (!watch_)
             return true;
-        if (thread_ == std::this_thread::get_id() && !watch_->goes_on(share_))
+        const bool asks = !cancelled_ && thread_ == std::this_thread::get_id();
+        if (asks && !watch_->goes_on(share_))
             cancelled_ = true;
         return !cancelled_;
     }
