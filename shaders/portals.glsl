@@ -31,6 +31,7 @@ struct Portal {
     dvec3 hi;
     int tree; // the unit of its header
     uint first_number;
+    ivec2 far; // the texel and the number of its far triangles
 };
 
 Portal portal_at(int number) {
@@ -40,7 +41,7 @@ Portal portal_at(int number) {
         d[i] = doubles_of(portal_texel(texel + i));
     uvec4 last = portal_texel(texel + 9);
     return Portal(dvec3(d[0], d[1].x), dvec3[3](dvec3(d[1].y, d[2]), dvec3(d[3], d[4].x), dvec3(d[4].y, d[5])),
-                  dvec3(d[6], d[7].x), dvec3(d[7].y, d[8]), int(last.x), last.y);
+                  dvec3(d[6], d[7].x), dvec3(d[7].y, d[8]), int(last.x), last.y, ivec2(last.zw));
 }
 
 dvec3 times(dvec3 rows[3], dvec3 v) {
@@ -74,6 +75,22 @@ float nearest_float(double d) {
 }
 vec3 nearest_floats(dvec3 d) { return vec3(nearest_float(d.x), nearest_float(d.y), nearest_float(d.z)); }
 
+// A ray in a frame, in doubles. reach, dir_reach: the largest component of org and of dir if all
+// terms are taken by their magnitudes; roundings are in proportion to them.
+struct FrameRay {
+    dvec3 org;
+    dvec3 dir;
+    double reach;
+    double dir_reach;
+};
+
+FrameRay frame_ray(WorldRay ray, Portal portal) {
+    precise dvec3 from_origin = ray.org - portal.origin;
+    dvec3 sizes[3] = dvec3[3](abs(portal.rows[0]), abs(portal.rows[1]), abs(portal.rows[2]));
+    return FrameRay(times(portal.rows, from_origin), times(portal.rows, ray.dir),
+                    largest(times(sizes, abs(from_origin))), largest(times(sizes, abs(ray.dir))));
+}
+
 // A ray in a frame, as the traversal takes it, and the times that lead back to the world's t.
 struct LocalRay {
     vec3 org; // where it enters the box
@@ -85,9 +102,8 @@ struct LocalRay {
 };
 
 LocalRay local_ray(WorldRay ray, Portal portal) {
-    precise dvec3 from_origin = ray.org - portal.origin;
-    dvec3 org = times(portal.rows, from_origin);
-    dvec3 dir = times(portal.rows, ray.dir);
+    FrameRay frame = frame_ray(ray, portal);
+    dvec3 org = frame.org, dir = frame.dir;
     dvec2 inside = inside_box(org, dir, portal.lo, portal.hi, ray.t_min, ray.t_max);
     double speed = largest(dir);
     LocalRay local;
@@ -103,9 +119,7 @@ LocalRay local_ray(WorldRay ray, Portal portal) {
     double length = (inside.y - inside.x) * speed;
     // Rounded up, past the amount that the conversion may have lost.
     local.t_end = uintBitsToFloat(floatBitsToUint(float(length)) + 2u);
-    dvec3 sizes[3] = dvec3[3](abs(portal.rows[0]), abs(portal.rows[1]), abs(portal.rows[2]));
-    double reach = max(largest(times(sizes, abs(from_origin))),
-                       largest(times(sizes, abs(ray.dir))) * abs(inside.x));
+    double reach = max(frame.reach, frame.dir_reach * abs(inside.x));
     // Written so that a NaN is not decidable either.
     local.decidable = reach <= double(OVC_MAX_LEAF_SIZES) && length <= 1.0e30 &&
                       speed >= 1.0e-300 && speed <= 1.0e300;
@@ -143,12 +157,20 @@ void set_local_ray(inout Packet packet, LocalRay local, Tree tree) {
 // Returns the ray in the frame of the top-level tree, whose portal is the first.
 LocalRay scene_ray(int ray) { return local_ray(world_ray(ray), portal_at(0)); }
 
+#include "far.glsl"
+
 // Takes a ray that has come to a portal behind it. Returns false if there is no portal, or if the
 // ray goes no farther.
 bool enter_portal(int ray, inout Descent d, inout Packet packet, inout Found found) {
     if (d.unit >= 0 || d.lost || found.best_hi < 0.0)
         return false;
     Portal portal = portal_at(-d.unit);
+    if (portal.far.y > 0) {
+        take_far_triangles(world_ray(ray), portal, packet, found);
+        d.unit = 0;
+        d.done = found.best_hi < 0.0;
+        return !d.done;
+    }
     LocalRay local = local_ray(world_ray(ray), portal);
     Found there = in_times(found, packet.place.part, local.times, local.t_end);
     bool decidable = local.decidable && there.best_hi != OVC_UNDECIDABLE;

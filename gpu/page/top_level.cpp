@@ -13,6 +13,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace ovc {
 namespace {
@@ -197,9 +198,13 @@ TopLevel build_top_level(std::span<const Page> pages, size_t max_links) {
     return top;
 }
 
-TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links) {
+TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links,
+                         const NumberedSoup* numbered) {
     Parts parts;
-    parts.add(level1, 0, std::array{Place()});
+    if (numbered)
+        parts.add(level1, *numbered);
+    else
+        parts.add(level1, 0, std::array{Place()});
     if (parts.pages.empty())
         return {};
     if (parts.pages.size() == 1)
@@ -217,6 +222,26 @@ void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place
         }
         pages.push_back({first_page + part.first, part.count});
     }
+}
+
+void Parts::add(const Level1& level1, const NumberedSoup& numbered) {
+    assert(pages.empty());
+    add(level1, 0, std::array{Place()});
+    for (Portal& portal : portals) {
+        const LeafRange part = pages[portal.tree];
+        if (part.count != 1)
+            continue;
+        const std::vector<FarTriangle> found =
+            far_triangles_of(numbered, level1.leaves[part.first], level1.bounds);
+        portal.far = {uint32_t(far_triangles.size()), uint32_t(found.size())};
+        far_triangles.insert(far_triangles.end(), found.begin(), found.end());
+    }
+}
+
+void TopLevel::drop_far_triangles() {
+    far_triangles.clear();
+    for (Portal& portal : portals)
+        portal.far = {};
 }
 
 TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> pages,
@@ -241,6 +266,7 @@ TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> p
         assert(portal.tree < begins.size());
         portal.tree = begins[portal.tree];
     }
+    top.far_triangles = std::move(parts.far_triangles);
     top.portals = {portal_into(scene.frame, scene.box)};
     top.portals.insert(top.portals.end(), parts.portals.begin(), parts.portals.end());
     top.depth += depth + 1; // and the word by which a ray comes back

@@ -25,8 +25,9 @@ struct Link {
 };
 
 struct TopLevel {
-    Page tree;                        // all its links lead nowhere; the trees of parts follow
-    std::vector<Portal> portals;      // [0]: the way back; none if all pages share a frame
+    Page tree;                              // all its links lead nowhere; the trees of parts follow
+    std::vector<Portal> portals;            // [0]: the way back; none if all pages share a frame
+    std::vector<FarTriangle> far_triangles; // which portals name
     std::optional<Portal> way_in;     // into the frame that all pages share, if not the scene's
     std::vector<Link> links;          // those of one page lie together
     std::vector<uint32_t> first_link; // for each page, and one past the last of all
@@ -36,6 +37,12 @@ struct TopLevel {
     /// Returns the bytes of the pool that no page lies in.
     uint64_t room() const { return tree.bytes() + spare_bytes; }
     bool empty() const { return tree.texels.empty(); }
+    /// Returns the bytes of the table of portals.
+    uint64_t table_bytes() const {
+        return portals.size() * kPortalBytes + far_triangles.size() * kFarTriangleBytes;
+    }
+    /// Lets rays go through the pages of far triangles instead.
+    void drop_far_triangles();
     std::span<const Link> links_of(uint32_t page) const {
         assert(page + size_t(1) < first_link.size());
         return std::span(links).subspan(first_link[page], first_link[page + 1] - first_link[page]);
@@ -70,8 +77,9 @@ inline uint64_t max_links(uint64_t pages, uint64_t page_bytes, uint64_t pool_byt
 TopLevel build_top_level(std::span<const Page> pages, size_t max_links);
 
 /// Builds the tree over any number of pages, in the frames of their leaves. Neighbours that share a
-/// frame are a part.
-TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links);
+/// frame are a part. numbered: finds the far triangles; null: there shall be none.
+TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size_t max_links,
+                         const NumberedSoup* numbered = nullptr);
 
 /// Where a mesh lies, and the number from which its triangles count there.
 struct Place {
@@ -83,9 +91,13 @@ struct Place {
 struct Parts {
     std::vector<LeafRange> pages;
     std::vector<Portal> portals; // Portal::tree: the index of the part in `pages`
+    std::vector<FarTriangle> far_triangles;
 
     /// Adds the parts of a level 1 whose pages begin with `first_page`, in all its places.
     void add(const Level1& level1, uint32_t first_page, std::span<const Place> places);
+    /// Adds the parts of a level 1 that is not placed, and has the first pages. Its far triangles
+    /// are found.
+    void add(const Level1& level1, const NumberedSoup& numbered);
 };
 
 /// Builds the tree over parts. A part that is alone, and whose triangles count from 0, has the tree

@@ -97,7 +97,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
     else
         pixels_.emplace(*ledger_, plan.batch_rays);
     if (has_portals())
-        portal_buffer_.emplace(*ledger_, top.portals.size() * kPortalBytes, "portals");
+        portal_buffer_.emplace(*ledger_, top.table_bytes(), "portals");
     if (plan.active_bytes > 0)
         active_buffer_.emplace(*ledger_, plan.active_bytes, "active leaves");
 }
@@ -162,7 +162,7 @@ void Tracer::upload_top_level() {
     pool_.upload(0, tree);
     if (!portal_buffer_)
         return;
-    const std::vector<uvec4> table = pack_portals(top_.portals);
+    const std::vector<uvec4> table = pack_portals(top_.portals, top_.far_triangles);
     glNamedBufferSubData(portal_buffer_->id(), 0, GLsizeiptr(table.size() * sizeof(uvec4)),
                          table.data());
 }
@@ -171,7 +171,7 @@ bool Tracer::update(const Box& bounds, std::span<const Page> pages, std::span<co
                     std::span<const uint32_t> changed) {
     assert(pages.size() == was.size());
     if (top_.tree.bytes() > pool_.begin() || has_portals() != portal_buffer_.has_value() ||
-        (portal_buffer_ && top_.portals.size() * kPortalBytes > portal_buffer_->bytes()) ||
+        (portal_buffer_ && top_.table_bytes() > portal_buffer_->bytes()) ||
         (active_buffer_ && pages.size() * sizeof(uint32_t) != active_buffer_->bytes()))
         return false;
     page_data_ = pages;

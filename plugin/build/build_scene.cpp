@@ -15,7 +15,7 @@ namespace ovc {
 uint64_t room_for_pool(const BuiltScene& scene, const TwoLevelOptions& options,
                        const MemoryPlan& plan) {
     const uint64_t active_bytes = options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
-    const uint64_t table_bytes = scene.top.portals.size() * kPortalBytes + active_bytes;
+    const uint64_t table_bytes = scene.top.table_bytes() + active_bytes;
     return plan.pool_bytes - std::min(plan.pool_bytes, table_bytes);
 }
 
@@ -25,12 +25,14 @@ bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPla
         return true; // every ray misses
     const size_t links = max_links(pages, scene.level2_bytes(), plan.pool_bytes);
     const auto is_fine = [&] {
-        return scene.top.portals.size() * kPortalBytes <= plan.buffer_bytes &&
+        return scene.top.table_bytes() <= plan.buffer_bytes &&
                is_usable(scene.top, scene.pages,
                          {room_for_pool(scene, options, plan), plan.buffer_bytes});
     };
     for (const size_t some : {links, pages}) {
         scene.top = top_level_of(scene, some);
+        if (!is_fine())
+            scene.top.drop_far_triangles();
         if (!is_fine())
             continue;
         if (scene.expects_updates())
@@ -114,7 +116,7 @@ Result<BuiltScene> built(const Soup& soup, const TwoLevelOptions& options, const
     if (add_tree(scene, options, plan))
         return scene;
     // check_budget() has found enough bytes, so the refusal is about a count.
-    if (const uint64_t table = scene.top.portals.size() * kPortalBytes; table > plan.buffer_bytes)
+    if (const uint64_t table = scene.top.table_bytes(); table > plan.buffer_bytes)
         return over_budget(format_text("{} instances are too many: their table takes {} bytes, and "
                                        "a buffer of this device holds {}",
                                        scene.top.portals.size(), table, plan.buffer_bytes));

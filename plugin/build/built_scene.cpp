@@ -147,7 +147,8 @@ uint64_t BuiltScene::duplicate_count() const {
 }
 
 uint64_t BuiltScene::host_bytes() const {
-    uint64_t bytes = top.tree.bytes() + top.portals.size() * sizeof(Portal);
+    uint64_t bytes = top.tree.bytes() + top.portals.size() * sizeof(Portal) +
+                     top.far_triangles.size() * sizeof(FarTriangle);
     const auto add = [&](const BuiltScene& scene) {
         bytes += scene.level1.reference_count() * sizeof(TriangleId) +
                  scene.level1.leaves.size() * sizeof(Leaf) +
@@ -278,10 +279,11 @@ void gather_pages(BuiltScene& scene) {
 }
 
 TopLevel top_level_of(const BuiltScene& scene, size_t max_links) {
+    const NumberedSoup numbered{scene.soup, scene.numbers};
     if (scene.shared.empty())
-        return build_top_level(scene.level1, scene.pages, max_links);
+        return build_top_level(scene.level1, scene.pages, max_links, &numbered);
     Parts parts;
-    parts.add(scene.level1, 0, std::array{Place()});
+    parts.add(scene.level1, numbered);
     for (const SharedMesh& mesh : scene.shared) {
         assert(mesh.first_page + mesh.scene.pages.size() <= scene.pages.size());
         std::vector<Place> places;

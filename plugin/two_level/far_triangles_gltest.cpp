@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// A floor that reaches far beyond a mesh: hits are those of brute force, and the floor leaves few
+// of them in doubt, however it is turned.
+#include "plugin/two_level/test_two_level.h"
+
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace ovc {
+namespace {
+
+using test::ok;
+
+/// A square of a plane, which reaches as far as `reach` to all sides of `through`.
+struct Floor {
+    dvec3 through;
+    dvec3 along;
+    dvec3 across;
+
+    Floor(test::Random& random, double reach)
+        : through(random.point(-0.5, 0.5)),
+          along(glm::normalize(random.point(-1, 1)) * reach),
+          across(glm::normalize(glm::cross(along, random.point(-1, 1))) * reach) {}
+
+    dvec3 at(double a, double b) const { return through + a * along + b * across; }
+
+    /// Returns it as n x n quads.
+    Chunk chunk(int n) const {
+        const auto corner = [&](int i, int j) { return at(2.0 * i / n - 1, 2.0 * j / n - 1); };
+        std::vector<dvec3> corners;
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j)
+                corners.insert(corners.end(),
+                               {corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j),
+                                corner(i + 1, j + 1), corner(i, j + 1)});
+        return Chunk::owning_doubles(dvec3(0), std::move(corners));
+    }
+};
+
+/// Returns rays from around a mesh of size 1, at it and at the floor near it. Some begin on the
+/// floor, and some end close to it.
+std::vector<Ray> rays_near(const Floor& floor, double reach, size_t count) {
+    test::Random random(7);
+    std::vector<Ray> rays;
+    for (size_t i = 0; i < count; ++i) {
+        const double near = 3 / reach;
+        const dvec3 on_floor = floor.at(random(-near, near), random(-near, near));
+        Ray ray{.org = random.point(-3, 3)};
+        ray.dir = (i % 2 ? on_floor : random.point(-1, 1)) - ray.org;
+        if (i % 16 == 5) {
+            ray.org = on_floor;
+            ray.dir = random.point(-1, 1);
+        } else if (i % 16 == 7) {
+            ray.t_max = random(0.999, 1.001);
+        } else if (i % 16 == 9) {
+            ray.t_min = random(0.999, 1.001);
+        } else if (i % 16 == 13) { // at the side that both triangles share
+            const double along = random(-near, near);
+            ray.dir = floor.at(along, along) - ray.org;
+        } else if (i % 16 == 15) { // at an outer side, far away
+            ray.dir = floor.at(random(-1, 1), 1) - ray.org;
+        } else if (i % 16 == 11) {
+            ray.dir =
+                floor.along * (random(-1, 1) / reach) + floor.across * (random(-1, 1) / reach);
+            ray.org = on_floor - ray.dir * random(0, 2);
+        }
+        rays.push_back(ray);
+    }
+    return rays;
+}
+
+/// The parameters are how far the floor reaches, and whether the kernel is the compute kernel.
+class FarTrianglesGl : public TwoLevelGl,
+                       public testing::WithParamInterface<std::tuple<double, bool>> {};
+INSTANTIATE_TEST_SUITE_P(Reach, FarTrianglesGl,
+                         testing::Combine(testing::Values(1e3, 1e6, 1e9), testing::Bool()),
+                         [](const auto& of) {
+                             return std::string("E").append(
+                                        std::to_string(int(std::log10(std::get<0>(of.param))))) +
+                                    (std::get<1>(of.param) ? "Compute" : "Fragment");
+                         });
+
+TEST_P(FarTrianglesGl, LetAFloorLeaveFewHitsInDoubt) {
+    const auto [reach, compute] = GetParam();
+    for (uint64_t seed = 0; seed < 4; ++seed) {
+        SCOPED_TRACE(seed);
+        test::Random random(seed);
+        const Floor floor(random, reach);
+        Soup soup = test::closed_grid(24);
+        soup.chunks.push_back(floor.chunk(1));
+        const std::vector<Ray> rays = rays_near(floor, reach, 4000);
+        const std::vector<Hit> expected = test::brute_force(soup, rays);
+        const auto structure = build(soup, {.leaf_triangles = 100, .compute = compute});
+        ASSERT_TRUE(structure);
+        test::expect_answers(*structure, rays, expected);
+        std::vector<Ray> plain;
+        for (size_t i = 0; i < rays.size(); ++i)
+            if (i % 16 < 4)
+                plain.push_back(rays[i]);
+        std::vector<Hit> hits(plain.size());
+        const uint64_t before = structure->statistics().flagged;
+        ASSERT_TRUE(ok(structure->intersect(plain, {}, hits)));
+        // At a thousand sizes one frame still suits both.
+        EXPECT_LE(structure->statistics().flagged - before, plain.size() / (reach > 1e3 ? 50 : 10));
+    }
+}
+
+TEST_P(FarTrianglesGl, AreLeftToPagesWhereTheyAreManyOrPlaced) {
+    const auto [reach, compute] = GetParam();
+    test::Random random(11);
+    const Floor floor(random, reach);
+    Soup soup = test::closed_grid(24);
+    soup.chunks.push_back(floor.chunk(20));
+    Chunk second = soup.chunks[1].instance();
+    second.place({{{{0.8, 0.1, 0.2, 0.4}, {-0.3, 0.9, 0, 0.2}, {0.1, 0.2, 1.1, -0.7}}}});
+    soup.chunks.push_back(std::move(second));
+    const std::vector<Ray> rays = rays_near(floor, reach, 4000);
+    const auto structure = build(soup, {.leaf_triangles = 100, .compute = compute});
+    ASSERT_TRUE(structure);
+    test::expect_answers(*structure, rays, test::brute_force(soup, rays));
+}
+
+} // namespace
+} // namespace ovc
