@@ -11,8 +11,7 @@
 namespace ovc {
 namespace {
 
-constexpr double kTried = 0.05;      // the share of subtrees tried in a round: the most promising
-constexpr double kWorthwhile = 0.01; // the share of the cost that a round must gain for another one
+constexpr double kTried = 0.05; // the share of subtrees tried in a round: the most promising
 constexpr int kMaxRounds = 16;
 constexpr size_t kSearchGrain = 256; // searches a task
 
@@ -22,14 +21,14 @@ struct Candidate {
     uint32_t place;
 };
 
-std::vector<Candidate> candidates(const SiblingTree& tree) {
+std::vector<Candidate> candidates(const SiblingTree& tree, size_t min_tried) {
     std::vector<Candidate> all;
     all.reserve(tree.end());
     for (uint32_t place = SiblingTree::kFirst; place < tree.end(); ++place)
         all.push_back(
             {tree.half_area(tree.parent(place)) - tree.half_area(SiblingTree::sibling(place)),
              place});
-    const size_t tried = size_t(kTried * double(all.size())) + 1;
+    const size_t tried = std::max(size_t(kTried * double(all.size())) + 1, min_tried);
     if (tried < all.size()) {
         std::nth_element(all.begin(), all.begin() + ptrdiff_t(tried), all.end(),
                          [](const Candidate& a, const Candidate& b) {
@@ -41,8 +40,8 @@ std::vector<Candidate> candidates(const SiblingTree& tree) {
 }
 
 /// Returns the moves that gain, the largest gain first.
-std::vector<Move> moves(const SiblingTree& tree, BuildProgress* progress) {
-    const std::vector<Candidate> tried = candidates(tree);
+std::vector<Move> moves(const SiblingTree& tree, size_t min_tried, BuildProgress* progress) {
+    const std::vector<Candidate> tried = candidates(tree, min_tried);
     std::vector<Move> moves(tried.size());
     parallel_for(tried.size(), kSearchGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
@@ -74,16 +73,16 @@ double make(const std::vector<Move>& moves, uint32_t max_height, SiblingTree& tr
 
 } // namespace
 
-void reinsert(std::vector<BvhNode>& nodes, BuildProgress* progress) {
+void reinsert(std::vector<BvhNode>& nodes, BuildProgress* progress, const ReinsertEffort& effort) {
     if (nodes.empty())
         return;
     SiblingTree tree(nodes);
     const uint32_t max_height = tree.height(0);
     double cost = tree.cost();
     for (int round = 0; round < kMaxRounds; ++round) {
-        const double gain = make(moves(tree, progress), max_height, tree);
+        const double gain = make(moves(tree, effort.min_tried, progress), max_height, tree);
         cost -= gain;
-        if (gain <= kWorthwhile * cost)
+        if (gain <= effort.worthwhile * cost)
             break;
     }
     nodes = tree.nodes();

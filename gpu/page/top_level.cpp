@@ -106,7 +106,7 @@ Page tree_over(std::span<const Page> pages, std::span<const Entry> entries) {
     for (const Entry& entry : entries)
         boxes.push_back(entry.box);
     std::vector<BvhNode> nodes = build_bvh(boxes, nullptr);
-    reinsert(nodes, nullptr);
+    reinsert(nodes, nullptr, kThorough);
     const auto put = [&](uint32_t i, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
         std::ranges::copy(unit_of(pages[entries[i].page], entries[i].unit), unit.begin());
         if (!is_pair(pages[entries[i].page], entries[i].unit))
@@ -134,7 +134,7 @@ Page tree_over(std::span<const Portal> portals, const Leaf& scene) {
         boxes.push_back({vec3(scene.frame.to_local(portal.bounds.lo)),
                          vec3(scene.frame.to_local(portal.bounds.hi))});
     std::vector<BvhNode> nodes = build_bvh(boxes, nullptr);
-    reinsert(nodes, nullptr);
+    reinsert(nodes, nullptr, kThorough);
     const Grid grid({scene.frame.to_local(scene.grid.lo), scene.frame.to_local(scene.grid.hi)});
     const auto put = [&](uint32_t i, std::span<uvec4, OVC_UNIT_TEXELS> unit) {
         for (int axis = 0; axis < 3; ++axis)

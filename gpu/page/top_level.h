@@ -50,9 +50,9 @@ struct TopLevel {
 };
 
 /// How many links a page has on average if all pages are resident: the builder opens large nodes,
-/// so that the tree can choose anew which nodes lie together. Measured by steps of rays: 4 are as
-/// good as 64, and 1 costs a fifth more among slivers in 200 leaves.
-inline constexpr uint64_t kLinksPerPage = 4;
+/// so that the tree can choose anew which nodes lie together. Chosen by the steps of rays in 20 and
+/// 200 leaves of three scenes (docs/decisions/0026): with 4 or with 16, some make a seventh more.
+inline constexpr uint64_t kLinksPerPage = 8;
 
 /// The max bytes of a tree with so many links if all pages share a frame.
 inline uint64_t max_top_level_bytes(uint64_t links) {
