@@ -364,7 +364,7 @@ TEST(PovScene, GetsNoLightThatItDoesNotHave) {
 }
 
 /// Returns the material of a box with this look, which povray 3.7.0.10 accepts as well.
-Material material_of(const std::string& look) {
+Material material_of_box(const std::string& look) {
     const Result<Scene> scene =
         parse("#declare P = pigment { rgb <1, 0.5, 0> }; #declare F = finish { ambient 0.3 };"
               "#declare N = normal { bumps 1 }; #declare T = texture { pigment { rgb z } finish { "
@@ -379,12 +379,12 @@ Material material_of(const std::string& look) {
 
 TEST(PovScene, TexturesTakePigmentsAndFinishesByName) {
     const vec3 orange(1, 0.5f, 0);
-    EXPECT_EQ(material_of("texture { P }").color, orange);
-    EXPECT_EQ(material_of("texture { P F }").finish->ambient, vec3(0.3f));
-    EXPECT_EQ(material_of("texture { F P }").color, orange);
-    EXPECT_EQ(material_of("texture { P N F }").finish->ambient, vec3(0.3f));
-    EXPECT_EQ(material_of("texture { P finish { ambient 0.2 } }").finish->ambient, vec3(0.2f));
-    const Material changed = material_of("texture { T P }");
+    EXPECT_EQ(material_of_box("texture { P }").color, orange);
+    EXPECT_EQ(material_of_box("texture { P F }").finish->ambient, vec3(0.3f));
+    EXPECT_EQ(material_of_box("texture { F P }").color, orange);
+    EXPECT_EQ(material_of_box("texture { P N F }").finish->ambient, vec3(0.3f));
+    EXPECT_EQ(material_of_box("texture { P finish { ambient 0.2 } }").finish->ambient, vec3(0.2f));
+    const Material changed = material_of_box("texture { T P }");
     EXPECT_EQ(changed.color, orange);
     EXPECT_EQ(changed.finish->ambient, vec3(0.7f));
 }
@@ -401,11 +401,12 @@ TEST(PovErrors, NamesOfNothingAreNotPassedOver) {
 
 /// povray 3.7.0.10 draws `finish { ior 1.2 }` and `interior { ior 1.2 }` alike, with any version.
 TEST(PovScene, OldFinishesRefract) {
-    EXPECT_EQ(material_of("pigment { rgbf 1 } finish { ior 1.5 refraction 1 }").ior, 1.5);
-    EXPECT_EQ(material_of("pigment { rgbf 1 } interior { ior 1.2 } finish { ior 1.5 }").ior, 1.5);
-    EXPECT_EQ(material_of("pigment { rgbf 1 } finish { refraction 0.5 }").transmission, 0.5f);
-    EXPECT_EQ(material_of("texture { pigment { rgbf 1 } finish { ior 1.2 } } "
-                          "texture { pigment { rgbf 1 } finish { ior 1.5 } }")
+    EXPECT_EQ(material_of_box("pigment { rgbf 1 } finish { ior 1.5 refraction 1 }").ior, 1.5);
+    EXPECT_EQ(material_of_box("pigment { rgbf 1 } interior { ior 1.2 } finish { ior 1.5 }").ior,
+              1.5);
+    EXPECT_EQ(material_of_box("pigment { rgbf 1 } finish { refraction 0.5 }").transmission, 0.5f);
+    EXPECT_EQ(material_of_box("texture { pigment { rgbf 1 } finish { ior 1.2 } } "
+                              "texture { pigment { rgbf 1 } finish { ior 1.5 } }")
                   .ior,
               1.5)
         << "the uppermost layer's";
