@@ -73,7 +73,7 @@ TEST(PovDamage, LoopsRecursionAndGroupsThatDoNotEndAreStopped) {
          "}\n#end #declare V = F(1, 2, 3);",
          "stopped after 100000 words"},
         {"#declare A = array[1] { 1 }\n#while (1) #declare A = array[1] { A }\n#end",
-         "found arrays more than 2000 deep in each other"},
+         "found arrays more than 100 deep in each other"},
         {"#while (1) #declare A = array[20000] #end", "stopped after 100000 words"},
         {"#declare A = array[100000][100000]", "found an array of 10000000000 items"},
     };
