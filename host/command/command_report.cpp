@@ -122,7 +122,13 @@ struct Report {
     std::vector<StabilityCase> cases;
     std::vector<OpticsCase> optics; // run after the cases
     StabilityOptions options;
+    std::unique_ptr<const Scene> dragon = nullptr; // which cases borrow
 };
+
+/// Returns the scan in the folder of --data, or null where that is not given.
+Result<std::unique_ptr<const Scene>> dragon_of(const std::string& data) {
+    return data.empty() ? std::unique_ptr<const Scene>() : load_dragon(data);
+}
 
 /// Keeps the cases whose name contains `part`.
 Result<Done> choose(Report& report, const std::string& part) {
@@ -153,11 +159,11 @@ Result<Report> stability_report(const ReportArguments& given) {
                           {},
                           std::move(*options)},
                          given.name_part);
-    Result<std::vector<StabilityCase>> cases = stability_cases(given.data);
-    if (!cases)
-        return cases.error();
-    return chosen_of({"stability", "Numerical stability", std::move(*cases), optics_cases(),
-                      std::move(*options)},
+    Result<std::unique_ptr<const Scene>> dragon = dragon_of(given.data);
+    if (!dragon)
+        return dragon.error();
+    return chosen_of({"stability", "Numerical stability", stability_cases(dragon->get()),
+                      optics_cases(), std::move(*options), std::move(*dragon)},
                      given.name_part);
 }
 
@@ -173,11 +179,11 @@ Result<Report> leak_report(const ReportArguments& given) {
     const Result<uint64_t> count = parse_rays(rays);
     if (!count)
         return count.error();
-    Result<std::vector<StabilityCase>> cases = leak_cases(given.data);
-    if (!cases)
-        return cases.error();
-    Report report{
-        "leaks", "Leaks at edges and vertices", std::move(*cases), {}, std::move(*options)};
+    Result<std::unique_ptr<const Scene>> dragon = dragon_of(given.data);
+    if (!dragon)
+        return dragon.error();
+    Report report{"leaks", "Leaks at edges and vertices", leak_cases(dragon->get()),
+                  {},      std::move(*options),           std::move(*dragon)};
     if (const Result<Done> chosen = choose(report, given.name_part); !chosen)
         return chosen.error();
     share_rays(report.cases, *count);
