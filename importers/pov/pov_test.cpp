@@ -173,6 +173,31 @@ TEST(PovDirectives, DeclarationsNeedNoSemicolon) {
     EXPECT_VALUE(1, "1", "declare Old = 3 /* a /* nested */ comment */");
 }
 
+TEST(PovDirectives, WhatStandsBehindANameMayChangeIt) {
+    // A macro that ends with a declaration has ended before the value is assigned.
+    EXPECT_VALUE(10, "A[1]",
+                 "#macro Set(To, I) #declare To[I] = I * 10 #end #declare A = array[2] Set(A, 1)");
+    EXPECT_VALUE(3, "3", "#macro M() #local A = array[2] #declare A[1] = 7 #end M()");
+    EXPECT_VALUE(4, "A[1]",
+                 "#macro M() #declare A = array[2] { 3, 4 } 0 #end #declare A = array[1] { 9 }\n"
+                 "#declare A[M()] = 5;");
+    EXPECT_VALUE(7, "B[0]", "#declare A = array[1] { 7 } #declare B = A #declare A[0] = 8;");
+    const char* const kLost[] = {
+        "#macro M() #declare A = 5; 0 #end #declare A = array[2] { 1, 2 } #declare V = A[M()];",
+        "#macro M() #declare A = array[1] 1 #end #declare A = array[2] { 1, 2 }\n"
+        "#declare V = A[M()];",
+        "#macro M() #declare F = 5; 0 #end #declare F = function { x }\n#declare V = F(M(), 0, 0);",
+        "#macro M() #declare S = 5; 0 #end #declare S = spline { 0, 1 }\n#declare V = S(M());",
+        "#macro M() #fclose F 0 #end #fopen F \"f.txt\" write #write (F, M())"};
+    for (const char* text : kLost) {
+        const Result<Scene> scene = parse(text);
+        ASSERT_FALSE(scene) << text;
+        EXPECT_TRUE(scene.error().message.find("changes") != std::string::npos ||
+                    scene.error().message.find("closes") != std::string::npos)
+            << scene.error().message;
+    }
+}
+
 /// povray 3.7.0.10 gives these values with `#version 3.1`.
 TEST(PovDirectives, EndDeclarationsWithoutSemicolon) {
     EXPECT_VALUE(5, "X", "#declare X = 0 #while (X < 5) #declare X = X + 1 #end");
