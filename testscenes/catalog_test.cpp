@@ -94,7 +94,7 @@ constexpr Sample kSamples[] = {
     {"grass-in-wind", 1377002, 0x5263c31d742c9cd0},
 };
 
-/// For the names of failing tests.
+/// GoogleTest prints this in the names of failing tests.
 void PrintTo(const Sample& sample, std::ostream* out) {
     *out << sample.name;
 }
