@@ -176,7 +176,7 @@ TEST(PovDirectives, DeclarationsNeedNoSemicolon) {
 TEST(PovDirectives, WhatStandsBehindANameMayChangeIt) {
     // A macro that ends with a declaration has ended before the value is assigned.
     EXPECT_VALUE(10, "A[1]",
-                 "#macro Set(To, I) #declare To[I] = I * 10 #end #declare A = array[2] Set(A, 1)");
+                 "#macro Set(To, I) #declare To[I] = I * 10 #end #declare A = array[2]; Set(A, 1)");
     EXPECT_VALUE(3, "3", "#macro M() #local A = array[2] #declare A[1] = 7 #end M()");
     EXPECT_VALUE(4, "A[1]",
                  "#macro M() #declare A = array[2] { 3, 4 } 0 #end #declare A = array[1] { 9 }\n"
@@ -188,7 +188,7 @@ TEST(PovDirectives, WhatStandsBehindANameMayChangeIt) {
         "#declare V = A[M()];",
         "#macro M() #declare F = 5; 0 #end #declare F = function { x }\n#declare V = F(M(), 0, 0);",
         "#macro M() #declare S = 5; 0 #end #declare S = spline { 0, 1 }\n#declare V = S(M());",
-        "#macro M() #fclose F 0 #end #fopen F \"f.txt\" write #write (F, M())"};
+        "#macro M() #declare F = 5; 0 #end #fopen F \"f.txt\" write #write (F, M())"};
     for (const char* text : kLost) {
         const Result<Scene> scene = parse(text);
         ASSERT_FALSE(scene) << text;
