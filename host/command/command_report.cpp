@@ -67,6 +67,7 @@ struct ReportArguments {
     std::string rays;
     std::string name_part;
     std::vector<std::string> scenes;
+    std::string size;
     bool quick = false;
 };
 
@@ -320,6 +321,10 @@ Result<ReportJob> page_job(const ReportArguments& given) {
     job.folder = given.folder;
     job.plan.quick = given.quick;
     job.plan.scenes = given.scenes;
+    if (!given.size.empty())
+        if (const Result<ImageSize> size = parse_size("--size", given.size); !size)
+            return size.error();
+    job.plan.size = given.size;
     if (!given.data.empty()) {
         Result<std::string> dragon = dragon_file(given.data);
         if (!dragon)
@@ -350,6 +355,9 @@ public:
         app.add_option("--scene", given_.scenes,
                        "Instead of the scenes of the page's experiments; may come several times")
             ->type_name("SCENE");
+        app.add_option("--size", given_.size,
+                       "Instead of the size of the page's pictures and measurements")
+            ->type_name("WxH");
         app.add_option("--times", given_.times,
                        "For stability: so many times the rays of the short form; default: 10")
             ->type_name("N");
@@ -380,6 +388,8 @@ public:
         }
         if (!given_.scenes.empty())
             return Error{"--scene goes with the page, not with --only stability, leaks or grid"};
+        if (!given_.size.empty())
+            return Error{"--size goes with the page, not with --only stability, leaks or grid"};
         Result<Report> report =
             given_.only == kReports[1] ? leak_report(given_) : stability_report(given_);
         if (!report)
