@@ -178,7 +178,7 @@ std::optional<Value> take_whole(Reader& reader) {
         handle = parse_item(reader, *handle.slot);
     const Value* value = reader.value_of(handle);
     if (!value)
-        reader.fail(token.place, fmt::format("found {}, which what stands behind it changes",
+        reader.fail(token.place, fmt::format("found {}, whose index or argument changes it",
                                              ovc::quoted(token.name->text)));
     return counted(reader, *value);
 }

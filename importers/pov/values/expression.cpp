@@ -119,7 +119,7 @@ const T& unchanged(Reader& reader, const ValueHandle& handle, const Token& name)
     const Value* value = reader.value_of(handle);
     const T* same = value ? std::get_if<T>(value) : nullptr;
     if (!same)
-        reader.fail(name.place, fmt::format("found {}, which what stands behind it changes",
+        reader.fail(name.place, fmt::format("found {}, whose index or argument changes it",
                                             ovc::quoted(name.name->text)));
     return *same;
 }
@@ -475,7 +475,7 @@ Value& take_item(Reader& reader, const Token& name) {
     if (slot && std::holds_alternative<Array>(slot->value))
         item = reader.value_of(parse_item(reader, *slot));
     if (!item)
-        reader.fail(name.place, fmt::format("found {}, which what stands behind it changes",
+        reader.fail(name.place, fmt::format("found {}, whose index or argument changes it",
                                             ovc::quoted(name.name->text)));
     return *item;
 }
