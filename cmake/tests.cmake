@@ -13,8 +13,9 @@ function(ovc_add_tests folder)
     endif()
     cmake_parse_arguments(ARG "" "" "LABELS;SOURCES;LIBRARIES" ${ARGN})
     add_executable(${folder}_test ${ARG_SOURCES})
-    # The helpers of two tests may have one name.
-    set_target_properties(${folder}_test PROPERTIES UNITY_BUILD OFF)
+    # What tests promise is said by the libraries' code, so their own is optimised less: -O3 takes
+    # half as long again to compile.
+    target_compile_options(${folder}_test PRIVATE $<$<CONFIG:Release>:-O1>)
     target_link_libraries(${folder}_test
         PRIVATE ovc_flags ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
     target_compile_definitions(${folder}_test PRIVATE OVC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"

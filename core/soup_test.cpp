@@ -11,8 +11,8 @@
 namespace ovc {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<vec3> unit_triangle() {
     return {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)};
@@ -73,9 +73,11 @@ TEST(TriangleFault, NamesWhyATriangleCanNeverBeHit) {
         {"back along its line",
          {dvec3(0), dvec3(1, 2, 3), dvec3(-3, -6, -9)},
          TriangleFault::Degenerate},
-        {"NaN", {dvec3(0), dvec3(1, kNan, 0), dvec3(0, 1, 0)}, TriangleFault::NotFinite},
-        {"infinite", {dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, -kInf)}, TriangleFault::NotFinite},
-        {"NaN and no area", {dvec3(kNan), dvec3(kNan), dvec3(kNan)}, TriangleFault::NotFinite},
+        {"NaN", {dvec3(0), dvec3(1, kNotANumber, 0), dvec3(0, 1, 0)}, TriangleFault::NotFinite},
+        {"infinite", {dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, -kInfinity)}, TriangleFault::NotFinite},
+        {"NaN and no area",
+         {dvec3(kNotANumber), dvec3(kNotANumber), dvec3(kNotANumber)},
+         TriangleFault::NotFinite},
     };
     for (const auto& c : cases)
         EXPECT_EQ(triangle_fault(c.triangle), c.fault) << c.name;
@@ -109,7 +111,7 @@ TEST(HittableTriangles, KeepOrderAndCountWhatTheyDrop) {
     std::vector<vec3> corners;
     for (uint32_t prim = 0; prim < kTriangles; ++prim) {
         const vec3 at(float(prim % 7), 0, 0);
-        const float height = prim % 5 == 1 ? 0.0f : prim % 5 == 2 ? float(kNan) : 1.0f;
+        const float height = prim % 5 == 1 ? 0.0f : prim % 5 == 2 ? float(kNotANumber) : 1.0f;
         corners.insert(corners.end(), {at, at + vec3(1, 0, 0), at + vec3(0, height, 0)});
     }
     Soup soup;
@@ -132,8 +134,9 @@ TEST(HittableTriangles, KeepOrderAndCountWhatTheyDrop) {
 
 TEST(HittableTriangles, BoundsLeaveOutWhatIsDropped) {
     std::vector<vec3> corners = unit_triangle();
-    corners.insert(corners.end(), {vec3(50), vec3(60), vec3(70)});                      // a line
-    corners.insert(corners.end(), {vec3(-90), vec3(float(kNan)), vec3(-90, -80, -90)}); // NaN
+    corners.insert(corners.end(), {vec3(50), vec3(60), vec3(70)}); // a line
+    corners.insert(corners.end(),
+                   {vec3(-90), vec3(float(kNotANumber)), vec3(-90, -80, -90)}); // NaN
     Soup soup;
     soup.chunks.push_back(Chunk::owning(dvec3(0), std::move(corners)));
     Box bounds;

@@ -14,7 +14,7 @@ std::vector<uint16_t> ramp(uint32_t width, uint32_t height) {
     return samples;
 }
 
-std::span<const uint8_t> bytes_of(const std::string& text) {
+std::span<const uint8_t> png_bytes(const std::string& text) {
     return {reinterpret_cast<const uint8_t*>(text.data()), text.size()};
 }
 
@@ -32,7 +32,7 @@ TEST(Png, IsReadBackAsItWasWritten) {
         EXPECT_NE(file->find("sRGB"), std::string::npos);
         EXPECT_NE(file->find(std::string("tEXtSoftware\0a test", 19)), std::string::npos);
         EXPECT_EQ(*file, *write_png({13, 7, bits, samples}, "a test"));
-        const Result<Picture> picture = read_png(bytes_of(*file));
+        const Result<Picture> picture = read_png(png_bytes(*file));
         ASSERT_TRUE(picture) << picture.error().message;
         ASSERT_EQ(picture->size(), 13u * 7);
         for (size_t i = 0; i < samples.size(); ++i)
@@ -44,7 +44,7 @@ TEST(Png, IsReadBackAsItWasWritten) {
 TEST(Png, ACutFileIsRefused) {
     const std::string whole = *write_png({13, 7, 16, ramp(13, 7)}, "a test");
     for (size_t length = 0; length + 12 < whole.size(); ++length) // the end has no pixels
-        EXPECT_FALSE(read_png(bytes_of(whole.substr(0, length)))) << length;
+        EXPECT_FALSE(read_png(png_bytes(whole.substr(0, length)))) << length;
 }
 
 } // namespace

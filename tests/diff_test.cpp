@@ -35,8 +35,8 @@ protected:
     fs::path folder_;
 };
 
-/// Returns the number after `key`.
-double number(const std::string& text, const std::string& key) {
+/// Returns the number_after after `key`.
+double number_after(const std::string& text, const std::string& key) {
     const size_t at = text.find(key);
     EXPECT_NE(at, text.npos) << key << " in " << text;
     return at == text.npos ? -1 : std::stod(text.substr(at + key.size()));
@@ -45,11 +45,11 @@ double number(const std::string& text, const std::string& key) {
 TEST_F(DiffBesideIdiff, HasTheSameNumbers) {
     const std::string ours = run("overcast diff a.png b.png --json").output;
     const std::string theirs = run("idiff a.png b.png").output;
-    EXPECT_GT(number(theirs, "Mean error = "), 0.01) << "the pictures differ";
-    EXPECT_NEAR(number(ours, "\"mean\": "), number(theirs, "Mean error = "), 1e-6);
-    EXPECT_NEAR(number(ours, "\"rmse\": "), number(theirs, "RMS error = "), 1e-6);
-    EXPECT_NEAR(number(ours, "\"psnr\": "), number(theirs, "Peak SNR = "), 1e-3);
-    EXPECT_NEAR(number(ours, "\"max\": "), number(theirs, "Max error  = "), 1e-6);
+    EXPECT_GT(number_after(theirs, "Mean error = "), 0.01) << "the pictures differ";
+    EXPECT_NEAR(number_after(ours, "\"mean\": "), number_after(theirs, "Mean error = "), 1e-6);
+    EXPECT_NEAR(number_after(ours, "\"rmse\": "), number_after(theirs, "RMS error = "), 1e-6);
+    EXPECT_NEAR(number_after(ours, "\"psnr\": "), number_after(theirs, "Peak SNR = "), 1e-3);
+    EXPECT_NEAR(number_after(ours, "\"max\": "), number_after(theirs, "Max error  = "), 1e-6);
 }
 
 /// Leaves out warnings, hard limits and pictures of different sizes. For these, idiff 2.4.7 of

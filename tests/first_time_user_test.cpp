@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr const char* kOvercast = OVC_BINARY_DIR "/bin/overcast";
+constexpr const char* kCommand = OVC_BINARY_DIR "/bin/overcast";
 
 class FirstTimeUser : public testing::Test {
 protected:
@@ -29,7 +29,7 @@ protected:
 
     /// Runs the script in bash, for its PIPESTATUS, in the test's own folder. $o is the command.
     test::CommandResult bash(const std::string& script) const {
-        return test::run_shell("cd '" + folder_.string() + "' && o=" + kOvercast + " bash -c '" +
+        return test::run_shell("cd '" + folder_.string() + "' && o=" + kCommand + " bash -c '" +
                                script + "'");
     }
 

@@ -271,7 +271,7 @@ TEST(Invariance, Dragon) {
     const auto data = real_data();
     if (!data)
         GTEST_SKIP() << kNoRealData;
-    const Invariance scene(dragon(*data), 100'000);
+    const Invariance scene(dragon(*data), 20'000);
     scene.leaves_budgets_and_kernels();
     scene.other_systems();
     scene.queues_of_the_thesis({8});
@@ -283,7 +283,7 @@ TEST(Invariance, Kitchen) {
     const auto data = real_data();
     if (!data)
         GTEST_SKIP() << kNoRealData;
-    const Invariance scene(kitchen(*data), 100'000);
+    const Invariance scene(kitchen(*data), 20'000);
     scene.leaves_budgets_and_kernels();
     scene.other_systems();
     scene.batch_sizes();

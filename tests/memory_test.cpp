@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <regex>
 #include <vector>
 
@@ -116,6 +117,36 @@ TEST(MemoryOfImport, IsAtMostHalfMoreThanTheSoup) {
     EXPECT_EQ(soup_bytes, 20 * 16384 * 36.0);
     EXPECT_LE(std::stod(peak[1]), 1.5 * soup_bytes);
     EXPECT_GE(std::stod(peak[1]), 0.5 * soup_bytes) << "what is kept is in memory";
+}
+
+/// Returns the peak of reading a scene whose loop makes and forgets values of every kind.
+double peak_of_pov_loop(int rounds) {
+    const std::string pov = testing::TempDir() + "memory_" + std::to_string(getpid()) + ".pov";
+    std::ofstream(pov) << "#declare I = 0;\n#while (I < " << rounds << R"()
+#macro M(N) N * 2 #end
+#declare S = spline { linear_spline 0, I, 1, I + 1, 2, I }
+#declare F = function(x) { x * 2 + I }
+#declare G = function(x) { F(x) + F(I) }
+#declare A = array[4] { I, 1, 2, 3 }
+#declare B = array[2] { A, A }
+#declare O = sphere { 0, 1 + I texture { pigment { granite } normal { bumps 1 } } }
+#declare U = union { object { O } object { O translate x } }
+#declare C = camera { location I * z }
+#fopen D "d.txt" write #write (D, I) #fclose D
+#declare I = I + 1 + 0 * (G(1) + S(0.5) + A[2] + B[1][0] + M(3));
+#end
+sphere { 0, 1 })";
+    const auto made = test::run_shell(OVC_BINARY_DIR "/bin/import_cost " + pov + "; rm -f " + pov);
+    std::smatch peak;
+    EXPECT_TRUE(std::regex_search(made.output, peak, std::regex("\"peak_bytes\":(\\d+)")))
+        << made.output;
+    return peak.empty() ? 0 : std::stod(peak[1]);
+}
+
+TEST(MemoryOfImport, DoesNotGrowWithLoopsOfPovThatKeepNothing) {
+    const double few = peak_of_pov_loop(1'000), many = peak_of_pov_loop(50'000);
+    EXPECT_GT(few, 0);
+    EXPECT_LT(many, few + (2 << 20));
 }
 
 } // namespace

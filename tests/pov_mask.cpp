@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // pov_mask SCENE WIDTH HEIGHT writes a byte for each pixel to stdout: 1 if the scene covers the
-// pixel's middle, 0 if not, 2 where a bent picture shows nothing. For importers/pov/compare.py.
+// pixel's middle, 0 if not, 2 where a bent picture shows nothing. importers/pov/compare.py reads
+// it.
 #include "host/backend/backend.h"
 #include "host/camera/camera.h"
 #include "host/render/sight.h"

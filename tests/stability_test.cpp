@@ -17,9 +17,7 @@ namespace ovc {
 namespace {
 
 std::vector<StabilityCase> all_cases() {
-    Result<std::vector<StabilityCase>> cases = stability_cases(/* data= */ "");
-    EXPECT_TRUE(cases);
-    return std::move(*cases);
+    return stability_cases(/* dragon= */ nullptr);
 }
 
 double within_of(std::span<const StabilityCase> cases, const std::string& name) {
@@ -28,6 +26,7 @@ double within_of(std::span<const StabilityCase> cases, const std::string& name) 
 
 TEST(Stability, CertifiedIsTheReferenceAndLeaksNothing) {
     StabilityOptions options;
+    options.peers = false; // nothing is expected of them
     const std::vector<StabilityCase> cases = all_cases();
     const auto results = run_stability(cases, options, {}, [](const StabilityResult&) {});
     if (!results)

@@ -17,7 +17,7 @@ constexpr size_t kBalls = 25'250;
 constexpr double kSmaller = 0.38; // a ball to the one that carries it
 using std::numbers::pi;
 
-/// Of a ball of about 1, bumps of a twentieth.
+/// The bumps of a ball of about 1 are a twentieth high.
 vec3 corner_at(uint32_t segment, uint32_t ring) {
     const double around = 2 * pi * (segment % kBallSegments) / kBallSegments,
                  down = pi * ring / kBallRings;

@@ -12,7 +12,7 @@
 namespace ovc {
 namespace {
 
-class Random {
+class RandomDoubles {
 public:
     double operator()(double lo, double hi) {
         return lo + (hi - lo) * (double(engine_() >> 11) * 0x1p-53);
@@ -37,7 +37,7 @@ struct Plane {
     double m, n, size;
     int bits; // of x and y
 
-    Triangle triangle(Random& random) const {
+    Triangle triangle(RandomDoubles& random) const {
         Triangle result;
         for (dvec3& corner : result) {
             const double x = rounded(random(-size, size)), y = rounded(random(-size, size));
@@ -52,7 +52,7 @@ struct Plane {
 };
 
 TEST(Coplanar, WhatLiesInAPlaneOfFewBitsIsFound) {
-    Random random;
+    RandomDoubles random;
     for (const Plane plane : {Plane{1, 1, 1, 20}, Plane{1, -2, 0x1p-99, 20},
                               Plane{0.5, 3, 0x1p66, 30}, Plane{1, 0, 4, 40}, Plane{0, 0, 8, 50}})
         for (int i = 0; i < 1000; ++i) {
@@ -63,7 +63,7 @@ TEST(Coplanar, WhatLiesInAPlaneOfFewBitsIsFound) {
 }
 
 TEST(Coplanar, ABitBesideThePlaneIsNotInIt) {
-    Random random;
+    RandomDoubles random;
     for (const double size : {1.0, 1e-200, 1e-90, 1e90, 1e200, 1e-310})
         for (const int bits : {4, 23, 40, 52})
             for (int i = 0; i < 300; ++i) {
@@ -79,7 +79,7 @@ TEST(Coplanar, ABitBesideThePlaneIsNotInIt) {
 }
 
 TEST(Coplanar, AxisPlanesAreFoundAtAnySize) {
-    Random random;
+    RandomDoubles random;
     for (const double size : {1e-300, 0.3, 1e300}) {
         const Plane flat{0, 0, size, 52};
         Triangle a = flat.triangle(random), b = flat.triangle(random);

@@ -18,7 +18,7 @@ Rational exact(const DoubleDouble& x) {
 }
 
 /// Makes doubles of many magnitudes, often with few bits, so that sums cancel.
-class Numbers {
+class CancellingNumbers {
 public:
     double next() {
         const double mantissa = double(engine_() >> 11) * 0x1p-52 - 1;
@@ -38,7 +38,7 @@ private:
 
 TEST(DoubleDouble, KeepsItsBounds) {
     constexpr double v = 0x1p-53;
-    Numbers numbers;
+    CancellingNumbers numbers;
     for (int i = 0; i < 30000; ++i) {
         const DoubleDouble a = two_sum(numbers.next(), numbers.next() * 0x1p-50);
         const DoubleDouble b = numbers.near(a);

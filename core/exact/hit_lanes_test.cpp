@@ -19,9 +19,9 @@ struct Case {
     double at_least; // share of hits that are known
 };
 
-class Random {
+class RandomPoints {
 public:
-    explicit Random(uint64_t seed) : engine_(seed) {}
+    explicit RandomPoints(uint64_t seed) : engine_(seed) {}
     dvec3 point(double bits) {
         std::uniform_real_distribution<double> unit(-1, 1);
         const dvec3 p(unit(engine_), unit(engine_), unit(engine_));
@@ -66,7 +66,7 @@ TEST(HitLanes, WhatIsKnownIsTheExactValueRounded) {
     for (const Case& c : cases) {
         size_t hits = 0, known = 0;
         for (uint64_t seed = 0; seed < 200; ++seed) {
-            Random random(seed);
+            RandomPoints random(seed);
             HitLanes lanes;
             std::vector<test::ExactHit> truths;
             for (int lane = 0; lane < HitLanes::kCount; ++lane) {

@@ -12,9 +12,9 @@
 namespace ovc {
 namespace {
 
-class Random {
+class Lattice {
 public:
-    explicit Random(uint64_t seed) : engine_(seed) {}
+    explicit Lattice(uint64_t seed) : engine_(seed) {}
     double operator()(double lo, double hi) {
         return lo + (hi - lo) * (double(engine_() >> 11) * 0x1p-53);
     }
@@ -27,39 +27,39 @@ private:
     std::mt19937_64 engine_;
 };
 
-struct Case {
+struct Coincidence {
     const char* name;
-    void (*make)(Random&, std::vector<Triangle>&, Ray&);
+    void (*make)(Lattice&, std::vector<Triangle>&, Ray&);
 };
 
-const Case kCases[] = {
+const Coincidence kCoincidences[] = {
     {"at a vertex",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          t = {{r.point(), r.point(), r.point()}};
          ray = {r.point() * 3.0, 0, dvec3(0)};
          ray.dir = t[0][0] - ray.org;
      }},
     {"at an edge",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          t = {{r.point(), r.point(), r.point()}};
          ray = {r.point() * 3.0, 0, dvec3(0)};
          ray.dir = t[0][0] + r(0, 1) * (t[0][1] - t[0][0]) - ray.org;
      }},
     {"lattice",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          for (int i = 0; i < 8; ++i)
              t.push_back({r.lattice(), r.lattice(), r.lattice()});
          ray = {r.lattice() * 3.0, 0, r.lattice() / 3.0};
      }},
     {"far away",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          const dvec3 far(4.5e6, 6e6, -1e9);
          t = {{far + r.point(), far + r.point(), far + r.point()}};
          ray = {r.point() * 3.0, 0, dvec3(0)};
          ray.dir = t[0][2] - ray.org;
      }},
     {"fan, some of it edge-on",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          const dvec3 hub = r.lattice();
          ray = {r.lattice() * 3.0, 0, dvec3(0)};
          ray.dir = hub - ray.org;
@@ -69,7 +69,7 @@ const Case kCases[] = {
          }
      }},
     {"book",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          const dvec3 a = r.lattice(), b = r.lattice();
          ray = {r.lattice() * 3.0, 0, dvec3(0)};
          ray.dir = 0.25 * a + 0.75 * b - ray.org;
@@ -79,7 +79,7 @@ const Case kCases[] = {
          }
      }},
     {"one plane",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          for (int i = 0; i < 12; ++i) {
              t.push_back({r.lattice(), r.lattice(), r.lattice()});
              for (dvec3& corner : t.back())
@@ -89,7 +89,7 @@ const Case kCases[] = {
          ray = {r.point() * 3.0, 0, r.lattice() / 3.0};
      }},
     {"copies within ulps",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          const Triangle base{r.point(), r.point(), r.point()};
          for (int i = 0; i < 12; ++i) {
              t.push_back(base);
@@ -100,14 +100,14 @@ const Case kCases[] = {
          ray.dir = 0.3 * base[0] + 0.3 * base[1] + 0.4 * base[2] - ray.org;
      }},
     {"sliver",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          const dvec3 a = r.point(), along = r.point();
          t = {{a, a + along, a + 0.5 * along + 1e-9 * r.point()}};
          ray = {r.point() * 3.0, 0, dvec3(0)};
          ray.dir = a + r(0, 1) * along - ray.org;
      }},
     {"grazing",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          t = {{r.point(), r.point(), r.point()}};
          const dvec3 inside = (t[0][0] + t[0][1] + t[0][2]) / 3.0;
          const dvec3 along = t[0][1] - t[0][0];
@@ -115,13 +115,13 @@ const Case kCases[] = {
          ray = {inside - 2.0 * along + 2.0 * up, 0, along - up + 1e-16 * r.point()};
      }},
     {"a kilometre through the origin",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          t = {{1e3 * r.point(), 1e3 * r.point(), dvec3(0)}};
          t[0][2] = -(t[0][0] + t[0][1]);
          ray = {1e-12 * r.point(), 0, r.point()};
      }},
     {"ends at the hit",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          t = {{r.lattice(), r.lattice(), r.lattice()}};
          const dvec3 inside = 0.5 * t[0][0] + 0.25 * t[0][1] + 0.25 * t[0][2];
          ray = {r.lattice(), 0, dvec3(0)};
@@ -129,7 +129,7 @@ const Case kCases[] = {
          (r.below(2) ? ray.t_min : ray.t_max) = 1;
      }},
     {"a vertex of many",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          const dvec3 apex = r.lattice();
          for (int i = 0; i < 6; ++i) {
              t.push_back({r.lattice(), r.lattice(), apex});
@@ -139,7 +139,7 @@ const Case kCases[] = {
          ray.dir = apex - ray.org;
      }},
     {"a side of many",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          const dvec3 a = r.lattice(), b = r.lattice();
          for (int i = 0; i < 6; ++i) {
              t.push_back({a, r.lattice(), b});
@@ -151,7 +151,7 @@ const Case kCases[] = {
          ray.dir = 0.5 * (a + b) - ray.org;
      }},
     {"next to a side of many",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          const dvec3 a = r.point(), b = r.point();
          for (int i = 0; i < 6; ++i)
              t.push_back({a, b, r.point()});
@@ -159,7 +159,7 @@ const Case kCases[] = {
          ray.dir = a + r(0, 1) * (b - a) - ray.org;
      }},
     {"tiny ones seen from afar",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          const double size = std::ldexp(1.0, -int(r.below(140)));
          for (int i = 0; i < 4; ++i)
              t.push_back({size * r.point(), size * r.point(), size * r.lattice()});
@@ -167,14 +167,14 @@ const Case kCases[] = {
          ray.dir = r.below(2) ? -ray.org : t[0][2] - ray.org;
      }},
     {"huge",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          for (int i = 0; i < 4; ++i)
              t.push_back({1e93 * r.lattice(), 1e93 * r.lattice(), 1e93 * r.lattice()});
          ray = {3e93 * r.lattice(), 0, dvec3(0)};
          ray.dir = 1e-93 * (0.5 * (t[0][0] + t[0][1]) - ray.org);
      }},
     {"coplanar and overlapping",
-     [](Random& r, std::vector<Triangle>& t, Ray& ray) {
+     [](Lattice& r, std::vector<Triangle>& t, Ray& ray) {
          const dvec3 a = r.lattice(), u = r.lattice(), v = r.lattice();
          for (int i = 0; i < 6; ++i) {
              const auto point = [&] { return a + double(r.below(5)) * u + double(r.below(5)) * v; };
@@ -185,10 +185,10 @@ const Case kCases[] = {
 };
 
 TEST(Reference, EqualsExactArithmetic) {
-    for (const Case& c : kCases) {
+    for (const Coincidence& c : kCoincidences) {
         size_t hits = 0;
         for (uint64_t seed = 0; seed < 1500; ++seed) {
-            Random random(seed);
+            Lattice random(seed);
             std::vector<Triangle> triangles;
             Ray ray;
             c.make(random, triangles, ray);
@@ -220,10 +220,10 @@ TEST(Reference, EqualsExactArithmetic) {
 }
 
 TEST(Reference, CandidatesAreOffByTheirErrorAtMost) {
-    for (const Case& c : kCases) {
+    for (const Coincidence& c : kCoincidences) {
         size_t hits = 0;
         for (uint64_t seed = 0; seed < 800; ++seed) {
-            Random random(seed);
+            Lattice random(seed);
             std::vector<Triangle> triangles;
             Ray ray;
             c.make(random, triangles, ray);
@@ -258,7 +258,7 @@ TEST(Reference, CandidatesAreOffByTheirErrorAtMost) {
 }
 
 TEST(Reference, EqualBitsForTheSameTriangleWhateverItsCornersOrder) {
-    Random random(1);
+    Lattice random(1);
     for (int i = 0; i < 2000; ++i) {
         const Triangle t{random.point(), random.point(), random.point()};
         Ray ray{random.point() * 3.0, 0, dvec3(0)};

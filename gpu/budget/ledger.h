@@ -14,7 +14,7 @@ struct Ledger {
     uint64_t budget = 0;
     uint64_t in_use = 0;
     uint64_t peak = 0;
-    /// For tests: a driver that has no more memory than this.
+    /// Tests simulate a driver with less memory by this.
     uint64_t driver_bytes = ~uint64_t(0);
     bool refused = false; // by that driver, or by the system
     /// Buffers consist of the process's own pages, which a software renderer can use in place.

@@ -22,7 +22,7 @@
 
 namespace ovc {
 
-/// What a device and its scenes may use.
+/// The limits of a device and its scenes.
 struct DeviceLimits {
     uint64_t gpu_memory_bytes = 0; // of all scenes together; 0: each has a budget of its own
     uint32_t threads = 0;          // the cores that a software renderer may use; 0: all
@@ -79,7 +79,7 @@ public:
 
     const DeviceInfo& info() const { return info_; }
 
-    /// What all scenes of the device may use together.
+    /// The GPU memory that all scenes of the device share.
     SharedBudget& budget() { return budget_; }
 
     /// How often the device has been opened. Objects of an earlier context are gone.

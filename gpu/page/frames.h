@@ -23,7 +23,7 @@ inline constexpr double kMaxDoubtful = 1.0 / 8;
 /// longer, but so does one in doubt.
 inline constexpr double kMaxDoubtfulOfPart = 0.03;
 
-/// Whether the frame of a scene in `bounds` suits all its leaves.
+/// Returns whether the frame of a scene in `bounds` suits all its leaves.
 bool one_frame_suits(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds);
 
 /// Gives leaves that lie together a shared frame where it suits them: those of the largest subtrees

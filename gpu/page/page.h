@@ -67,7 +67,7 @@ struct LoosePairs {
 Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf,
                 BuildProgress* progress = nullptr, const LoosePairs& loose = {});
 
-/// The same, but the page names a triangle by its index in leaf.triangles.
+/// Does the same, but the page names a triangle by its index in leaf.triangles.
 Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress = nullptr,
                 const LoosePairs& loose = {});
 

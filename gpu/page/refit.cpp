@@ -21,7 +21,7 @@ namespace {
 
 using Ranges = std::array<GridRange, 3>;
 
-/// What fitting a subtree has found.
+/// The result of fitting a subtree.
 struct Fitted {
     bool changed = false;
     Ranges box;        // of the subtree

@@ -31,8 +31,8 @@ struct PoolLayout {
         return count() <= 1 ? OVC_MAX_BUFFER_BITS
                             : uint32_t(std::bit_width(buffer_bytes / OVC_UNIT_BYTES - 1));
     }
-    /// The offset of the buffer's first byte in a pool in which every buffer had as many units as
-    /// buffer_bits() can number.
+    /// Returns the offset of the buffer's first byte in a pool in which every buffer had as many
+    /// units as buffer_bits() can number.
     uint64_t begin_of(uint32_t buffer) const {
         return (uint64_t(buffer) << buffer_bits()) * OVC_UNIT_BYTES;
     }

@@ -11,11 +11,11 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-using Words = std::vector<std::string>;
+using Settings = std::vector<std::string>;
 
-Words translated(const Words& words) {
-    const Result<Words> ours = translate_pov_words(words, {});
-    return ours ? *ours : Words{"Error: " + ours.error().message};
+Settings translated_settings(const Settings& words) {
+    const Result<Settings> ours = translate_pov_words(words, {});
+    return ours ? *ours : Settings{"Error: " + ours.error().message};
 }
 
 TEST(PovIni, SettingsAreWords) {
@@ -27,28 +27,29 @@ TEST(PovIni, SettingsAreWords) {
                                                 "+WT2 -P\n[Fine]\nAntialias=On\n"
                                                 "Sampling_Method=2\nJitter=off\n[Other]\n+Q3\n")
                                 .string();
-    EXPECT_THAT(translated({ini}),
+    EXPECT_THAT(translated_settings({ini}),
                 ElementsAre("a b.pov", "--pov-version=3.1", "--threads=2", "--size=640x480"));
-    EXPECT_THAT(translated({ini + "[fine]", "+W8", "+H6"}),
+    EXPECT_THAT(translated_settings({ini + "[fine]", "+W8", "+H6"}),
                 ElementsAre("a b.pov", "--pov-version=3.1", "--threads=2", "--size=8x6",
                             "--antialias=0.1", "--antialias-method=2", "--jitter=0"));
 }
 
 TEST(PovIni, SettingsMayStandOnTheCommandLine) {
-    EXPECT_THAT(translated({"Width=8", "Height=6", "a.pov", "seed=3"}),
+    EXPECT_THAT(translated_settings({"Width=8", "Height=6", "a.pov", "seed=3"}),
                 ElementsAre("a.pov", "seed=3", "--size=8x6"));
 }
 
 TEST(PovIni, WhatIsWrongIsNamedWithItsLine) {
     const TestFolder folder;
     const std::string ini = folder.write("a.ini", "Width=8\nBanana=3\n").string();
-    EXPECT_THAT(translated({ini}), ElementsAre("Error: " + ini +
-                                               ":2: 'banana' is no setting of POV-Ray's that is "
-                                               "understood here"));
+    EXPECT_THAT(translated_settings({ini}),
+                ElementsAre("Error: " + ini +
+                            ":2: 'banana' is no setting of POV-Ray's that is "
+                            "understood here"));
     const std::string self = (folder / "b.ini").string();
     folder.write("b.ini", self + "\n");
-    EXPECT_THAT(translated({self}).at(0), HasSubstr("name each other without an end"));
-    EXPECT_THAT(translated({(folder / "none.ini").string()}).at(0),
+    EXPECT_THAT(translated_settings({self}).at(0), HasSubstr("name each other without an end"));
+    EXPECT_THAT(translated_settings({(folder / "none.ini").string()}).at(0),
                 HasSubstr("none.ini: cannot be opened"));
 }
 

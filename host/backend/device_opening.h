@@ -29,6 +29,7 @@ private:
         ovc_result code;
     };
 
+    /// The device logs through it from any thread for as long as it lives, and may outlive this.
     std::shared_ptr<HeldLog> held_;
     std::future<Opened> opened_;
 };

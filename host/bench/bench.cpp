@@ -21,7 +21,7 @@ struct Answers {
 };
 
 Answers answers_of(const Workload& workload) {
-    return {workload.answers(), workload.distances ? workload.distances() : std::vector<double>()};
+    return {workload.answers(), workload.distances()};
 }
 
 uint64_t count_differing(std::span<const uint64_t> a, std::span<const uint64_t> b) {
@@ -46,7 +46,7 @@ double kernel_alone(const ovc_statistics& before, const ovc_statistics& after, d
 }
 
 /// Runs the workload once and notes its counters in m, and its seconds where `timed`.
-Result<Done> call(const Workload& workload, Backend& backend, bool timed, Measurement& m) {
+Result<Done> call(Workload& workload, Backend& backend, bool timed, Measurement& m) {
     const ovc_statistics before = backend.statistics();
     const double cpu_before = process_cpu_seconds();
     const Stopwatch watch;
@@ -133,7 +133,7 @@ private:
         if (stop_())
             return false;
         const Entrant& entrant = entrants_[m.entrant];
-        const Workload& workload = workloads_[m.workload];
+        Workload& workload = workloads_[m.workload];
         observe_(fmt::format("{}, {}, {}", workload.name, entrant.contender.label(), which));
         Measurement next = m;
         const Result<Done> done = call(workload, *entrant.backend, timed, next);

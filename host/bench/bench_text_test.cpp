@@ -16,7 +16,7 @@
 namespace ovc {
 namespace {
 
-BenchResult example() {
+BenchResult example_result() {
     BenchResult result;
     result.scene = "caf\xe9.ply"; // not UTF-8
     result.triangles = 1000;
@@ -81,7 +81,7 @@ std::string shown(const nlohmann::json& value, int decimals) {
 }
 
 TEST(BenchText, JsonHasWhatTheTableShows) {
-    const BenchResult result = example();
+    const BenchResult result = example_result();
     const std::string text = bench_table(result);
     const auto document = nlohmann::json::parse(bench_json(std::vector{result}));
     const auto& scene = document["scenes"][0];
@@ -123,7 +123,7 @@ TEST(BenchText, JsonHasWhatTheTableShows) {
 }
 
 TEST(BenchText, SaysWhoWasBuilt) {
-    const BenchResult result = example();
+    const BenchResult result = example_result();
     const auto rows = rows_of(bench_table(result), "build");
     const auto document = nlohmann::json::parse(bench_json(std::vector{result}));
     const auto& contenders = document["scenes"][0]["contenders"];
@@ -137,7 +137,7 @@ TEST(BenchText, SaysWhoWasBuilt) {
 }
 
 TEST(BenchText, LeavesOutTheSweepWhereThereIsNone) {
-    BenchResult result = example();
+    BenchResult result = example_result();
     for (size_t e = 0; e < result.entrants.size(); ++e)
         result.entrants[e].contender.name = contender_names()[0];
     EXPECT_THAT(bench_table(result), testing::HasSubstr("time to first"));
@@ -147,7 +147,7 @@ TEST(BenchText, LeavesOutTheSweepWhereThereIsNone) {
 }
 
 TEST(BenchText, SaysThatItWasInterrupted) {
-    BenchResult result = example();
+    BenchResult result = example_result();
     EXPECT_THAT(bench_table(result), testing::Not(testing::HasSubstr("Interrupted")));
     result.complete = false;
     result.measurements.clear();
@@ -159,7 +159,8 @@ TEST(BenchText, SaysThatItWasInterrupted) {
 TEST(BenchText, EveryKeyIsDocumented) {
     std::ifstream file(OVC_SOURCE_DIR "/docs/benchmarks.md");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    const nlohmann::json flat = nlohmann::json::parse(bench_json(std::vector{example()})).flatten();
+    const nlohmann::json flat =
+        nlohmann::json::parse(bench_json(std::vector{example_result()})).flatten();
     for (const auto& [path, value] : flat.items()) {
         std::string key = path;
         while (std::isdigit(key.back())) // the index in a list

@@ -14,7 +14,7 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kWidth = 100, kHeight = 60;
+constexpr uint32_t kSetWidth = 100, kSetHeight = 60;
 
 Scene lit(const char* name) {
     Result<Scene> made = make_test_scene(name);
@@ -24,8 +24,8 @@ Scene lit(const char* name) {
     return scene;
 }
 
-std::vector<RaySet> sets_of(const Scene& scene, uint32_t width = kWidth,
-                            uint32_t height = kHeight) {
+std::vector<RaySet> sets_of(const Scene& scene, uint32_t width = kSetWidth,
+                            uint32_t height = kSetHeight) {
     const Camera camera = framing_camera(hittable_bounds(scene.soup), width, height);
     Result<std::vector<RaySet>> sets =
         make_ray_sets(scene, camera, width, height, *make_cpu_backend(scene.soup));
@@ -58,7 +58,7 @@ TEST(RaySets, AreTheSameOnEveryRun) {
 TEST(RaySets, HaveOneRayAPixelAndOneAHit) {
     const Scene scene = lit("sphere-3");
     const std::vector<RaySet> sets = sets_of(scene);
-    EXPECT_EQ(sets[0].rays.size(), kWidth * kHeight);
+    EXPECT_EQ(sets[0].rays.size(), kSetWidth * kSetHeight);
     std::vector<Hit> hits(sets[0].rays.size());
     ASSERT_TRUE(make_cpu_backend(scene.soup)->intersect(sets[0].rays, {}, hits));
     const auto seen = size_t(
@@ -96,9 +96,9 @@ double distance(const Ray& ray, dvec3 point) {
 /// Rays hit the edges of a convex body that they aim at, except a few on its silhouette.
 TEST(RaySets, RaysAtEdgesHitWhatTheyAimAt) {
     const Scene scene = lit("sphere-3");
-    const Camera camera = framing_camera(hittable_bounds(scene.soup), kWidth, kHeight);
+    const Camera camera = framing_camera(hittable_bounds(scene.soup), kSetWidth, kSetHeight);
     const auto reference = make_cpu_backend(scene.soup);
-    const Result<RaySet> edges = make_edge_set(scene, camera, kWidth, kHeight, *reference);
+    const Result<RaySet> edges = make_edge_set(scene, camera, kSetWidth, kSetHeight, *reference);
     ASSERT_TRUE(bool(edges));
     EXPECT_EQ(edges->name, "edges");
     EXPECT_EQ(edges->rays.size(), sets_of(scene)[1].rays.size());

@@ -10,7 +10,7 @@
 namespace ovc {
 namespace {
 
-Sweep example() {
+Sweep example_sweep() {
     Sweep sweep{"knot", "rays", {"linear", "root", "unmeasured", "once"}, {}, true};
     for (const double x : {1e3, 1e4, 1e5, 1e7})
         sweep.rows.push_back({x, {3e-7 * x, 0.2 * std::sqrt(x), {}, {}}});
@@ -19,10 +19,10 @@ Sweep example() {
 }
 
 TEST(Sweep, FitsThePowerLaw) {
-    EXPECT_NEAR(*fitted_exponent(example(), 0), 1, 1e-12);
-    EXPECT_NEAR(*fitted_exponent(example(), 1), 0.5, 1e-12);
-    EXPECT_FALSE(fitted_exponent(example(), 2));
-    EXPECT_FALSE(fitted_exponent(example(), 3));
+    EXPECT_NEAR(*fitted_exponent(example_sweep(), 0), 1, 1e-12);
+    EXPECT_NEAR(*fitted_exponent(example_sweep(), 1), 0.5, 1e-12);
+    EXPECT_FALSE(fitted_exponent(example_sweep(), 2));
+    EXPECT_FALSE(fitted_exponent(example_sweep(), 3));
 }
 
 TEST(Sweep, FitsTheNearestWhereNoneFits) {
@@ -32,10 +32,10 @@ TEST(Sweep, FitsTheNearestWhereNoneFits) {
 }
 
 TEST(Sweep, IsATableAndJson) {
-    const std::string table = sweep_table(example());
+    const std::string table = sweep_table(example_sweep());
     EXPECT_THAT(table, testing::HasSubstr("10,000,000"));
     EXPECT_THAT(table, testing::ContainsRegex("exponent +\\| +1.00 \\| +0.50 \\| +- \\|"));
-    const auto document = nlohmann::json::parse(sweep_json(example()));
+    const auto document = nlohmann::json::parse(sweep_json(example_sweep()));
     EXPECT_EQ(document["rows"].size(), 4u);
     EXPECT_EQ(document["rows"][0]["values"][2], nullptr);
     EXPECT_NEAR(document["exponents"][0], 1, 1e-12);

@@ -9,7 +9,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <memory>
+#include <type_traits>
+#include <utility>
 
 namespace ovc {
 
@@ -56,51 +57,43 @@ DistanceError distance_error(std::span<const double> distances, std::span<const 
     return error;
 }
 
-static Workload nearest_workload(RaySet set) {
-    auto rays = std::make_shared<const std::vector<Ray>>(std::move(set.rays));
-    auto hits = std::make_shared<std::vector<Hit>>(rays->size());
-    return {std::move(set.name),
-            [rays, hits](Backend& backend) -> Result<uint64_t> {
-                const Result<Done> traced = backend.intersect(*rays, {}, *hits);
-                return traced ? Result<uint64_t>(rays->size()) : traced.error();
-            },
-            [hits] {
-                std::vector<uint64_t> names;
-                names.reserve(hits->size());
-                for (const Hit& hit : *hits)
-                    names.push_back(uint64_t(hit.id.mesh) << 32 | hit.id.prim);
-                return names;
-            },
-            [hits] {
-                std::vector<double> distances;
-                distances.reserve(hits->size());
-                for (const Hit& hit : *hits)
-                    distances.push_back(hit.is_hit() ? hit.t : kInfinity);
-                return distances;
-            }};
-}
-
-static Workload occlusion_workload(RaySet set) {
-    auto rays = std::make_shared<const std::vector<Ray>>(std::move(set.rays));
-    auto occluded = std::make_shared<std::vector<uint8_t>>(rays->size());
-    return {std::move(set.name),
-            [rays, occluded](Backend& backend) -> Result<uint64_t> {
-                const Result<Done> traced = backend.occluded(*rays, {}, *occluded);
-                return traced ? Result<uint64_t>(rays->size()) : traced.error();
-            },
-            [occluded] { return std::vector<uint64_t>(occluded->begin(), occluded->end()); },
-            [occluded] {
-                std::vector<double> distances;
-                distances.reserve(occluded->size());
-                for (const uint8_t hit : *occluded)
-                    distances.push_back(hit ? 0 : kInfinity);
-                return distances;
-            }};
-}
-
 Workload ray_workload(RaySet set) {
-    return set.query == RayQuery::Nearest ? nearest_workload(std::move(set))
-                                          : occlusion_workload(std::move(set));
+    const size_t count = set.rays.size();
+    if (set.query == RayQuery::Nearest)
+        return {std::move(set.name), NearestTask{std::move(set.rays), std::vector<Hit>(count)}};
+    return {std::move(set.name), OcclusionTask{std::move(set.rays), std::vector<uint8_t>(count)}};
+}
+
+Workload frame_workload(const Scene& scene, const Camera& camera, uint32_t width, uint32_t height,
+                        StopRequest stop) {
+    return {"frame", FrameTask{&scene, camera, {width, height}, std::move(stop), {}}};
+}
+
+static Result<uint64_t> run(NearestTask& task, Backend& backend) {
+    const Result<Done> traced = backend.intersect(task.rays, {}, task.hits);
+    return traced ? Result<uint64_t>(task.rays.size()) : traced.error();
+}
+
+static Result<uint64_t> run(OcclusionTask& task, Backend& backend) {
+    const Result<Done> traced = backend.occluded(task.rays, {}, task.occluded);
+    return traced ? Result<uint64_t>(task.rays.size()) : traced.error();
+}
+
+static Result<uint64_t> run(FrameTask& task, Backend& backend) {
+    Film film(task.size.width, task.size.height);
+    const Result<RenderReport> report = render_picture(
+        *task.scene, task.camera, backend, {}, [&](const RenderReport&) { return !task.stop(); },
+        film);
+    task.image = film.image();
+    return report ? Result<uint64_t>(report->rays.total()) : report.error();
+}
+
+static uint64_t answer_of(const Hit& hit) {
+    return uint64_t(hit.id.mesh) << 32 | hit.id.prim;
+}
+
+static uint64_t answer_of(uint8_t occluded) {
+    return occluded;
 }
 
 static uint64_t answer_of(const vec4& pixel) {
@@ -110,25 +103,51 @@ static uint64_t answer_of(const vec4& pixel) {
     return hash;
 }
 
-Workload frame_workload(const Scene& scene, const Camera& camera, uint32_t width, uint32_t height,
-                        StopRequest stop) {
-    auto image = std::make_shared<Image>();
-    return {"frame",
-            [&scene, camera, image, width, height, stop](Backend& backend) -> Result<uint64_t> {
-                Film film(width, height);
-                const Result<RenderReport> report = render_picture(
-                    scene, camera, backend, {}, [&](const RenderReport&) { return !stop(); }, film);
-                *image = film.image();
-                return report ? Result<uint64_t>(report->rays.total()) : report.error();
-            },
-            [image] {
-                std::vector<uint64_t> answers;
-                answers.reserve(image->pixels.size());
-                for (const vec4& pixel : image->pixels)
-                    answers.push_back(answer_of(pixel));
-                return answers;
-            },
-            {}};
+static const std::vector<Hit>& last_answers(const NearestTask& task) {
+    return task.hits;
+}
+
+static const std::vector<uint8_t>& last_answers(const OcclusionTask& task) {
+    return task.occluded;
+}
+
+static const std::vector<vec4>& last_answers(const FrameTask& task) {
+    return task.image.pixels;
+}
+
+static double distance_of(const Hit& hit) {
+    return hit.is_hit() ? hit.t : kInfinity;
+}
+
+static double distance_of(uint8_t occluded) {
+    return occluded ? 0 : kInfinity;
+}
+
+Result<uint64_t> Workload::run(Backend& backend) {
+    return std::visit([&](auto& kind) { return ovc::run(kind, backend); }, task);
+}
+
+std::vector<uint64_t> Workload::answers() const {
+    std::vector<uint64_t> numbers;
+    std::visit(
+        [&](const auto& kind) {
+            for (const auto& answer : last_answers(kind))
+                numbers.push_back(answer_of(answer));
+        },
+        task);
+    return numbers;
+}
+
+std::vector<double> Workload::distances() const {
+    std::vector<double> distances;
+    std::visit(
+        [&](const auto& kind) {
+            if constexpr (!std::is_same_v<decltype(kind), const FrameTask&>)
+                for (const auto& answer : last_answers(kind))
+                    distances.push_back(distance_of(answer));
+        },
+        task);
+    return distances;
 }
 
 } // namespace ovc

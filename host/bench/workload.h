@@ -3,6 +3,7 @@
 // whole frame.
 #pragma once
 
+#include "core/file/image.h"
 #include "core/scene.h"
 #include "host/bench/ray_sets.h"
 
@@ -10,19 +11,44 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace ovc {
 
+/// Returns true to ask a running workload to end early, which then loses its work.
+using StopRequest = std::function<bool()>;
+
+struct NearestTask {
+    std::vector<Ray> rays;
+    std::vector<Hit> hits; // one a ray
+};
+
+struct OcclusionTask {
+    std::vector<Ray> rays;
+    std::vector<uint8_t> occluded; // one a ray
+};
+
+struct FrameTask {
+    const Scene* scene;
+    Camera camera;
+    ImageSize size;
+    StopRequest stop;
+    Image image;
+};
+
+/// A task with the answers of its last run.
 struct Workload {
     std::string name;
+    std::variant<NearestTask, OcclusionTask, FrameTask> task;
+
     /// Does the work, which is timed, and returns how many rays were traced.
-    std::function<Result<uint64_t>(Backend&)> run;
+    Result<uint64_t> run(Backend& backend);
     /// Returns a number for each ray or pixel of the last run. Equal answers have equal numbers.
-    std::function<std::vector<uint64_t>()> answers;
+    std::vector<uint64_t> answers() const;
     /// Returns how far along each ray of the last run its answer is: t, or infinity for a miss;
     /// 0 or infinity for occlusion. Empty for a frame.
-    std::function<std::vector<double>()> distances;
+    std::vector<double> distances() const;
 };
 
 /// How far distances are from the right ones.
@@ -35,9 +61,6 @@ struct DistanceError {
 /// Returns the errors of `distances`, which has the size of `right` (asserted). Where the right t
 /// is 0, any other t is an error of 1.
 DistanceError distance_error(std::span<const double> distances, std::span<const double> right);
-
-/// Returns true to ask a running workload to end early, which then loses its work.
-using StopRequest = std::function<bool()>;
 
 /// Returns a workload that answers the rays. Its answers are the triangles' ids, mesh in the upper
 /// half, or 1 and 0 for occlusion.

@@ -67,6 +67,7 @@ struct ReportArguments {
     std::string rays;
     std::string name_part;
     std::vector<std::string> scenes;
+    std::string size;
     bool quick = false;
 };
 
@@ -122,7 +123,13 @@ struct Report {
     std::vector<StabilityCase> cases;
     std::vector<OpticsCase> optics; // run after the cases
     StabilityOptions options;
+    std::unique_ptr<const Scene> dragon = nullptr; // which cases borrow
 };
+
+/// Returns the scan in the folder of --data, or null where that is not given.
+Result<std::unique_ptr<const Scene>> dragon_of(const std::string& data) {
+    return data.empty() ? std::unique_ptr<const Scene>() : load_dragon(data);
+}
 
 /// Keeps the cases whose name contains `part`.
 Result<Done> choose(Report& report, const std::string& part) {
@@ -153,11 +160,11 @@ Result<Report> stability_report(const ReportArguments& given) {
                           {},
                           std::move(*options)},
                          given.name_part);
-    Result<std::vector<StabilityCase>> cases = stability_cases(given.data);
-    if (!cases)
-        return cases.error();
-    return chosen_of({"stability", "Numerical stability", std::move(*cases), optics_cases(),
-                      std::move(*options)},
+    Result<std::unique_ptr<const Scene>> dragon = dragon_of(given.data);
+    if (!dragon)
+        return dragon.error();
+    return chosen_of({"stability", "Numerical stability", stability_cases(dragon->get()),
+                      optics_cases(), std::move(*options), std::move(*dragon)},
                      given.name_part);
 }
 
@@ -173,11 +180,11 @@ Result<Report> leak_report(const ReportArguments& given) {
     const Result<uint64_t> count = parse_rays(rays);
     if (!count)
         return count.error();
-    Result<std::vector<StabilityCase>> cases = leak_cases(given.data);
-    if (!cases)
-        return cases.error();
-    Report report{
-        "leaks", "Leaks at edges and vertices", std::move(*cases), {}, std::move(*options)};
+    Result<std::unique_ptr<const Scene>> dragon = dragon_of(given.data);
+    if (!dragon)
+        return dragon.error();
+    Report report{"leaks", "Leaks at edges and vertices", leak_cases(dragon->get()),
+                  {},      std::move(*options),           std::move(*dragon)};
     if (const Result<Done> chosen = choose(report, given.name_part); !chosen)
         return chosen.error();
     share_rays(report.cases, *count);
@@ -314,6 +321,10 @@ Result<ReportJob> page_job(const ReportArguments& given) {
     job.folder = given.folder;
     job.plan.quick = given.quick;
     job.plan.scenes = given.scenes;
+    if (!given.size.empty())
+        if (const Result<ImageSize> size = parse_size("--size", given.size); !size)
+            return size.error();
+    job.plan.size = given.size;
     if (!given.data.empty()) {
         Result<std::string> dragon = dragon_file(given.data);
         if (!dragon)
@@ -344,6 +355,9 @@ public:
         app.add_option("--scene", given_.scenes,
                        "Instead of the scenes of the page's experiments; may come several times")
             ->type_name("SCENE");
+        app.add_option("--size", given_.size,
+                       "Instead of the size of the page's pictures and measurements")
+            ->type_name("WxH");
         app.add_option("--times", given_.times,
                        "For stability: so many times the rays of the short form; default: 10")
             ->type_name("N");
@@ -374,6 +388,8 @@ public:
         }
         if (!given_.scenes.empty())
             return Error{"--scene goes with the page, not with --only stability, leaks or grid"};
+        if (!given_.size.empty())
+            return Error{"--size goes with the page, not with --only stability, leaks or grid"};
         Result<Report> report =
             given_.only == kReports[1] ? leak_report(given_) : stability_report(given_);
         if (!report)

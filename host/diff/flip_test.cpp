@@ -11,7 +11,7 @@
 namespace ovc {
 namespace {
 
-constexpr int kWidth = 61, kHeight = 43;
+constexpr int kFlipWidth = 61, kFlipHeight = 43;
 
 /// Red, green and blue, 0 to 255.
 using Codes = std::array<int, 3>;
@@ -21,13 +21,13 @@ struct Planes {
 
     explicit Planes(const Codes& all = {0, 0, 0}) {
         for (size_t c = 0; c < 3; ++c)
-            planes[c].assign(size_t(kWidth) * kHeight, float(all[c]) / 255);
+            planes[c].assign(size_t(kFlipWidth) * kFlipHeight, float(all[c]) / 255);
     }
     void set(int x, int y, const Codes& codes) {
         for (size_t c = 0; c < 3; ++c)
-            planes[c][size_t(y * kWidth + x)] = float(codes[c]) / 255;
+            planes[c][size_t(y * kFlipWidth + x)] = float(codes[c]) / 255;
     }
-    SrgbPlanes view() const { return {kWidth, kHeight, planes[0], planes[1], planes[2]}; }
+    SrgbPlanes view() const { return {kFlipWidth, kFlipHeight, planes[0], planes[1], planes[2]}; }
 };
 
 Codes pattern(int x, int y) {
@@ -36,8 +36,8 @@ Codes pattern(int x, int y) {
 
 Planes reference() {
     Planes planes;
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x)
+    for (int y = 0; y < kFlipHeight; ++y)
+        for (int x = 0; x < kFlipWidth; ++x)
             planes.set(x, y, pattern(x, y));
     return planes;
 }
@@ -45,8 +45,8 @@ Planes reference() {
 /// Returns reference() with a red block, a brighter right third and one white pixel.
 Planes changed() {
     Planes planes = reference();
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kFlipHeight; ++y)
+        for (int x = 0; x < kFlipWidth; ++x) {
             Codes codes = pattern(x, y);
             if (y >= 10 && y < 20 && x >= 12 && x < 30)
                 codes = {200, 40, 10};
@@ -69,7 +69,7 @@ TEST(Flip, IsWhatItsAuthorsCompute) {
     const std::vector<float> errors = flip_errors(reference().view(), changed().view());
     EXPECT_NEAR(mean(errors), 0.149822, 2e-5);
     EXPECT_NEAR(double(*std::max_element(errors.begin(), errors.end())), 0.975576, 2e-5);
-    const auto at = [&](int x, int y) { return double(errors[size_t(y * kWidth + x)]); };
+    const auto at = [&](int x, int y) { return double(errors[size_t(y * kFlipWidth + x)]); };
     EXPECT_NEAR(at(20, 15), 0.964883, 5e-5);
     EXPECT_NEAR(at(5, 30), 0.411653, 5e-5);
     EXPECT_NEAR(at(45, 0), 0.205866, 5e-5);
@@ -100,7 +100,7 @@ TEST(Flip, OfOnePixelFadesWithTheViewersDistance) {
     double last = 1;
     for (const double pixels_per_degree : {20.0, 67.0, 200.0}) {
         const double now =
-            double(flip_errors(gray.view(), speck.view(), pixels_per_degree)[20 * kWidth + 30]);
+            double(flip_errors(gray.view(), speck.view(), pixels_per_degree)[20 * kFlipWidth + 30]);
         EXPECT_LT(now, 0.7 * last);
         EXPECT_GT(now, 0);
         last = now;

@@ -20,7 +20,7 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kWidth = 40, kHeight = 30;
+constexpr uint32_t kLayerWidth = 40, kLayerHeight = 30;
 
 std::string error_of(std::string_view text) {
     const Result<Aovs> aovs = parse_aovs(text);
@@ -45,12 +45,12 @@ std::vector<uint32_t> channel(const std::string& path, const char* name, Imf::Pi
     Imf::InputFile file(path.c_str());
     const Imf::Channel* found = file.header().channels().findChannel(name);
     EXPECT_TRUE(found && found->type == type) << name;
-    std::vector<uint32_t> words(size_t(kWidth) * kHeight);
+    std::vector<uint32_t> words(size_t(kLayerWidth) * kLayerHeight);
     Imf::FrameBuffer frame;
     frame.insert(name, Imf::Slice(type, reinterpret_cast<char*>(words.data()), sizeof(uint32_t),
-                                  sizeof(uint32_t) * kWidth));
+                                  sizeof(uint32_t) * kLayerWidth));
     file.setFrameBuffer(frame);
-    file.readPixels(0, int(kHeight) - 1);
+    file.readPixels(0, int(kLayerHeight) - 1);
     return words;
 }
 
@@ -60,14 +60,14 @@ TEST(Aovs, OfAFileAreWhatEachPixelsRayHits) {
     const Camera camera = scene->camera.value_or(Camera{dvec3(3, 2, 6), dvec3(0)});
     const auto backend = make_cpu_backend(scene->soup);
     Aovs aovs{true, true, true};
-    const auto layers =
-        trace_aovs(*scene, Pinhole(camera, kWidth, kHeight), Sight(*scene), *backend, aovs);
+    const auto layers = trace_aovs(*scene, Pinhole(camera, kLayerWidth, kLayerHeight),
+                                   Sight(*scene), *backend, aovs);
     ASSERT_TRUE(layers);
     ASSERT_EQ(layers->size(), 6u);
     const std::string path =
         (std::filesystem::temp_directory_path() / ("aov" + std::to_string(getpid()) + ".exr"))
             .string();
-    ASSERT_TRUE(save_image(Image(kWidth, kHeight), path, {.layers = *layers}));
+    ASSERT_TRUE(save_image(Image(kLayerWidth, kLayerHeight), path, {.layers = *layers}));
     const auto depth = channel(path, "depth.Z", Imf::FLOAT);
     const auto mesh = channel(path, "id.mesh", Imf::UINT),
                prim = channel(path, "id.prim", Imf::UINT);
@@ -76,10 +76,10 @@ TEST(Aovs, OfAFileAreWhatEachPixelsRayHits) {
                                              channel(path, "normal.Z", Imf::FLOAT)};
     std::filesystem::remove(path);
 
-    const Pinhole pinhole(camera, kWidth, kHeight);
+    const Pinhole pinhole(camera, kLayerWidth, kLayerHeight);
     size_t hit = 0, missed = 0;
-    for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
-        const Ray ray = pinhole.ray(i % kWidth, i / kWidth);
+    for (uint32_t i = 0; i < kLayerWidth * kLayerHeight; ++i) {
+        const Ray ray = pinhole.ray(i % kLayerWidth, i / kLayerWidth);
         // We ask each triangle of the scene: the nearest must be the one that is named.
         const PreparedRay prepared(ray);
         Nearest offered(prepared);

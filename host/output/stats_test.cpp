@@ -11,7 +11,7 @@
 
 namespace ovc {
 
-static RenderStats example() {
+static RenderStats example_stats() {
     RenderStats stats;
     stats.scene = "caf\xe9.ply"; // not UTF-8
     stats.renderer = "llvmpipe (LLVM 15, 256 bits)";
@@ -31,7 +31,7 @@ static RenderStats example() {
 }
 
 TEST(StatsJson, HasTheKeysOfItsDocument) {
-    const nlohmann::json document = nlohmann::json::parse(stats_json(example()));
+    const nlohmann::json document = nlohmann::json::parse(stats_json(example_stats()));
     for (const char* key : {"triangles", "leaves", "level2_bytes", "gpu_budget_bytes",
                             "gpu_peak_bytes", "host_peak_bytes", "passes", "pages_in", "bytes_in",
                             "rays", "flagged", "time", "renderer"})
@@ -48,14 +48,14 @@ TEST(StatsJson, HasTheKeysOfItsDocument) {
 TEST(StatsJson, EveryKeyIsDocumented) {
     std::ifstream file(OVC_SOURCE_DIR "/docs/reference/stats.md");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
-    const nlohmann::json flat = nlohmann::json::parse(stats_json(example())).flatten();
+    const nlohmann::json flat = nlohmann::json::parse(stats_json(example_stats())).flatten();
     for (const auto& [key, value] : flat.items())
         EXPECT_THAT(text, testing::HasSubstr(fmt::format("`{}`", key.substr(key.rfind('/') + 1))))
             << key;
 }
 
 TEST(StatsJson, HasAnEntryAFrameAndTheirSum) {
-    RenderStats stats = example();
+    RenderStats stats = example_stats();
     FrameStats second;
     second.frame = 8;
     second.report.rays = {1000, 200, 30};
@@ -102,7 +102,7 @@ TEST(StatsCounters, OfStructuresThatAreGoneAreAdded) {
 }
 
 TEST(StatsSummary, SaysWhatAPersonWantsToKnow) {
-    const std::string text = stats_summary(example());
+    const std::string text = stats_summary(example_stats());
     for (const char* part :
          {"871,414 triangles", "leaves     11", "11.0 MiB at most, of a budget of 12.0 MiB",
           "llvmpipe", "362,149: 262,144 primary, 100,000 shadow, 5 reflection, 0 refraction"})

@@ -18,7 +18,7 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kSide = 64;
+constexpr uint32_t kCutoutSide = 64;
 
 std::unique_ptr<Backend> two_level(const Scene& scene, uint64_t budget_bytes) {
     BackendOptions options;
@@ -31,7 +31,7 @@ std::unique_ptr<Backend> two_level(const Scene& scene, uint64_t budget_bytes) {
 
 Image drawn(const Scene& scene, Backend& backend, RenderOptions options = {},
             const Camera* camera = nullptr) {
-    Film film(kSide, kSide);
+    Film film(kCutoutSide, kCutoutSide);
     options.max_depth = 3;
     const auto done =
         render_picture(scene, camera ? *camera : *scene.camera, backend, options, {}, film);
@@ -93,15 +93,15 @@ TEST(CutoutPictures, LetLightThroughHoles) {
     const Image lit = drawn(scene, *cpu, shadowless), holes = drawn(scene, *cpu),
                 none = drawn(scene, *cpu, whole);
     uint64_t bright = 0, dark = 0;
-    for (uint32_t y = kSide / 2; y < kSide; ++y)
-        for (uint32_t x = 0; x < kSide; ++x) {
+    for (uint32_t y = kCutoutSide / 2; y < kCutoutSide; ++y)
+        for (uint32_t x = 0; x < kCutoutSide; ++x) {
             EXPECT_NE(none.at(x, y), lit.at(x, y)) << "a wall without a hole shadows all";
             bright += holes.at(x, y) == lit.at(x, y);
             dark += holes.at(x, y) == none.at(x, y);
         }
     EXPECT_GT(bright, 100u);
     EXPECT_GT(dark, 100u);
-    EXPECT_EQ(bright + dark, uint64_t(kSide) * kSide / 2);
+    EXPECT_EQ(bright + dark, uint64_t(kCutoutSide) * kCutoutSide / 2);
 }
 
 TEST(CutoutPictures, OfShadowsAloneAreSeenWhole) {
@@ -174,7 +174,7 @@ TEST(CutoutPictures, OfLeavesAreThoseOfModelledLeaves) {
     uint32_t unlike = 0; // modelled leaves bend a little, by the rounding of their corners
     for (size_t i = 0; i < a.pixels.size(); ++i)
         unlike += glm::length(a.pixels[i] - b.pixels[i]) > 0.01f;
-    EXPECT_LT(unlike, kSide * kSide / 25);
+    EXPECT_LT(unlike, kCutoutSide * kCutoutSide / 25);
 }
 
 } // namespace

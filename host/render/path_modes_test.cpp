@@ -12,7 +12,7 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kSide = 20;
+constexpr uint32_t kPathSide = 20;
 
 /// Returns a floor, a glossy one beside it, a mirror behind, a pane in front, a lamp above and a
 /// blue sky.
@@ -43,7 +43,7 @@ Image picture(const Scene& scene, Backend& backend, RenderMode mode, uint64_t se
     camera.eye = {0.5, 2, 6};
     camera.target = {0, 0.9, 0};
     camera.fov_degrees = 45;
-    Film film(kSide, kSide, samples);
+    Film film(kPathSide, kPathSide, samples);
     RenderOptions options;
     options.integrator = IntegratorKind::Path;
     options.mode = mode;
@@ -70,8 +70,9 @@ struct Pixels {
 
 Pixels many(const Scene& scene, Backend& backend, RenderMode mode, uint64_t first_seed) {
     constexpr uint32_t kPictures = 24;
-    Pixels all{std::vector<double>(kSide * kSide), std::vector<double>(kSide * kSide)};
-    std::vector<double> squares(kSide * kSide);
+    Pixels all{std::vector<double>(kPathSide * kPathSide),
+               std::vector<double>(kPathSide * kPathSide)};
+    std::vector<double> squares(kPathSide * kPathSide);
     for (uint32_t i = 0; i < kPictures; ++i) {
         const Image image = picture(scene, backend, mode, first_seed + i, 16);
         for (size_t p = 0; p < image.pixels.size(); ++p) {
@@ -104,7 +105,7 @@ TEST(PathModes, ConvergeToTheSameMean) {
         sum += z;
         ++pixels;
     }
-    EXPECT_GT(pixels, int(kSide * kSide / 2));
+    EXPECT_GT(pixels, int(kPathSide * kPathSide / 2));
     // Such a t has variance 46/44; the limits are five sigma of the means of n values.
     EXPECT_NEAR(sum / pixels, 0, 5 / std::sqrt(pixels));
     EXPECT_NEAR(squares / pixels, 46 / 44.0, 5 * std::sqrt(2.2 / pixels));

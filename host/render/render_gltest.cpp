@@ -13,14 +13,15 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kSide = 96;
+constexpr uint32_t kRenderSide = 96;
 
 /// A test scene with a camera and lights for a picture.
 class Shown {
 public:
     explicit Shown(const char* name) : scene(std::move(*make_test_scene(name))) {
-        camera = scene.camera ? *scene.camera
-                              : framing_camera(hittable_bounds(scene.soup), kSide, kSide);
+        camera = scene.camera
+                     ? *scene.camera
+                     : framing_camera(hittable_bounds(scene.soup), kRenderSide, kRenderSide);
         scene.lights = placed_lights(scene, scene.lights, camera);
     }
     Scene scene;
@@ -33,7 +34,7 @@ struct Picture {
 };
 
 Picture picture(RenderMode mode, const Shown& shown, Backend& backend, uint32_t samples = 1) {
-    Film film(kSide, kSide, samples);
+    Film film(kRenderSide, kRenderSide, samples);
     RenderOptions options;
     options.mode = mode;
     const Result<RenderReport> report =
@@ -60,8 +61,8 @@ TEST(Modes, MakeTheSamePicture) {
         EXPECT_EQ(mixed.report.rays.shadow, batched.report.rays.shadow);
         EXPECT_EQ(mixed.report.rays.reflection, batched.report.rays.reflection);
         EXPECT_EQ(mixed.report.rays.refraction, batched.report.rays.refraction);
-        EXPECT_EQ(mixed.report.pixels_done, size_t(kSide) * kSide);
-        EXPECT_EQ(batched.report.pixels_done, size_t(kSide) * kSide);
+        EXPECT_EQ(mixed.report.pixels_done, size_t(kRenderSide) * kRenderSide);
+        EXPECT_EQ(batched.report.pixels_done, size_t(kRenderSide) * kRenderSide);
         expect_same_bits(mixed.image, batched.image);
     }
 }
@@ -84,7 +85,7 @@ TEST(Modes, MakeAPartOfThePicture) {
     for (const RenderMode mode : {RenderMode::Batched, RenderMode::Mixed}) {
         RenderOptions options;
         options.mode = mode;
-        options.part = {{kSide, kSide}, 17, 40, {60, 33}};
+        options.part = {{kRenderSide, kRenderSide}, 17, 40, {60, 33}};
         Film film(60, 33);
         ASSERT_TRUE(render_picture(shown.scene, shown.camera, *cpu, options, {}, film));
         const Image part = film.image();
@@ -116,7 +117,7 @@ TEST(Modes, HaveTheSameBitsUnderAnyBudgetAndMixedMakesFewerPasses) {
 TEST(Modes, MixedStopsWhenToldAndKeepsThePixelsThatAreDone) {
     const Shown shown("mirrors");
     const std::unique_ptr<Backend> cpu = make_cpu_backend(shown.scene.soup);
-    Film film(kSide, kSide);
+    Film film(kRenderSide, kRenderSide);
     RenderOptions options;
     options.mode = RenderMode::Mixed;
     const Result<RenderReport> report = render_picture(
@@ -126,7 +127,7 @@ TEST(Modes, MixedStopsWhenToldAndKeepsThePixelsThatAreDone) {
     EXPECT_FALSE(report->complete);
     const Image image = film.image();
     const Image whole = picture(RenderMode::Mixed, shown, *cpu).image;
-    for (uint32_t pixel = 0; pixel < kSide * kSide; ++pixel)
+    for (uint32_t pixel = 0; pixel < kRenderSide * kRenderSide; ++pixel)
         EXPECT_EQ(image.pixels[pixel], film.done(pixel) ? whole.pixels[pixel] : vec4(0));
 }
 

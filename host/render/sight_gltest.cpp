@@ -16,7 +16,7 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kSide = 48;
+constexpr uint32_t kSightSide = 48;
 
 /// Red balls that are seen at the top left directly, at the bottom left through a pane, at the top
 /// right in a mirror, and at the bottom right in the mirror through a pane.
@@ -65,7 +65,7 @@ std::map<std::string, std::unique_ptr<Backend>> backends_of(const Scene& scene) 
 }
 
 Image drawn(const Scene& scene, Backend& backend, RenderMode mode) {
-    Film film(kSide, kSide);
+    Film film(kSightSide, kSightSide);
     RenderOptions options;
     options.mode = mode;
     options.max_depth = 9;
@@ -77,10 +77,10 @@ Image drawn(const Scene& scene, Backend& backend, RenderMode mode) {
 /// bottom left, the bottom right.
 std::array<bool, 4> balls_in(const Image& image) {
     std::array<bool, 4> quarters{};
-    for (uint32_t y = 0; y < kSide; ++y)
-        for (uint32_t x = 0; x < kSide; ++x)
+    for (uint32_t y = 0; y < kSightSide; ++y)
+        for (uint32_t x = 0; x < kSightSide; ++x)
             if (const vec4 c = image.at(x, y); c.r > 0.5f && c.g < 0.3f)
-                quarters[2 * (y >= kSide / 2) + (x >= kSide / 2)] = true;
+                quarters[2 * (y >= kSightSide / 2) + (x >= kSightSide / 2)] = true;
     return quarters;
 }
 

@@ -10,19 +10,19 @@
 namespace ovc {
 namespace {
 
-constexpr uint32_t kSide = 12;
+constexpr uint32_t kPathFileSide = 12;
 
 std::vector<Hit> look(Backend& backend, const Camera& camera) {
-    const Pinhole pinhole(camera, kSide, kSide);
+    const Pinhole pinhole(camera, kPathFileSide, kPathFileSide);
     std::vector<Ray> rays;
-    for (uint32_t pixel = 0; pixel < kSide * kSide; ++pixel)
-        rays.push_back(pinhole.ray(pixel % kSide, pixel / kSide));
+    for (uint32_t pixel = 0; pixel < kPathFileSide * kPathFileSide; ++pixel)
+        rays.push_back(pinhole.ray(pixel % kPathFileSide, pixel / kPathFileSide));
     std::vector<Hit> hits(rays.size());
     EXPECT_TRUE(backend.intersect(rays, {}, hits));
     return hits;
 }
 
-struct Case {
+struct ScenePath {
     const char* name;
     bool with_model;
     size_t step;         // the test looks at every step-th frame
@@ -32,9 +32,10 @@ struct Case {
 TEST(ScenePaths, SeeSomethingAndStandInNothing) {
     Soup model;
     model.chunks.push_back(Chunk::owning(dvec3(0), make_sphere(3)));
-    for (const Case& c : {Case{"dragons-1", true, 5, 0.5}, Case{"dragons-21", true, 5, 0.5},
-                          Case{"dragonball", true, 5, 0.5}, Case{"plants-1", false, 5, 0.3},
-                          Case{"powerplant-600000", false, 2, 0.2}}) {
+    for (const ScenePath& c :
+         {ScenePath{"dragons-1", true, 5, 0.5}, ScenePath{"dragons-21", true, 5, 0.5},
+          ScenePath{"dragonball", true, 5, 0.5}, ScenePath{"plants-1", false, 5, 0.3},
+          ScenePath{"powerplant-600000", false, 2, 0.2}}) {
         const Result<Scene> scene = make_test_scene(c.name, c.with_model ? &model : nullptr);
         ASSERT_TRUE(scene);
         const std::unique_ptr<Backend> backend = make_cpu_backend(scene->soup);
@@ -48,7 +49,7 @@ TEST(ScenePaths, SeeSomethingAndStandInNothing) {
                     ++seen;
                     nearest = std::min(nearest, hit.t); // t is the depth
                 }
-            EXPECT_GT(seen, kSide * kSide / 4) << c.name << ", frame " << frame;
+            EXPECT_GT(seen, kPathFileSide * kPathFileSide / 4) << c.name << ", frame " << frame;
             EXPECT_GT(nearest, c.min_distance) << c.name << ", frame " << frame;
         }
     }

@@ -23,7 +23,7 @@ Transform shifted(double x) {
 }
 
 /// Returns a lone mesh, a mesh with two instances, and one more mesh.
-Soup example() {
+Soup example_soup() {
     Soup soup;
     soup.chunks.push_back(Chunk::owning(dvec3(0), row(0, 200)));
     soup.chunks.push_back(Chunk::owning(dvec3(5, 0, 0), row(0, 3)));
@@ -48,11 +48,11 @@ void expect_same(const Soup& a, const Soup& b) {
 using Ranges = std::vector<PrimRange>;
 
 TEST(SoupDifference, OfTheSameIsNothing) {
-    EXPECT_FALSE(difference(example(), example()).any());
+    EXPECT_FALSE(difference(example_soup(), example_soup()).any());
 }
 
 TEST(SoupDifference, NamesTrianglesThatMoveAndJoinsNeighbours) {
-    Soup now = example(), next = example();
+    Soup now = example_soup(), next = example_soup();
     const vec3 moved[3] = {{7, 7, 7}, {8, 7, 7}, {7, 8, 7}};
     for (const uint32_t prim : {10u, 20u, 199u})
         next.chunks[0].set_corners(prim, std::span(moved));
@@ -68,14 +68,14 @@ TEST(SoupDifference, NamesTrianglesThatMoveAndJoinsNeighbours) {
 }
 
 TEST(SoupDifference, TellsEachInstanceOfAMeshThatMoves) {
-    Soup now = example(), next = example();
+    Soup now = example_soup(), next = example_soup();
     next.chunks[1].set_corners(2, std::span<const vec3>(row(9, 1)));
     next.chunks[2].place_anew(shifted(4));
     const SoupDifference found = difference(now, next);
     EXPECT_EQ(found.moved, (Ranges{{1, 2, 3}, {2, 2, 3}}));
     EXPECT_EQ(found.placed, std::vector<uint32_t>{2});
     const Soup copy = [] {
-        Soup soup = example();
+        Soup soup = example_soup();
         soup.chunks[1].set_corners(2, std::span<const vec3>(row(9, 1)));
         soup.chunks[2].place_anew(shifted(4));
         return soup;
@@ -101,7 +101,7 @@ TEST(SoupDifference, ReplacesFromTheFirstMeshOnThatIsNotTheSame) {
     };
     for (const auto& c : cases) {
         SCOPED_TRACE(c.what);
-        Soup now = example(), next = example(), expected = example();
+        Soup now = example_soup(), next = example_soup(), expected = example_soup();
         c.change(next);
         c.change(expected);
         const SoupDifference found = difference(now, next);

@@ -17,10 +17,10 @@
 namespace ovc {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 using Boundary = Optics::Boundary;
 
-struct Case {
+struct BsdfCase {
     std::string name;
     Material material;
 };
@@ -47,7 +47,7 @@ Material with_finish(const Finish& finish, const vec3& color = vec3(1)) {
     return m;
 }
 
-std::vector<Case> scattering() {
+std::vector<BsdfCase> scattering() {
     Finish phong;
     phong.diffuse = 0.6f;
     phong.phong = 0.8f;
@@ -96,8 +96,8 @@ auto integral(Function&& of) {
     decltype(of(dvec3())) sum(0);
     for (int i = 0; i < kRings; ++i)
         for (int j = 0; j < kSectors; ++j)
-            sum += of(way((i + 0.5) / kRings, 2 * kPi * (j + 0.5) / kSectors));
-    return sum * decltype(sum)(2 * kPi / (kRings * kSectors));
+            sum += of(way((i + 0.5) / kRings, 2 * pi * (j + 0.5) / kSectors));
+    return sum * decltype(sum)(2 * pi / (kRings * kSectors));
 }
 
 TEST(Fresnel, HasItsKnownValues) {
@@ -109,7 +109,7 @@ TEST(Fresnel, HasItsKnownValues) {
     // At Brewster's angle one polarisation passes; the other is reflected by the square of the sine
     // of the angles' difference.
     const double angle = std::atan(1.5);
-    const double s = std::sin(2 * angle - kPi / 2);
+    const double s = std::sin(2 * angle - pi / 2);
     EXPECT_NEAR(fresnel(std::cos(angle), 1.5), 0.5 * s * s, 1e-15);
     const double critical = std::asin(1 / 1.5);
     EXPECT_EQ(fresnel(std::cos(critical + 1e-6), 1 / 1.5), 1);
@@ -136,7 +136,7 @@ TEST(Fresnel, MeanIsThatOverAllDirections) {
 
 /// A surface reflects a white sky: matte white all of it, no surface more.
 TEST(Bsdf, SendsOnNoMoreThanArrives) {
-    for (const Case& test : scattering())
+    for (const BsdfCase& test : scattering())
         for (const double cosine : kCosines) {
             const Bsdf bsdf(seen_from(test.material, way(cosine, 1)));
             constexpr uint32_t kCount = 1 << 14;
@@ -158,7 +158,7 @@ TEST(Bsdf, SendsOnNoMoreThanArrives) {
 }
 
 TEST(Bsdf, IsTheSameBothWays) {
-    for (const Case& test : scattering()) {
+    for (const BsdfCase& test : scattering()) {
         if (test.material.finish)
             continue; // POV-Ray's mirror, highlight and tint depend on the viewer's angle alone
         for (const double a : kCosines)
@@ -179,20 +179,20 @@ TEST(Bsdf, IsTheSameBothWays) {
 TEST(Bsdf, ChoosesDirectionsAsItsDensitySays) {
     constexpr int kCells = 8, kTurns = 12;
     constexpr uint32_t kCount = 1 << 16;
-    for (const Case& test : scattering())
+    for (const BsdfCase& test : scattering())
         for (const double cosine : {0.3, 0.7, 0.999}) {
             const Bsdf bsdf(seen_from(test.material, way(cosine, 1)));
             const dvec3 n = glm::normalize(dvec3(1, 2, -3));
             const dvec3 x = glm::normalize(glm::cross(n, dvec3(0, 0, 1))), y = glm::cross(n, x);
             const auto cell = [&](const dvec3& d) {
-                const double phi = std::atan2(glm::dot(d, y), glm::dot(d, x)) / (2 * kPi) + 0.5;
+                const double phi = std::atan2(glm::dot(d, y), glm::dot(d, x)) / (2 * pi) + 0.5;
                 const int ring = std::min(int(glm::dot(d, n) * kCells), kCells - 1);
                 return ring * kTurns + std::min(int(phi * kTurns), kTurns - 1);
             };
             std::vector<double> expected(kCells * kTurns), found(kCells * kTurns);
             const double total = integral([&](const dvec3& d) {
                 const double density = bsdf.density(d);
-                expected[size_t(cell(d))] += density * 2 * kPi / (kRings * kSectors);
+                expected[size_t(cell(d))] += density * 2 * pi / (kRings * kSectors);
                 return density;
             });
             double above = 0;
@@ -224,7 +224,7 @@ TEST(Bsdf, ChoosesDirectionsAsItsDensitySays) {
 
 /// The mean weight of samples is the integral of evaluate().
 TEST(Bsdf, WeighsWhatItChooses) {
-    for (const Case& test : scattering()) {
+    for (const BsdfCase& test : scattering()) {
         if (test.name == "sharp plastic")
             continue;
         const Bsdf bsdf(seen_from(test.material, way(0.6, 1)));

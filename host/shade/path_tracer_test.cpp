@@ -18,7 +18,7 @@
 namespace ovc {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 using Boundary = Optics::Boundary;
 
 Material optical(const Optics& optics) {
@@ -128,7 +128,7 @@ TEST(PathTracer, ASkyLightsWhatItSees) {
 /// it.
 double form_factor(double s, double h) {
     const double a = s / h, r = std::sqrt(1 + a * a);
-    return 4 * (2 * a / r * std::atan(a / r)) / (2 * kPi);
+    return 4 * (2 * a / r * std::atan(a / r)) / (2 * pi);
 }
 
 TEST(PathTracer, ALampLightsAFloorByItsFormFactor) {
@@ -171,11 +171,11 @@ TEST(PathTracer, PointsShineAsTheyDoForWhitted) {
     add_level(scene, matte(vec3(0.5f)), 0, 3, true);
     scene.lights = {{{0, 2, 0}, vec3(3)}};
     const Camera camera = at_point({2, 1, 0}, dvec3(0));
-    expect_mean(estimate(scene, camera, 1), 0.5 * 3 / kPi, "no fall-off, as POV-Ray's");
+    expect_mean(estimate(scene, camera, 1), 0.5 * 3 / pi, "no fall-off, as POV-Ray's");
     scene.lights[0].fade_distance = 1e-4;
     scene.lights[0].fade_power = 2;
     scene.lights[0].color = vec3(8 / (2e-8f));
-    expect_mean(estimate(scene, camera, 1), 0.5 * 8 / 4 / kPi, "intensity over distance squared");
+    expect_mean(estimate(scene, camera, 1), 0.5 * 8 / 4 / pi, "intensity over distance squared");
     scene.lights[0].stand_in = true;
     EXPECT_EQ(estimate(scene, camera, 1).mean, 0) << "path tracing finds its light elsewhere";
 }
@@ -263,7 +263,7 @@ TEST(PathTracer, PointsShineThroughGlassStraight) {
     PathTracerOptions options;
     options.max_depth = 4;
     // Light goes through two sides. Light from the floor that the glass throws back comes on top.
-    const double direct = 0.5 * 3 / kPi * 0.96 * 0.96;
+    const double direct = 0.5 * 3 / pi * 0.96 * 0.96;
     const Estimate found = estimate(scene, at_point({2, 0.4, 0}, dvec3(0)), 64, options);
     EXPECT_GT(found.mean, direct - 1e-6);
     EXPECT_LT(found.mean, 1.2 * direct);

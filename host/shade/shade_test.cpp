@@ -17,33 +17,35 @@ static Scene floor_scene(std::vector<vec3> normals = {}, dvec3 origin = dvec3(0)
     return scene;
 }
 
-static const Hit kHit{1, 0.3, 0.3, {0, 0}};
+static const Hit kShadedHit{1, 0.3, 0.3, {0, 0}};
 static const Ray kFromAbove{{0, 1, 0}, 0, {0, -1, 0}};
 static const Ray kFromBelow{{0, -1, 0}, 0, {0, 1, 0}};
 
 TEST(SurfacePoint, NormalsFaceTheRayOnBothSides) {
     const Scene scene = floor_scene();
-    EXPECT_EQ(surface_point(scene, kFromAbove, kHit).normal, dvec3(0, 1, 0));
-    EXPECT_EQ(surface_point(scene, kFromBelow, kHit).normal, dvec3(0, -1, 0));
+    EXPECT_EQ(surface_point(scene, kFromAbove, kShadedHit).normal, dvec3(0, 1, 0));
+    EXPECT_EQ(surface_point(scene, kFromBelow, kShadedHit).normal, dvec3(0, -1, 0));
 }
 
 TEST(SurfacePoint, InterpolatesNormalsAndIgnoresThoseThatCancel) {
     const vec3 tilted = glm::normalize(vec3(1, 1, 0));
     EXPECT_LT(
-        glm::length(surface_point(floor_scene({tilted, tilted, tilted}), kFromAbove, kHit).normal -
-                    dvec3(tilted)),
+        glm::length(
+            surface_point(floor_scene({tilted, tilted, tilted}), kFromAbove, kShadedHit).normal -
+            dvec3(tilted)),
         1e-6);
     const vec3 nothing(0);
-    EXPECT_EQ(surface_point(floor_scene({nothing, nothing, nothing}), kFromAbove, kHit).normal,
-              dvec3(0, 1, 0));
+    EXPECT_EQ(
+        surface_point(floor_scene({nothing, nothing, nothing}), kFromAbove, kShadedHit).normal,
+        dvec3(0, 1, 0));
 }
 
 TEST(SurfacePoint, LiesJustOnTheRaysSideOfTheTriangle) {
     for (const dvec3 origin : {dvec3(0), dvec3(0, 1e6, 0)}) {
         const Scene scene = floor_scene({}, origin);
-        const double above = surface_point(scene, kFromAbove, kHit).position.y - origin.y;
-        const double below = surface_point(scene, kFromBelow, kHit).position.y - origin.y;
-        EXPECT_EQ(surface_point(scene, kFromAbove, kHit).beyond.y - origin.y, below);
+        const double above = surface_point(scene, kFromAbove, kShadedHit).position.y - origin.y;
+        const double below = surface_point(scene, kFromBelow, kShadedHit).position.y - origin.y;
+        EXPECT_EQ(surface_point(scene, kFromAbove, kShadedHit).beyond.y - origin.y, below);
         EXPECT_GT(above, 0);
         EXPECT_LT(above, 1e-7);
         EXPECT_LT(below, 0);
@@ -55,26 +57,27 @@ TEST(SurfacePoint, HasANormalHoweverSmallTheTriangle) {
     Scene scene;
     scene.add_mesh("speck", 0,
                    Chunk::owning(dvec3(0), {{0, 0, 0}, {1e-30f, 0, 0}, {0, 1e-30f, 0}}));
-    EXPECT_EQ(surface_point(scene, {{0, 0, 1}, 0, {0, 0, -1}}, kHit).normal, dvec3(0, 0, 1));
+    EXPECT_EQ(surface_point(scene, {{0, 0, 1}, 0, {0, 0, -1}}, kShadedHit).normal, dvec3(0, 0, 1));
 }
 
 TEST(SurfacePoint, KeepsClearOfTheEdgesOfItsTriangle) {
     for (const dvec3 origin : {dvec3(0), dvec3(0, 1e6, 0)}) {
         const Scene scene = floor_scene({}, origin);
-        const Triangle t = scene.soup.triangle(kHit.id);
+        const Triangle t = scene.soup.triangle(kShadedHit.id);
         const SurfacePoint at_corner = surface_point(scene, kFromAbove, {1, 0, 0, {0, 0}});
         const double away = glm::length(at_corner.position - t[0]);
         const double above = at_corner.position.y - origin.y;
         EXPECT_GT(away, 32 * above) << "a neighbour at a sharp angle to this one would be crossed";
         EXPECT_LT(away, 0x1p-30 * max_component(glm::abs(t[1]))) << "float cannot tell";
         // A hit away from the edges is not moved.
-        EXPECT_NEAR(surface_point(scene, kFromAbove, kHit).position.x, -1 + 0.3 * 2 + 0.3, 1e-15);
+        EXPECT_NEAR(surface_point(scene, kFromAbove, kShadedHit).position.x, -1 + 0.3 * 2 + 0.3,
+                    1e-15);
     }
 }
 
 TEST(SurfacePoint, KnowsWhetherTheRayEnters) {
-    EXPECT_TRUE(surface_point(floor_scene(), kFromAbove, kHit).entering);
-    EXPECT_FALSE(surface_point(floor_scene(), kFromBelow, kHit).entering);
+    EXPECT_TRUE(surface_point(floor_scene(), kFromAbove, kShadedHit).entering);
+    EXPECT_FALSE(surface_point(floor_scene(), kFromBelow, kShadedHit).entering);
 }
 
 TEST(SurfacePoint, TheNormalOfASliverIsThatOfExactArithmetic) {
@@ -85,11 +88,11 @@ TEST(SurfacePoint, TheNormalOfASliverIsThatOfExactArithmetic) {
                    Chunk::owning(dvec3(0), {{0, 0, 0}, {1, 1, 1}, {3, 3 + 2 * step, 3}}));
     const dvec3 exact = glm::normalize(dvec3(-1, 0, 1));
     const Ray ray{{0, 0, 5}, 0, {0.1, 0, -1}};
-    EXPECT_LT(glm::length(surface_point(scene, ray, kHit).normal - exact), 1e-15);
+    EXPECT_LT(glm::length(surface_point(scene, ray, kShadedHit).normal - exact), 1e-15);
 }
 
 TEST(DirectLight, FollowsTheCosineAndStopsBehindTheSurface) {
-    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kShadedHit);
     const Light overhead{{s.position.x, 5, s.position.z}, vec3(std::numbers::pi_v<float>)};
     EXPECT_NEAR(direct_light(overhead, s).x, 0.5, 1e-6);
     const Light slanting{s.position + dvec3(1, 1, 0), vec3(std::numbers::pi_v<float>)};
@@ -99,12 +102,13 @@ TEST(DirectLight, FollowsTheCosineAndStopsBehindTheSurface) {
 
 TEST(DirectLight, DoesNotShineThroughTheTriangleOntoATiltedNormal) {
     const vec3 tilted = glm::normalize(vec3(1, 0.1f, 0));
-    const SurfacePoint s = surface_point(floor_scene({tilted, tilted, tilted}), kFromAbove, kHit);
+    const SurfacePoint s =
+        surface_point(floor_scene({tilted, tilted, tilted}), kFromAbove, kShadedHit);
     EXPECT_EQ(direct_light({s.position + dvec3(5, -0.2, 0), vec3(1)}, s), vec3(0));
 }
 
 TEST(DirectLight, OfASpotlightStaysInItsCone) {
-    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kShadedHit);
     Light light{s.position + dvec3(0, 4, 0), vec3(std::numbers::pi_v<float>)};
     light.cone = SpotCone{std::cos(0.2), std::cos(0.4), 2};
     const auto at_angle = [&](double angle) {
@@ -120,7 +124,7 @@ TEST(DirectLight, OfASpotlightStaysInItsCone) {
 }
 
 TEST(DirectLight, FadesWithDistanceToHalfOfWhatItWouldBeTwiceAsNear) {
-    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kShadedHit);
     Light light{s.position + dvec3(0, 3, 0), vec3(std::numbers::pi_v<float>)};
     light.fade_distance = 3;
     light.fade_power = 2;
@@ -134,7 +138,7 @@ TEST(DirectLight, FadesWithDistanceToHalfOfWhatItWouldBeTwiceAsNear) {
 }
 
 TEST(DirectLight, ParallelLightComesFromOneSideEverywhere) {
-    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kShadedHit);
     Light light{dvec3(100, 2, 0), vec3(std::numbers::pi_v<float>)};
     light.parallel = true;
     light.direction = glm::normalize(dvec3(0, -1, 1));
@@ -145,7 +149,7 @@ TEST(DirectLight, ParallelLightComesFromOneSideEverywhere) {
 }
 
 TEST(ShadowRay, EndsAtTheLight) {
-    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kShadedHit);
     const Light light{{3, 4, 5}, vec3(1)};
     const Ray ray = shadow_ray(light, s.position);
     EXPECT_EQ(ray.t_max, 1);
@@ -153,13 +157,14 @@ TEST(ShadowRay, EndsAtTheLight) {
 }
 
 TEST(MirrorRay, LeavesAtTheAngleItCame) {
-    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kHit);
+    const SurfacePoint s = surface_point(floor_scene(), kFromAbove, kShadedHit);
     EXPECT_EQ(mirror_ray({{-1, 1, 0}, 0, {1, -1, 0}}, s).dir, dvec3(1, 1, 0));
 }
 
 TEST(MirrorRay, NeverGoesBelowThePlane) {
     const vec3 tilted = glm::normalize(vec3(1, 0.2f, 0));
-    const SurfacePoint s = surface_point(floor_scene({tilted, tilted, tilted}), kFromAbove, kHit);
+    const SurfacePoint s =
+        surface_point(floor_scene({tilted, tilted, tilted}), kFromAbove, kShadedHit);
     EXPECT_GT(mirror_ray({{1, 0.3, 0}, 0, {-1, -0.3, 0}}, s).dir.y, 0);
 }
 
@@ -173,12 +178,12 @@ static Scene glass_scene(double ior, std::vector<vec3> normals = {}) {
 TEST(RefractedRay, BendsTowardsTheNormalGoingInAndAwayGoingOut) {
     const Scene scene = glass_scene(1.5);
     const Ray in{{-1, 1, 0}, 0, {1, -1, 0}};
-    const auto inside = refracted_ray(in, surface_point(scene, in, kHit));
+    const auto inside = refracted_ray(in, surface_point(scene, in, kShadedHit));
     ASSERT_TRUE(inside);
     EXPECT_NEAR(inside->dir.x / glm::length(inside->dir), std::sqrt(0.5) / 1.5, 1e-15);
     EXPECT_LT(inside->org.y, 0);
     const Ray out{{0, -1, 0}, 0, {0.5, 1, 0}};
-    const auto outside = refracted_ray(out, surface_point(scene, out, kHit));
+    const auto outside = refracted_ray(out, surface_point(scene, out, kShadedHit));
     ASSERT_TRUE(outside);
     EXPECT_NEAR(outside->dir.x / glm::length(outside->dir), 1.5 * std::sqrt(0.2), 1e-15);
     EXPECT_GT(outside->org.y, 0);
@@ -187,7 +192,7 @@ TEST(RefractedRay, BendsTowardsTheNormalGoingInAndAwayGoingOut) {
 TEST(RefractedRay, BeyondTheCriticalAngleThereIsNone) {
     const Scene scene = glass_scene(1.5);
     const Ray flat{{-1, -1, 0}, 0, {1, 1, 0}}; // 45 degrees, the critical angle is 41.8
-    EXPECT_FALSE(refracted_ray(flat, surface_point(scene, flat, kHit)));
+    EXPECT_FALSE(refracted_ray(flat, surface_point(scene, flat, kShadedHit)));
 }
 
 TEST(RefractedRay, StaysOnItsSideOfThePlaneWhateverTheVertexNormals) {
@@ -197,7 +202,7 @@ TEST(RefractedRay, StaysOnItsSideOfThePlaneWhateverTheVertexNormals) {
         for (const double slope : {-20.0, -1.0, 0.0, 3.0, 1e6}) {
             const Ray down{{0, 1, 0}, 0, {slope, -1, 0}}, up{{0, -1, 0}, 0, {slope, 1, 0}};
             for (const Ray& ray : {down, up}) {
-                const SurfacePoint s = surface_point(scene, ray, kHit);
+                const SurfacePoint s = surface_point(scene, ray, kShadedHit);
                 EXPECT_GT(mirror_ray(ray, s).dir.y * -ray.dir.y, 0) << tilt << " " << slope;
                 const auto beyond = refracted_ray(ray, s);
                 EXPECT_TRUE(!beyond || beyond->dir.y * ray.dir.y > 0) << tilt << " " << slope;
@@ -217,8 +222,8 @@ TEST(BackgroundColor, RunsFromHorizonToZenithAndStaysBelow) {
 TEST(AmbientLight, IsStrongerFromAbove) {
     const Scene scene = floor_scene();
     const vec3 up(0, 1, 0);
-    EXPECT_GT(ambient_light({}, up, surface_point(scene, kFromAbove, kHit)).x,
-              ambient_light({}, up, surface_point(scene, kFromBelow, kHit)).x);
+    EXPECT_GT(ambient_light({}, up, surface_point(scene, kFromAbove, kShadedHit)).x,
+              ambient_light({}, up, surface_point(scene, kFromBelow, kShadedHit)).x);
 }
 
 } // namespace ovc

@@ -14,7 +14,7 @@
 namespace ovc::csg {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Operand box(const dvec3& lo, const dvec3& hi) {
     Operand operand;
@@ -33,8 +33,8 @@ Operand box(const dvec3& lo, const dvec3& hi) {
 Operand sphere(const dvec3& center, double radius, int segments = 48) {
     Operand operand;
     const auto at = [&](int row, int column) {
-        const double up = kPi * (2.0 * row / segments - 0.5);
-        const double around = 2 * kPi * (column % segments) / segments;
+        const double up = pi * (2.0 * row / segments - 0.5);
+        const double around = 2 * pi * (column % segments) / segments;
         if (row == 0 || 2 * row == segments)
             return center + dvec3(0, row == 0 ? -radius : radius, 0);
         return center + radius * dvec3(std::cos(up) * std::cos(around), std::sin(up),
@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(All, Csg, testing::ValuesIn(kCases),
 TEST(CsgRound, ALensHasItsVolume) {
     const int segments = 96;
     const double d = 1, r = 1; // The middles of the two unit spheres are 1 apart.
-    const double lens = kPi * (2 * r - d) * (2 * r - d) * (d * d + 4 * d * r) / (12 * d);
+    const double lens = pi * (2 * r - d) * (2 * r - d) * (d * d + 4 * d * r) / (12 * d);
     const Operand a = sphere(dvec3(0), 1, segments), b = sphere(dvec3(1, 0, 0), 1, segments);
     const auto common = evaluate(flat(Kind::Intersection, {a, b}));
     const auto rest = evaluate(flat(Kind::Intersection, {a, inverse(b)}));

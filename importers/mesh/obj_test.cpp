@@ -9,8 +9,8 @@ namespace {
 
 constexpr const char* kCorners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\n";
 
-const dvec3 a(0, 0, 0), b(1, 0, 0), c(1, 1, 0), d(0, 1, 0.5);
-const std::vector<Triangle> kSquare = {{a, b, c}, {a, c, d}};
+const dvec3 kA(0, 0, 0), kB(1, 0, 0), kC(1, 1, 0), kD(0, 1, 0.5);
+const std::vector<Triangle> kSquare = {{kA, kB, kC}, {kA, kC, kD}};
 
 TEST(Obj, CornersAreReadInEveryForm) {
     const TestFolder folder;
@@ -85,7 +85,7 @@ TEST(Obj, OneMeshForEachObjectGroupAndMaterial) {
         EXPECT_EQ(scene->materials[scene->meshes[m].material].name, expected[m].material);
         EXPECT_EQ(scene->soup.chunks[m].size(), expected[m].triangles);
     }
-    EXPECT_EQ(scene->soup.triangle({2, 1})[0], b) << "in file order";
+    EXPECT_EQ(scene->soup.triangle({2, 1})[0], kB) << "in file order";
 }
 
 TEST(Obj, CommentsStandBehindAnyStatement) {

@@ -40,8 +40,8 @@ std::string binary_square(bool big) {
     return file;
 }
 
-const std::vector<Triangle> kSquare = {{dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(1, 1, 0)},
-                                       {dvec3(0, 0, 0), dvec3(1, 1, 0), dvec3(0, 1, 0.5)}};
+const std::vector<Triangle> kBentSquare = {{dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(1, 1, 0)},
+                                           {dvec3(0, 0, 0), dvec3(1, 1, 0), dvec3(0, 1, 0.5)}};
 
 TEST(Ply, EveryEncodingGivesTheSameTriangles) {
     const TestFolder folder;
@@ -51,17 +51,17 @@ TEST(Ply, EveryEncodingGivesTheSameTriangles) {
         dos += c == '\n' ? "\r\n" : std::string(1, c);
         mac += c == '\n' ? '\r' : c;
     }
-    EXPECT_EQ(triangles_of(load(folder.write("a.ply", text))), kSquare);
-    EXPECT_EQ(triangles_of(load(folder.write("dos.ply", dos))), kSquare);
-    EXPECT_EQ(triangles_of(load(folder.write("mac.ply", mac))), kSquare);
-    EXPECT_EQ(triangles_of(load(folder.write("le.ply", binary_square(false)))), kSquare);
-    EXPECT_EQ(triangles_of(load(folder.write("be.ply", binary_square(true)))), kSquare);
-    EXPECT_EQ(triangles_of(load(folder.write("mark.ply", "\xef\xbb\xbf" + text))), kSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("a.ply", text))), kBentSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("dos.ply", dos))), kBentSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("mac.ply", mac))), kBentSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("le.ply", binary_square(false)))), kBentSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("be.ply", binary_square(true)))), kBentSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("mark.ply", "\xef\xbb\xbf" + text))), kBentSquare);
     EXPECT_EQ(
         triangles_of(load(folder.write("mark le.ply", "\xef\xbb\xbf" + binary_square(false)))),
-        kSquare);
+        kBentSquare);
     EXPECT_EQ(triangles_of(load(folder.write("end.ply", text.substr(0, text.size() - 1)))),
-              kSquare);
+              kBentSquare);
 }
 
 TEST(Ply, ExtraPropertiesElementsAndBlanksAreSkipped) {
@@ -75,7 +75,7 @@ TEST(Ply, ExtraPropertiesElementsAndBlanksAreSkipped) {
               "property list uchar uint vertex_index\nproperty list uchar float texcoord\n"
               "end_header\n2 0.5 0.25 7 \n\n255 0 0 0 0 \n255 0 0 2 9 9 1\t\n"
               " 255 0 1 0 1\n255 .5 +1 0 0e0\n42\n1 3 0 1 2 0\n1 3 0 2 3 2 0.5 0.5\n"));
-    EXPECT_EQ(triangles_of(load(path)), kSquare);
+    EXPECT_EQ(triangles_of(load(path)), kBentSquare);
 }
 
 /// Returns `value` as a PLY type of this name stores it.
@@ -105,10 +105,10 @@ TEST(Ply, ListsMayHaveAnyTypesOfLengthAndIndex) {
                     for (const int corner : face)
                         file += stored(index, corner, big);
                 }
-                EXPECT_EQ(triangles_of(load(folder.write("a.ply", file))), kSquare);
+                EXPECT_EQ(triangles_of(load(folder.write("a.ply", file))), kBentSquare);
             }
             EXPECT_EQ(triangles_of(load(folder.write("b.ply", ascii(header + kSquareRows)))),
-                      kSquare);
+                      kBentSquare);
         }
 }
 
@@ -116,7 +116,7 @@ TEST(Ply, WholeNumbersMayHaveASignAndLeadingZeros) {
     const TestFolder folder;
     const std::string rows = "0 0 0\n1 0 0\n1 1 0\n0 1 0.5\n"
                              "+3 -0 000000001 00000000002\n3\t0  +2 0000000000000003 \n";
-    EXPECT_EQ(triangles_of(load(folder.write("a.ply", ascii(kSquareHeader + rows)))), kSquare);
+    EXPECT_EQ(triangles_of(load(folder.write("a.ply", ascii(kSquareHeader + rows)))), kBentSquare);
 }
 
 TEST(Ply, ConcavePolygonsAreCutWithoutOverlap) {
@@ -144,7 +144,7 @@ TEST(Ply, FacesMayComeBeforeVertices) {
                                         "element vertex 4\nproperty double x\nproperty double y\n"
                                         "property double z\nend_header\n"
                                         "4 0 1 2 3\n0 0 0\n1 0 0\n1 1 0\n0 1 0.5\n"));
-    EXPECT_EQ(triangles_of(load(path)), kSquare);
+    EXPECT_EQ(triangles_of(load(path)), kBentSquare);
 }
 
 TEST(Ply, StripsAlternateTheirWindingAndRestart) {
@@ -260,7 +260,7 @@ TEST(Ply, NumbersThatTheHeaderDoesNotTellOfAreLeftOut) {
     const auto scene = load(
         folder.write("more.ply", ascii(std::string(kSquareHeader) + rows) + std::string(3, '\0')),
         gather(warnings));
-    EXPECT_EQ(triangles_of(scene), kSquare);
+    EXPECT_EQ(triangles_of(scene), kBentSquare);
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_EQ(folder.plain(warnings[0]),
               "more.ply, line 11: numbers that the header does not tell of left out, in " +
@@ -294,7 +294,7 @@ TEST(Ply, DataAfterTheLastRowIsSaid) {
             std::vector<std::string> warnings;
             const std::string contents = packed ? gzip(test.contents) : test.contents;
             const auto scene = load(folder.write("more.ply", contents), gather(warnings));
-            EXPECT_EQ(triangles_of(scene), kSquare);
+            EXPECT_EQ(triangles_of(scene), kBentSquare);
             ASSERT_EQ(warnings.size(), test.message ? 1u : 0u);
             if (test.message) {
                 EXPECT_EQ(folder.plain(warnings[0]), test.message);

@@ -8,7 +8,7 @@ namespace ovc {
 namespace {
 
 /// A triangle whose parameters go on.
-constexpr const char* kMesh =
+constexpr const char* kTriangleMesh =
     " Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [0 0 0  1 0 0  0 1 0] ";
 
 struct Read {
@@ -41,7 +41,7 @@ Read read(const std::string& text) {
 }
 
 Read read_texture(const std::string& texture) {
-    return read("WorldBegin Texture \"t\" \"float\" " + texture + kMesh +
+    return read("WorldBegin Texture \"t\" \"float\" " + texture + kTriangleMesh +
                 "\"texture alpha\" \"t\"");
 }
 
@@ -103,7 +103,7 @@ TEST(PbrtAlpha, ScaledTexturesAreScaledCutouts) {
             read_texture(picture +
                          "Texture \"half\" \"float\" \"scale\" \"texture tex\" \"t\" \"float "
                          "scale\" 0.5 Texture \"s\" \"float\" " +
-                         scale + kMesh + "\"texture alpha\" \"s\"");
+                         scale + kTriangleMesh + "\"texture alpha\" \"s\"");
         // The first mesh has the texture s, the second t.
         ASSERT_EQ(found.scene.cutouts.size(), 2u) << scale;
         EXPECT_EQ(found.scene.cutouts[found.scene.meshes[0].cutout], quarter) << scale;
@@ -115,19 +115,20 @@ TEST(PbrtAlpha, ScaledTexturesAreScaledCutouts) {
 TEST(PbrtAlpha, ConstantsCutByChance) {
     for (const char* alpha :
          {"\"float alpha\" 0.25", "\"texture alpha\" \"t\"", "\"texture alpha\" \"u\""}) {
-        const Read found = read("WorldBegin Texture \"t\" \"float\" \"constant\" \"float value\" "
-                                "0.25 Texture \"u\" \"float\" \"scale\" \"texture tex\" \"t\"" +
-                                std::string(kMesh) + alpha + kMesh + "\"float alpha\" 0.25");
+        const Read found =
+            read("WorldBegin Texture \"t\" \"float\" \"constant\" \"float value\" "
+                 "0.25 Texture \"u\" \"float\" \"scale\" \"texture tex\" \"t\"" +
+                 std::string(kTriangleMesh) + alpha + kTriangleMesh + "\"float alpha\" 0.25");
         ASSERT_EQ(found.scene.cutouts.size(), 1u) << alpha;
         EXPECT_EQ(found.scene.cutouts[0],
                   (Cutout{.width = 1, .height = 1, .opacity = {255}, .scale = 0.25f}));
     }
-    EXPECT_TRUE(read(kMesh + std::string("\"float alpha\" 1")).scene.cutouts.empty());
-    EXPECT_TRUE(read(kMesh + std::string("\"float alpha\" 0")).scene.meshes.empty());
+    EXPECT_TRUE(read(kTriangleMesh + std::string("\"float alpha\" 1")).scene.cutouts.empty());
+    EXPECT_TRUE(read(kTriangleMesh + std::string("\"float alpha\" 0")).scene.meshes.empty());
 }
 
 TEST(PbrtAlpha, IsTestedForZeroBeforeVersion4) {
-    const std::string shape = kMesh + std::string("\"float alpha\" 0.25 ");
+    const std::string shape = kTriangleMesh + std::string("\"float alpha\" 0.25 ");
     EXPECT_TRUE(read("WorldBegin " + shape).scene.cutouts.at(0).partial);
     EXPECT_FALSE(read("WorldBegin " + shape + "WorldEnd").scene.cutouts.at(0).partial);
 }
@@ -135,11 +136,11 @@ TEST(PbrtAlpha, IsTestedForZeroBeforeVersion4) {
 TEST(PbrtAlpha, ShadowsMayHaveTheirOwn) {
     const Read found = read("WorldBegin Texture \"t\" \"float\" \"imagemap\" \"string filename\" "
                             "\"a.pgm\"" +
-                            std::string(kMesh) + "\"texture shadowalpha\" \"t\" WorldEnd");
+                            std::string(kTriangleMesh) + "\"texture shadowalpha\" \"t\" WorldEnd");
     EXPECT_EQ(found.mesh().cutout, kNone);
     EXPECT_EQ(found.mesh().shadow_cutout, 0u);
     EXPECT_EQ(found.mesh().uv.size(), 3u);
-    const Read none = read(kMesh + std::string("\"float shadowalpha\" 0"));
+    const Read none = read(kTriangleMesh + std::string("\"float shadowalpha\" 0"));
     EXPECT_EQ(none.scene.soup.chunks.at(0).mask(), kSeenByCamera | kSeenInReflections);
     EXPECT_TRUE(none.scene.cutouts.empty());
 }
@@ -159,7 +160,7 @@ TEST(PbrtAlpha, WhatIsNotEvaluatedIsSaid) {
               (std::vector<std::string>{"a.pbrt:1: there is no file 'zzzzzz'"}));
     // A picture that is no alpha is still shown by its mean.
     EXPECT_EQ(read("WorldBegin Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"a.pgm\"" +
-                   std::string(kMesh))
+                   std::string(kTriangleMesh))
                   .warnings,
               (std::vector<std::string>{"a.pbrt:1: textures 'imagemap' are shown by their mean"}));
 }
@@ -174,7 +175,7 @@ std::vector<vec2> uv_of(const std::string& shape) {
 
 TEST(PbrtAlpha, TrianglesHaveTextureCoordinates) {
     using Uv = std::vector<vec2>;
-    const std::string mesh = kMesh;
+    const std::string mesh = kTriangleMesh;
     EXPECT_EQ(uv_of(mesh), (Uv{{0, 0}, {1, 0}, {1, 1}}));
     EXPECT_EQ(uv_of(mesh + "\"point2 uv\" [.5 0 1 .25 0 1]"), (Uv{{0.5f, 0}, {1, 0.25f}, {0, 1}}));
     EXPECT_EQ(uv_of(mesh + "\"float st\" [.5 0 1 .25 0 1]"), (Uv{{0.5f, 0}, {1, 0.25f}, {0, 1}}));
@@ -231,7 +232,7 @@ TEST(PbrtAlpha, QuadricsHaveTextureCoordinates) {
 
 TEST(PbrtAlpha, InstancesShareTextureCoordinates) {
     const std::string many = "Shape \"sphere\" \"float alpha\" 0.5 ";
-    for (const std::string& shape : {kMesh + std::string("\"float alpha\" 0.5 "), many}) {
+    for (const std::string& shape : {kTriangleMesh + std::string("\"float alpha\" 0.5 "), many}) {
         const Scene scene = read("WorldBegin ObjectBegin \"o\" " + shape +
                                  "ObjectEnd ObjectInstance \"o\" Translate 3 0 0 ObjectInstance "
                                  "\"o\" Scale -1 1 1 ObjectInstance \"o\"")
@@ -250,17 +251,17 @@ TEST(PbrtAlpha, InstancesShareTextureCoordinates) {
 
 TEST(PbrtAlpha, CostsNothingWhereThereIsNone) {
     const Scene scene =
-        read("WorldBegin " + std::string(kMesh) + "\"point2 uv\" [0 0 1 0 0 1]").scene;
+        read("WorldBegin " + std::string(kTriangleMesh) + "\"point2 uv\" [0 0 1 0 0 1]").scene;
     EXPECT_TRUE(scene.cutouts.empty());
     EXPECT_TRUE(scene.meshes.at(0).uv.empty());
     EXPECT_EQ(scene.meshes[0].texture_coordinates_left_out, 3u);
 }
 
 TEST(PbrtAlpha, ShapesOfOneAlphaBecomeOneMesh) {
-    const std::string half = kMesh + std::string("\"float alpha\" 0.5 ");
+    const std::string half = kTriangleMesh + std::string("\"float alpha\" 0.5 ");
     EXPECT_EQ(read(half + half).scene.meshes.size(), 1u);
     EXPECT_EQ(read(half + half).mesh().uv.size(), 6u);
-    EXPECT_EQ(read(half + kMesh).scene.meshes.size(), 2u);
+    EXPECT_EQ(read(half + kTriangleMesh).scene.meshes.size(), 2u);
 }
 
 } // namespace

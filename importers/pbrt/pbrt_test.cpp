@@ -8,10 +8,10 @@ namespace {
 constexpr const char* kTriangle =
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0  1 0 0  0 1 0]\n";
 
-const Triangle kOne{dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(0, 1, 0)};
+const Triangle kFlatTriangle{dvec3(0, 0, 0), dvec3(1, 0, 0), dvec3(0, 1, 0)};
 
 Triangle moved(const dvec3& by) {
-    return {kOne[0] + by, kOne[1] + by, kOne[2] + by};
+    return {kFlatTriangle[0] + by, kFlatTriangle[1] + by, kFlatTriangle[2] + by};
 }
 
 /// Appends, because GCC 12 warns of sums of strings.
@@ -68,11 +68,11 @@ TEST(Pbrt, AMeshIsReadInTheWordsOfEveryVersion) {
     };
     for (const auto& test : cases) {
         const Reading reading = read(folder, test.text);
-        EXPECT_EQ(triangles_of(reading.scene), std::vector<Triangle>{kOne}) << test.name;
+        EXPECT_EQ(triangles_of(reading.scene), std::vector<Triangle>{kFlatTriangle}) << test.name;
         EXPECT_TRUE(reading.warnings.empty()) << test.name << reading.warnings[0];
     }
     EXPECT_EQ(triangles_of(load(folder.write("b.pbrt.gz", gzip(kTriangle)))),
-              std::vector<Triangle>{kOne});
+              std::vector<Triangle>{kFlatTriangle});
 }
 
 TEST(Pbrt, TransformsComposeAsPbrtDoes) {
@@ -170,7 +170,7 @@ TEST(Pbrt, ObjectsArePlacedByInstances) {
     } cases[] = {
         {"twice",
          a + "ObjectInstance \"a\" Translate 2 0 0 ObjectInstance \"a\"",
-         {kOne, moved({2, 0, 0})},
+         {kFlatTriangle, moved({2, 0, 0})},
          1,
          2},
         {"never", a, {}, 1, 0},
@@ -181,14 +181,14 @@ TEST(Pbrt, ObjectsArePlacedByInstances) {
          1},
         {"its state ends with it",
          std::string("ObjectBegin \"a\" Translate 9 0 0 ObjectEnd ") + kTriangle,
-         {kOne},
+         {kFlatTriangle},
          1,
          0},
         {"nested",
          a + "ObjectBegin \"b\" ObjectInstance \"a\" Translate 2 0 0 ObjectInstance \"a\" "
              "ObjectEnd "
              "ObjectInstance \"b\" Translate 0 4 0 ObjectInstance \"b\"",
-         {kOne, moved({2, 0, 0}), moved({0, 4, 0}), moved({2, 4, 0})},
+         {kFlatTriangle, moved({2, 0, 0}), moved({0, 4, 0}), moved({2, 4, 0})},
          1,
          6},
         {"defined in each other",
@@ -200,10 +200,10 @@ TEST(Pbrt, ObjectsArePlacedByInstances) {
         {"redefined",
          a + "ObjectInstance \"a\" ObjectBegin \"a\" Translate 3 0 0 " + kTriangle +
              "ObjectEnd ObjectInstance \"a\"",
-         {kOne, moved({3, 0, 0})},
+         {kFlatTriangle, moved({3, 0, 0})},
          2,
          2},
-        {"before it is defined, as v4 allows", "ObjectInstance \"a\" " + a, {kOne}, 1, 1},
+        {"before it is defined, as v4 allows", "ObjectInstance \"a\" " + a, {kFlatTriangle}, 1, 1},
     };
     for (const auto& test : cases) {
         const Reading reading = read(folder, test.text);
@@ -313,7 +313,7 @@ TEST(Pbrt, LineEndsMayBeMixed) {
         ImportOptions options;
         options.world = number;
         EXPECT_EQ(triangles_of(load(folder.write("a.pbrt", world + world), options)),
-                  std::vector<Triangle>{kOne});
+                  std::vector<Triangle>{kFlatTriangle});
     }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the fuzzer's seeds cut off everywhere or with changed bytes. The fuzzer does so for longer.
+// Reads the fuzzer's pov_seeds cut off everywhere or with changed bytes. The fuzzer does so for
+// longer.
 #include "importers/readers.h"
 #include "importers/test_files.h"
 #include "tests/fuzz/pov.h"
@@ -9,35 +10,35 @@
 namespace ovc {
 namespace {
 
-std::vector<std::string> seeds() {
+std::vector<std::string> pov_seeds() {
     return contents_of(OVC_SOURCE_DIR "/importers/pov/corpus");
 }
 
-void survives(const std::string& text) {
+void survives_pov(const std::string& text) {
     fuzz_pov(reinterpret_cast<const uint8_t*>(text.data()), text.size());
 }
 
 TEST(PovDamage, SeedsAreScenes) {
-    ASSERT_EQ(seeds().size(), 5u);
-    for (const std::string& text : seeds())
+    ASSERT_EQ(pov_seeds().size(), 5u);
+    for (const std::string& text : pov_seeds())
         EXPECT_GT(triangles_of(parse_pov(text, "seed.pov", {})).size(), 1000u);
 }
 
 TEST(PovDamage, EveryBeginningIsASceneOrASentence) {
-    for (const std::string& text : seeds())
+    for (const std::string& text : pov_seeds())
         for (size_t length = 0; length < text.size(); length += 5)
-            survives(text.substr(0, length));
+            survives_pov(text.substr(0, length));
 }
 
 TEST(PovDamage, AnyByteMayBeAnyOther) {
     constexpr std::string_view kOdd = "\"{}<>()[]#-.,;=9eE \n\\\0\xff/*";
-    for (const std::string& text : seeds()) {
+    for (const std::string& text : pov_seeds()) {
         std::mt19937 random(uint32_t(text.size()));
         for (int i = 0; i < 400; ++i) {
             std::string damaged = text;
             for (uint32_t n = random() % 3; n < 3; ++n)
                 damaged[random() % text.size()] = kOdd[random() % kOdd.size()];
-            survives(damaged);
+            survives_pov(damaged);
         }
     }
 }
@@ -72,7 +73,7 @@ TEST(PovDamage, LoopsRecursionAndGroupsThatDoNotEndAreStopped) {
          "}\n#end #declare V = F(1, 2, 3);",
          "stopped after 100000 words"},
         {"#declare A = array[1] { 1 }\n#while (1) #declare A = array[1] { A }\n#end",
-         "found arrays more than 2000 deep in each other"},
+         "found arrays more than 100 deep in each other"},
         {"#while (1) #declare A = array[20000] #end", "stopped after 100000 words"},
         {"#declare A = array[100000][100000]", "found an array of 10000000000 items"},
     };
@@ -97,7 +98,7 @@ TEST(PovDamage, SolidsOfNothingAndOfFarPlanesAreRead) {
           "<2,1e17,1e17> } inside_vector x } }",
           "blob { threshold 0.5 sphere { 0, 1, 1 } sphere { <1e17,0,0>, 1, 1 } }",
           "#declare S = spline { 0, 1 } #declare N = 1e308 * 10; sphere { 0, S(N - N) }"})
-        survives(text);
+        survives_pov(text);
 }
 
 } // namespace

@@ -123,7 +123,7 @@ private:
     void tell_of_holes(const Object& object, const ovc::Material& material, bool has_holes) const {
         const auto tell = [&](const char* kind, const char* sentence) {
             if (look_.tell)
-                look_.tell(*make_note(kind, object.place, sentence));
+                look_.tell({kind, object.place, sentence});
         };
         if (!has_holes)
             tell("uv_mapping", "an image_map with uv_mapping has holes on meshes alone, outside of "

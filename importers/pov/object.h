@@ -5,6 +5,7 @@
 #include "core/box.h"
 #include "core/scene.h"
 #include "importers/pov/shapes/facets.h"
+#include "importers/pov/values/shared_function.h"
 #include "importers/pov/values/value.h"
 
 namespace ovc::pov {
@@ -13,7 +14,7 @@ namespace ovc::pov {
 struct Shape {
     /// Adds the shape's triangles to `out`. A circle gets `segments` straight pieces, which is a
     /// multiple of 4 and at least 8. `open` leaves out the caps at the shape's ends.
-    std::function<void(int segments, bool open, Facets& out)> cut;
+    SharedFunction<void(int segments, bool open, Facets& out)> cut;
     /// The coefficients of triangles(), which estimates how many triangles cut() adds.
     double fixed = 0;
     double per_square = 0; // x segments^2
@@ -34,18 +35,16 @@ struct PlaneShape {
 /// A shape that may be endless, so it is cut within a box.
 struct EndlessShape {
     /// Returns the part of the box that the shape may lie in, or an empty box.
-    std::function<Box(const Box&)> bounds;
+    SharedFunction<Box(const Box&)> bounds;
     /// Adds closed triangles to `out`. Returns how many of them, from the first on, lie on the
     /// surface; the others only close it and are not drawn.
-    std::function<size_t(const Box&, int cells, Facets& out)> cut;
+    SharedFunction<size_t(const Box&, int cells, Facets& out)> cut;
 };
 
 struct LightSource {
     Light light;
     bool area = false;
 };
-
-using ObjectPtr = std::shared_ptr<const Object>;
 
 struct Object {
     std::string_view kind; // the keyword: "sphere"

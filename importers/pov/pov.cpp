@@ -70,7 +70,7 @@ public:
         scene.max_depth = trace_level_ - 1; // POV-Ray counts the camera's rays too
         // Before 3.7 scenes made colors for screens, and povray still writes them as they are.
         scene.gamma = gamma_given_ || reader_.has_linear_colors() ? reader_.gamma : kSrgbGamma;
-        camera_ = camera_ ? camera_ : std::make_shared<const CameraValue>();
+        camera_ = camera_.value_or(CameraValue{});
         scene.camera = camera_of(*camera_);
         scene.size = options_.size.value_or(size_of(*camera_));
         look_.eye = camera_->location;
@@ -103,7 +103,7 @@ private:
             skip_braces(reader_, token.name->text);
         } else if (auto object = take_named_if<ObjectPtr>(reader_))
             objects_.push_back(std::move(*object));
-        else if (const auto camera = take_named_if<std::shared_ptr<const CameraValue>>(reader_))
+        else if (const auto camera = take_named_if<CameraValue>(reader_))
             camera_ = *camera;
         else if (!reader_.take(';')) {
             reader_.next();
@@ -167,7 +167,7 @@ private:
     bool gamma_given_ = false;
     uint32_t trace_level_ = 5;
     std::vector<ObjectPtr> objects_;
-    std::shared_ptr<const CameraValue> camera_;
+    std::optional<CameraValue> camera_;
 };
 
 std::string text_of(const Place& place) {

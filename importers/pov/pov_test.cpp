@@ -173,6 +173,31 @@ TEST(PovDirectives, DeclarationsNeedNoSemicolon) {
     EXPECT_VALUE(1, "1", "declare Old = 3 /* a /* nested */ comment */");
 }
 
+TEST(PovDirectives, WhatStandsBehindANameMayChangeIt) {
+    // A macro that ends with a declaration has ended before the value is assigned.
+    EXPECT_VALUE(10, "A[1]",
+                 "#macro Set(To, I) #declare To[I] = I * 10 #end #declare A = array[2]; Set(A, 1)");
+    EXPECT_VALUE(3, "3", "#macro M() #local A = array[2] #declare A[1] = 7 #end M()");
+    EXPECT_VALUE(4, "A[1]",
+                 "#macro M() #declare A = array[2] { 3, 4 } 0 #end #declare A = array[1] { 9 }\n"
+                 "#declare A[M()] = 5;");
+    EXPECT_VALUE(7, "B[0]", "#declare A = array[1] { 7 } #declare B = A #declare A[0] = 8;");
+    const char* const kLost[] = {
+        "#macro M() #declare A = 5; 0 #end #declare A = array[2] { 1, 2 } #declare V = A[M()];",
+        "#macro M() #declare A = array[1] 1 #end #declare A = array[2] { 1, 2 }\n"
+        "#declare V = A[M()];",
+        "#macro M() #declare F = 5; 0 #end #declare F = function { x }\n#declare V = F(M(), 0, 0);",
+        "#macro M() #declare S = 5; 0 #end #declare S = spline { 0, 1 }\n#declare V = S(M());",
+        "#macro M() #declare F = 5; 0 #end #fopen F \"f.txt\" write #write (F, M())"};
+    for (const char* text : kLost) {
+        const Result<Scene> scene = parse(text);
+        ASSERT_FALSE(scene) << text;
+        EXPECT_TRUE(scene.error().message.find("changes") != std::string::npos ||
+                    scene.error().message.find("closes") != std::string::npos)
+            << scene.error().message;
+    }
+}
+
 /// povray 3.7.0.10 gives these values with `#version 3.1`.
 TEST(PovDirectives, EndDeclarationsWithoutSemicolon) {
     EXPECT_VALUE(5, "X", "#declare X = 0 #while (X < 5) #declare X = X + 1 #end");
@@ -364,7 +389,7 @@ TEST(PovScene, GetsNoLightThatItDoesNotHave) {
 }
 
 /// Returns the material of a box with this look, which povray 3.7.0.10 accepts as well.
-Material material_of(const std::string& look) {
+Material material_of_box(const std::string& look) {
     const Result<Scene> scene =
         parse("#declare P = pigment { rgb <1, 0.5, 0> }; #declare F = finish { ambient 0.3 };"
               "#declare N = normal { bumps 1 }; #declare T = texture { pigment { rgb z } finish { "
@@ -379,12 +404,12 @@ Material material_of(const std::string& look) {
 
 TEST(PovScene, TexturesTakePigmentsAndFinishesByName) {
     const vec3 orange(1, 0.5f, 0);
-    EXPECT_EQ(material_of("texture { P }").color, orange);
-    EXPECT_EQ(material_of("texture { P F }").finish->ambient, vec3(0.3f));
-    EXPECT_EQ(material_of("texture { F P }").color, orange);
-    EXPECT_EQ(material_of("texture { P N F }").finish->ambient, vec3(0.3f));
-    EXPECT_EQ(material_of("texture { P finish { ambient 0.2 } }").finish->ambient, vec3(0.2f));
-    const Material changed = material_of("texture { T P }");
+    EXPECT_EQ(material_of_box("texture { P }").color, orange);
+    EXPECT_EQ(material_of_box("texture { P F }").finish->ambient, vec3(0.3f));
+    EXPECT_EQ(material_of_box("texture { F P }").color, orange);
+    EXPECT_EQ(material_of_box("texture { P N F }").finish->ambient, vec3(0.3f));
+    EXPECT_EQ(material_of_box("texture { P finish { ambient 0.2 } }").finish->ambient, vec3(0.2f));
+    const Material changed = material_of_box("texture { T P }");
     EXPECT_EQ(changed.color, orange);
     EXPECT_EQ(changed.finish->ambient, vec3(0.7f));
 }
@@ -401,11 +426,12 @@ TEST(PovErrors, NamesOfNothingAreNotPassedOver) {
 
 /// povray 3.7.0.10 draws `finish { ior 1.2 }` and `interior { ior 1.2 }` alike, with any version.
 TEST(PovScene, OldFinishesRefract) {
-    EXPECT_EQ(material_of("pigment { rgbf 1 } finish { ior 1.5 refraction 1 }").ior, 1.5);
-    EXPECT_EQ(material_of("pigment { rgbf 1 } interior { ior 1.2 } finish { ior 1.5 }").ior, 1.5);
-    EXPECT_EQ(material_of("pigment { rgbf 1 } finish { refraction 0.5 }").transmission, 0.5f);
-    EXPECT_EQ(material_of("texture { pigment { rgbf 1 } finish { ior 1.2 } } "
-                          "texture { pigment { rgbf 1 } finish { ior 1.5 } }")
+    EXPECT_EQ(material_of_box("pigment { rgbf 1 } finish { ior 1.5 refraction 1 }").ior, 1.5);
+    EXPECT_EQ(material_of_box("pigment { rgbf 1 } interior { ior 1.2 } finish { ior 1.5 }").ior,
+              1.5);
+    EXPECT_EQ(material_of_box("pigment { rgbf 1 } finish { refraction 0.5 }").transmission, 0.5f);
+    EXPECT_EQ(material_of_box("texture { pigment { rgbf 1 } finish { ior 1.2 } } "
+                              "texture { pigment { rgbf 1 } finish { ior 1.5 } }")
                   .ior,
               1.5)
         << "the uppermost layer's";

@@ -13,7 +13,7 @@
 namespace ovc {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Solid {
     const char* name;
@@ -22,22 +22,22 @@ struct Solid {
 };
 
 const Solid kSolids[] = {
-    {"sphere", "sphere { <1, 2, 3>, 2 }", 4 / 3.0 * kPi * 8},
+    {"sphere", "sphere { <1, 2, 3>, 2 }", 4 / 3.0 * pi * 8},
     {"box", "box { <2, 2, 2>, <0, -1, 1> }", 6},
-    {"cylinder", "cylinder { <1, 0, 2>, <1, 3, 2>, 0.5 }", 0.75 * kPi},
-    {"slanting_cone", "cone { 0, 1, <1, 2, 2>, 0.25 }", kPi * 3 / 3 * (1 + 0.25 + 0.0625)},
-    {"pointed_cone", "cone { 0, 1, 3*y, 0 }", kPi},
-    {"torus", "torus { 3, 1 }", 2 * kPi* kPi * 3},
-    {"superellipsoid", "superellipsoid { <1, 1> }", 4 / 3.0 * kPi},
-    {"lathe", "lathe { linear_spline 4, <0, 0>, <1, 0>, <1, 2>, <0, 2> }", 2 * kPi},
-    {"sor", "sor { 5, <1, -1>, <1, 0>, <1, 1>, <1, 2>, <1, 3> }", 2 * kPi},
+    {"cylinder", "cylinder { <1, 0, 2>, <1, 3, 2>, 0.5 }", 0.75 * pi},
+    {"slanting_cone", "cone { 0, 1, <1, 2, 2>, 0.25 }", pi * 3 / 3 * (1 + 0.25 + 0.0625)},
+    {"pointed_cone", "cone { 0, 1, 3*y, 0 }", pi},
+    {"torus", "torus { 3, 1 }", 2 * pi* pi * 3},
+    {"superellipsoid", "superellipsoid { <1, 1> }", 4 / 3.0 * pi},
+    {"lathe", "lathe { linear_spline 4, <0, 0>, <1, 0>, <1, 2>, <0, 2> }", 2 * pi},
+    {"sor", "sor { 5, <1, -1>, <1, 0>, <1, 1>, <1, 2>, <1, 3> }", 2 * pi},
     {"prism", "prism { 0, 2, 5, <0, 0>, <2, 0>, <2, 1>, <0, 1>, <0, 0> }", 4},
     {"prism_turned", "prism { 0, 2, 5, <0, 0>, <0, 1>, <2, 1>, <2, 0>, <0, 0> }", 4},
     {"prism_with_a_hole",
      "prism { 0, 2, 10, <0, 0>, <4, 0>, <4, 4>, <0, 4>, <0, 0>, <1, 1>, <1, 3>, <3, 3>, <3, 1>, "
      "<1, 1> }",
      24},
-    {"scaled", "sphere { 0, 1 scale <1, 2, -3> rotate <10, 20, 30> translate 5 }", 8 * kPi},
+    {"scaled", "sphere { 0, 1 scale <1, 2, -3> rotate <10, 20, 30> translate 5 }", 8 * pi},
     {"inverse_twice", "box { 0, 1 inverse inverse }", 1},
     {"box_minus_boxes",
      "difference { box { 0, 3 } box { 1, <2, 2, 3> } box { <1, 1, 0>, <2, 2, 1> } }", 24},
@@ -45,10 +45,10 @@ const Solid kSolids[] = {
      27 - 8 - 9 + 4},
     {"box_minus_difference",
      "difference { box { 0, 3 } difference { box { 1, 4 } box { 2, 5 } } scale <1, -1, 1> }", 20},
-    {"lens", "intersection { sphere { 0, 1 } sphere { x, 1 } rotate 33 }", kPi * 5 / 12},
-    {"merged", "merge { sphere { 0, 1 } sphere { x, 1 } }", 8 / 3.0 * kPi - kPi * 5 / 12},
-    {"half_a_ball", "intersection { sphere { 0, 2 } plane { y, 0 } }", 2 / 3.0 * kPi * 8},
-    {"the_other_half", "difference { sphere { 0, 2 } plane { <1, 1, 1>, 0 } }", 2 / 3.0 * kPi * 8},
+    {"lens", "intersection { sphere { 0, 1 } sphere { x, 1 } rotate 33 }", pi * 5 / 12},
+    {"merged", "merge { sphere { 0, 1 } sphere { x, 1 } }", 8 / 3.0 * pi - pi * 5 / 12},
+    {"half_a_ball", "intersection { sphere { 0, 2 } plane { y, 0 } }", 2 / 3.0 * pi * 8},
+    {"the_other_half", "difference { sphere { 0, 2 } plane { <1, 1, 1>, 0 } }", 2 / 3.0 * pi * 8},
     {"a_box_of_planes",
      "intersection { plane { x, 1 } plane { -x, 1 } plane { y, 2 } plane { y, 0 inverse } "
      "plane { z, 5 } plane { -z, -4 } }",
@@ -114,25 +114,25 @@ double area(const std::string& text) {
 }
 
 TEST(PovShapes, FlatOnesHaveTheirArea) {
-    EXPECT_NEAR(area("disc { <1, 2, 3>, <1, 1, 0>, 2, 1 }"), 3 * kPi, 0.01);
+    EXPECT_NEAR(area("disc { <1, 2, 3>, <1, 1, 0>, 2, 1 }"), 3 * pi, 0.01);
     EXPECT_NEAR(
         area("polygon { 10, <0, 0>, <3, 0>, <3, 3>, <0, 3>, <0, 0>, <1, 1>, <1, 2>, <2, 2>, "
              "<2, 1>, <1, 1> }"),
         8, 1e-9);
-    EXPECT_NEAR(area("cylinder { 0, y, 1 open }"), 2 * kPi, 0.01);
+    EXPECT_NEAR(area("cylinder { 0, y, 1 open }"), 2 * pi, 0.01);
     EXPECT_NEAR(area("triangle { 0, 2*x, 2*y }"), 2, 1e-9);
 }
 
 TEST(PovShapes, ClippedOnesAreOpen) {
-    EXPECT_NEAR(area("sphere { 0, 1 clipped_by { plane { y, 0 } } }"), 2 * kPi, 0.01);
+    EXPECT_NEAR(area("sphere { 0, 1 clipped_by { plane { y, 0 } } }"), 2 * pi, 0.01);
     EXPECT_NEAR(area("box { 0, 2 clipped_by { box { 1, 3 } } translate 5 }"), 3, 1e-5);
     EXPECT_NEAR(area("box { 0, 2 translate 5 clipped_by { box { 1, 3 } } }"), 0, 1e-9);
     EXPECT_NEAR(area("box { 0, 2 bounded_by { box { 1, 3 } } clipped_by { bounded_by } }"), 3,
                 1e-5);
     EXPECT_NEAR(area("difference { box { 0, 2 } cylinder { <1, 1, -1>, <1, 1, 3>, 0.5 open } }"),
-                24 - 0.5 * kPi + 2 * kPi, 0.01);
+                24 - 0.5 * pi + 2 * pi, 0.01);
     EXPECT_NEAR(
-        area("intersection { box { 0, 2 } cylinder { <1, 1, 0.5>, <1, 1, 1.5>, 0.5 open } }"), kPi,
+        area("intersection { box { 0, 2 } cylinder { <1, 1, 0.5>, <1, 1, 1.5>, 0.5 open } }"), pi,
         0.01);
 }
 

@@ -35,7 +35,9 @@ private:
 
     std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
-    std::deque<std::shared_ptr<Submission>> waiting_; // the first may be under way
+    /// The first may be under way. The host's ticket shares each: the host may release it while the
+    /// queue's thread still ends it.
+    std::deque<std::shared_ptr<Submission>> waiting_;
     bool stopped_ = false;
     std::thread thread_;
 };

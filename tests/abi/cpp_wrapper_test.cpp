@@ -13,8 +13,8 @@ namespace {
 using overcast::make;
 using testing::HasSubstr;
 
-constexpr std::array<float, 9> kTriangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-constexpr ovc_ray kDown = {{0.25, 0.25, 1}, 0, {0, 0, -1}, HUGE_VAL};
+constexpr std::array<float, 9> kCorners = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+constexpr ovc_ray kAlong = {{0.25, 0.25, 1}, 0, {0, 0, -1}, HUGE_VAL};
 constexpr ovc_ray kAside = {{2, 2, 1}, 0, {0, 0, -1}, HUGE_VAL};
 
 template <class Call>
@@ -37,7 +37,7 @@ protected:
     }
     overcast::Scene committed() {
         overcast::Scene scene(*device);
-        EXPECT_EQ(scene.add<float>(kTriangle), 0u);
+        EXPECT_EQ(scene.add<float>(kCorners), 0u);
         EXPECT_EQ(scene.add_instance(0, {1, 0, 0, 2, 0, 1, 0, 0, 0, 0, 1, 0}), 1u);
         scene.commit();
         return scene; // This moves the scene.
@@ -49,7 +49,7 @@ TEST_F(CppWrapper, AnswersAsTheTableDoes) {
     EXPECT_FALSE(overcast::Device::list().empty());
     EXPECT_FALSE(std::string(device->describe().renderer).empty());
     const overcast::Scene scene = committed();
-    const std::array rays = {kDown, kAside, ovc_ray{{2.25, 0.25, 3}, 0, {0, 0, -1}, HUGE_VAL}};
+    const std::array rays = {kAlong, kAside, ovc_ray{{2.25, 0.25, 3}, 0, {0, 0, -1}, HUGE_VAL}};
     const std::vector<ovc_hit> hits = scene.intersect(rays);
     EXPECT_EQ(hits[0].t, 1);
     EXPECT_EQ(hits[1].mesh, OVC_NONE);
@@ -57,8 +57,8 @@ TEST_F(CppWrapper, AnswersAsTheTableDoes) {
     std::array<uint8_t, 3> occluded{7, 7, 7};
     scene.occluded(rays, occluded);
     EXPECT_THAT(occluded, testing::ElementsAre(1, 0, 1));
-    EXPECT_EQ(scene.intersect1(kDown).t, 1);
-    EXPECT_TRUE(scene.occluded1(kDown));
+    EXPECT_EQ(scene.intersect1(kAlong).t, 1);
+    EXPECT_TRUE(scene.occluded1(kAlong));
     EXPECT_FALSE(scene.occluded1(kAside));
     EXPECT_EQ(scene.statistics().triangles, 2u);
     EXPECT_EQ(scene.plan().triangles, 2u);
@@ -80,18 +80,18 @@ TEST_F(CppWrapper, TakesDoublesAndIndices) {
 
 TEST_F(CppWrapper, ErrorsCarryCodeAndSentence) {
     overcast::Scene scene(*device);
-    const auto early = error_of([&] { (void)scene.intersect1(kDown); });
+    const auto early = error_of([&] { (void)scene.intersect1(kAlong); });
     EXPECT_EQ(early.code(), OVC_ERROR_INVALID_STATE);
     EXPECT_STREQ(early.what(),
                  "intersect1: the scene is not committed yet, or has changed since it was");
     EXPECT_THAT(error_of([&] { (void)scene.active(); }).what(), HasSubstr("active"));
-    EXPECT_THAT(error_of([&] { scene.add<float>(std::span(kTriangle).first(8)); }).what(),
+    EXPECT_THAT(error_of([&] { scene.add<float>(std::span(kCorners).first(8)); }).what(),
                 HasSubstr("three at a time"));
     EXPECT_THAT(error_of([&] { scene.add_instance(5, {}); }).what(),
                 HasSubstr("ovc_instance.mesh is 5"));
     scene.commit();
     std::array<ovc_hit, 2> room;
-    EXPECT_THAT(error_of([&] { scene.intersect(std::array{kDown}, room); }).what(),
+    EXPECT_THAT(error_of([&] { scene.intersect(std::array{kAlong}, room); }).what(),
                 HasSubstr("1 rays, but room for 2 answers"));
     auto config = make<ovc_device_config>();
     config.name = "no such card";
@@ -100,7 +100,7 @@ TEST_F(CppWrapper, ErrorsCarryCodeAndSentence) {
 
 TEST_F(CppWrapper, TicketsWaitCancelAndReleaseThemselves) {
     const overcast::Scene scene = committed();
-    const std::vector<ovc_ray> rays(10'000, kDown);
+    const std::vector<ovc_ray> rays(10'000, kAlong);
     std::vector<ovc_hit> hits(rays.size());
     std::vector<uint8_t> occluded(rays.size());
     const overcast::Ticket nearest = scene.submit_intersect(rays, hits);
@@ -122,7 +122,7 @@ TEST_F(CppWrapper, TicketsWaitCancelAndReleaseThemselves) {
 
 TEST_F(CppWrapper, StreamsAndWhatTheirFunctionsThrowArrives) {
     const overcast::Scene scene = committed();
-    const std::array rays = {kDown, kAside};
+    const std::array rays = {kAlong, kAside};
     const std::array<uint64_t, 2> tokens = {10, 11};
     bool pushed = false;
     std::vector<uint64_t> hit;
@@ -140,7 +140,7 @@ TEST_F(CppWrapper, StreamsAndWhatTheirFunctionsThrowArrives) {
     EXPECT_THROW(scene.stream([](overcast::Stream&, size_t) { throw std::out_of_range("mine"); },
                               [](overcast::Stream&, const ovc_stream_answers&) {}),
                  std::out_of_range);
-    EXPECT_EQ(scene.intersect1(kDown).t, 1) << "the scene goes on";
+    EXPECT_EQ(scene.intersect1(kAlong).t, 1) << "the scene goes on";
 }
 
 } // namespace

@@ -47,7 +47,7 @@ public:
     uint8_t byte() { return over() ? 0 : *next_++; }
     uint32_t below(uint32_t count) { return byte() % count; }
     bool once_in(uint32_t count) { return below(count) == count - 1; }
-    /// Few values, so that rays meet corners, edges and ties.
+    /// Returns one of few values, so that rays meet corners, edges and ties.
     double coordinate() { return (int(byte()) - 128) / 16.0; }
 
 private:
@@ -70,7 +70,7 @@ struct Slot {
     std::vector<uint32_t> sources;
     std::deque<Chunk> removed; // whose corners instances have still
 
-    /// What a call must return that needs a scene which is committed, or any.
+    /// Returns the result of a call that needs a committed scene, or any scene.
     ovc_result expected(bool committed) const {
         if (state == Null || state == Destroyed)
             return OVC_ERROR_INVALID_ARGUMENT;
@@ -385,18 +385,18 @@ private:
         return (1 - u - v) * triangle[0] + u * triangle[1] + v * triangle[2];
     }
 
-    /// Skips for some of the rays.
+    /// Returns a triangle to skip for each ray, which for most rays is none.
     std::vector<ovc_triangle> skips(const Slot& slot, size_t count) {
         std::vector<ovc_triangle> made(count, {OVC_NONE, OVC_NONE});
         if (!slot.soup.chunks.empty())
             for (ovc_triangle& skip : made)
                 if (choices_.once_in(4))
                     skip = {choices_.below(uint32_t(slot.soup.chunks.size()) + 1),
-                            choices_.below(24)}; // perhaps one that there is not
+                            choices_.below(24)}; // a triangle that may not exist
         return made;
     }
 
-    /// The answer of a loop over all triangles.
+    /// Returns the answer of a loop over all triangles.
     static Hit truth(const Slot& slot, const ovc_ray& ray, const ovc_triangle& skip,
                      const HitPlace& after = {}) {
         Ray asked;
@@ -589,7 +589,7 @@ private:
         std::memcpy(lines.data(), sink.bytes.data(), saved_bytes_);
     }
 
-    /// A stream's host: pushes some rays, checks each answer, pushes again for some.
+    /// The host of a stream pushes some rays, checks each answer, and pushes again for some.
     struct Streamer {
         Player& player;
         const Slot& slot;

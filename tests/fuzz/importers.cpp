@@ -6,8 +6,8 @@
 #include "importers/readers.h"
 #include "importers/scene_file.h"
 #include "importers/sound_meshes.h"
+#include "tests/fuzz/require.h"
 
-#include <cstdlib>
 #include <string>
 
 #include <sys/mman.h>
@@ -15,11 +15,6 @@
 
 namespace ovc {
 namespace {
-
-void require(bool condition) {
-    if (!condition)
-        std::abort();
-}
 
 /// A file without a name on any disk, whose bytes can be set anew.
 class MemoryFile {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the fuzzers and the tests of damaged files do with bytes: read them as a scene.
+// The fuzzers and the tests of damaged files read bytes as a scene through these functions.
 #pragma once
 
 #include "core/scene.h"

@@ -6,15 +6,9 @@
 #include "kdtree/test_soups.h"
 #include "plugin/build/level2.h"
 #include "plugin/two_level/exact_fallback.h"
-
-#include <cstdlib>
+#include "tests/fuzz/require.h"
 
 namespace ovc {
-
-static void require(bool condition) {
-    if (!condition)
-        std::abort();
-}
 
 BuiltScene build_for_test(const Soup& soup, const LeafLimits& limits) {
     BuiltScene scene(soup);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the fuzzer and the tests of saved levels do with damage: restore, and trace.
+// The fuzzer and the tests of saved levels restore damaged levels and trace rays through them.
 #pragma once
 
 #include "plugin/build/saved_levels.h"
@@ -9,7 +9,7 @@
 
 namespace ovc {
 
-/// The scene of a soup as TwoLevel builds it, within these limits.
+/// Returns the scene of a soup as TwoLevel builds it, within these limits.
 BuiltScene build_for_test(const Soup& soup, const LeafLimits& limits);
 
 /// Damages saved levels as `data` says (core/file/test_archive.h), makes the checksums right if its

@@ -4,8 +4,8 @@
 
 #include "importers/readers.h"
 #include "importers/sound_meshes.h"
+#include "tests/fuzz/require.h"
 
-#include <cstdlib>
 #include <string>
 
 #include <sys/mman.h>
@@ -16,12 +16,7 @@ namespace ovc {
 /// More takes time, and finds nothing.
 static constexpr uint64_t kMaxFuzzed = 20000;
 
-static void require(bool condition) {
-    if (!condition)
-        std::abort();
-}
-
-static void check_scene(const Scene& scene) {
+static void check_small_scene(const Scene& scene) {
     require(has_sound_meshes(scene));
     require(scene.soup.triangle_count() <= kMaxFuzzed);
 }
@@ -42,7 +37,7 @@ void fuzz_pbrt(const uint8_t* data, size_t size) {
         options.max_triangles = kMaxFuzzed;
         const Result<Scene> scene = read_pbrt(path, options);
         if (scene)
-            check_scene(*scene);
+            check_small_scene(*scene);
         else
             require(!scene.error().message.empty());
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the fuzzer and the test of damaged files do with a text: read it as a scene.
+// The fuzzer and the test of damaged files read a text as a scene through this function.
 #pragma once
 
 #include <cstddef>

@@ -3,19 +3,13 @@
 
 #include "importers/readers.h"
 #include "importers/sound_meshes.h"
-
-#include <cstdlib>
+#include "tests/fuzz/require.h"
 
 namespace ovc {
 
 /// More takes time, and finds nothing.
 static constexpr uint64_t kMaxTrianglesFuzzed = 200'000;
 static constexpr uint64_t kMaxWordsFuzzed = 20'000;
-
-static void require(bool condition) {
-    if (!condition)
-        std::abort();
-}
 
 void fuzz_pov(const uint8_t* data, size_t size) {
     ImportOptions options;

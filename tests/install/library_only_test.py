@@ -27,8 +27,8 @@ class LibraryOnly(unittest.TestCase):
         cls.folder = pathlib.Path(holder.name).resolve()
         cls.build = cls.folder / "build"
         run("cmake", "-S", SOURCE, "-B", cls.build, "-G", "Ninja",
-            "-DCMAKE_BUILD_TYPE=Debug", "-DOVC_LIBRARY_ONLY=ON",
-            "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=16",
+            "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0", "-DOVC_LIBRARY_ONLY=ON",
+            "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=64",
             *(f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in HIDDEN))
         run("cmake", "--build", cls.build)
         run("cmake", "--install", cls.build, "--prefix", cls.folder / "prefix")

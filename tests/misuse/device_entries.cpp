@@ -68,7 +68,7 @@ ovc_result use_destroy_device(Subject& s) {
     return use_describe_device(s);
 }
 
-constexpr Entry kEntries[] = {
+constexpr Entry kDeviceEntries[] = {
     OVC_ENTRY(last_error, use_last_error, nothing_wrong),
     OVC_ENTRY(list_devices, use_list_devices, misuse_list_devices),
     OVC_ENTRY(create_device, use_create_device, misuse_create_device),
@@ -79,7 +79,7 @@ constexpr Entry kEntries[] = {
 } // namespace
 
 std::span<const Entry> device_entries() {
-    return kEntries;
+    return kDeviceEntries;
 }
 
 } // namespace ovc::test

@@ -228,7 +228,7 @@ Misuses misuse_push(Subject& s) {
     return all;
 }
 
-constexpr Entry kEntries[] = {
+constexpr Entry kRayEntries[] = {
     OVC_ENTRY(intersect, use_rays, misuse_intersect),
     OVC_ENTRY(occluded, use_rays, misuse_occluded),
     OVC_ENTRY(intersect1, use_single_rays, misuse_intersect1),
@@ -241,7 +241,7 @@ constexpr Entry kEntries[] = {
 } // namespace
 
 std::span<const Entry> ray_entries() {
-    return kEntries;
+    return kRayEntries;
 }
 
 } // namespace ovc::test

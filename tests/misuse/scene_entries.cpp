@@ -300,7 +300,7 @@ Misuses misuse_remove_mesh(Subject& s) {
     return wrong.found();
 }
 
-constexpr Entry kEntries[] = {
+constexpr Entry kSceneEntries[] = {
     OVC_ENTRY(create_scene, use_create_scene, misuse_create_scene),
     OVC_ENTRY(add_mesh, use_add_mesh, misuse_add_mesh),
     OVC_ENTRY(commit, use_commit, misuse_commit),
@@ -319,7 +319,7 @@ constexpr Entry kEntries[] = {
 } // namespace
 
 std::span<const Entry> scene_entries() {
-    return kEntries;
+    return kSceneEntries;
 }
 
 } // namespace ovc::test

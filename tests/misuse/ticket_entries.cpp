@@ -134,7 +134,7 @@ Misuses misuse_release(Subject& s) {
     return wrong.found();
 }
 
-constexpr Entry kEntries[] = {
+constexpr Entry kTicketEntries[] = {
     OVC_ENTRY(submit_intersect, use_submitted, misuse_submit_intersect),
     OVC_ENTRY(submit_occluded, use_submitted, misuse_submit_occluded),
     OVC_ENTRY(wait, use_submitted, misuse_wait),
@@ -146,7 +146,7 @@ constexpr Entry kEntries[] = {
 } // namespace
 
 std::span<const Entry> ticket_entries() {
-    return kEntries;
+    return kTicketEntries;
 }
 
 } // namespace ovc::test

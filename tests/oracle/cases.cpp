@@ -164,9 +164,9 @@ Corner rotated(const std::array<Corner, 3>& rows, const Corner& p) {
     return q;
 }
 
-/// Makes a box as CAD programs write it: the triangles of a face meet those of the next in
-/// T-junctions, which triangles with corners on a line close. A rotation then leaves them on a line
-/// only up to a rounding.
+/// Makes a box as CAD programs write it. The triangles of a face meet those of the next in
+/// T-junctions, which triangles with corners on a line close. After a rotation, these corners are
+/// on a line only up to a rounding.
 std::vector<Mesh> collinear(Random& random) {
     Mesh mesh;
     std::array<Corner, 3> rows;

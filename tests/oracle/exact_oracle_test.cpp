@@ -175,7 +175,7 @@ TEST_F(ExactOracle, FindsNoAnswerThatIsOffByABit) {
 
 /// Returns a hit of the ray, or a place before, behind or between its hits that is none.
 ovc_hit some_place(Random& random, const std::vector<ovc_hit>& hits, const Triangle& triangle) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    constexpr double infinity = std::numeric_limits<double>::infinity();
     ovc_hit place = hits.empty() ? ovc_hit{1, 0, 0, 0, 0} : hits[random.below(hits.size())];
     switch (random.below(6)) {
     case 0:
@@ -183,10 +183,10 @@ ovc_hit some_place(Random& random, const std::vector<ovc_hit>& hits, const Trian
         place.prim = triangle.id.prim;
         return place;
     case 1:
-        place.t = std::nextafter(place.t, random.below(2) ? kInfinity : -kInfinity);
+        place.t = std::nextafter(place.t, random.below(2) ? infinity : -infinity);
         return place;
     case 2:
-        place.t = random.below(2) ? kInfinity : -kInfinity;
+        place.t = random.below(2) ? infinity : -infinity;
         return place;
     case 3:
         place.mesh = place.prim = random.below(2) ? OVC_NONE : 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands in the bays: tanks, heat exchangers, pumps, manifolds, tube walls, cabinets, ducts.
+// Makes the machines in the bays: tanks, heat exchangers, pumps, manifolds, tube walls, cabinets,
+// ducts.
 #include "testscenes/noise.h"
 #include "testscenes/powerplant/plant.h"
 

@@ -13,7 +13,7 @@ Contender contender(std::string_view name, ContenderKind kind) {
 }
 
 /// Returns times of every contender at every workload, the same at each workload.
-BenchResult example() {
+BenchResult example_of_bars() {
     BenchResult r;
     r.complete = true;
     r.triangles = 1000;
@@ -36,7 +36,7 @@ BenchResult example() {
 }
 
 TEST(Bars, DivideThePeersKernelByOurs) {
-    const std::vector<Bar> bars = kernel_bars(example());
+    const std::vector<Bar> bars = kernel_bars(example_of_bars());
     ASSERT_EQ(bars.size(), 7u);
     EXPECT_EQ(bars[0].what, "kernel against embree-robust, mesh: primary");
     EXPECT_DOUBLE_EQ(*bars[0].measured, 1.2);
@@ -48,7 +48,7 @@ TEST(Bars, DivideThePeersKernelByOurs) {
 }
 
 TEST(Bars, AreSkippedWithoutThePeer) {
-    BenchResult r = example();
+    BenchResult r = example_of_bars();
     std::erase_if(r.measurements, [](const Measurement& m) { return m.entrant == 3; });
     const std::vector<Bar> bars = kernel_bars(r);
     EXPECT_EQ(verdict(bars[0]), "skipped");
@@ -56,7 +56,7 @@ TEST(Bars, AreSkippedWithoutThePeer) {
 }
 
 TEST(Bars, SumTheRaySetsOfEachPlaceInASweep) {
-    BenchResult r = example();
+    BenchResult r = example_of_bars();
     for (BenchEntrant& entrant : r.entrants)
         entrant.contender.leaves = {8, std::string("8")};
     const std::vector<Bar> bars = leaves_bars(r);
@@ -67,7 +67,7 @@ TEST(Bars, SumTheRaySetsOfEachPlaceInASweep) {
 }
 
 TEST(Bars, TellTheWorstKernelOfManyLeaves) {
-    BenchResult r = example();
+    BenchResult r = example_of_bars();
     for (BenchEntrant& entrant : r.entrants)
         entrant.contender = contender("certified", ContenderKind::TwoLevel);
     r.entrants[1].contender.leaves = {14, std::string("14")};
@@ -85,7 +85,7 @@ TEST(Bars, TellTheWorstKernelOfManyLeaves) {
 }
 
 TEST(Bars, CountBytes) {
-    BenchResult r = example();
+    BenchResult r = example_of_bars();
     EXPECT_DOUBLE_EQ(*bytes_bar(r, "mesh", 52, 44).measured, 50);
     r.entrants[1].after.gpu_peak_bytes = 100;
     r.entrants[1].after.gpu_budget_bytes = 100;
@@ -106,10 +106,10 @@ TEST(Bars, TakeTheWorstPeakOfImportsAndTheSpeedOfTheLast) {
 }
 
 TEST(Bars, AreATableAndJsonOfTheSameLines) {
-    std::vector<Bar> bars = kernel_bars(example());
+    std::vector<Bar> bars = kernel_bars(example_of_bars());
     bars.push_back(skipped_bar("leaks", "a test: ctest -R Leaks"));
     const std::string table = bars_table(bars);
-    const std::vector<BenchResult> results = {example()};
+    const std::vector<BenchResult> results = {example_of_bars()};
     const auto document = nlohmann::json::parse(bars_json(bars, results, nullptr));
     ASSERT_EQ(document["bars"].size(), bars.size());
     for (const auto& bar : document["bars"])

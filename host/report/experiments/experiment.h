@@ -17,6 +17,7 @@ struct ReportPlan {
     bool quick = false;
     std::string mesh;                // the file of the Stanford dragon; empty: generated scenes
     std::vector<std::string> scenes; // replace the scenes of each experiment; empty: its own
+    std::string size = {};           // WxH, replaces the --size of every run; empty: its own
 };
 
 /// One command of this program. In `words`, "{}" stands for the run's own empty folder.

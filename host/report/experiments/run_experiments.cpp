@@ -190,6 +190,16 @@ private:
     Clock clock_;
 };
 
+std::vector<ReportRun> runs_of(const Experiment& experiment, const ReportPlan& plan) {
+    std::vector<ReportRun> runs = experiment.runs(plan);
+    if (!plan.size.empty())
+        for (ReportRun& run : runs)
+            for (size_t i = 1; i < run.words.size(); ++i)
+                if (run.words[i - 1] == "--size")
+                    run.words[i] = plan.size;
+    return runs;
+}
+
 } // namespace
 
 Result<std::vector<Outcome>> run_experiments(std::span<const Experiment> experiments,
@@ -201,13 +211,13 @@ Result<std::vector<Outcome>> run_experiments(std::span<const Experiment> experim
     Runner runner(around);
     for (const Experiment& experiment : experiments)
         if (is_chosen(experiment))
-            runner.expect(experiment, experiment.runs(plan));
+            runner.expect(experiment, runs_of(experiment, plan));
     std::vector<Outcome> outcomes;
     for (const Experiment& experiment : experiments) {
         Outcome& outcome = outcomes.emplace_back();
         outcome.experiment = &experiment;
         outcome.complete = true;
-        for (const ReportRun& run : experiment.runs(plan)) {
+        for (const ReportRun& run : runs_of(experiment, plan)) {
             const Result<bool> done = runner.go(run, is_chosen(experiment), outcome);
             if (!done)
                 return done.error();

@@ -7,7 +7,7 @@
 namespace ovc {
 namespace {
 
-Json example() {
+Json example_choices() {
     Json choices = Json::array({{{"choice", "fast"}, {"s", 1.0}, {"error", 0.2}},
                                 {{"choice", "slow"}, {"s", 2.0}, {"error", 0.3}},
                                 {{"choice", "right"}, {"s", 4.0}, {"error", 0.0}},
@@ -20,7 +20,7 @@ Json example() {
 }
 
 TEST(FrontierPlot, NamesWhoDominatesWhom) {
-    const Json choices = example();
+    const Json choices = example_choices();
     EXPECT_TRUE(choices[0]["dominated_by"].is_null());
     EXPECT_EQ(choices[1]["dominated_by"], "fast");
     EXPECT_EQ(choices[1]["its_time_to_that"], 2.0);
@@ -39,7 +39,7 @@ std::string said(const Text& text) {
 }
 
 TEST(FrontierPlot, SaysWhereTheDefaultLies) {
-    const Json figures = {{"choices", example()}};
+    const Json figures = {{"choices", example_choices()}};
     EXPECT_EQ(said(default_text(figures, "/choices", "Rays: ", "right", "s", "s")),
               "Rays: the default, right, lies on the frontier, at 4 s.");
     EXPECT_EQ(said(default_text(figures, "/choices", "", "slow", "s", "s")),

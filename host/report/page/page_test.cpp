@@ -18,7 +18,7 @@ TEST(ShownNumber, HasThreeDigitsOrAllOfAWholeNumber) {
     EXPECT_EQ(shown_number(123456.7), "123457");
 }
 
-ReportPage example() {
+ReportPage example_page() {
     Section section{"sample", "A <title>", {{"rays", 12345}, {"list", {{{"t", 0.25}}}}}, {}};
     section.figures["list"][0]["none"] = nullptr;
     const auto at = [&](const char* pointer) { return number(section.figures, pointer); };
@@ -32,7 +32,7 @@ ReportPage example() {
 }
 
 TEST(PageHtml, NumbersSayWhereTheyStand) {
-    const std::string html = page_html(example(), {{"a-plot", "<svg>drawn</svg>"}});
+    const std::string html = page_html(example_page(), {{"a-plot", "<svg>drawn</svg>"}});
     EXPECT_THAT(html, testing::HasSubstr(
                           "Of <data value=\"12345\" data-at=\"sample.json#/rays\">12,345</data> "
                           "rays &amp; more."));
@@ -47,7 +47,7 @@ TEST(PageHtml, NumbersSayWhereTheyStand) {
 
 /// The page works offline, because it loads nothing.
 TEST(PageHtml, StandsAlone) {
-    const std::string html = page_html(example(), {{"a-plot", "<svg/>"}});
+    const std::string html = page_html(example_page(), {{"a-plot", "<svg/>"}});
     EXPECT_THAT(html, testing::Not(testing::ContainsRegex("(src|href)=\"[^#d\"]")));
     EXPECT_THAT(html, testing::Not(testing::HasSubstr("@import")));
     EXPECT_THAT(html, testing::Not(testing::HasSubstr("url(")));
@@ -55,7 +55,7 @@ TEST(PageHtml, StandsAlone) {
 }
 
 TEST(PageMarkdown, HasTextTablesAndLinksToPlots) {
-    const std::string markdown = page_markdown(example());
+    const std::string markdown = page_markdown(example_page());
     EXPECT_THAT(markdown, testing::HasSubstr("Of 12,345 rays & more."));
     EXPECT_THAT(markdown, testing::ContainsRegex("first +\\| +0.25 \\| +-"));
     EXPECT_THAT(markdown, testing::HasSubstr("![A plot.](plots/a-plot.png)"));

@@ -8,10 +8,10 @@
 namespace ovc {
 
 /// Returns closed meshes at the origin and at all unpleasant places, without a number of rays; see
-/// share_rays(). data: as for stability_cases(). The dragon has holes, so rays are aimed at the
-/// edges and vertices that its triangles surround without a gap (SoundTargets). The dragon's cases
-/// share state, so only one of them may run at a time. Error: `data` has no dragon.
-Result<std::vector<StabilityCase>> leak_cases(const std::string& data);
+/// share_rays(). dragon: as for stability_cases(). It has holes, so rays are aimed at the
+/// edges and vertices that its triangles surround without a gap (SoundTargets). Its cases share
+/// state, so only one of them may run at a time.
+std::vector<StabilityCase> leak_cases(const Scene* dragon);
 
 /// Gives each case an equal share of `rays`, rounded up.
 void share_rays(std::span<StabilityCase> cases, uint64_t rays);

@@ -16,7 +16,7 @@ namespace ovc {
 
 namespace {
 
-constexpr size_t kBatch = 1 << 17;
+constexpr size_t kCaseBatch = 1 << 17;
 constexpr size_t kWarmUp = 64;
 
 uint64_t difference(uint64_t a, uint64_t b) {
@@ -74,9 +74,9 @@ struct Peer {
 };
 
 /// One case while it runs: the soup and all programs that answer.
-class Run {
+class CaseRun {
 public:
-    Run(const StabilityCase& stability_case, const StabilityOptions& options)
+    CaseRun(const StabilityCase& stability_case, const StabilityOptions& options)
         : case_(stability_case),
           options_(options),
           soup_(case_.soup()),
@@ -95,7 +95,7 @@ public:
             return opened.error();
         size_t left = case_.rays * options_.times;
         for (uint64_t number = 0; left > 0; ++number) {
-            const size_t count = std::min(left, kBatch);
+            const size_t count = std::min(left, kCaseBatch);
             if (const Result<Done> done = ask(number, count); !done)
                 return done.error();
             left -= count;
@@ -238,7 +238,7 @@ AimedRays stability_rays(const StabilityCase& stability_case, const Soup& soup, 
 
 Result<StabilityResult> run_stability_case(const StabilityCase& stability_case,
                                            const StabilityOptions& options, const LogSink& log) {
-    return Run(stability_case, options).all(log);
+    return CaseRun(stability_case, options).all(log);
 }
 
 Result<std::vector<StabilityResult>>

@@ -3,7 +3,7 @@
 // row.
 #pragma once
 
-#include "core/result.h"
+#include "core/scene.h"
 #include "host/report/stability/stability_rays.h"
 
 #include <functional>
@@ -30,8 +30,8 @@ struct StabilityCase {
 /// reach of doubles. Their time is compared with that of a ray that is decided exactly.
 std::vector<StabilityCase> cliff_cases();
 
-/// Returns all cases in the order of the report. data: the folder with meshes/stanford-dragon, or
-/// empty for no dragon. Error: `data` has no dragon, or it cannot be read.
-Result<std::vector<StabilityCase>> stability_cases(const std::string& data);
+/// Returns all cases in the order of the report. dragon: the scan (load_dragon), which must outlive
+/// the cases, or null for none.
+std::vector<StabilityCase> stability_cases(const Scene* dragon);
 
 } // namespace ovc

@@ -109,14 +109,14 @@ Result<std::string> dragon_file(const std::string& data) {
     return Error{fmt::format("--data: '{}' holds no meshes/stanford-dragon/dragon_vrip.ply", data)};
 }
 
-Result<std::shared_ptr<const Scene>> load_dragon(const std::string& data) {
+Result<std::unique_ptr<const Scene>> load_dragon(const std::string& data) {
     const Result<std::string> file = dragon_file(data);
     if (!file)
         return file.error();
     Result<Scene> scene = load(*file);
     if (!scene)
         return scene.error();
-    return std::make_shared<const Scene>(std::move(*scene));
+    return std::make_unique<const Scene>(std::move(*scene));
 }
 
 Corners box_of_squares() {

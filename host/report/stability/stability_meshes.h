@@ -44,7 +44,7 @@ Result<std::string> dragon_file(const std::string& data);
 /// Returns the scan in the folder `data`, meshes/stanford-dragon/dragon_vrip.ply or the same
 /// packed. It is not closed: it has holes where no scanner looked. Error: there is none, or it
 /// cannot be read.
-Result<std::shared_ptr<const Scene>> load_dragon(const std::string& data);
+Result<std::unique_ptr<const Scene>> load_dragon(const std::string& data);
 
 /// Returns n x n squares of [-1, 1]^2 at height z.
 Corners sheet(int n, double z);

@@ -10,7 +10,7 @@
 namespace ovc {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<Triangle> shape(const std::string& text, std::optional<double> tolerance = {}) {
     const TestFolder folder;
@@ -120,21 +120,21 @@ TEST(PbrtShapes, QuadricsHaveTheAreaAndTheBoundsTheyShould) {
     const double share = 2 * pbrt::kTolerance;
     const auto sphere = shape("\"sphere\" \"float radius\" 3");
     EXPECT_TRUE(is_closed(sphere));
-    EXPECT_NEAR(area_of(sphere), 36 * kPi, 36 * kPi * share);
+    EXPECT_NEAR(area_of(sphere), 36 * pi, 36 * pi * share);
     EXPECT_EQ(bounds_of(sphere).lo, dvec3(-3));
     EXPECT_EQ(bounds_of(sphere).hi, dvec3(3));
     const auto half = shape("\"sphere\" \"float phimax\" 180");
-    EXPECT_NEAR(area_of(half), 2 * kPi, 2 * kPi * share);
+    EXPECT_NEAR(area_of(half), 2 * pi, 2 * pi * share);
     EXPECT_EQ(bounds_of(half).lo.y, 0);
     const auto ring =
         shape("\"disk\" \"float radius\" 2 \"float innerradius\" 1 \"float phimax\" 90");
-    EXPECT_NEAR(area_of(ring), 3 * kPi / 4, kPi * share);
+    EXPECT_NEAR(area_of(ring), 3 * pi / 4, pi * share);
     EXPECT_EQ(bounds_of(ring).hi, dvec3(2, 2, 0));
-    EXPECT_NEAR(area_of(shape("\"cylinder\" \"float zmin\" -2 \"float zmax\" 1")), 6 * kPi,
-                6 * kPi * share);
-    EXPECT_NEAR(area_of(shape("\"cone\"")), kPi * std::sqrt(2), kPi * 1.5 * share);
+    EXPECT_NEAR(area_of(shape("\"cylinder\" \"float zmin\" -2 \"float zmax\" 1")), 6 * pi,
+                6 * pi * share);
+    EXPECT_NEAR(area_of(shape("\"cone\"")), pi * std::sqrt(2), pi * 1.5 * share);
     // The area of a paraboloid is pi/6 ((1 + 4)^1.5 - 1).
-    EXPECT_NEAR(area_of(shape("\"paraboloid\"")), kPi / 6 * (std::pow(5, 1.5) - 1), 0.1);
+    EXPECT_NEAR(area_of(shape("\"paraboloid\"")), pi / 6 * (std::pow(5, 1.5) - 1), 0.1);
 }
 
 TEST(PbrtShapes, QuadricsWithoutASurfaceAreLeftOut) {

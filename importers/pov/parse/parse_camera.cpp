@@ -72,15 +72,15 @@ bool take_bend(Reader& reader, CameraValue& camera) {
 
 } // namespace
 
-std::shared_ptr<const CameraValue> parse_camera(Reader& reader) {
+CameraValue parse_camera(Reader& reader) {
     const Deeper deeper(reader);
     CameraValue camera;
     std::optional<dvec3> target;
     std::optional<double> angle;
     dmat4 placed(1);
     reader.expect('{', "camera");
-    if (const auto other = take_named_if<std::shared_ptr<const CameraValue>>(reader))
-        camera = **other;
+    if (const auto other = take_named_if<CameraValue>(reader))
+        camera = *other;
     while (!reader.take('}')) {
         const Token token = reader.peek();
         if (reader.take("location"))
@@ -126,7 +126,7 @@ std::shared_ptr<const CameraValue> parse_camera(Reader& reader) {
     if (angle)
         set_angle(reader, camera, *angle);
     apply(camera, placed);
-    return std::make_shared<const CameraValue>(camera);
+    return camera;
 }
 
 Camera camera_of(const CameraValue& c) {

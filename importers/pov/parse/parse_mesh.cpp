@@ -54,12 +54,10 @@ public:
             child->texture = std::move(group.texture);
             Shape shape;
             shape.fixed = double(group.facets.corners.size() / 3);
-            const auto shared = std::make_shared<const Facets>(std::move(group.facets));
-            shape.cut = [shared](int, bool, Facets& out) {
-                out.corners.insert(out.corners.end(), shared->corners.begin(),
-                                   shared->corners.end());
-                out.uv.insert(out.uv.end(), shared->uv.begin(), shared->uv.end());
-                out.smooth = out.smooth || shared->smooth;
+            shape.cut = [facets = std::move(group.facets)](int, bool, Facets& out) {
+                out.corners.insert(out.corners.end(), facets.corners.begin(), facets.corners.end());
+                out.uv.insert(out.uv.end(), facets.uv.begin(), facets.uv.end());
+                out.smooth = out.smooth || facets.smooth;
             };
             child->shape = std::move(shape);
             object.children.push_back(std::move(child));

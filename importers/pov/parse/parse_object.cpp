@@ -100,8 +100,8 @@ void parse_children(Reader& reader, Object& object) {
 void parse_group(Reader& reader, Object& object) {
     parse_children(reader, object);
     if (object.kind == "light_group")
-        object.notes.push_back(make_note("light_group", object.place,
-                                         "the lights of a light_group shine on everything"));
+        object.notes.push_back(reader.note("light_group", object.place,
+                                           "the lights of a light_group shine on everything"));
     parse_modifiers(reader, object);
 }
 
@@ -139,8 +139,8 @@ void parse_refused(Reader& reader, Object& object) {
     skip_block(reader);
 }
 
-void add_texture(Object& object, const Texture& texture, const Place& at) {
-    object.texture = object.texture ? layered(texture, *object.texture, at) : texture;
+void add_texture(Reader& reader, Object& object, const Texture& texture, const Place& at) {
+    object.texture = object.texture ? layered(reader, texture, *object.texture, at) : texture;
 }
 
 /// Returns the object's own texture, which its pigment or finish changes.
@@ -153,7 +153,7 @@ Texture& own_texture(Reader& reader, Object& object) {
 bool parse_look(Reader& reader, Object& object) {
     const Token token = reader.peek();
     if (reader.take("texture"))
-        add_texture(object, parse_texture(reader), token.place);
+        add_texture(reader, object, parse_texture(reader), token.place);
     else if (reader.take("pigment")) {
         Texture& texture = own_texture(reader, object);
         texture.pigment = parse_pigment(reader, texture.pigment);
@@ -161,12 +161,12 @@ bool parse_look(Reader& reader, Object& object) {
         Texture& texture = own_texture(reader, object);
         texture.surface = parse_finish(reader, texture.surface);
     } else if (reader.take("normal")) {
-        own_texture(reader, object).notes.push_back(normal_note(token));
+        own_texture(reader, object).notes.push_back(normal_note(reader, token));
         skip_braces(reader, "normal");
     } else if (reader.take("material")) {
         const Material material = parse_material(reader);
         if (material.texture)
-            add_texture(object, *material.texture, token.place);
+            add_texture(reader, object, *material.texture, token.place);
         if (material.interior)
             object.interior = material.interior;
     } else if (reader.take("interior"))
@@ -191,7 +191,7 @@ bool parse_switch(Reader& reader, Object& object) {
         parse_hiding(reader, object, kSeenInReflections);
     else if (reader.take("double_illuminate")) {
         if (parse_flag(reader))
-            object.notes.push_back(left_out("an object", token));
+            object.notes.push_back(left_out(reader, "an object", token));
     } else if (reader.take("uv_mapping"))
         object.uv_mapping = parse_flag(reader);
     else if (reader.take("inverse"))
@@ -283,11 +283,12 @@ void parse_modifiers(Reader& reader, Object& object) {
             parse_vector(reader);
             object.has_inside = true;
         } else if (const auto texture = take_named_if<Texture>(reader))
-            add_texture(object, *texture, token.place); // old scenes name it without texture { }
+            add_texture(reader, object, *texture,
+                        token.place); // old scenes name it without texture { }
         else if (token.kind == TokenKind::Name && token.name->is_keyword && !starts_object(token)) {
             reader.next(); // photons and the like
             if (token.is("interior_texture") || token.is("cutaway_textures"))
-                object.notes.push_back(left_out("an object", token));
+                object.notes.push_back(left_out(reader, "an object", token));
             skip_arguments(reader);
         } else if (!reader.take(',') && !reader.take(';'))
             reader.fail_here(fmt::format("'}}' or a modifier of {}", object.kind));

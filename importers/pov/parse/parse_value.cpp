@@ -53,25 +53,25 @@ void fill(Reader& reader, Array& array, size_t dimension, size_t first, size_t c
 
 /// Reads an array from behind the word `array`.
 Value parse_array(Reader& reader) {
-    auto array = std::make_shared<Array>();
+    Array array;
     double count = 1;
     while (reader.peek_operator().is('[')) {
         reader.next();
         const int size = parse_int(reader, 1, 1 << 30, "the size of an array");
-        array->sizes.push_back(size_t(size));
+        array.sizes.push_back(size_t(size));
         reader.expect(']', "the size of an array");
         count *= size;
-        if (count > double(reader.limits.array_items) || array->sizes.size() > 5)
+        if (count > double(reader.limits.array_items) || array.sizes.size() > 5)
             reader.fail(reader.place(), fmt::format("found an array of {} items, expected at most "
                                                     "{} in up to 5 dimensions",
                                                     count, reader.limits.array_items));
     }
-    if (array->sizes.empty())
+    if (array.sizes.empty())
         reader.fail_here("'[' and the size of an array");
     take_items(reader, uint64_t(count));
-    array->items.resize(size_t(count));
+    array.items.resize(size_t(count));
     if (reader.peek_operator().is('{'))
-        fill(reader, *array, 0, 0, array->items.size());
+        fill(reader, array, 0, 0, array.items.size());
     return array;
 }
 
@@ -79,7 +79,7 @@ Value parse_layers(Reader& reader) {
     Texture texture = parse_texture(reader);
     while (reader.peek_operator().is("texture")) {
         reader.next();
-        texture = layered(parse_texture(reader), texture, reader.place());
+        texture = layered(reader, parse_texture(reader), texture, reader.place());
     }
     return texture;
 }
@@ -120,9 +120,41 @@ const std::unordered_map<std::string_view, ParseValue> kKinds = {
     {"rainbow", parse_opaque},
     {"sky_sphere", [](Reader& r) -> Value { return parse_sky_sphere(r); }}};
 
-Value copy_of(Reader& reader, const Array& array) {
-    take_items(reader, array.items.size());
-    return std::make_shared<Array>(array);
+/// Returns the number of items, with those of arrays in the array.
+uint64_t count_items(const Array& array) {
+    uint64_t count = array.items.size();
+    if (array.depth > 1)
+        for (const Value& item : array.items)
+            if (const auto* inner = std::get_if<Array>(&item))
+                count += count_items(*inner);
+    return count;
+}
+
+/// Counts what it takes to copy the value, and returns it.
+const Value& counted(Reader& reader, const Value& value) {
+    if (const auto* array = std::get_if<Array>(&value))
+        take_items(reader, count_items(*array));
+    else if (const auto* file = std::get_if<DataFile>(&value)) {
+        reader.spend(file->text.size() / 16);
+        reader.grow(file->text.size());
+    } else if (const auto* spline = std::get_if<Spline>(&value)) {
+        reader.spend(spline->points.size());
+        reader.grow(spline->points.size() * sizeof(*spline->points.begin()));
+    }
+    return value;
+}
+
+/// Returns whether the value is part of an expression: an array of numbers, of which an item's
+/// indices come next, or a function whose arguments do.
+bool begins_number(Reader& reader, const ValueHandle& handle) {
+    const bool indices = reader.peek_operator().is('['), arguments = reader.peek_operator().is('(');
+    const Value* value = reader.value_of(handle);
+    if (!value)
+        return false;
+    if (const auto* array = std::get_if<Array>(value))
+        return indices && !array->items.empty() && std::holds_alternative<Number>(array->items[0]);
+    return arguments &&
+           (std::holds_alternative<Function>(*value) || std::holds_alternative<Spline>(*value));
 }
 
 /// Takes a variable or an array's item and returns its value. Takes nothing where the value may be
@@ -131,33 +163,24 @@ std::optional<Value> take_whole(Reader& reader) {
     const Token token = reader.peek();
     if (token.kind != TokenKind::Name || token.name->is_keyword)
         return std::nullopt;
-    const Slot* slot = reader.find(token.name);
+    Slot* slot = reader.find(token.name);
     if (!slot || std::holds_alternative<std::monostate>(slot->value) ||
         std::holds_alternative<Number>(slot->value))
         return std::nullopt;
     reader.next();
-    if (const auto* array = std::get_if<std::shared_ptr<Array>>(&slot->value)) {
-        const std::shared_ptr<Array> kept = *array;
-        if (!reader.peek_operator().is('['))
-            return copy_of(reader, *kept);
-        if (!kept->items.empty() && std::holds_alternative<Number>(kept->items[0])) {
-            reader.put_back(token);
-            return std::nullopt;
-        }
-        const Value item = *parse_item(reader, *kept);
-        // A copy, so that an array in an array never changes and cannot contain itself.
-        if (const auto* inner = std::get_if<std::shared_ptr<Array>>(&item))
-            return copy_of(reader, **inner);
-        return item;
-    }
-    const bool is_callable = std::holds_alternative<std::shared_ptr<const Function>>(slot->value) ||
-                             std::holds_alternative<std::shared_ptr<const Spline>>(slot->value);
-    const Value value = slot->value;
-    if (is_callable && reader.peek_operator().is('(')) {
+    ValueHandle handle(*slot);
+    if (begins_number(reader, handle)) {
         reader.put_back(token);
         return std::nullopt;
     }
-    return value;
+    if (reader.peek_operator().is('[') && reader.value_of(handle) &&
+        std::holds_alternative<Array>(handle.slot->value))
+        handle = parse_item(reader, *handle.slot);
+    const Value* value = reader.value_of(handle);
+    if (!value)
+        reader.fail(token.place, fmt::format("found {}, whose index or argument changes it",
+                                             ovc::quoted(token.name->text)));
+    return counted(reader, *value);
 }
 
 } // namespace
@@ -186,7 +209,7 @@ std::string kind_of(const Value& value) {
         "a pigment", "a finish",    "an interior", "a material", "a color map",
         "a sky",     "a transform", "an array",    "a macro",    "a function",
         "a spline",  "a camera",    "a file",      "a block"};
-    static_assert(std::size(kKindNames) == std::variant_size_v<Value>);
+    static_assert(std::size(kKindNames) == std::variant_size_v<Value::variant>);
     return kKindNames[value.index()];
 }
 

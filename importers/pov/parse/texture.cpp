@@ -84,10 +84,10 @@ Color mean_of(const Pigment& p) {
     return mean.color();
 }
 
-Notes average_note(const Token& pattern) {
-    return {make_note("pattern", pattern.place,
-                      fmt::format("patterns such as {} are drawn by their average color",
-                                  ovc::quoted(pattern.name->text)))};
+Notes average_note(Reader& reader, const Token& pattern) {
+    return {reader.note("pattern", pattern.place,
+                        fmt::format("patterns such as {} are drawn by their average color",
+                                    ovc::quoted(pattern.name->text)))};
 }
 
 Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end);
@@ -142,8 +142,8 @@ void parse_list(Reader& reader, const Token& pattern, Pigment& pigment) {
         pigment.notes.clear();
         if (pigment.color.opacity() != 1 || pigment.other->opacity() != 1)
             pigment.notes = {
-                make_note("checker", pattern.place,
-                          "a checker lets through all over what its first color does")};
+                reader.note("checker", pattern.place,
+                            "a checker lets through all over what its first color does")};
         return;
     }
     Mean mean;
@@ -153,7 +153,7 @@ void parse_list(Reader& reader, const Token& pattern, Pigment& pigment) {
         pigment.color = mean.color();
     pigment.other.reset();
     pigment.holes.reset();
-    pigment.notes = average_note(pattern);
+    pigment.notes = average_note(reader, pattern);
 }
 
 /// The average color of a map pattern without a map.
@@ -194,13 +194,13 @@ Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
         } else if (reader.take("uv_mapping")) {
             pigment.uv_mapping = parse_flag(reader);
             if (pigment.other)
-                pigment.notes = {left_out("a checker", token)};
+                pigment.notes = {left_out(reader, "a checker", token)};
         } else if (token.is("quick_color") || token.is("quick_colour")) {
             reader.next();
             parse_color(reader);
         } else if (is_map_pattern(token)) {
             reader.next();
-            pigment.notes = average_note(token);
+            pigment.notes = average_note(reader, token);
             if (!mapped)
                 pigment.color = kMiddle;
             pigment.other.reset();
@@ -212,7 +212,7 @@ Pigment parse_pigment_body(Reader& reader, Pigment pigment, char end) {
         } else if (is_word(token)) {
             reader.next(); // turbulence, octaves, warp and the like
             if (pigment.other)
-                pigment.notes = {left_out("a checker", token)};
+                pigment.notes = {left_out(reader, "a checker", token)};
             skip_arguments(reader);
         } else if (starts_number(reader, token)) {
             set_plain(pigment, parse_color(reader));
@@ -314,8 +314,8 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
         surface.refraction = std::max(0.0f, float(parse_float(reader)));
         if (surface.refraction != 1) // in POV-Ray it does not change shadows
             surface.notes.push_back(
-                make_note("refraction", token.place,
-                          "refraction of a finish dims light that casts shadows as well"));
+                reader.note("refraction", token.place,
+                            "refraction of a finish dims light that casts shadows as well"));
     } else
         return false;
     return true;
@@ -323,14 +323,14 @@ bool parse_finish_part(Reader& reader, Surface& surface) {
 
 } // namespace
 
-std::shared_ptr<const Note> normal_note(const Token& word) {
-    return make_note("normal", word.place, "normal patterns are left out");
+const Note* normal_note(Reader& reader, const Token& word) {
+    return reader.note("normal", word.place, "normal patterns are left out");
 }
 
-std::shared_ptr<const Note> left_out(std::string_view of, const Token& word) {
+const Note* left_out(Reader& reader, std::string_view of, const Token& word) {
     assert(word.name);
     const std::string what = fmt::format("{} of {}", word.name->text, of);
-    return make_note(what, word.place, what + " is left out");
+    return reader.note(what, word.place, what + " is left out");
 }
 
 void skip_arguments(Reader& reader) {
@@ -407,7 +407,7 @@ Surface parse_finish(Reader& reader, const Surface& base) {
             if (!is_word(token))
                 reader.fail(token.place,
                             fmt::format("found {}, expected a part of a finish", found(token)));
-            surface.notes.push_back(left_out("a finish", token));
+            surface.notes.push_back(left_out(reader, "a finish", token));
             skip_arguments(reader);
         }
     }
@@ -428,7 +428,7 @@ Interior parse_interior(Reader& reader, const Interior& base) {
             if (!is_word(token))
                 reader.fail(token.place,
                             fmt::format("found {}, expected a part of an interior", found(token)));
-            interior.notes.push_back(left_out("an interior", token));
+            interior.notes.push_back(left_out(reader, "an interior", token));
             skip_arguments(reader);
         }
     }
@@ -443,14 +443,14 @@ Material parse_material(Reader& reader) {
         if (const auto named_material = take_named_if<Material>(reader))
             material = *named_material;
         else if (reader.take("texture"))
-            material.texture =
-                material.texture ? layered(parse_texture(reader), *material.texture, reader.place())
-                                 : parse_texture(reader);
+            material.texture = material.texture ? layered(reader, parse_texture(reader),
+                                                          *material.texture, reader.place())
+                                                : parse_texture(reader);
         else if (reader.take("interior"))
             material.interior = parse_interior(reader, material.interior.value_or(Interior{}));
         else if (const Token token = reader.peek(); reader.take("interior_texture")) {
             Interior inside = material.interior.value_or(Interior{});
-            inside.notes.push_back(left_out("a material", token));
+            inside.notes.push_back(left_out(reader, "a material", token));
             material.interior = inside;
             skip_braces(reader, "interior_texture");
         } else if (const auto m = take_transform(reader)) {
@@ -494,7 +494,7 @@ Texture parse_texture(Reader& reader) {
         else if (const auto named_finish = take_named_if<Surface>(reader))
             texture.surface = *named_finish;
         else if (take_named_if<Opaque>(reader))
-            texture.notes.push_back(normal_note(token));
+            texture.notes.push_back(normal_note(reader, token));
         else if (const auto m = take_transform(reader))
             texture.pigment.placed = *m * texture.pigment.placed;
         else if (reader.take("pigment"))
@@ -506,7 +506,7 @@ Texture parse_texture(Reader& reader) {
         else if (reader.take("tiles"))
             texture = parse_tiles(reader);
         else if (reader.take("normal")) {
-            texture.notes.push_back(normal_note(token));
+            texture.notes.push_back(normal_note(reader, token));
             skip_braces(reader, "normal");
         } else if (is_texture_pattern(token) || is_color_map(token)) {
             reader.next();
@@ -515,7 +515,7 @@ Texture parse_texture(Reader& reader) {
             else if (is_list_pattern(token))
                 parse_list(reader, token, texture.pigment);
             else {
-                texture.pigment.notes = average_note(token);
+                texture.pigment.notes = average_note(reader, token);
                 skip_arguments(reader);
             }
         } else if (is_word(token)) {
@@ -527,7 +527,7 @@ Texture parse_texture(Reader& reader) {
     return texture;
 }
 
-Texture layered(const Texture& upper, const Texture& lower, const Place& at) {
+Texture layered(Reader& reader, const Texture& upper, const Texture& lower, const Place& at) {
     const Color& over = upper.pigment.color;
     if (over.filter <= 0 && over.transmit <= 0 && !upper.pigment.other)
         return upper;
@@ -550,7 +550,7 @@ Texture layered(const Texture& upper, const Texture& lower, const Place& at) {
     both.surface.ior = upper.surface.ior; // as in POV-Ray
     both.surface.refraction = upper.surface.refraction;
     both.notes.insert(both.notes.end(), lower.notes.begin(), lower.notes.end());
-    both.notes.push_back(make_note("layers", at, "layers of a texture are drawn as one"));
+    both.notes.push_back(reader.note("layers", at, "layers of a texture are drawn as one"));
     return both;
 }
 

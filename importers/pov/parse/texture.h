@@ -17,11 +17,11 @@ Material parse_material(Reader& reader);
 ColorMap parse_map(Reader& reader);
 
 /// Returns one texture that looks like `upper` on top of `lower`.
-Texture layered(const Texture& upper, const Texture& lower, const Place& at);
+Texture layered(Reader& reader, const Texture& upper, const Texture& lower, const Place& at);
 
-std::shared_ptr<const Note> normal_note(const Token& word);
+const Note* normal_note(Reader& reader, const Token& word);
 /// Returns the note "WORD of a finish is left out", where `of` is "a finish".
-std::shared_ptr<const Note> left_out(std::string_view of, const Token& word);
+const Note* left_out(Reader& reader, std::string_view of, const Token& word);
 
 /// Skips the arguments of a word that Overcast does not use: numbers, texts, and at most one block.
 void skip_arguments(Reader& reader);

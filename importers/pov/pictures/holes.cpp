@@ -19,8 +19,8 @@ static double through(const Picture& picture, size_t pixel, const MapTransparenc
     return std::clamp(share, 0.0, 1.0);
 }
 
-std::shared_ptr<const Holes> holes_of(const Picture& picture, const MapTransparency& transparency,
-                                      bool smooth, const std::array<double, 256>& light) {
+HolesPtr holes_of(const Picture& picture, const MapTransparency& transparency, bool smooth,
+                  const std::array<double, 256>& light) {
     auto holes = std::make_shared<Holes>();
     Cutout& cutout = holes->cutout;
     cutout.width = picture.width;

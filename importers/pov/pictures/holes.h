@@ -23,7 +23,7 @@ struct MapTransparency {
 /// Returns the holes of the picture and the average color of what is there, which lets `all`
 /// through; nothing where all of it lets the same share of light through. light: the light of the
 /// 256 codes of a sample.
-std::shared_ptr<const Holes> holes_of(const Picture& picture, const MapTransparency& transparency,
-                                      bool smooth, const std::array<double, 256>& light);
+HolesPtr holes_of(const Picture& picture, const MapTransparency& transparency, bool smooth,
+                  const std::array<double, 256>& light);
 
 } // namespace ovc::pov

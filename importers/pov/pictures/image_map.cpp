@@ -77,7 +77,7 @@ MapWords parse_map_words(Reader& reader, const Place& start) {
 
 void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
     const auto note = [&](const std::string& kind, const Place& at, const std::string& sentence) {
-        pigment.notes = {make_note(kind, at, sentence)};
+        pigment.notes = {reader.note(kind, at, sentence)};
     };
     pigment.color = {vec3(0.5f)};
     pigment.other.reset();
@@ -117,8 +117,8 @@ void parse_image_map(Reader& reader, const Token& word, Pigment& pigment) {
         pigment.holes = holes;
     else if (holes)
         pigment.notes.push_back(
-            make_note("map_type", word.place,
-                      fmt::format("an image_map of map_type {} has no holes", words.type)));
+            reader.note("map_type", word.place,
+                        fmt::format("an image_map of map_type {} has no holes", words.type)));
 }
 
 } // namespace ovc::pov

@@ -67,7 +67,7 @@ constexpr char32_t kSymbols = 0xf000;
 Font::Font(std::unique_ptr<Face> face) : face_(std::move(face)) {}
 Font::~Font() = default;
 
-Result<std::shared_ptr<Font>> Font::open(const std::filesystem::path& path) {
+Result<std::unique_ptr<Font>> Font::open(const std::filesystem::path& path) {
     auto face = std::make_unique<Face>();
     if (FT_Init_FreeType(&face->library) != 0)
         return Error{fmt::format("{}: FreeType cannot be started", path.string())};
@@ -76,13 +76,13 @@ Result<std::shared_ptr<Font>> Font::open(const std::filesystem::path& path) {
         return Error{fmt::format("{}: it is no font with outlines", path.string())};
     if (!face->face->charmap && face->face->num_charmaps > 0) // there is no Unicode charmap
         FT_Set_Charmap(face->face, face->face->charmaps[0]);
-    return std::shared_ptr<Font>(new Font(std::move(face)));
+    return std::unique_ptr<Font>(new Font(std::move(face)));
 }
 
-std::shared_ptr<const Letter> Font::letter(char32_t code) {
-    std::shared_ptr<const Letter>& kept = letters_[code];
-    if (kept)
-        return kept;
+const Letter& Font::letter(char32_t code) {
+    const auto [at, is_new] = letters_.try_emplace(code);
+    if (!is_new)
+        return at->second;
     const FT_Face face = face_->face;
     Drawing drawing;
     drawing.scale = 1.0 / face->units_per_EM;
@@ -98,8 +98,8 @@ std::shared_ptr<const Letter> Font::letter(char32_t code) {
             FT_Outline_Decompose(&face->glyph->outline, &funcs, &drawing);
         }
     }
-    kept = std::make_shared<const Letter>(std::move(drawing.letter));
-    return kept;
+    at->second = std::move(drawing.letter);
+    return at->second;
 }
 
 double Font::kerning(const Letter& left, const Letter& right) const {

@@ -28,11 +28,12 @@ struct Letter {
 class Font {
 public:
     /// Opens a font file. The Error is a sentence that names the file.
-    static Result<std::shared_ptr<Font>> open(const std::filesystem::path& path);
+    static Result<std::unique_ptr<Font>> open(const std::filesystem::path& path);
     ~Font();
 
-    /// Returns the letter with this Unicode code, or the font's mark for missing letters.
-    std::shared_ptr<const Letter> letter(char32_t code);
+    /// Returns the letter with this Unicode code, or the font's mark for missing letters. The font
+    /// owns it.
+    const Letter& letter(char32_t code);
     /// Returns what to add to the left letter's advance when `right` follows it.
     double kerning(const Letter& left, const Letter& right) const;
 
@@ -41,7 +42,7 @@ private:
     explicit Font(std::unique_ptr<Face> face);
 
     std::unique_ptr<Face> face_;
-    std::map<char32_t, std::shared_ptr<const Letter>> letters_;
+    std::map<char32_t, Letter> letters_;
 };
 
 /// Returns the codes of a text in UTF-8. Bytes that are not valid UTF-8 count as Latin-1.

@@ -16,10 +16,9 @@ namespace {
 Shape fixed(Facets facets) {
     Shape shape;
     shape.fixed = double(facets.corners.size() / 3);
-    const auto shared = std::make_shared<const Facets>(std::move(facets));
-    shape.cut = [shared](int, bool, Facets& out) {
-        out.corners.insert(out.corners.end(), shared->corners.begin(), shared->corners.end());
-        out.smooth = out.smooth || shared->smooth;
+    shape.cut = [facets = std::move(facets)](int, bool, Facets& out) {
+        out.corners.insert(out.corners.end(), facets.corners.begin(), facets.corners.end());
+        out.smooth = out.smooth || facets.smooth;
     };
     return shape;
 }

@@ -42,8 +42,8 @@ private:
 
 /// Reads WIDTH, HEIGHT { FORMULA }, with x and y from 0 to 1, from behind the word `function`.
 Grid grid_of_function(Reader& reader, const Token& word) {
-    const std::shared_ptr<const Function> function = parse_function(reader);
-    const double width = function->grid.x, height = function->grid.y;
+    const Function function = parse_function(reader);
+    const double width = function.grid.x, height = function.grid.y;
     if (!(width >= 2 && height >= 2 && width * height <= double(kMaxPixels)))
         reader.fail(word.place,
                     fmt::format("found a height_field of {} x {} points, expected 2 x 2 to {}",
@@ -58,7 +58,7 @@ Grid grid_of_function(Reader& reader, const Token& word) {
         for (size_t i = 0; i < grid.width; ++i) {
             const double at[3] = {double(i) / double(grid.width - 1),
                                   double(row) / double(grid.height - 1), 0};
-            const double y = call(reader, word, *function, at).v[0];
+            const double y = call(reader, word, function, at).v[0];
             grid.heights.push_back(float(y > 0 ? std::min(y, 1.0) : 0.0)); // NaN counts as 0
         }
     return grid;
@@ -146,8 +146,7 @@ Shape parse_height_field(Reader& reader) {
     }
     Shape shape;
     shape.fixed = 2 * double(grid.width - 1) * double(grid.height - 1);
-    const auto kept = std::make_shared<const Grid>(std::move(grid));
-    shape.cut = [kept](int, bool, Facets& out) { cut_grid(*kept, out); };
+    shape.cut = [grid = std::move(grid)](int, bool, Facets& out) { cut_grid(grid, out); };
     return shape;
 }
 

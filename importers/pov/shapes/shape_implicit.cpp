@@ -22,7 +22,7 @@ namespace {
 constexpr double kPerSquare = 4;
 
 /// Returns a shape that keeps its triangles, because it is cut to be measured and to be drawn.
-Shape kept(const Box& box, std::function<void(int segments, bool open, Facets& out)> cut) {
+Shape kept(const Box& box, SharedFunction<void(int segments, bool open, Facets& out)> cut) {
     struct Kept {
         std::mutex mutex;
         int segments = 0;
@@ -32,7 +32,7 @@ Shape kept(const Box& box, std::function<void(int segments, bool open, Facets& o
     Shape shape;
     shape.per_square = kPerSquare;
     shape.box = box;
-    shape.cut = [store = std::make_shared<Kept>(), cut = std::move(cut)](int segments, bool open,
+    shape.cut = [store = std::make_unique<Kept>(), cut = std::move(cut)](int segments, bool open,
                                                                          Facets& out) {
         const std::lock_guard lock(store->mutex);
         if (store->segments != segments || store->open != open) {
@@ -76,6 +76,19 @@ std::function<double(const dvec3&)> blob_value(Components parts, double threshol
             sum += part(p);
         return threshold - sum;
     };
+}
+
+/// The field refers to the parts.
+Field blob_field(const Components& parts, double threshold) {
+    Field field;
+    field.value = blob_value(parts, threshold);
+    field.within = [&parts, threshold](const Box& asked) {
+        Components near;
+        std::copy_if(parts.begin(), parts.end(), std::back_inserter(near),
+                     [&](const Component& part) { return part.box.touches(asked); });
+        return blob_value(std::move(near), threshold);
+    };
+    return field;
 }
 
 /// Reads `{ place, radius, strength … }` from behind the word.
@@ -134,16 +147,15 @@ std::vector<double> parse_factors(Reader& reader, int order) {
 }
 
 void finish_polynomial(Reader& reader, Object& object, Polynomial polynomial) {
-    const auto shared = std::make_shared<const Polynomial>(std::move(polynomial));
     EndlessShape shape;
-    shape.bounds = [shared](const Box& box) { return tightened(*shared, box); };
-    shape.cut = [shared](const Box& box, int cells, Facets& out) {
-        const Box tight = tightened(*shared, box);
+    shape.bounds = [polynomial](const Box& box) { return tightened(polynomial, box); };
+    shape.cut = [polynomial](const Box& box, int cells, Facets& out) {
+        const Box tight = tightened(polynomial, box);
         if (tight.empty())
             return size_t(0);
         out.smooth = true;
         const double margin = 0.02 * max_component(tight.extent());
-        return cut_field({[shared](const dvec3& p) { return (*shared)(p); }, {}},
+        return cut_field({[&polynomial](const dvec3& p) { return polynomial(p); }, {}},
                          tight.padded(margin), cells, out);
     };
     object.shape = std::move(shape);
@@ -216,7 +228,7 @@ void cut_contained(const Field& field, const Container& container, int segments,
 } // namespace
 
 void parse_blob(Reader& reader, Object& object) {
-    auto parts = std::make_shared<Components>();
+    Components parts;
     double threshold = 1;
     Box box;
     for (;;) {
@@ -250,19 +262,11 @@ void parse_blob(Reader& reader, Object& object) {
         place_component(part, holder.placed);
         if (part.strength > 0)
             box.add(part.box);
-        parts->push_back(part);
+        parts.push_back(part);
     }
-    Field field;
-    field.value = blob_value(*parts, threshold);
-    field.within = [parts, threshold](const Box& asked) {
-        Components near;
-        std::copy_if(parts->begin(), parts->end(), std::back_inserter(near),
-                     [&](const Component& part) { return part.box.touches(asked); });
-        return blob_value(std::move(near), threshold);
-    };
-    object.shape = kept(box, [=](int segments, bool, Facets& out) {
+    object.shape = kept(box, [=, parts = std::move(parts)](int segments, bool, Facets& out) {
         if (!box.empty())
-            cut_field(field, box, cells_of(*parts, box, segments), out);
+            cut_field(blob_field(parts, threshold), box, cells_of(parts, box, segments), out);
     });
     parse_modifiers(reader, object);
 }
@@ -294,7 +298,7 @@ void parse_polynomial(Reader& reader, Object& object) {
 }
 
 void parse_isosurface(Reader& reader, Object& object) {
-    std::shared_ptr<const Function> function;
+    std::optional<Function> function;
     std::optional<Container> container;
     double threshold = 0;
     const Token name = reader.peek();
@@ -336,13 +340,13 @@ void parse_isosurface(Reader& reader, Object& object) {
         container->box.add(corner.position);
     if (!function->refused.empty())
         object.refused = function->refused;
-    const Field field{[&reader, function, threshold, name](const dvec3& p) {
+    const Field field{[&reader, function = *function, threshold, name](const dvec3& p) {
                           const double at[3] = {p.x, p.y, p.z};
-                          return call(reader, name, *function, at).v[0] - threshold;
+                          return call(reader, name, function, at).v[0] - threshold;
                       },
                       {}};
     object.shape =
-        kept(container->box, [=, around = *container](int segments, bool open, Facets& out) {
+        kept(container->box, [field, around = *container](int segments, bool open, Facets& out) {
             cut_contained(field, around, segments, open, out);
         });
     parse_modifiers(reader, object);

@@ -27,7 +27,7 @@ void add_grid(int columns, int rows, At&& at, Facets& out) {
     }
 }
 
-Shape curved(double per_square, double per_segment, std::function<void(int, bool, Facets&)> cut) {
+Shape curved(double per_square, double per_segment, SharedFunction<void(int, bool, Facets&)> cut) {
     Shape shape;
     shape.cut = std::move(cut);
     shape.per_square = per_square;

@@ -15,7 +15,7 @@ namespace ovc::pov {
 namespace {
 
 struct PlacedLetter {
-    std::shared_ptr<const Letter> letter;
+    const Letter* letter; // of a font that the reader keeps
     dvec2 at;
 };
 
@@ -25,7 +25,7 @@ std::string internal_font(int number) {
     return number >= 1 && number <= 3 ? kFonts[number - 1] : "povlogo.ttf";
 }
 
-std::shared_ptr<Font> parse_font(Reader& reader) {
+Font& parse_font(Reader& reader) {
     std::string name;
     const Place at = reader.peek().place;
     if (reader.take("internal"))
@@ -35,9 +35,8 @@ std::shared_ptr<Font> parse_font(Reader& reader) {
             reader.fail_here("ttf or internal, and a font");
         name = parse_text(reader);
     }
-    std::shared_ptr<Font>& font = reader.fonts[name];
-    if (font)
-        return font;
+    if (const auto font = reader.fonts.find(name); font != reader.fonts.end())
+        return *font->second;
     std::filesystem::path path = reader.find_file(name, ".ttf");
     if (path.empty()) {
         path = installed_font(name);
@@ -49,22 +48,21 @@ std::shared_ptr<Font> parse_font(Reader& reader) {
             "font " + name, at,
             fmt::format("found no font {}; {} stands in for it", ovc::quoted(name), path.string()));
     }
-    Result<std::shared_ptr<Font>> opened = Font::open(path);
+    Result<std::unique_ptr<Font>> opened = Font::open(path);
     if (!opened)
         reader.fail(at, opened.error().message);
-    font = *opened;
-    return font;
+    return *(reader.fonts[name] = std::move(*opened));
 }
 
 std::vector<PlacedLetter> set_letters(Font& font, const std::u32string& codes, const dvec2& step) {
     std::vector<PlacedLetter> letters;
     dvec2 at(0);
     for (const char32_t code : codes) {
-        const std::shared_ptr<const Letter> letter = font.letter(code);
+        const Letter& letter = font.letter(code);
         // As in POV-Ray the left edge of the first letter is at 0.
-        at.x += letters.empty() ? -letter->bearing : font.kerning(*letters.back().letter, *letter);
-        letters.push_back({letter, at});
-        at += step + dvec2(letter->advance, 0);
+        at.x += letters.empty() ? -letter.bearing : font.kerning(*letters.back().letter, letter);
+        letters.push_back({&letter, at});
+        at += step + dvec2(letter.advance, 0);
     }
     return letters;
 }
@@ -93,7 +91,7 @@ std::vector<Contour> contours_of(const PlacedLetter& placed, int segments) {
 } // namespace
 
 Shape parse_text_shape(Reader& reader) {
-    const std::shared_ptr<Font> font = parse_font(reader);
+    Font& font = parse_font(reader);
     reader.take_comma();
     const std::u32string codes = codes_of(parse_text(reader));
     reader.take_comma();
@@ -102,15 +100,14 @@ Shape parse_text_shape(Reader& reader) {
     const dvec3 step = parse_vector(reader); // POV-Ray ignores its z
     reader.spend(codes.size());
     Shape shape;
-    const auto letters =
-        std::make_shared<const std::vector<PlacedLetter>>(set_letters(*font, codes, dvec2(step)));
-    for (const PlacedLetter& placed : *letters)
+    std::vector<PlacedLetter> letters = set_letters(font, codes, dvec2(step));
+    for (const PlacedLetter& placed : letters)
         for (const auto& outline : placed.letter->outlines)
             for (const OutlinePiece& piece : outline)
                 (piece.straight ? shape.fixed : shape.per_segment) += piece.straight ? 4 : 4 / 16.0;
-    shape.cut = [letters, thickness](int segments, bool, Facets& out) {
+    shape.cut = [letters = std::move(letters), thickness](int segments, bool, Facets& out) {
         const double near = std::min(0.0, thickness), far = std::max(0.0, thickness);
-        for (const PlacedLetter& placed : *letters)
+        for (const PlacedLetter& placed : letters)
             sweep(
                 contours_of(placed, segments), /* lids= */ true,
                 [&](const dvec2& p, bool end) { return dvec3(p, end ? near : far); }, out);

@@ -169,11 +169,11 @@ Number defined(Reader& reader, const Token& token) {
 const Array& parse_array(Reader& reader, const Token& token) {
     reader.expect('(', token.name->text);
     const Token name = reader.next();
-    const auto* array = named<std::shared_ptr<Array>>(reader, name);
+    const auto* array = named<Array>(reader, name);
     if (!array)
         reader.fail(name.place,
                     fmt::format("found {}, expected the name of an array", found(name)));
-    return **array;
+    return *array;
 }
 
 /// Returns what the picture's moment says, and notes that the scene has asked.

@@ -32,10 +32,11 @@ ObjectPtr parse_object_name(Reader& reader) {
     return *object;
 }
 
-std::shared_ptr<const TraceTarget> target_of(Reader& reader, const ObjectPtr& object) {
+/// Returns the object ready for rays, which is valid until the next call.
+const TraceTarget& target_of(Reader& reader, const ObjectPtr& object) {
     if (const auto at = reader.targets.find(object); at != reader.targets.end())
-        return at->second;
-    const auto target = std::make_shared<const TraceTarget>(
+        return *at->second;
+    auto target = std::make_unique<const TraceTarget>(
         cut_object(*object, std::min(kMaxKept, reader.limits.triangles)));
     reader.spend(target->triangle_count() / kTrianglesAWord);
     reader.grow(3 * target->triangle_count() * sizeof(Corner));
@@ -44,8 +45,9 @@ std::shared_ptr<const TraceTarget> target_of(Reader& reader, const ObjectPtr& ob
         kept += cut->triangle_count();
     if (kept > kMaxKept || reader.targets.size() >= kMaxTargets)
         reader.targets.clear();
-    reader.targets[object] = target;
-    return target;
+    std::unique_ptr<const TraceTarget>& owned = reader.targets[object];
+    owned = std::move(target);
+    return *owned;
 }
 
 } // namespace
@@ -80,7 +82,7 @@ Number parse_trace(Reader& reader, const Token& token) {
     Meeting meeting;
     const double length = glm::length(way);
     if (length > 0 && std::isfinite(length))
-        meeting = target_of(reader, object)->first_meeting(from, way / length);
+        meeting = target_of(reader, object).first_meeting(from, way / length);
     const bool any = std::isfinite(meeting.distance);
     if (normal) {
         Slot* slot = reader.find(normal);

@@ -91,7 +91,8 @@ Number parse_literal_vector(Reader& reader) {
 
 Number parse_color_number(Reader& reader);
 
-Number call_function(Reader& reader, const Token& name, const Function& function) {
+/// Reads the arguments, in parentheses, of the function that `name` names.
+std::vector<double> parse_arguments(Reader& reader, const Token& name) {
     std::vector<double> arguments;
     reader.expect('(', name.name->text);
     while (!reader.peek().is(')')) {
@@ -100,36 +101,49 @@ Number call_function(Reader& reader, const Token& name, const Function& function
         reader.take_comma();
     }
     reader.next();
-    return call(reader, name, function, arguments);
+    return arguments;
+}
+
+double parse_clock(Reader& reader, const Token& name) {
+    reader.expect('(', name.name->text);
+    const double clock = parse_float(reader);
+    if (reader.take(','))
+        reader.next(); // the kind of spline, which we ignore
+    reader.expect(')', "the clock of a spline");
+    return clock;
+}
+
+/// Returns the value, which is still there and of this kind. `name` is what the scene calls it.
+template <class T>
+const T& unchanged(Reader& reader, const ValueHandle& handle, const Token& name) {
+    const Value* value = reader.value_of(handle);
+    const T* same = value ? std::get_if<T>(value) : nullptr;
+    if (!same)
+        reader.fail(name.place, fmt::format("found {}, whose index or argument changes it",
+                                            ovc::quoted(name.name->text)));
+    return *same;
 }
 
 Number parse_variable(Reader& reader, const Token& name) {
-    const Slot* slot = reader.find(name.name);
-    const Value* value = slot ? &slot->value : nullptr;
-    if (!value || std::holds_alternative<std::monostate>(*value))
+    Slot* slot = reader.find(name.name);
+    if (!slot || std::holds_alternative<std::monostate>(slot->value))
         reader.fail(name.place, fmt::format("found {}, which is not declared", found(name)));
-    std::shared_ptr<Array> array;
-    if (const auto* a = std::get_if<std::shared_ptr<Array>>(value)) {
-        array = *a;
-        value = parse_item(reader, *array);
+    ValueHandle handle(*slot);
+    if (std::holds_alternative<Array>(slot->value))
+        handle = parse_item(reader, *slot);
+    const Value* value = reader.value_of(handle);
+    if (value && std::holds_alternative<Function>(*value)) {
+        const std::vector<double> arguments = parse_arguments(reader, name);
+        return call(reader, name, unchanged<Function>(reader, handle, name), arguments);
     }
-    if (const Number* number = std::get_if<Number>(value))
-        return *number;
-    if (const auto* function = std::get_if<std::shared_ptr<const Function>>(value)) {
-        const std::shared_ptr<const Function> kept = *function;
-        return call_function(reader, name, *kept);
+    if (value && std::holds_alternative<Spline>(*value)) {
+        const double clock = parse_clock(reader, name);
+        return at(unchanged<Spline>(reader, handle, name), clock);
     }
-    if (const auto* spline = std::get_if<std::shared_ptr<const Spline>>(value)) {
-        const std::shared_ptr<const Spline> kept = *spline;
-        reader.expect('(', name.name->text);
-        const double clock = parse_float(reader);
-        if (reader.take(','))
-            reader.next(); // the kind of spline, which we ignore
-        reader.expect(')', "the clock of a spline");
-        return at(*kept, clock);
-    }
-    reader.fail(name.place, fmt::format("found {} {}, expected a number", kind_of(*value),
-                                        ovc::quoted(name.name->text)));
+    if (value && !std::holds_alternative<Number>(*value))
+        reader.fail(name.place, fmt::format("found {} {}, expected a number", kind_of(*value),
+                                            ovc::quoted(name.name->text)));
+    return unchanged<Number>(reader, handle, name);
 }
 
 Number parse_operand(Reader& reader) {
@@ -428,20 +442,21 @@ bool starts_number(const Reader& reader, const Token& token) {
     case TokenKind::Sign:
         return token.is('<') || token.is('(') || token.is('-') || token.is('+') || token.is('!');
     case TokenKind::Name:
-        if (const auto* array = named<std::shared_ptr<Array>>(reader, token))
-            return !(*array)->items.empty() && std::holds_alternative<Number>((*array)->items[0]);
+        if (const auto* array = named<Array>(reader, token))
+            return !array->items.empty() && std::holds_alternative<Number>(array->items[0]);
         return starts_color(token) || find_builtin(token.name->text) ||
-               named<Number>(reader, token) ||
-               named<std::shared_ptr<const Function>>(reader, token) ||
-               named<std::shared_ptr<const Spline>>(reader, token);
+               named<Number>(reader, token) || named<Function>(reader, token) ||
+               named<Spline>(reader, token);
     default:
         return false;
     }
 }
 
-Value* parse_item(Reader& reader, Array& array) {
+ValueHandle parse_item(Reader& reader, Slot& slot) {
+    ValueHandle handle(slot);
     size_t index = 0;
-    for (const size_t size : array.sizes) {
+    const std::vector<size_t> sizes = std::get<Array>(slot.value).sizes;
+    for (const size_t size : sizes) {
         reader.expect('[', "an array");
         const Place at = reader.peek().place;
         const double i = std::floor(parse_float(reader) + 1e-8);
@@ -450,8 +465,19 @@ Value* parse_item(Reader& reader, Array& array) {
         index = index * size + size_t(i);
         reader.expect(']', "an index");
     }
-    assert(index < array.items.size());
-    return &array.items[index];
+    handle.item = index;
+    return handle;
+}
+
+Value& take_item(Reader& reader, const Token& name) {
+    Slot* slot = reader.find(name.name);
+    Value* item = nullptr;
+    if (slot && std::holds_alternative<Array>(slot->value))
+        item = reader.value_of(parse_item(reader, *slot));
+    if (!item)
+        reader.fail(name.place, fmt::format("found {}, whose index or argument changes it",
+                                            ovc::quoted(name.name->text)));
+    return *item;
 }
 
 /// Returns the value of hexadecimal digits, or 0 where there are other letters.

@@ -35,8 +35,11 @@ bool starts_color(const Token& token);
 /// gives light itself, and kSrgbGamma leaves `c` as it is.
 double from_srgb(double c, double gamma);
 
-/// Reads the indices of an item, from the first [ behind the array's name. The array owns the item.
-Value* parse_item(Reader& reader, Array& array);
+/// Reads the indices of an item, from the first [ behind the name of the slot's array.
+ValueHandle parse_item(Reader& reader, Slot& slot);
+/// Takes the indices behind `name`, the name of an array, which is taken already, and returns the
+/// item. The reference is valid until the variable changes.
+Value& take_item(Reader& reader, const Token& name);
 
 /// Returns the number with `size` components, which is 1 to 5. Throws ParseError where it has more.
 Number resized(Reader& reader, const Number& number, int size);
@@ -61,13 +64,11 @@ std::optional<T> take_named(Reader& reader) {
     const Token token = reader.next();
     if (const T* value = named<T>(reader, token))
         return *value;
-    if (const auto* array = named<std::shared_ptr<Array>>(reader, token);
-        array && reader.peek().is('[')) {
-        const std::shared_ptr<Array> kept = *array;
-        const Value* item = parse_item(reader, *kept);
-        if (const T* value = std::get_if<T>(item))
+    if (named<Array>(reader, token) && reader.peek().is('[')) {
+        const Value& item = take_item(reader, token);
+        if (const T* value = std::get_if<T>(&item))
             return *value;
-        reader.fail(token.place, "found " + kind_of(*item) + " in the array " + token.name->text +
+        reader.fail(token.place, "found " + kind_of(item) + " in the array " + token.name->text +
                                      ", expected something else here");
     }
     reader.put_back(token);
@@ -78,8 +79,8 @@ std::optional<T> take_named(Reader& reader) {
 template <class T>
 std::optional<T> take_named_if(Reader& reader) {
     const Token token = reader.peek();
-    if (const auto* array = named<std::shared_ptr<Array>>(reader, token))
-        if ((*array)->items.empty() || !std::holds_alternative<T>((*array)->items[0]))
+    if (const auto* array = named<Array>(reader, token))
+        if (array->items.empty() || !std::holds_alternative<T>(array->items[0]))
             return std::nullopt;
     return take_named<T>(reader);
 }

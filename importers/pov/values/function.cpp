@@ -151,10 +151,9 @@ private:
             return call_builtin(token, *function);
         if (text == "select")
             return choice(token);
-        if (const auto* function = named<std::shared_ptr<const Function>>(reader_, token))
+        if (const auto* function = named<Function>(reader_, token))
             return call_user(token, *function);
-        if (find_builtin(text) || named<Number>(reader_, token) ||
-            named<std::shared_ptr<Array>>(reader_, token)) {
+        if (find_builtin(text) || named<Number>(reader_, token) || named<Array>(reader_, token)) {
             // A constant: pi, a variable, an array's item or a component such as V.x.
             reader_.put_back(token);
             return constant(parse_constant());
@@ -230,17 +229,18 @@ private:
         };
     }
 
-    Formula call_user(const Token& token, std::shared_ptr<const Function> function) {
+    Formula call_user(const Token& token, Function function) {
         const std::vector<Formula> given = arguments(token);
-        called_ = std::max(called_, function->depth);
+        called_ = std::max(called_, function.depth);
         count_operation();
         if (reader_.take('.'))
             reader_.next(); // a component of a pigment's color; call() refuses such functions
-        return [given, function, token, this_reader = &reader_](std::span<const double> x) {
+        return [given, function = std::move(function), token,
+                this_reader = &reader_](std::span<const double> x) {
             std::vector<double> values;
             for (const Formula& formula : given)
                 values.push_back(formula(x));
-            return pov::call(*this_reader, token, *function, values).v[0];
+            return pov::call(*this_reader, token, function, values).v[0];
         };
     }
 
@@ -289,32 +289,32 @@ static void parse_internal(Reader& reader, Function& function) {
     };
 }
 
-std::shared_ptr<const Function> parse_function(Reader& reader) {
-    auto function = std::make_shared<Function>();
+Function parse_function(Reader& reader) {
+    Function function;
     const std::vector<std::string> parameters = parse_parameters(reader);
-    function->parameters = parameters.size();
+    function.parameters = parameters.size();
     if (!reader.peek().is('{')) { // the grid of an image or a height_field
-        function->grid.x = parse_float(reader);
+        function.grid.x = parse_float(reader);
         reader.take_comma();
-        function->grid.y = parse_float(reader);
+        function.grid.y = parse_float(reader);
     }
     reader.expect('{', "function");
     const Token first = reader.peek();
     if (reader.take("transform"))
-        function->transform = parse_transform_block(reader);
+        function.transform = parse_transform_block(reader);
     else if (reader.take("spline"))
-        function->spline = parse_spline(reader);
+        function.spline = parse_spline(reader);
     else if (first.is("internal"))
-        parse_internal(reader, *function);
+        parse_internal(reader, function);
     else if (first.is("pigment") || first.is("pattern")) {
-        function->refused = fmt::format("the function is {} {{ }}, which Overcast does not compute",
-                                        first.name->text);
+        function.refused = fmt::format("the function is {} {{ }}, which Overcast does not compute",
+                                       first.name->text);
         skip_block(reader); // takes the function's } too
         return function;
     } else {
         FormulaParser parser(reader, parameters);
-        function->formula = parser.whole();
-        function->depth = parser.depth();
+        function.formula = parser.whole();
+        function.depth = parser.depth();
     }
     reader.expect('}', "a function");
     return function;

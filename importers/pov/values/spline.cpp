@@ -21,12 +21,12 @@ static Spline::Kind take_kind(Reader& reader, Spline::Kind otherwise) {
     return otherwise;
 }
 
-std::shared_ptr<const Spline> parse_spline(Reader& reader) {
-    auto spline = std::make_shared<Spline>();
+Spline parse_spline(Reader& reader) {
+    Spline spline;
     reader.expect('{', "spline");
-    if (const auto other = take_named<std::shared_ptr<const Spline>>(reader))
-        *spline = **other;
-    spline->kind = take_kind(reader, spline->kind);
+    if (std::optional<Spline> other = take_named<Spline>(reader))
+        spline = std::move(*other);
+    spline.kind = take_kind(reader, spline.kind);
     reader.take_comma();
     while (!reader.take('}')) {
         const Place at = reader.place();
@@ -34,10 +34,10 @@ std::shared_ptr<const Spline> parse_spline(Reader& reader) {
         if (std::isnan(clock))
             reader.fail(at, "found a spline's clock that is not a number");
         reader.take_comma();
-        spline->points[clock] = parse_number(reader);
+        spline.points[clock] = parse_number(reader);
         reader.take_comma();
     }
-    if (spline->points.empty())
+    if (spline.points.empty())
         reader.fail(reader.place(), "found a spline without points");
     return spline;
 }

@@ -7,7 +7,7 @@
 namespace ovc::pov {
 
 /// Reads a spline from behind the word `spline`. It has at least one point.
-std::shared_ptr<const Spline> parse_spline(Reader& reader);
+Spline parse_spline(Reader& reader);
 
 /// Returns the point at `clock`. Before the first point it is the first, behind the last the last.
 Number at(const Spline& spline, double clock);

@@ -3,13 +3,15 @@
 #pragma once
 
 #include "core/scene.h"
+#include "importers/pov/values/shared_function.h"
+#include "importers/pov/words/data_file.h"
 #include "importers/pov/words/token.h"
 
 #include <array>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -17,10 +19,8 @@
 namespace ovc::pov {
 
 struct Object;
-struct Array;
 struct Macro;
-struct Function;
-struct Spline;
+struct Value;
 
 /// A float (size 1), a vector of 2 to 5 components, or a color (size 5: red, green, blue, filter,
 /// transmit).
@@ -38,13 +38,11 @@ struct Note {
     std::string kind; // only the first note of a kind becomes a warning
     Place place;
     std::string sentence;
-};
-using Notes = std::vector<std::shared_ptr<const Note>>;
 
-inline std::shared_ptr<const Note> make_note(std::string kind, const Place& place,
-                                             std::string sentence) {
-    return std::make_shared<const Note>(Note{std::move(kind), place, std::move(sentence)});
-}
+    auto operator<=>(const Note&) const = default;
+};
+/// The reader owns the notes (Reader::note), since every copy of a look has the same ones.
+using Notes = std::vector<const Note*>;
 
 /// A color and its transparency: it lets through light x color x filter + light x transmit.
 struct Color {
@@ -62,13 +60,17 @@ struct Holes {
     bool one_color = false; // all that is there has this color
 };
 
+/// The copies of a pigment share its picture's holes, which may be megabytes. A loop may make and
+/// forget many pigments, so the last copy frees them.
+using HolesPtr = std::shared_ptr<const Holes>;
+
 /// A color, the average of a pattern, or a checker of two of them.
 struct Pigment {
     Color color;
-    std::shared_ptr<const Holes> holes; // of an image_map; null: none
-    bool uv_mapping = false;            // the image_map lies on texture coordinates, not on x and y
-    std::optional<Color> other;         // of a checker
-    dmat4 placed{1};                    // from its space to that of the object's parent, or to uv
+    HolesPtr holes;             // of an image_map; null: none
+    bool uv_mapping = false;    // the image_map lies on texture coordinates, not on x and y
+    std::optional<Color> other; // of a checker
+    dmat4 placed{1};            // from its space to that of the object's parent, or to uv
     Notes notes;
 };
 
@@ -117,21 +119,24 @@ struct Opaque {
     std::string kind;
 };
 
-struct CameraValue;
-struct DataFile;
+/// Names, arrays, groups and clips share objects that do not change any more, and a scene forgets
+/// them in any order. The last of them frees the object, as SharedFunction explains; to copy it for
+/// each would double a group of groups at every level.
+using ObjectPtr = std::shared_ptr<const Object>;
 
-using Value = std::variant<std::monostate, Number, std::string, std::shared_ptr<const Object>,
-                           Texture, Pigment, Surface, Interior, Material, ColorMap, SkySphere,
-                           dmat4, std::shared_ptr<Array>, std::shared_ptr<const Macro>,
-                           std::shared_ptr<const Function>, std::shared_ptr<const Spline>,
-                           std::shared_ptr<const CameraValue>, std::shared_ptr<DataFile>, Opaque>;
-
-/// Returns what a message calls the value: "a number", "an object".
-std::string kind_of(const Value& value);
-
-/// A variable. A macro's parameter that is passed by reference shares the caller's slot.
-struct Slot {
-    Value value;
+/// A camera whose vectors are as its parts and transformations leave them (parse_camera.h).
+struct CameraValue {
+    dvec3 location{0};
+    dvec3 direction{0, 0, 1};
+    dvec3 up{0, 1, 0};
+    dvec3 right{1.33, 0, 0}; // povray's default, though its pictures are 4 : 3
+    dvec3 sky{0, 1, 0};
+    std::optional<double> distance; // from the location to look_at, or to <0, 0, 1> without it
+    bool window_given = false;      // whether the scene gives right or up
+    bool orthographic = false;
+    ImageWindow::Bend bend = ImageWindow::Bend::Flat;
+    double vertical_angle = 0;
+    double angle = 0; // of the field of view, in degrees; 0 where the scene gives none
 };
 
 struct Array {
@@ -154,6 +159,48 @@ struct Spline {
     enum class Kind { Linear, Quadratic, Cubic, Natural };
     Kind kind = Kind::Linear;
     std::map<double, Number> points;
+};
+
+/// A formula ready to be computed. It may throw ParseError where it calls a function that Overcast
+/// does not compute. Arguments that are missing count as 0.
+using Formula = SharedFunction<double(std::span<const double>)>;
+
+/// Exactly one of formula, transform, spline and refused is set.
+struct Function {
+    size_t parameters = 3;
+    Formula formula;
+    std::optional<dmat4> transform;
+    std::optional<Spline> spline;
+    uint32_t depth = 1;  // of nested closures
+    dvec2 grid{0};       // WIDTH, HEIGHT of function WIDTH, HEIGHT { }
+    std::string refused; // the reason why it cannot be called
+};
+
+/// The value of a variable or of an array's item, which owns it. Macros belong to the reader.
+struct Value : std::variant<std::monostate, Number, std::string, ObjectPtr, Texture, Pigment,
+                            Surface, Interior, Material, ColorMap, SkySphere, dmat4, Array,
+                            const Macro*, Function, Spline, CameraValue, DataFile, Opaque> {
+    using variant::variant;
+    using variant::operator=;
+};
+
+/// Returns what a message calls the value: "a number", "an object".
+std::string kind_of(const Value& value);
+
+/// A variable. A macro's parameter that is passed by reference shares the caller's slot.
+struct Slot {
+    Value value;
+    uint64_t scope = 0; // the serial number of the scope with which it ends
+};
+
+/// A variable, or the item of its array, from which a value is taken later. What is read until then
+/// may run code that ends the variable or changes it, so Reader::value_of() looks for it again.
+struct ValueHandle {
+    Slot* slot = nullptr;
+    uint64_t scope = 0; // slot->scope, which tells whether there still is a slot
+    std::optional<size_t> item;
+
+    explicit ValueHandle(Slot& of) : slot(&of), scope(of.scope) {}
 };
 
 } // namespace ovc::pov

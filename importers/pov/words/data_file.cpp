@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/pov/words/data_file.h"
 
+#include "importers/pov/values/value.h"
+
 #include <fmt/format.h>
 
 #include <cassert>

@@ -3,9 +3,12 @@
 // memory only: a scene can read again what it writes, but nothing is written to disk.
 #pragma once
 
-#include "importers/pov/values/value.h"
+#include <optional>
+#include <string>
 
 namespace ovc::pov {
+
+struct Value;
 
 struct DataFile {
     std::string name;

@@ -100,15 +100,16 @@ void Reader::do_declare(bool local) {
     }
     if (peek_raw().is('[')) {
         Slot* slot = find(name);
-        const auto* array = slot ? std::get_if<std::shared_ptr<Array>>(&slot->value) : nullptr;
-        if (!array)
+        if (!slot || !std::holds_alternative<Array>(slot->value))
             fail(last_, fmt::format("{} is no array", name->text));
-        const std::shared_ptr<Array> kept = *array;
-        Value* item = hooks_.item(*this, *kept);
+        const ValueHandle handle = hooks_.item(*this, *slot);
         expect('=', name->text);
         Value value = hooks_.value(*this);
-        count_depth(*kept, value);
-        *item = std::move(value);
+        // The macro with this directive may have ended, and its array with it.
+        if (Value* item = value_of(handle)) {
+            count_depth(std::get<Array>(handle.slot->value), value);
+            *item = std::move(value);
+        }
         changed();
         return take_semicolon();
     }
@@ -198,11 +199,10 @@ bool Reader::is_defined() {
     bool defined =
         token.name->is_keyword || (slot && !std::holds_alternative<std::monostate>(slot->value));
     if (peek_raw().is('[')) {
-        const auto* array = slot ? std::get_if<std::shared_ptr<Array>>(&slot->value) : nullptr;
-        if (!array)
+        if (!slot || !std::holds_alternative<Array>(slot->value))
             fail(token.place, fmt::format("{} is no array", token.name->text));
-        const std::shared_ptr<Array> kept = *array;
-        defined = !std::holds_alternative<std::monostate>(*hooks_.item(*this, *kept));
+        const Value* item = value_of(hooks_.item(*this, *slot));
+        defined = item && !std::holds_alternative<std::monostate>(*item);
     }
     expect(')', "#ifdef");
     return defined;
@@ -408,28 +408,29 @@ void Reader::do_break(const Token& at) {
 
 void Reader::do_macro() {
     const Place at = last_;
-    auto macro = std::make_shared<Macro>();
-    macro->name = raw_name("#macro");
-    raw_expect('(', macro->name->text);
+    Macro macro;
+    macro.name = raw_name("#macro");
+    raw_expect('(', macro.name->text);
     while (!peek_raw().is(')')) {
-        macro->parameters.push_back(raw_name("the parameters of " + macro->name->text));
+        macro.parameters.push_back(raw_name("the parameters of " + macro.name->text));
         if (peek_raw().is(','))
             raw();
         else if (!peek_raw().is(')') && peek_raw().kind != TokenKind::Name) // commas may be missing
             fail(peek_raw().place, fmt::format("found {} in the parameters of {}, expected ')'",
-                                               found(peek_raw()), macro->name->text));
+                                               found(peek_raw()), macro.name->text));
     }
     raw();
-    macro->file = frame().file;
-    macro->first = frame().at;
+    macro.file = frame().file;
+    macro.first = frame().at;
     Condition block{Condition::Kind::If};
     block.place = at;
     frame().open.push_back(block); // so that skip() can name its place in an error
     skip(false, false);
     frame().open.pop_back();
-    macro->last = frame().at - 1;
-    assert(macro->first <= macro->last);
-    declare(macro->name, /* local= */ false).value = std::shared_ptr<const Macro>(macro);
+    macro.last = frame().at - 1;
+    assert(macro.first <= macro.last);
+    declare(macro.name, /* local= */ false).value =
+        &macros_.try_emplace({macro.file, macro.first}, macro).first->second;
 }
 
 void Reader::do_message(const Token& at) {

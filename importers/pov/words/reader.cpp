@@ -4,6 +4,8 @@
 #include "importers/pov/words/reader.h"
 
 #include "importers/file/available_memory.h"
+#include "importers/pov/shapes/font.h"
+#include "importers/pov/trace.h"
 
 #include <fmt/format.h>
 
@@ -42,6 +44,8 @@ Reader::Reader(Hooks hooks, LogSink log, std::string main_folder, FilesRead* fil
       available_(available_memory()) {
     push_scope(); // the scene's own scope, for #declare
 }
+
+Reader::~Reader() = default;
 
 void Reader::open(std::unique_ptr<SourceFile> file) {
     assert(file && frames_.empty());
@@ -102,8 +106,8 @@ Token Reader::step(bool hold_directives) {
         }
         if (token.kind == TokenKind::Name && !token.name->is_keyword)
             if (const Slot* slot = find(token.name))
-                if (const auto* macro = std::get_if<std::shared_ptr<const Macro>>(&slot->value)) {
-                    call(token, *macro);
+                if (const auto* macro = std::get_if<const Macro*>(&slot->value)) {
+                    call(token, **macro);
                     continue;
                 }
         return token;
@@ -131,12 +135,13 @@ void Reader::grow(uint64_t bytes) {
 }
 
 void Reader::count_depth(Array& array, const Value& item) const {
-    const auto* inner = std::get_if<std::shared_ptr<Array>>(&item);
+    const auto* inner = std::get_if<Array>(&item);
     if (!inner)
         return;
-    array.depth = std::max(array.depth, (*inner)->depth + 1);
-    if (array.depth > limits.chain)
-        fail(last_, fmt::format("found arrays more than {} deep in each other", limits.chain));
+    array.depth = std::max(array.depth, inner->depth + 1);
+    if (array.depth > limits.array_depth)
+        fail(last_,
+             fmt::format("found arrays more than {} deep in each other", limits.array_depth));
 }
 
 Token Reader::raw() {
@@ -169,8 +174,16 @@ void Reader::pop_frame() {
 }
 
 uint32_t Reader::push_scope() {
-    scopes_.emplace_back();
+    scopes_.push_back({++last_scope_, {}, {}});
     return uint32_t(scopes_.size() - 1);
+}
+
+Slot& Reader::add_slot(uint32_t scope) {
+    assert(scope < scopes_.size());
+    scopes_[scope].slots.push_back(std::make_unique<Slot>());
+    Slot& slot = *scopes_[scope].slots.back();
+    slot.scope = scopes_[scope].serial;
+    return slot;
 }
 
 void Reader::pop_scope() {
@@ -182,6 +195,16 @@ void Reader::pop_scope() {
 
 Slot* Reader::find(const Name* name) const {
     return name->bound.empty() ? nullptr : name->bound.back().slot;
+}
+
+Value* Reader::value_of(const ValueHandle& handle) const {
+    const auto scope = std::ranges::lower_bound(scopes_, handle.scope, {}, &Scope::serial);
+    if (scope == scopes_.end() || scope->serial != handle.scope)
+        return nullptr;
+    if (!handle.item)
+        return &handle.slot->value;
+    auto* array = std::get_if<Array>(&handle.slot->value);
+    return array && *handle.item < array->items.size() ? &array->items[*handle.item] : nullptr;
 }
 
 void Reader::bind(Name* name, uint32_t scope, Slot* slot) {
@@ -213,10 +236,9 @@ Slot& Reader::declare_in(uint32_t scope, Name* name) {
     for (const Name::Bound& bound : name->bound)
         if (bound.scope == scope)
             return *bound.slot;
-    scopes_[scope].slots.push_back(std::make_unique<Slot>());
-    Slot* slot = scopes_[scope].slots.back().get();
-    bind(name, scope, slot);
-    return *slot;
+    Slot& slot = add_slot(scope);
+    bind(name, scope, &slot);
+    return slot;
 }
 
 void Reader::undefine(Name* name) {
@@ -258,6 +280,10 @@ void Reader::fail_here(const std::string& expected) {
     fail(token.place, fmt::format("found {}, expected {}", found(token), expected));
 }
 
+const Note* Reader::note(const std::string& kind, const Place& at, const std::string& sentence) {
+    return &*notes_.insert({kind, at, sentence}).first;
+}
+
 void Reader::warn(const std::string& kind, const Place& at, const std::string& sentence) {
     if (!warned_.insert(kind).second)
         return;
@@ -267,36 +293,34 @@ void Reader::warn(const std::string& kind, const Place& at, const std::string& s
                     shown.empty() ? "" : "\n", shown));
 }
 
-void Reader::call(const Token& at, const std::shared_ptr<const Macro>& macro) {
+void Reader::call(const Token& at, const Macro& macro) {
     const Deeper deeper(*this);
     if (frames_.size() >= limits.nesting)
         fail(at.place, fmt::format("found macros and includes more than {} deep in each other: "
                                    "{} does not end",
-                                   limits.nesting, macro->name->text));
-    const std::shared_ptr<const Macro> kept = macro; // an argument may redeclare the macro
+                                   limits.nesting, macro.name->text));
     const size_t scopes = scopes_.size();
     std::vector<std::pair<Slot*, Value>> arguments;
-    expect('(', macro->name->text);
-    for (size_t i = 0; i < kept->parameters.size(); ++i) {
+    expect('(', macro.name->text);
+    for (size_t i = 0; i < macro.parameters.size(); ++i) {
         if (i > 0)
             take_comma();
         if (peek().is(')'))
-            fail(at.place, fmt::format("found {} arguments to {}, expected {}", i, kept->name->text,
-                                       kept->parameters.size()));
+            fail(at.place, fmt::format("found {} arguments to {}, expected {}", i, macro.name->text,
+                                       macro.parameters.size()));
         arguments.push_back(argument(scopes));
     }
-    expect(')', "the arguments of " + kept->name->text);
+    expect(')', "the arguments of " + macro.name->text);
     const uint32_t scope = push_scope();
     for (size_t i = 0; i < arguments.size(); ++i) {
         Slot* slot = arguments[i].first;
         if (!slot) {
-            scopes_[scope].slots.push_back(
-                std::make_unique<Slot>(Slot{std::move(arguments[i].second)}));
-            slot = scopes_[scope].slots.back().get();
+            slot = &add_slot(scope);
+            slot->value = std::move(arguments[i].second);
         }
-        bind(kept->parameters[i], scope, slot);
+        bind(macro.parameters[i], scope, slot);
     }
-    frames_.push_back({kept->file, kept->first, kept->last, true, scope, {}, at.place});
+    frames_.push_back({macro.file, macro.first, macro.last, true, scope, {}, at.place});
 }
 
 std::pair<Slot*, Value> Reader::argument(size_t scopes) {

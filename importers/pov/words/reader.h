@@ -26,7 +26,8 @@ struct Limits {
     uint64_t objects = 20'000'000;
     uint64_t triangles = 0; // of an object that the scene asks about
     uint64_t array_items = 2'000'000;
-    uint32_t chain = 2000;      // groups in groups, arrays in arrays
+    uint32_t chain = 2000;      // groups in groups
+    uint32_t array_depth = 100; // arrays in arrays, all of which are copied with the outermost
     uint32_t operations = 4000; // of a function and those it calls
     size_t depth = 400; // blocks and parentheses inside each other, for which the stack has room
 };
@@ -65,14 +66,18 @@ public:
     /// The parser's functions that directives call: pov.cpp passes those of parse/ and values/.
     struct Hooks {
         std::function<Value(Reader&)> value;
-        std::function<double(Reader&)> number;       // a float expression
-        std::function<double(Reader&)> condition;    // one that may compare, in parentheses
-        std::function<Value*(Reader&, Array&)> item; // an array's item, from the first [ on
-        std::function<void(Reader&)> defaults;       // the block of #default
+        std::function<double(Reader&)> number;    // a float expression
+        std::function<double(Reader&)> condition; // one that may compare, in parentheses
+        /// The item of the slot's array whose indices come next, from the first [ on.
+        std::function<ValueHandle(Reader&, Slot&)> item;
+        std::function<void(Reader&)> defaults; // the block of #default
     };
 
     /// `files_read`, or null, receives every file that is looked for or read.
     Reader(Hooks hooks, LogSink log, std::string main_folder, FilesRead* files_read);
+    ~Reader();
+    Reader(const Reader&) = delete;
+    Reader& operator=(const Reader&) = delete;
 
     /// Starts with the scene's own file. Must be called once, before anything is read.
     void open(std::unique_ptr<SourceFile> file);
@@ -107,11 +112,16 @@ public:
     void grow(uint64_t bytes);
     /// Updates the array's depth before `item` goes into it. Throws ParseError beyond a limit.
     void count_depth(Array& array, const Value& item) const;
+    /// Returns a note, which lives as long as the reader. There are no more of them than words in
+    /// the scene's files, apart from sentences that name a file.
+    const Note* note(const std::string& kind, const Place& at, const std::string& sentence);
     /// Logs a warning, once for each `kind`.
     void warn(const std::string& kind, const Place& at, const std::string& sentence);
 
     /// Returns the innermost variable of this name, or null. The scope of the variable owns it.
     Slot* find(const Name* name) const;
+    /// Returns the value, or null where its variable has ended or its array has no such item.
+    Value* value_of(const ValueHandle& handle) const;
     /// Returns the variable to assign to: with `local` in the scope of the running macro or
     /// include, else the innermost one of this name, or a new one of the scene where there is none.
     Slot& declare(Name* name, bool local);
@@ -132,8 +142,8 @@ public:
     bool moves = false; // the scene has asked for the moment
     Texture defaults;   // of #default
     /// The objects that the scene asked about with trace().
-    std::map<std::shared_ptr<const Object>, std::shared_ptr<const TraceTarget>> targets;
-    std::map<std::string, std::shared_ptr<Font>> fonts; // by name
+    std::map<ObjectPtr, std::unique_ptr<const TraceTarget>> targets;
+    std::map<std::string, std::unique_ptr<Font>> fonts; // by name; shapes point to their letters
     std::vector<uint32_t> random_streams;
     Limits limits;
     uint64_t objects = 0;
@@ -171,6 +181,7 @@ private:
         Place called;
     };
     struct Scope {
+        uint64_t serial; // ascending
         std::vector<Name*> names;
         std::vector<std::unique_ptr<Slot>> slots;
     };
@@ -209,14 +220,16 @@ private:
     void do_fclose();
     void do_read();
     void do_write();
-    /// Takes the name of an open file and returns the file.
-    std::shared_ptr<DataFile> raw_file(std::string_view after, bool writes);
+    /// Takes the name of an open file.
+    ValueHandle raw_file(std::string_view after, bool writes);
+    /// Returns the file, or throws ParseError where the values that a directive reads closed it.
+    DataFile& open_file(const ValueHandle& handle, const Place& at) const;
     bool condition();
     void check_is_no_condition(const Token& at, size_t blocks_that_stay);
     /// Skips tokens up to the #end of the innermost open block or, where that is asked for, up to
     /// its next #else, #elseif, #case or #range. Takes that directive and returns its name.
     std::string_view skip(bool stop_at_else, bool stop_at_case);
-    void call(const Token& at, const std::shared_ptr<const Macro>& macro);
+    void call(const Token& at, const Macro& macro);
     /// Returns the scope in which #declare or #local would put a variable of this name now.
     uint32_t scope_of(const Name* name, bool local) const;
     Slot& declare_in(uint32_t scope, Name* name);
@@ -226,6 +239,7 @@ private:
     std::pair<Slot*, Value> argument(size_t scopes);
     Frame& frame() { return frames_.back(); }
     uint32_t push_scope();
+    Slot& add_slot(uint32_t scope);
     void pop_scope();
 
     Hooks hooks_;
@@ -237,6 +251,10 @@ private:
     std::map<std::string, SourceFile*> by_path_;
     std::vector<Frame> frames_;
     std::vector<Scope> scopes_;
+    uint64_t last_scope_ = 0; // the serial number given last
+    /// By the place of the body. Declaring a macro again and again keeps one of it.
+    std::map<std::pair<const SourceFile*, size_t>, Macro> macros_;
+    std::set<Note> notes_;
     std::vector<Token> back_;
     std::set<std::string> warned_;
     std::map<std::string, std::string> written_; // files of #fopen, by name

@@ -3,6 +3,7 @@
 // macro reads them.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -22,6 +23,8 @@ struct Place {
     const SourceFile* file = nullptr;
     uint32_t line = 0;
     uint32_t column = 0;
+
+    auto operator<=>(const Place&) const = default;
 };
 
 /// The place in the scene's own file that calls the macro, or includes the file, which contains

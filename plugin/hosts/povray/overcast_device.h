@@ -17,8 +17,9 @@ struct OvercastFailure : std::runtime_error {
 
 class OvercastDevice {
 public:
-    /// The one that is open, or a new one; closed with the last pointer to it. Throws
-    /// OvercastFailure; the same one again where opening has failed before.
+    /// Returns the device that is open, or a new one. POV-Ray's meshes share it from any thread and
+    /// end in any order, and the last of them closes it. Throws OvercastFailure, the same one again
+    /// where opening has failed before.
     static std::shared_ptr<OvercastDevice> open(const OvercastSettings& settings);
 
     explicit OvercastDevice(const OvercastSettings& settings);
