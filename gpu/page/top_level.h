@@ -86,6 +86,8 @@ struct Parts {
 
     /// Adds the parts of a level 1 whose pages begin with `first_page`, in all its places.
     void add(const Level1& level1, uint32_t first_page, std::span<const Place> places);
+    /// Adds a part that these portals lead to.
+    void add(LeafRange part, std::span<const Portal> into);
 };
 
 /// Builds the tree over parts. A part that is alone, and whose triangles count from 0, has the tree

@@ -70,8 +70,11 @@ std::optional<BuiltScene> restored(const Soup& soup, const TwoLevelOptions& opti
     if (!*found)
         say(log, LogLevel::Info,
             "building anew: what was saved is of other meshes or other options");
-    else if (!add_tree(**found, options, plan))
-        return std::nullopt;
+    if (*found) {
+        set_limits(**found, options, plan);
+        if (!add_tree(**found, options, plan))
+            return std::nullopt;
+    }
     return std::move(*found);
 }
 
