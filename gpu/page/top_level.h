@@ -9,6 +9,7 @@
 #include "gpu/page/portal.h"
 #include "gpu/page/residency.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 #include <optional>
@@ -32,9 +33,12 @@ struct TopLevel {
     std::vector<uint32_t> first_link; // for each page, and one past the last of all
     uint32_t depth = 0;               // nodes on the longest way down, pages included
     uint64_t spare_bytes = 0;         // behind it in the pool, for a larger one after an update
+    size_t max_portals = 0;           // if more than there are: room in their table, likewise
 
     /// Returns the bytes of the pool that no page lies in.
     uint64_t room() const { return tree.bytes() + spare_bytes; }
+    /// Returns the bytes of the table of portals.
+    uint64_t table_bytes() const { return std::max(portals.size(), max_portals) * kPortalBytes; }
     bool empty() const { return tree.texels.empty(); }
     std::span<const Link> links_of(uint32_t page) const {
         assert(page + size_t(1) < first_link.size());

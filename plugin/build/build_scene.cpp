@@ -15,8 +15,15 @@ namespace ovc {
 uint64_t room_for_pool(const BuiltScene& scene, const TwoLevelOptions& options,
                        const MemoryPlan& plan) {
     const uint64_t active_bytes = options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
-    const uint64_t table_bytes = scene.top.portals.size() * kPortalBytes + active_bytes;
-    return plan.pool_bytes - std::min(plan.pool_bytes, table_bytes);
+    return plan.pool_bytes - std::min(plan.pool_bytes, scene.top.table_bytes() + active_bytes);
+}
+
+/// Leaves room for what updates make of the tree: meshes that are home may leave through portals.
+static void leave_room(BuiltScene& scene) {
+    const auto home = size_t(std::ranges::count_if(scene.shared, &SharedMesh::is_home));
+    const size_t more = home > 0 ? home + 2 : 0; // with the way back, and one into the home
+    scene.top.max_portals = scene.top.portals.size() + more;
+    scene.top.spare_bytes = (scene.top.tree.units() / 8 + 1 + 4 * more) * OVC_UNIT_BYTES;
 }
 
 bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan) {
@@ -25,7 +32,7 @@ bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPla
         return true; // every ray misses
     const size_t links = max_links(pages, scene.level2_bytes(), plan.pool_bytes);
     const auto is_fine = [&] {
-        return scene.top.portals.size() * kPortalBytes <= plan.buffer_bytes &&
+        return scene.top.table_bytes() <= plan.buffer_bytes &&
                is_usable(scene.top, scene.pages,
                          {room_for_pool(scene, options, plan), plan.buffer_bytes});
     };
@@ -34,9 +41,9 @@ bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPla
         if (!is_fine())
             continue;
         if (scene.expects_updates())
-            scene.top.spare_bytes = (scene.top.tree.units() / 8 + 1) * OVC_UNIT_BYTES;
+            leave_room(scene);
         if (!is_fine())
-            scene.top.spare_bytes = 0;
+            scene.top.spare_bytes = scene.top.max_portals = 0;
         return true;
     }
     return false;

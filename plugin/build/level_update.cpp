@@ -194,34 +194,47 @@ Box LevelUpdate::bounds_of_moved(const Leaf& leaf) const {
         });
 }
 
+/// Returns the bounds of the changed triangles where the pages have them.
+Box LevelUpdate::bounds_of_packed() const {
+    if (!scene_.packed || moved_bounds_.empty())
+        return moved_bounds_;
+    const Level1& level1 = scene_.level1;
+    const Box about = placed_box(moved_bounds_, scene_.packed->chunks.front().transform());
+    if (contains(level1.bounds, about))
+        return about;
+    Box all;
+    for (const Leaf& leaf : level1.leaves)
+        all.add(bounds_of_moved(leaf));
+    return all;
+}
+
 /// Gives leaves that their triangles have left a new frame. A changed leaf is no cell any more: it
 /// holds all of its triangles.
 void LevelUpdate::fit_frames() {
     Level1& level1 = scene_.level1;
-    Box all = moved_bounds_;
-    if (scene_.packed) { // those are the bounds in another place
-        all = {};
-        for (const Leaf& leaf : level1.leaves)
-            all.add(bounds_of_moved(leaf));
-    }
+    Box all = bounds_of_packed();
     for (const TriangleId id : come_)
         all.add(bounds_of(packed(id)));
-    if (level1.shares_frame)
-        all.add(frame_.reach);
-    const bool leaves_frame = level1.shares_frame && !contains(level1.leaves.front().grid, all);
-    if (leaves_frame || !contains(level1.bounds, all)) {
-        level1.bounds.add(all);
-        level1.bounds = with_room(level1.bounds);
-        level1.padding = padding_of(level1.bounds);
-        if (level1.shares_frame) {
-            share_frame(level1);
-            std::ranges::fill(framed_, 1);
-        }
-    }
-    if (level1.shares_frame)
+    if (!level1.shares_frame) {
+        if (!contains(level1.bounds, all))
+            grow_bounds(all);
+        for (const LeafRange& part : parts_of(level1))
+            share_new_frame(part);
         return;
-    for (const LeafRange& part : parts_of(level1))
-        share_new_frame(part);
+    }
+    all.add(frame_.reach);
+    if (contains(level1.bounds, all) && contains(level1.leaves.front().grid, all))
+        return;
+    grow_bounds(all);
+    share_frame(level1);
+    std::ranges::fill(framed_, 1);
+}
+
+void LevelUpdate::grow_bounds(const Box& to) {
+    Level1& level1 = scene_.level1;
+    level1.bounds.add(to);
+    level1.bounds = with_room(level1.bounds);
+    level1.padding = padding_of(level1.bounds);
 }
 
 /// Gives a part of the scene a new frame where its triangles have left that which it has.

@@ -69,6 +69,8 @@ private:
     bool hits(TriangleId id) const;
     bool is_changed(TriangleId id) const { return moved_.has(scene_.numbers.of(id)); }
     Box bounds_of_moved(const Leaf& leaf) const;
+    Box bounds_of_packed() const;
+    void grow_bounds(const Box& to);
     void share_new_frame(LeafRange part);
     void fill(Leaf& leaf, std::vector<TriangleId> triangles) const;
     bool refit(uint32_t leaf);
