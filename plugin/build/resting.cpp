@@ -134,7 +134,7 @@ bool Resting::comes_home(SharedMesh& mesh, uint32_t chunk) const {
     return !mesh.is_doubtful;
 }
 
-std::optional<bool> Resting::settle(SharedMesh& mesh) {
+std::optional<bool> Resting::prepare(SharedMesh& mesh) {
     const uint32_t chunk = mesh.instances.front();
     if (comes_home(mesh, chunk)) {
         bring_home(mesh, chunk);

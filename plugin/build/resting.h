@@ -36,7 +36,7 @@ public:
 
     /// Returns whether all pages of the mesh are to be refitted because it comes to rest now;
     /// nothing where rays cannot come to its pages and the scene must be built anew.
-    std::optional<bool> settle(SharedMesh& mesh);
+    std::optional<bool> prepare(SharedMesh& mesh);
 
 private:
     bool may_rest(const SharedMesh& mesh, uint32_t chunk) const;

@@ -11,6 +11,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 namespace ovc {
 namespace {
 
@@ -166,6 +169,35 @@ TEST_P(Rest, IsSaved) {
     moving.scene.emplace(std::move(**found));
     rest(moving, 0);
     EXPECT_EQ(moving.portals(), 0u);
+}
+
+TEST_P(Rest, LeadsNoWalkAstrayIfTheFileIsDamaged) {
+    Moving moving(5, GetParam());
+    moving.place(1, shift({3, 0.4, 0}));
+    ASSERT_TRUE(moving.update());
+    rest(moving, 0);
+    const auto limits = [&](uint64_t, uint64_t) { return moving.scene->limits; };
+    test::ArchiveMemory whole;
+    ASSERT_TRUE(save_levels(*moving.scene, whole.sink()));
+    int taken = 0;
+    for (uint32_t seed = 0; seed < 600; ++seed) {
+        std::mt19937 random(seed);
+        std::vector<uint8_t> orders(6 * (1 + random() % 3));
+        for (uint8_t& byte : orders)
+            byte = uint8_t(random());
+        test::ArchiveMemory memory(whole.bytes());
+        test::damage(memory, orders);
+        test::reseal(memory);
+        auto found = restore_levels(memory.bytes(), moving.soup, limits);
+        if (!found || !*found || !add_tree(**found, kOptions, kPlan))
+            continue;
+        ++taken;
+        for (const Ray& ray : test::unpleasant_rays(moving.soup, seed, 30)) {
+            const Hit hit = trace_exactly</* kAnyHit= */ false>(**found, PreparedRay(ray));
+            ASSERT_TRUE(!hit.is_hit() || moving.soup.has(hit.id));
+        }
+    }
+    EXPECT_GT(taken, 50);
 }
 
 /// The frame of a scene that is a million times as large leaves all answers in doubt.

@@ -216,7 +216,7 @@ private:
             scene_.mesh_of_chunk[chunk] = uint32_t(scene_.shared.size());
         }
         changed = joined(std::move(changed));
-        const std::optional<bool> rests = resting_.settle(mesh);
+        const std::optional<bool> rests = resting_.prepare(mesh);
         const bool updated =
             rests && update_level(mesh.scene, changed, {.is_new = *rests}, mesh.first_page);
         for (const PrimRange& range : changed)
