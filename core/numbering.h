@@ -11,11 +11,12 @@
 
 namespace ovc {
 
-/// Counts triangles from 0 in the order of their ids. The soup must have fewer than 2^32 of them.
+/// Counts triangles in the order of their ids. The soup must have fewer than 2^32 of them.
 class Numbering {
 public:
     Numbering() = default;
-    explicit Numbering(const Soup& soup) { append(soup); }
+    /// first: of the first triangle.
+    explicit Numbering(const Soup& soup, uint32_t first = 0) : first_{first} { append(soup); }
 
     /// Numbers the triangles of chunks that the soup has got since. Those before keep theirs.
     void append(const Soup& soup) {
@@ -24,7 +25,8 @@ public:
             first_.push_back(first_.back() + soup.chunks[mesh].size());
     }
     uint64_t meshes() const { return first_.size() - 1; }
-    /// Returns the numbers that are given, with those of chunks that are empty now.
+    uint32_t first() const { return first_.front(); }
+    /// Returns the number behind the last that is given, also to chunks that are empty now.
     uint64_t count() const { return first_.back(); }
 
     uint32_t of(TriangleId id) const {

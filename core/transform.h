@@ -36,6 +36,10 @@ inline const Transform& or_identity(const Transform* transform) {
 /// Returns the rows of the inverse matrix, without shift; none where doubles cannot tell it.
 std::optional<std::array<dvec3, 3>> inverse_matrix(const Transform& transform);
 
+/// Returns the way back from where the transform takes a point; none where inverse_matrix() has
+/// none.
+std::optional<Transform> inverse(const Transform& transform);
+
 /// Returns the box in the world of everything that lies in `box` before it is placed, roundings
 /// included. transform: null where that is in the world already.
 Box placed_box(const Box& box, const Transform* transform);
@@ -44,5 +48,9 @@ Box placed_box(const Box& box, const Transform* transform);
 /// by less than 2^-30 of the mesh: 1/64 of what float32 rounds there. box: of the mesh before it is
 /// placed.
 bool is_well_placed(const Box& box, const Transform* transform);
+
+/// Returns whether the same holds, by 2^-30 of `frame`, for a mesh whose corners lie in `frame` as
+/// `from` placed them, where `to` places it now: rays are brought from one place to the other.
+bool is_well_moved(const Transform& from, const Transform& to, const Box& frame);
 
 } // namespace ovc

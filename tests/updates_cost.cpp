@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// updates_cost SCENE [--moves] [--repeats N] measures the cost of changing a scene through the ABI
-// beside that of building it anew, and of calls after a hundred changes beside calls of a new
-// scene, for docs/benchmarks.md. All take turns, and medians are printed. --moves: meshes are added
-// with OVC_MESH_MOVES.
+// updates_cost SCENE [--moves] [--calls] [--repeats N] measures the cost of changing a scene
+// through the ABI beside that of building it anew, and of calls after a hundred changes beside
+// calls of a new scene, for docs/benchmarks.md. All take turns, and medians are printed. --moves:
+// meshes are added with OVC_MESH_MOVES. --calls: only calls are compared.
 #include "core/system/stopwatch.h"
 #include "host/bench/ray_sets.h"
 #include "host/camera/camera.h"
@@ -161,6 +161,33 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
+/// Counts what calls of a scene take, and what they leave to the CPU.
+class CallCost {
+public:
+    explicit CallCost(const AbiScene& scene) : scene_(scene) {}
+
+    std::vector<ovc_hit> trace(const std::vector<Ray>& rays) {
+        const ovc_statistics before = test::statistics(scene_);
+        std::vector<ovc_hit> hits;
+        calls_.push_back(seconds_of([&] { hits = test::answers(scene_, rays); }));
+        const ovc_statistics after = test::statistics(scene_);
+        kernel_.push_back(after.seconds_kernel - before.seconds_kernel);
+        flagged_ = double(after.flagged - before.flagged) / double(rays.size());
+        return hits;
+    }
+
+    const std::vector<double>& calls() const { return calls_; }
+    void print(const char* name) const {
+        fmt::print("{:22} {:10.1f} {:10.1f} {:10.1f} {:9.2f}%\n", name, 1e3 * median(calls_),
+                   1e3 * calls_.front(), 1e3 * median(kernel_), 100 * flagged_);
+    }
+
+private:
+    const AbiScene& scene_;
+    std::vector<double> calls_, kernel_; // seconds of each call
+    double flagged_ = 0;                 // the share of the rays
+};
+
 /// Compares the times of calls with the same rays, across a box and towards points in it.
 void compare_calls(const AbiScene& changed, const AbiScene& fresh, const Box& box, int repeats) {
     Random random(1);
@@ -173,27 +200,26 @@ void compare_calls(const AbiScene& changed, const AbiScene& fresh, const Box& bo
         const dvec3 org = point(1.5);
         rays.push_back({org, 0, point(0.4) - org});
     }
+    CallCost mine(changed), other(fresh);
     std::vector<double> ratios;
     for (int i = 0; i < 2 * repeats + 1; ++i) {
-        std::vector<ovc_hit> a, b;
-        const double mine = seconds_of([&] { a = test::answers(changed, rays); });
-        const double other = seconds_of([&] { b = test::answers(fresh, rays); });
-        ratios.push_back(mine / other);
+        const std::vector<ovc_hit> a = mine.trace(rays), b = other.trace(rays);
+        ratios.push_back(mine.calls().back() / other.calls().back());
         if (std::memcmp(a.data(), b.data(), a.size() * sizeof(ovc_hit)) != 0)
             fmt::print("other answers\n");
     }
+    fmt::print("{} rays a call {:>18} {:>10} {:>10} {:>10}\n", rays.size(), "ms", "first", "kernel",
+               "flagged");
+    mine.print("after 100 updates");
+    other.print("new");
     fmt::print("calls after 100 more updates: {:.2f} times as long as a new scene's\n",
                median(ratios));
 }
 
-Result<Done> run(const std::string& name, bool moves, int repeats) {
-    Result<Scene> scene = open_scene(name, standard_error_log(LogLevel::Warning));
-    if (!scene)
-        return scene.error();
-    const std::vector<Mesh> meshes = meshes_of(scene->soup);
-    const test::Device device = test::open_device();
+/// Prints what changes of the scene cost beside building it anew.
+void compare_updates(const std::string& name, const test::Device& device, Changing& changing,
+                     const std::vector<Mesh>& meshes, bool moves, int repeats) {
     std::map<std::string, std::vector<double>> times;
-    Changing changing(device, meshes, moves);
     for (int i = 0; i < repeats; ++i) {
         times["0 anew"].push_back(seconds_of([&] { Changing(device, meshes, moves); }));
         const double time = 0.37 * (i + 1);
@@ -209,11 +235,22 @@ Result<Done> run(const std::string& name, bool moves, int repeats) {
         measure("3 all transforms", [&] { changing.move_places(time); });
     }
     const double anew = median(times["0 anew"]);
-    fmt::print("{}, {} triangles, {} meshes; medians of {}\n{:22} {:>10} {:>10} {:>10}\n", name,
-               scene->soup.triangle_count(), meshes.size(), repeats, "", "ms", "of anew", "first");
+    fmt::print("{}, {} meshes; medians of {}\n{:22} {:>10} {:>10} {:>10}\n", name, meshes.size(),
+               repeats, "", "ms", "of anew", "first");
     for (const auto& [what, values] : times)
         fmt::print("{:22} {:10.1f} {:>10} {:10.1f}\n", what.substr(2), 1e3 * median(values),
                    fmt::format("1/{:.1f}", anew / median(values)), 1e3 * values.front());
+}
+
+Result<Done> run(const std::string& name, bool moves, bool only_calls, int repeats) {
+    Result<Scene> scene = open_scene(name, standard_error_log(LogLevel::Warning));
+    if (!scene)
+        return scene.error();
+    const std::vector<Mesh> meshes = meshes_of(scene->soup);
+    const test::Device device = test::open_device();
+    Changing changing(device, meshes, moves);
+    if (!only_calls)
+        compare_updates(name, device, changing, meshes, moves, repeats);
     for (int i = 0; i < 100; ++i) {
         const double time = 1.7 * i;
         if (i % 4 == 0)
@@ -234,18 +271,20 @@ Result<Done> run(const std::string& name, bool moves, int repeats) {
 
 int main(int count, char** arguments) {
     std::string scene;
-    bool moves = false;
+    bool moves = false, only_calls = false;
     int repeats = 5;
     for (int i = 1; i < count; ++i) {
         const std::string argument = arguments[i];
         if (argument == "--moves")
             moves = true;
+        else if (argument == "--calls")
+            only_calls = true;
         else if (argument == "--repeats" && i + 1 < count)
             repeats = std::max(std::atoi(arguments[++i]), 1);
         else
             scene = argument;
     }
-    const auto done = ovc::run(scene, moves, repeats);
+    const auto done = ovc::run(scene, moves, only_calls, repeats);
     if (!done)
         fmt::print(stderr, "updates_cost: {}\n", done.error().message);
     return done ? 0 : 1;

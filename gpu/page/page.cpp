@@ -136,6 +136,23 @@ Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress,
     return pack(PageItems(soup, leaf, progress, loose, name), leaf, progress);
 }
 
+Box box_of(const Page& page) {
+    const auto root = page.view().subspan(OVC_ROOT_UNIT * OVC_UNIT_TEXELS);
+    const GridHeader grid = header_of(page.view());
+    Box box;
+    for (size_t child = 0; child < 4; ++child) {
+        Box one;
+        for (int axis = 0; axis < 3; ++axis) {
+            const GridRange range = range_of(root[size_t(axis)], child);
+            one.lo[axis] = grid.middle[axis] + (double(range.lo) - kGridMiddle) * grid.cell[axis];
+            one.hi[axis] = grid.middle[axis] + (double(range.hi) - kGridMiddle) * grid.cell[axis];
+        }
+        if (!one.empty())
+            box.add(one);
+    }
+    return box;
+}
+
 uint32_t stack_depth(uint32_t depth) {
     // A ray needs at most one word a level, and the last word is on top of the stack, not in it.
     // The number is even, so that few programs serve all scenes.

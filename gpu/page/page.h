@@ -30,6 +30,9 @@ struct Page {
     }
 };
 
+/// Returns the box of the page's tree, in the frame of its leaf. All triangles lie inside.
+Box box_of(const Page& page);
+
 inline uint64_t total_bytes(std::span<const Page> pages) {
     uint64_t bytes = 0;
     for (const Page& page : pages)

@@ -12,8 +12,11 @@ namespace {
 
 class PageChecker {
 public:
-    PageChecker(const Page& page, uint32_t triangle_count)
-        : page_(page), texels_(page.view()), triangle_count_(triangle_count) {}
+    PageChecker(const Page& page, uint32_t triangle_count, uint32_t first_number)
+        : page_(page),
+          texels_(page.view()),
+          triangle_count_(triangle_count),
+          first_number_(first_number) {}
 
     bool check() {
         const uint64_t units = page_.units();
@@ -71,8 +74,7 @@ private:
             if ((texel(at.unit, 3).w & OVC_LOOSE_PAIR) && !page_.has_loose_pairs())
                 return false;
             const uint32_t b = texel(at.unit, 1).w;
-            return texel(at.unit, 0).w < triangle_count_ &&
-                   (b < triangle_count_ || b == OVC_NO_TRIANGLE);
+            return is_there(texel(at.unit, 0).w) && (is_there(b) || b == OVC_NO_TRIANGLE);
         }
         const uvec4& last = texel(at.unit, 3);
         if (last.y != 0 || last.z != 0 || last.w != 0 || at.depth > page_.depth)
@@ -84,6 +86,9 @@ private:
                 return false;
         return true;
     }
+
+    /// Whether a triangle has the number; those below the first wrap around.
+    bool is_there(uint32_t number) const { return number - first_number_ < triangle_count_; }
 
     bool is_missing(uint32_t unit, uint32_t child) const {
         for (uint32_t axis = 0; axis < 3; ++axis)
@@ -102,14 +107,15 @@ private:
     const Page& page_;
     const std::span<const uvec4> texels_;
     const uint32_t triangle_count_;
+    const uint32_t first_number_;
     std::vector<uint8_t> seen_; // per unit
     std::vector<Pending> pending_;
 };
 
 } // namespace
 
-bool is_walkable(const Page& page, uint32_t triangle_count) {
-    return PageChecker(page, triangle_count).check();
+bool is_walkable(const Page& page, uint32_t triangle_count, uint32_t first_number) {
+    return PageChecker(page, triangle_count, first_number).check();
 }
 
 } // namespace ovc

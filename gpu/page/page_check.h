@@ -9,8 +9,8 @@
 namespace ovc {
 
 /// Returns true if every walk of the page ends, stays within the page and within `page.depth` words
-/// of stack, and names only triangles below triangle_count. It does not check that boxes hold their
-/// triangles.
-bool is_walkable(const Page& page, uint32_t triangle_count);
+/// of stack, and names only triangles of triangle_count from first_number on. It does not check
+/// that boxes hold their triangles.
+bool is_walkable(const Page& page, uint32_t triangle_count, uint32_t first_number = 0);
 
 } // namespace ovc

@@ -216,15 +216,33 @@ private:
 
 } // namespace
 
+static void own_texels(Page& page) {
+    if (page.texels.empty()) // what it borrows is not ours to write
+        page.texels.assign(page.borrowed.begin(), page.borrowed.end());
+    page.borrowed = {};
+}
+
+void renumber(Page& page, uint32_t added) {
+    constexpr size_t kUnitGrain = 4096; // units a task
+    own_texels(page);
+    parallel_for(page.units(), kUnitGrain, [&](size_t begin, size_t end) {
+        for (size_t unit = begin; unit < end; ++unit) {
+            uvec4* const texel = page.texels.data() + unit * OVC_UNIT_TEXELS;
+            if (!(texel[3].w & OVC_PAIR))
+                continue;
+            texel[0].w += added;
+            texel[1].w += texel[1].w == OVC_NO_TRIANGLE ? 0 : added;
+        }
+    });
+}
+
 std::optional<RefitCost> refit_page(Page& page, const Soup& soup, const Numbering& numbers,
                                     const Leaf& leaf, const NumberSet* moved,
                                     std::vector<uint32_t>& parted) {
     assert(page.units() > OVC_ROOT_UNIT);
     if (page.has_loose_pairs())
         return std::nullopt;
-    if (page.texels.empty()) // what it borrows is not ours to write
-        page.texels.assign(page.borrowed.begin(), page.borrowed.end());
-    page.borrowed = {};
+    own_texels(page);
     return Refitter(page, soup, numbers, leaf, moved, parted).refit();
 }
 

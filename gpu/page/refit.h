@@ -45,4 +45,7 @@ std::optional<RefitCost> refit_page(Page& page, const Soup& soup, const Numberin
                                     const Leaf& leaf, const NumberSet* moved,
                                     std::vector<uint32_t>& parted);
 
+/// Adds `added` to the numbers by which the page names its triangles.
+void renumber(Page& page, uint32_t added);
+
 } // namespace ovc

@@ -129,6 +129,20 @@ TEST_P(Refit, FollowsSomeTrianglesFarAway) {
     }
 }
 
+TEST_P(Refit, RenumbersTrianglesAlone) {
+    constexpr uint32_t kAdded = 1000;
+    OnePage one(GetParam()().soup);
+    const uint32_t count = uint32_t(one.soup.triangle_count());
+    const Page before = one.page;
+    renumber(one.page, kAdded);
+    EXPECT_TRUE(is_walkable(one.page, count, kAdded));
+    EXPECT_FALSE(is_walkable(one.page, count, kAdded + 1));
+    EXPECT_FALSE(is_walkable(one.page, count - 1, kAdded));
+    EXPECT_EQ(one.page.texels, build_page(one.soup, Numbering(one.soup, kAdded), one.leaf).texels);
+    renumber(one.page, uint32_t(0) - kAdded);
+    EXPECT_EQ(one.page.texels, before.texels);
+}
+
 INSTANTIATE_TEST_SUITE_P(Soups, Refit, testing::Values(grid, random_triangles),
                          [](const auto& named) { return named.param().name; });
 

@@ -215,12 +215,12 @@ TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size
 void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place> places) {
     for (const LeafRange& part : parts_of(level1)) {
         const Leaf& leaf = level1.leaves[part.first];
+        std::vector<Portal> into;
         for (const Place& place : places) {
-            portals.push_back(portal_into(leaf.frame, leaf.grid, place.transform));
-            portals.back().tree = uint32_t(pages.size());
-            portals.back().first_number = place.first_number;
+            into.push_back(portal_into(leaf.frame, leaf.grid, place.transform));
+            into.back().first_number = place.first_number;
         }
-        pages.push_back({first_page + part.first, part.count});
+        add({first_page + part.first, part.count}, into);
     }
 }
 
@@ -242,6 +242,14 @@ void TopLevel::drop_far_triangles() {
     far_triangles.clear();
     for (Portal& portal : portals)
         portal.far = {};
+}
+
+void Parts::add(LeafRange part, std::span<const Portal> into) {
+    for (const Portal& portal : into) {
+        portals.push_back(portal);
+        portals.back().tree = uint32_t(pages.size());
+    }
+    pages.push_back(part);
 }
 
 TopLevel build_top_level(const Leaf& scene, Parts parts, std::span<const Page> pages,

@@ -9,6 +9,7 @@
 #include "gpu/page/portal.h"
 #include "gpu/page/residency.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 #include <optional>
@@ -33,19 +34,24 @@ struct TopLevel {
     std::vector<uint32_t> first_link; // for each page, and one past the last of all
     uint32_t depth = 0;               // nodes on the longest way down, pages included
     uint64_t spare_bytes = 0;         // behind it in the pool, for a larger one after an update
+    size_t max_portals = 0;           // if more than there are: room in their table, likewise
 
     /// Returns the bytes of the pool that no page lies in.
     uint64_t room() const { return tree.bytes() + spare_bytes; }
+    /// Returns the bytes of the table of portals, and of the part of it that is used.
+    uint64_t table_bytes() const { return table_bytes_of(std::max(portals.size(), max_portals)); }
+    uint64_t used_table_bytes() const { return table_bytes_of(portals.size()); }
     bool empty() const { return tree.texels.empty(); }
-    /// Returns the bytes of the table of portals.
-    uint64_t table_bytes() const {
-        return portals.size() * kPortalBytes + far_triangles.size() * kFarTriangleBytes;
-    }
     /// Lets rays go through the pages of far triangles instead.
     void drop_far_triangles();
     std::span<const Link> links_of(uint32_t page) const {
         assert(page + size_t(1) < first_link.size());
         return std::span(links).subspan(first_link[page], first_link[page + 1] - first_link[page]);
+    }
+
+private:
+    uint64_t table_bytes_of(size_t count) const {
+        return count * kPortalBytes + far_triangles.size() * kFarTriangleBytes;
     }
 };
 
@@ -98,6 +104,8 @@ struct Parts {
     /// Adds the parts of a level 1 that is not placed, and has the first pages. Its far triangles
     /// are found.
     void add(const Level1& level1, const NumberedSoup& numbered);
+    /// Adds a part that these portals lead to.
+    void add(LeafRange part, std::span<const Portal> into);
 };
 
 /// Builds the tree over parts. A part that is alone, and whose triangles count from 0, has the tree

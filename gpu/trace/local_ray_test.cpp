@@ -81,6 +81,45 @@ TEST(LocalRay, IsWhereTheRayIsBehindAPortal) {
         }
 }
 
+/// Returns a transform of any kind, which may stretch and shift by up to 2^range.
+Transform any_transform(test::Random& random, int range) {
+    Transform transform;
+    for (auto& row : transform.rows) {
+        const double stretch = std::exp2(random(-range, range));
+        row = {random(-1, 1) * stretch, random(-1, 1) * stretch, random(-1, 1) * stretch,
+               random(-1, 1) * std::exp2(random(-range, range))};
+    }
+    return transform;
+}
+
+TEST(WellMoved, CornersLieBehindAPortalWhereTheirMeshCameToRest) {
+    test::Random random(9);
+    int moved = 0, refused = 0;
+    double largest = 0;
+    for (int i = 0; i < 40000; ++i) {
+        const Box mesh{random.point(-2, -1), random.point(1, 2)};
+        const Transform from = any_transform(random, 6), to = any_transform(random, 12);
+        const Leaf scene = scene_leaf(placed_box(mesh, &from));
+        if (!is_well_placed(mesh, &from) || !is_well_placed(mesh, &to))
+            continue;
+        if (!is_well_moved(from, to, scene.grid)) {
+            ++refused;
+            continue;
+        }
+        ++moved;
+        const Transform way = then(*inverse(from), to);
+        const Portal portal = portal_into(scene.frame, scene.grid, &way);
+        for (int k = 0; k < 10; ++k) {
+            const dvec3 corner = glm::mix(mesh.lo, mesh.hi, random.point(0, 1));
+            const dvec3 off = portal.to_local(to(corner)) - scene.frame.to_local(from(corner));
+            largest = std::max(largest, max_component(glm::abs(off)));
+        }
+    }
+    EXPECT_LE(largest, 0x1p-30);
+    EXPECT_GT(moved, 1000);
+    EXPECT_GT(refused, 100);
+}
+
 TEST(LocalRay, ThatMissesTheBoxOrHasNoLengthIsNoRay) {
     const Leaf leaf = leaf_of(dvec3(0), 1);
     LocalTime time;

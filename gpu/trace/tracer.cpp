@@ -96,7 +96,7 @@ Tracer::Tracer(std::unique_ptr<Ledger> ledger, const MemoryPlan& plan, const Pas
         words_.emplace(*ledger_, max_slots_);
     else
         pixels_.emplace(*ledger_, plan.batch_rays);
-    if (has_portals())
+    if (top.table_bytes() > 0)
         portal_buffer_.emplace(*ledger_, top.table_bytes(), "portals");
     if (plan.active_bytes > 0)
         active_buffer_.emplace(*ledger_, plan.active_bytes, "active leaves");
@@ -160,7 +160,7 @@ void Tracer::upload_top_level() {
         for (const Link& link : top_.links_of(leaf))
             tree.texels[size_t(link.unit) * OVC_UNIT_TEXELS + 3].x = way_to(leaf, link);
     pool_.upload(0, tree);
-    if (!portal_buffer_)
+    if (!has_portals())
         return;
     const std::vector<uvec4> table = pack_portals(top_.portals, top_.far_triangles);
     glNamedBufferSubData(portal_buffer_->id(), 0, GLsizeiptr(table.size() * sizeof(uvec4)),
@@ -170,8 +170,8 @@ void Tracer::upload_top_level() {
 bool Tracer::update(const Box& bounds, std::span<const Page> pages, std::span<const uint32_t> was,
                     std::span<const uint32_t> changed) {
     assert(pages.size() == was.size());
-    if (top_.tree.bytes() > pool_.begin() || has_portals() != portal_buffer_.has_value() ||
-        (portal_buffer_ && top_.table_bytes() > portal_buffer_->bytes()) ||
+    const uint64_t table_bytes = portal_buffer_ ? portal_buffer_->bytes() : 0;
+    if (top_.tree.bytes() > pool_.begin() || top_.used_table_bytes() > table_bytes ||
         (active_buffer_ && pages.size() * sizeof(uint32_t) != active_buffer_->bytes()))
         return false;
     page_data_ = pages;

@@ -15,8 +15,15 @@ namespace ovc {
 uint64_t room_for_pool(const BuiltScene& scene, const TwoLevelOptions& options,
                        const MemoryPlan& plan) {
     const uint64_t active_bytes = options.tell_active ? scene.pages.size() * sizeof(uint32_t) : 0;
-    const uint64_t table_bytes = scene.top.table_bytes() + active_bytes;
-    return plan.pool_bytes - std::min(plan.pool_bytes, table_bytes);
+    return plan.pool_bytes - std::min(plan.pool_bytes, scene.top.table_bytes() + active_bytes);
+}
+
+/// Leaves room for what updates make of the tree: meshes that are home may leave through portals.
+static void leave_room(BuiltScene& scene) {
+    const auto home = size_t(std::ranges::count_if(scene.shared, &SharedMesh::is_home));
+    const size_t more = home > 0 ? home + 2 : 0; // with the way back, and one into the home
+    scene.top.max_portals = scene.top.portals.size() + more;
+    scene.top.spare_bytes = (scene.top.tree.units() / 8 + 1 + 4 * more) * OVC_UNIT_BYTES;
 }
 
 bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPlan& plan) {
@@ -36,9 +43,9 @@ bool add_tree(BuiltScene& scene, const TwoLevelOptions& options, const MemoryPla
         if (!is_fine())
             continue;
         if (scene.expects_updates())
-            scene.top.spare_bytes = (scene.top.tree.units() / 8 + 1) * OVC_UNIT_BYTES;
+            leave_room(scene);
         if (!is_fine())
-            scene.top.spare_bytes = 0;
+            scene.top.spare_bytes = scene.top.max_portals = 0;
         return true;
     }
     return false;
@@ -72,8 +79,11 @@ std::optional<BuiltScene> restored(const Soup& soup, const TwoLevelOptions& opti
     if (!*found)
         say(log, LogLevel::Info,
             "building anew: what was saved is of other meshes or other options");
-    else if (!add_tree(**found, options, plan))
-        return std::nullopt;
+    if (*found) {
+        set_limits(**found, options, plan);
+        if (!add_tree(**found, options, plan))
+            return std::nullopt;
+    }
     return std::move(*found);
 }
 

@@ -16,7 +16,7 @@ BuiltScene::BuiltScene(const Soup& soup_) : soup(soup_), numbers(soup_) {}
 BuiltScene::~BuiltScene() = default;
 BuiltScene::BuiltScene(BuiltScene&&) = default;
 
-SharedMesh& BuiltScene::share(const Placed::Instances& instances) {
+SharedMesh& BuiltScene::share(const Placed::Instances& instances, const Box& box) {
     assert(!instances.empty());
     mesh_of_chunk.resize(soup.chunks.size(), kNone);
     for (const uint32_t chunk : instances)
@@ -25,8 +25,34 @@ SharedMesh& BuiltScene::share(const Placed::Instances& instances) {
     local->chunks.push_back(soup.chunks[instances.front()].unplaced());
     BuiltScene cut(*local);
     cut.once = {0};
-    shared.push_back({std::move(local), std::move(cut), instances, 0});
+    shared.push_back(
+        {.soup = std::move(local), .scene = std::move(cut), .instances = instances, .box = box});
     return shared.back();
+}
+
+bool SharedMesh::lies_at_rest(const BuiltScene& all) const {
+    if (!rest || instances.size() != 1)
+        return false;
+    const uint32_t chunk = instances.front();
+    return rest_place().rows == or_identity(all.soup.chunks[chunk].transform()).rows &&
+           scene.numbers.first() == all.numbers.of({chunk, 0});
+}
+
+bool SharedMesh::has_frame_of(const BuiltScene& all) const {
+    if (!all.home || scene.level1.leaves.empty())
+        return false;
+    const Leaf& leaf = scene.level1.leaves.front();
+    return leaf.frame == all.home->frame && leaf.grid.lo == all.home->grid.lo &&
+           leaf.grid.hi == all.home->grid.hi;
+}
+
+void SharedMesh::put_to_rest(const Transform& place, uint32_t first_number) {
+    auto placed = std::make_unique<Soup>();
+    placed->chunks.push_back(soup->chunks.front().instance());
+    placed->chunks.front().place_anew(place);
+    rest = std::move(placed);
+    scene.packed = rest.get();
+    scene.numbers = Numbering(*soup, first_number);
 }
 
 const SharedMesh* BuiltScene::shared_mesh_of(uint32_t chunk) const {
@@ -188,10 +214,9 @@ class SharedParts {
 public:
     explicit SharedParts(BuiltScene& scene) : scene_(scene) {}
 
-    void take(const std::vector<Placed::Instances>& shared, std::vector<Hittable>& hittable,
-              BuildProgress* progress) {
-        for (const Placed::Instances& instances : shared) {
-            SharedMesh& mesh = scene_.share(instances);
+    void take(const Placed& placed, std::vector<Hittable>& hittable, BuildProgress* progress) {
+        for (size_t i = 0; i < placed.shared.size(); ++i) {
+            SharedMesh& mesh = scene_.share(placed.shared[i], placed.boxes[i]);
             hittable.push_back(take_hittable(mesh.scene, progress));
             mesh.scene.seconds_level1 = 0; // the scene's own count includes it
             look_for_lines(mesh);
@@ -254,7 +279,7 @@ HittableParts take_hittable_parts(BuiltScene& scene, Placed placed, BuildProgres
     parts.once.triangles =
         hittable_triangles(scene.soup, scene.once, &scene.dropped, &parts.once.bounds, progress);
     SharedParts shared(scene);
-    shared.take(placed.shared, parts.shared, progress);
+    shared.take(placed, parts.shared, progress);
     std::vector<TriangleId>& triangles = parts.once.triangles;
     triangles.insert(triangles.end(), shared.by_themselves().begin(), shared.by_themselves().end());
     std::ranges::sort(triangles);
@@ -269,13 +294,73 @@ void look_for_lines(SharedMesh& mesh, uint32_t first, uint32_t end) {
                      !on_a_line(mesh.soup->chunks.front(), first, end).empty();
 }
 
+namespace {
+
+/// Returns the box around the pages of a level whose leaves share a frame.
+Box box_around_pages(const BuiltScene& level) {
+    constexpr double kMargin = 0x1p-10; // of the box, as leaves have it
+    const Frame& frame = level.level1.leaves.front().frame;
+    Box box;
+    for (const Page& page : level.pages) {
+        const Box local = box_of(page);
+        box.add(Box{local.lo / frame.scale + frame.origin, local.hi / frame.scale + frame.origin});
+    }
+    return box.padded(kMargin * max_component(box.extent()) + box.rounding());
+}
+
+/// Adds a mesh that came to rest and has left since.
+void add_left(Parts& parts, const BuiltScene& scene, const SharedMesh& mesh) {
+    const BuiltScene& level = mesh.scene;
+    if (level.pages.empty())
+        return;
+    const Box box = box_around_pages(level);
+    const Transform back = *inverse(mesh.rest_place());
+    std::vector<Portal> into;
+    for (const uint32_t chunk : mesh.instances) {
+        const Transform moved = then(back, or_identity(scene.soup.chunks[chunk].transform()));
+        into.push_back(portal_into(level.level1.leaves.front().frame, box, &moved));
+        into.back().first_number = scene.numbers.of({chunk, 0}) - level.numbers.first();
+    }
+    parts.add({mesh.first_page, uint32_t(level.pages.size())}, into);
+}
+
+void add_unplaced(Parts& parts, const BuiltScene& scene, const SharedMesh& mesh) {
+    std::vector<Place> places;
+    for (const uint32_t chunk : mesh.instances)
+        places.push_back({scene.soup.chunks[chunk].transform(), scene.numbers.of({chunk, 0})});
+    parts.add(mesh.scene.level1, mesh.first_page, places);
+}
+
+} // namespace
+
+void find_home(BuiltScene& scene) {
+    const auto live_in = [&](const Leaf& leaf) {
+        scene.home = Leaf{.cell = {}, .box = leaf.box, .frame = leaf.frame, .grid = leaf.grid};
+    };
+    const Level1& level1 = scene.level1;
+    if (!level1.leaves.empty()) {
+        scene.home.reset();
+        if (level1.shares_frame)
+            live_in(level1.leaves.front());
+        return;
+    }
+    for (const SharedMesh& mesh : scene.shared)
+        if (!scene.home && mesh.lies_at_rest(scene) && !mesh.scene.level1.leaves.empty())
+            live_in(mesh.scene.level1.leaves.front());
+}
+
 void gather_pages(BuiltScene& scene) {
     assert(scene.pages.size() == scene.level1.leaves.size());
-    for (SharedMesh& mesh : scene.shared) {
-        mesh.first_page = uint32_t(scene.pages.size());
-        for (const Page& page : mesh.scene.pages)
-            scene.pages.push_back({.texels = {}, .borrowed = page.view(), .depth = page.depth});
-    }
+    for (SharedMesh& mesh : scene.shared)
+        mesh.is_home = mesh.lies_at_rest(scene) && mesh.has_frame_of(scene);
+    for (const bool home : {true, false})
+        for (SharedMesh& mesh : scene.shared) {
+            if (mesh.is_home != home)
+                continue;
+            mesh.first_page = uint32_t(scene.pages.size());
+            for (const Page& page : mesh.scene.pages)
+                scene.pages.push_back({.texels = {}, .borrowed = page.view(), .depth = page.depth});
+        }
 }
 
 TopLevel top_level_of(const BuiltScene& scene, size_t max_links) {
@@ -283,13 +368,17 @@ TopLevel top_level_of(const BuiltScene& scene, size_t max_links) {
     if (scene.shared.empty())
         return build_top_level(scene.level1, scene.pages, max_links, &numbered);
     Parts parts;
-    parts.add(scene.level1, numbered);
+    uint32_t pages = uint32_t(scene.level1.leaves.size()); // in the scene's own tree
+    for (const SharedMesh& mesh : scene.shared)
+        pages += mesh.is_home ? uint32_t(mesh.scene.pages.size()) : 0;
+    if (pages > scene.level1.leaves.size())
+        parts.add({0, pages}, std::array{portal_into(scene.home->frame, scene.home->grid)});
+    else
+        parts.add(scene.level1, numbered);
     for (const SharedMesh& mesh : scene.shared) {
         assert(mesh.first_page + mesh.scene.pages.size() <= scene.pages.size());
-        std::vector<Place> places;
-        for (const uint32_t chunk : mesh.instances)
-            places.push_back({scene.soup.chunks[chunk].transform(), scene.numbers.of({chunk, 0})});
-        parts.add(mesh.scene.level1, mesh.first_page, places);
+        if (!mesh.is_home)
+            (mesh.rest ? add_left : add_unplaced)(parts, scene, mesh);
     }
     return build_top_level(scene_leaf(scene.level1.bounds), std::move(parts), scene.pages,
                            max_links);

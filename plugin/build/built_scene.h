@@ -71,8 +71,9 @@ struct BuiltScene {
     ~BuiltScene();
     BuiltScene(BuiltScene&&);
 
-    const Soup& soup; // outlives the scene
-    Numbering numbers;
+    const Soup& soup;             // outlives the scene
+    const Soup* packed = nullptr; // the same triangles where pages have them; null: in `soup`
+    Numbering numbers;            // by which pages name triangles
     Dropped dropped;
     Duplicates duplicates;
     uint64_t triangles = 0; // in leaves, each counted once
@@ -82,8 +83,12 @@ struct BuiltScene {
     std::vector<uint32_t> mesh_of_chunk; // into `shared`, or kNone; empty where nothing is shared
     std::vector<uint32_t> once;          // the chunks that level 1 is cut from, as in Placed
     std::vector<Placed::Copies> copies;
-    /// pages[i] belongs to level1.leaves[i]. The pages of shared meshes follow, borrowed from them.
+    /// pages[i] belongs to level1.leaves[i]. The pages of shared meshes follow, borrowed from them:
+    /// first of those that are home.
     std::vector<Page> pages;
+    /// The frame and grid for pages of shared meshes that are home; those of level 1's leaves where
+    /// these share one.
+    std::optional<Leaf> home;
     TopLevel top; // over the pages
     bool from_saved = false;
     double built_overlap = 0; // of the level's own pages before the first update; 0: none yet
@@ -97,6 +102,8 @@ struct BuiltScene {
     /// where `id` does, where `id` stands for them all; `id` itself where there is none.
     TriangleId next_duplicate(TriangleId id, TriangleId after) const;
     bool stands_for_others(TriangleId id) const { return next_duplicate(id, id) != id; }
+
+    const Soup& packed_soup() const { return packed ? *packed : soup; }
 
     /// Returns the triangle that a ray which does not see `skip` meets in the place of `id`.
     TriangleId seen(TriangleId id, TriangleId skip) const {
@@ -120,8 +127,9 @@ struct BuiltScene {
     /// Returns the same for a ray with these exclusions, of which the kernel is told one.
     uint32_t number_to_skip(const Ray& ray, const Exclusion& without) const;
 
-    /// Adds the shared mesh of these chunks (not empty), of which nothing is built yet.
-    SharedMesh& share(const Placed::Instances& instances);
+    /// Adds the shared mesh of these chunks (not empty), of which nothing is built yet. box: of its
+    /// triangles, not placed.
+    SharedMesh& share(const Placed::Instances& instances, const Box& box);
     /// Returns the shared mesh that the chunk is an instance of; null where there is none.
     const SharedMesh* shared_mesh_of(uint32_t chunk) const;
     /// Returns the page around a point of the triangle, one that holds the triangle where there is
@@ -169,15 +177,32 @@ private:
     std::optional<TriangleId> first_copy_behind(TriangleId built, TriangleId after) const;
 };
 
-/// A mesh that lies in several places, cut and packed by itself.
+/// A mesh that lies in several places, or moves; cut and packed by itself.
 struct SharedMesh {
     std::unique_ptr<const Soup> soup; // of one chunk, not placed
     BuiltScene scene;                 // of that soup; pages number its triangles within the mesh
     Placed::Instances instances;
-    uint32_t first_page; // in the pages of the whole scene
+    uint32_t first_page = 0; // in the pages of the whole scene
     /// There are triangles on a line, which may get an area where an instance is placed. Those are
     /// cut with the triangles that are placed once.
     bool has_lines = false;
+    Box box; // of its triangles, not placed
+    /// The mesh as it was placed when it came to rest: its pages lie there, in the frame of the
+    /// scene, and have the scene's numbers. Null where it never did.
+    std::unique_ptr<const Soup> rest;
+    /// It still lies there, so its pages hang in the scene's own tree.
+    bool is_home = false;
+    uint32_t commits_in_place = 0; // since it was placed last
+    bool is_doubtful = false;      // the frame of the scene does not suit it where it is
+
+    /// Whether it is the only instance, and lies where it came to rest. all: the whole scene.
+    bool lies_at_rest(const BuiltScene& all) const;
+    /// Whether its pages lie in the scene's home.
+    bool has_frame_of(const BuiltScene& all) const;
+    const Transform& rest_place() const { return or_identity(rest->chunks.front().transform()); }
+    /// Takes its pages for those of a mesh that came to rest there, whose first triangle has that
+    /// number in the scene.
+    void put_to_rest(const Transform& place, uint32_t first_number);
 };
 
 /// The triangles that leaves are made of: those that can be hit, without duplicates.
@@ -206,7 +231,12 @@ inline void look_for_lines(SharedMesh& mesh) {
     look_for_lines(mesh, 0, mesh.soup->chunks.front().size());
 }
 
-/// Appends the pages of the shared meshes to those of the scene, all of which are built.
+/// Finds the home of a scene whose levels are there: the frame that level 1's leaves share, or that
+/// of meshes at rest if there are no such leaves.
+void find_home(BuiltScene& scene);
+
+/// Finds out which shared meshes are home, and appends their pages and those of the others to those
+/// of the scene, all of which are built.
 void gather_pages(BuiltScene& scene);
 
 /// Returns the tree over all pages, with portals to shared meshes, after gather_pages(). max_links:

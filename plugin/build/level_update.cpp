@@ -16,44 +16,15 @@ namespace {
 /// By how much the expected cost of a ray may grow before what has caused it is built again: in a
 /// page its tree, in a scene its level 1.
 constexpr double kMaxGrowth = 4.0 / 3;
-/// By what part of its size the space of a frame grows beyond what has left it, so that the next
-/// move need not leave it again.
-constexpr double kRoomToMove = 1.0 / 16;
 /// The late leaf has at most this part of a level's triangles, or some; else the leaves are cut
 /// anew.
 constexpr uint64_t kMaxLatePart = 64, kMaxLate = 64;
-
-bool contains(const Box& outer, const Box& inner) {
-    return inner.empty() || (outer.contains(inner.lo) && outer.contains(inner.hi));
-}
-
-Box with_room(const Box& box) {
-    return box.padded(kRoomToMove * max_component(box.extent()));
-}
 
 uint64_t count_of(std::span<const PrimRange> ranges) {
     uint64_t count = 0;
     for (const PrimRange& range : ranges)
         count += range.end - range.first;
     return count;
-}
-
-/// Returns the box of a page's tree, in the frame of its leaf.
-Box box_of(const Page& page) {
-    const auto root = page.view().subspan(OVC_ROOT_UNIT * OVC_UNIT_TEXELS);
-    const GridHeader grid = header_of(page.view());
-    Box box;
-    for (size_t child = 0; child < 4; ++child) {
-        Box one;
-        for (int axis = 0; axis < 3; ++axis) {
-            const GridRange range = range_of(root[size_t(axis)], child);
-            one.lo[axis] = grid.middle[axis] + (double(range.lo) - kGridMiddle) * grid.cell[axis];
-            one.hi[axis] = grid.middle[axis] + (double(range.hi) - kGridMiddle) * grid.cell[axis];
-        }
-        if (!one.empty())
-            box.add(one);
-    }
-    return box;
 }
 
 /// Returns how many of the scene's own pages a ray through all of them meets, by their areas. The
@@ -76,15 +47,16 @@ double overlap_of(const BuiltScene& scene) {
 
 } // namespace
 
-LevelUpdate::LevelUpdate(BuiltScene& scene, std::span<const PrimRange> changed,
+LevelUpdate::LevelUpdate(BuiltScene& scene, std::span<const PrimRange> changed, FrameChange frame,
                          BuildProgress* progress)
     : scene_(scene),
       changed_(changed),
+      frame_(frame),
       progress_(progress),
       moved_(scene.numbers.count()),
       gone_(scene.numbers.count()),
       listed_(scene.numbers.count()),
-      framed_(scene.level1.leaves.size(), 0) {
+      framed_(scene.level1.leaves.size(), frame.is_new) {
     assert(std::ranges::is_sorted(changed));
     for (uint32_t i = 0; i < framed_.size(); ++i)
         leaves_.push_back({i});
@@ -93,8 +65,16 @@ LevelUpdate::LevelUpdate(BuiltScene& scene, std::span<const PrimRange> changed,
             moved_.add(scene.numbers.of({range.mesh, prim}));
 }
 
+/// Whether anything changes, the reach of the frame included.
+bool LevelUpdate::is_needed() const {
+    const Level1& level1 = scene_.level1;
+    return !changed_.empty() || frame_.is_new ||
+           (level1.shares_frame && !level1.leaves.empty() &&
+            !contains(level1.leaves.front().grid, frame_.reach));
+}
+
 bool LevelUpdate::run() {
-    if (changed_.empty())
+    if (!is_needed())
         return true;
     if (scene_.level1.leaves.empty())
         return false;
@@ -113,7 +93,10 @@ bool LevelUpdate::run() {
     Level1& level1 = scene_.level1;
     level1.nodes.assign(1, KdNode::leaf(0, uint32_t(level1.leaves.size())));
     level1.far_leaves = 0;
-    return !level1.leaves.empty() && overlap_of(scene_) <= kMaxGrowth * scene_.built_overlap;
+    if (frame_.is_new)
+        scene_.built_overlap = 0; // boxes along other axes are others
+    return !level1.leaves.empty() &&
+           (frame_.is_new || overlap_of(scene_) <= kMaxGrowth * scene_.built_overlap);
 }
 
 bool LevelUpdate::hits(TriangleId id) const {
@@ -202,7 +185,7 @@ Box LevelUpdate::bounds_of_moved(const Leaf& leaf) const {
         [&](size_t first, size_t last, Box box) {
             for (size_t i = first; i < last; ++i)
                 if (is_changed(leaf.triangles[i]))
-                    box.add(bounds_of(scene_.soup.triangle(leaf.triangles[i])));
+                    box.add(bounds_of(packed(leaf.triangles[i])));
             return box;
         },
         [](Box a, const Box& b) {
@@ -211,28 +194,47 @@ Box LevelUpdate::bounds_of_moved(const Leaf& leaf) const {
         });
 }
 
+/// Returns the bounds of the changed triangles where the pages have them.
+Box LevelUpdate::bounds_of_packed() const {
+    if (!scene_.packed || moved_bounds_.empty())
+        return moved_bounds_;
+    const Level1& level1 = scene_.level1;
+    const Box about = placed_box(moved_bounds_, scene_.packed->chunks.front().transform());
+    if (contains(level1.bounds, about))
+        return about;
+    Box all;
+    for (const Leaf& leaf : level1.leaves)
+        all.add(bounds_of_moved(leaf));
+    return all;
+}
+
 /// Gives leaves that their triangles have left a new frame. A changed leaf is no cell any more: it
 /// holds all of its triangles.
 void LevelUpdate::fit_frames() {
     Level1& level1 = scene_.level1;
-    Box all = moved_bounds_;
+    Box all = bounds_of_packed();
     for (const TriangleId id : come_)
-        all.add(bounds_of(scene_.soup.triangle(id)));
-    const bool leaves_scene = !contains(level1.bounds, all);
-    if (leaves_scene) {
-        level1.bounds.add(all);
-        level1.bounds = with_room(level1.bounds);
-        level1.padding = padding_of(level1.bounds);
-    }
-    if (level1.shares_frame) {
-        if (leaves_scene || !contains(level1.leaves.front().grid, all)) {
-            share_frame(level1);
-            std::ranges::fill(framed_, 1);
-        }
+        all.add(bounds_of(packed(id)));
+    if (!level1.shares_frame) {
+        if (!contains(level1.bounds, all))
+            grow_bounds(all);
+        for (const LeafRange& part : parts_of(level1))
+            share_new_frame(part);
         return;
     }
-    for (const LeafRange& part : parts_of(level1))
-        share_new_frame(part);
+    all.add(frame_.reach);
+    if (contains(level1.bounds, all) && contains(level1.leaves.front().grid, all))
+        return;
+    grow_bounds(all);
+    share_frame(level1);
+    std::ranges::fill(framed_, 1);
+}
+
+void LevelUpdate::grow_bounds(const Box& to) {
+    Level1& level1 = scene_.level1;
+    level1.bounds.add(to);
+    level1.bounds = with_room(level1.bounds);
+    level1.padding = padding_of(level1.bounds);
 }
 
 /// Gives a part of the scene a new frame where its triangles have left that which it has.
@@ -259,8 +261,8 @@ void LevelUpdate::share_new_frame(LeafRange part) {
 /// Gives the leaf these triangles, and a box that holds all of them.
 void LevelUpdate::fill(Leaf& leaf, std::vector<TriangleId> triangles) const {
     const Level1& level1 = scene_.level1;
-    Leaf filled = make_leaf(scene_.soup, level1.bounds.padded(level1.padding), level1.padding,
-                            std::move(triangles));
+    Leaf filled = make_leaf(scene_.packed_soup(), level1.bounds.padded(level1.padding),
+                            level1.padding, std::move(triangles));
     filled.cell = filled.box;
     if (!leaf.box.empty()) {
         filled.frame = leaf.frame;
@@ -273,8 +275,8 @@ void LevelUpdate::rebuild(uint32_t number) {
     Leaf& leaf = scene_.level1.leaves[number];
     Page& page = scene_.pages[number];
     fill(leaf, std::move(leaf.triangles));
-    page =
-        build_page(scene_.soup, scene_.numbers, leaf, progress_, {page.has_loose_pairs(), copies_});
+    page = build_page(scene_.packed_soup(), scene_.numbers, leaf, progress_,
+                      {page.has_loose_pairs(), copies_});
 }
 
 /// Returns whether the page is still about as good as it was when it was built.
@@ -282,7 +284,7 @@ bool LevelUpdate::refit(uint32_t leaf) {
     Page& page = scene_.pages[leaf];
     std::vector<uint32_t> parted;
     const std::optional<RefitCost> cost =
-        refit_page(page, scene_.soup, scene_.numbers, scene_.level1.leaves[leaf],
+        refit_page(page, scene_.packed_soup(), scene_.numbers, scene_.level1.leaves[leaf],
                    framed_[leaf] ? nullptr : &moved_, parted);
     if (!cost)
         return false;
@@ -384,7 +386,7 @@ bool LevelUpdate::fill_late_leaf() {
                 .grid = level1.leaves.front().grid};
     fill(leaf, std::move(late));
     scene_.pages[scene_.late_leaf] =
-        build_page(scene_.soup, scene_.numbers, leaf, progress_, LoosePairs());
+        build_page(scene_.packed_soup(), scene_.numbers, leaf, progress_, LoosePairs());
     leaves_[scene_.late_leaf].work = Work::Rebuild;
     return true;
 }

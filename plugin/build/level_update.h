@@ -14,12 +14,30 @@
 
 namespace ovc {
 
+inline bool contains(const Box& outer, const Box& inner) {
+    return inner.empty() || (outer.contains(inner.lo) && outer.contains(inner.hi));
+}
+
+/// Returns the box for a frame that something has left: larger by a part of its size, so that the
+/// next move need not leave it again.
+inline Box with_room(const Box& box) {
+    constexpr double kRoomToMove = 1.0 / 16;
+    return box.padded(kRoomToMove * max_component(box.extent()));
+}
+
 /// Updates the scene's duplicates, leaves and pages, but not those of its shared meshes.
 class LevelUpdate {
 public:
+    /// How the frame of the leaves changes, where they share one.
+    struct FrameChange {
+        bool is_new = false; // the frame is another one, or the place of all triangles in it
+        Box reach = {};      // lies inside afterwards
+    };
+
     /// changed: sorted and disjoint, of chunks that the level is cut from; they have been placed
     /// anew, have new corners, or are empty now.
-    LevelUpdate(BuiltScene& scene, std::span<const PrimRange> changed, BuildProgress* progress);
+    LevelUpdate(BuiltScene& scene, std::span<const PrimRange> changed, FrameChange frame,
+                BuildProgress* progress);
 
     /// Returns false where the scene must be built anew.
     bool run();
@@ -46,9 +64,13 @@ private:
     void drop_empty_leaves();
     void count_dropped();
 
+    bool is_needed() const;
+    Triangle packed(TriangleId id) const { return scene_.packed_soup().triangle(id); }
     bool hits(TriangleId id) const;
     bool is_changed(TriangleId id) const { return moved_.has(scene_.numbers.of(id)); }
     Box bounds_of_moved(const Leaf& leaf) const;
+    Box bounds_of_packed() const;
+    void grow_bounds(const Box& to);
     void share_new_frame(LeafRange part);
     void fill(Leaf& leaf, std::vector<TriangleId> triangles) const;
     bool refit(uint32_t leaf);
@@ -56,6 +78,7 @@ private:
 
     BuiltScene& scene_;
     const std::span<const PrimRange> changed_;
+    const FrameChange frame_;
     BuildProgress* const progress_;
     NumberSet moved_;              // the changed triangles
     NumberSet gone_;               // those of them that no ray can hit

@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kKind = "ovc levels";
 /// The version must be raised when a build makes other leaves or pages of the same soup. A change
 /// of layout.h is noticed without that.
-constexpr uint32_t kVersion = 8;
+constexpr uint32_t kVersion = 9;
 
 /// A build makes the same levels where all of its key is the same.
 struct Key {
@@ -46,8 +46,10 @@ struct SavedCut {
     uint64_t far_leaves = 0;
     Box bounds;
     double padding = 0;
+    uint64_t rests = 0;               // 1: a mesh that came to rest
+    Transform rest_place = kIdentity; // where it did
 };
-static_assert(sizeof(SavedCut) == 15 * 8);
+static_assert(sizeof(SavedCut) == 28 * 8);
 
 struct SavedLeaf {
     Box cell;
@@ -232,10 +234,11 @@ private:
                 {.texels = {}, .borrowed = *texels, .depth = uint32_t(saved.depth)});
         }
         const auto triangle_count = uint32_t(scene_.soup.triangle_count());
+        const uint32_t first_number = scene_.numbers.first();
         std::atomic<bool> walkable{true};
         parallel_for(scene_.pages.size(), 1, [&](size_t first, size_t last) {
             for (size_t i = first; i < last && walkable; ++i)
-                if (!is_walkable(scene_.pages[i], triangle_count))
+                if (!is_walkable(scene_.pages[i], triangle_count, first_number))
                     walkable = false;
         });
         return walkable;
@@ -268,6 +271,18 @@ Result<Arrays> arrays_of(const Archive& archive) {
     return Arrays{*duplicates, *nodes, *leaves, *lists, *pages, *texels};
 }
 
+/// Whether rays can come to a mesh that was saved at rest.
+bool can_rest(const SharedMesh& mesh, const Soup& soup) {
+    const auto& leaves = mesh.scene.level1.leaves;
+    if (!mesh.rest || leaves.empty())
+        return true;
+    return mesh.scene.level1.shares_frame &&
+           std::ranges::all_of(mesh.instances, [&](uint32_t chunk) {
+               return is_well_moved(mesh.rest_place(), or_identity(soup.chunks[chunk].transform()),
+                                    leaves.front().grid);
+           });
+}
+
 Result<BuiltScene> restored(const Archive& archive, std::span<const SavedCut> cuts,
                             const Soup& soup) {
     assert(!cuts.empty());
@@ -283,11 +298,15 @@ Result<BuiltScene> restored(const Archive& archive, std::span<const SavedCut> cu
     if (cuts.size() != 1 + placed.shared.size())
         return kUnsound;
     for (size_t i = 0; i < placed.shared.size(); ++i) {
-        SharedMesh& mesh = scene.share(placed.shared[i]);
-        if (!CutReader(cuts[i + 1], *arrays, mesh.scene).read())
+        SharedMesh& mesh = scene.share(placed.shared[i], placed.boxes[i]);
+        const SavedCut& cut = cuts[i + 1];
+        if (cut.rests)
+            mesh.put_to_rest(cut.rest_place, scene.numbers.of({mesh.instances.front(), 0}));
+        if (!CutReader(cut, *arrays, mesh.scene).read() || !can_rest(mesh, soup))
             return kUnsound;
         look_for_lines(mesh);
     }
+    find_home(scene);
     if (!arrays->all_read())
         return kUnsound;
     gather_pages(scene);
@@ -304,6 +323,10 @@ std::vector<const BuiltScene*> cuts_of(const BuiltScene& scene) {
 
 SavedCut saved_cut(const BuiltScene& scene) {
     SavedCut cut;
+    if (scene.packed) {
+        cut.rests = 1;
+        cut.rest_place = or_identity(scene.packed->chunks.front().transform());
+    }
     cut.not_finite = scene.dropped.not_finite;
     cut.degenerate = scene.dropped.degenerate;
     cut.duplicates = scene.duplicates.count();
@@ -333,10 +356,13 @@ bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
             leaves.push_back({leaf.cell, leaf.box, leaf.grid, leaf.frame.origin, leaf.frame.scale,
                               leaf.triangles.size()});
     }
-    std::vector<SavedPage> pages; // scene.pages has all of them, in the same order
-    assert(scene.pages.size() == leaves.size());
-    for (const Page& page : scene.pages)
-        pages.push_back({page.view().size(), page.depth});
+    std::vector<SavedPage> pages;
+    const auto for_each_page = [&](auto&& visit) {
+        for (const BuiltScene* cut : scenes)
+            for (size_t i = 0; i < cut->level1.leaves.size(); ++i)
+                visit(cut->pages[i]); // those of the first go on with all others
+    };
+    for_each_page([&](const Page& page) { pages.push_back({page.view().size(), page.depth}); });
 
     ArchiveWriter writer(sink, kKind, kVersion);
     writer.part<Key>("key", std::span(&key, 1));
@@ -354,8 +380,7 @@ bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
             writer.write(bytes_of(std::span<const TriangleId>(leaf.triangles)));
     writer.part<SavedPage>("pages", pages);
     writer.begin("texels");
-    for (const Page& page : scene.pages)
-        writer.write(bytes_of(page.view()));
+    for_each_page([&](const Page& page) { writer.write(bytes_of(page.view())); });
     return writer.finish();
 }
 

@@ -97,10 +97,12 @@ Placed placed_chunks(const Soup& soup, const KnownBox& known_box) {
                 (pays || moves(chunk)) && is_well_placed(box, soup.chunks[chunk].transform());
             (may_share ? shared : placed.once).push_back(chunk);
         }
-        if (shared.size() > 1 || (any_moves && !shared.empty()))
+        if (shared.size() > 1 || (any_moves && !shared.empty())) {
             placed.shared.push_back(std::move(shared));
-        else
+            placed.boxes.push_back(box);
+        } else {
             placed.once.insert(placed.once.end(), shared.begin(), shared.end());
+        }
     }
     std::ranges::sort(placed.once);
     std::ranges::sort(placed.copies);

@@ -22,6 +22,7 @@ struct Placed {
 
     std::vector<uint32_t> once;    // sorted; their triangles are cut together
     std::vector<Instances> shared; // in the order of their meshes
+    std::vector<Box> boxes;        // of the triangles of each of them, not placed
     std::vector<Copies> copies;    // sorted
 };
 

@@ -6,6 +6,7 @@
 #include "plugin/build/build_scene.h"
 #include "plugin/build/level2.h"
 #include "plugin/build/level_update.h"
+#include "plugin/build/resting.h"
 
 #include <algorithm>
 #include <cassert>
@@ -35,6 +36,7 @@ public:
           soup_(scene.soup),
           changes_(changes),
           moved_(joined(changes.moved)),
+          resting_(scene, changes.placed),
           options_(options),
           plan_(plan),
           progress_(progress) {}
@@ -46,16 +48,18 @@ public:
             return std::nullopt;
         begin(progress_, "update", 0.9, std::max<uint64_t>(scene_.reference_count(), 1));
         unique_ = unique_triangles(soup_, placed);
+        choose_resting(placed);
         scene_.numbers.append(soup_);
         scene_.copies = std::move(placed.copies);
         scene_.pages.resize(scene_.level1.leaves.size());
         for (const SharedMesh& mesh : scene_.shared)
             take_drops_off(mesh);
-        if (!update_once() || !update_shared(placed.shared))
+        if (!update_once() || !update_shared(placed))
             return std::nullopt;
         scene_.once = std::move(placed.once);
         scene_.was_updated = true;
         gather_pages(scene_);
+        note_pages();
         if (!add_tree(scene_, options_, plan_))
             return std::nullopt;
         scene_.from_saved = false;
@@ -74,7 +78,7 @@ private:
             chunk < scene_.mesh_of_chunk.size() ? scene_.shared_mesh_of(chunk) : nullptr;
         if (!mesh)
             return std::nullopt;
-        Box box = mesh->scene.level1.bounds;
+        Box box = mesh->box;
         uint64_t moved = 0;
         for (const PrimRange& range : moved_of(chunk)) {
             moved += range.end - range.first;
@@ -106,6 +110,24 @@ private:
         return count <= OVC_MAX_TRIANGLES;
     }
 
+    void choose_resting(const Placed& placed) {
+        Box bounds;
+        for (size_t i = 0; i < placed.shared.size(); ++i)
+            for (const uint32_t chunk : placed.shared[i])
+                bounds.add(placed_box(placed.boxes[i], soup_.chunks[chunk].transform()));
+        resting_.set_bounds(bounds);
+        for (size_t i = 0; i < placed.shared.size(); ++i) {
+            const uint32_t was = mesh_of(placed.shared[i], scene_.mesh_of_chunk);
+            if (was == kNone || placed.shared[i].size() > 1)
+                continue;
+            const uint32_t chunk = placed.shared[i].front();
+            uint64_t moved = 0;
+            for (const PrimRange& range : moved_of(chunk))
+                moved += range.end - range.first;
+            resting_.consider(scene_.shared[was], chunk, placed.boxes[i], moved, unique_);
+        }
+    }
+
     bool update_once() {
         std::vector<PrimRange> changed;
         const auto add = [&](const PrimRange& range) {
@@ -116,36 +138,61 @@ private:
         std::ranges::for_each(changes_.removed, add);
         for (const uint32_t chunk : changes_.placed)
             add({chunk, 0, soup_.chunks[chunk].size()});
-        return update_level(scene_, joined(std::move(changed)), 0);
-    }
-
-    /// Updates a level whose pages begin with `first_page`.
-    bool update_level(BuiltScene& level, std::span<const PrimRange> changed, uint32_t first_page) {
-        LevelUpdate update(level, changed, progress_);
-        if (!update.run())
+        if (!update_level(scene_, joined(std::move(changed)), {.reach = resting_.reach()}, 0))
             return false;
-        for (const LevelUpdate::LeafChange& leaf : update.leaves()) {
-            if (leaf.work != LevelUpdate::Work::None && leaf.was != kNone)
-                done_.changed.push_back(uint32_t(done_.was.size()));
-            done_.was.push_back(leaf.was == kNone ? kNone : first_page + leaf.was);
-            done_.refitted += leaf.work == LevelUpdate::Work::Refit;
-            done_.rebuilt += leaf.work == LevelUpdate::Work::Rebuild;
-        }
+        resting_.find_home();
         return true;
     }
 
+    /// Updates a level whose pages begin with `first_page`.
+    bool update_level(BuiltScene& level, std::span<const PrimRange> changed,
+                      LevelUpdate::FrameChange frame, uint32_t first_page) {
+        LevelUpdate update(level, changed, frame, progress_);
+        if (!update.run())
+            return false;
+        for (const LevelUpdate::LeafChange& leaf : update.leaves()) {
+            done_.refitted += leaf.work == LevelUpdate::Work::Refit;
+            done_.rebuilt += leaf.work == LevelUpdate::Work::Rebuild;
+        }
+        levels_.push_back({first_page, update.leaves()});
+        return true;
+    }
+
+    /// Tells what has become of the pages of all levels, which are gathered again.
+    void note_pages() {
+        done_.was.assign(scene_.pages.size(), kNone);
+        for (size_t level = 0; level < levels_.size(); ++level) {
+            uint32_t page = level == 0 ? 0 : scene_.shared[level - 1].first_page;
+            for (const LevelUpdate::LeafChange& leaf : levels_[level].leaves) {
+                if (leaf.was != kNone) {
+                    done_.was[page] = levels_[level].first_page_before + leaf.was;
+                    if (leaf.work != LevelUpdate::Work::None)
+                        done_.changed.push_back(page);
+                }
+                ++page;
+            }
+        }
+    }
+
     /// Keeps the meshes that are placed still, and builds those that are new.
-    bool update_shared(const std::vector<Placed::Instances>& placed) {
+    bool update_shared(const Placed& placed) {
         std::vector<SharedMesh> before = std::exchange(scene_.shared, {});
         const std::vector<uint32_t> mesh_before = std::exchange(scene_.mesh_of_chunk, {});
-        if (placed.empty() && !before.empty())
+        if (placed.shared.empty() && !before.empty())
             return false; // without portals, pages must lie in the frame of the scene
-        if (!placed.empty())
+        if (!placed.shared.empty())
             scene_.mesh_of_chunk.assign(soup_.chunks.size(), kNone);
-        for (const Placed::Instances& instances : placed) {
+        for (size_t i = 0; i < placed.shared.size(); ++i) {
+            const Placed::Instances& instances = placed.shared[i];
             const uint32_t was = mesh_of(instances, mesh_before);
-            if (!(was != kNone ? keep(std::move(before[was]), instances) : build(instances)))
-                return false;
+            if (was == kNone) {
+                if (!build(instances, placed.boxes[i]))
+                    return false;
+            } else {
+                before[was].box = placed.boxes[i];
+                if (!keep(std::move(before[was]), instances))
+                    return false;
+            }
             enter(scene_.shared.back());
         }
         return true;
@@ -169,7 +216,9 @@ private:
             scene_.mesh_of_chunk[chunk] = uint32_t(scene_.shared.size());
         }
         changed = joined(std::move(changed));
-        const bool updated = update_level(mesh.scene, changed, mesh.first_page);
+        const std::optional<bool> rests = resting_.prepare(mesh);
+        const bool updated =
+            rests && update_level(mesh.scene, changed, {.is_new = *rests}, mesh.first_page);
         for (const PrimRange& range : changed)
             if (!mesh.has_lines)
                 look_for_lines(mesh, range.first, range.end);
@@ -178,15 +227,16 @@ private:
         return updated && !has_lines;
     }
 
-    bool build(const Placed::Instances& instances) {
-        SharedMesh& shared = scene_.share(instances);
+    bool build(const Placed::Instances& instances, const Box& box) {
+        SharedMesh& shared = scene_.share(instances, box);
         BuiltScene& mesh = shared.scene;
         const Hittable hittable = take_hittable(mesh, progress_);
         look_for_lines(shared);
         mesh.limits = limits_of(options_, plan_, mesh.triangles, unique_);
         const bool built = bool(build_levels(mesh, hittable, progress_, 0));
         done_.rebuilt += mesh.pages.size();
-        done_.was.resize(done_.was.size() + mesh.pages.size(), kNone);
+        levels_.push_back(
+            {kNone, std::vector<LevelUpdate::LeafChange>(mesh.pages.size(), {kNone})});
         return built && !shared.has_lines;
     }
 
@@ -199,7 +249,7 @@ private:
     void enter(const SharedMesh& mesh) {
         scene_.dropped.not_finite += mesh.instances.size() * mesh.scene.dropped.not_finite;
         scene_.dropped.degenerate += mesh.instances.size() * mesh.scene.dropped.degenerate;
-        const Box& box = mesh.scene.level1.bounds;
+        const Box& box = mesh.box;
         Level1& level1 = scene_.level1;
         if (box.empty())
             return;
@@ -212,10 +262,16 @@ private:
     const Soup& soup_;
     const Changes& changes_;
     const std::vector<PrimRange> moved_; // sorted and joined
+    Resting resting_;
     const TwoLevelOptions& options_;
     const MemoryPlan& plan_;
     BuildProgress* const progress_;
     uint64_t unique_ = 0; // triangles that are packed
+    struct Level {
+        uint32_t first_page_before;
+        std::vector<LevelUpdate::LeafChange> leaves;
+    };
+    std::vector<Level> levels_; // the scene's own, then those of the shared meshes
     PageChanges done_;
 };
 

@@ -32,8 +32,7 @@ static MemoryPlan plan_for(const Tracing& tracing, MemoryPlan plan) {
 
 /// Returns the bytes that the plan's buffers take.
 static uint64_t bytes_of(const BuiltScene& scene, const MemoryPlan& plan) {
-    return plan.ray_bytes() + plan.pool_bytes + plan.active_bytes +
-           scene.top.table_bytes();
+    return plan.ray_bytes() + plan.pool_bytes + plan.active_bytes + scene.top.table_bytes();
 }
 
 PassRunner::PassRunner(const Tracing& tracing, GlThread& gl, const MemoryPlan& plan, LogSink log)
