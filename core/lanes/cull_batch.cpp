@@ -3,6 +3,7 @@
 #include "core/lanes/cull_batch.h"
 
 #include "core/exact/double_parts.h"
+#include "core/exact/exact.h"
 #include "core/exact/rounding.h"
 
 #include <algorithm>
@@ -21,6 +22,34 @@ void put(double (&to)[3], double x, double y, double z) {
     to[0] = x;
     to[1] = y;
     to[2] = z;
+}
+void put(double (&to)[3], const dvec3& v) {
+    put(to, v.x, v.y, v.z);
+}
+
+double largest(const dvec3& v) {
+    return max_component(glm::abs(v));
+}
+
+/// Where the ray comes from far away, differences to its origin would lose the triangles.
+void set_reference(CullRay& ray, const Ray& line, const Triangle& near) {
+    put(ray.reference, line.org);
+    const double size = std::max(largest(near[1] - near[0]), largest(near[2] - near[0]));
+    if (!(largest(line.org - near[0]) > 1024 * size))
+        return;
+    const Vec3Of<Exact> moment = cross(exact(line.org) - exact(near[0]), exact(line.dir));
+    dvec3 high(0), low(0);
+    int axis = 0;
+    for (const Exact& part : {moment.x, moment.y, moment.z}) {
+        high[axis] = Exact::quotient(part, Exact(1));
+        low[axis] = Exact::quotient(part - Exact(high[axis]), Exact(1));
+        ++axis;
+    }
+    if (!(largest(high) < 1e300))
+        return; // it may lie beyond all doubles
+    put(ray.reference, near[0]);
+    put(ray.moment_high, high);
+    put(ray.moment_low, low);
 }
 
 using Difference = Vec3Of<DoubleDouble>;
@@ -85,7 +114,7 @@ void set_plane(CullRay& ray, const PreparedRay& p, const Triangle& triangle) {
 
 } // namespace
 
-CullRay cull_ray(const PreparedRay& p) {
+CullRay cull_ray(const PreparedRay& p, const Triangle& near) {
     CullRay ray{};
     ray.kx = p.kx;
     ray.ky = p.ky;
@@ -93,10 +122,11 @@ CullRay cull_ray(const PreparedRay& p) {
     ray.sx = p.sx;
     ray.sy = p.sy;
     ray.sz = p.sz;
-    put(ray.org, p.ray.org.x, p.ray.org.y, p.ray.org.z);
-    put(ray.dir, p.ray.dir.x, p.ray.dir.y, p.ray.dir.z);
+    put(ray.org, p.ray.org);
+    put(ray.dir, p.ray.dir);
     ray.t_min = p.ray.t_min;
     ray.t_max = p.ray.t_max;
+    set_reference(ray, p.ray, near);
     return ray;
 }
 
@@ -109,8 +139,7 @@ void note_hit(CullRay& ray, const PreparedRay& p, const ComparedHit& nearest) {
     ray.key = key_of(found.hit.id);
     ray.support_count = 0;
     for (int i = 0; i < 3; ++i) {
-        put(ray.corner[i], nearest.triangle[size_t(i)].x, nearest.triangle[size_t(i)].y,
-            nearest.triangle[size_t(i)].z);
+        put(ray.corner[i], nearest.triangle[size_t(i)]);
         if (found.support != Candidate::kAllCorners && (found.support >> i & 1))
             ray.support[ray.support_count++] = i;
     }
@@ -120,15 +149,22 @@ void note_hit(CullRay& ray, const PreparedRay& p, const ComparedHit& nearest) {
 }
 
 uint64_t CullBatch::cull_all(uint64_t left) {
+    if (!ray_) {
+        Triangle first;
+        for (size_t i = 0; i < 3; ++i)
+            for (size_t axis = 0; axis < 3; ++axis)
+                first[i][int(axis)] = lanes_[0].corner[i][axis][0];
+        ray_ = cull_ray(p_, first);
+    }
     if (has_new_hit()) {
-        note_hit(ray_, p_, nearest_.best());
+        note_hit(*ray_, p_, nearest_.best());
         noted_ = nearest_.best().found.hit.id;
     }
     uint64_t result = 0;
     for (uint32_t i = 0; i < lanes_.size(); ++i) {
         const uint64_t asked = left >> i * kLanes & CullLanes::kAll;
         if (asked != 0)
-            result |= (cull(ray_, lanes_[i]) & asked) << i * kLanes;
+            result |= (cull(*ray_, lanes_[i]) & asked) << i * kLanes;
     }
     return result;
 }

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cassert>
 #include <cstdint>
+#include <optional>
 
 namespace ovc {
 
@@ -16,8 +17,8 @@ namespace ovc {
 inline long long key_of(TriangleId id) {
     return std::bit_cast<long long>((uint64_t(id.mesh) << 32 | id.prim) ^ uint64_t(1) << 63);
 }
-/// Returns the ray for cull(), without a hit.
-CullRay cull_ray(const PreparedRay& p);
+/// Returns the ray for cull(), without a hit. near: one of the triangles, which is finite.
+CullRay cull_ray(const PreparedRay& p, const Triangle& near);
 /// Notes the nearest hit so far.
 void note_hit(CullRay& ray, const PreparedRay& p, const ComparedHit& nearest);
 
@@ -25,9 +26,9 @@ void note_hit(CullRay& ray, const PreparedRay& p, const ComparedHit& nearest);
 class CullBatch {
 public:
     static constexpr uint32_t kCount = 64;
+    static constexpr size_t kStride = CullLanes::kCount;
 
-    CullBatch(const PreparedRay& p, const Nearest& nearest)
-        : p_(p), nearest_(nearest), ray_(cull_ray(p)) {}
+    CullBatch(const PreparedRay& p, const Nearest& nearest) : p_(p), nearest_(nearest) {}
 
     bool full() const { return count_ == kCount; }
 
@@ -37,14 +38,18 @@ public:
         numbers_[count_++] = number;
     }
 
-    /// Empties the batch. Calls id(number) and triangle(id) for all, and offer(id) -> bool (true:
-    /// stop) for those that may be the nearest, until one of the calls stops it; returns whether
-    /// one did. offer() offers the triangle to the Nearest.
-    template <class Id, class TriangleOf, class Offer>
-    bool finish(Id&& id, TriangleOf&& triangle, Offer&& offer) {
+    /// Empties the batch. Calls id(number) for all, put(id, to, stride) to write their coordinates
+    /// as Chunk::put_triangle<kStride>() does, and offer(id) -> bool (true: stop) for those that
+    /// may be the nearest, until one of the calls stops it; returns whether one did. offer() offers
+    /// the triangle to the Nearest.
+    template <class Id, class Put, class Offer>
+    bool finish(Id&& id, Put&& put, Offer&& offer) {
         for (uint32_t i = 0; i < count_; ++i) {
+            CullLanes& lanes = lanes_[i / kLanes];
+            const uint32_t lane = i % kLanes;
             ids_[i] = id(numbers_[i]);
-            put(i, triangle(ids_[i]));
+            put(ids_[i], &lanes.corner[0][0][lane]);
+            lanes.key[lane] = key_of(ids_[i]);
         }
         uint64_t left = count_ == kCount ? ~uint64_t(0) : (uint64_t(1) << count_) - 1;
         count_ = 0;
@@ -68,16 +73,6 @@ public:
 private:
     static constexpr uint32_t kLanes = CullLanes::kCount;
 
-    void put(uint32_t i, const Triangle& triangle) {
-        CullLanes& lanes = lanes_[i / kLanes];
-        const uint32_t lane = i % kLanes;
-        for (size_t k = 0; k < 3; ++k) {
-            lanes.corner[k][0][lane] = triangle[k].x;
-            lanes.corner[k][1][lane] = triangle[k].y;
-            lanes.corner[k][2][lane] = triangle[k].z;
-        }
-        lanes.key[lane] = key_of(ids_[i]);
-    }
     bool has_new_hit() const { return nearest_.is_hit() && nearest_.unrounded_hit().id != noted_; }
     /// Returns which of the triangles `left` may be the nearest, a bit each.
     uint64_t cull_all(uint64_t left);
@@ -86,7 +81,7 @@ private:
 
     const PreparedRay& p_;
     const Nearest& nearest_;
-    CullRay ray_;
+    std::optional<CullRay> ray_;
     TriangleId noted_; // whose hit ray_ has
     std::array<CullLanes, kCount / kLanes> lanes_{};
     std::array<TriangleId, kCount> ids_;

@@ -27,6 +27,10 @@ struct CullRay {
     double sx, sy, sz;
     double org[3], dir[3];
     double t_min, t_max;
+    /// A point near the triangles, and the moment of the ray about it, (org - reference) x dir, in
+    /// doubled precision. Where the ray begins there or near, its origin, and no moment.
+    double reference[3];
+    double moment_high[3], moment_low[3];
 
     bool has_hit = false;
     // The rest counts only with a hit: its t as in Candidate, its name and its corners.

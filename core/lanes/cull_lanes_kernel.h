@@ -43,6 +43,11 @@ OVC_INLINE V all_lanes(double x) {
     return V{} + x;
 }
 
+template <class V>
+OVC_INLINE Vec3Of<V> in_all_lanes(const double (&v)[3]) {
+    return {all_lanes<V>(v[0]), all_lanes<V>(v[1]), all_lanes<V>(v[2])};
+}
+
 /// Returns a bit for each lane that is true.
 template <class V>
 OVC_INLINE uint32_t bits_of(MaskOf<V> mask) {
@@ -59,6 +64,17 @@ struct Corners {
             for (int axis = 0; axis < 3; ++axis)
                 at[i][axis] = load<V>(lanes.corner[i][axis] + lane);
     }
+    /// Whether a coordinate is one that Chunk::triangle() might replace.
+    OVC_INLINE MaskOf<V> may_be_out_of_range() const {
+        MaskOf<V> out{};
+        for (int i = 0; i < 3; ++i)
+            for (int axis = 0; axis < 3; ++axis) {
+                const V size = magnitude(at[i][axis]);
+                out |= (size > 0x1p256) | ((size < 0x1p-256) & (size != 0.0));
+            }
+        return out;
+    }
+    OVC_INLINE Vec3Of<V> vector(int i) const { return {at[i][0], at[i][1], at[i][2]}; }
     /// Whether corner i lies where corner k of the nearest hit does.
     OVC_INLINE MaskOf<V> equals(int i, const CullRay& ray, int k) const {
         return (at[i][0] == ray.corner[k][0]) & (at[i][1] == ray.corner[k][1]) &
@@ -237,19 +253,44 @@ OVC_INLINE void find_side_closely(Sides<V>& sides, const CullRay& ray, const Cor
     sides.error[i] = on ? V{} : sides.error[i];
 }
 
-/// Returns the weights in doubled precision.
+/// Returns the moment of the ray about corners, their cross product with its direction taken off
+/// that about the reference point. size: receives the terms taken by magnitude.
+template <class V>
+OVC_INLINE Vec3Of<DoubleDoubleOf<V>> moment_about(const CullRay& ray, const Vec3Of<V>& corner,
+                                                  Vec3Of<MagnitudeOf<V>>& size) {
+    const Vec3Of<V> dir = in_all_lanes<V>(ray.dir);
+    const Vec3Of<DoubleDoubleOf<V>> from = exact_difference(corner, in_all_lanes<V>(ray.reference));
+    const Vec3Of<DoubleDoubleOf<V>> turned = cross(from, dir);
+    const Vec3Of<MagnitudeOf<V>> turned_size = cross(magnitudes(from), magnitudes(dir));
+    const auto component = [&](int axis) __attribute__((always_inline)) {
+        return DoubleDoubleOf<V>{all_lanes<V>(ray.moment_high[axis]),
+                                 all_lanes<V>(ray.moment_low[axis])};
+    };
+    const Vec3Of<DoubleDoubleOf<V>> moment{component(0), component(1), component(2)};
+    const Vec3Of<MagnitudeOf<V>> moment_size = magnitudes(moment);
+    size = {moment_size.x + turned_size.x, moment_size.y + turned_size.y,
+            moment_size.z + turned_size.z};
+    return {moment.x - turned.x, moment.y - turned.y, moment.z - turned.z};
+}
+
+/// Returns the weights in doubled precision: moments about a corner, multiplied by the sides there.
 template <class V>
 OVC_INLINE Weights<V> weights_closely(const CullRay& ray, const Corners<V>& corners) {
-    const auto corner = [&](int i) __attribute__((always_inline)) {
-        return Vec3Of<V>{corners.at[i][0], corners.at[i][1], corners.at[i][2]};
+    const Vec3Of<V> a = corners.vector(0), b = corners.vector(1), c = corners.vector(2);
+    Vec3Of<MagnitudeOf<V>> about_a_size, about_c_size;
+    const Vec3Of<DoubleDoubleOf<V>> about_a = moment_about(ray, a, about_a_size);
+    const Vec3Of<DoubleDoubleOf<V>> about_c = moment_about(ray, c, about_c_size);
+    const Vec3Of<DoubleDoubleOf<V>> cb = exact_difference(b, c);
+    const Vec3Of<DoubleDoubleOf<V>> ac = exact_difference(c, a), ba = exact_difference(a, b);
+    const auto error = [](const Vec3Of<MagnitudeOf<V>>& about, const Vec3Of<MagnitudeOf<V>>& side)
+        __attribute__((always_inline)) {
+        return 0x1p-101 * dot(about, side).value + 0x1p-1000 * (1 + total(about) + total(side));
     };
-    const auto of_ray = [](const double(&v)[3]) __attribute__((always_inline)) {
-        return Vec3Of<V>{all_lanes<V>(v[0]), all_lanes<V>(v[1]), all_lanes<V>(v[2])};
-    };
-    const BoundedSolution<V> s = bounded_solution(
-        Meeting<V>{corner(0), corner(1), corner(2), of_ray(ray.org), of_ray(ray.dir)});
-    Weights<V> weights{
-        {s.w().hi, s.value.u.hi, s.value.v.hi}, {s.w_error(), s.error.u, s.error.v}, {}, {}};
+    Weights<V> weights{{dot(about_c, cb).hi, dot(about_a, ac).hi, dot(about_a, ba).hi},
+                       {error(about_c_size, magnitudes(cb)), error(about_a_size, magnitudes(ac)),
+                        error(about_a_size, magnitudes(ba))},
+                       {},
+                       {}};
     weights.compare();
     return weights;
 }
@@ -275,7 +316,7 @@ template <class V>
 class CullSome {
 public:
     OVC_INLINE CullSome(const CullRay& ray, const CullLanes& lanes, int lane)
-        : ray_(ray), lanes_(lanes), lane_(lane), corners_(lanes, lane), lost_{} {
+        : ray_(ray), lanes_(lanes), lane_(lane), corners_(lanes, lane), lost_{}, kept_{} {
         __builtin_memcpy(&loses_ties_, lanes.key + lane, sizeof(V));
         loses_ties_ = loses_ties_ >= ray.key;
     }
@@ -288,6 +329,8 @@ public:
             if (are_all_lost())
                 return 0;
         }
+        // A corner that is shared is in range.
+        kept_ = corners_.may_be_out_of_range() & ~lost_;
         const bool has_plane = ray_.has_hit && ray_.has_plane;
         Sides<V> sides;
         if (has_plane)
@@ -310,11 +353,11 @@ public:
             if (has_plane)
                 lost_ |= hit_behind(sides, closely, lead);
         }
-        return bits_of<V>(~lost_);
+        return bits_of<V>(~lost_ | kept_);
     }
 
 private:
-    OVC_INLINE bool are_all_lost() const { return bits_of<V>(~lost_) == 0; }
+    OVC_INLINE bool are_all_lost() const { return bits_of<V>(~lost_ | kept_) == 0; }
 
     OVC_INLINE MaskOf<V> is_later(const TestInDoubles<V>& test) const {
         const V gap = (test.t - ray_.t) - ray_.t_low, low = all_lanes<V>(ray_.t_low);
@@ -344,7 +387,7 @@ private:
     const CullLanes& lanes_;
     const int lane_;
     const Corners<V> corners_;
-    MaskOf<V> loses_ties_, lost_;
+    MaskOf<V> loses_ties_, lost_, kept_; // kept_: left in any case
 };
 
 template <class V>

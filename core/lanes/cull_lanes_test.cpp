@@ -149,6 +149,11 @@ std::vector<Case> points() {
              return Triangle{a, -a + 1e-13 * r.point(), -0.9 * a + 1e-13 * r.point()};
          },
          dvec3(0)},
+        {"from where moments are beyond all doubles",
+         [](Random& r) {
+             return scaled({r.point(), r.point(), r.point()}, 0x1p250);
+         },
+         0x1p250 * dvec3(0.1), 1e250, 1},
         {"seen from beyond what doubles tell",
          [](Random& r) {
              return scaled({r.point(), r.point(), r.point()}, 1e-71);
@@ -226,7 +231,7 @@ TEST(CullLanes, WhatIsLeftOutIsMissedOrBehindTheNearest) {
             const Soup64 soup = soup_of(one, random, 64);
             const PreparedRay p(ray_to(one, random));
             Nearest nearest(p);
-            CullRay ray = cull_ray(p);
+            CullRay ray = cull_ray(p, one.triangle(random));
             std::optional<test::ExactHit> exactly;
             for (size_t first = 0; first < 64; first += CullLanes::kCount) {
                 for (const Cull way : ways_to_cull()) {
@@ -247,6 +252,14 @@ TEST(CullLanes, WhatIsLeftOutIsMissedOrBehindTheNearest) {
         }
 }
 
+auto putting(const Soup64& soup) {
+    return [&](TriangleId id, double* to) {
+        for (const dvec3& corner : soup.triangles[id.prim])
+            for (int axis = 0; axis < 3; ++axis, to += CullBatch::kStride)
+                *to = corner[axis];
+    };
+}
+
 /// Offers all through a batch. Returns the number that were offered one by one.
 size_t offer_all(CullBatch& batch, Nearest& nearest, const Soup64& soup) {
     size_t offered = 0;
@@ -257,7 +270,7 @@ size_t offer_all(CullBatch& batch, Nearest& nearest, const Soup64& soup) {
                 numbers.push_back(i);
                 return soup.ids[i];
             },
-            [&](TriangleId id) { return soup.triangles[id.prim]; },
+            putting(soup),
             [&](TriangleId id) {
                 ++offered;
                 nearest.offer(soup.triangles[id.prim], id);
@@ -323,7 +336,7 @@ TEST(CullBatch, OffersFewWhereThousandsLieInTheWay) {
                     [](uint32_t number) {
                         return TriangleId{0, number};
                     },
-                    [&](TriangleId id) { return soup.triangles[id.prim]; },
+                    putting(soup),
                     [&](TriangleId id) {
                         ++offered;
                         nearest.offer(soup.triangles[id.prim], id);
@@ -346,8 +359,7 @@ TEST(CullBatch, StopsWhenAnOfferSaysSo) {
         batch.add(i);
     size_t offered = 0;
     const auto finish = [&] {
-        return batch.finish([&](uint32_t i) { return soup.ids[i]; },
-                            [&](TriangleId id) { return soup.triangles[id.prim]; },
+        return batch.finish([&](uint32_t i) { return soup.ids[i]; }, putting(soup),
                             [&](TriangleId) { return ++offered > 0; });
     };
     EXPECT_TRUE(finish());

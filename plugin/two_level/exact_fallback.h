@@ -38,9 +38,12 @@ public:
     }
     /// Tests what is left.
     bool finish() {
-        return many_ &&
-               many_->batch.finish([&](uint32_t number) { return scene_.numbers.id(number); },
-                                   [&](TriangleId id) { return scene_.soup.triangle(id); },
+        if (!many_)
+            return false;
+        const auto put = [&](TriangleId id, double* to) {
+            scene_.soup.chunks[id.mesh].put_triangle<CullBatch::kStride>(id.prim, to);
+        };
+        return many_->batch.finish([&](uint32_t number) { return scene_.numbers.id(number); }, put,
                                    [&](TriangleId id) { return offer(id); });
     }
 
