@@ -80,6 +80,19 @@ public:
         const vec3* c = corners_.data() + size_t(prim) * 3;
         return {origin_ + dvec3(c[0]), origin_ + dvec3(c[1]), origin_ + dvec3(c[2])};
     }
+    /// Writes the coordinates of triangle(), corner by corner and kStride apart, except that doubles
+    /// beyond the range of corners (in_range() in soup.cpp) may be left as they are.
+    template <size_t kStride>
+    void put_triangle(uint32_t prim, double* to) const {
+        assert(prim < size());
+        const size_t at = size_t(prim) * 3;
+        if (plain_)
+            put_corners<kStride>(corners_.data() + at, origin_, to);
+        else if (!transform_ && corners_.empty())
+            put_corners<kStride>(double_corners_.data() + at, origin_, to);
+        else
+            put_corners<kStride>(placed_triangle(prim).data(), dvec3(0), to);
+    }
     /// Returns the address that triangle() reads from.
     const void* address_of(uint32_t prim) const {
         return double_corners_.empty()
@@ -92,6 +105,15 @@ private:
     bool is_plain() const;
     bool has_whole_triangles() const;
     Triangle placed_triangle(uint32_t prim) const;
+    template <size_t kStride, class Vec>
+    static void put_corners(const Vec* corners, const dvec3& origin, double* to) {
+        const double x = origin.x, y = origin.y, z = origin.z;
+        for (size_t i = 0; i < 3; ++i) {
+            to[3 * i * kStride] = x + double(corners[i].x);
+            to[(3 * i + 1) * kStride] = y + double(corners[i].y);
+            to[(3 * i + 2) * kStride] = z + double(corners[i].z);
+        }
+    }
 
     dvec3 origin_;
     std::vector<vec3> owned_; // its heap block survives a move, so corners_ may point into it

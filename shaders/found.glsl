@@ -101,14 +101,20 @@ Found in_times(Found found, Times from, Times to, float t_end) {
 }
 #endif
 
+// A further candidate counts unless it certainly lies beyond this. Without a hit, best_hi is the end
+// of the part that the ray met last, while the further candidates are from all parts.
+float end_of_candidates(Found found) {
+    return OVC_PORTALS != 0 && !has_hit(found) ? 0.5 * OVC_NEVER : found.best_hi;
+}
+
+// Returns whether so many candidates count that none can be named.
+bool are_too_many(Found found) { return found.others_lo <= end_of_candidates(found); }
+
 // The words of an answer from `leaf`.
 uvec4 answer_of(Found found, bool any_hit, uint leaf) {
     if (OVC_CERTIFY == 0 || (any_hit && found.prim != OVC_MISS))
         return uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, leaf, found.prim);
-    // A further candidate counts unless it certainly lies beyond the best; with more than two, none
-    // can be named. Without a hit, best_hi is the end of the part that the ray met last, while the
-    // further candidates are from all parts.
-    float end = OVC_PORTALS != 0 && !has_hit(found) ? 0.5 * OVC_NEVER : found.best_hi;
+    float end = end_of_candidates(found);
     uint first = found.further_lo[0] <= end ? found.further[0] : OVC_NO_TRIANGLE;
     uint second = found.further_lo[1] <= end ? found.further[1] : OVC_NO_TRIANGLE;
 #if OVC_PORTALS
@@ -117,5 +123,5 @@ uvec4 answer_of(Found found, bool any_hit, uint leaf) {
     first = first == found.prim ? second : first;
     second = first == second ? OVC_NO_TRIANGLE : second;
 #endif
-    return uvec4(first, second, leaf, found.others_lo <= end ? OVC_FLAGGED : found.prim);
+    return uvec4(first, second, leaf, are_too_many(found) ? OVC_FLAGGED : found.prim);
 }

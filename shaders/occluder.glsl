@@ -61,10 +61,13 @@ Found in_times(Found found, Times from, Times to, float t_end) {
 }
 #endif
 
+// Returns whether so many triangles may be hit that not all can be named.
+bool are_too_many(Found found) { return found.further[2] != OVC_NO_TRIANGLE; }
+
 // The words of an answer from `leaf`. They do not tell which triangle is hit.
 uvec4 answer_of(Found found, bool any_hit, uint leaf) {
     if (found.best_hi == OVC_ENOUGH)
         return uvec4(OVC_NO_TRIANGLE, OVC_NO_TRIANGLE, leaf, 0u);
     return uvec4(found.further[0], found.further[1], leaf,
-                 found.further[2] != OVC_NO_TRIANGLE ? OVC_FLAGGED : OVC_MISS);
+                 are_too_many(found) ? OVC_FLAGGED : OVC_MISS);
 }

@@ -96,6 +96,18 @@ bool trace_on(int first, inout Descent d, inout Packet packet, inout Found found
     return ended;
 }
 
+// A ray that has gone on for so many rounds, and has so many candidates that none could be named,
+// gives up: it may meet thousands of triangles in one point, which are for doubles to decide.
+const int OVC_PATIENCE = 256;
+
+// Returns whether all rays of the packet have their answers, or will be flagged as they stand.
+bool are_hopeless(Found found[OVC_PACKET]) {
+    bool all = OVC_CERTIFY != 0;
+    for (int k = 0; k < OVC_PACKET; ++k)
+        all = all && (found[k].best_hi < 0.0 || are_too_many(found[k]));
+    return all;
+}
+
 #if !OVC_REFILL
 void trace_once(int ray) {
     Tree tree = tree_of(0, 0);
@@ -104,11 +116,13 @@ void trace_once(int ray) {
     Found found[OVC_PACKET];
     int rounds = 0;
     d.done = !take_rays(ray, tree, packet, found);
-    bool ended = trace_on(ray, d, packet, found, OVC_MAX_ROUNDS, rounds);
-#if OVC_PORTALS
-    while (!ended && rounds < OVC_MAX_ROUNDS)
-        ended = trace_on(ray, d, packet, found, OVC_MAX_ROUNDS, rounds);
-#endif
+    int look = min(OVC_PATIENCE, OVC_MAX_ROUNDS); // at this round
+    bool ended;
+    do {
+        ended = trace_on(ray, d, packet, found, look, rounds);
+        ended = ended || (rounds >= look && are_hopeless(found));
+        look = rounds >= look ? min(look + OVC_PATIENCE, OVC_MAX_ROUNDS) : look;
+    } while (!ended && rounds < OVC_MAX_ROUNDS);
     give_answers(ray, packet, found, ended && !d.lost);
 }
 #else
@@ -129,12 +143,15 @@ void trace_with_refill(int begin, int end) {
     int next = begin + int(gl_SubGroupSizeARB) * OVC_PACKET; // the same in all lanes
     uint lanes_before = (1u << gl_SubGroupInvocationARB) - 1u;
     int rounds = 0; // of the subgroup: never fewer than llvmpipe has counted of its loops
+    int looks = 0;  // since the lane took its rays
     d.done = !take_rays(ray, tree, packet, found);
     while (ray < end) {
         bool enough = rounds >= OVC_MAX_ROUNDS;
         int own = 0;
         bool ended = trace_on(ray, d, packet, found, enough ? 1 : OVC_REFILL_ROUNDS, own);
         rounds += OVC_REFILL_ROUNDS + 1;
+        ++looks;
+        ended = ended || (looks > OVC_PATIENCE / OVC_REFILL_ROUNDS && are_hopeless(found));
         bool ready = ended || enough;
         uint ready_lanes = uint(ballotARB(ready));
         if (ready) {
@@ -142,6 +159,7 @@ void trace_with_refill(int begin, int end) {
             ray = next + bitCount(ready_lanes & lanes_before) * OVC_PACKET;
             start(d, tree);
             d.done = !take_rays(ray, tree, packet, found);
+            looks = 0;
         }
         next += bitCount(ready_lanes) * OVC_PACKET;
     }

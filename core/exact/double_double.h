@@ -3,7 +3,7 @@
 // Technique for Extending the Available Precision"; error bounds as in Joldes, Muller and Popescu
 // 2017, with simpler constants. v is 2^-53. All bounds hold as long as nothing overflows; a product
 // that underflows adds 2^-1074. V is double, or a vector of doubles
-// (core/exact/hit_lanes_kernel.h); everything is inlined, because the latter is compiled for
+// (core/lanes/hit_lanes_kernel.h); everything is inlined, because the latter is compiled for
 // several processors.
 #pragma once
 

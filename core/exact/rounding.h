@@ -46,7 +46,7 @@ OVC_INLINE V total(const Vec3Of<MagnitudeOf<V>>& v) {
 template <class V>
 OVC_INLINE BoundedSolution<V> bounded_solution(const Meeting<V>& m) {
     constexpr double kBound = 0x1p-101;      // 32 v^2
-    constexpr double kUnderflow = 0x1p-1060; // the loss to underflow in products of two
+    constexpr double kUnderflow = 0x1p-1020; // the loss to underflow in products of two
     const Vec3Of<DoubleDoubleOf<V>> ab = exact_difference(m.b, m.a);
     const Vec3Of<DoubleDoubleOf<V>> ac = exact_difference(m.c, m.a);
     const Vec3Of<DoubleDoubleOf<V>> from_a = exact_difference(m.org, m.a);
@@ -85,7 +85,7 @@ OVC_INLINE Quotient<V> quotient(const DoubleDoubleOf<V>& numerator, V numerator_
     const DoubleDoubleOf<V> value = fast_two_sum(first, rest.hi * inverse);
     const V size = Lanes<V>::magnitude(first);
     const V carried = (numerator_error + size * denominator_error) * Lanes<V>::magnitude(inverse);
-    return {value, 2 * carried + (0x1p-101 * size + 0x1p-1060)};
+    return {value, 2 * carried + (0x1p-101 * size + 0x1p-1020)};
 }
 
 } // namespace ovc

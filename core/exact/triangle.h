@@ -138,7 +138,7 @@ std::optional<Candidate> candidate(const PreparedRay& p, const Triangle& triangl
     const double t_error =
         (share * (z_max - z_min) + 12 * u * std::max(std::abs(z_min), std::abs(z_max))) *
             std::abs(p.sz) +
-        0x1p-1060;
+        0x1p-1020;
     if (t + t_error < p.ray.t_min || t - t_error > p.ray.t_max)
         return std::nullopt;
     if (!(t - t_error >= p.ray.t_min && t + t_error <= p.ray.t_max))
@@ -224,6 +224,8 @@ public:
     Hit hit() const;
     /// Returns the hit as it was found, for callers that only ask whether something is hit.
     const Hit& unrounded_hit() const { return best_.found.hit; }
+    /// Returns the hit with its triangle.
+    const ComparedHit& best() const { return best_; }
 
     /// Returns the t beyond which nothing can win any more.
     double limit() const {

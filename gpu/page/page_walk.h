@@ -7,6 +7,7 @@
 #include "core/exact/triangle.h"
 #include "gpu/bvh/bvh.h"
 #include "gpu/page/node_boxes.h"
+#include "gpu/page/node_lanes.h"
 #include "gpu/page/page.h"
 #include "gpu/page/top_level.h"
 #include "shaders/layout.h"
@@ -36,69 +37,106 @@ inline WalkedRay walked_ray(const Portal& portal, const PreparedRay& p) {
     return {portal.local_ray(p), 4 * p.margin(portal.bounds) * portal.stretch()};
 }
 
+/// Returns the ray for the boxes on a grid, from t = `from` on.
+inline NodeRay node_ray(const GridHeader& grid, const WalkedRay& walked, double from) {
+    NodeRay ray;
+    for (int axis = 0; axis < 3; ++axis) {
+        ray.cell[axis] = double(grid.cell[axis]);
+        const double origin = double(grid.middle[axis]) - double(kGridMiddle) * ray.cell[axis];
+        ray.lo[axis] = origin - walked.margin;
+        ray.hi[axis] = origin + walked.margin;
+        ray.org[axis] = walked.ray.ray.org[axis];
+        ray.inv_dir[axis] = walked.ray.inv_dir[axis];
+    }
+    ray.from = from;
+    return ray;
+}
+
+/// A unit that a ray goes to.
+struct UnitOnWay {
+    const uvec4* units; // the array in which the unit and its children are counted
+    uint32_t unit;      // negative: a portal
+    double enter;       // t
+
+    bool is_portal() const { return int32_t(unit) < 0; }
+    const uvec4* texels() const { return units + size_t(unit) * OVC_UNIT_TEXELS; }
+    bool is_pair() const { return !is_portal() && (texels()[3].w & OVC_PAIR); }
+};
+
+/// The units that a ray has still to go to, the next one on top.
+class UnitStack {
+public:
+    bool empty() const { return top_ == 0; }
+    void push(const UnitOnWay& unit) {
+        assert(top_ < units_.size());
+        units_[top_++] = unit;
+    }
+    UnitOnWay pop() { return units_[--top_]; }
+
+private:
+    // Each level leaves up to three siblings, and the last one its next node.
+    static constexpr size_t kMaxDepth = 64;
+    static_assert(kMaxBvhDepth < kMaxDepth);
+
+    std::array<UnitOnWay, 2 * 3 * kMaxDepth> units_;
+    size_t top_ = 0;
+};
+
+/// Calls visit(i) for the triangles of a pair until a call returns true.
+template <class Visit>
+bool visit_pair(const uvec4* texels, Visit&& visit) {
+    return visit(texels[0].w) || (texels[1].w != OVC_NO_TRIANGLE && visit(texels[1].w));
+}
+
 /// Calls visit(i) -> bool (true: stop) for the number i of each triangle whose packed box, widened
 /// by the ray's rounding margin, the ray meets within [from, limit()], and enter_portal(number) ->
-/// bool for each portal that it meets so. Goes to the nearest children first, as the kernel does; t
-/// is that of the ray itself. Returns true when one of the calls stopped it. tree: the units of a
-/// page or of a top-level tree; header: the number of the header's unit in them; pages: those that
-/// the tree's links lead to.
+/// bool for each portal that it meets so. Goes to the nearest children first, as the kernel does,
+/// but to pairs before nodes; t is that of the ray itself. Returns true when one of the calls
+/// stopped it. tree: the units of a page or of a top-level tree; header: the number of the header's
+/// unit in them; pages: those that the tree's links lead to.
 template <class Visit, class Enter, class Limit>
 bool walk_units(std::span<const uvec4> tree, uint32_t header, std::span<const Page> pages,
                 const WalkedRay& walked, double from, Visit&& visit, Enter&& enter_portal,
                 Limit&& limit) {
-    const uvec4* const units_of_tree = tree.data();
     const auto start = tree.subspan(size_t(header) * OVC_UNIT_TEXELS);
-    const GridHeader grid = header_of(start);
-    const dvec3 grid_cell(grid.cell);
-    const dvec3 grid_org = dvec3(grid.middle) - double(kGridMiddle) * grid_cell;
-
-    struct Entry {
-        const uvec4* units; // the array in which the unit and its children are counted
-        uint32_t unit;
-        double enter;
-    };
-    // Each level leaves up to three siblings, and the last one its next node.
-    constexpr size_t kMaxDepth = 64;
-    static_assert(kMaxBvhDepth < kMaxDepth);
-    std::array<Entry, 2 * 3 * kMaxDepth> stack;
-    size_t top = 0;
-    stack[top++] = {units_of_tree, start[2].x, from};
-    while (top > 0) {
-        const auto [units, unit, enter] = stack[--top];
-        if (enter > limit())
+    const NodeRay ray = node_ray(header_of(start), walked, from);
+    const MeetChildren meet = meet_children();
+    UnitStack stack;
+    stack.push({tree.data(), start[2].x, from});
+    while (!stack.empty()) {
+        const UnitOnWay here = stack.pop();
+        if (here.enter > limit())
             continue;
-        if (int32_t(unit) < 0) {
-            if (enter_portal(-unit))
+        if (here.is_portal()) {
+            if (enter_portal(-here.unit))
                 return true;
             continue;
         }
-        const uvec4* const texel = units + size_t(unit) * OVC_UNIT_TEXELS;
-        if (texel[3].w & OVC_PAIR) {
-            if (visit(texel[0].w) || (texel[1].w != OVC_NO_TRIANGLE && visit(texel[1].w)))
+        const uvec4* const texels = here.texels();
+        if (here.is_pair()) {
+            if (visit_pair(texels, visit))
                 return true;
             continue;
         }
-        const bool is_link = units == units_of_tree && !pages.empty() && texel[3].y != 0;
-        const uvec4* const below = is_link ? pages[texel[3].y - 1].view().data() : units;
-        const uint32_t first_child = is_link ? texel[3].z : texel[3].x;
-        const size_t siblings = top; // kept with the nearest on top
-        for (uint32_t child = 0; child < 4; ++child) {
-            Box box;
-            for (int axis = 0; axis < 3; ++axis) {
-                const GridRange range = range_of(texel[axis], child);
-                box.lo[axis] = grid_org[axis] + range.lo * grid_cell[axis];
-                box.hi[axis] = grid_org[axis] + range.hi * grid_cell[axis];
-            }
-            if (box.empty())
-                continue;
-            const Interval inside = clip(walked.ray, box.padded(walked.margin), from, limit());
-            if (inside.empty())
-                continue;
-            assert(top < stack.size());
-            size_t at = top++;
-            for (; at > siblings && stack[at - 1].enter < inside.enter; --at)
-                stack[at] = stack[at - 1];
-            stack[at] = {below, first_child + child, inside.enter};
+        const bool is_link = here.units == tree.data() && !pages.empty() && texels[3].y != 0;
+        const uvec4* const below = is_link ? pages[texels[3].y - 1].view().data() : here.units;
+        const uint32_t first_child = is_link ? texels[3].z : texels[3].x;
+        NodeMeeting meeting;
+        meet(ray, &texels[0].x, limit(), meeting);
+        uint32_t by_place[4], nodes[4]; // the farthest first; the nearest first
+        for (uint32_t child = 0; child < 4; ++child)
+            by_place[meeting.place[child]] = child;
+        size_t node_count = 0;
+        for (size_t i = meeting.count; i-- > 0;) {
+            const UnitOnWay child{below, first_child + by_place[i], meeting.enter[by_place[i]]};
+            if (!child.is_pair())
+                nodes[node_count++] = by_place[i];
+            else if (child.enter <= limit() && visit_pair(child.texels(), visit))
+                return true;
+        }
+        while (node_count > 0) {
+            const uint32_t child = nodes[--node_count];
+            stack.push({below, first_child + child, meeting.enter[child]});
         }
     }
     return false;

@@ -3,7 +3,7 @@
 // arithmetic.
 #pragma once
 
-#include "core/exact/hit_batch.h"
+#include "core/lanes/hit_batch.h"
 #include "core/system/parallel.h"
 #include "gpu/trace/tracer.h"
 #include "kdtree/restart.h"

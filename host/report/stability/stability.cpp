@@ -84,6 +84,7 @@ public:
         result_.name = case_.name;
         result_.closed = case_.closed;
         result_.time_as = case_.time_as;
+        result_.bar = case_.bar;
         result_.triangles = soup_.triangle_count();
         Dropped dropped;
         hittable_triangles(soup_, &dropped, nullptr);

@@ -49,6 +49,7 @@ struct StabilityResult {
     double microseconds = 0; // per ray, certified nearest hits
     double time_ratio = 0;   // to a ray's time in the case time_as; 0: none
     std::string time_as;     // see StabilityCase
+    double bar = 0;          // likewise
     StabilityScore certified;
     std::optional<StabilityScore> fast, embree_robust, embree_default;
 };

@@ -24,6 +24,8 @@ struct StabilityCase {
     /// A ray may take `within` times as long as one of the case with this name; empty: no limit.
     std::string time_as;
     double within = 2.5;
+    /// How many times as long the report wants it to take at most; 0: as long as it may.
+    double bar = 0;
 };
 
 /// Returns cases of rays that meet thousands of triangles in one point, or that start beyond the

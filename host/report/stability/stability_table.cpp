@@ -133,10 +133,11 @@ std::string sums_of(std::span<const StabilityResult> results) {
         reference_leaks += r.reference_leaks;
         miscounted += r.miscounted;
         if (r.time_ratio > 0)
-            ratios +=
-                fmt::format("{}: {:.2f} times the time of '{}', {} invalid rays and {} dropped "
-                            "triangles counted.\n",
-                            r.name, r.time_ratio, r.time_as, r.invalid, r.dropped);
+            ratios += fmt::format(
+                "{}: {:.2f} times the time of '{}'{}, {} invalid rays and {} dropped "
+                "triangles counted.\n",
+                r.name, r.time_ratio, r.time_as,
+                r.bar > 0 ? fmt::format(" (bar: {:.0f})", r.bar) : "", r.invalid, r.dropped);
     }
     return fmt::format("\n{} cases, {} rays. Certified: {} wrong, {} leaks; the reference: {} "
                        "leaks; {} miscounted.\n{}",
@@ -165,6 +166,8 @@ nlohmann::ordered_json json_of(const StabilityResult& r) {
                                      {"certified", json_of(r.certified)}};
     if (r.time_ratio > 0)
         object["time_ratio"] = r.time_ratio;
+    if (r.bar > 0)
+        object["bar"] = r.bar;
     if (r.fast)
         object["fast"] = json_of(*r.fast);
     if (r.embree_robust)

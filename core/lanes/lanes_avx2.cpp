@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// round_hits() by four doubles at once. Compiled for AVX2 with FMA; see hit_lanes_kernel.h.
-#include "core/exact/hit_lanes_kernel.h"
+// round_hits() and cull() by four doubles at once. Compiled for AVX2 with FMA; see
+// hit_lanes_kernel.h.
+#include "core/lanes/cull_lanes_kernel.h"
+#include "core/lanes/hit_lanes_kernel.h"
 
 #include <immintrin.h>
 
@@ -14,10 +16,16 @@ struct Lanes<Four> {
         return _mm256_fmsub_pd(a, b, product);
     }
     OVC_INLINE static Four magnitude(Four x) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), x); }
+    OVC_INLINE static uint32_t bits(MaskOf<Four> mask) {
+        return uint32_t(_mm256_movemask_pd(reinterpret_cast<Four>(mask)));
+    }
 };
 
 void round_hits_avx2(HitLanes& lanes) {
     round_hits_by<Four>(lanes);
+}
+uint32_t cull_avx2(const CullRay& ray, CullLanes& lanes) {
+    return cull_by<Four>(ray, lanes);
 }
 
 } // namespace ovc

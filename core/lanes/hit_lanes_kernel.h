@@ -4,8 +4,8 @@
 // with other files could run where the processor lacks the instructions.
 #pragma once
 
-#include "core/exact/hit_lanes.h"
 #include "core/exact/rounding.h"
+#include "core/lanes/hit_lanes.h"
 
 namespace ovc {
 

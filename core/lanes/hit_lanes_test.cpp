@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares round_hits() with rational arithmetic: known values are the exact ones, rounded.
-#include "core/exact/hit_lanes.h"
+#include "core/lanes/hit_lanes.h"
 
 #include "tests/exact.h"
 

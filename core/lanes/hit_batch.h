@@ -3,7 +3,7 @@
 // once.
 #pragma once
 
-#include "core/exact/hit_lanes.h"
+#include "core/lanes/hit_lanes.h"
 #include "core/ray.h"
 #include "core/soup.h"
 

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// CullBatch: collects triangles that a ray may meet, and offers those that may be the nearest hit.
+#pragma once
+
+#include "core/exact/triangle.h"
+#include "core/lanes/cull_lanes.h"
+
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstdint>
+#include <optional>
+
+namespace ovc {
+
+/// Returns the name of a triangle for cull().
+inline long long key_of(TriangleId id) {
+    return std::bit_cast<long long>((uint64_t(id.mesh) << 32 | id.prim) ^ uint64_t(1) << 63);
+}
+/// Returns the ray for cull(), without a hit. near: one of the triangles, which is finite.
+CullRay cull_ray(const PreparedRay& p, const Triangle& near);
+/// Notes the nearest hit so far.
+void note_hit(CullRay& ray, const PreparedRay& p, const ComparedHit& nearest);
+
+/// Triangles for the Nearest of one ray, which both outlive this. A caller knows them by numbers.
+class CullBatch {
+public:
+    static constexpr uint32_t kCount = 64;
+    static constexpr size_t kStride = CullLanes::kCount;
+
+    CullBatch(const PreparedRay& p, const Nearest& nearest) : p_(p), nearest_(nearest) {}
+
+    bool full() const { return count_ == kCount; }
+
+    /// Adds a triangle. Needs room: not full().
+    void add(uint32_t number) {
+        assert(!full());
+        numbers_[count_++] = number;
+    }
+
+    /// Empties the batch. Calls id(number) for all, put(id, to, stride) to write their coordinates
+    /// as Chunk::put_triangle<kStride>() does, and offer(id) -> bool (true: stop) for those that
+    /// may be the nearest, until one of the calls stops it; returns whether one did. offer() offers
+    /// the triangle to the Nearest.
+    template <class Id, class Put, class Offer>
+    bool finish(Id&& id, Put&& put, Offer&& offer) {
+        for (uint32_t i = 0; i < count_; ++i) {
+            CullLanes& lanes = lanes_[i / kLanes];
+            const uint32_t lane = i % kLanes;
+            ids_[i] = id(numbers_[i]);
+            put(ids_[i], &lanes.corner[0][0][lane]);
+            lanes.key[lane] = key_of(ids_[i]);
+        }
+        uint64_t left = count_ == kCount ? ~uint64_t(0) : (uint64_t(1) << count_) - 1;
+        count_ = 0;
+        // The first hits of a batch leave little of it. Where they do not, culling again and again
+        // would take longer than it saves.
+        constexpr int kMaxCulls = 4;
+        for (int culls = 0; left != 0;) {
+            if (culls == 0 || (culls < kMaxCulls && has_new_hit())) {
+                left = cull_all(left);
+                ++culls;
+                continue;
+            }
+            const uint32_t first = first_of(left);
+            left &= ~(uint64_t(1) << first);
+            if (offer(ids_[first]))
+                return true;
+        }
+        return false;
+    }
+
+private:
+    static constexpr uint32_t kLanes = CullLanes::kCount;
+
+    bool has_new_hit() const { return nearest_.is_hit() && nearest_.unrounded_hit().id != noted_; }
+    /// Returns which of the triangles `left` may be the nearest, a bit each.
+    uint64_t cull_all(uint64_t left);
+    /// Returns the one of `left` (not 0) that is probably the nearest.
+    uint32_t first_of(uint64_t left) const;
+
+    const PreparedRay& p_;
+    const Nearest& nearest_;
+    std::optional<CullRay> ray_;
+    TriangleId noted_; // whose hit ray_ has
+    std::array<CullLanes, kCount / kLanes> lanes_{};
+    std::array<TriangleId, kCount> ids_;
+    std::array<uint32_t, kCount> numbers_;
+    uint32_t count_ = 0;
+};
+
+} // namespace ovc

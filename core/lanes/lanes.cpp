@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// round_hits() and cull() for any processor, and the choice of the widest vectors.
+#include "core/lanes/cull_lanes_kernel.h"
+#include "core/lanes/hit_lanes_kernel.h"
+
+namespace ovc {
+
+void round_hits_avx2(HitLanes& lanes); // lanes_avx2.cpp
+uint32_t cull_avx2(const CullRay& ray, CullLanes& lanes);
+void round_hits_avx512(HitLanes& lanes); // lanes_avx512.cpp
+uint32_t cull_avx512(const CullRay& ray, CullLanes& lanes);
+
+namespace {
+
+using Two = double __attribute__((vector_size(16)));
+using TwoWords = long long __attribute__((vector_size(16)));
+
+} // namespace
+
+/// Computes the error without a fused operation. Based on: Dekker 1971, with Veltkamp's splitting.
+template <>
+struct Lanes<Two> {
+    OVC_INLINE static Two product_error(Two a, Two b, Two product) {
+        const Two a_high = high(a), b_high = high(b);
+        const Two a_low = a - a_high, b_low = b - b_high;
+        return ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+    }
+    OVC_INLINE static Two magnitude(Two x) {
+        const TwoWords all_but_sign = TwoWords{} + 0x7fffffffffffffffLL;
+        return reinterpret_cast<Two>(reinterpret_cast<TwoWords>(x) & all_but_sign);
+    }
+
+    OVC_INLINE static uint32_t bits(MaskOf<Two> mask) {
+        return uint32_t(mask[0] & 1) | uint32_t(mask[1] & 2);
+    }
+
+private:
+    /// Returns the upper 26 bits of x.
+    OVC_INLINE static Two high(Two x) {
+        const Two scaled = 134217729.0 * x; // 2^27 + 1
+        return scaled - (scaled - x);
+    }
+};
+
+static void round_hits_anywhere(HitLanes& lanes) {
+    round_hits_by<Two>(lanes);
+}
+static uint32_t cull_anywhere(const CullRay& ray, CullLanes& lanes) {
+    return cull_by<Two>(ray, lanes);
+}
+
+namespace {
+
+template <class Function>
+std::vector<Function> ways(Function anywhere, [[maybe_unused]] Function avx2,
+                           [[maybe_unused]] Function avx512) {
+    std::vector<Function> found = {anywhere};
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        found.push_back(avx2);
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"))
+        found.push_back(avx512);
+#endif
+    return found;
+}
+
+} // namespace
+
+#ifdef __x86_64__
+#define OVC_WAYS(name) ways(name##_anywhere, name##_avx2, name##_avx512)
+#else
+#define OVC_WAYS(name) ways(name##_anywhere, name##_anywhere, name##_anywhere)
+#endif
+
+std::vector<RoundHits> ways_to_round_hits() {
+    return OVC_WAYS(round_hits);
+}
+std::vector<Cull> ways_to_cull() {
+    return OVC_WAYS(cull);
+}
+
+void round_hits(HitLanes& lanes) {
+    static const RoundHits widest = ways_to_round_hits().back();
+    widest(lanes);
+}
+uint32_t cull(const CullRay& ray, CullLanes& lanes) {
+    static const Cull widest = ways_to_cull().back();
+    return widest(ray, lanes);
+}
+
+} // namespace ovc
