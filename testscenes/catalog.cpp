@@ -2,7 +2,7 @@
 // The catalog: a table of names and generators.
 #include "testscenes/catalog.h"
 
-#include "testscenes/landscape.h"
+#include "testscenes/landscape/landscape.h"
 #include "testscenes/scenes.h"
 
 #include <algorithm>

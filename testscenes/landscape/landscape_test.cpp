@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // landscape-N: its tiles fit together, and a stream of them is the scene.
 #include "testscenes/catalog.h"
-#include "testscenes/landscape.h"
+#include "testscenes/landscape/landscape.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // landscape-N: heights are fractal noise of the place alone, and stones follow from the tile's
 // number, so that each tile can be made by itself.
-#include "testscenes/landscape.h"
+#include "testscenes/landscape/landscape.h"
 
 #include "core/system/parallel.h"
 #include "testscenes/noise.h"
