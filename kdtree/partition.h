@@ -59,6 +59,9 @@ struct Level1 {
 Leaf make_leaf(const Soup& soup, const Box& cell, double padding,
                std::vector<TriangleId> triangles);
 
+/// Returns the same leaf without its triangles, of which `all` is the box.
+Leaf leaf_around(const Box& cell, double padding, const Box& all);
+
 /// Returns a scene in `bounds` as one leaf, without its triangles.
 Leaf scene_leaf(const Box& bounds);
 
@@ -117,6 +120,12 @@ Level1 partition_by_count(const Soup& soup, std::vector<TriangleId> triangles, c
 /// lists the triangles that touch it, in leaves of at most max_leaf_triangles (> 0).
 Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                   std::span<const KdNode> nodes, uint32_t max_leaf_triangles);
+
+/// Returns the tree over one cell, `box`, of the level 1 of a scene in `bounds`, with the leaves of
+/// `triangles`, which are sorted and touch the cell. Where they are more than max_leaf_triangles
+/// they are cut by all of them, as partition() does; or lie in several leaves unless by_all.
+Level1 cut_cell(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
+                const Box& box, uint32_t max_leaf_triangles, bool by_all);
 
 /// Returns the leaf around a point of the triangle, preferring one that lists it, because leaves at
 /// a cell's border differ by rounding. kNone: the point lies in an empty cell. Level 1 must have
