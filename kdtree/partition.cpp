@@ -331,8 +331,16 @@ std::vector<Cell> cells_of(std::span<const KdNode> nodes, const Box& bounds, dou
 uint64_t Level1::reference_count() const {
     uint64_t count = 0;
     for (const Leaf& leaf : leaves)
-        count += leaf.triangles.size();
+        count += leaf.list().size();
     return count;
+}
+
+void Level1::own_lists() {
+    for (Leaf& leaf : leaves)
+        if (!leaf.borrowed.empty()) {
+            leaf.triangles.assign(leaf.borrowed.begin(), leaf.borrowed.end());
+            leaf.borrowed = {};
+        }
 }
 
 Leaf whole_leaf(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds) {
@@ -399,11 +407,11 @@ uint32_t leaf_at(const Level1& level1, const dvec3& point, TriangleId id) {
         node = point[n.axis()] <= n.split() ? node + 1 : n.above();
     }
     for (uint32_t leaf = 0; leaf < level1.far_leaves; ++leaf)
-        if (std::ranges::binary_search(level1.leaves[leaf].triangles, id))
+        if (std::ranges::binary_search(level1.leaves[leaf].list(), id))
             return leaf;
     const KdNode& cell = level1.nodes[node];
     for (uint32_t leaf = cell.first(); leaf < cell.first() + cell.count(); ++leaf)
-        if (std::ranges::binary_search(level1.leaves[leaf].triangles, id))
+        if (std::ranges::binary_search(level1.leaves[leaf].list(), id))
             return leaf;
     return cell.count() > 0 ? cell.first() : kNone;
 }

@@ -34,8 +34,12 @@ struct Leaf {
     Box box;
     Frame frame;
     Box grid;
-    std::vector<TriangleId> triangles; // sorted
+    std::vector<TriangleId> triangles; // sorted; empty where they are borrowed
     double reach = 0;                  // the largest extent of all of them, in the cell or not
+    /// Those of a leaf that was restored, which the owner keeps alive and unchanged.
+    std::span<const TriangleId> borrowed{};
+
+    std::span<const TriangleId> list() const { return borrowed.empty() ? triangles : borrowed; }
 };
 
 /// The leaf nodes of `nodes` name ranges of `leaves`: no leaf where a cell is empty, several where
@@ -51,6 +55,8 @@ struct Level1 {
     bool shares_frame = false; // all leaves have the frame and the grid of scene_leaf()
 
     uint64_t reference_count() const;
+    /// Copies the lists of all leaves that borrow them, so that they may change.
+    void own_lists();
 };
 
 /// Returns the leaf of `cell`, which is padded already, with `triangles`, which are sorted and all

@@ -195,11 +195,11 @@ private:
             if (!is_sound(leaf) || !list ||
                 (level1.shares_frame && !share_frame(leaf, leaves->front())))
                 return false;
-            level1.leaves.push_back({leaf.cell,
-                                     leaf.box,
-                                     {leaf.origin, leaf.scale},
-                                     leaf.grid,
-                                     {list->begin(), list->end()}});
+            level1.leaves.push_back({.cell = leaf.cell,
+                                     .box = leaf.box,
+                                     .frame = {leaf.origin, leaf.scale},
+                                     .grid = leaf.grid,
+                                     .borrowed = *list});
         }
         return true;
     }
@@ -330,8 +330,8 @@ LevelsWriter::LevelsWriter(const ByteSink& sink) : writer_(sink, kKind, kVersion
 }
 
 void LevelsWriter::add(const Leaf& leaf, const Page& page) {
-    leaves_.push_back({leaf.cell, leaf.box, leaf.grid, leaf.frame.origin, leaf.frame.scale,
-                       leaf.triangles.size()});
+    leaves_.push_back(
+        {leaf.cell, leaf.box, leaf.grid, leaf.frame.origin, leaf.frame.scale, leaf.list().size()});
     pages_.push_back({page.view().size(), page.depth});
     writer_.write(bytes_of(page.view()));
 }
@@ -375,7 +375,7 @@ bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
     for (const BuiltScene* cut : scenes) {
         cuts.push_back(levels_cut(*cut));
         for (const Leaf& leaf : cut->level1.leaves)
-            writer.add_lists(leaf.triangles);
+            writer.add_lists(leaf.list());
     }
     return writer.finish({checksum_of_soup(scene.soup), scene.limits, scene.any_limits}, cuts);
 }

@@ -80,10 +80,10 @@ bool save_levels(const BuiltScene& scene, const ByteSink& sink);
 
 /// Returns the scene that save_levels() wrote of this soup; nothing where the bytes are of another
 /// soup, or where a build would now make another scene. limits_for(triangles, unique): as
-/// limits_of(). takes_any_limits: LevelsKey::any_limits counts. The pages stay in `saved`, which
-/// must outlive them. Whatever the bytes are, the scene that comes back is safe to walk. Error: the
-/// bytes are damaged, not aligned to kPartAlignment, or no saved levels; the sentence goes on from
-/// a name.
+/// limits_of(). takes_any_limits: LevelsKey::any_limits counts. Lists and pages stay in `saved`,
+/// which must outlive them. Whatever the bytes are, the scene that comes back is safe to walk.
+/// Error: the bytes are damaged, not aligned to kPartAlignment, or no saved levels; the sentence
+/// goes on from a name.
 Result<std::optional<BuiltScene>>
 restore_levels(Bytes saved, const Soup& soup,
                const std::function<LeafLimits(uint64_t, uint64_t)>& limits_for,
