@@ -19,12 +19,13 @@ struct Format {
     Result<Scene> (*read)(const std::filesystem::path&, const ImportOptions&);
     Result<Done> (*write)(const Scene&, const std::filesystem::path&); // null: only read
     bool may_move = false;
+    bool streams = false;
 };
 
 constexpr Format kFormats[] = {{"obj", read_obj, write_obj},
                                {"ovc", read_ovc, write_ovc},
                                {"pbrt", read_pbrt, nullptr, true},
-                               {"ply", read_ply, write_ply},
+                               {"ply", read_ply, write_ply, false, true},
                                {"pov", read_pov, nullptr, true}};
 
 const Format* format_of(std::string_view extension) {
@@ -87,6 +88,11 @@ Result<Scene> load(const std::filesystem::path& path, const ImportOptions& optio
 bool may_move(const std::filesystem::path& path) {
     const Format* format = format_of(extension_of(without_gz(lower_name(path))));
     return format && format->may_move;
+}
+
+bool streams(const std::filesystem::path& path) {
+    const Format* format = format_of(extension_of(without_gz(lower_name(path))));
+    return format && format->streams;
 }
 
 Result<Done> save(const Scene& scene, const std::filesystem::path& path) {

@@ -2,6 +2,7 @@
 // Importers read files into scenes, and write scenes to files for `overcast convert`.
 #pragma once
 
+#include "core/file/triangle_sink.h"
 #include "core/moment.h"
 #include "core/result.h"
 #include "core/scene.h"
@@ -20,6 +21,12 @@ inline constexpr uint64_t kDefaultMostTriangles = 100'000'000;
 /// The range of ImportOptions::tolerance: at the min a sphere has 1e5 triangles, at the max a
 /// circle is an octagon.
 inline constexpr double kMinTolerance = 1e-4, kMaxTolerance = 0.5;
+
+/// Where the triangles of a scene go that is not to be held in memory.
+struct Streaming {
+    TriangleSink& sink;
+    uint64_t host_bytes; // that reading may take
+};
 
 struct ImportOptions {
     LogSink log; // receives one warning per kind of thing that Overcast leaves out of a file
@@ -44,7 +51,13 @@ struct ImportOptions {
     bool texture_coordinates = false;
     /// Receives every file that is read or looked for in vain; may be null.
     FilesRead* files = nullptr;
+    /// Not null: the triangles go to its sink, and the scene that comes back has empty meshes. For
+    /// files that streams() names alone. Error of the kind Cancelled: the sink wants no more.
+    const Streaming* streaming = nullptr;
 };
+
+/// Returns whether the file's triangles can go to a sink, as far as the name tells: .ply can.
+bool streams(const std::filesystem::path& path);
 
 /// Reads a scene. The extension chooses the reader, in any case and after a trailing .gz is taken
 /// off. A compressed file is recognised by its contents, whatever its name. Never throws on bad

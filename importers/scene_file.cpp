@@ -173,38 +173,78 @@ const FileStamp* Provenance::changed_file() const {
     return changed == files.end() ? nullptr : &*changed;
 }
 
-Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
-                              const SaveLevels& save_levels, const std::filesystem::path& path) {
+namespace {
+
+/// The parts of a scene file that are large.
+struct LargeParts {
+    std::vector<MeshExtent> extents;
+    std::function<Result<Done>(const ByteSink&)> write_corners, write_normals;
+};
+
+Result<Done> write_file(const Scene& scene, const LargeParts& parts, const Provenance& from,
+                        const SaveLevels& save_levels, const std::filesystem::path& path) {
     Result<OutputFile> out = OutputFile::create(path);
     if (!out)
         return out.error();
     ByteWriter fields;
     fields(scene, scene.meshes, from.request, from.files, from.warnings);
     ArchiveWriter writer(out->sink(), kKind, kVersion);
+    const ByteSink sink = [&](Bytes bytes) {
+        writer.write(bytes);
+        return !out->has_failed(); // building the levels for a full disk would be in vain
+    };
     writer.part<std::byte>("fields", fields.bytes());
-    const std::vector<MeshExtent> extents = extents_of(scene);
-    writer.part<MeshExtent>("extents", extents);
+    writer.part<MeshExtent>("extents", parts.extents);
     writer.begin("corners");
-    for (size_t m = 0; m < extents.size(); ++m)
-        if (extents[m].corners > 0)
-            writer.write(bytes_of(scene.soup.chunks[m].corners()));
+    if (const Result<Done> done = parts.write_corners(sink); !done)
+        return done;
     writer.begin("normals");
-    for (const MeshInfo& mesh : scene.meshes)
-        writer.write(bytes_of(std::span<const vec3>(mesh.normals)));
+    if (const Result<Done> done = parts.write_normals(sink); !done)
+        return done;
     writer.begin("uv");
     for (const MeshInfo& mesh : scene.meshes)
         writer.write(bytes_of(std::span<const vec2>(mesh.uv)));
     if (save_levels) {
         writer.begin("levels");
-        const Result<Done> saved = save_levels([&](Bytes bytes) {
-            writer.write(bytes);
-            return true;
-        });
-        if (!saved)
+        if (const Result<Done> saved = save_levels(sink); !saved && !out->has_failed())
             return saved;
     }
     writer.finish();
     return out->commit();
+}
+
+} // namespace
+
+Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
+                              const SaveLevels& save_levels, const std::filesystem::path& path) {
+    LargeParts parts{extents_of(scene), {}, {}};
+    parts.write_corners = [&](const ByteSink& sink) {
+        for (size_t m = 0; m < parts.extents.size(); ++m)
+            if (parts.extents[m].corners > 0)
+                sink(bytes_of(scene.soup.chunks[m].corners()));
+        return Done{};
+    };
+    parts.write_normals = [&](const ByteSink& sink) {
+        for (const MeshInfo& mesh : scene.meshes)
+            sink(bytes_of(std::span<const vec3>(mesh.normals)));
+        return Done{};
+    };
+    return write_file(scene, parts, from, save_levels, path);
+}
+
+Result<Done> write_scene_file(const Scene& scene, const TriangleStore& store,
+                              const Provenance& from, const SaveLevels& save_levels,
+                              const std::filesystem::path& path) {
+    assert(store.meshes() == scene.meshes.size());
+    LargeParts parts;
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        MeshExtent extent{scene.soup.chunks[m].origin(), store.corners(m), store.normals(m)};
+        extent.mask = scene.soup.chunks[m].mask();
+        parts.extents.push_back(extent);
+    }
+    parts.write_corners = [&](const ByteSink& sink) { return store.write_corners(sink); };
+    parts.write_normals = [&](const ByteSink& sink) { return store.write_normals(sink); };
+    return write_file(scene, parts, from, save_levels, path);
 }
 
 uint64_t checksum_of(const Scene& scene) {

@@ -5,6 +5,7 @@
 
 #include "core/file/archive.h"
 #include "importers/file/files_read.h"
+#include "importers/file/triangle_store.h"
 #include "importers/importer.h"
 
 #include <filesystem>
@@ -36,6 +37,11 @@ using SaveLevels = std::function<Result<Done>(const ByteSink&)>;
 /// may be empty.
 Result<Done> write_scene_file(const Scene& scene, const Provenance& from,
                               const SaveLevels& save_levels, const std::filesystem::path& path);
+
+/// Does the same for a scene whose meshes are empty and whose triangles lie in the store.
+Result<Done> write_scene_file(const Scene& scene, const TriangleStore& store,
+                              const Provenance& from, const SaveLevels& save_levels,
+                              const std::filesystem::path& path);
 
 /// Returns a checksum of everything that a picture of the scene depends on, and of its names.
 uint64_t checksum_of(const Scene& scene);

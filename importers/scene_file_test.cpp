@@ -57,6 +57,38 @@ TEST(SceneFile, GivesBackEveryField) {
     EXPECT_EQ(reinterpret_cast<uintptr_t>(file->scene.saved.data()) % kPartAlignment, 0u);
 }
 
+/// Corners and normals that lie in a store make the same file as those that a scene holds.
+TEST(SceneFile, IsTheSameOfAStore) {
+    const TestFolder folder;
+    Scene held;
+    held.name = "three";
+    held.materials.emplace_back();
+    const std::vector<vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0},
+                                    {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+    const std::vector<vec3> normals(6, vec3(0, 0, 1));
+    held.add_mesh("a", 0, Chunk::owning(dvec3(1, 2, 3), corners), normals);
+    held.add_mesh("b", 0, Chunk::owning(dvec3(0), {}));
+    held.add_mesh("c", 0, Chunk::owning(dvec3(4), {corners.begin(), corners.begin() + 3}));
+    Scene empty;
+    empty.name = held.name;
+    empty.materials = held.materials;
+    Result<TriangleStore> store = TriangleStore::create(folder / "");
+    ASSERT_TRUE(store);
+    for (size_t m = 0; m < held.meshes.size(); ++m) {
+        store->begin_mesh();
+        EXPECT_TRUE(store->add_corners(held.soup.chunks[m].corners()) &&
+                    store->add_normals(held.meshes[m].normals));
+        empty.add_mesh(held.meshes[m].name, 0, Chunk::owning(held.soup.chunks[m].origin(), {}));
+    }
+    ASSERT_TRUE(store->finish());
+    ASSERT_TRUE(write_scene_file(held, {}, {}, folder / "held.ovc"));
+    ASSERT_TRUE(write_scene_file(empty, *store, {}, {}, folder / "stored.ovc"));
+    EXPECT_EQ(folder.read("held.ovc"), folder.read("stored.ovc"));
+    const auto file = read_scene_file(folder / "stored.ovc");
+    ASSERT_TRUE(file) << file.error().message;
+    expect_same(held, file->scene);
+}
+
 /// A field that each_field() forgets would be equal in the test above.
 TEST(SceneFile, EveryFieldOfAStructIsNamed) {
     const auto size = [](const auto& value) {

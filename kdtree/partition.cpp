@@ -124,6 +124,11 @@ public:
                 finds_far);
     }
 
+    /// Appends the tree over `box` by all of its triangles.
+    void cut_by_all(std::span<const TriangleId> triangles, const Box& box, uint32_t most) {
+        cut(triangles, triangles, /* rate= */ 1, box, most, /* finds_far= */ false);
+    }
+
     /// Appends a node for a cell, with a leaf for each list; no list stands for an empty cell.
     void add_leaves(const Box& padded_cell, std::vector<std::vector<TriangleId>> lists) {
         const uint32_t first = leaves();
@@ -209,7 +214,7 @@ private:
             lists = members(tree.nodes, cells, triangles, kNone);
         fill(tree.nodes, box, lists, [&](const Cell& cell, std::span<const TriangleId> inside) {
             if (inside.size() > most && rate > 1)
-                cut(inside, inside, 1, cell.box, most, /* finds_far= */ false);
+                cut_by_all(inside, cell.box, most);
             else
                 add_leaves(cell.padded, in_parts(inside, most));
         });
@@ -230,17 +235,22 @@ private:
 
 Leaf make_leaf(const Soup& soup, const Box& cell, double padding,
                std::vector<TriangleId> triangles) {
-    Leaf leaf;
     Box all;
     for (const TriangleId id : triangles)
         all.add(bounds_of(soup.triangle(id)));
+    Leaf leaf = leaf_around(cell, padding, all);
+    leaf.triangles = std::move(triangles);
+    return leaf;
+}
+
+Leaf leaf_around(const Box& cell, double padding, const Box& all) {
+    Leaf leaf;
     leaf.cell = cell;
     const Box reached = all.intersection(cell);
     leaf.box = reached.padded(std::max(kMargin * max_component(reached.extent()), padding));
     leaf.reach = max_component(all.extent());
     leaf.frame = frame_of(leaf.box, leaf.reach);
     leaf.grid = leaf.box;
-    leaf.triangles = std::move(triangles);
     return leaf;
 }
 
@@ -321,8 +331,16 @@ std::vector<Cell> cells_of(std::span<const KdNode> nodes, const Box& bounds, dou
 uint64_t Level1::reference_count() const {
     uint64_t count = 0;
     for (const Leaf& leaf : leaves)
-        count += leaf.triangles.size();
+        count += leaf.list().size();
     return count;
+}
+
+void Level1::own_lists() {
+    for (Leaf& leaf : leaves)
+        if (!leaf.borrowed.empty()) {
+            leaf.triangles.assign(leaf.borrowed.begin(), leaf.borrowed.end());
+            leaf.borrowed = {};
+        }
 }
 
 Leaf whole_leaf(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds) {
@@ -370,6 +388,17 @@ Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const
     return partitioner.finish();
 }
 
+Level1 cut_cell(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
+                const Box& box, uint32_t max_leaf_triangles, bool by_all) {
+    Partitioner partitioner(soup, bounds, nullptr);
+    if (by_all && triangles.size() > max_leaf_triangles)
+        partitioner.cut_by_all(triangles, box, max_leaf_triangles);
+    else
+        partitioner.add_leaves(box.padded(padding_of(bounds)),
+                               in_parts(triangles, max_leaf_triangles));
+    return partitioner.finish();
+}
+
 uint32_t leaf_at(const Level1& level1, const dvec3& point, TriangleId id) {
     assert(!level1.nodes.empty());
     uint32_t node = 0;
@@ -378,11 +407,11 @@ uint32_t leaf_at(const Level1& level1, const dvec3& point, TriangleId id) {
         node = point[n.axis()] <= n.split() ? node + 1 : n.above();
     }
     for (uint32_t leaf = 0; leaf < level1.far_leaves; ++leaf)
-        if (std::ranges::binary_search(level1.leaves[leaf].triangles, id))
+        if (std::ranges::binary_search(level1.leaves[leaf].list(), id))
             return leaf;
     const KdNode& cell = level1.nodes[node];
     for (uint32_t leaf = cell.first(); leaf < cell.first() + cell.count(); ++leaf)
-        if (std::ranges::binary_search(level1.leaves[leaf].triangles, id))
+        if (std::ranges::binary_search(level1.leaves[leaf].list(), id))
             return leaf;
     return cell.count() > 0 ? cell.first() : kNone;
 }

@@ -34,8 +34,12 @@ struct Leaf {
     Box box;
     Frame frame;
     Box grid;
-    std::vector<TriangleId> triangles; // sorted
+    std::vector<TriangleId> triangles; // sorted; empty where they are borrowed
     double reach = 0;                  // the largest extent of all of them, in the cell or not
+    /// Those of a leaf that was restored, which the owner keeps alive and unchanged.
+    std::span<const TriangleId> borrowed{};
+
+    std::span<const TriangleId> list() const { return borrowed.empty() ? triangles : borrowed; }
 };
 
 /// The leaf nodes of `nodes` name ranges of `leaves`: no leaf where a cell is empty, several where
@@ -51,6 +55,8 @@ struct Level1 {
     bool shares_frame = false; // all leaves have the frame and the grid of scene_leaf()
 
     uint64_t reference_count() const;
+    /// Copies the lists of all leaves that borrow them, so that they may change.
+    void own_lists();
 };
 
 /// Returns the leaf of `cell`, which is padded already, with `triangles`, which are sorted and all
@@ -58,6 +64,9 @@ struct Level1 {
 /// not miss the box for that, however small the leaf is.
 Leaf make_leaf(const Soup& soup, const Box& cell, double padding,
                std::vector<TriangleId> triangles);
+
+/// Returns the same leaf without its triangles, of which `all` is the box.
+Leaf leaf_around(const Box& cell, double padding, const Box& all);
 
 /// Returns a scene in `bounds` as one leaf, without its triangles.
 Leaf scene_leaf(const Box& bounds);
@@ -117,6 +126,12 @@ Level1 partition_by_count(const Soup& soup, std::vector<TriangleId> triangles, c
 /// lists the triangles that touch it, in leaves of at most max_leaf_triangles (> 0).
 Level1 fill_cells(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
                   std::span<const KdNode> nodes, uint32_t max_leaf_triangles);
+
+/// Returns the tree over one cell, `box`, of the level 1 of a scene in `bounds`, with the leaves of
+/// `triangles`, which are sorted and touch the cell. Where they are more than max_leaf_triangles
+/// they are cut by all of them, as partition() does; or lie in several leaves unless by_all.
+Level1 cut_cell(const Soup& soup, std::span<const TriangleId> triangles, const Box& bounds,
+                const Box& box, uint32_t max_leaf_triangles, bool by_all);
 
 /// Returns the leaf around a point of the triangle, preferring one that lists it, because leaves at
 /// a cell's border differ by rounding. kNone: the point lies in an empty cell. Level 1 must have

@@ -431,6 +431,34 @@ typedef struct ovc_stream_host {
     int (*answered)(void* user, ovc_stream stream, const ovc_stream_answers* answers);
 } ovc_stream_host;
 
+/* Experimental: a mesh whose corners are read in parts. */
+typedef struct ovc_streamed_mesh {
+    double origin[3];        /* added to every corner, in double */
+    uint64_t triangle_count;
+    uint32_t has_doubles;    /* 0: corners are floats, 36 bytes a triangle; 1: doubles, 72 */
+    uint32_t reserved;       /* 0 */
+} ovc_streamed_mesh;
+
+/* Experimental: a scene that need not fit into host memory, for save_streamed. The functions get `user` and return 0 to go on,
+ * anything else to stop the call. The library calls those that read and write scratch from several threads at once, each on bytes
+ * of its own, and `write` from one at a time. They must not throw and may call last_error and nothing else. */
+typedef struct ovc_streamed_scene {
+    size_t struct_size;
+    uint64_t host_memory_bytes; /* what the library may allocate besides what it takes for a scene of nothing. 0: no limit */
+    const ovc_streamed_mesh* meshes; /* mesh_count of them; they are numbered in this order */
+    uint32_t mesh_count;
+    uint32_t reserved; /* 0 */
+    void* user;
+    /* Writes the corners of `count` triangles of a mesh, from `first` on, into `corners`: three offsets from its origin each, of
+     * floats or doubles as the mesh says. Each triangle is read two times or three, and must be the same each time. */
+    int (*read_corners)(void* user, uint32_t mesh, uint64_t first, uint64_t count, void* corners);
+    /* A file that is empty at first, of the host's choice: write_scratch puts bytes at an offset, and read_scratch gets bytes that
+     * were put there. It grows to some 60 bytes a triangle of floats. */
+    int (*write_scratch)(void* user, uint64_t offset, const void* bytes, size_t size);
+    int (*read_scratch)(void* user, uint64_t offset, void* bytes, size_t size);
+    ovc_write_function write; /* takes what is saved, front to back */
+} ovc_streamed_scene;
+
 /* The table. Fields are only ever appended; struct_size tells how many there are. All of them are stable within an abi. */
 typedef struct ovc_api {
     size_t struct_size;
@@ -561,6 +589,14 @@ typedef struct ovc_api {
      * mesh stay. Positions with OVC_MESH_SHARED are no longer read once the mesh and all of its instances are removed and the next
      * commit has returned. */
     ovc_result (*remove_mesh)(ovc_scene scene, uint32_t mesh_id);
+
+    /* Experimental. Builds a scene that need not fit into host memory, and hands to its `write` what save() would, for
+     * ovc_scene_config.saved of a scene of the same meshes. Answers are the same bits as of a scene that was built in memory. What
+     * fits is built there; else leaves are as small as host_memory_bytes asks, and such levels are taken under any budget that has
+     * room for their pages, unless the config asks for leaves itself. config may be NULL; its `saved` and `tell_active` mean
+     * nothing here. OVC_ERROR_OUT_OF_BUDGET: host_memory_bytes are too few, and the sentence names the smallest number that works.
+     * OVC_ERROR_CANCELLED where a function of the host's says so. */
+    ovc_result (*save_streamed)(ovc_device device, const ovc_scene_config* config, const ovc_streamed_scene* scene);
 } ovc_api;
 
 #if defined(_WIN32)

@@ -32,7 +32,9 @@ PARTS = {
     "plugin/abi": {"plugin", "plugin/structure"},
     "plugin/build": {"plugin", "plugin/plan"},
     "plugin/plan": {"plugin", "plugin/build"},
-    "plugin/two_level": {"plugin", "plugin/structure", "plugin/build", "plugin/plan"},
+    "plugin/out_of_core": {"plugin", "plugin/structure", "plugin/build", "plugin/plan"},
+    "plugin/two_level": {"plugin", "plugin/structure", "plugin/build", "plugin/plan",
+                         "plugin/out_of_core"},
 }
 
 # Header pattern -> the files that may include such headers. Tests may include any.

@@ -2,6 +2,7 @@
 // The catalog: a table of names and generators.
 #include "testscenes/catalog.h"
 
+#include "testscenes/landscape/landscape.h"
 #include "testscenes/scenes.h"
 
 #include <algorithm>
@@ -21,6 +22,7 @@ struct Generator {
     Scene (*make)(uint32_t size, const Soup* model);
     CameraPath (*path)(uint32_t size) = nullptr;
     Scene (*make_moving)(double clock) = nullptr;
+    uint32_t most_streamed = 0; // the N of a scene that streams
 
     bool sized() const { return most != 0; }
     /// "terrain-" for "terrain-N", "knot" for "knot".
@@ -93,6 +95,13 @@ constexpr Generator kGenerators[] = {
     moving<make_grass_in_wind>("grass-in-wind",
                                "8,100 tufts of grass that bend with --frames: 1,377,002 triangles"),
     {{"terrain-N", "hills over N x N cells: 2 N^2 triangles"}, 1, 4096, alone<make_terrain>},
+    {{"landscape-N", "hills with stones, in tiles: N x 1,000,000 triangles", 0, false, false, true},
+     1,
+     kMaxLandscapeHeld,
+     alone<make_landscape>,
+     nullptr,
+     nullptr,
+     kMaxLandscape},
     {{"far-terrain", "a ground of 1e7 m, down to 1 mm at its far corner: 274,160 triangles"},
      0,
      0,
@@ -173,18 +182,20 @@ std::string_view nearest_name(std::string_view name) {
         .name;
 }
 
-/// The request, where its size is in range.
-Result<Request> find(std::string_view name) {
+/// The request, where its size is in the range of scenes that are held or, with `streamed`, of
+/// those that stream.
+Result<Request> find(std::string_view name, bool streamed = false) {
     const std::optional<Request> request = parse(name);
     if (!request)
         return Error{"no test scene is called \"" + std::string(name) + "\"; did you mean \"" +
                      std::string(nearest_name(name)) + "\"?"};
     const Generator& generator = *request->generator;
-    const bool in_range = request->size >= generator.least && request->size <= generator.most;
+    const uint32_t most = streamed ? generator.most_streamed : generator.most;
+    const bool in_range = request->size >= generator.least && request->size <= most;
     if (generator.sized() && !in_range)
         return Error{"test scene \"" + std::string(name) + "\": the N of " +
                      std::string(generator.entry.name) + " must be from " +
-                     std::to_string(generator.least) + " to " + std::to_string(generator.most)};
+                     std::to_string(generator.least) + " to " + std::to_string(most)};
     return *request;
 }
 
@@ -225,6 +236,19 @@ Result<Scene> make_test_scene(std::string_view name, const Soup* model, double c
     Scene scene = generator.make_moving ? generator.make_moving(clock)
                                         : generator.make(uint32_t(request->size), model);
     scene.name = name;
+    return scene;
+}
+
+Result<Scene> stream_test_scene(std::string_view name, TriangleSink& sink) {
+    assert(is_test_scene(name) && test_scene_entry(name).streams);
+    const Result<Request> request = find(name, /* streamed= */ true);
+    if (!request)
+        return request.error();
+    const Landscape landscape(uint32_t(request->size)); // the only scene that streams
+    Scene scene = landscape.empty_scene();
+    scene.name = name;
+    if (!landscape.write(sink))
+        return Error{"cancelled", ErrorKind::Cancelled};
     return scene;
 }
 

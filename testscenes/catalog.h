@@ -2,6 +2,7 @@
 // Test scenes as code. The same name gives the same triangles, bit for bit, on any machine.
 #pragma once
 
+#include "core/file/triangle_sink.h"
 #include "core/result.h"
 #include "testscenes/camera_path.h"
 
@@ -17,6 +18,7 @@ struct CatalogEntry {
     uint32_t frames = 0;          // the frames of its camera path, or 0 if it has none
     bool takes_model = false;     // whether it can show a user's model
     bool moves = false;           // whether it moves with the clock
+    bool streams = false;         // whether stream_test_scene() makes it
 };
 
 /// Returns all scenes, for `overcast scenes` and for suggestions.
@@ -32,6 +34,11 @@ const CatalogEntry& test_scene_entry(std::string_view name);
 /// from 0 to 1, for scenes that move. Errors: an unknown name (the nearest one is suggested), a
 /// size out of range, a model for a scene that takes none, or a model without a triangle to hit.
 Result<Scene> make_test_scene(std::string_view name, const Soup* model = nullptr, double clock = 0);
+
+/// Hands the triangles of a scene that streams to the sink, and returns the rest of it, whose
+/// meshes are empty; of more sizes than make_test_scene() makes. Errors: a size out of range; of
+/// the kind Cancelled where the sink wants no more.
+Result<Scene> stream_test_scene(std::string_view name, TriangleSink& sink);
 
 /// Returns the camera path of the scene. Errors: those of make_test_scene(), or a scene without a
 /// path.

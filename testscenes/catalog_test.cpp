@@ -79,6 +79,7 @@ constexpr Sample kSamples[] = {
     {"plants-1", 175221, 0x8743bc96b3d823e4},
     {"terrain-1", 2, 0x952ac25a51d027d8},
     {"terrain-64", 8192, 0x572b4fee2859fa98},
+    {"landscape-1", 1000000, 0x3a3caac62fe79bcb},
     {"sphere-0", 20, 0xde27547eb5d06a37},
     {"sphere-3", 1280, 0x89338c6c67343787},
     {"knot", 873600, 0x82ea6ba2d992ff19},

@@ -21,6 +21,8 @@ Scene make_cloth(double clock);
 Scene make_grass_in_wind(double clock);
 Scene make_terrain(uint32_t cells);
 Scene make_far_terrain();
+/// Makes so many million triangles; landscape.h makes them in parts.
+Scene make_landscape(uint32_t millions);
 Scene make_sphere_scene(uint32_t level);
 Scene make_knot();
 Scene make_soup(uint32_t thousands);

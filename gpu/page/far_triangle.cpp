@@ -67,11 +67,11 @@ std::array<double, 18> FarTriangle::numbers() const {
 
 std::vector<FarTriangle> far_triangles_of(const NumberedSoup& numbered, const Leaf& leaf,
                                           const Box& scene) {
-    if (leaf.triangles.size() > kMaxTriangles ||
+    if (leaf.list().size() > kMaxTriangles ||
         max_component(leaf.box.extent()) < kMinReach * max_component(scene.extent()))
         return {};
     std::vector<FarTriangle> far;
-    for (const TriangleId id : leaf.triangles) {
+    for (const TriangleId id : leaf.list()) {
         Triangle local = numbered.soup.triangle(id);
         for (dvec3& corner : local)
             corner = leaf.frame.to_local(corner);

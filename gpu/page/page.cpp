@@ -129,6 +129,13 @@ Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf,
     return pack(PageItems(soup, leaf, progress, loose, name), leaf, progress);
 }
 
+Page build_page(const Soup& soup, std::span<const uint32_t> numbers, const Leaf& leaf,
+                BuildProgress* progress, const LoosePairs& loose) {
+    assert(!leaf.triangles.empty() && numbers.size() == leaf.triangles.size());
+    const auto name = [&](uint32_t i) { return numbers[i]; };
+    return pack(PageItems(soup, leaf, progress, loose, name), leaf, progress);
+}
+
 Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress,
                 const LoosePairs& loose) {
     assert(!leaf.triangles.empty());

@@ -70,7 +70,11 @@ struct LoosePairs {
 Page build_page(const Soup& soup, const Numbering& numbers, const Leaf& leaf,
                 BuildProgress* progress = nullptr, const LoosePairs& loose = {});
 
-/// Does the same, but the page names a triangle by its index in leaf.triangles.
+/// The same, but the page names the triangle leaf.triangles[i] by numbers[i].
+Page build_page(const Soup& soup, std::span<const uint32_t> numbers, const Leaf& leaf,
+                BuildProgress* progress = nullptr, const LoosePairs& loose = {});
+
+/// The same, but the page names a triangle by its index in leaf.triangles.
 Page build_page(const Soup& soup, const Leaf& leaf, BuildProgress* progress = nullptr,
                 const LoosePairs& loose = {});
 

@@ -2,6 +2,7 @@
 // The backends behind the C ABI, which takes the soup and its rays without a copy.
 #include "host/backend/backend.h"
 #include "host/backend/mesh_numbers.h"
+#include "host/backend/plugin_config.h"
 #include "host/backend/plugin_loader.h"
 #include "host/scene/soup_difference.h"
 #include "host/terminal/build_watch.h"
@@ -321,8 +322,8 @@ static void check_budget(uint64_t budget_bytes, const ovc_device_info& info, con
                         info.is_software ? "" : " free, as far as its driver tells"));
 }
 
-static Result<ovc_scene_config> config_of(const BackendOptions& options,
-                                          const ovc_device_info& info, const LogSink& log) {
+Result<ovc_scene_config> config_of(const BackendOptions& options, const ovc_device_info& info,
+                                   const LogSink& log) {
     ovc_scene_config config{};
     config.struct_size = sizeof(config);
     config.gpu_memory_bytes = options.gpu_memory.of(info.memory_bytes);

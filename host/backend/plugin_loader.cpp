@@ -104,6 +104,11 @@ Result<PluginScene> PluginDevice::create_scene(const ovc_scene_config& config) c
     return PluginScene(scene, DestroyScene{api_});
 }
 
+Result<Done> PluginDevice::save_streamed(const ovc_scene_config& config,
+                                         const ovc_streamed_scene& scene) const {
+    return checked(api_->save_streamed(device_.get(), &config, &scene));
+}
+
 Result<std::vector<ovc_device_info>> list_devices(const ovc_api* api) {
     ovc_device_info empty{};
     empty.struct_size = sizeof(empty);

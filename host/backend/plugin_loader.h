@@ -50,6 +50,9 @@ public:
     const ovc_api* api() const { return api_; }
     Result<ovc_device_info> describe() const;
     Result<PluginScene> create_scene(const ovc_scene_config& config) const;
+    /// Builds and saves a scene that streams; see overcast.h.
+    Result<Done> save_streamed(const ovc_scene_config& config,
+                               const ovc_streamed_scene& scene) const;
 
     /// Returns Done when `result` is OVC_OK, else the library's sentence. Call it right after the
     /// call that failed: the next one may replace the sentence.

@@ -3,6 +3,7 @@
 #include "host/arguments/arguments.h"
 #include "host/arguments/backend_arguments.h"
 #include "host/arguments/log_arguments.h"
+#include "host/backend/streamed_levels.h"
 #include "host/command/command.h"
 #include "host/output/output.h"
 #include "host/scene/scene_cache.h"
@@ -26,7 +27,8 @@ static constexpr const char* kConvertExamples = R"(Examples:
   overcast convert dragon.ply.gz dragon.ply
   overcast convert plants plants.ply          a generated scene, for other programs
   overcast convert plants.pbrt plants.ovc     with materials, lights, camera and what tracing builds:
-  overcast render plants.ovc                  starts at once)";
+  overcast render plants.ovc                  starts at once
+  overcast convert scan.ply scan.ovc --host-memory 2G    of a scene larger than memory)";
 
 static std::string extension_of(const std::filesystem::path& path) {
     std::string extension = path.extension();
@@ -95,6 +97,51 @@ static Result<Done> convert_to_scene_file(const SceneArguments& source,
                             output);
 }
 
+/// Reads a scene whose triangles go to the store instead of memory.
+static Result<Scene> stream_scene(const std::string& source, uint64_t host_bytes,
+                                  const LogSink& log, FilesRead& files, TriangleStore& store) {
+    if (is_test_scene(source))
+        return stream_test_scene(source, store);
+    const Streaming streaming{store, host_bytes};
+    ImportOptions options{log};
+    options.files = &files;
+    options.streaming = &streaming;
+    return load(source, options);
+}
+
+/// As convert_to_scene_file(), within so much host memory.
+static Result<Done> convert_streamed(const std::string& source, uint64_t host_bytes,
+                                     BackendOptions options, const LogSink& log,
+                                     const std::string& output) {
+    if (is_test_scene(source) ? !test_scene_entry(source).streams : !streams(source))
+        return Error{fmt::format("--host-memory goes with inputs that stream, .ply and the test "
+                                 "scene landscape-N; found '{}'",
+                                 source)};
+    const std::filesystem::path folder = std::filesystem::path(output).parent_path();
+    Result<TriangleStore> store = TriangleStore::create(folder);
+    if (!store)
+        return store.error();
+    Provenance from;
+    FilesRead files;
+    const LogSink listening = [&](LogLevel level, const std::string& message) {
+        if (level == LogLevel::Warning)
+            from.warnings.push_back(message);
+        say(log, level, message);
+    };
+    const Result<Scene> scene = stream_scene(source, host_bytes, listening, files, *store);
+    const Result<Done> stored = store->finish();
+    if (!stored)
+        return stored; // reading ends where the store fails
+    if (!scene)
+        return scene.error();
+    from.files = files.stamps();
+    options.watching = BuildWatching::Shown;
+    const SaveLevels save_levels = [&](const ByteSink& sink) {
+        return save_streamed_levels(*scene, *store, host_bytes, folder, options, log, sink);
+    };
+    return write_scene_file(*scene, *store, from, save_levels, output);
+}
+
 static Result<Done> convert_to_mesh(const SceneArguments& source, const LogSink& log,
                                     const std::string& output, bool quiet) {
     const Result<Scene> scene = open_scene(source, log);
@@ -120,6 +167,11 @@ public:
         app.add_option("OUT", output_,
                        "The file to write, the last that is named; replaced only once the new one "
                        "is complete");
+        app.add_option(
+               "--host-memory", host_memory_,
+               "For .ovc of .ply and landscape-N: the most host memory to use, 2G, besides "
+               "what the program and the driver take; the triangles wait on the disk of OUT")
+            ->type_name("SIZE");
         log_.add_to(app, /* with_quiet= */ true);
         backend_.add_to(app);
         app.footer(kConvertExamples);
@@ -144,19 +196,46 @@ public:
         const Result<LogLevel> level = log_.resolve();
         if (!level)
             return level.error();
+        const Result<uint64_t> host_bytes = host_bytes_of();
+        if (!host_bytes)
+            return host_bytes.error();
         const LogSink log = standard_error_log(*level);
-        const Result<Done> done =
-            extension_of(output_) == ".ovc"
-                ? convert_to_scene_file(source_, *backend_options, log, output_)
-                : convert_to_mesh(source_, log, output_, log_.quiet());
+        const Result<Done> done = convert(*backend_options, *host_bytes, log);
         if (!done)
             return done.error();
         return kExitOk;
     }
 
 private:
+    /// Returns --host-memory in bytes; 0 where it is not given.
+    Result<uint64_t> host_bytes_of() const {
+        if (host_memory_.empty())
+            return uint64_t(0);
+        if (extension_of(output_) != ".ovc")
+            return Error{
+                fmt::format("--host-memory goes with an output in .ovc, not with '{}'", output_)};
+        if (source_.scenes.size() > 1 || !source_.model.empty())
+            return Error{"--host-memory goes with one input alone"};
+        const Result<MemorySize> size = parse_memory_size(host_memory_);
+        if (!size)
+            return Error{fmt::format("--host-memory: {}", size.error().message)};
+        if (size->share > 0)
+            return Error{
+                fmt::format("--host-memory: found '{}', expected bytes, such as 2G", host_memory_)};
+        return size->bytes;
+    }
+
+    Result<Done> convert(const BackendOptions& options, uint64_t host_bytes, const LogSink& log) {
+        if (host_bytes > 0)
+            return convert_streamed(source_.scenes.front(), host_bytes, options, log, output_);
+        return extension_of(output_) == ".ovc"
+                   ? convert_to_scene_file(source_, options, log, output_)
+                   : convert_to_mesh(source_, log, output_, log_.quiet());
+    }
+
     SceneArguments source_;
     std::string output_;
+    std::string host_memory_;
     LogArguments log_;
     BackendArguments backend_; // for .ovc
 };

@@ -41,6 +41,9 @@ public:
         };
     }
 
+    /// Returns whether a write has failed; commit() then says why.
+    bool has_failed() const { return error_number_ != 0; }
+
     /// Puts the file in its place. Nothing may be written after it has succeeded.
     Result<Done> commit();
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The PLY reader streams polygons and triangle strips, in ASCII and in binary of either byte order.
+#include "core/file/triangle_sink.h"
 #include "importers/mesh/blocks.h"
 #include "importers/mesh/ply_rows.h"
 #include "importers/mesh/polygon.h"
@@ -90,26 +91,35 @@ struct Pending {
 template <class Rows, class V>
 class PlyReader {
 public:
-    PlyReader(Source& source, const PlyHeader& header, bool with_uv)
-        : source_(source), header_(header), rows_(source), with_uv_(with_uv) {
+    PlyReader(Source& source, const PlyHeader& header, const ImportOptions& options)
+        : source_(source),
+          header_(header),
+          rows_(source),
+          with_uv_(options.texture_coordinates),
+          streaming_(options.streaming) {
         if (const PlyElement* vertices = header.find("vertex"))
             vertex_count_ = vertices->count;
     }
 
     bool read() {
+        if (streaming_)
+            streaming_->sink.begin_mesh();
         for (const PlyElement& element : header_.elements)
             if (!read_element(element))
                 return false;
         for (size_t i = 0, first = 0; i < pending_.lengths.size(); first += pending_.lengths[i++])
-            add_triangles({pending_.indices.data() + first, pending_.lengths[i]});
-        return true;
+            if (!add_triangles({pending_.indices.data() + first, pending_.lengths[i]}))
+                return false;
+        return !streaming_ || pass_on();
     }
 
-    const Error& error() const { return rows_.error(); }
+    Error error() const {
+        return is_wanted_ ? rows_.error() : Error{"cancelled", ErrorKind::Cancelled};
+    }
     /// Return warnings after read(); left_over() does so once only.
     std::optional<Error> surplus() const { return rows_.surplus(); }
     std::optional<Error> left_over() { return rows_.left_over(); }
-    uint64_t triangle_count() const { return corners_.size() / 3; }
+    uint64_t triangle_count() const { return (passed_on_ + corners_.size()) / 3; }
     uint64_t too_short() const { return too_short_; }
     bool lost_normals() const { return lost_normals_; }
 
@@ -118,7 +128,7 @@ public:
         scene.name = name;
         scene.materials.emplace_back();
         std::vector<V>().swap(vertices_);
-        const uint64_t corners = corners_.size();
+        const uint64_t corners = 3 * triangle_count();
         scene.add_mesh(std::move(name), 0, Chunk::owning(origin_, corners_.take()),
                        normals_.empty() ? std::vector<vec3>() : corner_normals_.take());
         scene.meshes[0].normals_left_out = lost_normals_ ? corners : 0;
@@ -237,7 +247,9 @@ private:
         const uint64_t triangle_bytes = header_.format == PlyFormat::Ascii ? 8 : 4;
         if (!strips)
             corners_.reserve(
-                3 * plausible_rows(element, element.shortest_row(header_.format) + triangle_bytes));
+                std::min(streaming_ ? kPart : ~size_t(0),
+                         3 * plausible_rows(element, element.shortest_row(header_.format) +
+                                                         triangle_bytes)));
         for (uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
             if (!rows_.begin_row(element))
                 return false;
@@ -248,10 +260,8 @@ private:
             }
             if (!rows_.end_row())
                 return false;
-            if (strips)
-                add_strip();
-            else
-                add_polygon(polygon_);
+            if (!(strips ? add_strip() : add_polygon(polygon_)))
+                return false;
         }
         return true;
     }
@@ -277,39 +287,46 @@ private:
     }
 
     /// Every other triangle of a strip is wound the other way; kRestart begins a new strip.
-    void add_strip() {
+    bool add_strip() {
         uint32_t a = 0, b = 0, length = 0;
         for (const uint32_t c : polygon_) {
             if (c == kRestart) {
                 length = 0;
                 continue;
             }
-            if (length >= 2)
-                add_polygon(length % 2 == 0 ? std::array{a, b, c} : std::array{b, a, c});
+            if (length >= 2 &&
+                !add_polygon(length % 2 == 0 ? std::array{a, b, c} : std::array{b, a, c}))
+                return false;
             a = b;
             b = c;
             ++length;
         }
+        return true;
     }
 
-    void add_polygon(std::span<const uint32_t> indices) {
+    bool add_polygon(std::span<const uint32_t> indices) {
         if (indices.size() < 3) {
             ++too_short_;
         } else if (vertices_ready_) {
-            add_triangles(indices);
+            return add_triangles(indices);
         } else {
             pending_.indices.insert(pending_.indices.end(), indices.begin(), indices.end());
             pending_.lengths.push_back(uint32_t(indices.size()));
         }
+        return true;
     }
 
-    void add_triangles(std::span<const uint32_t> indices) {
+    bool add_triangles(std::span<const uint32_t> indices) {
         assert(indices.size() >= 3);
-        if (indices.size() == 3) {
+        if (indices.size() == 3)
             for (const uint32_t index : indices)
                 add_corner(index);
-            return;
-        }
+        else
+            add_cut(indices);
+        return !streaming_ || corners_.size() < kPart || pass_on();
+    }
+
+    void add_cut(std::span<const uint32_t> indices) {
         outline_.clear();
         for (const uint32_t index : indices)
             outline_.emplace_back(vertices_[index]);
@@ -333,7 +350,17 @@ private:
             corner_uv_.push_back(uv_[index]);
     }
 
+    /// Hands what was read to the sink of a scene that streams.
+    bool pass_on() {
+        const std::vector<vec3> corners = corners_.take(), normals = corner_normals_.take();
+        passed_on_ += corners.size();
+        is_wanted_ = streaming_->sink.add_corners(corners) &&
+                     (normals.empty() || streaming_->sink.add_normals(normals));
+        return is_wanted_;
+    }
+
     static constexpr uint32_t kRestart = 0xffffffffu;
+    static constexpr size_t kPart = 1 << 16; // corners that are handed on at once, or more
 
     Source& source_;
     const PlyHeader& header_;
@@ -343,6 +370,9 @@ private:
     std::vector<vec3> normals_; // one per vertex, or empty
     std::vector<vec2> uv_;      // likewise
     const bool with_uv_;        // they are wanted
+    const Streaming* const streaming_;
+    bool is_wanted_ = true;  // by its sink
+    uint64_t passed_on_ = 0; // corners that it has got
     bool vertices_ready_ = false;
     bool lost_normals_ = false;
     uint64_t too_short_ = 0; // polygons with fewer than three corners
@@ -360,7 +390,7 @@ private:
 template <class Rows, class V>
 Result<Scene> read_body(Source& source, const PlyHeader& header, const std::filesystem::path& path,
                         const ImportOptions& options) {
-    PlyReader<Rows, V> reader(source, header, options.texture_coordinates);
+    PlyReader<Rows, V> reader(source, header, options);
     if (!reader.read())
         return reader.error();
     const std::optional<Error> left_over = reader.left_over();
@@ -380,10 +410,9 @@ Result<Scene> read_body(Source& source, const PlyHeader& header, const std::file
                          counted(reader.too_short(), "polygon")));
     if (reader.lost_normals())
         warn("normals left out: some are zero or not finite");
-    Scene scene = reader.take(path.stem().string());
-    if (scene.soup.triangle_count() == 0)
+    if (reader.triangle_count() == 0)
         warn("it has no triangles");
-    return scene;
+    return reader.take(path.stem().string());
 }
 
 template <class Rows>
@@ -418,6 +447,25 @@ std::optional<Error> check(const PlyHeader& header, const Source& source) {
     return std::nullopt;
 }
 
+/// Checks that the vertices, which a stream of faces needs at hand, fit into the memory it may
+/// take.
+std::optional<Error> check_memory(const PlyHeader& header, const Source& source,
+                                  const Streaming& streaming) {
+    const PlyElement* vertices = header.find("vertex");
+    if (!vertices)
+        return std::nullopt;
+    uint64_t bytes = vertices->find("nx") >= 0 ? sizeof(vec3) : 0;
+    bytes += exceeds_float(vertices->properties[size_t(vertices->find("x"))].type) ? sizeof(dvec3)
+                                                                                   : sizeof(vec3);
+    const uint64_t rows =
+        std::min(vertices->count, source.likely_bytes() / vertices->shortest_row(header.format));
+    if (rows * bytes <= streaming.host_bytes)
+        return std::nullopt;
+    return source.error(fmt::format("its {} vertices take {} bytes of host memory, and {} are "
+                                    "allowed: the smallest number that works is {}",
+                                    rows, rows * bytes, streaming.host_bytes, rows * bytes));
+}
+
 } // namespace
 
 Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& options) {
@@ -429,6 +477,9 @@ Result<Scene> read_ply(const std::filesystem::path& path, const ImportOptions& o
         return header.error();
     if (const auto error = check(*header, *source))
         return *error;
+    if (options.streaming)
+        if (const auto error = check_memory(*header, *source, *options.streaming))
+            return *error;
     switch (header->format) {
     case PlyFormat::Ascii:
         return read_body<AsciiRows>(*source, *header, path, options);

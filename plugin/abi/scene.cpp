@@ -6,6 +6,7 @@
 #include "core/build_progress.h"
 #include "core/system/stopwatch.h"
 #include "core/text/format_text.h"
+#include "plugin/abi/config.h"
 #include "plugin/abi/device_call.h"
 #include "plugin/abi/scene_call.h"
 #include "plugin/abi/struct_size.h"
@@ -15,32 +16,6 @@
 
 namespace ovc {
 namespace {
-
-void check_choice(const char* field, uint32_t value, uint32_t last) {
-    if (value > last)
-        invalid(format_text("ovc_scene_config.{} is {}, expected {}{}", field, value,
-                            last ? "0 to " : "", last));
-}
-
-/// Runs body(progress), where progress tells the config's function, or is null where there is none.
-/// Turns body's Cancelled into a Failure.
-template <class Body>
-void with_progress(const ovc_scene_config& config, const char* call, Body&& body) {
-    if (!config.progress) {
-        body(nullptr);
-        return;
-    }
-    BuildProgress progress([&](double done, const char* stage) {
-        const HostFunction mark;
-        return config.progress(config.progress_user, done, stage) == 0;
-    });
-    try {
-        body(&progress);
-    } catch (const Cancelled&) {
-        throw Failure{OVC_ERROR_CANCELLED,
-                      format_text("{}: cancelled by ovc_scene_config.progress", call)};
-    }
-}
 
 /// Brings the structure up to date with what has changed. Returns false, without a structure, where
 /// one must be built; and has none either where this throws.
@@ -88,24 +63,7 @@ ovc_result create_scene(ovc_device device, const ovc_scene_config* config, ovc_s
         *scene = nullptr;
         auto created = std::make_unique<ovc_scene_t>();
         created->device = device;
-        if (config) {
-            check_size<ovc_scene_config>("ovc_scene_config", config->struct_size,
-                                         offsetof(ovc_scene_config, progress));
-            if (config->leaf_triangles && config->leaves)
-                invalid(
-                    "ovc_scene_config: leaf_triangles and leaves are both set; one says it all");
-            check_choice("precision", config->precision, OVC_PRECISION_FAST);
-            check_choice("kernel", config->kernel, OVC_KERNEL_COMPUTE);
-            check_choice("structure", config->structure, OVC_STRUCTURE_THESIS_TWO_LEVEL);
-            check_choice("level1", config->level1, OVC_LEVEL1_BVH);
-            check_choice("level1_build", config->level1_build, OVC_LEVEL1_BUILD_BOTTOM_UP);
-            std::memcpy(&created->config, config, config->struct_size);
-            created->config.struct_size = sizeof(ovc_scene_config);
-            check_choice("tell_active", created->config.tell_active, 1);
-            check_choice("reserved", created->config.reserved, 0);
-            if (!created->config.saved && created->config.saved_bytes)
-                invalid("ovc_scene_config.saved is NULL, but saved_bytes is not 0");
-        }
+        created->config = checked_config(config);
         // A config that no scene can have is refused now, before anything is added.
         check_config(created->config, device->gl->info());
         ++device->scenes;

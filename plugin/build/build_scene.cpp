@@ -67,10 +67,12 @@ std::optional<BuiltScene> restored(const Soup& soup, const TwoLevelOptions& opti
                                    const MemoryPlan& plan, const LogSink& log) {
     if (options.saved.empty())
         return std::nullopt;
-    Result<std::optional<BuiltScene>> found =
-        restore_levels(options.saved, soup, [&](uint64_t triangles, uint64_t unique) {
+    Result<std::optional<BuiltScene>> found = restore_levels(
+        options.saved, soup,
+        [&](uint64_t triangles, uint64_t unique) {
             return limits_of(options, plan, triangles, unique);
-        });
+        },
+        /* takes_any_limits= */ options.leaf_triangles == 0 && options.leaves == 0);
     if (!found) {
         say(log, LogLevel::Warning,
             format_text("building anew: what was saved {}", found.error().message));

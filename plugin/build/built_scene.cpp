@@ -142,7 +142,7 @@ uint32_t BuiltScene::page_at(const dvec3& point, TriangleId id) const {
         return leaf_at(level1, point, id);
     const std::vector<Leaf>& leaves = mesh->scene.level1.leaves;
     for (uint32_t i = 0; i < leaves.size(); ++i)
-        if (std::ranges::binary_search(leaves[i].triangles, TriangleId{0, id.prim}))
+        if (std::ranges::binary_search(leaves[i].list(), TriangleId{0, id.prim}))
             return mesh->first_page + i;
     return kNone;
 }

@@ -91,6 +91,7 @@ struct BuiltScene {
     std::optional<Leaf> home;
     TopLevel top; // over the pages
     bool from_saved = false;
+    bool any_limits = false;  // LevelsKey::any_limits
     double built_overlap = 0; // of the level's own pages before the first update; 0: none yet
     bool was_updated = false;
     /// The leaf of triangles that came into an update, or left their page in one; kNone: none yet.

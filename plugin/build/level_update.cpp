@@ -78,6 +78,7 @@ bool LevelUpdate::run() {
         return true;
     if (scene_.level1.leaves.empty())
         return false;
+    scene_.level1.own_lists();
     if (scene_.built_overlap == 0)
         scene_.built_overlap = overlap_of(scene_);
     find_faults();

@@ -24,8 +24,8 @@ std::vector<TriangleId> sample_of(const BuiltScene& level, const Soup& soup, uin
     std::vector<TriangleId> sample;
     const size_t step = level.triangles / kSample + 1;
     for (const Leaf& leaf : level.level1.leaves)
-        for (size_t i = 0; i < leaf.triangles.size(); i += step) {
-            const TriangleId own = leaf.triangles[i];
+        for (size_t i = 0; i < leaf.list().size(); i += step) {
+            const TriangleId own = leaf.list()[i];
             const TriangleId id{chunk == kNone ? own.mesh : chunk, own.prim};
             if (soup.has(id)) // else it was removed, and its leaf is not up to date yet
                 sample.push_back(id);

@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kKind = "ovc levels";
 /// The version must be raised when a build makes other leaves or pages of the same soup. A change
 /// of layout.h is noticed without that.
-constexpr uint32_t kVersion = 9;
+constexpr uint32_t kVersion = 10;
 
 /// A build makes the same levels where all of its key is the same.
 struct Key {
@@ -29,6 +29,7 @@ struct Key {
     uint64_t leaf_triangles = 0; // limits
     uint64_t page_bytes = 0;     // 0 where no page could come near it
     uint64_t whole_bytes = 0;
+    uint64_t any_limits = 0; // 1: limits do not matter, and are 0
 
     bool operator==(const Key&) const = default;
 };
@@ -51,21 +52,6 @@ struct SavedCut {
 };
 static_assert(sizeof(SavedCut) == 28 * 8);
 
-struct SavedLeaf {
-    Box cell;
-    Box box;
-    Box grid;
-    dvec3 origin{0};
-    double scale = 1;
-    uint64_t triangles = 0; // so many of the part "lists", behind those of the leaves before
-};
-static_assert(sizeof(SavedLeaf) == 23 * 8);
-
-struct SavedPage {
-    uint64_t texels = 0;
-    uint64_t depth = 0;
-};
-
 uint64_t checksum_of_layout() {
     for (const ShaderSource& source : shader_sources())
         if (source.name == "layout.h")
@@ -76,8 +62,7 @@ uint64_t checksum_of_layout() {
 uint64_t checksum_of_soup(const Soup& soup) {
     Checksum sum;
     for (const Chunk& chunk : soup.chunks) {
-        sum.add(bytes_of(std::span<const dvec3>(&chunk.origin(), 1)));
-        sum.add_value(uint64_t(chunk.size()));
+        add_chunk(sum, chunk.origin(), chunk.size());
         sum.add(bytes_of(chunk.corners()));
         sum.add(bytes_of(chunk.double_corners()));
         if (chunk.moves()) // and is cut by itself
@@ -212,11 +197,11 @@ private:
             if (!is_sound(leaf) || !list ||
                 (level1.shares_frame && !share_frame(leaf, leaves->front())))
                 return false;
-            level1.leaves.push_back({leaf.cell,
-                                     leaf.box,
-                                     {leaf.origin, leaf.scale},
-                                     leaf.grid,
-                                     {list->begin(), list->end()}});
+            level1.leaves.push_back({.cell = leaf.cell,
+                                     .box = leaf.box,
+                                     .frame = {leaf.origin, leaf.scale},
+                                     .grid = leaf.grid,
+                                     .borrowed = *list});
         }
         return true;
     }
@@ -321,72 +306,108 @@ std::vector<const BuiltScene*> cuts_of(const BuiltScene& scene) {
     return cuts;
 }
 
-SavedCut saved_cut(const BuiltScene& scene) {
-    SavedCut cut;
-    if (scene.packed) {
-        cut.rests = 1;
+LevelsCut levels_cut(const BuiltScene& scene) {
+    LevelsCut cut{scene.dropped, scene.duplicates.pairs(), scene.level1, scene.level1.leaves.size(),
+                  scene.triangles};
+    if (scene.packed)
         cut.rest_place = or_identity(scene.packed->chunks.front().transform());
-    }
-    cut.not_finite = scene.dropped.not_finite;
-    cut.degenerate = scene.dropped.degenerate;
-    cut.duplicates = scene.duplicates.count();
-    cut.nodes = scene.level1.nodes.size();
-    cut.leaves = scene.level1.leaves.size();
-    cut.triangles = scene.triangles;
-    cut.shares_frame = scene.level1.shares_frame;
-    cut.far_leaves = scene.level1.far_leaves;
-    cut.bounds = scene.level1.bounds;
-    cut.padding = scene.level1.padding;
     return cut;
+}
+
+SavedCut saved_cut(const LevelsCut& of) {
+    SavedCut cut;
+    if (of.rest_place) {
+        cut.rests = 1;
+        cut.rest_place = *of.rest_place;
+    }
+    cut.not_finite = of.dropped.not_finite;
+    cut.degenerate = of.dropped.degenerate;
+    cut.duplicates = of.duplicates.size();
+    cut.nodes = of.level1.nodes.size();
+    cut.leaves = of.leaves;
+    cut.triangles = of.triangles;
+    cut.shares_frame = of.level1.shares_frame;
+    cut.far_leaves = of.level1.far_leaves;
+    cut.bounds = of.level1.bounds;
+    cut.padding = of.level1.padding;
+    return cut;
+}
+
+Key key_of(const LevelsKey& of) {
+    Key key;
+    key.layout = checksum_of_layout();
+    key.soup = of.soup;
+    if (of.any_limits)
+        key.any_limits = 1;
+    else
+        put_limits(key, of.limits);
+    return key;
 }
 
 } // namespace
 
-bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
-    Key key;
-    key.layout = checksum_of_layout();
-    key.soup = checksum_of_soup(scene.soup);
-    put_limits(key, scene.limits);
-    const std::vector<const BuiltScene*> scenes = cuts_of(scene);
-    std::vector<SavedCut> cuts;
-    std::vector<SavedLeaf> leaves;
-    for (const BuiltScene* cut : scenes) {
-        cuts.push_back(saved_cut(*cut));
-        for (const Leaf& leaf : cut->level1.leaves)
-            leaves.push_back({leaf.cell, leaf.box, leaf.grid, leaf.frame.origin, leaf.frame.scale,
-                              leaf.triangles.size()});
-    }
-    std::vector<SavedPage> pages;
-    const auto for_each_page = [&](auto&& visit) {
-        for (const BuiltScene* cut : scenes)
-            for (size_t i = 0; i < cut->level1.leaves.size(); ++i)
-                visit(cut->pages[i]); // those of the first go on with all others
-    };
-    for_each_page([&](const Page& page) { pages.push_back({page.view().size(), page.depth}); });
+void add_chunk(Checksum& sum, const dvec3& origin, uint64_t triangles) {
+    sum.add(bytes_of(std::span<const dvec3>(&origin, 1)));
+    sum.add_value(triangles);
+}
 
-    ArchiveWriter writer(sink, kKind, kVersion);
-    writer.part<Key>("key", std::span(&key, 1));
-    writer.part<SavedCut>("cuts", cuts);
-    writer.begin("twins");
+LevelsWriter::LevelsWriter(const ByteSink& sink) : writer_(sink, kKind, kVersion) {
+    writer_.begin("texels");
+}
+
+void LevelsWriter::add(const Leaf& leaf, const Page& page) {
+    leaves_.push_back(
+        {leaf.cell, leaf.box, leaf.grid, leaf.frame.origin, leaf.frame.scale, leaf.list().size()});
+    pages_.push_back({page.view().size(), page.depth});
+    writer_.write(bytes_of(page.view()));
+}
+
+void LevelsWriter::begin_lists() {
+    writer_.begin("lists");
+}
+
+void LevelsWriter::add_lists(std::span<const TriangleId> triangles) {
+    writer_.write(bytes_of(triangles));
+}
+
+bool LevelsWriter::finish(const LevelsKey& key, std::span<const LevelsCut> cuts) {
+    const Key saved_key = key_of(key);
+    std::vector<SavedCut> saved_cuts;
+    for (const LevelsCut& cut : cuts)
+        saved_cuts.push_back(saved_cut(cut));
+    writer_.part<Key>("key", std::span(&saved_key, 1));
+    writer_.part<SavedCut>("cuts", saved_cuts);
+    writer_.begin("twins");
+    for (const LevelsCut& cut : cuts)
+        writer_.write(bytes_of(cut.duplicates));
+    writer_.begin("nodes");
+    for (const LevelsCut& cut : cuts)
+        writer_.write(bytes_of(std::span<const KdNode>(cut.level1.nodes)));
+    writer_.part<SavedLeaf>("leaves", leaves_);
+    writer_.part<SavedPage>("pages", pages_);
+    return writer_.finish();
+}
+
+bool save_levels(const BuiltScene& scene, const ByteSink& sink) {
+    LevelsWriter writer(sink);
+    const std::vector<const BuiltScene*> scenes = cuts_of(scene);
     for (const BuiltScene* cut : scenes)
-        writer.write(bytes_of(cut->duplicates.pairs()));
-    writer.begin("nodes");
-    for (const BuiltScene* cut : scenes)
-        writer.write(bytes_of(std::span<const KdNode>(cut->level1.nodes)));
-    writer.part<SavedLeaf>("leaves", leaves);
-    writer.begin("lists");
-    for (const BuiltScene* cut : scenes)
+        for (size_t i = 0; i < cut->level1.leaves.size(); ++i) // pages of others may follow
+            writer.add(cut->level1.leaves[i], cut->pages[i]);
+    writer.begin_lists();
+    std::vector<LevelsCut> cuts;
+    for (const BuiltScene* cut : scenes) {
+        cuts.push_back(levels_cut(*cut));
         for (const Leaf& leaf : cut->level1.leaves)
-            writer.write(bytes_of(std::span<const TriangleId>(leaf.triangles)));
-    writer.part<SavedPage>("pages", pages);
-    writer.begin("texels");
-    for_each_page([&](const Page& page) { writer.write(bytes_of(page.view())); });
-    return writer.finish();
+            writer.add_lists(leaf.list());
+    }
+    return writer.finish({checksum_of_soup(scene.soup), scene.limits, scene.any_limits}, cuts);
 }
 
 Result<std::optional<BuiltScene>>
 restore_levels(Bytes saved, const Soup& soup,
-               const std::function<LeafLimits(uint64_t, uint64_t)>& limits_for) {
+               const std::function<LeafLimits(uint64_t, uint64_t)>& limits_for,
+               bool takes_any_limits) {
     const Stopwatch watch;
     if (reinterpret_cast<uintptr_t>(saved.data()) % kPartAlignment)
         return Error{"is not aligned to 64 bytes"};
@@ -405,10 +426,11 @@ restore_levels(Bytes saved, const Soup& soup,
     for (const SavedCut& cut : *cuts)
         unique += cut.triangles;
     const LeafLimits limits = limits_for(cuts->front().triangles, unique);
-    Key key;
+    Key key = keys->front();
     key.layout = checksum_of_layout();
-    put_limits(key, limits);
-    key.soup = keys->front().soup; // compared last, because its checksum takes a while
+    if (!takes_any_limits || key.any_limits != 1)
+        put_limits(key, limits);
+    // The soup is compared last, because its checksum takes a while.
     if (key != keys->front() || checksum_of_soup(soup) != key.soup)
         return std::optional<BuiltScene>();
     Result<BuiltScene> scene = restored(*archive, *cuts, soup);
@@ -416,6 +438,7 @@ restore_levels(Bytes saved, const Soup& soup,
         return scene.error();
     scene->limits = limits;
     scene->from_saved = true;
+    scene->any_limits = key.any_limits == 1;
     scene->seconds_level1 = watch.seconds();
     return std::optional(std::move(*scene));
 }

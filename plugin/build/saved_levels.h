@@ -4,24 +4,90 @@
 #pragma once
 
 #include "core/file/archive.h"
+#include "core/file/checksum.h"
 #include "core/result.h"
 #include "plugin/build/built_scene.h"
 
 #include <functional>
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace ovc {
+
+/// What is saved of one cut: all triangles that are placed once make the first, and each shared
+/// mesh makes another.
+struct LevelsCut {
+    Dropped dropped;
+    std::span<const Duplicates::Pair> duplicates; // sorted
+    const Level1& level1;                         // whose own leaves are not looked at
+    uint64_t leaves = 0;                          // of those that were added
+    uint64_t triangles = 0;                       // in leaves, each counted once
+    std::optional<Transform> rest_place{};        // of a mesh that came to rest: where it did
+};
+
+/// Decides whether a later scene may take levels.
+struct LevelsKey {
+    uint64_t soup = 0;   // checksum of origins and corners
+    LeafLimits limits{}; // unless any_limits
+    /// Whether levels are good under other limits too, where the host asks for none itself: it
+    /// takes longer to build them again than leaves of another size save.
+    bool any_limits = false;
+};
+
+/// Adds the beginning of a chunk to the checksum of a soup (LevelsKey). Its corners, as they lie in
+/// memory, are added next.
+void add_chunk(Checksum& sum, const dvec3& origin, uint64_t triangles);
+
+/// A leaf as it is saved.
+struct SavedLeaf {
+    Box cell;
+    Box box;
+    Box grid;
+    dvec3 origin{0};
+    double scale = 1;
+    uint64_t triangles = 0; // so many of the part "lists", behind those of the leaves before
+};
+static_assert(sizeof(SavedLeaf) == 23 * 8);
+
+struct SavedPage {
+    uint64_t texels = 0;
+    uint64_t depth = 0;
+};
+
+/// Writes saved levels leaf by leaf, so that nobody need hold all of them.
+class LevelsWriter {
+public:
+    explicit LevelsWriter(const ByteSink& sink);
+
+    /// Writes the page of the next leaf.
+    void add(const Leaf& leaf, const Page& page);
+    /// Ends the leaves. The triangles of all of them come next, in order and in parts of any size.
+    void begin_lists();
+    void add_lists(std::span<const TriangleId> triangles);
+    /// Ends the levels. Returns false where the sink wanted no more.
+    bool finish(const LevelsKey& key, std::span<const LevelsCut> cuts);
+
+    uint64_t leaves() const { return leaves_.size(); }
+
+private:
+    ArchiveWriter writer_;
+    std::vector<SavedLeaf> leaves_;
+    std::vector<SavedPage> pages_;
+};
 
 /// Passes the scene on to the sink, front to back. Returns false where the sink wanted no more.
 bool save_levels(const BuiltScene& scene, const ByteSink& sink);
 
 /// Returns the scene that save_levels() wrote of this soup; nothing where the bytes are of another
 /// soup, or where a build would now make another scene. limits_for(triangles, unique): as
-/// limits_of(). The pages stay in `saved`, which must outlive them. Whatever the bytes are, the
-/// scene that comes back is safe to walk. Error: the bytes are damaged, not aligned to
-/// kPartAlignment, or no saved levels; the sentence goes on from a name.
+/// limits_of(). takes_any_limits: LevelsKey::any_limits counts. Lists and pages stay in `saved`,
+/// which must outlive them. Whatever the bytes are, the scene that comes back is safe to walk.
+/// Error: the bytes are damaged, not aligned to kPartAlignment, or no saved levels; the sentence
+/// goes on from a name.
 Result<std::optional<BuiltScene>>
 restore_levels(Bytes saved, const Soup& soup,
-               const std::function<LeafLimits(uint64_t, uint64_t)>& limits_for);
+               const std::function<LeafLimits(uint64_t, uint64_t)>& limits_for,
+               bool takes_any_limits = false);
 
 } // namespace ovc

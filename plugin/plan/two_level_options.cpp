@@ -25,16 +25,16 @@ constexpr uint64_t kPagesABuffer = 8;
 
 } // namespace
 
-Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
+Result<MemoryPlan> plan_memory(uint64_t triangles, const TwoLevelOptions& options,
                                const DeviceInfo& device) {
     Result<MemoryPlan> plan =
         plan_memory(options.budget_bytes ? options.budget_bytes : device.default_budget_bytes(),
                     device, sizeof(RayState) + kAnswerBytes, options.buffer_bytes);
     if (!plan)
         return plan;
-    if (soup.triangle_count() > OVC_MAX_TRIANGLES)
-        return Error{format_text("{} triangles are too many: a scene takes {}",
-                                 soup.triangle_count(), OVC_MAX_TRIANGLES),
+    if (triangles > OVC_MAX_TRIANGLES)
+        return Error{format_text("{} triangles are too many: a scene takes {}", triangles,
+                                 OVC_MAX_TRIANGLES),
                      ErrorKind::InvalidArgument};
     plan->driver_bytes = options.driver_bytes;
     return plan;

@@ -30,8 +30,12 @@ struct TwoLevelOptions {
 
 /// Returns the plan for the budget that the options ask for, before portals are taken off. Error:
 /// as of plan_memory() in gpu/trace/tracer.h, or there are more triangles than a scene takes.
-Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
+Result<MemoryPlan> plan_memory(uint64_t triangles, const TwoLevelOptions& options,
                                const DeviceInfo& device);
+inline Result<MemoryPlan> plan_memory(const Soup& soup, const TwoLevelOptions& options,
+                                      const DeviceInfo& device) {
+    return plan_memory(soup.triangle_count(), options, device);
+}
 
 /// At most so many bytes a triangle has a page in which planes cut nothing: a unit for each, and no
 /// more nodes than units.

@@ -17,6 +17,7 @@
 #include "gpu/gl/gl_thread.h"
 #include "plugin/overcast.h"
 #include "plugin/structure/call_watch.h"
+#include "plugin/structure/triangle_source.h"
 
 #include <cassert>
 #include <memory>
@@ -106,6 +107,13 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
                                                   const ovc_scene_config& config,
                                                   const LogSink& log,
                                                   BuildProgress* progress = nullptr);
+
+/// Writes to the sink what save() of such a structure over the scene's meshes would, within the
+/// scene's host memory. Throws as make_structure() does, and Cancelled where a function of the
+/// caller's fails. Error: host or GPU memory is too small, or the structure cannot be saved.
+Result<Done> save_structure(const StreamedScene& scene, const DeviceInfo& device,
+                            const ovc_scene_config& config, const ByteSink& sink,
+                            const LogSink& log, BuildProgress* progress = nullptr);
 
 /// Tells what make_structure() would make; ovc_plan.seconds is left to the caller. Throws as
 /// make_structure() does. Error: the budget is too small for any scene, or the structure cannot

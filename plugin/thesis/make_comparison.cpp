@@ -73,6 +73,11 @@ Result<ovc_plan> plan_structure(const Soup&, const DeviceInfo&, const ovc_scene_
                        thesis::name_of(ovc_structure(config.structure))));
 }
 
+Result<Done> save_structure(const StreamedScene&, const DeviceInfo&, const ovc_scene_config&,
+                            const ByteSink&, const LogSink&, BuildProgress*) {
+    refuse("save_streamed: only two-level (libovercast.so) can be saved");
+}
+
 Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl,
                                                   const ovc_scene_config& config,
                                                   const LogSink& log, BuildProgress* progress) {

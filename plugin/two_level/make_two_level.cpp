@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The structure of libovercast.so: two-level, and what it counts in the words of the ABI.
 #include "core/text/format_text.h"
+#include "plugin/out_of_core/streamed_build.h"
 #include "plugin/plan/forecast.h"
 #include "plugin/structure/failure.h"
 #include "plugin/structure/structure.h"
@@ -56,6 +57,16 @@ Result<std::unique_ptr<Structure>> make_structure(const Soup& soup, GlThread& gl
 Result<ovc_plan> plan_structure(const Soup& soup, const DeviceInfo& device,
                                 const ovc_scene_config& config, BuildProgress* progress) {
     return forecast(soup, options_of(config), device, progress);
+}
+
+Result<Done> save_structure(const StreamedScene& scene, const DeviceInfo& device,
+                            const ovc_scene_config& config, const ByteSink& sink,
+                            const LogSink& log, BuildProgress* progress) {
+    const Result<StreamedLevels> saved =
+        save_streamed(scene, options_of(config), device, sink, log, progress);
+    if (!saved)
+        return saved.error();
+    return Done{};
 }
 
 ovc_statistics TwoLevel::report() const {

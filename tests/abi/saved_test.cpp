@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <mutex>
 
 namespace ovc {
 namespace {
@@ -23,6 +24,7 @@ protected:
             *static_cast<std::string*>(user) += std::string(message) + "\n";
         };
         config.log_user = &log;
+        config.threads = 4; // a build out of core takes memory for each
         ovc_device opened = nullptr;
         api().create_device(&config, &opened);
         device.reset(opened);
@@ -142,6 +144,111 @@ TEST_F(Saved, MisuseIsRefused) {
     EXPECT_EQ(api().save(nullptr, append, &memory), OVC_ERROR_INVALID_ARGUMENT);
     const auto full = [](void*, const void*, size_t) { return 1; };
     EXPECT_EQ(api().save(fine.get(), full, nullptr), OVC_ERROR_CANCELLED);
+}
+
+/// A soup of one mesh as a scene that streams, and what is saved of it.
+struct StreamedSoup {
+    const Soup& soup;
+    ovc_streamed_mesh mesh{};
+    test::ArchiveMemory scratch, saved;
+    std::mutex mutex;
+    bool scratch_fails = false;
+
+    explicit StreamedSoup(const Soup& of) : soup(of) {
+        for (int axis = 0; axis < 3; ++axis)
+            mesh.origin[axis] = of.chunks[0].origin()[axis];
+        mesh.triangle_count = of.chunks[0].size();
+    }
+
+    ovc_streamed_scene scene(uint64_t host_memory_bytes) {
+        auto scene = test::sized<ovc_streamed_scene>();
+        scene.host_memory_bytes = host_memory_bytes;
+        scene.meshes = &mesh;
+        scene.mesh_count = 1;
+        scene.user = this;
+        scene.read_corners = [](void* user, uint32_t, uint64_t first, uint64_t count, void* to) {
+            const StreamedSoup& self = *static_cast<StreamedSoup*>(user);
+            std::memcpy(to, &self.soup.chunks[0].corners()[3 * first], 36 * count);
+            return 0;
+        };
+        scene.write_scratch = [](void* user, uint64_t at, const void* bytes, size_t size) {
+            StreamedSoup& self = *static_cast<StreamedSoup*>(user);
+            const std::lock_guard lock(self.mutex);
+            if (self.scratch.size() < at + size)
+                self.scratch.resize(at + size);
+            std::memcpy(self.scratch.data() + at, bytes, size);
+            return 0;
+        };
+        scene.read_scratch = [](void* user, uint64_t at, void* bytes, size_t size) {
+            StreamedSoup& self = *static_cast<StreamedSoup*>(user);
+            const std::lock_guard lock(self.mutex);
+            std::memcpy(bytes, self.scratch.data() + at, size);
+            return self.scratch_fails ? 1 : 0;
+        };
+        scene.write = [](void* user, const void* bytes, size_t size) {
+            static_cast<StreamedSoup*>(user)->saved.append(
+                {static_cast<const std::byte*>(bytes), size});
+            return 0;
+        };
+        return scene;
+    }
+};
+
+constexpr uint64_t kSmallHost = 8 << 20; // too small to build 51,200 triangles in memory
+
+TEST_F(Saved, AStreamedSceneAnswersWithTheSameBits) {
+    const Soup soup = test::closed_grid(160);
+    const auto rays = test::unpleasant_rays(soup, 5, 3000);
+    const auto expected = answers(committed(soup, {}, test::sized<ovc_scene_config>()), rays);
+    StreamedSoup streamed(soup);
+    const ovc_streamed_scene scene = streamed.scene(kSmallHost);
+    ASSERT_EQ(api().save_streamed(device.get(), nullptr, &scene), OVC_OK)
+        << api().last_error(device.get());
+    EXPECT_GT(streamed.scratch.size(), 36u * soup.triangle_count());
+    for (const uint64_t gpu_memory : {0u, 8u << 20, 1u << 20}) { // all of its pages fit, or some
+        auto config = test::sized<ovc_scene_config>();
+        config.gpu_memory_bytes = gpu_memory;
+        const auto restored = committed(soup, streamed.saved.bytes(), config);
+        EXPECT_EQ(statistics(restored).from_saved, 1u) << log;
+        EXPECT_GT(statistics(restored).leaves, 5u);
+        const auto found = answers(restored, rays);
+        EXPECT_EQ(std::memcmp(expected.data(), found.data(), rays.size() * sizeof(ovc_hit)), 0);
+        // They may be saved again, and remain what they are.
+        const test::ArchiveMemory again = save(restored);
+        ASSERT_EQ(again.size(), streamed.saved.size());
+        EXPECT_EQ(std::memcmp(again.bytes().data(), streamed.saved.bytes().data(), again.size()),
+                  0);
+    }
+    EXPECT_EQ(statistics(committed(soup, streamed.saved.bytes(), leaves_of(200))).from_saved, 0u)
+        << "the host asks for leaves of its own";
+}
+
+TEST_F(Saved, AStreamedSceneThatFitsIsSavedAsIfItDidNotStream) {
+    const Soup soup = test::closed_grid(40);
+    StreamedSoup streamed(soup);
+    const ovc_streamed_scene scene = streamed.scene(kSmallHost);
+    ASSERT_EQ(api().save_streamed(device.get(), nullptr, &scene), OVC_OK)
+        << api().last_error(device.get());
+    EXPECT_EQ(streamed.scratch.size(), 0u);
+    const test::ArchiveMemory memory = save(committed(soup, {}, test::sized<ovc_scene_config>()));
+    ASSERT_EQ(memory.size(), streamed.saved.size());
+    EXPECT_EQ(std::memcmp(memory.bytes().data(), streamed.saved.bytes().data(), memory.size()), 0);
+}
+
+TEST_F(Saved, AStreamedSceneTellsWhyItCannotBeSaved) {
+    const Soup soup = test::closed_grid(160);
+    StreamedSoup streamed(soup);
+    ovc_streamed_scene scene = streamed.scene(1 << 20);
+    EXPECT_EQ(api().save_streamed(device.get(), nullptr, &scene), OVC_ERROR_OUT_OF_BUDGET);
+    EXPECT_THAT(api().last_error(device.get()),
+                testing::MatchesRegex("1048576 bytes of host memory are too few for 51200 "
+                                      "triangles on [0-9]+ threads: the smallest number that "
+                                      "works is [0-9]+"));
+    scene = streamed.scene(kSmallHost);
+    streamed.scratch_fails = true;
+    EXPECT_EQ(api().save_streamed(device.get(), nullptr, &scene), OVC_ERROR_CANCELLED);
+    EXPECT_STREQ(api().last_error(device.get()),
+                 "save_streamed: cancelled by a function of the host's");
 }
 
 } // namespace

@@ -57,11 +57,42 @@ void check_size(const Result<Scene>& scene, const uint8_t* data, size_t size) {
 
 } // namespace
 
+namespace {
+
+struct CountingSink final : TriangleSink {
+    uint64_t meshes = 0, corners = 0, normals = 0;
+
+    void begin_mesh() override { ++meshes; }
+    bool add_corners(std::span<const vec3> some) override {
+        corners += some.size();
+        return true;
+    }
+    bool add_normals(std::span<const vec3> some) override {
+        normals += some.size();
+        return true;
+    }
+};
+
+/// A file that streams is refused where one that is held is, or has as many triangles.
+void check_stream(const Result<Scene>& held, const std::string& path) {
+    CountingSink sink;
+    const Streaming streaming{sink, ~uint64_t(0)};
+    const Result<Scene> streamed = read_ply(path, {.streaming = &streaming});
+    require(bool(held) == bool(streamed));
+    require(held || held.error().message == streamed.error().message);
+    require(!held || (sink.meshes == 1 && sink.corners == 3 * held->soup.triangle_count() &&
+                      sink.normals == held->meshes[0].normals.size()));
+}
+
+} // namespace
+
 void fuzz_ply(const uint8_t* data, size_t size) {
     static const MemoryFile file("fuzz.ply");
-    const Result<Scene> scene = read_ply(file.holding(data, size), {});
+    const std::string path = file.holding(data, size);
+    const Result<Scene> scene = read_ply(path, {});
     check(scene);
     check_size(scene, data, size);
+    check_stream(scene, path);
 }
 
 void fuzz_obj(const uint8_t* data, size_t size) {

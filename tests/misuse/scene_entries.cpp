@@ -2,6 +2,8 @@
 // The rows of scenes: meshes, commits, and what is reported.
 #include "tests/misuse/entries.h"
 
+#include <cstring>
+
 namespace ovc::test {
 namespace {
 
@@ -165,6 +167,58 @@ Misuses misuse_save(Subject& s) {
     return wrong.found();
 }
 
+/// The field as a scene that streams, whose scratch space is not needed.
+ovc_streamed_scene streamed_field(size_t& bytes) {
+    static const ovc_streamed_mesh mesh = {{0, 0, 0}, kCells, 0, 0};
+    auto scene = sized<ovc_streamed_scene>();
+    scene.meshes = &mesh;
+    scene.mesh_count = 1;
+    scene.user = &bytes;
+    scene.read_corners = [](void*, uint32_t, uint64_t first, uint64_t count, void* corners) {
+        std::memcpy(corners, field_positions().data() + 9 * first, 36 * count);
+        return 0;
+    };
+    scene.write_scratch = [](void*, uint64_t, const void*, size_t) { return 1; };
+    scene.read_scratch = [](void*, uint64_t, void*, size_t) { return 1; };
+    scene.write = count_bytes;
+    return scene;
+}
+ovc_result use_save_streamed(Subject& s) {
+    size_t bytes = 0;
+    const ovc_streamed_scene scene = streamed_field(bytes);
+    const ovc_result result = api().save_streamed(s.device, nullptr, &scene);
+    return bytes > 0 ? result : OVC_ERROR_INTERNAL;
+}
+Misuses misuse_save_streamed(Subject& s) {
+    Wrong wrong(s);
+    size_t bytes = 0;
+    const ovc_streamed_scene field = streamed_field(bytes);
+    wrong.without_device("device NULL", api().save_streamed(nullptr, nullptr, &field));
+    wrong.argument("scene NULL", api().save_streamed(s.device, nullptr, nullptr));
+    auto config = sized<ovc_scene_config>();
+    config.precision = 2;
+    wrong.argument("precision", api().save_streamed(s.device, &config, &field));
+    const auto with = [&](const char* what, auto&& spoil) {
+        ovc_streamed_scene scene = field;
+        ovc_streamed_mesh mesh = *field.meshes;
+        scene.meshes = &mesh;
+        spoil(scene, mesh);
+        wrong.argument(what, api().save_streamed(s.device, nullptr, &scene));
+    };
+    with("struct_size 0", [](auto& of, auto&) { of.struct_size = 0; });
+    with("meshes NULL", [](auto& of, auto&) { of.meshes = nullptr; });
+    with("read_corners NULL", [](auto& of, auto&) { of.read_corners = nullptr; });
+    with("write NULL", [](auto& of, auto&) { of.write = nullptr; });
+    with("reserved", [](auto& of, auto&) { of.reserved = 1; });
+    with("has_doubles", [](auto&, auto& mesh) { mesh.has_doubles = 2; });
+    with("a mesh too large", [](auto&, auto& mesh) { mesh.triangle_count = ~uint64_t(0); });
+    with("origin NaN", [](auto&, auto& mesh) { mesh.origin[1] = NAN; });
+    ovc_streamed_scene stops = field;
+    stops.write = [](void*, const void*, size_t) { return 1; };
+    wrong.on_device("stopped", OVC_ERROR_CANCELLED, api().save_streamed(s.device, nullptr, &stops));
+    return wrong.found();
+}
+
 ovc_result use_add_instance(Subject& s) {
     const AbiScene scene = new_scene(s);
     const ovc_mesh mesh = field_mesh();
@@ -314,6 +368,7 @@ constexpr Entry kSceneEntries[] = {
     OVC_ENTRY(update_mesh, use_update_mesh, misuse_update_mesh),
     OVC_ENTRY(update_instance, use_update_instance, misuse_update_instance),
     OVC_ENTRY(remove_mesh, use_remove_mesh, misuse_remove_mesh),
+    OVC_ENTRY(save_streamed, use_save_streamed, misuse_save_streamed),
 };
 
 } // namespace

@@ -135,4 +135,5 @@ class ovc_api(c.Structure):
         ("update_mesh", _call(_Handle, c.c_uint32, c.POINTER(ovc_mesh), c.c_uint64)),
         ("update_instance", _call(_Handle, c.c_uint32, _Pointer)),
         ("remove_mesh", _call(_Handle, c.c_uint32)),
+        ("save_streamed", _Pointer),
     ]

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plugin reads corners from the store, and has a scratch file of its own.
+#include "host/backend/streamed_levels.h"
+
+#include "host/backend/plugin_config.h"
+#include "host/backend/plugin_loader.h"
+#include "host/terminal/terminal_line.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cassert>
+#include <vector>
+
+namespace ovc {
+namespace {
+
+/// What the plugin's functions work on.
+struct Streams {
+    const TriangleStore& store;
+    ScratchFile scratch;
+    const ByteSink& sink;
+    TerminalLine line;
+    std::atomic<uint64_t> read_bytes{0};
+    std::atomic<uint64_t> written_bytes{0};
+
+    static int tell(void* user, double done, const char* stage) {
+        Streams& self = *static_cast<Streams*>(user);
+        self.line.show(fmt::format("building: {:3.0f} %, {}; {} read, {} written", 100 * done,
+                                   stage, human_bytes(self.read_bytes),
+                                   human_bytes(self.written_bytes)));
+        return 0; // Ctrl-C ends the program at once
+    }
+
+    static int read_corners(void* user, uint32_t mesh, uint64_t first, uint64_t count, void* to) {
+        Streams& self = *static_cast<Streams*>(user);
+        const std::span corners(static_cast<vec3*>(to), size_t(3 * count));
+        self.read_bytes += corners.size_bytes();
+        return self.store.read_corners(mesh, 3 * first, corners) ? 0 : 1;
+    }
+    static int write_scratch(void* user, uint64_t offset, const void* bytes, size_t size) {
+        Streams& self = *static_cast<Streams*>(user);
+        self.written_bytes += size;
+        return self.scratch.write(offset, {static_cast<const std::byte*>(bytes), size}) ? 0 : 1;
+    }
+    static int read_scratch(void* user, uint64_t offset, void* bytes, size_t size) {
+        Streams& self = *static_cast<Streams*>(user);
+        self.read_bytes += size;
+        return self.scratch.read(offset, {static_cast<std::byte*>(bytes), size}) ? 0 : 1;
+    }
+    static int write(void* user, const void* bytes, size_t size) {
+        Streams& self = *static_cast<Streams*>(user);
+        self.written_bytes += size;
+        return self.sink({static_cast<const std::byte*>(bytes), size}) ? 0 : 1;
+    }
+};
+
+std::vector<ovc_streamed_mesh> meshes_of(const Scene& scene, const TriangleStore& store) {
+    std::vector<ovc_streamed_mesh> meshes;
+    for (size_t m = 0; m < store.meshes(); ++m) {
+        const dvec3& origin = scene.soup.chunks[m].origin();
+        meshes.push_back({{origin.x, origin.y, origin.z}, store.corners(m) / 3, 0, 0});
+    }
+    return meshes;
+}
+
+Result<PluginDevice> open_device(const BackendOptions& options, const LogSink& log) {
+    if (structure_of(options.kind) != OVC_STRUCTURE_TWO_LEVEL ||
+        options.kind == BackendKind::CpuKdTree || options.kind == BackendKind::Embree)
+        return Error{"--host-memory is for two-level, which alone can be saved"};
+    const Result<const ovc_api*> api = load_plugin();
+    if (!api)
+        return api.error();
+    return PluginDevice::open(*api, options.device, log);
+}
+
+} // namespace
+
+Result<Done> save_streamed_levels(const Scene& scene, const TriangleStore& store,
+                                  uint64_t host_bytes, const std::filesystem::path& folder,
+                                  const BackendOptions& options, const LogSink& log,
+                                  const ByteSink& sink) {
+    assert(scene.soup.chunks.size() == store.meshes());
+    const Result<PluginDevice> device = open_device(options, log);
+    if (!device)
+        return device.error();
+    const Result<ovc_device_info> info = device->describe();
+    if (!info)
+        return info.error();
+    Result<ovc_scene_config> config = config_of(options, *info, log);
+    if (!config)
+        return config.error();
+    Result<ScratchFile> scratch = ScratchFile::create(folder);
+    if (!scratch)
+        return scratch.error();
+    Streams streams{store, std::move(*scratch), sink,
+                    TerminalLine(options.watching == BuildWatching::Shown)};
+    config->progress = Streams::tell;
+    config->progress_user = &streams;
+    const std::vector<ovc_streamed_mesh> meshes = meshes_of(scene, store);
+    ovc_streamed_scene streamed{};
+    streamed.struct_size = sizeof(streamed);
+    streamed.host_memory_bytes = host_bytes;
+    streamed.meshes = meshes.data();
+    streamed.mesh_count = uint32_t(meshes.size());
+    streamed.user = &streams;
+    streamed.read_corners = Streams::read_corners;
+    streamed.write_scratch = Streams::write_scratch;
+    streamed.read_scratch = Streams::read_scratch;
+    streamed.write = Streams::write;
+    const Result<Done> saved = device->save_streamed(*config, streamed);
+    // The plugin only knows that a function of ours has failed.
+    for (const std::optional<Error>& failed : {streams.scratch.error(), store.error()})
+        if (!saved && failed)
+            return *failed;
+    return saved;
+}
+
+} // namespace ovc

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// overcast convert under a budget of host memory: pictures of the file are those of its source, and
+// an error leaves nothing behind.
+#include "host/arguments/arguments.h"
+#include "host/command/command.h"
+#include "host/terminal/interrupt.h"
+
+#include <gmock/gmock.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace ovc {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ConvertUnderABudget : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("overcast_convert_" + std::to_string(getpid()));
+        fs::create_directories(folder_);
+        testing::internal::CaptureStdout();
+        const bool has_device = bool(run_command({"devices"}));
+        testing::internal::GetCapturedStdout();
+        if (!has_device)
+            GTEST_SKIP() << "no device for the plugin";
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+    static std::string error(const Arguments& arguments) {
+        const Result<int> code = run_command(arguments);
+        return code ? "" : code.error().message;
+    }
+
+    std::string bytes(const std::string& name) const {
+        std::ifstream file(path(name), std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+
+    /// Renders a scene and returns the bytes of its picture.
+    std::string picture(const std::string& scene, const std::string& gpu_memory = "64M") const {
+        EXPECT_EQ(error({"render", scene, "--size", "96x64", "--gpu-memory", gpu_memory, "-o",
+                         path("picture.png"), "--quiet"}),
+                  "");
+        return bytes("picture.png");
+    }
+
+    size_t files() const {
+        return size_t(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(ConvertUnderABudget, PicturesAreThoseOfTheSource) {
+    // 327,680 triangles are too many to be built in memory within 48 MiB; a box is not.
+    for (const std::string scene : {"sphere-7", "box"}) {
+        const std::string source = path(scene + ".ply"), file = path(scene + ".ovc");
+        ASSERT_EQ(error({"convert", scene, source, "--quiet"}), "");
+        ASSERT_EQ(error({"convert", source, file, "--host-memory", "48M"}), "");
+        const std::string expected = picture(source);
+        ASSERT_FALSE(expected.empty());
+        EXPECT_EQ(picture(file), expected);
+        EXPECT_EQ(picture(file, "8M"), expected);
+    }
+}
+
+TEST_F(ConvertUnderABudget, AFileThatFitsIsTheSameAsWithoutABudget) {
+    ASSERT_EQ(error({"convert", "sphere-3", path("a.ply"), "--quiet"}), "");
+    ASSERT_EQ(error({"convert", path("a.ply"), path("a.ovc")}), "");
+    ASSERT_EQ(error({"convert", path("a.ply"), path("b.ovc"), "--host-memory", "1G"}), "");
+    EXPECT_EQ(bytes("a.ovc"), bytes("b.ovc"));
+}
+
+TEST_F(ConvertUnderABudget, ErrorsAreSentencesAndLeaveNothing) {
+    ASSERT_EQ(error({"convert", "sphere-6", path("a.ply"), "--quiet"}), "");
+    struct Case {
+        Arguments arguments;
+        const char* sentence;
+    };
+    const Case cases[] = {
+        {{path("a.ply"), path("b.ovc"), "--host-memory", "100K"},
+         "its 40962 vertices take 491544 bytes of host memory, and 102400 are allowed: the "
+         "smallest "
+         "number that works is 491544"},
+        {{path("a.ply"), path("b.ovc"), "--host-memory", "1M"},
+         "1048576 bytes of host memory are too few for 81920 triangles"},
+        {{path("a.ply"), path("b.ovc"), "--host-memory", "50%"}, "expected bytes, such as 2G"},
+        {{path("a.ply"), path("b.ply"), "--host-memory", "1G"}, "goes with an output in .ovc"},
+        {{path("a.ply"), "box", path("b.ovc"), "--host-memory", "1G"}, "one input alone"},
+        {{"box", path("b.ovc"), "--host-memory", "1G"}, "inputs that stream"},
+        {{"landscape-4001", path("b.ovc"), "--host-memory", "1G"}, "must be from 1 to 4000"},
+        {{path("none.ply"), path("b.ovc"), "--host-memory", "1G"}, "no such file"},
+    };
+    for (const auto& [arguments, sentence] : cases) {
+        Arguments all{"convert"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        EXPECT_THAT(error(all), testing::HasSubstr(sentence));
+        EXPECT_EQ(files(), 1u) << sentence;
+    }
+}
+
+/// The limit of a file's size stands for a full disk, at any point of the conversion.
+TEST_F(ConvertUnderABudget, AFullDiskIsASentenceAndLeavesNothing) {
+    ASSERT_EQ(error({"convert", "sphere-7", path("a.ply"), "--quiet"}), "");
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    for (const rlim_t most : {4u << 20, 13u << 20, 24u << 20}) {
+        const rlimit small{most, before.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &small);
+        const std::string sentence =
+            error({"convert", path("a.ply"), path("b.ovc"), "--host-memory", "48M"});
+        setrlimit(RLIMIT_FSIZE, &before);
+        EXPECT_THAT(sentence, testing::EndsWith("File too large")) << most;
+        EXPECT_EQ(files(), 1u) << most;
+    }
+    std::signal(SIGXFSZ, handler);
+}
+
+} // namespace
+} // namespace ovc

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// TriangleStore and ScratchFile: what went in comes out, nothing is left behind, and a disk that
+// fails is a sentence.
+#include "importers/file/triangle_store.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstring>
+#include <functional>
+#include <vector>
+
+#include <sys/resource.h>
+
+namespace ovc {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Folder {
+    fs::path path = fs::path(testing::TempDir()) / "triangle_store_test";
+
+    Folder() {
+        fs::remove_all(path);
+        fs::create_directories(path);
+    }
+    ~Folder() { fs::remove_all(path); }
+};
+
+std::vector<vec3> numbered(size_t count, float from) {
+    std::vector<vec3> items;
+    for (size_t i = 0; i < count; ++i)
+        items.emplace_back(from + float(i), -float(i), 0.5f);
+    return items;
+}
+
+std::vector<vec3> written(const std::function<Result<Done>(const ByteSink&)>& write) {
+    std::vector<vec3> items;
+    EXPECT_TRUE(write([&](Bytes bytes) {
+        const size_t before = items.size();
+        items.resize(before + bytes.size() / sizeof(vec3));
+        std::memcpy(&items[before], bytes.data(), bytes.size());
+        return true;
+    }));
+    return items;
+}
+
+TEST(TriangleStore, GivesBackWhatItTook) {
+    const Folder folder;
+    Result<TriangleStore> store = TriangleStore::create(folder.path);
+    ASSERT_TRUE(store);
+    const std::vector<vec3> first = numbered(300'000, 1), second = numbered(30, 7);
+    store->begin_mesh();
+    for (size_t at = 0; at < first.size(); at += 30'000)
+        EXPECT_TRUE(store->add_corners(std::span(first).subspan(at, 30'000)));
+    store->begin_mesh();
+    store->begin_mesh();
+    EXPECT_TRUE(store->add_corners(second) && store->add_normals(first));
+    ASSERT_TRUE(store->finish());
+    EXPECT_TRUE(fs::is_empty(folder.path)) << "scratch files have no names";
+    ASSERT_EQ(store->meshes(), 3u);
+    EXPECT_EQ(store->corners(0), first.size());
+    EXPECT_EQ(store->corners(1), 0u);
+    EXPECT_EQ(store->corners(2), second.size());
+    EXPECT_EQ(store->normals(0), 0u);
+    EXPECT_EQ(store->normals(2), first.size());
+    EXPECT_EQ(store->triangles(), (first.size() + second.size()) / 3);
+    std::vector<vec3> some(9);
+    EXPECT_TRUE(store->read_corners(0, 123'456, some));
+    EXPECT_TRUE(std::ranges::equal(some, std::span(first).subspan(123'456, 9)));
+    EXPECT_TRUE(store->read_corners(2, 21, some));
+    EXPECT_TRUE(std::ranges::equal(some, std::span(second).subspan(21, 9)));
+    const auto corners = written([&](const ByteSink& sink) { return store->write_corners(sink); });
+    ASSERT_EQ(corners.size(), first.size() + second.size());
+    EXPECT_EQ(corners[299'999], first[299'999]);
+    EXPECT_EQ(corners[300'000], second[0]);
+    EXPECT_EQ(written([&](const ByteSink& sink) { return store->write_normals(sink); }), first);
+}
+
+TEST(TriangleStore, TellsThatThereIsNoSuchFolder) {
+    const Result<TriangleStore> store = TriangleStore::create("/no/such/folder");
+    ASSERT_FALSE(store);
+    EXPECT_EQ(store.error().message, "/no/such/folder: no scratch file can be made there: No such "
+                                     "file or directory");
+}
+
+/// The limit of a file's size stands for a full disk.
+TEST(TriangleStore, TellsThatTheDiskIsFull) {
+    const Folder folder;
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{1 << 20, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    Result<TriangleStore> store = TriangleStore::create(folder.path);
+    ASSERT_TRUE(store);
+    store->begin_mesh();
+    const std::vector<vec3> corners = numbered(120'000, 0);
+    bool wanted = true;
+    for (int i = 0; i < 3 && wanted; ++i)
+        wanted = store->add_corners(corners);
+    const Result<Done> finished = store->finish();
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    EXPECT_FALSE(wanted);
+    ASSERT_FALSE(finished);
+    EXPECT_THAT(finished.error().message, testing::EndsWith("failed: File too large"));
+}
+
+TEST(ScratchFile, TellsThatBytesAreMissing) {
+    const Folder folder;
+    Result<ScratchFile> file = ScratchFile::create(folder.path);
+    ASSERT_TRUE(file);
+    std::vector<std::byte> bytes(10, std::byte(7));
+    EXPECT_TRUE(file->write(1'000'000, bytes));
+    EXPECT_TRUE(file->read(999'995, bytes)); // zeros come before them
+    EXPECT_EQ(bytes[4], std::byte(0));
+    EXPECT_EQ(bytes[5], std::byte(7));
+    EXPECT_FALSE(file->error());
+    EXPECT_FALSE(file->read(1'000'005, bytes));
+    ASSERT_TRUE(file->error());
+    EXPECT_THAT(file->error()->message, testing::EndsWith("failed: bytes are missing"));
+}
+
+} // namespace
+} // namespace ovc

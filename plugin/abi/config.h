@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The config of a scene: its checks, and its function for progress.
+#pragma once
+
+#include "core/build_progress.h"
+#include "core/text/format_text.h"
+#include "plugin/abi/handles.h"
+#include "plugin/abi/scene_call.h"
+#include "plugin/abi/struct_size.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+namespace ovc {
+
+/// Returns the config, or the defaults for null. Throws a Failure that names a field that is wrong.
+inline ovc_scene_config checked_config(const ovc_scene_config* given) {
+    if (!given)
+        return {sizeof(ovc_scene_config)};
+    const auto config = whole("ovc_scene_config", given, offsetof(ovc_scene_config, progress));
+    const auto check_choice = [](const char* field, uint32_t value, uint32_t last) {
+        if (value > last)
+            invalid(format_text("ovc_scene_config.{} is {}, expected {}{}", field, value,
+                                last ? "0 to " : "", last));
+    };
+    if (config.leaf_triangles && config.leaves)
+        invalid("ovc_scene_config: leaf_triangles and leaves are both set; one says it all");
+    check_choice("precision", config.precision, OVC_PRECISION_FAST);
+    check_choice("kernel", config.kernel, OVC_KERNEL_COMPUTE);
+    check_choice("structure", config.structure, OVC_STRUCTURE_THESIS_TWO_LEVEL);
+    check_choice("level1", config.level1, OVC_LEVEL1_BVH);
+    check_choice("level1_build", config.level1_build, OVC_LEVEL1_BUILD_BOTTOM_UP);
+    check_choice("tell_active", config.tell_active, 1);
+    check_choice("reserved", config.reserved, 0);
+    if (!config.saved && config.saved_bytes)
+        invalid("ovc_scene_config.saved is NULL, but saved_bytes is not 0");
+    return config;
+}
+
+/// Runs body(progress), where progress tells the config's function, or is null where there is none.
+/// Turns body's Cancelled into a Failure.
+template <class Body>
+void with_progress(const ovc_scene_config& config, const char* call, Body&& body) {
+    bool stopped = false;
+    std::optional<BuildProgress> progress;
+    if (config.progress)
+        progress.emplace([&](double done, const char* stage) {
+            const HostFunction mark;
+            stopped = config.progress(config.progress_user, done, stage) != 0;
+            return !stopped;
+        });
+    try {
+        body(progress ? &*progress : nullptr);
+    } catch (const Cancelled&) {
+        throw Failure{OVC_ERROR_CANCELLED, format_text("{}: cancelled by {}", call,
+                                                       stopped ? "ovc_scene_config.progress"
+                                                               : "a function of the host's")};
+    }
+}
+
+} // namespace ovc

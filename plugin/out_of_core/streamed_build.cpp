@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+// save_streamed() surveys the source, deals its triangles to cells, and then goes through the
+// cells, which are built some at a time and written in order.
+#include "plugin/out_of_core/streamed_build.h"
+
+#include "core/system/parallel.h"
+#include "core/text/format_text.h"
+#include "gpu/page/frames.h"
+#include "kdtree/cells.h"
+#include "plugin/build/build_scene.h"
+#include "plugin/build/saved_levels.h"
+#include "plugin/out_of_core/cell_builder.h"
+#include "plugin/out_of_core/deal_source.h"
+#include "plugin/out_of_core/dealt_cells.h"
+#include "plugin/out_of_core/host_budget.h"
+#include "plugin/out_of_core/source_survey.h"
+
+#include <algorithm>
+#include <cassert>
+#include <optional>
+#include <utility>
+
+namespace ovc {
+namespace {
+
+/// What pages of meshes take a triangle. Leaves whose pages turn out too large are cut again.
+constexpr double kBytesPerTriangle = 52;
+
+uint64_t triangles_of(std::span<const SourceMesh> meshes) {
+    uint64_t count = 0;
+    for (const SourceMesh& mesh : meshes)
+        count += mesh.triangles;
+    return count;
+}
+
+std::vector<uint32_t> first_numbers_of(std::span<const SourceMesh> meshes) {
+    std::vector<uint32_t> first;
+    uint32_t number = 0;
+    for (const SourceMesh& mesh : meshes) {
+        first.push_back(number);
+        number += uint32_t(mesh.triangles);
+    }
+    return first;
+}
+
+Error too_small(const HostBudget& budget, uint64_t triangles, uint64_t smallest) {
+    return over_budget(format_text("{} bytes of host memory are too few for {} triangles on {} "
+                                   "threads: the smallest number that works is {}",
+                                   budget.bytes, triangles, budget.threads, smallest));
+}
+
+class StreamedBuilder {
+public:
+    StreamedBuilder(const StreamedScene& scene, const TwoLevelOptions& options,
+                    const MemoryPlan& plan, const ByteSink& sink, BuildProgress* progress)
+        : source_(scene.source),
+          scratch_(scene.scratch),
+          budget_{scene.host_bytes, std::max<size_t>(thread_count(), kMinThreads)},
+          options_(options),
+          plan_(plan),
+          progress_(progress),
+          all_(triangles_of(source_.meshes())),
+          first_numbers_(first_numbers_of(source_.meshes())),
+          levels_(sink, scratch_) {}
+
+    Result<StreamedLevels> run() {
+        if (const uint64_t smallest = smallest_host_budget(all_, budget_.threads);
+            budget_.bytes < smallest)
+            return too_small(budget_, all_, smallest);
+        begin(progress_, "triangles", 0.1, all_);
+        set_limits(all_);
+        const uint32_t rate =
+            std::max(sample_rate(all_, max_triangles_), budget_.sample_rate(all_));
+        SourceSurvey surveyed = survey_source(source_, rate, progress_);
+        hittable_ = surveyed.hittable();
+        set_limits(hittable_);
+        if (hittable_ > 0) {
+            if (const Result<Done> dealt =
+                    deal(std::move(surveyed.sample), rate, surveyed.found.bounds);
+                !dealt)
+                return dealt.error();
+            if (const Result<Done> built = build_cells(rate > 1); !built)
+                return built.error();
+        }
+        level1_.bounds = surveyed.found.bounds;
+        return levels_.finish({surveyed.checksum, {}, /* any_limits= */ true},
+                              surveyed.found.dropped, hittable_, std::move(level1_), planes_);
+    }
+
+private:
+    void set_limits(uint64_t triangles) {
+        limits_ = limits_of(options_, plan_, triangles, triangles);
+        const uint64_t wanted =
+            limits_.pages_matter() ? limits_.triangles_at(kBytesPerTriangle) : limits_.triangles;
+        max_triangles_ = uint32_t(
+            std::clamp<uint64_t>(std::min(wanted, budget_.leaf_triangles()), 1, kNone - 1));
+    }
+
+    /// Chooses planes by the sample, deals all triangles, and plans a leaf for each cell.
+    Result<Done> deal(LocalSoup sample, uint32_t rate, const Box& bounds) {
+        std::vector<TriangleId> drawn = sample.triangles();
+        Duplicates::take_out(sample.soup(), drawn);
+        level1_.bounds = bounds;
+        level1_.padding = padding_of(bounds);
+        begin(progress_, "level 1", 0.3, all_);
+        if (hittable_ <= max_triangles_)
+            planes_ = {KdNode::leaf(0, 0)};
+        else
+            planes_ =
+                cut_sample(sample.soup(), drawn, rate, bounds, max_triangles_, progress_).nodes;
+        cells_ = cells_of(planes_, bounds, level1_.padding);
+        const size_t cells = cells_.size() + 1; // the last one is that of far-reaching triangles
+        dealt_.emplace(cells, source_.meshes(), budget_.buffer_bytes(cells), scratch_);
+        const CellFinder finder(planes_, cells_, level1_.padding);
+        deal_source(source_, finder, hittable_, max_triangles_, *dealt_, progress_);
+        uint64_t largest = 0;
+        for (size_t cell = 0; cell < cells; ++cell)
+            largest = std::max(largest, dealt_->count(cell));
+        if (largest > budget_.triangles_at_once())
+            return too_small(budget_, all_, host_budget_for_cell(largest));
+        plan_leaves(sample.soup(), drawn, finder);
+        return Done{};
+    }
+
+    /// Decides on frames, by the boxes of cells and the sample in them. planned_ has a leaf for
+    /// each cell that has triangles, that of the far-reaching ones first.
+    void plan_leaves(const Soup& sample, std::span<const TriangleId> drawn,
+                     const CellFinder& finder) {
+        Level1 planned{.nodes = planes_, .bounds = level1_.bounds, .padding = level1_.padding};
+        planned_of_.assign(dealt_->cells(), kNone);
+        const auto plan = [&](size_t cell, const Box& padded) {
+            if (dealt_->count(cell) == 0)
+                return;
+            planned_of_[cell] = uint32_t(planned.leaves.size());
+            planned.leaves.push_back(leaf_around(padded, level1_.padding, dealt_->bounds(cell)));
+        };
+        plan(cells_.size(), level1_.bounds.padded(level1_.padding));
+        planned.far_leaves = uint32_t(planned.leaves.size());
+        for (size_t cell = 0; cell < cells_.size(); ++cell) {
+            const auto first = uint32_t(planned.leaves.size());
+            plan(cell, cells_[cell].padded);
+            planned.nodes[cells_[cell].node] =
+                KdNode::leaf(first, uint32_t(planned.leaves.size()) - first);
+        }
+        if (planned.leaves.size() == 1 || one_frame_suits(sample, drawn, level1_.bounds)) {
+            share_frame(planned);
+        } else {
+            for (const TriangleId id : drawn)
+                finder.find(sample.triangle(id), [&](uint32_t c) {
+                    if (planned_of_[c] != kNone)
+                        planned.leaves[planned_of_[c]].triangles.push_back(id);
+                });
+            share_frames(sample, planned);
+        }
+        level1_.shares_frame = planned.shares_frame;
+        planned_ = std::move(planned.leaves);
+    }
+
+    /// Builds all cells, as many at a time as there is room for, and writes them in order.
+    Result<Done> build_cells(bool by_all) {
+        std::vector<size_t> order;
+        uint64_t references = 0;
+        for (size_t i = 0; i <= cells_.size(); ++i) {
+            const size_t cell = i == 0 ? cells_.size() : i - 1;
+            references += dealt_->count(cell);
+            if (dealt_->count(cell) > 0)
+                order.push_back(cell);
+        }
+        begin(progress_, "level 2", 0.6, 2 * references);
+        CellOptions options{.bounds = level1_.bounds,
+                            .max_triangles = max_triangles_,
+                            .by_all = by_all,
+                            .max_page_bytes = limits_.page_bytes_of(planned_.size()),
+                            .first_numbers = first_numbers_};
+        const Result<LoosePairs> loose = choose_loose_pairs(order, options, references);
+        if (!loose)
+            return loose.error();
+        options.loose = *loose;
+        for (size_t at = 0; at < order.size();) {
+            const size_t end = end_of_batch(order, at);
+            std::vector<std::optional<Result<BuiltCell>>> built(end - at);
+            parallel_for(built.size(), 1, [&](size_t first, size_t last) {
+                for (size_t i = first; i < last; ++i)
+                    built[i] = build(order[at + i], options);
+            });
+            for (size_t i = 0; i < built.size(); ++i, ++at) {
+                if (!*built[i])
+                    return built[i]->error();
+                levels_.add(order[at], order[at] == cells_.size(), std::move(**built[i]));
+                built[i].reset();
+            }
+        }
+        return Done{};
+    }
+
+    /// Returns the end of as many of `order` from `at` on as there is room for, at least one.
+    size_t end_of_batch(std::span<const size_t> order, size_t at) const {
+        uint64_t triangles = dealt_->count(order[at]);
+        for (++at; at < order.size(); ++at) {
+            triangles += dealt_->count(order[at]);
+            if (triangles > budget_.triangles_at_once())
+                break;
+        }
+        return at;
+    }
+
+    Result<BuiltCell> build(size_t cell, CellOptions options) const {
+        options.in_no_cell = cell == cells_.size();
+        return build_cell(dealt_->read(cell),
+                          options.in_no_cell ? level1_.bounds : cells_[cell].box,
+                          planned_[planned_of_[cell]], options, progress_);
+    }
+
+    /// Lets triangles that share no side lie in one unit where most pages do better so, as a build
+    /// in memory does. A few cells tell for all.
+    Result<LoosePairs> choose_loose_pairs(std::span<const size_t> order, CellOptions options,
+                                          uint64_t references) const {
+        const size_t asked = std::min<size_t>(order.size(), 4);
+        if (!level1_.shares_frame)
+            return LoosePairs{};
+        options.loose = {true, double(references) / double(hittable_)};
+        uint64_t all = 0, loose = 0;
+        for (size_t i = 0; i < asked; ++i) {
+            const Result<BuiltCell> built =
+                build(order[order.size() * (2 * i + 1) / (2 * asked)], options);
+            if (!built)
+                return built.error();
+            for (size_t leaf = 0; leaf < built->leaves.size(); ++leaf) {
+                const uint64_t triangles = built->leaves[leaf].triangles.size();
+                all += triangles;
+                loose += built->pages[leaf].has_loose_pairs() ? triangles : 0;
+            }
+        }
+        options.loose.allowed = 2 * loose > all;
+        return options.loose;
+    }
+
+    TriangleSource& source_;
+    ScratchSpace& scratch_;
+    const HostBudget budget_;
+    const TwoLevelOptions& options_;
+    const MemoryPlan& plan_;
+    BuildProgress* const progress_;
+    const uint64_t all_;    // triangles, whether they can be hit or not
+    uint64_t hittable_ = 0; // of them, duplicates included
+    const std::vector<uint32_t> first_numbers_;
+    LeafLimits limits_{};
+    uint32_t max_triangles_ = 1;
+    Level1 level1_; // without nodes and leaves
+    std::vector<KdNode> planes_;
+    std::vector<Cell> cells_;
+    std::optional<DealtCells> dealt_;
+    std::vector<Leaf> planned_;
+    std::vector<uint32_t> planned_of_; // into planned_, for each cell; kNone: it is empty
+    StreamedLevelsWriter levels_;
+};
+
+/// Reads all of the source.
+Soup read_soup(TriangleSource& source) {
+    Soup soup;
+    for (uint32_t m = 0; m < source.meshes().size(); ++m) {
+        const SourceMesh& mesh = source.meshes()[m];
+        const auto corners_of = [&](auto corner) {
+            std::vector<decltype(corner)> corners(mesh.triangles * 3);
+            if (!corners.empty())
+                source.read(m, 0, std::as_writable_bytes(std::span(corners)));
+            return corners;
+        };
+        soup.chunks.push_back(mesh.has_doubles
+                                  ? Chunk::owning_doubles(mesh.origin, corners_of(dvec3()))
+                                  : Chunk::owning(mesh.origin, corners_of(vec3())));
+    }
+    return soup;
+}
+
+Result<StreamedLevels> save_in_memory(TriangleSource& source, const TwoLevelOptions& options,
+                                      const MemoryPlan& plan, const DeviceInfo& device,
+                                      const ByteSink& sink, const LogSink& log,
+                                      BuildProgress* progress) {
+    const Soup soup = read_soup(source);
+    if (const Result<Done> enough = check_budget(soup, options, plan, device); !enough)
+        return enough.error();
+    const Result<BuiltScene> scene = build_scene(soup, options, plan, log, progress);
+    if (!scene)
+        return scene.error();
+    if (!save_levels(*scene, sink))
+        throw Cancelled();
+    return StreamedLevels{scene->pages.size(), scene->triangles, 0, false};
+}
+
+} // namespace
+
+Result<StreamedLevels> stream_levels(const StreamedScene& scene, const TwoLevelOptions& options,
+                                     const MemoryPlan& plan, const ByteSink& sink,
+                                     BuildProgress* progress) {
+    return StreamedBuilder(scene, options, plan, sink, progress).run();
+}
+
+Result<StreamedLevels> save_streamed(const StreamedScene& scene, const TwoLevelOptions& options,
+                                     const DeviceInfo& device, const ByteSink& sink,
+                                     const LogSink& log, BuildProgress* progress) {
+    const uint64_t triangles = triangles_of(scene.source.meshes());
+    const Result<MemoryPlan> plan = plan_memory(triangles, options, device);
+    if (!plan)
+        return plan.error();
+    if (HostBudget{scene.host_bytes, 1}.holds(triangles))
+        return save_in_memory(scene.source, options, *plan, device, sink, log, progress);
+    return stream_levels(scene, options, *plan, sink, progress);
+}
+
+} // namespace ovc

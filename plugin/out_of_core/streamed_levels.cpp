@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// StreamedLevelsWriter: pages go straight to the sink. Lists wait in the scratch space, because the
+// archive has them in one part.
+#include "plugin/out_of_core/streamed_levels.h"
+
+#include "core/text/format_text.h"
+#include "shaders/layout.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace ovc {
+
+static ByteSink throwing(const ByteSink& sink) {
+    return [&sink](Bytes bytes) {
+        if (!sink(bytes))
+            throw Cancelled();
+        return true;
+    };
+}
+
+StreamedLevelsWriter::StreamedLevelsWriter(const ByteSink& sink, ScratchSpace& scratch)
+    : writer_(throwing(sink)), scratch_(scratch) {}
+
+void StreamedLevelsWriter::add(size_t cell, bool is_far, BuiltCell built) {
+    const auto first = uint32_t(writer_.leaves());
+    if (is_far) {
+        assert(first == 0);
+        far_leaves_ = uint32_t(built.leaves.size());
+    } else {
+        for (KdNode& node : built.nodes)
+            node = node.moved(0, first);
+        trees_.push_back({cell, std::move(built.nodes), first + uint32_t(built.leaves.size())});
+    }
+    for (size_t i = 0; i < built.leaves.size(); ++i) {
+        const std::span<const TriangleId> list = built.leaves[i].triangles;
+        lists_.push_back({scratch_.allocate(list.size_bytes()), list.size()});
+        scratch_.write(lists_.back().offset, bytes_of(list));
+        writer_.add(built.leaves[i], built.pages[i]);
+    }
+    duplicates_.insert(duplicates_.end(), built.duplicates.begin(), built.duplicates.end());
+}
+
+/// Puts the trees over the cells in the places of the cells.
+std::vector<KdNode> StreamedLevelsWriter::joined_nodes(std::span<const KdNode> planes) const {
+    std::vector<KdNode> nodes;
+    std::vector<uint32_t> now_at(planes.size());
+    auto tree = trees_.begin();
+    uint32_t leaves = far_leaves_; // so far
+    size_t cell = 0;
+    for (size_t n = 0; n < planes.size(); ++n) {
+        const auto place = now_at[n] = uint32_t(nodes.size());
+        if (!planes[n].is_leaf()) {
+            nodes.push_back(planes[n]);
+            continue;
+        }
+        if (tree == trees_.end() || tree->cell != cell++) {
+            nodes.push_back(KdNode::leaf(leaves, 0));
+            continue;
+        }
+        for (const KdNode& node : tree->nodes)
+            nodes.push_back(node.is_leaf() ? node : node.moved(place, 0));
+        leaves = (tree++)->end;
+    }
+    assert(tree == trees_.end());
+    for (size_t n = 0; n < planes.size(); ++n)
+        if (!planes[n].is_leaf())
+            nodes[now_at[n]].set_above(now_at[planes[n].above()]);
+    return nodes;
+}
+
+void StreamedLevelsWriter::write_lists() {
+    writer_.begin_lists();
+    std::vector<TriangleId> list;
+    for (const List& from : lists_) {
+        list.resize(from.triangles);
+        scratch_.read(from.offset, std::as_writable_bytes(std::span(list)));
+        writer_.add_lists(list);
+    }
+}
+
+Result<StreamedLevels> StreamedLevelsWriter::finish(const LevelsKey& key, const Dropped& dropped,
+                                                    uint64_t hittable, Level1 level1,
+                                                    std::span<const KdNode> planes) {
+    const uint64_t leaves = writer_.leaves();
+    if (leaves >= OVC_KEY_LEAF)
+        return over_budget(format_text("{} leaves are too many: at most {}; give more host memory, "
+                                       "or let leaves hold more triangles",
+                                       leaves, OVC_KEY_LEAF - 1));
+    if (leaves > 0)
+        level1.nodes = joined_nodes(planes);
+    level1.far_leaves = far_leaves_;
+    // Duplicates that touch several cells were found in each of them.
+    std::ranges::sort(duplicates_);
+    const auto rest = std::ranges::unique(duplicates_);
+    duplicates_.erase(rest.begin(), rest.end());
+    write_lists();
+    const uint64_t triangles = hittable - duplicates_.size();
+    const LevelsCut cut{dropped, duplicates_, level1, leaves, triangles};
+    writer_.finish(key, std::span(&cut, 1));
+    return StreamedLevels{leaves, triangles, scratch_.bytes(), true};
+}
+
+} // namespace ovc
