@@ -16,9 +16,9 @@
 namespace ovc {
 namespace {
 
-class Random {
+class RandomRays {
 public:
-    explicit Random(uint64_t seed) : engine_(seed) {}
+    explicit RandomRays(uint64_t seed) : engine_(seed) {}
     double uniform(double lo, double hi) {
         return std::uniform_real_distribution<double>(lo, hi)(engine_);
     }
@@ -36,13 +36,13 @@ private:
 /// Triangles that meet at or near a point, and lines to it.
 struct Case {
     const char* name;
-    std::function<Triangle(Random&)> triangle;
+    std::function<Triangle(RandomRays&)> triangle;
     dvec3 target{0.125, 0.25, 0.375};
     double distance = 5;
     double max_offered = 0.1; // of many triangles; 1: no promise
 };
 
-Triangle round_the_target(Random& random, const std::function<double(double, double)>& z) {
+Triangle round_the_target(RandomRays& random, const std::function<double(double, double)>& z) {
     Triangle triangle;
     for (int i = 0; i < 3; ++i) {
         const double a = 2 * M_PI * i / 3;
@@ -60,36 +60,36 @@ Triangle scaled(Triangle triangle, double by) {
 }
 
 std::vector<Case> planes() {
-    const auto ulps = [](Random& random, double of) {
+    const auto ulps = [](RandomRays& random, double of) {
         return of * double(random.below(2000)) * 0x1p-50;
     };
     return {
         {"in a plane",
-         [](Random& r) { return round_the_target(r, [](double x, double y) { return x + y; }); }},
+         [](RandomRays& r) { return round_the_target(r, [](double x, double y) { return x + y; }); }},
         {"on a floor whose height takes all bits",
-         [](Random& r) { return round_the_target(r, [](double, double) { return 0.3; }); },
+         [](RandomRays& r) { return round_the_target(r, [](double, double) { return 0.3; }); },
          {0.125, 0.25, 0.3}},
         {"on the floor at 0, of both signs",
-         [](Random& r) {
+         [](RandomRays& r) {
              return round_the_target(r, [&](double x, double) { return x > 0 ? 0.0 : -0.0; });
          },
          {0.125, 0.25, 0}},
         {"an ulp apart",
-         [=](Random& r) {
+         [=](RandomRays& r) {
              const double up = ulps(r, 1);
              return round_the_target(r, [=](double x, double y) { return x + y + up; });
          }},
         {"corners some ulps away from a plane",
-         [=](Random& r) {
+         [=](RandomRays& r) {
              return round_the_target(r, [&](double x, double y) { return x + y + ulps(r, 1); });
          }},
         {"in a plane, where t is huge",
-         [](Random& r) {
+         [](RandomRays& r) {
              return scaled(round_the_target(r, [](double x, double y) { return x + y; }), 0x1p200);
          },
          0x1p200 * dvec3(0.125, 0.25, 0.375), 0x1p203},
         {"in a plane, tiny",
-         [](Random& r) {
+         [](RandomRays& r) {
              return scaled(round_the_target(r, [](double x, double y) { return x + y; }), 0x1p-240);
          },
          0x1p-240 * dvec3(0.125, 0.25, 0.375), 0x1p-238},
@@ -98,28 +98,28 @@ std::vector<Case> planes() {
 
 std::vector<Case> points() {
     const dvec3 hub(0.1, 0.2, 0.3);
-    const auto at_any_corner = [](Random& r, Triangle triangle) {
+    const auto at_any_corner = [](RandomRays& r, Triangle triangle) {
         std::rotate(triangle.begin(), triangle.begin() + r.below(3), triangle.end());
         return triangle;
     };
     return {
         {"at a corner of all",
-         [=](Random& r) {
+         [=](RandomRays& r) {
              return at_any_corner(r, {dvec3(0), r.point(), r.point()});
          },
          dvec3(0)},
         {"a rounding beside a corner of all",
-         [=](Random& r) {
+         [=](RandomRays& r) {
              return at_any_corner(r, {hub, hub + r.point(), hub + r.point()});
          },
          hub},
         {"round a side",
-         [=](Random& r) {
+         [=](RandomRays& r) {
              return at_any_corner(r, {dvec3(0, 0, 0), dvec3(0, 0, 1), r.point(0x1p20)});
          },
          {0, 0, 0.5}},
         {"copies within ulps",
-         [](Random& r) {
+         [](RandomRays& r) {
              const dvec3 corners[3] = {{-0.8, -0.8, 0.7}, {0.8, -0.8, 0.65}, {0, 0.9, 0.6}};
              Triangle triangle;
              for (size_t i = 0; i < 3; ++i)
@@ -128,34 +128,34 @@ std::vector<Case> points() {
          },
          {0, 0, 0.65}},
         {"in one point, which is a corner of none",
-         [](Random& r) {
+         [](RandomRays& r) {
              const dvec3 p = r.point(0x1p10);
              return Triangle{p, -p, r.point(0x1p10)};
          },
          dvec3(0), 5, 1},
         {"anywhere",
-         [](Random& r) {
+         [](RandomRays& r) {
              return Triangle{r.point(), r.point(), r.point()};
          },
          dvec3(0.1)},
         {"a lattice, with triangles that have no area",
-         [](Random& r) {
+         [](RandomRays& r) {
              return Triangle{r.point(2), r.point(2), r.point(2)};
          },
          dvec3(0), 4, 1},
         {"slivers",
-         [](Random& r) {
+         [](RandomRays& r) {
              const dvec3 a = r.point();
              return Triangle{a, -a + 1e-13 * r.point(), -0.9 * a + 1e-13 * r.point()};
          },
          dvec3(0)},
         {"from where moments are beyond all doubles",
-         [](Random& r) {
+         [](RandomRays& r) {
              return scaled({r.point(), r.point(), r.point()}, 0x1p250);
          },
          0x1p250 * dvec3(0.1), 1e250, 1},
         {"seen from beyond what doubles tell",
-         [](Random& r) {
+         [](RandomRays& r) {
              return scaled({r.point(), r.point(), r.point()}, 1e-71);
          },
          dvec3(0), 1e76, 1},
@@ -169,7 +169,7 @@ std::vector<Case> all_cases() {
     return cases;
 }
 
-Ray ray_to(const Case& one, Random& random) {
+Ray ray_to(const Case& one, RandomRays& random) {
     Ray ray{one.target + one.distance * (dvec3(0.1, 0.2, 1) + 0.5 * random.point()), 0, dvec3(0)};
     ray.dir = one.target - ray.org;
     if (random.below(8) == 0)
@@ -183,7 +183,7 @@ struct Soup64 {
 };
 
 /// Some corners are copied from other triangles, some are not finite, and ids come in any order.
-Soup64 soup_of(const Case& one, Random& random, size_t count) {
+Soup64 soup_of(const Case& one, RandomRays& random, size_t count) {
     Soup64 soup;
     for (size_t i = 0; i < count; ++i) {
         soup.triangles.push_back(one.triangle(random));
@@ -227,7 +227,7 @@ TEST(CullLanes, WhatIsLeftOutIsMissedOrBehindTheNearest) {
     for (const Case& one : all_cases())
         for (uint64_t seed = 0; seed < 40; ++seed) {
             SCOPED_TRACE(testing::Message() << one.name << " seed " << seed);
-            Random random(seed);
+            RandomRays random(seed);
             const Soup64 soup = soup_of(one, random, 64);
             const PreparedRay p(ray_to(one, random));
             Nearest nearest(p);
@@ -291,7 +291,7 @@ TEST(CullBatch, AnswersAreThoseOfOfferingOneByOne) {
     for (const Case& one : all_cases())
         for (uint64_t seed = 0; seed < 30; ++seed) {
             SCOPED_TRACE(testing::Message() << one.name << " seed " << seed);
-            Random random(seed);
+            RandomRays random(seed);
             const Soup64 soup = soup_of(one, random, 500);
             const Ray ray = ray_to(one, random);
             Exclusion without;
@@ -313,7 +313,7 @@ TEST(CullBatch, OffersFewWhereThousandsLieInTheWay) {
         for (const bool falling : {false, true}) {
             SCOPED_TRACE(testing::Message() << one.name << (falling ? ", ids fall" : ""));
             constexpr uint32_t kCount = 6400;
-            Random random(/* seed= */ 3);
+            RandomRays random(/* seed= */ 3);
             Soup64 soup;
             for (uint32_t i = 0; i < kCount; ++i) {
                 soup.triangles.push_back(one.triangle(random));
@@ -349,7 +349,7 @@ TEST(CullBatch, OffersFewWhereThousandsLieInTheWay) {
 }
 
 TEST(CullBatch, StopsWhenAnOfferSaysSo) {
-    Random random(/* seed= */ 4);
+    RandomRays random(/* seed= */ 4);
     const Case one = points().front();
     const Soup64 soup = soup_of(one, random, 64);
     const PreparedRay p(ray_to(one, random));
