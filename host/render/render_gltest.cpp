@@ -51,7 +51,7 @@ void expect_same_bits(const Image& a, const Image& b) {
 }
 
 TEST(Modes, MakeTheSamePicture) {
-    for (const char* name : {"mirrors", "glass", "city"}) {
+    for (const char* name : {"mirrors", "glass", "leaf-canopy"}) {
         SCOPED_TRACE(name);
         const Shown shown(name);
         const std::unique_ptr<Backend> cpu = make_cpu_backend(shown.scene.soup);
