@@ -80,8 +80,8 @@ public:
         const vec3* c = corners_.data() + size_t(prim) * 3;
         return {origin_ + dvec3(c[0]), origin_ + dvec3(c[1]), origin_ + dvec3(c[2])};
     }
-    /// Writes the coordinates of triangle(), corner by corner and kStride apart, except that doubles
-    /// beyond the range of corners (in_range() in soup.cpp) may be left as they are.
+    /// Writes the coordinates of triangle(), corner by corner and kStride apart. Doubles beyond the
+    /// range of corners (in_range() in soup.cpp) may be left as they are.
     template <size_t kStride>
     void put_triangle(uint32_t prim, double* to) const {
         assert(prim < size());

@@ -101,8 +101,8 @@ Found in_times(Found found, Times from, Times to, float t_end) {
 }
 #endif
 
-// A further candidate counts unless it certainly lies beyond this. Without a hit, best_hi is the end
-// of the part that the ray met last, while the further candidates are from all parts.
+// A further candidate counts unless it certainly lies beyond this. Without a hit, best_hi is the
+// end of the part that the ray met last, while the further candidates are from all parts.
 float end_of_candidates(Found found) {
     return OVC_PORTALS != 0 && !has_hit(found) ? 0.5 * OVC_NEVER : found.best_hi;
 }

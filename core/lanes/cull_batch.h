@@ -22,7 +22,7 @@ CullRay cull_ray(const PreparedRay& p, const Triangle& near);
 /// Notes the nearest hit so far.
 void note_hit(CullRay& ray, const PreparedRay& p, const ComparedHit& nearest);
 
-/// Triangles for the Nearest of one ray, which both outlive this. A caller knows them by numbers.
+/// Triangles for the Nearest of one ray, which both outlive this.
 class CullBatch {
 public:
     static constexpr uint32_t kCount = 64;
@@ -33,21 +33,20 @@ public:
     bool full() const { return count_ == kCount; }
 
     /// Adds a triangle. Needs room: not full().
-    void add(uint32_t number) {
+    void add(TriangleId id) {
         assert(!full());
-        numbers_[count_++] = number;
+        ids_[count_++] = id;
     }
 
-    /// Empties the batch. Calls id(number) for all, put(id, to, stride) to write their coordinates
-    /// as Chunk::put_triangle<kStride>() does, and offer(id) -> bool (true: stop) for those that
-    /// may be the nearest, until one of the calls stops it; returns whether one did. offer() offers
-    /// the triangle to the Nearest.
-    template <class Id, class Put, class Offer>
-    bool finish(Id&& id, Put&& put, Offer&& offer) {
+    /// Empties the batch. Calls put(id, to) for all to write their coordinates as
+    /// Chunk::put_triangle<kStride>() does, and offer(id) -> bool (true: stop) for those that may
+    /// be the nearest, until one of the calls stops it; returns whether one did. offer() offers the
+    /// triangle to the Nearest.
+    template <class Put, class Offer>
+    bool finish(Put&& put, Offer&& offer) {
         for (uint32_t i = 0; i < count_; ++i) {
             CullLanes& lanes = lanes_[i / kLanes];
             const uint32_t lane = i % kLanes;
-            ids_[i] = id(numbers_[i]);
             put(ids_[i], &lanes.corner[0][0][lane]);
             lanes.key[lane] = key_of(ids_[i]);
         }
@@ -85,7 +84,6 @@ private:
     TriangleId noted_; // whose hit ray_ has
     std::array<CullLanes, kCount / kLanes> lanes_{};
     std::array<TriangleId, kCount> ids_;
-    std::array<uint32_t, kCount> numbers_;
     uint32_t count_ = 0;
 };
 

@@ -20,7 +20,7 @@ struct CullLanes {
     alignas(64) double lead[kCount];
 };
 
-/// A ray, and what is known of its nearest hit so far. cull_query.h fills it in.
+/// A ray, and what is known of its nearest hit so far. core/lanes/cull_batch.h fills it in.
 struct CullRay {
     // The ray, as in PreparedRay.
     int kx, ky, kz;

@@ -33,7 +33,7 @@ public:
             many_.emplace(p_, nearest_);
         if (!many_->recent.is_new(number))
             return false;
-        many_->batch.add(number);
+        many_->batch.add(scene_.numbers.id(number));
         return many_->batch.full() && finish();
     }
     /// Tests what is left.
@@ -43,8 +43,7 @@ public:
         const auto put = [&](TriangleId id, double* to) {
             scene_.soup.chunks[id.mesh].put_triangle<CullBatch::kStride>(id.prim, to);
         };
-        return many_->batch.finish([&](uint32_t number) { return scene_.numbers.id(number); }, put,
-                                   [&](TriangleId id) { return offer(id); });
+        return many_->batch.finish(put, [&](TriangleId id) { return offer(id); });
     }
 
     const Approach& approach() const { return approach_; }
