@@ -34,7 +34,7 @@ private:
 };
 
 /// Triangles that meet at or near a point, and lines to it.
-struct Case {
+struct CullCase {
     const char* name;
     std::function<Triangle(RandomRays&)> triangle;
     dvec3 target{0.125, 0.25, 0.375};
@@ -59,13 +59,15 @@ Triangle scaled(Triangle triangle, double by) {
     return triangle;
 }
 
-std::vector<Case> planes() {
+std::vector<CullCase> planes() {
     const auto ulps = [](RandomRays& random, double of) {
         return of * double(random.below(2000)) * 0x1p-50;
     };
     return {
         {"in a plane",
-         [](RandomRays& r) { return round_the_target(r, [](double x, double y) { return x + y; }); }},
+         [](RandomRays& r) {
+             return round_the_target(r, [](double x, double y) { return x + y; });
+         }},
         {"on a floor whose height takes all bits",
          [](RandomRays& r) { return round_the_target(r, [](double, double) { return 0.3; }); },
          {0.125, 0.25, 0.3}},
@@ -96,7 +98,7 @@ std::vector<Case> planes() {
     };
 }
 
-std::vector<Case> points() {
+std::vector<CullCase> points() {
     const dvec3 hub(0.1, 0.2, 0.3);
     const auto at_any_corner = [](RandomRays& r, Triangle triangle) {
         std::rotate(triangle.begin(), triangle.begin() + r.below(3), triangle.end());
@@ -131,7 +133,7 @@ std::vector<Case> points() {
 }
 
 /// Triangles that meet nowhere, or where exact numbers alone tell.
-std::vector<Case> others() {
+std::vector<CullCase> others() {
     return {
         {"in one point, which is a corner of none",
          [](RandomRays& r) {
@@ -168,14 +170,14 @@ std::vector<Case> others() {
     };
 }
 
-std::vector<Case> all_cases() {
-    std::vector<Case> cases = planes();
+std::vector<CullCase> all_cases() {
+    std::vector<CullCase> cases = planes();
     for (const auto& more : {points(), others()})
         cases.insert(cases.end(), more.begin(), more.end());
     return cases;
 }
 
-Ray ray_to(const Case& one, RandomRays& random) {
+Ray ray_to(const CullCase& one, RandomRays& random) {
     Ray ray{one.target + one.distance * (dvec3(0.1, 0.2, 1) + 0.5 * random.point()), 0, dvec3(0)};
     ray.dir = one.target - ray.org;
     if (random.below(8) == 0)
@@ -189,7 +191,7 @@ struct Soup64 {
 };
 
 /// Some corners are copied from other triangles, some are not finite, and ids come in any order.
-Soup64 soup_of(const Case& one, RandomRays& random, size_t count) {
+Soup64 soup_of(const CullCase& one, RandomRays& random, size_t count) {
     Soup64 soup;
     for (size_t i = 0; i < count; ++i) {
         soup.triangles.push_back(one.triangle(random));
@@ -230,7 +232,7 @@ void expect_lost(const Soup64& soup, size_t i, const Ray& ray,
 }
 
 TEST(CullLanes, WhatIsLeftOutIsMissedOrBehindTheNearest) {
-    for (const Case& one : all_cases())
+    for (const CullCase& one : all_cases())
         for (uint64_t seed = 0; seed < 40; ++seed) {
             SCOPED_TRACE(testing::Message() << one.name << " seed " << seed);
             RandomRays random(seed);
@@ -287,7 +289,7 @@ size_t offer_all(CullBatch& batch, Nearest& nearest, const Soup64& soup) {
 }
 
 TEST(CullBatch, AnswersAreThoseOfOfferingOneByOne) {
-    for (const Case& one : all_cases())
+    for (const CullCase& one : all_cases())
         for (uint64_t seed = 0; seed < 30; ++seed) {
             SCOPED_TRACE(testing::Message() << one.name << " seed " << seed);
             RandomRays random(seed);
@@ -308,7 +310,7 @@ TEST(CullBatch, AnswersAreThoseOfOfferingOneByOne) {
 
 /// Where ids fall, of all that tie each is nearer than the ones before.
 TEST(CullBatch, OffersFewWhereThousandsLieInTheWay) {
-    for (const Case& one : all_cases())
+    for (const CullCase& one : all_cases())
         for (const bool falling : {false, true}) {
             SCOPED_TRACE(testing::Message() << one.name << (falling ? ", ids fall" : ""));
             constexpr uint32_t kCount = 6400;
@@ -343,7 +345,7 @@ TEST(CullBatch, OffersFewWhereThousandsLieInTheWay) {
 
 TEST(CullBatch, StopsWhenAnOfferSaysSo) {
     RandomRays random(/* seed= */ 4);
-    const Case one = points().front();
+    const CullCase one = points().front();
     const Soup64 soup = soup_of(one, random, 64);
     const PreparedRay p(ray_to(one, random));
     Nearest nearest(p);

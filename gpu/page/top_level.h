@@ -6,7 +6,7 @@
 #pragma once
 
 #include "gpu/page/page.h"
-#include "gpu/page/portal.h"
+#include "gpu/frame/portal.h"
 #include "gpu/page/residency.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "core/exact/triangle.h"
-#include "gpu/page/portal.h"
+#include "gpu/frame/portal.h"
 #include "kdtree/partition.h"
 #include "shaders/layout.h"
 

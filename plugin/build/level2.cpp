@@ -5,7 +5,7 @@
 #include "core/system/parallel.h"
 #include "core/system/stopwatch.h"
 #include "core/text/format_text.h"
-#include "gpu/page/frames.h"
+#include "gpu/frame/frames.h"
 #include "kdtree/sample.h"
 #include "plugin/plan/one_leaf.h"
 #include "plugin/plan/page_rate.h"

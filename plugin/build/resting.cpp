@@ -3,7 +3,7 @@
 // hang in the scene's own tree as long as the mesh stays where it is.
 #include "plugin/build/resting.h"
 
-#include "gpu/page/frames.h"
+#include "gpu/frame/frames.h"
 #include "gpu/page/refit.h"
 #include "plugin/build/level_update.h"
 

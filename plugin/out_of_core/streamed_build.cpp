@@ -5,7 +5,7 @@
 
 #include "core/system/parallel.h"
 #include "core/text/format_text.h"
-#include "gpu/page/frames.h"
+#include "gpu/frame/frames.h"
 #include "kdtree/cells.h"
 #include "plugin/build/build_scene.h"
 #include "plugin/build/saved_levels.h"

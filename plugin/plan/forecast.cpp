@@ -4,7 +4,7 @@
 #include "plugin/plan/forecast.h"
 
 #include "core/system/parallel.h"
-#include "gpu/page/frames.h"
+#include "gpu/frame/frames.h"
 #include "kdtree/cells.h"
 #include "kdtree/sample.h"
 #include "plugin/build/build_scene.h"

@@ -4,7 +4,7 @@
 #include "plugin/plan/page_rate.h"
 
 #include "core/system/parallel.h"
-#include "gpu/page/frames.h"
+#include "gpu/frame/frames.h"
 #include "gpu/page/page.h"
 #include "kdtree/clip.h"
 #include "kdtree/partition.h"

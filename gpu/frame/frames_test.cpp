@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks that a frame is rejected if triangles are too small in it for float32.
-#include "gpu/page/frames.h"
+#include "gpu/frame/frames.h"
 
 #include "kdtree/build.h"
 #include "kdtree/test_soups.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Estimates doubt from the error bound of the kernel's sides, over a sample of triangles.
-#include "gpu/page/frames.h"
+#include "gpu/frame/frames.h"
 
 #include "core/vec.h"
 #include "shaders/layout.h"

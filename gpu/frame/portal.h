@@ -5,7 +5,7 @@
 #include "core/box.h"
 #include "core/exact/triangle.h"
 #include "core/transform.h"
-#include "gpu/page/far_triangle.h"
+#include "gpu/frame/far_triangle.h"
 #include "kdtree/partition.h"
 #include "shaders/layout.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The numbers of a far triangle tell where its corners lie, within the bounds that they come with.
-#include "gpu/page/far_triangle.h"
+#include "gpu/frame/far_triangle.h"
 
 #include "kdtree/test_soups.h"
 

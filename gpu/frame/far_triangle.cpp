@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Solves for the plane and the weights of a triangle in doubles, and measures how far off they are
 // at its corners.
-#include "gpu/page/far_triangle.h"
+#include "gpu/frame/far_triangle.h"
 
 #include <algorithm>
 #include <cmath>

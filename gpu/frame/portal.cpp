@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Packs portals as texels, and takes rays through them in double.
-#include "gpu/page/portal.h"
+#include "gpu/frame/portal.h"
 
 #include <algorithm>
 #include <bit>
