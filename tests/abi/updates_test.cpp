@@ -229,6 +229,20 @@ TEST_F(Updates, AnswerAsAScenesThatIsNew) {
                 static_cast<unsigned long long>(rebuilt));
 }
 
+/// There is no page then, and no tracer.
+TEST_F(Updates, OfAMeshWithoutAreaLeaveNothingToHit) {
+    World w = world();
+    const std::vector<vec3> needle{vec3(0), vec3(0), vec3(1)};
+    const uint32_t mesh = w.add(needle, dvec3(0), nullptr, OVC_MESH_MOVES);
+    w.commit();
+    const Matrix m = shift({0, 1, 0});
+    w.move(mesh, &m);
+    w.commit();
+    for (const Hit& hit : w.intersect(
+             {{dvec3(0.5, 1, -1), 0, dvec3(0, 0, 1)}, {dvec3(-1, 0, -1), 0, dvec3(1, 1.5, 1)}}))
+        EXPECT_FALSE(hit.is_hit());
+}
+
 /// Another scene of the meshes as they are now takes the bytes.
 TEST_F(Updates, AreSavedUnlessMeshesWereRemoved) {
     test::Random random(3);
