@@ -243,6 +243,20 @@ TEST_F(Updates, OfAMeshWithoutAreaLeaveNothingToHit) {
         EXPECT_FALSE(hit.is_hit());
 }
 
+/// The frame of what is left is not that of the scene.
+TEST_F(Updates, LeaveOnePartOfAWideScene) {
+    config.leaf_triangles = 15;
+    World w = world();
+    test::Random random(5);
+    w.add(random_corners<vec3>(random, 5, 3), dvec3(0), nullptr);
+    const uint32_t far = w.add(random_corners<vec3>(random, 20, 3), dvec3(1e6, 0, 0), nullptr);
+    w.commit();
+    w.remove(far);
+    w.commit();
+    EXPECT_EQ(w.statistics().updates, 1u);
+    expect_brute_force(w, rays_at(w.expected, 200, 4), 2, /* most_hit= */ false);
+}
+
 /// Another scene of the meshes as they are now takes the bytes.
 TEST_F(Updates, AreSavedUnlessMeshesWereRemoved) {
     test::Random random(3);
