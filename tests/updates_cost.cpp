@@ -229,10 +229,12 @@ void compare_updates(const std::string& name, const test::Device& device, Changi
                 changing.commit();
             }));
         };
-        const auto all = changing.blown(1, time), some = changing.blown(0.01, time + 1);
+        const auto all = changing.blown(1, time), some = changing.blown(0.01, time + 1),
+                   others = changing.blown(0.01, time + 2);
         measure("1 all positions", [&] { changing.move_corners(all); });
         measure("2 1 % of positions", [&] { changing.move_corners(some); });
         measure("3 all transforms", [&] { changing.move_places(time); });
+        measure("4 1 % after these", [&] { changing.move_corners(others); });
     }
     const double anew = median(times["0 anew"]);
     fmt::print("{}, {} meshes; medians of {}\n{:22} {:>10} {:>10} {:>10}\n", name, meshes.size(),

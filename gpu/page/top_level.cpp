@@ -207,9 +207,13 @@ TopLevel build_top_level(const Level1& level1, std::span<const Page> pages, size
         parts.add(level1, 0, std::array{Place()});
     if (parts.pages.empty())
         return {};
-    if (parts.pages.size() == 1)
-        return build_top_level(pages, max_links);
-    return build_top_level(scene_leaf(level1.bounds), std::move(parts), pages, max_links);
+    const Leaf scene = scene_leaf(level1.bounds);
+    if (parts.pages.size() > 1)
+        return build_top_level(scene, std::move(parts), pages, max_links);
+    TopLevel top = build_top_level(pages, max_links);
+    if (!(level1.leaves.front().frame == scene.frame)) // all other parts were removed
+        top.way_in = parts.portals[0];
+    return top;
 }
 
 void Parts::add(const Level1& level1, uint32_t first_page, std::span<const Place> places) {

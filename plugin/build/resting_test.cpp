@@ -185,7 +185,7 @@ TEST_P(Rest, LeadsNoWalkAstrayIfTheFileIsDamaged) {
         std::vector<uint8_t> orders(6 * (1 + random() % 3));
         for (uint8_t& byte : orders)
             byte = uint8_t(random());
-        test::ArchiveMemory memory(whole.bytes());
+        test::ArchiveMemory memory = whole;
         test::damage(memory, orders);
         test::reseal(memory);
         auto found = restore_levels(memory.bytes(), moving.soup, limits);

@@ -249,12 +249,11 @@ private:
     void enter(const SharedMesh& mesh) {
         scene_.dropped.not_finite += mesh.instances.size() * mesh.scene.dropped.not_finite;
         scene_.dropped.degenerate += mesh.instances.size() * mesh.scene.dropped.degenerate;
-        const Box& box = mesh.box;
         Level1& level1 = scene_.level1;
-        if (box.empty())
+        if (mesh.scene.level1.leaves.empty()) // rays have nothing to look for
             return;
         for (const uint32_t chunk : mesh.instances)
-            level1.bounds.add(placed_box(box, soup_.chunks[chunk].transform()));
+            level1.bounds.add(placed_box(mesh.box, soup_.chunks[chunk].transform()));
         level1.padding = padding_of(level1.bounds);
     }
 

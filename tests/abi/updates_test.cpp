@@ -229,6 +229,34 @@ TEST_F(Updates, AnswerAsAScenesThatIsNew) {
                 static_cast<unsigned long long>(rebuilt));
 }
 
+/// There is no page then, and no tracer.
+TEST_F(Updates, OfAMeshWithoutAreaLeaveNothingToHit) {
+    World w = world();
+    const std::vector<vec3> needle{vec3(0), vec3(0), vec3(1)};
+    const uint32_t mesh = w.add(needle, dvec3(0), nullptr, OVC_MESH_MOVES);
+    w.commit();
+    const Matrix m = shift({0, 1, 0});
+    w.move(mesh, &m);
+    w.commit();
+    for (const Hit& hit : w.intersect(
+             {{dvec3(0.5, 1, -1), 0, dvec3(0, 0, 1)}, {dvec3(-1, 0, -1), 0, dvec3(1, 1.5, 1)}}))
+        EXPECT_FALSE(hit.is_hit());
+}
+
+/// The frame of what is left is not that of the scene.
+TEST_F(Updates, LeaveOnePartOfAWideScene) {
+    config.leaf_triangles = 15;
+    World w = world();
+    test::Random random(5);
+    w.add(random_corners<vec3>(random, 5, 3), dvec3(0), nullptr);
+    const uint32_t far = w.add(random_corners<vec3>(random, 20, 3), dvec3(1e6, 0, 0), nullptr);
+    w.commit();
+    w.remove(far);
+    w.commit();
+    EXPECT_EQ(w.statistics().updates, 1u);
+    expect_brute_force(w, rays_at(w.expected, 200, 4), 2, /* most_hit= */ false);
+}
+
 /// Another scene of the meshes as they are now takes the bytes.
 TEST_F(Updates, AreSavedUnlessMeshesWereRemoved) {
     test::Random random(3);
