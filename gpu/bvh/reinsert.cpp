@@ -16,13 +16,13 @@ constexpr int kMaxRounds = 16;
 constexpr size_t kSearchGrain = 256; // searches a task
 
 /// hope: the saving of the tree without the subtree. It does not count how nodes above then shrink.
-struct Candidate {
+struct Trial {
     float hope;
     uint32_t place;
 };
 
-std::vector<Candidate> candidates(const SiblingTree& tree, size_t min_tried) {
-    std::vector<Candidate> all;
+std::vector<Trial> trials(const SiblingTree& tree, size_t min_tried) {
+    std::vector<Trial> all;
     all.reserve(tree.end());
     for (uint32_t place = SiblingTree::kFirst; place < tree.end(); ++place)
         all.push_back(
@@ -31,7 +31,7 @@ std::vector<Candidate> candidates(const SiblingTree& tree, size_t min_tried) {
     const size_t tried = std::max(size_t(kTried * double(all.size())) + 1, min_tried);
     if (tried < all.size()) {
         std::nth_element(all.begin(), all.begin() + ptrdiff_t(tried), all.end(),
-                         [](const Candidate& a, const Candidate& b) {
+                         [](const Trial& a, const Trial& b) {
                              return a.hope > b.hope || (a.hope == b.hope && a.place < b.place);
                          });
         all.resize(tried);
@@ -41,7 +41,7 @@ std::vector<Candidate> candidates(const SiblingTree& tree, size_t min_tried) {
 
 /// Returns the moves that gain, the largest gain first.
 std::vector<Move> moves(const SiblingTree& tree, size_t min_tried, BuildProgress* progress) {
-    const std::vector<Candidate> tried = candidates(tree, min_tried);
+    const std::vector<Trial> tried = trials(tree, min_tried);
     std::vector<Move> moves(tried.size());
     parallel_for(tried.size(), kSearchGrain, [&](size_t first, size_t last) {
         for (size_t i = first; i < last; ++i)
