@@ -73,8 +73,9 @@ void expect_place(const NodeMeeting& meeting) {
         for (size_t b = 0; b < 4; ++b)
             if (a != b) {
                 ASSERT_NE(meeting.place[a], meeting.place[b]);
-                if (meeting.enter[a] > meeting.enter[b])
+                if (meeting.enter[a] > meeting.enter[b]) {
                     ASSERT_LT(meeting.place[a], meeting.place[b]);
+                }
             }
 }
 
@@ -97,8 +98,9 @@ void expect_as_clip(const NodeMeeting& meeting, const Node& node, const GridHead
             ASSERT_TRUE(is_met);
             ASSERT_LE(meeting.enter[child], exactly.enter);
         }
-        if (is_met)
+        if (is_met) {
             ASSERT_FALSE(widely.empty());
+        }
     }
     ASSERT_EQ(met, meeting.count);
 }
