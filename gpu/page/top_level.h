@@ -5,8 +5,8 @@
 // portals into frames, and such a tree lies behind each of them.
 #pragma once
 
-#include "gpu/page/page.h"
 #include "gpu/frame/portal.h"
+#include "gpu/page/page.h"
 #include "gpu/page/residency.h"
 
 #include <algorithm>
