@@ -37,7 +37,7 @@ public:
     TriangleId id(uint32_t number) const {
         assert(number < first_.back());
         if (first_.size() == 2)
-            return {0, number};
+            return {0, number - first_.front()};
         // The last chunk that begins at or before the number holds it; empty ones may precede.
         const auto after = std::upper_bound(first_.begin(), first_.end(), number);
         const uint32_t mesh = uint32_t(after - first_.begin()) - 1;
