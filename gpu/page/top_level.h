@@ -65,6 +65,14 @@ inline uint64_t max_top_level_bytes(uint64_t links) {
     return ((links > 1 ? 2 * links : 0) + OVC_ROOT_UNIT + 1) * OVC_UNIT_BYTES;
 }
 
+/// Returns about how many bytes it takes over pages of `page_bytes` in all: their units are pairs
+/// and two nodes for five of these, and links are not more than the pairs.
+inline uint64_t expected_top_level_bytes(uint64_t links, uint64_t page_bytes) {
+    const uint64_t entries = std::min(links, page_bytes * 5 / (7 * OVC_UNIT_BYTES));
+    return std::min(max_top_level_bytes(entries),
+                    (entries * 7 / 5 + OVC_ROOT_UNIT + 1) * OVC_UNIT_BYTES);
+}
+
 /// The max bytes that each page adds to the tree and the table of portals if each has a frame of
 /// its own: a portal, a header, a link, an inner node and an entry of the table.
 inline constexpr uint64_t kMaxBytesPerPart = 4 * OVC_UNIT_BYTES + kPortalBytes;

@@ -227,7 +227,8 @@ Result<ovc_plan> forecast(const Soup& soup, const TwoLevelOptions& options,
     plan.level1_bytes = portals > 1 ? (1 + portals) * kPortalBytes : 0;
     plan.fits = plan.fits && plan.level1_bytes <= memory->buffer_bytes;
     const uint64_t room = memory->pool_bytes - std::min(memory->pool_bytes, plan.level1_bytes);
-    uint64_t tree = max_top_level_bytes(max_links(plan.leaves, plan.level2_bytes, room));
+    uint64_t tree = expected_top_level_bytes(max_links(plan.leaves, plan.level2_bytes, room),
+                                             plan.level2_bytes);
     if (portals > 1) // inner nodes above the portals add a third
         tree += portals * OVC_UNIT_BYTES * 4 / 3 + 2 * sizes.parts * OVC_UNIT_BYTES;
     const Fit fit = fit_in(sizes.pages, {room, memory->buffer_bytes}, tree);
