@@ -60,7 +60,7 @@ float rounded_up(double t, Times times) {
 }
 
 // Takes the far triangles behind a portal. A ray does not change its frame for them; it only counts
-// its times from the hit on, so that the hit's time is exact.
+// its times from the hit on, so that a float tells the hit's time as closely as the doubles do.
 void take_far_triangles(WorldRay ray, Portal portal, inout Packet packet, inout Found found) {
     FrameRay frame = frame_ray(ray, portal);
     for (int i = 0; i < portal.far.y; ++i) {

@@ -19,10 +19,6 @@ constexpr double kRounding = 0x1p-49;
 /// Weights that are off by more say too little, and the proof wants less than 1/8.
 constexpr double kMaxError = 1e-6;
 
-dvec3 magnitudes(const dvec3& v) {
-    return glm::abs(v);
-}
-
 std::optional<FarTriangle> far_triangle(const Triangle& t, uint32_t number) {
     const dvec3 ab = t[1] - t[0], ac = t[2] - t[0];
     const dvec3 across = glm::cross(ab, ac);
@@ -36,13 +32,13 @@ std::optional<FarTriangle> far_triangle(const Triangle& t, uint32_t number) {
     far.hi = -HUGE_VAL;
     for (size_t at = 0; at < 3; ++at) {
         const double height = glm::dot(far.normal, t[at]);
-        const double off = kRounding * glm::dot(magnitudes(far.normal), magnitudes(t[at]));
+        const double off = kRounding * glm::dot(glm::abs(far.normal), glm::abs(t[at]));
         far.lo = std::min(far.lo, height - off);
         far.hi = std::max(far.hi, height + off);
         for (size_t i = 0; i < 3; ++i) {
             const FarTriangle::Corner& corner = far.corners[i];
             const double size =
-                glm::dot(magnitudes(corner.to_weight), magnitudes(t[at])) + std::abs(corner.shift);
+                glm::dot(glm::abs(corner.to_weight), glm::abs(t[at])) + std::abs(corner.shift);
             far.error = std::max(far.error,
                                  std::abs(corner.weight_at(t[at]) - (i == at)) + kRounding * size);
         }

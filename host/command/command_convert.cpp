@@ -70,17 +70,22 @@ static std::string left_out(const Scene& scene) {
     return fmt::format("{}", fmt::join(items, ", "));
 }
 
+/// Returns a log that enters warnings in `from` as well, which outlives it, as `log` does.
+static LogSink noting_warnings(Provenance& from, const LogSink& log) {
+    return [&](LogLevel level, const std::string& message) {
+        if (level == LogLevel::Warning)
+            from.warnings.push_back(message);
+        say(log, level, message);
+    };
+}
+
 /// Writes all of the scene, and what the plugin builds of it, as .ovc.
 static Result<Done> convert_to_scene_file(const SceneArguments& source,
                                           const BackendOptions& backend_options, const LogSink& log,
                                           const std::string& output) {
     FilesRead files;
     Provenance from;
-    const LogSink listening = [&](LogLevel level, const std::string& message) {
-        if (level == LogLevel::Warning)
-            from.warnings.push_back(message);
-        say(log, level, message);
-    };
+    const LogSink listening = noting_warnings(from, log);
     const Result<Scene> scene = open_scene(source, listening, std::nullopt, &files);
     if (!scene)
         return scene.error();
@@ -123,11 +128,7 @@ static Result<Done> convert_streamed(const std::string& source, uint64_t host_by
         return store.error();
     Provenance from;
     FilesRead files;
-    const LogSink listening = [&](LogLevel level, const std::string& message) {
-        if (level == LogLevel::Warning)
-            from.warnings.push_back(message);
-        say(log, level, message);
-    };
+    const LogSink listening = noting_warnings(from, log);
     const Result<Scene> scene = stream_scene(source, host_bytes, listening, files, *store);
     const Result<Done> stored = store->finish();
     if (!stored)
