@@ -3,23 +3,19 @@
 #include "gpu/page/node_lanes.h"
 
 #include "gpu/page/page_walk.h"
+#include "kdtree/test_soups.h"
 
 #include <gtest/gtest.h>
-
-#include <random>
 
 namespace ovc {
 namespace {
 
 constexpr double kMargin = 1e-9;
 
-class Random {
+class Random : public test::Random {
 public:
-    explicit Random(uint64_t seed) : engine_(seed) {}
-    double uniform(double lo, double hi) {
-        return std::uniform_real_distribution<double>(lo, hi)(engine_);
-    }
-    uint32_t below(uint32_t count) { return uint32_t(engine_() % count); }
+    using test::Random::Random;
+    double uniform(double lo, double hi) { return (*this)(lo, hi); }
     /// Returns a direction with components that are 0, of either sign, or denormal.
     dvec3 direction() {
         dvec3 dir;
@@ -30,9 +26,6 @@ public:
         dir[int(below(3))] = below(2) ? 1 : -1;
         return dir;
     }
-
-private:
-    std::mt19937_64 engine_;
 };
 
 /// A node whose children are any boxes, some of them flat or missing.
