@@ -2,6 +2,7 @@
 // load() and save() choose a reader or writer by the file's extension.
 #include "importers/importer.h"
 
+#include "core/text/lower_case.h"
 #include "core/text/suggestion.h"
 #include "importers/readers.h"
 
@@ -36,10 +37,7 @@ const Format* format_of(std::string_view extension) {
 }
 
 std::string lower_name(const std::filesystem::path& path) {
-    std::string name = path.filename().string();
-    for (char& c : name)
-        c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-    return name;
+    return lower_case(path.filename().string());
 }
 
 /// Returns the extension without the dot: "ply".

@@ -4,6 +4,7 @@
 #include "gpu/gl/egl_context.h"
 
 #include "core/text/format_text.h"
+#include "core/text/lower_case.h"
 #include "gpu/gl/fork_mark.h"
 #include "gpu/gl/gl.h"
 #include "gpu/gl/gl_libraries.h"
@@ -85,12 +86,6 @@ bool lists(const char* extensions, std::string_view wanted) {
     return false;
 }
 
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return text;
-}
-
 std::string gl_string(GLenum name) {
     const char* text = reinterpret_cast<const char*>(glGetString(name));
     return text ? text : "";
@@ -132,7 +127,7 @@ DeviceInfo describe() {
     info.renderer = gl_string(GL_RENDERER);
     info.vendor = gl_string(GL_VENDOR);
     info.version = gl_string(GL_VERSION);
-    const std::string name = lower(info.renderer);
+    const std::string name = lower_case(info.renderer);
     info.is_software = name.find("llvmpipe") != std::string::npos ||
                        name.find("softpipe") != std::string::npos ||
                        name.find("swrast") != std::string::npos;
@@ -161,7 +156,7 @@ Result<Done> check_egl_environment() {
     static constexpr std::array known{"surfaceless", "device", "x11",  "xcb",     "wayland",
                                       "drm",         "gbm",    "null", "android", "haiku"};
     if (std::any_of(known.begin(), known.end(),
-                    [&](const char* name) { return lower(value) == name; }))
+                    [&](const char* name) { return lower_case(value) == name; }))
         return Done{};
     return Error{format_text(
         "EGL cannot start: EGL_PLATFORM is set to '{}', which is no EGL platform; Overcast tried "
@@ -298,9 +293,10 @@ Result<EglContext> EglContext::create(const std::string& name, const LogSink& lo
             continue;
         }
         const DeviceInfo& info = context->info();
-        const bool fits = name.empty() ? !info.is_software
-                          : by_number  ? std::to_string(working.size()) == name
-                                      : lower(info.renderer).find(lower(name)) != std::string::npos;
+        const bool fits =
+            name.empty() ? !info.is_software
+            : by_number  ? std::to_string(working.size()) == name
+                         : lower_case(info.renderer).find(lower_case(name)) != std::string::npos;
         if (fits) {
             if (!failures.empty())
                 say(log, LogLevel::Warning, "passed over: " + failures);

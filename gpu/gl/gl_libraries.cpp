@@ -2,6 +2,7 @@
 #include "gpu/gl/gl_libraries.h"
 
 #include "core/text/format_text.h"
+#include "core/text/lower_case.h"
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -9,7 +10,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -49,9 +49,7 @@ Error missing(const std::string& reasons, const char* packages) {
 bool is_true(const char* value) {
     if (!value)
         return false;
-    std::string text = value;
-    for (char& c : text)
-        c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string text = lower_case(value);
     return text == "1" || text == "true" || text == "yes" || text == "y" || text == "t" ||
            text == "on";
 }

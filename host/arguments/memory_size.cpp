@@ -2,9 +2,10 @@
 // Memory sizes, from text and to text.
 #include "host/arguments/memory_size.h"
 
+#include "core/text/lower_case.h"
+
 #include <fmt/format.h>
 
-#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -14,9 +15,8 @@ namespace ovc {
 static constexpr uint64_t kMaxBytes = uint64_t(1) << 50;
 
 /// Returns the factor that a unit stands for; 0 where it is no unit.
-static double unit_factor(std::string unit) {
-    for (char& c : unit)
-        c = char(std::tolower(static_cast<unsigned char>(c)));
+static double unit_factor(const std::string& text) {
+    const std::string unit = lower_case(text);
     if (unit.empty() || unit == "b" || unit == "bytes")
         return 1;
     const size_t power = std::string_view("kmgt").find(unit[0]);

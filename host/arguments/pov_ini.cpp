@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/arguments/pov_ini.h"
 
+#include "core/text/lower_case.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,13 +11,6 @@
 #include <fstream>
 
 namespace ovc {
-
-static std::string lower(std::string_view text) {
-    std::string small(text);
-    std::transform(small.begin(), small.end(), small.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return small;
-}
 
 static std::string_view trimmed(std::string_view text) {
     const size_t first = text.find_first_not_of(" \t\r");
@@ -43,7 +38,7 @@ static std::string_view without_comment(std::string_view line) {
 }
 
 bool names_ini(std::string_view word) {
-    const std::string small = lower(word.substr(0, word.find('[')));
+    const std::string small = lower_case(word.substr(0, word.find('[')));
     return small.size() > 4 && small.ends_with(".ini") &&
            (word.find('[') == word.npos || word.back() == ']');
 }
@@ -58,7 +53,7 @@ std::optional<IniItem> as_setting(std::string_view word) {
     });
     if (!is_name)
         return std::nullopt;
-    return IniItem{lower(key), unquoted(trimmed(word.substr(equals + 1))), {}};
+    return IniItem{lower_case(key), unquoted(trimmed(word.substr(equals + 1))), {}};
 }
 
 /// Splits the line at blanks that are not quoted, and drops the quotes.
@@ -88,8 +83,9 @@ Result<std::vector<IniItem>> read_ini(const std::string& word) {
     assert(names_ini(word));
     const size_t bracket = std::min(word.find('['), word.size());
     const std::string path = word.substr(0, bracket);
-    const std::string wanted =
-        bracket < word.size() ? lower(word.substr(bracket + 1, word.size() - bracket - 2)) : "";
+    const std::string wanted = bracket < word.size()
+                                   ? lower_case(word.substr(bracket + 1, word.size() - bracket - 2))
+                                   : "";
     std::ifstream file(path);
     if (!file)
         return Error{fmt::format("{}: cannot be opened", path)};
@@ -99,7 +95,7 @@ Result<std::vector<IniItem>> read_ini(const std::string& word) {
     for (int number = 1; std::getline(file, line); ++number) {
         const std::string_view text = trimmed(without_comment(line));
         if (text.starts_with('[') && text.ends_with(']')) {
-            counts = lower(trimmed(text.substr(1, text.size() - 2))) == wanted;
+            counts = lower_case(trimmed(text.substr(1, text.size() - 2))) == wanted;
             continue;
         }
         if (!counts || text.empty())

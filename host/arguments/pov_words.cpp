@@ -3,6 +3,7 @@
 // Source: the documentation of POV-Ray 3.7, section 3.2, "Command-Line and INI-File Options".
 #include "host/arguments/pov_words.h"
 
+#include "core/text/lower_case.h"
 #include "host/arguments/arguments.h"
 #include "host/arguments/pov_ini.h"
 
@@ -190,9 +191,8 @@ private:
         return Done{};
     }
 
-    static bool is_off(std::string value) {
-        std::transform(value.begin(), value.end(), value.begin(),
-                       [](unsigned char c) { return char(std::tolower(c)); });
+    static bool is_off(const std::string& word) {
+        const std::string value = lower_case(word);
         return value == "off" || value == "no" || value == "false" || value == "0";
     }
 

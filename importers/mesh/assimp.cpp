@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Assimp reads every other format; no other file sees it. It never reads .ply and .obj: there it
 // takes many times the memory of the file, and hangs or crashes on some that are damaged.
+#include "core/text/lower_case.h"
 #include "importers/file/source.h"
 #include "importers/file/text.h"
 #include "importers/readers.h"
@@ -12,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <exception>
 #include <numbers>
@@ -217,9 +217,7 @@ std::filesystem::path plain_name(const std::filesystem::path& path) {
 }
 
 bool is_gltf(const std::filesystem::path& path) {
-    std::string extension = plain_name(path).extension().string();
-    for (char& c : extension)
-        c = char(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = lower_case(plain_name(path).extension().string());
     return extension == ".gltf" || extension == ".glb";
 }
 

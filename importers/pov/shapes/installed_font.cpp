@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/pov/shapes/installed_font.h"
 
+#include "core/text/lower_case.h"
 #include "importers/pov/words/files.h"
 
-#include <algorithm>
 #include <map>
 
 namespace ovc::pov {
@@ -19,12 +19,6 @@ static constexpr const char* kSans[] = {"cyrvetic.ttf", "DejaVuSans.ttf",
 static constexpr const char* kSerif[] = {"timrom.ttf", "DejaVuSerif.ttf",
                                          "LiberationSerif-Regular.ttf"};
 
-static std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    return text;
-}
-
 /// Returns all installed font files by their names in lower case.
 static const std::map<std::string, fs::path>& installed() {
     static const std::map<std::string, fs::path> fonts = [] {
@@ -34,9 +28,9 @@ static const std::map<std::string, fs::path>& installed() {
             const auto skip = fs::directory_options::skip_permission_denied;
             for (fs::recursive_directory_iterator at(folder, skip, ec), end; !ec && at != end;
                  at.increment(ec)) {
-                const std::string extension = lower(at->path().extension().string());
+                const std::string extension = lower_case(at->path().extension().string());
                 if (extension == ".ttf" || extension == ".otf")
-                    found.try_emplace(lower(at->path().filename().string()), at->path());
+                    found.try_emplace(lower_case(at->path().filename().string()), at->path());
             }
         }
         return found;
@@ -50,14 +44,14 @@ static bool has_serifs(const std::string& name) {
 }
 
 fs::path installed_font(const std::string& name) {
-    const std::string wanted = lower(fs::path(name).filename().string());
+    const std::string wanted = lower_case(fs::path(name).filename().string());
     const std::map<std::string, fs::path>& fonts = installed();
     if (const auto same = fonts.find(wanted); same != fonts.end())
         return same->second;
     for (const char* substitute : has_serifs(wanted) ? kSerif : kSans) {
         if (const fs::path povs = find_file(substitute, "", {}); !povs.empty())
             return povs;
-        if (const auto at = fonts.find(lower(substitute)); at != fonts.end())
+        if (const auto at = fonts.find(lower_case(substitute)); at != fonts.end())
             return at->second;
     }
     return fonts.empty() ? fs::path() : fonts.begin()->second;

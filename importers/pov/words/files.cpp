@@ -2,6 +2,7 @@
 // Finds files by name and reads their text.
 #include "importers/pov/words/files.h"
 
+#include "core/text/lower_case.h"
 #include "importers/file/source.h"
 
 #include <algorithm>
@@ -16,20 +17,14 @@ static constexpr const char* kLibraries[] = {
     "/usr/share/povray-3.7/include", "/usr/share/povray/include",
     "/usr/local/share/povray-3.7/include", "/usr/local/share/povray-3.8/include"};
 
-static std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    return text;
-}
-
 /// Returns the entry of `folder` that is called `name`, regardless of upper and lower case.
 static std::optional<fs::path> entry_like(const fs::path& folder, const fs::path& name) {
     std::error_code ec;
     if (name == ".." || fs::exists(folder / name, ec))
         return folder / name;
-    const std::string wanted = lower(name.string());
+    const std::string wanted = lower_case(name.string());
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, ec))
-        if (lower(entry.path().filename().string()) == wanted)
+        if (lower_case(entry.path().filename().string()) == wanted)
             return entry.path();
     return std::nullopt;
 }
