@@ -26,7 +26,7 @@ static constexpr std::array<std::string_view, 4> kSweeps = {"rays", "triangles",
 /// In the order of PicturesBy.
 static constexpr std::array<std::string_view, 2> kPictures = {"samples", "tolerance"};
 /// The reference takes four times as many samples, and more would exceed a picture's limit.
-static constexpr uint64_t kMaxSamples = 1024, kDefaultSamples = 64;
+static constexpr uint64_t kMaxPictureSamples = 1024, kDefaultSamples = 64;
 
 static constexpr std::array<std::string_view, 5> kWorkloads = {"primary", "shadow", "diffuse",
                                                                "edges", "frame"};
@@ -42,6 +42,9 @@ void BenchWords::add_modes_to(CLI::App& app) {
     CLI::Option* table = app.add_flag(
         "--bars", bars,
         "Instead: the table of what is promised, measured over SCENE, a mesh file or a test scene");
+    app.add_flag("--scene-alone", scene_alone,
+                 "With --bars: only the lines about SCENE, without those about test scenes")
+        ->needs(table);
     CLI::Option* race = app.add_flag("--programs", programs,
                                      "Instead: overcast render, povray and tachyon on SCENE, a "
                                      "mesh file, from file to PNG")
@@ -291,6 +294,7 @@ Result<BenchJob> understand_bench(const BenchWords& words) {
     if (const Result<Done> fine = understand_kind(words, job); !fine)
         return fine.error();
     job.scenes = words.scenes.empty() ? std::vector<std::string>{kDefaultScene} : words.scenes;
+    job.scene_alone = words.scene_alone;
     job.device = words.device;
     job.json = words.json;
     const std::string size_words = !words.size.empty()               ? words.size
@@ -310,8 +314,9 @@ Result<BenchJob> understand_bench(const BenchWords& words) {
         return repeats.error();
     job.repeats = uint32_t(*repeats);
     if (!words.most.empty()) {
-        const Result<uint64_t> most = parse_count(
-            "--most", words.most, 1, job.kind == BenchKind::Pictures ? kMaxSamples : 1'000'000'000);
+        const Result<uint64_t> most =
+            parse_count("--most", words.most, 1,
+                        job.kind == BenchKind::Pictures ? kMaxPictureSamples : 1'000'000'000);
         if (!most)
             return most.error();
         job.most = *most;

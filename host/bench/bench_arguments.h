@@ -21,6 +21,7 @@ enum class PicturesBy { Samples, Tolerance };
 struct BenchWords {
     std::vector<std::string> scenes;
     bool bars = false;
+    bool scene_alone = false;
     bool programs = false;
     std::string sweep;
     std::string pictures;
@@ -49,6 +50,7 @@ struct BenchJob {
     uint64_t most = UINT64_MAX;         // max rays, triangles or leaves of a sweep, or samples
     std::vector<std::string> workloads; // empty: all but edges
     std::vector<std::string> scenes;
+    bool scene_alone = false; // of the bars, only those about the scene
     ImageSize size;
     uint32_t repeats = 5;
     std::vector<Contender> contenders;

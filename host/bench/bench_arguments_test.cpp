@@ -154,6 +154,9 @@ TEST(BenchArguments, ChooseOneKindOfBench) {
     EXPECT_EQ(understand_bench(programs)->size.width, 512u);
     EXPECT_THAT(error({.bars = true}), testing::HasSubstr("--bars needs one mesh file"));
     EXPECT_TRUE(understand_bench({.scenes = {"knot"}, .bars = true}));
+    EXPECT_FALSE(understand_bench({.scenes = {"knot"}, .bars = true})->scene_alone);
+    EXPECT_TRUE(
+        understand_bench({.scenes = {"knot"}, .bars = true, .scene_alone = true})->scene_alone);
     EXPECT_THAT(error({.scenes = {"no-such-file.ply"}, .programs = true}),
                 testing::HasSubstr("--programs needs one mesh file"));
     EXPECT_THAT(error({.sweep = "rats"}), testing::HasSubstr("did you mean 'rays'?"));

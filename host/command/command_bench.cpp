@@ -117,7 +117,7 @@ Result<Done> bench_contenders(const BenchJob& job, const BenchSurroundings& arou
 
 Result<Done> bench_bars(const BenchJob& job, const BenchSurroundings& around) {
     const Result<BarsResult> r =
-        run_bars({job.scenes[0], job.device, job.size.width, job.repeats}, around);
+        run_bars({job.scenes[0], job.device, job.size.width, job.repeats, job.scene_alone}, around);
     if (!r)
         return r.error();
     show(job, bars_table(r->bars));

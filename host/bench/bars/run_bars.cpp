@@ -64,10 +64,13 @@ public:
 
     Result<BarsResult> run() {
         using Step = Result<Done> (BarsRun::*)();
-        for (const Step step :
-             {&BarsRun::import, &BarsRun::kernels, &BarsRun::high_quality, &BarsRun::leaves,
-              &BarsRun::leaves_of_scenes, &BarsRun::default_leaves, &BarsRun::budget,
-              &BarsRun::build, &BarsRun::programs, &BarsRun::rest}) {
+        std::vector<Step> steps = {&BarsRun::import, &BarsRun::kernels, &BarsRun::leaves,
+                                   &BarsRun::leaves_of_scenes};
+        if (!job_.mesh_alone)
+            steps.insert(steps.end(),
+                         {&BarsRun::high_quality, &BarsRun::default_leaves, &BarsRun::budget});
+        steps.insert(steps.end(), {&BarsRun::build, &BarsRun::programs, &BarsRun::rest});
+        for (const Step step : steps) {
             if (around_.stop())
                 break;
             if (const Result<Done> done = (this->*step)(); !done)
@@ -184,9 +187,10 @@ private:
             contenders.push_back(kCertifiedBar);
             contenders.back().leaves = {leaves, std::to_string(leaves)};
         }
-        for (const std::string& scene :
-             {job_.mesh, std::string("plants-2"), std::string(kArchitecture), std::string("city"),
-              std::string("dragons-2")}) {
+        std::vector<std::string> scenes = {job_.mesh};
+        if (!job_.mesh_alone)
+            scenes.insert(scenes.end(), {"plants-2", kArchitecture, "city", "dragons-2"});
+        for (const std::string& scene : scenes) {
             if (around_.stop())
                 break;
             const Result<const BenchResult*> r =

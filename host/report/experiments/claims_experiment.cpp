@@ -29,6 +29,8 @@ std::vector<ReportRun> runs(const ReportPlan& plan) {
     ReportRun bars{kBars, {"bench", mesh, "--bars"}, "bars.json", plan.quick ? 75.0 : 240.0};
     if (plan.quick)
         bars.words.insert(bars.words.end(), {"--size", "256x256", "--repeats", "3"});
+    if (!plan.scenes.empty())
+        bars.words.push_back("--scene-alone");
     bars.words.insert(bars.words.end(), {"--json", "{}/bars.json"});
     std::vector<ReportRun> runs = {
         bars, {"grid", {"report", "--only", "grid", "--quick", "-o", "{}"}, "grid.json", 4}};
