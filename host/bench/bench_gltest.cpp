@@ -58,7 +58,7 @@ TEST(BenchCommand, GivesABudgetAsAShareOfThePages) {
     if (!there_is_a_device())
         GTEST_SKIP() << "no device for the plugin";
     const nlohmann::json document =
-        bench({"knot", "--only", "certified-fragment", "--size", "16x16", "--repeats", "1",
+        bench({"sphere-6", "--only", "certified-fragment", "--size", "16x16", "--repeats", "1",
                "--leaves", "40", "--resident", "all,30%"});
     const auto& contenders = document["scenes"][0]["contenders"];
     ASSERT_EQ(contenders.size(), 2u);

@@ -102,9 +102,9 @@ static Result<CameraPath> parse_json(const std::string& name, const std::string&
 }
 
 static std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view kBlanks = " \t\r\v\f";
-    text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-    return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+    constexpr std::string_view kWhite = " \t\r\v\f";
+    text.remove_prefix(std::min(text.find_first_not_of(kWhite), text.size()));
+    return text.substr(0, text.find_last_not_of(kWhite) + 1);
 }
 
 static bool is_header(std::string_view line) {

@@ -206,22 +206,23 @@ std::string programs_table(const ProgramsResult& r) {
 }
 
 std::string programs_json(const ProgramsResult& r) {
-    using Json = nlohmann::ordered_json;
-    Json programs = Json::array();
+    using nlohmann::ordered_json;
+    ordered_json programs = ordered_json::array();
     for (const ProgramTimes& p : r.programs) {
         const std::optional<double> ratio = times_as_fast(r, p.name);
-        programs.push_back({{"name", p.name},
-                            {"reads", p.reads},
-                            {"bytes_read", p.bytes_read},
-                            {"wall_seconds", p.seconds},
-                            {"overcast_times_as_fast", ratio ? Json(*ratio) : Json(nullptr)}});
+        programs.push_back(
+            {{"name", p.name},
+             {"reads", p.reads},
+             {"bytes_read", p.bytes_read},
+             {"wall_seconds", p.seconds},
+             {"overcast_times_as_fast", ratio ? ordered_json(*ratio) : ordered_json(nullptr)}});
     }
-    const Json document = {{"mesh", r.mesh},
-                           {"triangles", r.triangles},
-                           {"size", r.size},
-                           {"complete", r.complete},
-                           {"programs", programs}};
-    return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    const ordered_json document = {{"mesh", r.mesh},
+                                   {"triangles", r.triangles},
+                                   {"size", r.size},
+                                   {"complete", r.complete},
+                                   {"programs", programs}};
+    return document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 } // namespace ovc

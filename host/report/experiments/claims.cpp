@@ -154,16 +154,16 @@ constexpr const char* kBenchmarks = "docs/benchmarks.md";
 constexpr ClaimBar kNone = {true, 0};
 
 /// Adds the claims of one section.
-class Section {
+class SectionClaims {
 public:
-    Section(std::vector<Claim>& claims, const char* document, const char* heading)
+    SectionClaims(std::vector<Claim>& claims, const char* document, const char* heading)
         : claims_(claims), document_(document), heading_(heading) {}
 
-    Section& held(const char* what, const char* says, const char* by) {
+    SectionClaims& held(const char* what, const char* says, const char* by) {
         return measured(what, says, {}, {}, by);
     }
-    Section& measured(const char* what, const char* says, Measure measure,
-                      std::optional<ClaimBar> bar = {}, const char* held_by = "") {
+    SectionClaims& measured(const char* what, const char* says, Measure measure,
+                            std::optional<ClaimBar> bar = {}, const char* held_by = "") {
         claims_.push_back({document_, heading_, what, says, std::move(measure), bar, held_by});
         return *this;
     }
@@ -174,16 +174,16 @@ private:
 };
 
 void add_readme(std::vector<Claim>& claims) {
-    Section(claims, kReadme, "")
+    SectionClaims(claims, kReadme, "")
         .measured("plants", "7,121,524 triangles", number_of("demo", "/triangles"))
         .measured("7,121,524 triangles,", "347 MiB of GPU structures",
                   number_of("demo", "/level2_bytes", kMiB))
         .measured("347 MiB of GPU structures traced", "within 86 MiB",
                   number_of("demo", "/gpu_peak_bytes", kMiB), ClaimBar{true, 86})
         .measured("renders it at 1280×720 with", "1.7 million rays", rays_of_the_demo);
-    Section(claims, kPerformance, "In renderers you have")
+    SectionClaims(claims, kPerformance, "In renderers you have")
         .held("Debian's tachyon, unmodified", "the same picture", "ctest -R TachyonHost");
-    Section(claims, kPerformance, "What it promises")
+    SectionClaims(claims, kPerformance, "What it promises")
         .measured("So a hit names", "the nearest triangle of all", wrong_answers, kNone)
         .held("what it cannot prove, the CPU decides, as", "exact arithmetic on the same doubles",
               "ctest -R Stability.TheReferenceIsExact")
@@ -200,7 +200,7 @@ void add_readme(std::vector<Claim>& claims) {
               "ctest -R Abi.ABudgetTooSmall")
         .held("Bad input", "gets one sentence and exit code 1, and nothing is written",
               "ctest -R CommandLine.BadInput");
-    Section(claims, kPerformance, "Measured")
+    SectionClaims(claims, kPerformance, "Measured")
         .measured("Stanford dragon, 871,414 triangles, 512², shadows, file to PNG", "0.68 s",
                   seconds_of_program("overcast"))
         .measured("povray on the same mesh", "4.90 s", seconds_of_program("povray"))
@@ -213,7 +213,7 @@ void add_readme(std::vector<Claim>& claims) {
         .measured("plants with a quarter of the GPU memory against all of it", "the same picture",
                   pixels_under_a_budget, kNone, "ctest -R Invariance")
         .measured("the same picture", "0.4 GiB moved", number_of("demo", "/bytes_in", kGiB));
-    Section(claims, kPerformance, "Limits, today")
+    SectionClaims(claims, kPerformance, "Limits, today")
         .held("single rays, from any number of threads,", "are as fast as a tree on the CPU",
               "single_rays_cost DRAGON --threads 256");
 }
@@ -260,7 +260,7 @@ void add_bars(std::vector<Claim>& claims) {
         {"import: peak memory over the soup's", "1.44"},
         {"import: binary PLY, MB a CPU second", "393"},
         {"peak GPU bytes over the budget", "0.00"}};
-    Section bars(claims, kBenchmarks, "The bars");
+    SectionClaims bars(claims, kBenchmarks, "The bars");
     for (const auto& [line, says] : lines)
         bars.measured(line, says, measured_by_bar(line));
     bars.measured("leaks of closed meshes", "a test", leaks, kNone, "ctest -R Leaks")
@@ -269,16 +269,16 @@ void add_bars(std::vector<Claim>& claims) {
 }
 
 void add_benchmarks(std::vector<Claim>& claims) {
-    Section(claims, kBenchmarks, "Whole programs")
+    SectionClaims(claims, kBenchmarks, "Whole programs")
         .measured("overcast", "0.64", seconds_of_program("overcast"))
         .measured("povray", "4.64", seconds_of_program("povray"))
         .measured("tachyon", "1.87", seconds_of_program("tachyon"));
-    Section(claims, kBenchmarks, "As work grows")
+    SectionClaims(claims, kBenchmarks, "As work grows")
         .held("The last row is", "the exponent k of the power law", "the section scale");
-    Section(claims, kBenchmarks, "Time against the error of pictures")
+    SectionClaims(claims, kBenchmarks, "Time against the error of pictures")
         .held("a sphere, a cone and a torus as triangles", "at tolerances of 0.1 to 0.0001 radii",
               "ctest -R Pictures.OfRoundShapes");
-    Section(claims, kBenchmarks, "Where the time goes, and what the budget costs")
+    SectionClaims(claims, kBenchmarks, "Where the time goes, and what the budget costs")
         .measured("The pictures are", "identical under every budget", pixels_under_a_budget, kNone,
                   "ctest -R Invariance")
         .measured("Peak GPU bytes", "never exceed the budget",
@@ -288,30 +288,30 @@ void add_benchmarks(std::vector<Claim>& claims) {
                   ClaimBar{true, 1})
         .measured("At most", "0.7 times batched's passes were asked", mixed_to_batched("/passes"),
                   ClaimBar{true, 0.7});
-    Section(claims, kBenchmarks, "Tracing and shading beside each other")
+    SectionClaims(claims, kBenchmarks, "Tracing and shading beside each other")
         .measured("glass", "84 %", cores_used);
-    Section(claims, kBenchmarks, "Triangles that are there twice")
+    SectionClaims(claims, kBenchmarks, "Triangles that are there twice")
         .held("Allowed is", "1.5 of the whole program and of tracing",
               "python3 host/bench/doubles.py");
-    Section(claims, kBenchmarks, "Far-reaching triangles")
+    SectionClaims(claims, kBenchmarks, "Far-reaching triangles")
         .held("a frame of its own", "the kernel tests it in doubles there",
               "ctest -R FarTriangles");
-    Section(claims, kBenchmarks, "Instances")
+    SectionClaims(claims, kBenchmarks, "Instances")
         .held("The pictures have", "the same pixels", "ctest -R Instances");
-    Section(claims, kBenchmarks, "Updates")
+    SectionClaims(claims, kBenchmarks, "Updates")
         .held("commits of random updates", "the same bits as brute force", "ctest -R Updates");
-    Section(claims, kBenchmarks, "What is not asked for")
+    SectionClaims(claims, kBenchmarks, "What is not asked for")
         .held("the mean of both orders", "at most 0.9 % slower",
               "paired_calls BEFORE.so AFTER.so dragon.ply");
-    Section(claims, kBenchmarks, "Leaves that are cut out")
+    SectionClaims(claims, kBenchmarks, "Leaves that are cut out")
         .held("holds that", "the same leaves are hit", "ctest -R CutoutPictures");
-    Section(claims, kBenchmarks, "Single rays")
+    SectionClaims(claims, kBenchmarks, "Single rays")
         .held("intersect1, 256 threads", "0.81", "single_rays_cost DRAGON --threads 256");
-    Section(claims, kBenchmarks, "The plan")
+    SectionClaims(claims, kBenchmarks, "The plan")
         .held("holds the figures", "to 10 % on more scenes", "ctest -R Plan");
-    Section(claims, kBenchmarks, "Conversion under a budget")
+    SectionClaims(claims, kBenchmarks, "Conversion under a budget")
         .held("memory were those of the PLY file,", "bit for bit", "ctest -R ConvertUnderABudget");
-    Section(claims, kBenchmarks, "Import")
+    SectionClaims(claims, kBenchmarks, "Import")
         .measured("dragon, binary PLY", "406",
                   measured_by_bar("import: binary PLY, MB a CPU second"), {},
                   "importers/measure.py")

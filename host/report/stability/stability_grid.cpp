@@ -12,7 +12,7 @@ namespace ovc {
 
 namespace {
 
-constexpr size_t kRays = 2000;
+constexpr size_t kRaysOfAPoint = 2000;
 
 Soup strip(const GridPoint& point, dvec3 place, double scale) {
     Soup soup;
@@ -55,7 +55,7 @@ std::vector<StabilityCase> stability_grid_cases(bool quick) {
         const double scale = std::ldexp(1.0, point.scale_power);
         const double away = point.offset_power < 0 ? 0 : std::pow(10, point.offset_power);
         const dvec3 place = scale * away * dvec3(1, -1, 1);
-        cases.push_back({point.name(), /* closed= */ true, kRays,
+        cases.push_back({point.name(), /* closed= */ true, kRaysOfAPoint,
                          [=] { return strip(point, place, scale); },
                          [=](const Soup&, Random& random, size_t count) {
                              return moved_rays(point, place, scale, random, count);
