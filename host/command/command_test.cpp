@@ -239,8 +239,8 @@ TEST_F(CommandTest, AnErrorIsOneSentenceAndWritesNothing) {
 /// Returns arguments that render dragons-2 with a model small enough for a test.
 static Arguments small_dragons(const std::string& model, const std::string& output,
                                const char* size = "32x32") {
-    return {"render",     "dragons-2", "--model", model, "--backend",
-            "cpu-kdtree", "--size",    size,      "-o",  output};
+    return {"render", "dragons-2", "--model", model, "--backend",
+            "embree", "--size",    size,      "-o",  output};
 }
 
 TEST_F(CommandTest, RendersFramesOfThePathWithStatisticsOfEach) {
