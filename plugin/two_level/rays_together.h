@@ -103,6 +103,7 @@ private:
             return false;
         met_by_[batch_.count()] = rays;
         met_by_all_ &= rays;
+        met_by_any_ |= rays;
         batch_.add(scene_.numbers.id(number));
         return batch_.full();
     }
@@ -122,15 +123,16 @@ private:
         batch_.fetch([&](TriangleId id, double* to) {
             scene_.soup.chunks[id.mesh].put_triangle<CullBatch::kStride>(id.prim, to);
         });
-        for (uint32_t r = 0; r < rays_.size(); ++r) {
+        for_each_ray(met_by_any_, [&](uint32_t r) {
             OneRay& ray = rays_[r];
             ray.is_done = ray.is_done || ray.cull.offer_left(batch_, met_by(r), [&](TriangleId id) {
                 return offer(ray, id);
             });
             limits_[r] = ray.limit();
-        }
+        });
         batch_.clear();
         met_by_all_ = ~RaySet(0);
+        met_by_any_ = 0;
         return std::ranges::all_of(rays_, &OneRay::is_done);
     }
 
@@ -148,6 +150,7 @@ private:
     CullBatch batch_;
     std::array<RaySet, CullBatch::kCount> met_by_; // the rays that may meet each of its triangles
     RaySet met_by_all_ = ~RaySet(0);               // those that may meet all of them
+    RaySet met_by_any_ = 0;                        // those that may meet any of them
     Recent recent_;
 };
 

@@ -17,6 +17,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -259,6 +260,8 @@ private:
         for (size_t j = 0; j < rays.size(); ++j)
             if (is_left[j])
                 left.push_back({rays[j], near[j]});
+        // Rays to the same or to neighbouring triangles probably go the same way.
+        std::ranges::sort(left, {}, [](const Left& ray) { return std::pair(ray.near, ray.i); });
         constexpr size_t kMax = Together::kMaxRays;
         run((left.size() + kMax - 1) / kMax, /* worth= */ 2, [&](size_t group) {
             const std::span all(left);
