@@ -262,11 +262,11 @@ private:
                 left.push_back({rays[j], near[j]});
         // Rays to the same or to neighbouring triangles probably go the same way.
         std::ranges::sort(left, {}, [](const Left& ray) { return std::pair(ray.near, ray.i); });
-        constexpr size_t kMax = Together::kMaxRays;
-        run((left.size() + kMax - 1) / kMax, /* worth= */ 2, [&](size_t group) {
-            const std::span all(left);
-            const size_t first = group * kMax;
-            answer_together(all.subspan(first, std::min(kMax, left.size() - first)));
+        const size_t groups = (left.size() + Together::kMaxRays - 1) / Together::kMaxRays;
+        run(groups, /* worth= */ 2, [&](size_t group) {
+            const size_t first = left.size() * group / groups;
+            const size_t last = left.size() * (group + 1) / groups;
+            answer_together(std::span(left).subspan(first, last - first));
         });
     }
 
