@@ -169,6 +169,7 @@ private:
     }
 
     Split best_binned(const std::vector<Fragment>& fragments, const Box& cell) const {
+        const double padding = options_.padding;
         const dvec3 extent = cell.extent();
         const dvec3 scale =
             dvec3(kBins) / glm::max(extent, dvec3(std::numeric_limits<double>::min() * kBins));
@@ -178,8 +179,8 @@ private:
         const auto fill = [&](size_t first, size_t last, Bins bins) {
             for (size_t i = first; i < last; ++i)
                 for (int axis = 0; axis < 3; ++axis) {
-                    ++bins.begin[axis][bin_of(fragments[i].box.lo[axis], axis)];
-                    ++bins.end[axis][bin_of(fragments[i].box.hi[axis], axis)];
+                    ++bins.begin[axis][bin_of(fragments[i].box.lo[axis] - padding, axis)];
+                    ++bins.end[axis][bin_of(fragments[i].box.hi[axis] + padding, axis)];
                 }
             return bins;
         };
@@ -208,6 +209,7 @@ private:
         Box hull;
         for (const Fragment& fragment : fragments)
             hull.add(fragment.box);
+        hull = hull.padded(options_.padding);
         Split best;
         for (int axis = 0; axis < 3; ++axis) {
             consider(best, cell, axis, hull.lo[axis], 0, fragments.size(), fragments.size());
@@ -223,8 +225,8 @@ private:
         Split best;
         for (int axis = 0; axis < 3; ++axis) {
             for (size_t i = 0; i < n; ++i) {
-                begin[i] = fragments[i].box.lo[axis];
-                end[i] = fragments[i].box.hi[axis];
+                begin[i] = fragments[i].box.lo[axis] - options_.padding;
+                end[i] = fragments[i].box.hi[axis] + options_.padding;
             }
             std::sort(begin.begin(), begin.begin() + n);
             std::sort(end.begin(), end.begin() + n);

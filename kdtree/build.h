@@ -18,6 +18,9 @@ struct KdBuildOptions {
     /// 0: split as long as the heuristic says that it pays (the CPU KDT). Else: split cells of more
     /// triangles while a split helps, others where it saves three quarters of the work (level 1).
     uint32_t max_leaf_triangles = 0;
+    /// By how much cells are padded afterwards, in level 1. Triangles that are closer to a plane
+    /// count on both sides of it.
+    double padding = 0;
     uint32_t stands_for = 1;    // each given triangle stands for so many; multiplies counts
     double traversal_cost = 15; // Wald and Havran 2006, section 5.1
     double intersection_cost = 20;

@@ -204,7 +204,7 @@ private:
 
     void cut(std::span<const TriangleId> triangles, std::span<const TriangleId> sample,
              uint32_t rate, const Box& box, uint32_t most, bool finds_far) {
-        const KdTree tree = cut_sample(soup_, sample, rate, box, most, progress_);
+        const KdTree tree = cut_sample(soup_, sample, rate, box, level1_.padding, most, progress_);
         const std::vector<Cell> cells = cells_of(tree.nodes, box, level1_.padding);
         auto lists = members(tree.nodes, cells, triangles, finds_far ? kFarCells : kNone);
         const uint64_t far = lists.back().size();
@@ -306,8 +306,11 @@ double padding_of(const Box& scene) {
 }
 
 KdTree cut_sample(const Soup& soup, std::span<const TriangleId> sample, uint32_t rate,
-                  const Box& box, uint32_t max_leaf_triangles, BuildProgress* progress) {
+                  const Box& box, double padding, uint32_t max_leaf_triangles,
+                  BuildProgress* progress) {
     KdBuildOptions options;
+    // Twice, because a triangle that only touches the padded cell is in it.
+    options.padding = 2 * padding;
     // The number of a leaf's triangles in the sample deviates by about its root; this leaves room.
     const double most = double(max_leaf_triangles);
     options.max_leaf_triangles =

@@ -95,9 +95,10 @@ double padding_of(const Box& scene);
 
 /// Returns level 1's planes, without references: the KD-tree over a sample of the triangles in
 /// `box`, each of which stands for `rate` (sample.h). As far as the sample tells, its cells hold at
-/// most max_leaf_triangles. It has at least a root.
+/// most max_leaf_triangles. It has at least a root. padding: of the cells.
 KdTree cut_sample(const Soup& soup, std::span<const TriangleId> sample, uint32_t rate,
-                  const Box& box, uint32_t max_leaf_triangles, BuildProgress* progress = nullptr);
+                  const Box& box, double padding, uint32_t max_leaf_triangles,
+                  BuildProgress* progress = nullptr);
 
 /// A triangle that touches this many cells reaches far. In each of them it would make the leaf's
 /// box larger, and a ray that hits it would look for it in one page after the other.

@@ -91,6 +91,18 @@ Level1 cut_with_far_leaves(const Soup& soup, uint32_t most) {
     return partition(soup, ids, bounds, most, nullptr, {}, /* may_have_far_leaves= */ true);
 }
 
+/// All planes through a heap of triangles that is smaller than the padding of cells would leave all
+/// of it on both sides.
+TEST(Partition, DoesNotCutWhatPaddingWouldJoinAgain) {
+    test::Random random(/* seed= */ 6);
+    std::vector<dvec3> corners;
+    for (int i = 0; i < 3 * 300; ++i)
+        corners.push_back((i < 3 ? 1e30 : 1e-10) * random.point(-1, 1));
+    Soup soup;
+    soup.chunks.push_back(Chunk::owning_doubles(dvec3(0), std::move(corners)));
+    EXPECT_LE(cut(soup, 30).reference_count(), 2 * soup.triangle_count());
+}
+
 TEST(FarLeaf, HoldsTheFloorAndNoOtherLeafDoes) {
     const Soup soup = test::grid_on_floor(24);
     const uint32_t floor = 1; // the mesh

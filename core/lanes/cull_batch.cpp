@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CullBatch: makes rays and triangles ready for cull().
+// CullBatch and RayCull: make triangles and rays ready for cull().
 #include "core/lanes/cull_batch.h"
 
 #include "core/exact/double_parts.h"
@@ -31,11 +31,14 @@ double largest(const dvec3& v) {
     return max_component(glm::abs(v));
 }
 
+double size_of(const Triangle& triangle) {
+    return std::max(largest(triangle[1] - triangle[0]), largest(triangle[2] - triangle[0]));
+}
+
 /// Where the ray comes from far away, differences to its origin would lose the triangles.
 void set_reference(CullRay& ray, const Ray& line, const Triangle& near) {
     put(ray.reference, line.org);
-    const double size = std::max(largest(near[1] - near[0]), largest(near[2] - near[0]));
-    if (!(largest(line.org - near[0]) > 1024 * size))
+    if (!(largest(line.org - near[0]) > 1024 * size_of(near)))
         return;
     const Vec3Of<Exact> moment = cross(exact(line.org) - exact(near[0]), exact(line.dir));
     dvec3 high(0), low(0);
@@ -148,34 +151,47 @@ void note_hit(CullRay& ray, const PreparedRay& p, const ComparedHit& nearest) {
     set_plane(ray, p, nearest.triangle);
 }
 
-uint64_t CullBatch::cull_all(uint64_t left) {
-    if (!ray_) {
-        Triangle first;
-        for (size_t i = 0; i < 3; ++i)
-            for (size_t axis = 0; axis < 3; ++axis)
-                first[i][int(axis)] = lanes_[0].corner[i][axis][0];
-        ray_ = cull_ray(p_, first);
-    }
+Triangle CullBatch::triangle(uint32_t i) const {
+    const CullLanes& lanes = lanes_[i / kLanes];
+    Triangle triangle;
+    for (size_t corner = 0; corner < 3; ++corner)
+        for (size_t axis = 0; axis < 3; ++axis)
+            triangle[corner][int(axis)] = lanes.corner[corner][axis][i % kLanes];
+    return triangle;
+}
+
+Triangle CullBatch::smallest() const {
+    assert(count_ > 0);
+    Triangle smallest = triangle(0);
+    for (uint32_t i = 1; i < count_; ++i)
+        if (const Triangle other = triangle(i); size_of(other) < size_of(smallest))
+            smallest = other;
+    return smallest;
+}
+
+uint64_t RayCull::cull_all(CullBatch& batch, uint64_t left) {
+    if (!ray_)
+        ray_ = cull_ray(p_, batch.smallest());
     if (has_new_hit()) {
         note_hit(*ray_, p_, nearest_.best());
         noted_ = nearest_.best().found.hit.id;
     }
     uint64_t result = 0;
-    for (uint32_t i = 0; i < lanes_.size(); ++i) {
+    for (uint32_t i = 0; i < batch.lanes_.size(); ++i) {
         const uint64_t asked = left >> i * kLanes & CullLanes::kAll;
         if (asked != 0)
-            result |= (cull(*ray_, lanes_[i]) & asked) << i * kLanes;
+            result |= (cull(*ray_, batch.lanes_[i]) & asked) << i * kLanes;
     }
     return result;
 }
 
-uint32_t CullBatch::first_of(uint64_t left) const {
+uint32_t RayCull::first_of(const CullBatch& batch, uint64_t left) {
     uint32_t first = 0;
     double lead = 0;
     for (bool any = false; left != 0; left &= left - 1) {
         const uint32_t i = uint32_t(std::countr_zero(left));
-        const double own = lanes_[i / kLanes].lead[i % kLanes];
-        if (!any || own < lead || (own == lead && ids_[i] < ids_[first])) {
+        const double own = batch.lanes_[i / kLanes].lead[i % kLanes];
+        if (!any || own < lead || (own == lead && batch.ids_[i] < batch.ids_[first])) {
             first = i;
             lead = own;
         }

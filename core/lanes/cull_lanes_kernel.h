@@ -242,14 +242,16 @@ OVC_INLINE void find_side_closely(Sides<V>& sides, const CullRay& ray, const Cor
     }
     const MaskOf<V> unknown = ~sides.is_known[i];
     const V distance = sum.hi + low, error = 0x1p-100 * offset.size + 0x1p-1000;
+    sides.behind[i] |= unknown & (distance > error);
+    sides.distance[i] = unknown ? distance : sides.distance[i];
+    sides.error[i] = unknown ? error + 0x1p-52 * magnitude(distance) : sides.error[i];
+    if (bits_of<V>(unknown & ~(magnitude(distance) > error)) == 0)
+        return;
     const MaskOf<V> on = (corners.equals(i, ray, 0) | corners.equals(i, ray, 1) |
                           corners.equals(i, ray, 2) | (offset.size == 0)) &
                          unknown;
-    sides.behind[i] |= unknown & ~on & (distance > error);
     sides.on[i] |= on;
-    sides.distance[i] = unknown ? distance : sides.distance[i];
     sides.distance[i] = on ? V{} : sides.distance[i];
-    sides.error[i] = unknown ? error + 0x1p-52 * magnitude(distance) : sides.error[i];
     sides.error[i] = on ? V{} : sides.error[i];
 }
 

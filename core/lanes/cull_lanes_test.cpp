@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares cull() with rational arithmetic, and CullBatch with triangles offered one by one.
+// Compares cull() with rational arithmetic, and RayCull with triangles offered one by one.
 #include "core/lanes/cull_batch.h"
 
 #include "tests/exact.h"
@@ -268,48 +268,56 @@ auto putting(const Soup64& soup) {
     };
 }
 
-/// Offers all through a batch. Returns the number that were offered one by one.
-size_t offer_all(CullBatch& batch, Nearest& nearest, const Soup64& soup) {
+/// Offers all through batches to several rays. Returns the number that were offered one by one.
+size_t offer_all(std::span<Nearest> nearest, std::span<RayCull> culls, const Soup64& soup) {
     size_t offered = 0;
-    const auto finish = [&] {
-        const bool stopped = batch.finish(putting(soup), [&](TriangleId id) {
-            ++offered;
-            nearest.offer(soup.triangles[id.prim], id);
-            return false;
-        });
-        EXPECT_FALSE(stopped);
-    };
-    for (uint32_t i = 0; i < soup.ids.size(); ++i) {
-        batch.add(soup.ids[i]);
-        if (batch.full())
-            finish();
+    CullBatch batch;
+    for (const TriangleId added : soup.ids) {
+        batch.add(added);
+        if (!batch.full() && added != soup.ids.back())
+            continue;
+        batch.fetch(putting(soup));
+        for (size_t r = 0; r < culls.size(); ++r)
+            EXPECT_FALSE(culls[r].offer_left(batch, batch.all(), [&](TriangleId id) {
+                ++offered;
+                nearest[r].offer(soup.triangles[id.prim], id);
+                return false;
+            }));
+        batch.clear();
     }
-    finish();
     return offered;
 }
 
-TEST(CullBatch, AnswersAreThoseOfOfferingOneByOne) {
+TEST(RayCull, AnswersAreThoseOfOfferingOneByOne) {
     for (const CullCase& one : all_cases())
         for (uint64_t seed = 0; seed < 30; ++seed) {
             SCOPED_TRACE(testing::Message() << one.name << " seed " << seed);
             RandomRays random(seed);
             const Soup64 soup = soup_of(one, random, 500);
-            const Ray ray = ray_to(one, random);
-            Exclusion without;
-            if (seed % 3 == 1)
-                without.skip = soup.ids[random.below(500)];
-            const PreparedRay p(ray, without);
-            Nearest apart(p), together(p);
-            for (size_t i = 0; i < soup.ids.size(); ++i)
-                apart.offer(soup.triangles[i], soup.ids[i]);
-            CullBatch batch(p, together);
-            offer_all(batch, together, soup);
-            ASSERT_TRUE(same(apart.hit(), together.hit()));
+            std::vector<PreparedRay> rays;
+            for (int r = 0; r < 3; ++r) {
+                Exclusion without;
+                const Ray ray = ray_to(one, random);
+                if (seed % 3 == 1)
+                    without.skip = soup.ids[random.below(500)];
+                rays.emplace_back(ray, without);
+            }
+            std::vector<Nearest> apart(rays.begin(), rays.end());
+            std::vector<Nearest> together(rays.begin(), rays.end());
+            std::vector<RayCull> culls;
+            for (size_t r = 0; r < rays.size(); ++r)
+                culls.emplace_back(rays[r], together[r]);
+            offer_all(together, culls, soup);
+            for (size_t r = 0; r < rays.size(); ++r) {
+                for (size_t i = 0; i < soup.ids.size(); ++i)
+                    apart[r].offer(soup.triangles[i], soup.ids[i]);
+                ASSERT_TRUE(same(apart[r].hit(), together[r].hit()));
+            }
         }
 }
 
 /// Where ids fall, of all that tie each is nearer than the ones before.
-TEST(CullBatch, OffersFewWhereThousandsLieInTheWay) {
+TEST(RayCull, OffersFewWhereThousandsLieInTheWay) {
     for (const CullCase& one : all_cases())
         for (const bool falling : {false, true}) {
             SCOPED_TRACE(testing::Message() << one.name << (falling ? ", ids fall" : ""));
@@ -326,39 +334,50 @@ TEST(CullBatch, OffersFewWhereThousandsLieInTheWay) {
             ray.t_min = 0;
             const PreparedRay p(ray);
             Nearest nearest(p);
-            CullBatch batch(p, nearest);
-            size_t offered = 0;
-            for (uint32_t i = 0; i < kCount; ++i) {
-                batch.add(soup.ids[i]);
-                if (!batch.full() && i + 1 < kCount)
-                    continue;
-                batch.finish(putting(soup), [&](TriangleId id) {
-                    ++offered;
-                    nearest.offer(soup.triangles[id.prim], id);
-                    return false;
-                });
-            }
+            RayCull cull(p, nearest);
+            const size_t offered = offer_all({&nearest, 1}, {&cull, 1}, soup);
             EXPECT_LE(double(offered), one.max_offered * kCount);
             std::printf("%-50s %zu of %u offered\n", one.name, offered, kCount);
         }
 }
 
-TEST(CullBatch, StopsWhenAnOfferSaysSo) {
+/// Small triangles are told apart from far away, though a large one is the first of them all.
+TEST(RayCull, LooksFromTheSmallestTriangle) {
+    RandomRays random(/* seed= */ 5);
+    const auto corner = [&](double size) {
+        return size * dvec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    };
+    Soup64 soup;
+    for (uint32_t i = 0; i < 640; ++i) {
+        const double size = i == 0 ? 1e76 : 1e-71;
+        soup.triangles.push_back({corner(size), corner(size), corner(size)});
+        soup.ids.push_back({0, i});
+    }
+    const dvec3 org = 1e76 * dvec3(0.1, 0.2, 1);
+    const PreparedRay p(Ray{org, 0, -org});
+    Nearest nearest(p), apart(p);
+    RayCull cull(p, nearest);
+    EXPECT_LE(offer_all({&nearest, 1}, {&cull, 1}, soup), 64u);
+    for (size_t i = 0; i < soup.ids.size(); ++i)
+        apart.offer(soup.triangles[i], soup.ids[i]);
+    EXPECT_TRUE(apart.is_hit());
+    EXPECT_TRUE(same(apart.hit(), nearest.hit()));
+}
+
+TEST(RayCull, StopsWhenAnOfferSaysSo) {
     RandomRays random(/* seed= */ 4);
     const CullCase one = points().front();
     const Soup64 soup = soup_of(one, random, 64);
     const PreparedRay p(ray_to(one, random));
     Nearest nearest(p);
-    CullBatch batch(p, nearest);
+    CullBatch batch;
     for (uint32_t i = 0; i < 64; ++i)
         batch.add(soup.ids[i]);
+    batch.fetch(putting(soup));
     size_t offered = 0;
-    const auto finish = [&] {
-        return batch.finish(putting(soup), [&](TriangleId) { return ++offered > 0; });
-    };
-    EXPECT_TRUE(finish());
+    RayCull cull(p, nearest);
+    EXPECT_TRUE(cull.offer_left(batch, batch.all(), [&](TriangleId) { return ++offered > 0; }));
     EXPECT_EQ(offered, 1u);
-    EXPECT_FALSE(finish()) << "nothing is left";
 }
 
 } // namespace

@@ -5,12 +5,12 @@
 namespace ovc {
 
 // node_lanes_avx2.cpp
-void meet_children_avx2(const NodeRay& ray, const uint32_t* texels, double to,
+void meet_children_avx2(const NodeRays& rays, RaySet which, const uint32_t* texels,
                         NodeMeeting& meeting);
 
-static void meet_children_anywhere(const NodeRay& ray, const uint32_t* texels, double to,
+static void meet_children_anywhere(const NodeRays& rays, RaySet which, const uint32_t* texels,
                                    NodeMeeting& meeting) {
-    meet_children_by<Anywhere>(ray, texels, to, meeting);
+    meet_children_by<Anywhere>(rays, which, texels, meeting);
 }
 
 std::vector<MeetChildren> ways_to_meet_children() {

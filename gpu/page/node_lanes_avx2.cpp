@@ -15,9 +15,9 @@ struct Avx2 {
 
 } // namespace
 
-void meet_children_avx2(const NodeRay& ray, const uint32_t* texels, double to,
+void meet_children_avx2(const NodeRays& rays, RaySet which, const uint32_t* texels,
                         NodeMeeting& meeting) {
-    meet_children_by<Avx2>(ray, texels, to, meeting);
+    meet_children_by<Avx2>(rays, which, texels, meeting);
 }
 
 } // namespace ovc

@@ -52,18 +52,20 @@ OVC_INLINE void find_places(const FourDoubles& enter, FourMasks& places) {
     places -= (last > enter) | ((last == enter) & last_before);
 }
 
-template <class Wide>
-OVC_INLINE void meet_children_by(const NodeRay& ray, const uint32_t* texels, double to,
-                                 NodeMeeting& meeting) {
-    FourDoubles enter = FourDoubles{} + ray.from, exit = FourDoubles{} + to;
-    FourMasks missing{};
-    for (int axis = 0; axis < 3; ++axis) {
-        const NodeRanges<Wide> range(texels + 4 * axis);
-        missing |= range.lo > range.hi;
-        const FourDoubles cell = FourDoubles{} + ray.cell[axis];
+/// The stretches of a ray in the boxes of four children.
+struct Stretches {
+    FourDoubles enter, exit;
+
+    OVC_INLINE explicit Stretches(const NodeRay& ray)
+        : enter(FourDoubles{} + ray.from), exit(FourDoubles{} + ray.to) {}
+
+    /// Cuts off what lies outside of the boxes along an axis. lo, hi: their bounds there, from grid
+    /// coordinate 0 on.
+    OVC_INLINE void clip(const NodeRay& ray, int axis, const FourDoubles& lo,
+                         const FourDoubles& hi) {
         const FourDoubles inverse = FourDoubles{} + ray.inv_dir[axis];
-        const FourDoubles t_lo = ((ray.lo[axis] + range.lo * cell) - ray.org[axis]) * inverse;
-        const FourDoubles t_hi = ((ray.hi[axis] + range.hi * cell) - ray.org[axis]) * inverse;
+        const FourDoubles t_lo = ((ray.lo[axis] + lo) - ray.org[axis]) * inverse;
+        const FourDoubles t_hi = ((ray.hi[axis] + hi) - ray.org[axis]) * inverse;
         const FourMasks turned = inverse < 0.0;
         const FourDoubles near = turned ? t_hi : t_lo, far = turned ? t_lo : t_hi;
         // Where the ray runs along a side, 0 times infinity is NaN, which leaves the bound as it
@@ -71,12 +73,38 @@ OVC_INLINE void meet_children_by(const NodeRay& ray, const uint32_t* texels, dou
         enter = near > enter ? near : enter;
         exit = far < exit ? far : exit;
     }
-    const FourMasks met = (enter <= exit) & ~missing;
-    const FourDoubles never = FourDoubles{} - std::numeric_limits<double>::infinity();
-    enter = met ? enter : never;
+};
+
+template <class Wide>
+OVC_INLINE void meet_children_by(const NodeRays& rays, RaySet which, const uint32_t* texels,
+                                 NodeMeeting& meeting) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    FourDoubles lo[3], hi[3];
+    FourMasks there = ~FourMasks{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const NodeRanges<Wide> range(texels + 4 * axis);
+        there &= range.lo <= range.hi;
+        lo[axis] = range.lo * rays.cell[axis];
+        hi[axis] = range.hi * rays.cell[axis];
+    }
+    FourDoubles enter = FourDoubles{} + kInfinity;
+    FourMasks meeting_rays{};
+    for (; which != 0; which &= which - 1) {
+        const int i = __builtin_ctz(which);
+        const NodeRay& ray = rays.rays[i];
+        Stretches stretch(ray);
+        for (int axis = 0; axis < 3; ++axis)
+            stretch.clip(ray, axis, lo[axis], hi[axis]);
+        const FourMasks met = (stretch.enter <= stretch.exit) & there;
+        enter = (met & (stretch.enter < enter)) ? stretch.enter : enter;
+        meeting_rays |= met & (1LL << i);
+    }
+    const FourMasks met = meeting_rays != 0;
+    enter = met ? enter : FourDoubles{} - kInfinity;
     FourMasks places;
     find_places(enter, places);
     __builtin_memcpy(meeting.enter, &enter, sizeof enter);
+    __builtin_memcpy(meeting.rays, &meeting_rays, sizeof meeting_rays);
     __builtin_memcpy(meeting.place, &places, sizeof places);
     meeting.count = uint32_t(-(met[0] + met[1] + met[2] + met[3]));
 }

@@ -97,7 +97,7 @@ TEST(Page, WalkedInDoubleFindsWhatBruteForceFinds) {
             const PreparedRay p(rays[i]);
             Nearest nearest(p);
             walk_page(
-                page, leaf, p, p.ray.t_min,
+                page, leaf, p,
                 [&](uint32_t k) {
                     const TriangleId id = Numbering(soup).id(k);
                     nearest.offer(soup.triangle(id), id);

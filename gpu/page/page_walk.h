@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernel's traversal on the CPU, in double. It finds the triangles of a page, or of all pages
-// under the top-level tree, that a ray may meet. The exact fallback uses it; it follows
+// under the top-level tree, that a ray may meet, or several rays together: then what the tree says
+// is read and decoded once for them all. The exact fallback uses it; it follows
 // shaders/traverse.glsl.
 #pragma once
 
@@ -13,7 +14,9 @@
 #include "shaders/layout.h"
 
 #include <array>
+#include <bit>
 #include <cassert>
+#include <limits>
 
 namespace ovc {
 
@@ -37,33 +40,42 @@ inline WalkedRay walked_ray(const Portal& portal, const PreparedRay& p) {
     return {portal.local_ray(p), 4 * p.margin(portal.bounds) * portal.stretch()};
 }
 
-/// Returns the ray for the boxes on a grid, from t = `from` on.
-inline NodeRay node_ray(const GridHeader& grid, const WalkedRay& walked, double from) {
+/// Returns the ray for the boxes on a grid.
+inline NodeRay node_ray(const GridHeader& grid, const WalkedRay& walked) {
     NodeRay ray;
     for (int axis = 0; axis < 3; ++axis) {
-        ray.cell[axis] = double(grid.cell[axis]);
-        const double origin = double(grid.middle[axis]) - double(kGridMiddle) * ray.cell[axis];
+        const double origin =
+            double(grid.middle[axis]) - double(kGridMiddle) * double(grid.cell[axis]);
         ray.lo[axis] = origin - walked.margin;
         ray.hi[axis] = origin + walked.margin;
         ray.org[axis] = walked.ray.ray.org[axis];
         ray.inv_dir[axis] = walked.ray.inv_dir[axis];
     }
-    ray.from = from;
+    ray.from = walked.ray.ray.t_min;
+    ray.to = walked.ray.ray.t_max;
     return ray;
 }
 
-/// A unit that a ray goes to.
+/// Calls visit(i) for each ray of the set.
+template <class Visit>
+void for_each_ray(RaySet set, Visit&& visit) {
+    for (; set != 0; set &= set - 1)
+        visit(uint32_t(std::countr_zero(set)));
+}
+
+/// A unit that rays go to.
 struct UnitOnWay {
     const uvec4* units; // the array in which the unit and its children are counted
     uint32_t unit;      // negative: a portal
-    double enter;       // t
+    RaySet rays;
+    double enter; // the least t at which one of them does
 
     bool is_portal() const { return int32_t(unit) < 0; }
     const uvec4* texels() const { return units + size_t(unit) * OVC_UNIT_TEXELS; }
     bool is_pair() const { return !is_portal() && (texels()[3].w & OVC_PAIR); }
 };
 
-/// The units that a ray has still to go to, the next one on top.
+/// The units that rays have still to go to, the next one on top.
 class UnitStack {
 public:
     bool empty() const { return top_ == 0; }
@@ -82,90 +94,146 @@ private:
     size_t top_ = 0;
 };
 
-/// Calls visit(i) for the triangles of a pair until a call returns true.
+/// Calls visit(i, rays) for the triangles of a pair until a call returns true.
 template <class Visit>
-bool visit_pair(const uvec4* texels, Visit&& visit) {
-    return visit(texels[0].w) || (texels[1].w != OVC_NO_TRIANGLE && visit(texels[1].w));
+bool visit_pair(const uvec4* texels, RaySet rays, Visit&& visit) {
+    return visit(texels[0].w, rays) || (texels[1].w != OVC_NO_TRIANGLE && visit(texels[1].w, rays));
 }
 
-/// Calls visit(i) -> bool (true: stop) for the number i of each triangle whose packed box, widened
-/// by the ray's rounding margin, the ray meets within [from, limit()], and enter_portal(number) ->
-/// bool for each portal that it meets so. Goes to the nearest children first, as the kernel does,
-/// but to pairs before nodes; t is that of the ray itself. Returns true when one of the calls
-/// stopped it. tree: the units of a page or of a top-level tree; header: the number of the header's
-/// unit in them; pages: those that the tree's links lead to.
+/// Walks a tree. visit, enter_portal and limit are as for walk_units().
 template <class Visit, class Enter, class Limit>
-bool walk_units(std::span<const uvec4> tree, uint32_t header, std::span<const Page> pages,
-                const WalkedRay& walked, double from, Visit&& visit, Enter&& enter_portal,
-                Limit&& limit) {
-    const auto start = tree.subspan(size_t(header) * OVC_UNIT_TEXELS);
-    const NodeRay ray = node_ray(header_of(start), walked, from);
-    const MeetChildren meet = meet_children();
-    UnitStack stack;
-    stack.push({tree.data(), start[2].x, from});
-    while (!stack.empty()) {
-        const UnitOnWay here = stack.pop();
-        if (here.enter > limit())
-            continue;
-        if (here.is_portal()) {
-            if (enter_portal(-here.unit))
+class UnitWalk {
+public:
+    UnitWalk(std::span<const uvec4> tree, std::span<const Page> pages, Visit& visit,
+             Enter& enter_portal, Limit& limit)
+        : tree_(tree), pages_(pages), visit_(visit), enter_portal_(enter_portal), limit_(limit) {}
+
+    /// Returns true when a call of visit or enter_portal stopped it.
+    template <class Walked>
+    bool walk(uint32_t header, RaySet rays, Walked&& walked) {
+        const auto start = tree_.subspan(size_t(header) * OVC_UNIT_TEXELS);
+        const GridHeader grid = header_of(start);
+        for (int axis = 0; axis < 3; ++axis)
+            rays_.cell[axis] = double(grid.cell[axis]);
+        for_each_ray(rays, [&](uint32_t i) { rays_.rays[i] = node_ray(grid, walked(i)); });
+        stack_.push({tree_.data(), start[2].x, rays, -std::numeric_limits<double>::infinity()});
+        while (!stack_.empty()) {
+            UnitOnWay here = stack_.pop();
+            here.rays = still_on_way(here);
+            if (here.rays != 0 && go_to(here))
                 return true;
-            continue;
         }
+        return false;
+    }
+
+private:
+    /// Returns the rays to the unit whose limits are not before it by now, and notes the limits.
+    RaySet still_on_way(const UnitOnWay& unit) {
+        RaySet still = 0;
+        for_each_ray(unit.rays, [&](uint32_t i) {
+            const double to = rays_.rays[i].to = limit_(i);
+            still |= RaySet(unit.enter <= to) << i;
+        });
+        return still;
+    }
+
+    bool go_to(const UnitOnWay& here) {
+        if (here.is_portal())
+            return enter_portal_(-here.unit, here.rays);
+        return here.is_pair() ? visit_pair(here.texels(), here.rays, visit_) : go_below(here);
+    }
+
+    /// Visits the pairs that are children of the node, the nearest first, and puts the others on
+    /// the stack.
+    bool go_below(const UnitOnWay& here) {
         const uvec4* const texels = here.texels();
-        if (here.is_pair()) {
-            if (visit_pair(texels, visit))
-                return true;
-            continue;
-        }
-        const bool is_link = here.units == tree.data() && !pages.empty() && texels[3].y != 0;
-        const uvec4* const below = is_link ? pages[texels[3].y - 1].view().data() : here.units;
+        const bool is_link = here.units == tree_.data() && !pages_.empty() && texels[3].y != 0;
+        const uvec4* const below = is_link ? pages_[texels[3].y - 1].view().data() : here.units;
         const uint32_t first_child = is_link ? texels[3].z : texels[3].x;
         NodeMeeting meeting;
-        meet(ray, &texels[0].x, limit(), meeting);
-        uint32_t by_place[4], nodes[4]; // the farthest first; the nearest first
+        meet_(rays_, here.rays, &texels[0].x, meeting);
+        uint32_t by_place[4]; // the farthest first
         for (uint32_t child = 0; child < 4; ++child)
             by_place[meeting.place[child]] = child;
+        UnitOnWay nodes[4]; // the nearest first
         size_t node_count = 0;
         for (size_t i = meeting.count; i-- > 0;) {
-            const UnitOnWay child{below, first_child + by_place[i], meeting.enter[by_place[i]]};
+            const uint32_t c = by_place[i];
+            const UnitOnWay child{below, first_child + c, RaySet(meeting.rays[c]),
+                                  meeting.enter[c]};
             if (!child.is_pair())
-                nodes[node_count++] = by_place[i];
-            else if (child.enter <= limit() && visit_pair(child.texels(), visit))
+                nodes[node_count++] = child;
+            else if (const RaySet rays = still_on_way(child);
+                     rays != 0 && visit_pair(child.texels(), rays, visit_))
                 return true;
         }
-        while (node_count > 0) {
-            const uint32_t child = nodes[--node_count];
-            stack.push({below, first_child + child, meeting.enter[child]});
-        }
+        while (node_count > 0)
+            stack_.push(nodes[--node_count]);
+        return false;
     }
-    return false;
+
+    const std::span<const uvec4> tree_;
+    const std::span<const Page> pages_;
+    Visit& visit_;
+    Enter& enter_portal_;
+    Limit& limit_;
+    const MeetChildren meet_ = meet_children();
+    NodeRays rays_;
+    UnitStack stack_;
+};
+
+/// Calls visit(i, rays) -> bool (true: stop) for the number i of each triangle whose packed box,
+/// widened by the rays' rounding margins, some of the rays meet, and enter_portal(number, rays) ->
+/// bool for each portal that they meet so: ray r between its t_min and limit(r), where t is that of
+/// the ray itself. Goes to the nearest children first, as the kernel does, but to pairs before
+/// nodes. Returns true when one of the calls stopped it. tree: the units of a page or of a
+/// top-level tree; header: the number of the header's unit in them; pages: those that the tree's
+/// links lead to; walked(r): ray r in the frame of the tree.
+template <class Walked, class Visit, class Enter, class Limit>
+bool walk_units(std::span<const uvec4> tree, uint32_t header, std::span<const Page> pages,
+                RaySet rays, Walked&& walked, Visit&& visit, Enter&& enter_portal, Limit&& limit) {
+    return UnitWalk(tree, pages, visit, enter_portal, limit).walk(header, rays, walked);
 }
 
-/// Walks all pages under the top-level tree, as walk_units() does. scene: its box and frame.
-template <class Visit, class Limit>
-bool walk_tree(const TopLevel& top, std::span<const Page> pages, const Leaf& scene,
-               const PreparedRay& p, double from, Visit&& visit, Limit&& limit) {
+/// Walks all pages under the top-level tree, as walk_units() does. scene: its box and frame;
+/// prepared(r): ray r.
+template <class Prepared, class Visit, class Limit>
+bool walk_tree_together(const TopLevel& top, std::span<const Page> pages, const Leaf& scene,
+                        RaySet all, Prepared&& prepared, Visit&& visit, Limit&& limit) {
     const std::span<const uvec4> units = top.tree.view();
-    const auto enter = [&](uint32_t number) {
+    const auto nowhere = [](uint32_t, RaySet) { return false; };
+    const auto enter = [&](uint32_t number, RaySet rays) {
         assert(number < top.portals.size());
         const Portal& portal = top.portals[number];
         return walk_units(
-            units, portal.tree, pages, walked_ray(portal, p), from,
-            [&](uint32_t i) { return visit(portal.first_number + i); },
-            [](uint32_t) { return false; }, limit);
+            units, portal.tree, pages, rays,
+            [&](uint32_t r) { return walked_ray(portal, prepared(r)); },
+            [&](uint32_t i, RaySet some) { return visit(portal.first_number + i, some); }, nowhere,
+            limit);
     };
-    const WalkedRay walked = top.way_in ? walked_ray(*top.way_in, p) : walked_ray(scene, p);
-    return walk_units(units, 0, pages, walked, from, visit, enter, limit);
+    const auto walked = [&](uint32_t r) {
+        return top.way_in ? walked_ray(*top.way_in, prepared(r)) : walked_ray(scene, prepared(r));
+    };
+    return walk_units(units, 0, pages, all, walked, visit, enter, limit);
 }
 
-/// Walks one page. leaf: its box and frame.
+/// Walks all pages with one ray. Calls visit(i) and limit().
 template <class Visit, class Limit>
-bool walk_page(const Page& page, const Leaf& leaf, const PreparedRay& p, double from, Visit&& visit,
+bool walk_tree(const TopLevel& top, std::span<const Page> pages, const Leaf& scene,
+               const PreparedRay& p, Visit&& visit, Limit&& limit) {
+    return walk_tree_together(
+        top, pages, scene, 1, [&](uint32_t) -> const PreparedRay& { return p; },
+        [&](uint32_t i, RaySet) { return visit(i); }, [&](uint32_t) { return limit(); });
+}
+
+/// Walks one page with one ray. leaf: its box and frame.
+template <class Visit, class Limit>
+bool walk_page(const Page& page, const Leaf& leaf, const PreparedRay& p, Visit&& visit,
                Limit&& limit) {
     return walk_units(
-        page.view(), 0, {}, walked_ray(leaf, p), from, visit, [](uint32_t) { return false; },
-        limit);
+        page.view(), 0, {}, 1, [&](uint32_t) { return walked_ray(leaf, p); },
+        [&](uint32_t i, RaySet) { return visit(i); }, [](uint32_t, RaySet) { return false; },
+        [&](uint32_t) { return limit(); });
 }
 
 } // namespace ovc

@@ -60,7 +60,7 @@ struct OnePage {
             const PreparedRay p(rays[i]);
             Nearest nearest(p);
             walk_page(
-                page, leaf, p, p.ray.t_min,
+                page, leaf, p,
                 [&](uint32_t number) {
                     const TriangleId id = numbers.id(number);
                     nearest.offer(soup.triangle(id), id);

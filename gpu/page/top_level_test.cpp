@@ -78,10 +78,9 @@ TEST_P(TopLevelTree, HoldsWhatBruteForceFinds) {
                     return false;
                 };
             };
-            walk_tree(built.top, built.pages, scene, p, p.ray.t_min, offer_to(apart),
+            walk_tree(built.top, built.pages, scene, p, offer_to(apart),
                       [&] { return apart.limit(); });
-            walk_page(pool, scene, p, p.ray.t_min, offer_to(together),
-                      [&] { return together.limit(); });
+            walk_page(pool, scene, p, offer_to(together), [&] { return together.limit(); });
             ASSERT_TRUE(test::same(expected, apart.hit()))
                 << name << ": " << test::describe(expected);
             ASSERT_TRUE(test::same(expected, together.hit()))
@@ -107,7 +106,7 @@ TEST_P(TopLevelTree, LeadsThroughPortalsToWhatBruteForceFinds) {
             const PreparedRay p(ray);
             Nearest nearest(p);
             walk_tree(
-                built.top, built.pages, scene_leaf(built.level1.bounds), p, p.ray.t_min,
+                built.top, built.pages, scene_leaf(built.level1.bounds), p,
                 [&](uint32_t number) {
                     const TriangleId id = numbers.id(number);
                     nearest.offer(soup.triangle(id), id);

@@ -27,8 +27,9 @@ uint64_t count_of(std::span<const PrimRange> ranges) {
     return count;
 }
 
-/// Returns how many of the scene's own pages a ray through all of them meets, by their areas. The
-/// late leaf does not count: it may reach far, but is small.
+/// Returns how many of the scene's own pages a ray through all of them meets, by their areas; 1
+/// where it is less, because pages far apart are no better than a single one. The late leaf does
+/// not count: it may reach far, but is small.
 double overlap_of(const BuiltScene& scene) {
     Box all;
     double sum = 0;
@@ -42,7 +43,7 @@ double overlap_of(const BuiltScene& scene) {
         sum += world.half_area();
         all.add(world);
     }
-    return all.half_area() > 0 ? sum / all.half_area() : 1;
+    return all.half_area() > 0 ? std::max(sum / all.half_area(), 1.0) : 1;
 }
 
 } // namespace

@@ -106,8 +106,9 @@ private:
         if (hittable_ <= max_triangles_)
             planes_ = {KdNode::leaf(0, 0)};
         else
-            planes_ =
-                cut_sample(sample.soup(), drawn, rate, bounds, max_triangles_, progress_).nodes;
+            planes_ = cut_sample(sample.soup(), drawn, rate, bounds, padding_of(bounds),
+                                 max_triangles_, progress_)
+                          .nodes;
         cells_ = cells_of(planes_, bounds, level1_.padding);
         const size_t cells = cells_.size() + 1; // the last one is that of far-reaching triangles
         dealt_.emplace(cells, source_.meshes(), budget_.buffer_bytes(cells), scratch_);

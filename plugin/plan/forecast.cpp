@@ -99,10 +99,10 @@ public:
         assert(leaf_triangles_ > 0);
         if (const uint32_t rate = sample_rate(triangles_.size(), leaf_triangles_); rate != rate_)
             draw(rate);
-        const KdTree tree = cut_sample(
-            soup_, sample_, rate_, bounds_,
-            triangles_.size() <= leaf_triangles_ ? kNone - 1 : leaf_triangles_, progress_);
         const double padding = padding_of(bounds_);
+        const KdTree tree = cut_sample(
+            soup_, sample_, rate_, bounds_, padding,
+            triangles_.size() <= leaf_triangles_ ? kNone - 1 : leaf_triangles_, progress_);
         const std::vector<Cell> cells = cells_of(tree.nodes, bounds_, padding);
         const CellFinder finder(tree.nodes, cells, padding);
         const auto count = [&](uint32_t far_cells) {

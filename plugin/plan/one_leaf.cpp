@@ -40,8 +40,8 @@ bool one_leaf_pays(const Soup& soup, std::span<const TriangleId> sample, uint32_
     const auto local = [&](const Box& box) {
         return Boxf{vec3(frame.to_local(box.lo)), vec3(frame.to_local(box.hi))};
     };
-    const KdTree tree = cut_sample(soup, sample, rate, bounds, max_leaf_triangles);
     const double padding = padding_of(bounds);
+    const KdTree tree = cut_sample(soup, sample, rate, bounds, padding, max_leaf_triangles);
     const std::vector<Cell> cells = cells_of(tree.nodes, bounds, padding);
     const CellFinder finder(tree.nodes, cells, padding);
     size_t copies = 0;

@@ -5,71 +5,36 @@
 // could be hit.
 #pragma once
 
-#include "core/lanes/cull_batch.h"
 #include "gpu/page/page_walk.h"
 #include "kdtree/approach.h"
 #include "plugin/build/built_scene.h"
-#include "shaders/layout.h"
-
-#include <array>
-#include <optional>
-#include <utility>
+#include "plugin/two_level/rays_together.h"
 
 namespace ovc {
 
-/// Tests the triangles on the way of a ray: the first as they come, because most rays meet few, and
-/// the others many at once.
+/// Tests the triangles on the way of a ray one by one, because most rays meet few.
 template <bool kAnyHit>
-class WayTest {
+class FewTest {
 public:
-    WayTest(const BuiltScene& scene, const PreparedRay& p)
+    FewTest(const BuiltScene& scene, const PreparedRay& p)
         : scene_(scene), p_(p), nearest_(scene.nearest_of(p)), approach_(p, scene.level1.bounds) {}
 
-    /// Tests a triangle by its number, now or later. Returns whether the ray needs no other.
+    /// Tests a triangle by its number. Returns whether the ray needs no other, or gives up.
     bool test(uint32_t number) {
-        if (++met_ <= kOneByOne)
-            return offer(scene_.numbers.id(number));
-        if (!many_)
-            many_.emplace(p_, nearest_);
-        if (!many_->recent.is_new(number))
-            return false;
-        many_->batch.add(scene_.numbers.id(number));
-        return many_->batch.full() && finish();
+        gives_up_ = met_++ == kFew;
+        return gives_up_ || offer(scene_.numbers.id(number));
     }
-    /// Tests what is left.
-    bool finish() {
-        if (!many_)
-            return false;
-        const auto put = [&](TriangleId id, double* to) {
-            scene_.soup.chunks[id.mesh].put_triangle<CullBatch::kStride>(id.prim, to);
-        };
-        return many_->batch.finish(put, [&](TriangleId id) { return offer(id); });
-    }
+    /// Whether the ray met too many triangles.
+    bool gives_up() const { return gives_up_; }
 
     const Approach& approach() const { return approach_; }
     double limit() const { return approach_.limit(nearest_); }
     Hit hit() const { return kAnyHit ? nearest_.unrounded_hit() : nearest_.hit(); }
+    /// Returns one of the triangles that the ray hits, or none.
+    TriangleId near() const { return nearest_.unrounded_hit().id; }
 
 private:
-    static constexpr uint32_t kOneByOne = 32;
-
-    /// The triangles met of late. Leaves that overlap name a triangle again and again.
-    class Recent {
-    public:
-        Recent() { numbers_.fill(OVC_NO_TRIANGLE); }
-        bool is_new(uint32_t number) {
-            return std::exchange(numbers_[number % numbers_.size()], number) != number;
-        }
-
-    private:
-        std::array<uint32_t, 4096> numbers_; // which push each other out
-    };
-    struct Many {
-        Many(const PreparedRay& p, const Nearest& nearest) : batch(p, nearest) {}
-
-        CullBatch batch;
-        Recent recent;
-    };
+    static constexpr uint32_t kFew = 32;
 
     bool offer(TriangleId id) {
         const bool hit = scene_.offer(nearest_, p_, id);
@@ -82,21 +47,33 @@ private:
     const PreparedRay& p_;
     Nearest nearest_;
     Approach approach_;
-    std::optional<Many> many_;
     uint32_t met_ = 0;
+    bool gives_up_ = false;
 };
+
+/// Traces a valid ray to its nearest hit, or with kAnyHit to some hit. Returns false where it meets
+/// too many triangles: then hit.id is one that it hits, or none, for RaysTogether. Any thread.
+template <bool kAnyHit>
+bool trace_few(const BuiltScene& scene, const PreparedRay& p, Hit& hit) {
+    FewTest<kAnyHit> few(scene, p);
+    if (!scene.pages.empty())
+        walk_tree(
+            scene.top, scene.pages, scene_leaf(scene.level1.bounds), few.approach().ray(),
+            [&](uint32_t number) { return few.test(number); }, [&] { return few.limit(); });
+    hit = few.gives_up() ? Hit{0, 0, 0, few.near()} : few.hit();
+    return !few.gives_up();
+}
 
 /// Returns the nearest hit of a valid ray, or with kAnyHit some hit. Any thread.
 template <bool kAnyHit>
 Hit trace_exactly(const BuiltScene& scene, const PreparedRay& p) {
-    WayTest<kAnyHit> way(scene, p);
-    const PreparedRay& ray = way.approach().ray();
-    const auto test = [&](uint32_t number) { return way.test(number); };
-    const auto limit = [&] { return way.limit(); };
-    if (!scene.pages.empty() && !walk_tree(scene.top, scene.pages, scene_leaf(scene.level1.bounds),
-                                           ray, ray.ray.t_min, test, limit))
-        way.finish();
-    return way.hit();
+    Hit hit;
+    if (trace_few<kAnyHit>(scene, p, hit))
+        return hit;
+    RaysTogether<kAnyHit> alone(scene);
+    alone.add(p, hit.id);
+    alone.trace([] { return true; });
+    return alone.hit(0);
 }
 
 } // namespace ovc

@@ -24,8 +24,8 @@ std::vector<uint32_t> numbers_near(const BuiltScene& scene, const PreparedRay& p
         numbers.push_back(number);
         return false;
     };
-    walk_tree(scene.top, scene.pages, scene_leaf(scene.level1.bounds), approach.ray(),
-              approach.ray().ray.t_min, note, [&] { return approach.limit(nothing); });
+    walk_tree(scene.top, scene.pages, scene_leaf(scene.level1.bounds), approach.ray(), note,
+              [&] { return approach.limit(nothing); });
     // Leaves share triangles.
     std::ranges::sort(numbers);
     const auto repeated = std::ranges::unique(numbers);

@@ -17,6 +17,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace ovc {
@@ -148,6 +149,13 @@ public:
     }
 
 private:
+    using Together = RaysTogether<Query::kAnyHit>;
+    /// A ray that meets many triangles, and one that it hits, or none.
+    struct Left {
+        uint32_t i;
+        TriangleId near;
+    };
+
     Exclusion exclusion(uint32_t i) const {
         Exclusion without = query_.without[i];
         without.after.is_certain = query_.has_own_places;
@@ -240,20 +248,68 @@ private:
         return true;
     }
 
-    /// Runs in parallel where rays are many, because each may take as long as thousands of others.
+    /// Answers the rays exactly. Those that meet many triangles are traced together.
     void fall_back(std::span<const uint32_t> rays) {
-        const auto each = [&](size_t from, size_t to) {
+        std::vector<uint8_t> is_left(rays.size());
+        std::vector<TriangleId> near(rays.size());
+        run(rays.size(), /* worth= */ 8, [&](size_t j) {
+            count_fallback(rays[j]);
+            is_left[j] = tracing_.watch.keeps_on() && !answer_by_few(rays[j], near[j]);
+        });
+        std::vector<Left> left;
+        for (size_t j = 0; j < rays.size(); ++j)
+            if (is_left[j])
+                left.push_back({rays[j], near[j]});
+        // Rays to the same or to neighbouring triangles probably go the same way.
+        std::ranges::sort(left, {}, [](const Left& ray) { return std::pair(ray.near, ray.i); });
+        const size_t groups = (left.size() + Together::kMaxRays - 1) / Together::kMaxRays;
+        run(groups, /* worth= */ 2, [&](size_t group) {
+            const size_t first = left.size() * group / groups;
+            const size_t last = left.size() * (group + 1) / groups;
+            answer_together(std::span(left).subspan(first, last - first));
+        });
+    }
+
+    /// Calls each(j) for j < count, in parallel from `worth` on, because one may take as long as
+    /// thousands of others.
+    template <class Each>
+    static void run(size_t count, size_t worth, Each&& each) {
+        const auto some = [&](size_t from, size_t to) {
             for (size_t j = from; j < to; ++j)
-                fall_back(rays[j]);
+                each(j);
         };
-        if (rays.size() < 8)
-            each(0, rays.size());
+        if (count < worth)
+            some(0, count);
         else
-            parallel_for(rays.size(), 1, each);
+            parallel_for(count, 1, some);
+    }
+
+    /// Returns false where ray i meets many triangles. near: receives one that it hits, or none.
+    bool answer_by_few(uint32_t i, TriangleId& near) {
+        Hit hit;
+        const bool is_answer = trace_few<Query::kAnyHit>(scene_, prepared(i), hit);
+        if (is_answer)
+            query_.set(i, hit);
+        near = hit.id;
+        return is_answer;
+    }
+
+    void answer_together(std::span<const Left> rays) {
+        Together together(scene_);
+        for (const Left& ray : rays)
+            together.add(prepared(ray.i), ray.near);
+        together.trace([&] { return tracing_.watch.keeps_on(); });
+        if (tracing_.watch.keeps_on())
+            for (size_t k = 0; k < rays.size(); ++k)
+                query_.set(rays[k].i, together.hit(k));
     }
 
     void fall_back(uint32_t i) {
         answer_exactly(i);
+        count_fallback(i);
+    }
+
+    void count_fallback(uint32_t i) {
         count_flagged(i);
         ++retraced_;
     }
