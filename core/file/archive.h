@@ -14,6 +14,7 @@
 #include "core/result.h"
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -137,7 +138,7 @@ public:
         const uint64_t size = found.bytes / sizeof(T);
         if (found.bytes % sizeof(T) || (count != ~uint64_t(0) && size != count))
             return Archive::wrong_size(name);
-        std::vector<T> all(size);
+        std::vector<T> all(size, std::bit_cast<T>(std::array<std::byte, sizeof(T)>{}));
         if (const Result<Done> done = read_checked(found, std::as_writable_bytes(std::span(all)));
             !done)
             return done.error();

@@ -14,6 +14,8 @@
 
 #include <array>
 #include <cassert>
+#include <type_traits>
+#include <vector>
 
 namespace ovc {
 
@@ -82,6 +84,9 @@ private:
     size_t top_ = 0;
 };
 
+/// In place of the pages of a tree that has none: its links lead to its own units.
+struct NoPages {};
+
 /// Calls visit(i) for the triangles of a pair until a call returns true.
 template <class Visit>
 bool visit_pair(const uvec4* texels, Visit&& visit) {
@@ -93,11 +98,13 @@ bool visit_pair(const uvec4* texels, Visit&& visit) {
 /// bool for each portal that it meets so. Goes to the nearest children first, as the kernel does,
 /// but to pairs before nodes; t is that of the ray itself. Returns true when one of the calls
 /// stopped it. tree: the units of a page or of a top-level tree; header: the number of the header's
-/// unit in them; pages: those that the tree's links lead to.
-template <class Visit, class Enter, class Limit>
-bool walk_units(std::span<const uvec4> tree, uint32_t header, std::span<const Page> pages,
+/// unit in them; units_of(page): the units that the tree's links lead to, null where a page is
+/// missing. Those of a page are not used any more when the next page is asked for.
+template <class UnitsOf, class Visit, class Enter, class Limit>
+bool walk_units(std::span<const uvec4> tree, uint32_t header, UnitsOf&& units_of,
                 const WalkedRay& walked, double from, Visit&& visit, Enter&& enter_portal,
                 Limit&& limit) {
+    constexpr bool kHasLinks = !std::is_same_v<std::remove_cvref_t<UnitsOf>, NoPages>;
     const auto start = tree.subspan(size_t(header) * OVC_UNIT_TEXELS);
     const NodeRay ray = node_ray(header_of(start), walked, from);
     const MeetChildren meet = meet_children();
@@ -118,9 +125,15 @@ bool walk_units(std::span<const uvec4> tree, uint32_t header, std::span<const Pa
                 return true;
             continue;
         }
-        const bool is_link = here.units == tree.data() && !pages.empty() && texels[3].y != 0;
-        const uvec4* const below = is_link ? pages[texels[3].y - 1].view().data() : here.units;
-        const uint32_t first_child = is_link ? texels[3].z : texels[3].x;
+        const uvec4* below = here.units;
+        uint32_t first_child = texels[3].x;
+        if constexpr (kHasLinks)
+            if (here.units == tree.data() && texels[3].y != 0) {
+                below = units_of(texels[3].y - 1);
+                first_child = texels[3].z;
+                if (!below)
+                    continue;
+            }
         NodeMeeting meeting;
         meet(ray, &texels[0].x, limit(), meeting);
         uint32_t by_place[4], nodes[4]; // the farthest first; the nearest first
@@ -143,20 +156,29 @@ bool walk_units(std::span<const uvec4> tree, uint32_t header, std::span<const Pa
 }
 
 /// Walks all pages under the top-level tree, as walk_units() does. scene: its box and frame.
-template <class Visit, class Limit>
-bool walk_tree(const TopLevel& top, std::span<const Page> pages, const Leaf& scene,
-               const PreparedRay& p, double from, Visit&& visit, Limit&& limit) {
+template <class UnitsOf, class Visit, class Limit>
+bool walk_tree(const TopLevel& top, UnitsOf&& units_of, const Leaf& scene, const PreparedRay& p,
+               double from, Visit&& visit, Limit&& limit) {
     const std::span<const uvec4> units = top.tree.view();
     const auto enter = [&](uint32_t number) {
         assert(number < top.portals.size());
         const Portal& portal = top.portals[number];
         return walk_units(
-            units, portal.tree, pages, walked_ray(portal, p), from,
+            units, portal.tree, units_of, walked_ray(portal, p), from,
             [&](uint32_t i) { return visit(portal.first_number + i); },
             [](uint32_t) { return false; }, limit);
     };
     const WalkedRay walked = top.way_in ? walked_ray(*top.way_in, p) : walked_ray(scene, p);
-    return walk_units(units, 0, pages, walked, from, visit, enter, limit);
+    return walk_units(units, 0, units_of, walked, from, visit, enter, limit);
+}
+
+/// The same where all pages are in memory.
+template <class Visit, class Limit>
+bool walk_tree(const TopLevel& top, const std::vector<Page>& pages, const Leaf& scene,
+               const PreparedRay& p, double from, Visit&& visit, Limit&& limit) {
+    return walk_tree(
+        top, [&](uint32_t page) { return pages[page].view().data(); }, scene, p, from, visit,
+        limit);
 }
 
 /// Walks one page. leaf: its box and frame.
@@ -164,7 +186,7 @@ template <class Visit, class Limit>
 bool walk_page(const Page& page, const Leaf& leaf, const PreparedRay& p, double from, Visit&& visit,
                Limit&& limit) {
     return walk_units(
-        page.view(), 0, {}, walked_ray(leaf, p), from, visit, [](uint32_t) { return false; },
+        page.view(), 0, NoPages(), walked_ray(leaf, p), from, visit, [](uint32_t) { return false; },
         limit);
 }
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The exact fallback: traces a ray that float32 could not decide in double, down the top-level tree
-// and through the pages in host memory. Its answers equal those of the CPU KD-tree
+// and through the pages. Its answers equal those of the CPU KD-tree
 // (kdtree/traverse.h) bit for bit, because both test with core/exact/triangle.h every triangle that
 // could be hit.
 #pragma once
 
 #include "core/lanes/cull_batch.h"
-#include "gpu/page/page_walk.h"
 #include "kdtree/approach.h"
-#include "plugin/build/built_scene.h"
+#include "plugin/two_level/scene_walk.h"
 #include "shaders/layout.h"
 
 #include <array>
@@ -93,8 +92,7 @@ Hit trace_exactly(const BuiltScene& scene, const PreparedRay& p) {
     const PreparedRay& ray = way.approach().ray();
     const auto test = [&](uint32_t number) { return way.test(number); };
     const auto limit = [&] { return way.limit(); };
-    if (!scene.pages.empty() && !walk_tree(scene.top, scene.pages, scene_leaf(scene.level1.bounds),
-                                           ray, ray.ray.t_min, test, limit))
+    if (!walk_scene(scene, ray, test, limit))
         way.finish();
     return way.hit();
 }
