@@ -16,6 +16,7 @@
 #include "plugin/abi/float_mode.h"
 #include "plugin/abi/host_function.h"
 #include "plugin/abi/submissions.h"
+#include "plugin/leaf_store/leaf_store.h"
 #include "plugin/overcast.h"
 #include "plugin/structure/failure.h"
 #include "plugin/structure/single_rays.h"
@@ -104,6 +105,7 @@ struct ovc_scene_t {
     ovc_device device = nullptr;
     ovc::Turn turn; // calls on one scene wait here
     ovc_scene_config config{sizeof(ovc_scene_config)};
+    std::unique_ptr<ovc::LeafStore> store; // of a scene that need not fit into host memory
     ovc::Soup soup;
     /// By number: chunks that no ray hits themselves; the soup has an empty one in their place.
     std::map<uint32_t, ovc::Chunk> templates;
