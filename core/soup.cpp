@@ -79,6 +79,20 @@ Chunk Chunk::stored(dvec3 origin, const StoredCorners& corners, uint32_t size) {
     return chunk;
 }
 
+Chunk Chunk::read(uint32_t first, uint32_t count) const {
+    assert(stored_ && uint64_t(first) + count <= size());
+    const auto corners = [&](auto corner) {
+        std::vector<decltype(corner)> all(count * size_t(3));
+        stored_->read(first, std::as_writable_bytes(std::span(all)));
+        return all;
+    };
+    Chunk chunk = stored_->has_doubles() ? owning_doubles(origin_, corners(dvec3()))
+                                         : owning(origin_, corners(vec3()));
+    if (transform_)
+        chunk.place(*transform_);
+    return chunk;
+}
+
 Chunk Chunk::instance() const {
     Chunk chunk(origin_);
     chunk.corners_ = corners_;

@@ -4,10 +4,11 @@
 
 #include "core/box.h"
 #include "core/build_progress.h"
+#include "core/file/stored_corners.h"
 #include "core/ray.h"
-#include "core/stored_corners.h"
 #include "core/transform.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstdint>
@@ -33,6 +34,8 @@ public:
     static Chunk borrowing_doubles(dvec3 origin, std::span<const dvec3> corners);
     /// Returns a chunk of `size` triangles whose corners lie on a disk.
     static Chunk stored(dvec3 origin, const StoredCorners& corners, uint32_t size);
+    /// Returns some triangles of a stored chunk, placed alike, in memory.
+    Chunk read(uint32_t first, uint32_t count) const;
     /// Returns the same triangles once more, placed alike. They borrow this chunk's corners.
     Chunk instance() const;
     /// Returns the same triangles without the transform. They borrow this chunk's corners.
@@ -139,6 +142,24 @@ private:
     bool moves_ = false;
     uint32_t mask_ = 0;
 };
+
+/// Calls visit(triangle) for the triangles [first, end) of a chunk, in order. Those that are stored
+/// are read many at once.
+template <class Visit>
+void for_each_triangle(const Chunk& chunk, uint32_t first, uint32_t end, Visit&& visit) {
+    constexpr uint32_t kAtOnce = 1024;
+    if (!chunk.stored_corners()) {
+        for (uint32_t prim = first; prim < end; ++prim)
+            visit(chunk.triangle(prim));
+        return;
+    }
+    for (; first < end; first += kAtOnce) {
+        const uint32_t count = std::min(kAtOnce, end - first);
+        const Chunk part = chunk.read(first, count);
+        for (uint32_t i = 0; i < count; ++i)
+            visit(part.triangle(i));
+    }
+}
 
 /// Chunk m holds the triangles (m, 0) … (m, size - 1).
 struct Soup {

@@ -36,8 +36,9 @@ public:
     explicit CornersAsked(std::span<const Corner> corners) : corners_(corners) {}
 
     bool has_doubles() const override { return sizeof(Corner) == sizeof(dvec3); }
-    void read(uint32_t first, std::span<std::byte> to) const override {
+    bool read(uint32_t first, std::span<std::byte> to) const override {
         std::memcpy(to.data(), &corners_[first * size_t(3)], to.size());
+        return true;
     }
 
 private:
@@ -78,6 +79,9 @@ TEST(Chunk, StoredCornersLieWhereThoseInMemoryDo) {
         stored_placed.place(turn);
         expect_same(placed, stored_placed);
         expect_same(there, stored_placed.unplaced());
+        std::vector<Triangle> all;
+        for_each_triangle(stored_placed, 1, 4, [&](const Triangle& t) { all.push_back(t); });
+        EXPECT_EQ(all, (std::vector{placed.triangle(1), placed.triangle(2), placed.triangle(3)}));
         EXPECT_EQ(stored.mesh_key(), stored_placed.mesh_key());
     }
     EXPECT_NE(pairs[0].second.mesh_key(), pairs[1].second.mesh_key());

@@ -115,8 +115,9 @@ private:
 
 bool is_sound_head(std::span<const uvec4> head, uint64_t units) {
     const auto root = head.subspan(OVC_ROOT_UNIT * OVC_UNIT_TEXELS);
-    if (units >= OVC_MAX_PAGE_UNITS || head[2] != uvec4(OVC_ROOT_UNIT, 0xffffffffu, 0, 0) ||
-        !has_sound_grid(head) || is_missing(root, 0) || root[3].y || root[3].z || root[3].w)
+    if (units <= OVC_ROOT_UNIT || units >= OVC_MAX_PAGE_UNITS ||
+        head[2] != uvec4(OVC_ROOT_UNIT, 0xffffffffu, 0, 0) || !has_sound_grid(head) ||
+        is_missing(root, 0) || root[3].y || root[3].z || root[3].w)
         return false;
     for (uint32_t child = 0; child < 4; ++child)
         if (!is_missing(root, child) &&

@@ -23,8 +23,8 @@ public:
           store_(store) {}
 
     bool has_doubles() const override { return triangle_bytes == 72; }
-    void read(uint32_t first, std::span<std::byte> to) const override {
-        store_.copy_corners(*this, first, to);
+    bool read(uint32_t first, std::span<std::byte> to) const override {
+        return store_.copy_corners(*this, first, to);
     }
 
     const uint32_t number;
@@ -159,29 +159,34 @@ bool LeafStore::fill_block(const Mesh& mesh, uint32_t block, std::span<std::byte
     return true;
 }
 
-void LeafStore::copy_corners(const Mesh& mesh, uint32_t first, std::span<std::byte> to) {
-    const auto give_up = [](std::span<std::byte> left) { std::ranges::fill(left, std::byte(0)); };
+bool LeafStore::copy_corners(const Mesh& mesh, uint32_t first, std::span<std::byte> to) {
     if (!corner_cache_) {
         const uint64_t count = to.size() / mesh.triangle_bytes;
         count_read(to.size());
-        if (!mesh.read_corners(first, count, to.data())) {
-            fail({format_text("the corners of triangles {} to {} of mesh {} cannot be read", first,
-                              first + count - 1, mesh.number)});
-            give_up(to);
-        }
-        return;
+        if (mesh.read_corners(first, count, to.data()))
+            return true;
+        fail({format_text("the corners of triangles {} to {} of mesh {} cannot be read", first,
+                          first + count - 1, mesh.number)});
+        std::ranges::fill(to, std::byte(0));
+        return false;
     }
+    bool all = true;
     while (!to.empty()) {
         const uint32_t block = first / kCornerBlock, within = first % kCornerBlock;
         const size_t bytes = std::min(to.size(), (kCornerBlock - within) * mesh.triangle_bytes);
         const auto part = to.first(bytes);
-        if (!corner_cache_->copy(
-                mesh.first_sum + block, within * mesh.triangle_bytes, part,
-                [&](std::span<std::byte> all) { return fill_block(mesh, block, all); }))
-            give_up(part);
+        const auto fill = [&](std::span<std::byte> whole) {
+            return fill_block(mesh, block, whole);
+        };
+        if (!corner_cache_->copy(mesh.first_sum + block, within * mesh.triangle_bytes, part,
+                                 fill)) {
+            std::ranges::fill(part, std::byte(0));
+            all = false;
+        }
         to = to.subspan(bytes);
         first += uint32_t(bytes / mesh.triangle_bytes);
     }
+    return all;
 }
 
 LeafStore::Counts LeafStore::counts() const {

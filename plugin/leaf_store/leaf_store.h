@@ -4,8 +4,8 @@
 #pragma once
 
 #include "core/file/archive.h"
+#include "core/file/stored_corners.h"
 #include "core/result.h"
-#include "core/stored_corners.h"
 #include "plugin/leaf_store/corner_cache.h"
 #include "plugin/leaf_store/corner_sums.h"
 #include "plugin/leaf_store/page_cache.h"
@@ -80,7 +80,7 @@ private:
 
     Result<Done> fill_page(uint32_t number, std::span<std::byte> to);
     bool fill_block(const Mesh& mesh, uint32_t block, std::span<std::byte> to);
-    void copy_corners(const Mesh& mesh, uint32_t first, std::span<std::byte> to);
+    bool copy_corners(const Mesh& mesh, uint32_t first, std::span<std::byte> to);
     void count_read(uint64_t bytes);
     void fail(Error error) const;
 

@@ -290,10 +290,11 @@ TEST_F(Stored, FastPrecisionAndInstancesLieOnADiskAsWell) {
         const auto found = test::answers(scene, rays);
         for (size_t i = 0; i < found.size(); ++i) { // the tree over the pages is another one
             EXPECT_EQ(found[i].mesh, expected[i].mesh) << i;
-            if (precision == OVC_PRECISION_CERTIFIED)
+            if (precision == OVC_PRECISION_CERTIFIED) {
                 EXPECT_EQ(std::memcmp(&found[i], &expected[i], sizeof(ovc_hit)), 0) << i;
-            else if (found[i].mesh != OVC_NONE)
+            } else if (found[i].mesh != OVC_NONE) {
                 EXPECT_NEAR(found[i].t, expected[i].t, 1e-5) << i;
+            }
         }
     }
 }

@@ -16,9 +16,9 @@ public:
     /// Whether offsets are doubles, 72 bytes a triangle; else they are floats, 36.
     virtual bool has_doubles() const = 0;
     /// Reads the corners of whole triangles from `first` on, as many as fit into `to` exactly. Any
-    /// number of threads may call this. Where they cannot be read, `to` becomes zeros, which no ray
-    /// hits, and the owner of the corners knows why.
-    virtual void read(uint32_t first, std::span<std::byte> to) const = 0;
+    /// number of threads may call this. Where they cannot be read, it returns false, `to` becomes
+    /// zeros, which no ray hits, and the owner of the corners knows why.
+    virtual bool read(uint32_t first, std::span<std::byte> to) const = 0;
 };
 
 } // namespace ovc
