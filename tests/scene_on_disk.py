@@ -107,7 +107,8 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         file = folder / "scene.ovc"
-        code, said, _ = run([overcast, "convert", scene, file, "--host-memory", 128 * MIB])
+        code, said, _ = run([overcast, "convert", scene, file, "--host-memory", 128 * MIB,
+                             "--leaf-triangles", 8000])
         if code != 0:
             print(f"skipped: {said}")
             return 77
