@@ -38,7 +38,10 @@ bool CornerCache::copy(uint64_t block, size_t offset, std::span<std::byte> to,
         way = size_t(std::ranges::min_element(set.last_use) - set.last_use.begin());
     std::byte* const place = memory_ + (number * kWays + way) * block_bytes_;
     if (!is_here) {
-        used_ += set.last_use[way] == 0;
+        if (set.last_use[way] == 0) {
+            set.last_use[way] = 1;
+            ++used_;
+        }
         set.blocks[way] = kEmpty;
         if (!fill({place, block_bytes_}))
             return false;
