@@ -14,6 +14,9 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <mutex>
+#include <optional>
+#include <utility>
 
 namespace ovc {
 namespace {
@@ -549,9 +552,7 @@ private:
     std::vector<Head> heads_;
 };
 
-} // namespace
-
-Result<BuiltScene> open_stored_levels(LeafStore& store, const Soup& soup) {
+Result<BuiltScene> open_levels(LeafStore& store, const Soup& soup) {
     const Stopwatch watch;
     const Result<StoredArchive> archive =
         StoredArchive::open(store.read(), store.saved_bytes(), kKind, kVersion);
@@ -588,6 +589,21 @@ Result<BuiltScene> open_stored_levels(LeafStore& store, const Soup& soup) {
     scene->from_saved = true;
     scene->seconds_level1 = watch.seconds();
     return scene;
+}
+
+} // namespace
+
+Result<BuiltScene> open_stored_levels(LeafStore& store, const Soup& soup) {
+    std::mutex mutex;
+    std::optional<Error> failed; // corners of instances are looked at
+    store.on_failure([&](Error error) {
+        const std::lock_guard lock(mutex);
+        if (!failed)
+            failed = std::move(error);
+    });
+    Result<BuiltScene> scene = open_levels(store, soup);
+    store.on_failure({});
+    return failed ? std::move(*failed) : std::move(scene);
 }
 
 } // namespace ovc

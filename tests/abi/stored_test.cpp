@@ -56,6 +56,20 @@ public:
         return owner;
     }
 
+    /// Returns one whose other chunks are instances of the first.
+    test::AbiScene scene_of_instances(const test::Device& device, const ovc_scene_config& config) {
+        ovc_scene scene = nullptr;
+        EXPECT_EQ(api().create_scene(device.get(), &config, &scene), OVC_OK);
+        const ovc_mesh mesh = mesh_of(0);
+        EXPECT_EQ(api().add_mesh(scene, &mesh, nullptr), OVC_OK);
+        for (size_t i = 1; i < soup_.chunks.size(); ++i) {
+            auto instance = test::sized<ovc_instance>();
+            instance.transform = soup_.chunks[i].transform()->rows[0].data();
+            EXPECT_EQ(api().add_instance(scene, &instance, nullptr), OVC_OK);
+        }
+        return test::AbiScene(scene);
+    }
+
     ovc_mesh mesh_of(size_t m) {
         const Chunk& chunk = soup_.chunks[m];
         auto mesh = test::sized<ovc_mesh>();
@@ -275,17 +289,17 @@ TEST_F(Stored, FastPrecisionAndInstancesLieOnADiskAsWell) {
         Disk disk(soup, saved(built));
         ovc_scene_config config = disk.config(1 << 30);
         config.precision = precision;
-        ovc_scene handle = nullptr;
-        ASSERT_EQ(api().create_scene(device.get(), &config, &handle), OVC_OK) << error();
-        const test::AbiScene scene(handle);
-        const ovc_mesh mesh = disk.mesh_of(0);
-        ASSERT_EQ(api().add_mesh(handle, &mesh, nullptr), OVC_OK) << error();
-        for (size_t i = 1; i < soup.chunks.size(); ++i) {
-            auto instance = test::sized<ovc_instance>();
-            instance.transform = soup.chunks[i].transform()->rows[0].data();
-            ASSERT_EQ(api().add_instance(handle, &instance, nullptr), OVC_OK) << error();
+        test::AbiScene scene = disk.scene_of_instances(device, config);
+        for (int64_t reads = 0;; reads = reads * 3 / 2 + 1) { // some for the boxes of instances
+            disk.reads_left = reads;
+            const ovc_result result = api().commit(scene.get());
+            disk.reads_left = INT64_MAX;
+            if (result == OVC_OK)
+                break;
+            EXPECT_EQ(result, OVC_ERROR_UNREADABLE);
+            EXPECT_THAT(error(), HasSubstr("cannot be read"));
+            scene = disk.scene_of_instances(device, config);
         }
-        ASSERT_EQ(api().commit(handle), OVC_OK) << error();
         EXPECT_EQ(test::statistics(scene).instances, test::statistics(built).instances);
         const auto found = test::answers(scene, rays);
         for (size_t i = 0; i < found.size(); ++i) { // the tree over the pages is another one
