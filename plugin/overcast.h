@@ -234,7 +234,8 @@ typedef struct ovc_mesh {
     uint32_t mask;            /* which rays see the mesh (ovc_query.masks). 0: all */
     uint32_t reserved1;       /* 0 */
     /* Experimental: instead of positions, in a scene with host_memory_bytes. It reads corners of the
-     * triangle_count triangles, of floats or of doubles, until the scene is destroyed. */
+     * triangle_count triangles, of floats or of doubles, until the scene is destroyed. Meshes with
+     * the same function and user show the same corners, and share pages as instances do. */
     ovc_read_corners_function read_corners;
     void* read_user;
     uint32_t reads_doubles;   /* 0: 36 bytes a triangle; 1: 72 */

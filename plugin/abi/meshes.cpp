@@ -13,15 +13,17 @@ namespace ovc {
 namespace {
 
 /// Returns a chunk whose corners the host reads.
-Chunk stored_chunk_of(LeafStore& store, const ovc_mesh& mesh) {
+Chunk stored_chunk_of(ovc_scene scene, const ovc_mesh& mesh) {
+    const StoredCorners*& corners =
+        scene->stored[{mesh.read_corners, mesh.read_user, mesh.triangle_count, mesh.reads_doubles}];
     const auto read = [function = mesh.read_corners,
-                       user = mesh.read_user](uint64_t first, uint64_t count, void* corners) {
+                       user = mesh.read_user](uint64_t first, uint64_t count, void* to) {
         const HostFunction mark;
-        return function(user, first, count, corners) == 0;
+        return function(user, first, count, to) == 0;
     };
-    const StoredCorners& corners =
-        store.add_mesh(mesh.triangle_count, mesh.reads_doubles == 1, read);
-    return Chunk::stored({mesh.origin[0], mesh.origin[1], mesh.origin[2]}, corners,
+    if (!corners)
+        corners = &scene->store->add_mesh(mesh.triangle_count, mesh.reads_doubles == 1, read);
+    return Chunk::stored({mesh.origin[0], mesh.origin[1], mesh.origin[2]}, *corners,
                          uint32_t(mesh.triangle_count));
 }
 
@@ -128,7 +130,7 @@ ovc_result add_mesh(ovc_scene scene, const ovc_mesh* given, uint32_t* mesh_id) {
         if (triangles_of(mesh) > 0 && !mesh.read_corners != !scene->store)
             invalid("add_mesh: ovc_mesh.read_corners goes with ovc_scene_config.host_memory_bytes: "
                     "all meshes of such a scene have it, and no others");
-        Chunk chunk = mesh.read_corners ? stored_chunk_of(*scene->store, mesh) : chunk_of(mesh);
+        Chunk chunk = mesh.read_corners ? stored_chunk_of(scene, mesh) : chunk_of(mesh);
         if (transform)
             chunk.place(*transform);
         chunk.set_mask(mesh.mask);

@@ -187,6 +187,7 @@ void destroy_scene(ovc_scene scene) {
         scene->structure.reset();
         scene->soup = {};
         scene->templates.clear();
+        scene->stored.clear();
         scene->store.reset();
     }
     scene->calls.wait_until_none(); // those that waited for their turn still use the device
